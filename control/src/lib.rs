@@ -1,0 +1,26 @@
+//! Control laws of the SOPHIE flight stack.
+//!
+//! Pure functions and small structs: no I/O, no async, no allocation, no hardware. Everything is SI
+//! (N, N·m, rad, rad/s, s, Pa, V) except the infill ratio, which is in percent because the
+//! paper's coefficients are. Body frame FRD (x forward, y right, z down), world frame NED,
+//! quaternions w-first, rotors and arms in the paper's order: 1 front-left, 2 rear-left,
+//! 3 front-right, 4 rear-right. An arm tilt is positive with the tip up, thrust leaning inward.
+
+#![no_std]
+#![deny(
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::float_cmp
+)]
+
+pub mod desaturation;
+pub mod grip;
+pub mod math;
+pub mod mixer;
+pub mod mode;
+pub mod params;
+pub mod rc;
+pub mod vector;
+pub mod wrench;

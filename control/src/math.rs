@@ -1,0 +1,169 @@
+//! The only place where transcendental functions come from.
+//!
+//! With `std` in scope `x.sin()` silently is another function on the host than on the board, so the laws
+//! call these by path. `sin`, `cos` and `atan2` are micromath's (absolute errors 1.1e-3, 1.1e-3 and
+//! 2.8e-3 rad); the roots are our own because micromath's are off by up to 6 %.
+
+use micromath::F32Ext;
+
+/// π as `f32`.
+pub const PI: f32 = core::f32::consts::PI;
+/// Standard gravity, m/s².
+pub const GRAVITY: f32 = 9.806_65;
+
+/// Sine of `x` rad.
+#[inline]
+pub fn sin(x: f32) -> f32 {
+    F32Ext::sin(x)
+}
+
+/// Cosine of `x` rad.
+#[inline]
+pub fn cos(x: f32) -> f32 {
+    F32Ext::cos(x)
+}
+
+/// Angle of the point (`x`, `y`) from the x axis, rad in (-π, π].
+#[inline]
+pub fn atan2(y: f32, x: f32) -> f32 {
+    F32Ext::atan2(y, x)
+}
+
+/// Arc sine of `x`, rad; `x` is limited to [-1, 1] first.
+#[inline]
+pub fn asin(x: f32) -> f32 {
+    let x = clamp(x, -1.0, 1.0);
+    atan2(x, sqrt(1.0 - x * x))
+}
+
+/// Tangent of `x` rad for |x| <= 1.2, by a continued fraction (relative error below 2e-6).
+///
+/// Filter design needs it: 1 - cos of a small angle would drown in micromath's error.
+#[inline]
+pub fn tan(x: f32) -> f32 {
+    let x2 = x * x;
+    x / (1.0 - x2 / (3.0 - x2 / (5.0 - x2 / (7.0 - x2 / 9.0))))
+}
+
+/// 1/√x for positive finite `x`; 0 for everything else, so that a division by a vanishing norm gives 0.
+///
+/// Bit-level first guess and three Newton steps: relative error below 3e-7.
+#[inline]
+pub fn inv_sqrt(x: f32) -> f32 {
+    if !(x > f32::MIN_POSITIVE && x < f32::MAX) {
+        return 0.0;
+    }
+    let half = 0.5 * x;
+    let mut y = f32::from_bits(0x5f37_59df - (x.to_bits() >> 1));
+    y *= 1.5 - half * y * y;
+    y *= 1.5 - half * y * y;
+    y *= 1.5 - half * y * y;
+    y
+}
+
+/// √x; 0 for zero, negative and non-finite `x`.
+#[inline]
+pub fn sqrt(x: f32) -> f32 {
+    x * inv_sqrt(x)
+}
+
+/// `x` limited to [`low`, `high`]; `low` for a NaN. Compiles to two compares on a core without VMINNM.
+#[inline]
+pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
+    if x > high {
+        high
+    } else if x > low {
+        x
+    } else {
+        low
+    }
+}
+
+/// `x` limited to [-`limit`, `limit`]; -`limit` for a NaN.
+#[inline]
+pub fn clamp_abs(x: f32, limit: f32) -> f32 {
+    clamp(x, -limit, limit)
+}
+
+/// Moves `from` towards `to` by at most `step` (>= 0).
+#[inline]
+pub fn slew(from: f32, to: f32, step: f32) -> f32 {
+    from + clamp_abs(to - from, step)
+}
+
+/// Angle `x` folded into [-π, π), for |x| up to a few turns.
+#[inline]
+pub fn wrap_pi(x: f32) -> f32 {
+    let turns = (x + PI) * (0.5 / PI);
+    // Truncation towards zero, mended for negative values: `floor` is not in core.
+    let whole = turns as i32 as f32;
+    let floor = if whole > turns { whole - 1.0 } else { whole };
+    x - floor * (2.0 * PI)
+}
+
+/// Degrees to radians, for constants that sources print in degrees.
+#[inline]
+pub const fn deg(x: f32) -> f32 {
+    x * (PI / 180.0)
+}
+
+/// Radians to degrees, for the edges where people read.
+#[inline]
+pub const fn to_deg(x: f32) -> f32 {
+    x * (180.0 / PI)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+
+    fn close(a: f32, b: f32, tolerance: f32) -> bool {
+        (a - b).abs() <= tolerance
+    }
+
+    #[test]
+    fn roots_match_the_standard_library() {
+        for i in 0..4000 {
+            let x = f32::exp(-20.0 + 0.01 * i as f32);
+            assert!(close(inv_sqrt(x) * f32::sqrt(x), 1.0, 4e-7), "{x}");
+            assert!(close(sqrt(x) / f32::sqrt(x), 1.0, 5e-7), "{x}");
+        }
+        assert!(sqrt(0.0) == 0.0 && sqrt(-1.0) == 0.0 && sqrt(f32::NAN).is_finite());
+        assert!(inv_sqrt(f32::INFINITY) == 0.0);
+    }
+
+    #[test]
+    fn tangent_is_accurate_where_filters_are_designed() {
+        for i in -120..=120 {
+            let x = i as f32 * 0.01;
+            let exact = f64::tan(f64::from(x));
+            assert!((f64::from(tan(x)) - exact).abs() <= 2e-6 * exact.abs() + 1e-9, "{x}");
+        }
+    }
+
+    #[test]
+    fn arc_sine_is_within_its_stated_error() {
+        for i in -100..=100 {
+            let x = i as f32 * 0.01;
+            assert!(close(asin(x), f32::asin(x), 3.5e-3), "{x}");
+        }
+        assert!(close(asin(7.0), PI / 2.0, 3.5e-3));
+    }
+
+    #[test]
+    fn clamp_stops_a_nan() {
+        assert!(clamp(f32::NAN, -1.0, 2.0) == -1.0);
+        assert!(clamp(3.0, -1.0, 2.0) == 2.0 && clamp(-3.0, -1.0, 2.0) == -1.0);
+    }
+
+    #[test]
+    fn angles_wrap_into_one_turn() {
+        for i in -1000..1000 {
+            let x = i as f32 * 0.01;
+            let w = wrap_pi(x);
+            assert!((-PI - 1e-4..PI + 1e-4).contains(&w), "{x} -> {w}");
+            assert!(close(f32::sin(w), f32::sin(x), 1e-4));
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Every number that a pilot or builder may change, in one table: name, unit, range, default, source.
+
+/// One row of the parameter table.
+#[derive(Clone, Copy, Debug)]
+pub struct ParamInfo {
+    /// Name, as in scenario files and on the console.
+    pub name: &'static str,
+    /// Unit in which the value is given; `1` for a pure number.
+    pub unit: &'static str,
+    /// Smallest value allowed.
+    pub min: f32,
+    /// Largest value allowed.
+    pub max: f32,
+    /// Value of a fresh board.
+    pub default: f32,
+    /// What it is and where the default comes from.
+    pub doc: &'static str,
+}
+
+/// Why a parameter was not set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParamError {
+    /// No parameter has this name.
+    Unknown,
+    /// The value is not finite or outside `min..=max`.
+    OutOfRange {
+        /// Smallest value allowed.
+        min: f32,
+        /// Largest value allowed.
+        max: f32,
+        /// Unit of the bounds.
+        unit: &'static str,
+    },
+}
+
+macro_rules! params {
+    ($( $(#[doc = $doc:literal])+ $name:ident = $default:literal, $unit:literal, $min:literal ..= $max:literal; )+) => {
+        /// The parameters of one vehicle; `Default` is the paper's vehicle.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Params {
+            $( $(#[doc = $doc])+ pub $name: f32, )+
+        }
+
+        impl Default for Params {
+            fn default() -> Self {
+                Self { $( $name: $default, )+ }
+            }
+        }
+
+        impl Params {
+            /// The whole table, in the order of the fields.
+            pub const TABLE: &'static [ParamInfo] = &[
+                $( ParamInfo {
+                    name: stringify!($name), unit: $unit, min: $min, max: $max, default: $default,
+                    doc: concat!($($doc),+),
+                }, )+
+            ];
+
+            /// The value of the parameter called `name`.
+            pub fn get(&self, name: &str) -> Option<f32> {
+                match name {
+                    $( stringify!($name) => Some(self.$name), )+
+                    _ => None,
+                }
+            }
+
+            /// Sets the parameter called `name`.
+            ///
+            /// # Errors
+            /// An unknown name, or a value that is not finite or out of its range; nothing is changed then.
+            pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
+                match name {
+                    $( stringify!($name) => {
+                        if !(value >= $min && value <= $max) {
+                            return Err(ParamError::OutOfRange { min: $min, max: $max, unit: $unit });
+                        }
+                        self.$name = value;
+                    } )+
+                    _ => return Err(ParamError::Unknown),
+                }
+                Ok(())
+            }
+        }
+    };
+}
+
+params! {
+    /// Mass of the vehicle (paper, Table II).
+    mass = 1.805, "kg", 0.5 ..= 5.0;
+    /// Roll inertia (assumed, 30 %).
+    inertia_roll = 0.021, "kg m2", 0.002 ..= 0.2;
+    /// Pitch inertia (assumed, 30 %).
+    inertia_pitch = 0.044, "kg m2", 0.002 ..= 0.2;
+    /// Yaw inertia (assumed, 30 %).
+    inertia_yaw = 0.063, "kg m2", 0.002 ..= 0.4;
+    /// Sideways distance of a rotor from the centre line (derived from L/D >= 1.4 with 10-inch propellers).
+    arm_d = 0.178, "m", 0.05 ..= 0.5;
+    /// Fore-aft distance of a rotor from the centre (derived, square layout).
+    arm_b = 0.178, "m", 0.05 ..= 0.5;
+    /// Largest thrust of a rotor (assumed from the paper's 450 g nominal and hover at half throttle).
+    thrust_max = 8.3, "N", 2.0 ..= 30.0;
+    /// Thrust of a rotor that idles while armed (assumed).
+    thrust_idle = 0.25, "N", 0.05 ..= 1.0;
+    /// Rotor drag torque over thrust, C_Q/C_T (assumed, 0.002).
+    torque_ratio = 0.016, "m", 0.005 ..= 0.05;
+    /// Time constant of motor and propeller (assumed).
+    motor_tau = 0.05, "s", 0.005 ..= 0.3;
+    /// Share of the thrust that grows with the square of the command; the rest is linear (assumed).
+    thrust_curve = 0.75, "1", 0.0 ..= 1.0;
+
+    /// Infill of the arms; Eq. 1 covers 4 to 10 %, below 6 % the paper's authors did not fly.
+    infill = 6.9, "%", 4.0 ..= 10.0;
+    /// Gain on the elastic term of Eq. 1 that the paper's Table III needs; 1 is the literal equation.
+    gain_k = 7.75, "1", 1.0 ..= 10.0;
+    /// Exponent C_P of the battery's power ratio in Eq. 1 (paper, 1.6 to 1.8).
+    power_exponent = 1.7, "1", 1.0 ..= 2.5;
+    /// Cut-off of the thrust about which the arm model is linearised (0.2 to 30 Hz all work).
+    tilt_cutoff = 5.0, "Hz", 0.2 ..= 30.0;
+    /// Gain of the arms' IMUs on the tilt bias, each 10 ms.
+    tilt_bias_gain = 0.02, "1", 0.0 ..= 0.05;
+    /// Largest tilt bias believed.
+    tilt_bias_max = 0.2, "rad", 0.0 ..= 0.5;
+
+    /// Accelerometer gain of the attitude estimator.
+    estimator_kp = 0.25, "1/s", 0.01 ..= 5.0;
+    /// Gyro bias gain of the attitude estimator.
+    estimator_ki = 0.01, "1/s2", 0.0 ..= 1.0;
+    /// Cut-off of the gyro's low-pass filter.
+    gyro_cutoff = 90.0, "Hz", 20.0 ..= 400.0;
+
+    /// Angle to rate, roll and pitch.
+    attitude_p = 4.5, "1/s", 0.5 ..= 12.0;
+    /// Angle to rate, yaw.
+    attitude_yaw_p = 1.2, "1/s", 0.0 ..= 5.0;
+    /// Cut-off of the attitude setpoint's prefilter.
+    setpoint_cutoff = 10.0, "rad/s", 1.0 ..= 100.0;
+    /// Largest body rate that the attitude loop asks for.
+    rate_max = 3.5, "rad/s", 0.5 ..= 12.0;
+    /// Rate to angular acceleration, roll and pitch.
+    rate_p = 10.0, "1/s", 0.0 ..= 40.0;
+    /// Integral gain, roll and pitch.
+    rate_i = 8.0, "1/s2", 0.0 ..= 100.0;
+    /// Derivative gain on the measured rate, roll and pitch.
+    rate_d = 0.0, "1", 0.0 ..= 1.0;
+    /// Cut-off of the derivative's low-pass filter.
+    rate_d_cutoff = 40.0, "Hz", 5.0 ..= 200.0;
+    /// Rate to angular acceleration, yaw.
+    rate_yaw_p = 3.0, "1/s", 0.0 ..= 10.0;
+    /// Integral gain, yaw.
+    rate_yaw_i = 1.5, "1/s2", 0.0 ..= 20.0;
+    /// Largest change of the yaw rate setpoint.
+    yaw_slew = 0.5, "rad/s2", 0.05 ..= 20.0;
+    /// Largest thrust that yaw may add to or take from one rotor.
+    yaw_thrust_max = 1.5, "N", 0.1 ..= 5.0;
+    /// Centre of the yaw notch: the arms' bending mode.
+    notch_hz = 4.75, "Hz", 1.0 ..= 40.0;
+    /// Damping ratio of the notch's zeros.
+    notch_zeta_zero = 0.2, "1", 0.0 ..= 1.0;
+    /// Damping ratio of the notch's poles.
+    notch_zeta_pole = 0.8, "1", 0.1 ..= 2.0;
+    /// Mean thrust of a rotor below which yaw is given up: the quasi-static reversal is near.
+    yaw_gate_thrust = 1.95, "N", 0.0 ..= 5.0;
+
+    /// Largest roll and pitch angle of a full stick.
+    stick_angle = 0.61, "rad", 0.1 ..= 1.0;
+    /// Body rate of a full stick in rate mode.
+    stick_rate = 3.0, "rad/s", 0.5 ..= 10.0;
+    /// Yaw rate of a full stick.
+    stick_yaw_rate = 1.0, "rad/s", 0.1 ..= 6.0;
+    /// Roll and pitch torque of a full stick in direct mode.
+    stick_torque = 1.0, "N m", 0.05 ..= 4.0;
+    /// Yaw torque of a full stick in direct mode.
+    stick_yaw_torque = 0.1, "N m", 0.01 ..= 1.0;
+    /// Share of the throttle's travel about the pilot's zero that counts as low.
+    throttle_low = 0.05, "1", 0.01 ..= 0.2;
+    /// Throttle below which the landing on the pipe may start; the paper closes at about 30 %.
+    perch_throttle_max = 0.42, "1", 0.1 ..= 0.6;
+
+    /// Contact pressure of a proven grip (paper).
+    grip_pressure = 950.0, "Pa", 100.0 ..= 5000.0;
+    /// Error of the contact pressure that a grip may have (paper, about the sensor's error).
+    grip_tolerance = 50.0, "Pa", 10.0 ..= 500.0;
+    /// Time for which the pressures must stay within the tolerance.
+    grip_dwell = 0.5, "s", 0.05 ..= 5.0;
+    /// Pressure below which an arm counts as free of the pipe.
+    release_pressure = 80.0, "Pa", 10.0 ..= 500.0;
+    /// Longest time that the closing may take before it is given up.
+    clamp_timeout = 10.0, "s", 1.0 ..= 60.0;
+    /// Largest servo torque, 25 kgcm (paper).
+    servo_torque_max = 2.452, "N m", 0.1 ..= 4.0;
+    /// Stall torque of the servo in use, 35 kgcm as the paper says; 0.92 for an MG996R at 4.8 V (datasheet).
+    servo_stall = 3.432, "N m", 0.1 ..= 5.0;
+    /// Slew of the servo (MG996R datasheet, 0.17 s for 60 degrees at 4.8 V).
+    servo_slew = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Travel of the servo from the release position.
+    servo_range = 3.14, "rad", 0.5 ..= 6.3;
+    /// Radius of the reel on the servo (assumed).
+    reel_radius = 0.015, "m", 0.002 ..= 0.05;
+    /// Distance of the tendon from the arm's neutral line (assumed).
+    tendon_lever = 0.025, "m", 0.005 ..= 0.1;
+    /// Stiffness of tendon and anchors along the tendon (assumed).
+    tendon_stiffness = 4000.0, "N/m", 200.0 ..= 100000.0;
+    /// Pressure loop: proportional gain, tendon force per pressure.
+    clamp_p = 0.006, "N/Pa", 0.0 ..= 0.2;
+    /// Pressure loop: integral gain.
+    clamp_i = 0.03, "N/(Pa s)", 0.0 ..= 1.0;
+    /// Pressure loop: derivative gain on the measured pressure.
+    clamp_d = 0.0005, "N s/Pa", 0.0 ..= 0.05;
+    /// Fastest rise of the tendon force before an arm touches.
+    clamp_approach = 28.0, "N/s", 1.0 ..= 500.0;
+    /// Active area of the FSR (Interlink 406 datasheet, 38 mm square).
+    fsr_area = 0.001444, "m2", 0.00005 ..= 0.01;
+    /// Conductance of the FSR per force (Interlink 406 guide: about 10 kOhm at 1 N, assumed linear).
+    fsr_gain = 0.0001, "S/N", 0.00001 ..= 0.01;
+    /// Resistor of the FSR's divider, to ground.
+    fsr_divider = 10000.0, "Ohm", 1000.0 ..= 100000.0;
+
+    /// Battery voltage of full thrust: the curve is normalised to it (4S nominal).
+    battery_nominal = 14.8, "V", 6.0 ..= 52.0;
+    /// Battery voltage under load at which arming is refused and the pilot is warned.
+    battery_warning = 13.6, "V", 5.0 ..= 52.0;
+    /// Battery voltage under load at which the failsafe lands.
+    battery_critical = 12.6, "V", 5.0 ..= 52.0;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_default_lies_in_its_range_and_can_be_set() {
+        for row in Params::TABLE {
+            let mut p = Params::default();
+            assert!(p.get(row.name) == Some(row.default), "{}", row.name);
+            assert!(p.set(row.name, row.default).is_ok(), "{}", row.name);
+            assert!(p.set(row.name, row.max).is_ok() && p.get(row.name) == Some(row.max), "{}", row.name);
+            assert!(p.set(row.name, row.min).is_ok() && p.get(row.name) == Some(row.min), "{}", row.name);
+        }
+    }
+
+    #[test]
+    fn a_bad_value_changes_nothing() {
+        let mut p = Params::default();
+        for bad in [f32::NAN, f32::INFINITY, -1.0, 11.0, 3.9] {
+            assert!(matches!(p.set("infill", bad), Err(ParamError::OutOfRange { .. })), "{bad}");
+        }
+        assert!(p.set("infil", 6.0) == Err(ParamError::Unknown));
+        assert!(p == Params::default());
+    }
+}

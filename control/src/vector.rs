@@ -1,0 +1,247 @@
+//! Three-vectors and unit quaternions in `f32`, just what the laws need.
+
+use core::ops::{Add, AddAssign, Mul, Neg, Sub};
+
+use crate::math;
+
+/// A vector in three dimensions; the frame and unit are the owner's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec3 {
+    /// Forward or north component.
+    pub x: f32,
+    /// Right or east component.
+    pub y: f32,
+    /// Down component.
+    pub z: f32,
+}
+
+impl Vec3 {
+    /// The null vector.
+    pub const ZERO: Self = Self::new(0.0, 0.0, 0.0);
+
+    /// A vector from its components.
+    pub const fn new(x: f32, y: f32, z: f32) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The three components in order.
+    pub const fn to_array(self) -> [f32; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// Scalar product.
+    pub fn dot(self, o: Self) -> f32 {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    /// Vector product, right-handed.
+    pub fn cross(self, o: Self) -> Self {
+        Self::new(
+            self.y * o.z - self.z * o.y,
+            self.z * o.x - self.x * o.z,
+            self.x * o.y - self.y * o.x,
+        )
+    }
+
+    /// Squared length.
+    pub fn norm_squared(self) -> f32 {
+        self.dot(self)
+    }
+
+    /// Length.
+    pub fn norm(self) -> f32 {
+        math::sqrt(self.norm_squared())
+    }
+
+    /// Component by component product.
+    pub fn scale_by(self, o: Self) -> Self {
+        Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
+    }
+
+    /// The same function on each component.
+    pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        Self::new(f(self.x), f(self.y), f(self.z))
+    }
+
+    /// True when every component is finite.
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+    }
+}
+
+impl From<[f32; 3]> for Vec3 {
+    fn from([x, y, z]: [f32; 3]) -> Self {
+        Self::new(x, y, z)
+    }
+}
+
+impl Add for Vec3 {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+}
+
+impl AddAssign for Vec3 {
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl Sub for Vec3 {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+}
+
+impl Mul<f32> for Vec3 {
+    type Output = Self;
+    fn mul(self, k: f32) -> Self {
+        Self::new(self.x * k, self.y * k, self.z * k)
+    }
+}
+
+impl Neg for Vec3 {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+
+/// A rotation from body to world as a unit quaternion, w first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quat {
+    /// Scalar part.
+    pub w: f32,
+    /// Vector part, x.
+    pub x: f32,
+    /// Vector part, y.
+    pub y: f32,
+    /// Vector part, z.
+    pub z: f32,
+}
+
+impl Default for Quat {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl Quat {
+    /// No rotation.
+    pub const IDENTITY: Self = Self { w: 1.0, x: 0.0, y: 0.0, z: 0.0 };
+
+    /// From roll, pitch and yaw (rad), applied in the order yaw, pitch, roll.
+    pub fn from_euler(roll: f32, pitch: f32, yaw: f32) -> Self {
+        let (sr, cr) = (math::sin(0.5 * roll), math::cos(0.5 * roll));
+        let (sp, cp) = (math::sin(0.5 * pitch), math::cos(0.5 * pitch));
+        let (sy, cy) = (math::sin(0.5 * yaw), math::cos(0.5 * yaw));
+        Self {
+            w: cr * cp * cy + sr * sp * sy,
+            x: sr * cp * cy - cr * sp * sy,
+            y: cr * sp * cy + sr * cp * sy,
+            z: cr * cp * sy - sr * sp * cy,
+        }
+        .normalised()
+    }
+
+    /// Roll, pitch and yaw (rad).
+    pub fn to_euler(self) -> (f32, f32, f32) {
+        let Self { w, x, y, z } = self;
+        let roll = math::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
+        let pitch = math::asin(2.0 * (w * y - z * x));
+        let yaw = math::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+        (roll, pitch, yaw)
+    }
+
+    /// The inverse rotation.
+    pub fn conjugate(self) -> Self {
+        Self { w: self.w, x: -self.x, y: -self.y, z: -self.z }
+    }
+
+    /// The same rotation with length one; identity when the length vanished or is not finite.
+    pub fn normalised(self) -> Self {
+        let n2 = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
+        let k = math::inv_sqrt(n2);
+        if k > 0.0 {
+            Self { w: self.w * k, x: self.x * k, y: self.y * k, z: self.z * k }
+        } else {
+            Self::IDENTITY
+        }
+    }
+
+    /// A body vector in world axes.
+    pub fn rotate(self, v: Vec3) -> Vec3 {
+        let u = Vec3::new(self.x, self.y, self.z);
+        let t = u.cross(v) * 2.0;
+        v + t * self.w + u.cross(t)
+    }
+
+    /// A world vector in body axes.
+    pub fn rotate_inverse(self, v: Vec3) -> Vec3 {
+        self.conjugate().rotate(v)
+    }
+
+    /// The world's down direction in body axes: the third row of the rotation matrix.
+    pub fn down_in_body(self) -> Vec3 {
+        let Self { w, x, y, z } = self;
+        Vec3::new(2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+    }
+
+    /// True when every component is finite.
+    pub fn is_finite(self) -> bool {
+        self.w.is_finite() && self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+    }
+}
+
+impl Mul for Quat {
+    type Output = Self;
+    /// Hamilton product: first `o`, then `self`.
+    fn mul(self, o: Self) -> Self {
+        Self {
+            w: self.w * o.w - self.x * o.x - self.y * o.y - self.z * o.z,
+            x: self.w * o.x + self.x * o.w + self.y * o.z - self.z * o.y,
+            y: self.w * o.y - self.x * o.z + self.y * o.w + self.z * o.x,
+            z: self.w * o.z + self.x * o.y - self.y * o.x + self.z * o.w,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_right_roll_puts_the_right_arm_down() {
+        let q = Quat::from_euler(0.3, 0.0, 0.0);
+        assert!(q.rotate(Vec3::new(0.0, 1.0, 0.0)).z > 0.29);
+        let q = Quat::from_euler(0.0, 0.3, 0.0);
+        assert!(q.rotate(Vec3::new(1.0, 0.0, 0.0)).z < -0.29);
+        let q = Quat::from_euler(0.0, 0.0, 0.3);
+        assert!(q.rotate(Vec3::new(1.0, 0.0, 0.0)).y > 0.29);
+    }
+
+    proptest! {
+        #[test]
+        fn euler_angles_come_back(r in -3.0f32..3.0, p in -1.3f32..1.3, y in -3.0f32..3.0) {
+            let (r2, p2, y2) = Quat::from_euler(r, p, y).to_euler();
+            // micromath's sine and atan2 errors, magnified by the steep pitch.
+            prop_assert!((r - r2).abs() < 0.03 && (p - p2).abs() < 0.03 && (y - y2).abs() < 0.03);
+        }
+
+        #[test]
+        fn rotation_keeps_length_and_comes_back(
+            r in -3.0f32..3.0, p in -1.5f32..1.5, y in -3.0f32..3.0,
+            vx in -10.0f32..10.0, vy in -10.0f32..10.0, vz in -10.0f32..10.0,
+        ) {
+            let (q, v) = (Quat::from_euler(r, p, y), Vec3::new(vx, vy, vz));
+            let w = q.rotate(v);
+            prop_assert!((w.norm() - v.norm()).abs() < 1e-4 * (1.0 + v.norm()));
+            prop_assert!((q.rotate_inverse(w) - v).norm() < 1e-4 * (1.0 + v.norm()));
+            prop_assert!((q.down_in_body() - q.rotate_inverse(Vec3::new(0.0, 0.0, 1.0))).norm() < 1e-5);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! The wrench that the control laws ask of the rotors, and values that come once per arm.
+
+/// One value for each arm or rotor: 1 front-left, 2 rear-left, 3 front-right, 4 rear-right.
+pub type PerArm<T> = [T; 4];
+
+/// +1 for the left arms, -1 for the right ones: the sign of a thrust's roll moment and of the
+/// sideways force of a thrust that leans inward.
+pub const SIDE: PerArm<f32> = [1.0, 1.0, -1.0, -1.0];
+/// +1 for the front arms, -1 for the rear ones: the sign of a thrust's pitch moment.
+pub const FORE: PerArm<f32> = [1.0, -1.0, 1.0, -1.0];
+/// Sign of the yaw moment of an inward lean; configuration B's rotor drag has the same.
+pub const YAW: PerArm<f32> = [1.0, -1.0, -1.0, 1.0];
+
+/// Force along the thrust axis and moments about the body axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Force along -z (up), N, >= 0.
+    pub thrust: f32,
+    /// Moment about x, right side down positive, N·m.
+    pub roll: f32,
+    /// Moment about y, nose up positive, N·m.
+    pub pitch: f32,
+    /// Moment about z, clockwise seen from above positive, N·m.
+    pub yaw: f32,
+}
+
+impl Wrench {
+    /// True when every component is finite.
+    pub fn is_finite(self) -> bool {
+        self.thrust.is_finite() && self.roll.is_finite() && self.pitch.is_finite() && self.yaw.is_finite()
+    }
+}
+
+/// Sense of rotation of the rotors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Configuration {
+    /// Rotors 1 and 4 clockwise seen from above: yaw is mechanically unstable once the arms are soft.
+    A,
+    /// Rotors 1 and 4 counter-clockwise seen from above: the paper's choice.
+    #[default]
+    B,
+}
+
+impl Configuration {
+    /// χ: the sign of the rotor drag's yaw moment against that of an inward lean; +1 for B, -1 for A.
+    pub const fn chi(self) -> f32 {
+        match self {
+            Self::A => -1.0,
+            Self::B => 1.0,
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! What stands in for SOPHIE's hardware: the plant, the virtual clock, the simulated board and the pilot.
+
+pub mod record;
+pub mod scenario;

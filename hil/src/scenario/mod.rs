@@ -1,0 +1,156 @@
+//! A mission with everything that it needs to be repeated: vehicle, world, pilot, steps, seed.
+
+use sophie_control::params::Params;
+use sophie_control::rc::ArmChoice;
+use sophie_control::wrench::{Configuration, PerArm};
+
+/// A flight to be flown.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Name for titles.
+    pub name: String,
+    /// Seed of every random number of the flight.
+    pub seed: u64,
+    /// Longest simulated time, s; the flight fails beyond it.
+    pub time_limit: f64,
+    /// The vehicle as built.
+    pub vehicle: Vehicle,
+    /// The parameters of the flight stack; what the builder believes about the vehicle.
+    pub params: Params,
+    /// Allocation that the stack uses.
+    pub mixer: sophie_control::mixer::Variant,
+    /// Arms that close on the pipe.
+    pub arms: ArmChoice,
+    /// Air and pipe.
+    pub world: World,
+    /// The pilot's limits.
+    pub pilot: Pilot,
+    /// What the pilot does, in order.
+    pub steps: Vec<Step>,
+    /// What a test expects of the flight.
+    pub expect: Expect,
+}
+
+/// The vehicle as built: what the plant is made from.
+#[derive(Clone, Debug)]
+pub struct Vehicle {
+    /// Infill of the arms, %.
+    pub infill: f64,
+    /// Gain on the elastic term of Eq. 1.
+    pub gain_k: f64,
+    /// Sense of rotation of the rotors.
+    pub configuration: Configuration,
+    /// Factor on each arm's elastic tilt: 1 is the nominal arm.
+    pub arm_gain: PerArm<f64>,
+    /// Offset of each arm's tilt, rad: 0 is the nominal arm.
+    pub arm_offset: PerArm<f64>,
+    /// Arms carry their own tip mass (true) or follow the thrust alone, as the paper's statics (false).
+    pub coupled_arms: bool,
+    /// Damping ratio of the arms' bending mode at hover.
+    pub arm_damping: f64,
+    /// Charge of the flight battery at power-up, 0..1.
+    pub battery_charge: f64,
+    /// The servo fitted.
+    pub servo: ServoProfile,
+}
+
+/// The tendon servo fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ServoProfile {
+    /// 35 kgcm, the paper's claim.
+    Paper,
+    /// An MG996R by its datasheet at 4.8 V: 9.4 kgcm.
+    Mg996r,
+}
+
+/// Air and pipe. The take-off point is the origin, on the ground, nose to the north.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// RMS of the gust force on each axis, N.
+    pub gust_force: f64,
+    /// RMS of the gust moment on each axis, N·m.
+    pub gust_moment: f64,
+    /// Outer diameter of the pipe, m.
+    pub pipe_diameter: f64,
+    /// North and east of the spot where the vehicle is to perch, m. The pipe runs north-south.
+    pub pipe_position: [f64; 2],
+    /// Height of the pipe's top over the ground, m.
+    pub pipe_top: f64,
+    /// Coefficient of friction between vehicle and pipe.
+    pub pipe_friction: f64,
+}
+
+/// The pilot's limits.
+#[derive(Clone, Debug)]
+pub struct Pilot {
+    /// Reaction delay, s.
+    pub delay: f64,
+    /// Bandwidth of the hands, Hz.
+    pub bandwidth: f64,
+    /// RMS error of the seen position, m.
+    pub eye_noise: f64,
+}
+
+/// One thing that the pilot does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// Wait until calibrated, then arm with switch and stick gesture.
+    Arm,
+    /// Climb to a height, m over the ground.
+    TakeOff {
+        /// Height, m.
+        height: f64,
+    },
+    /// Hold the spot.
+    Hover {
+        /// Duration, s.
+        seconds: f64,
+    },
+    /// The paper's roll manoeuvre: to +angle, to -angle, level.
+    Roll {
+        /// Roll angle, rad.
+        angle: f64,
+        /// Time at each side, s.
+        seconds: f64,
+    },
+    /// Fly to a point 1 m over the pipe's top.
+    FlyToPipe,
+    /// Descend onto the pipe until it is felt.
+    Touch,
+    /// Set about 30 % throttle, start the closing, wait for the proven grip and stopped motors.
+    Perch {
+        /// Throttle while closing, 0..1.
+        throttle: f64,
+    },
+    /// Stay clamped while the vehicle is pushed.
+    Hold {
+        /// Duration, s.
+        seconds: f64,
+        /// Sideways push at the centre of mass, N, on during the middle third.
+        push: f64,
+    },
+    /// Spool up, release the tendons, wait until every arm is free, lift off by 1 m.
+    Release,
+    /// Fly to a point north and east of the take-off point, m, at a height.
+    FlyTo {
+        /// North, m.
+        north: f64,
+        /// East, m.
+        east: f64,
+        /// Height over the ground, m.
+        height: f64,
+    },
+    /// Descend to the ground below.
+    Land,
+    /// Disarm and wait for stopped motors.
+    Disarm,
+}
+
+/// What a test expects of the flight.
+#[derive(Clone, Debug)]
+pub struct Expect {
+    /// The mission is accomplished.
+    pub accomplished: bool,
+    /// Words that the reason must contain when it is not.
+    pub reason: Option<String>,
+}

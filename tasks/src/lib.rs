@@ -1,0 +1,18 @@
+//! The concurrent tasks of the SOPHIE flight stack.
+//!
+//! Each task is a plain `async fn` over borrowed [`links::Links`] and a port of [`ports`]: the firmware wraps
+//! it in a static task, the host spawns it on its own executor. No task owns a global.
+
+#![no_std]
+#![deny(
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::float_cmp
+)]
+#![allow(async_fn_in_trait, reason = "ports are awaited in place; no caller needs a Send bound")]
+
+pub mod deadline;
+pub mod links;
+pub mod ports;

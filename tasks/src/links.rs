@@ -1,0 +1,347 @@
+//! The links between the tasks: one struct, each link with its message, rate and staleness limit.
+//!
+//! ```text
+//! imu ──> estimator ──> control ──> mixer ──> motors          flight level, 1 kHz
+//!              │           ^ ^        │ ^
+//!              │  setpoint │ └─unmet──┘ │ arms, battery
+//!              v           │            │
+//! rc ──────> commander ────┘          arms      analog ──> contact, battery
+//!              │  ^                                            │
+//!              v  └─────── grip ──── clamp <───────────────────┘
+//!          clamp command ──────────> clamp ──> servos          steady level, 50 to 500 Hz
+//! ```
+
+use core::cell::Cell;
+
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::watch::Watch;
+use embassy_time::{Duration, Instant};
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+use sophie_control::rc::{ArmChoice, Sticks};
+use sophie_control::vector::{Quat, Vec3};
+use sophie_control::wrench::{PerArm, Wrench};
+
+use crate::deadline::{TaskId, Timing};
+
+/// The mutex of every link: tasks of different priority meet here on the board.
+pub type Raw = CriticalSectionRawMutex;
+
+/// Most receivers of one link.
+pub const RECEIVERS: usize = 8;
+
+/// A value and the time at which what it describes was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stamped<T> {
+    /// When it was measured.
+    pub at: Instant,
+    /// What was measured.
+    pub value: T,
+}
+
+impl<T> Stamped<T> {
+    /// The value, unless it is older than `limit` now.
+    pub fn fresh(self, limit: Duration) -> Option<T> {
+        (Instant::now().saturating_duration_since(self.at) <= limit).then_some(self.value)
+    }
+}
+
+/// A link that keeps the newest message.
+pub struct Link<T: Clone> {
+    watch: Watch<Raw, Stamped<T>, RECEIVERS>,
+    /// Age beyond which a reader must not use the message.
+    pub stale_after: Duration,
+}
+
+impl<T: Clone> Link<T> {
+    const fn new(stale_after: Duration) -> Self {
+        Self { watch: Watch::new(), stale_after }
+    }
+
+    /// Publishes `value`, measured at `at`.
+    pub fn send(&self, at: Instant, value: T) {
+        self.watch.sender().send(Stamped { at, value });
+    }
+
+    /// The newest message, however old.
+    pub fn latest(&self) -> Option<Stamped<T>> {
+        self.watch.try_get()
+    }
+
+    /// The newest message, unless it is stale.
+    pub fn fresh(&self) -> Option<T> {
+        self.latest().and_then(|m| m.fresh(self.stale_after))
+    }
+
+    /// A receiver that can wait for the next message; `None` when all [`RECEIVERS`] are taken.
+    pub fn receiver(&self) -> Option<embassy_sync::watch::Receiver<'_, Raw, Stamped<T>, RECEIVERS>> {
+        self.watch.receiver()
+    }
+}
+
+/// Filtered inertial sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImuSample {
+    /// Angular rate, rad/s, body, low-passed; the estimator takes its bias off.
+    pub gyro: Vec3,
+    /// Specific force, m/s², body, mean over the decimated samples.
+    pub accel: Vec3,
+    /// Time since the sample before, s, limited to a sane range.
+    pub dt: f32,
+}
+
+/// Estimated motion of the body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Attitude {
+    /// Body to world.
+    pub q: Quat,
+    /// Angular rate without bias, rad/s, body.
+    pub rate: Vec3,
+    /// Specific force, m/s², body.
+    pub accel: Vec3,
+    /// Estimated gyro bias, rad/s.
+    pub gyro_bias: Vec3,
+    /// Calibration at rest has ended.
+    pub calibrated: bool,
+    /// Time since the estimate before, s.
+    pub dt: f32,
+}
+
+/// What the rotors are to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Setpoint {
+    /// Rotors stopped.
+    #[default]
+    Stop,
+    /// Rotors at idle, controllers reset.
+    Idle,
+    /// Hold roll and pitch (rad), turn at a yaw rate (rad/s), with a collective thrust (N).
+    Angle {
+        /// Roll, rad.
+        roll: f32,
+        /// Pitch, rad.
+        pitch: f32,
+        /// Yaw rate, rad/s.
+        yaw_rate: f32,
+        /// Collective thrust, N.
+        thrust: f32,
+    },
+    /// Turn at body rates (rad/s).
+    Rate {
+        /// Body rates, rad/s.
+        rate: Vec3,
+        /// Collective thrust, N.
+        thrust: f32,
+    },
+    /// The wrench itself.
+    Direct {
+        /// The wrench asked for.
+        wrench: Wrench,
+    },
+    /// On the pipe: hold roll and pitch (rad) without integral action, give yaw up.
+    Resting {
+        /// Roll, rad.
+        roll: f32,
+        /// Pitch, rad.
+        pitch: f32,
+        /// Collective thrust, N.
+        thrust: f32,
+    },
+}
+
+/// What the controllers ask of the mixer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Demand {
+    /// Rotors stopped.
+    #[default]
+    Stop,
+    /// Rotors at idle.
+    Idle,
+    /// This wrench.
+    Wrench {
+        /// The wrench asked for.
+        wrench: Wrench,
+        /// Yaw may be used.
+        yaw: bool,
+    },
+}
+
+/// What the mixer gave.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MixOutput {
+    /// Rotors run.
+    pub running: bool,
+    /// Thrust asked of each rotor, N.
+    pub thrusts: PerArm<f32>,
+    /// Motor commands, 0..1, battery compensated.
+    pub commands: PerArm<f32>,
+    /// Share of the asked yaw, thrust (relative to the range left) and roll/pitch that was given, 0..1.
+    pub given: sophie_control::desaturation::Given,
+    /// Yaw is being given up because the arms' tilt leaves no authority.
+    pub yaw_gated: bool,
+    /// Tilt at which each arm is believed to be, rad.
+    pub tilt: PerArm<f32>,
+    /// Tilt bias of each arm, rad.
+    pub tilt_bias: PerArm<f32>,
+    /// An arm's model is outside its range of validity.
+    pub tilt_fault: bool,
+}
+
+/// Contact pressures.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// Pressure at each arm's sensor, Pa.
+    pub pressure: PerArm<f32>,
+    /// Sensor open, shorted or out of range.
+    pub fault: PerArm<bool>,
+}
+
+/// Flight battery.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Battery {
+    /// Voltage under load, V, low-passed.
+    pub voltage: f32,
+    /// Current, A, low-passed.
+    pub current: f32,
+    /// Charge drawn since power-up, A·s.
+    pub used: f32,
+    /// Voltage over nominal, limited to a sane range: what the thrust curve is compensated by.
+    pub ratio: f32,
+}
+
+/// Tilt of the arms as their own sensors see it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ArmAngles {
+    /// Tilt of each arm, rad, tip up positive; `None` when that sensor gave nothing fresh.
+    pub tilt: PerArm<Option<f32>>,
+}
+
+/// What the tendons are to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ClampCommand {
+    /// Tendons slack, servos at their release position.
+    #[default]
+    Release,
+    /// Close the chosen arms to the grip pressure and hold it.
+    Close {
+        /// Which arms.
+        arms: ArmChoice,
+    },
+}
+
+/// Tension asked of each tendon, N, and the arm tilt it is meant for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TendonForces {
+    /// Tension, N; 0 is slack.
+    pub force: PerArm<f32>,
+}
+
+/// What the clamp loop knows of the grip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GripState {
+    /// Every chosen arm held the pressure for the dwell time with a force below the limit.
+    pub proven: bool,
+    /// Every arm is free: no pressure, tendon slack, servo back at release.
+    pub released: bool,
+    /// Arm by arm.
+    pub arms: PerArm<sophie_control::grip::ArmGrip>,
+}
+
+/// State of the radio link.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RcState {
+    /// The pilot's wishes.
+    pub sticks: Sticks,
+    /// Frames decoded since power-up.
+    pub frames: u32,
+    /// Frames or bytes rejected since power-up.
+    pub errors: u32,
+}
+
+/// The commander's view, for telemetry, log and lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Status {
+    /// State of the vehicle.
+    pub mode: Mode,
+    /// Why arming is refused or the failsafe acts; empty when nothing does.
+    pub reason: &'static str,
+}
+
+/// Every link of one vehicle.
+pub struct Links {
+    /// Parameters, fixed while armed.
+    pub params: Params,
+    /// imu -> estimator. 1 kHz, stale after 5 ms.
+    pub imu: Link<ImuSample>,
+    /// estimator -> control, commander, arms. 1 kHz, stale after 5 ms.
+    pub attitude: Link<Attitude>,
+    /// commander -> control. 100 Hz, stale after 50 ms: rotors stop then.
+    pub setpoint: Link<Setpoint>,
+    /// control -> mixer. 1 kHz, stale after 5 ms.
+    pub demand: Link<Demand>,
+    /// mixer -> motors, control (what it could not give), commander. 1 kHz, stale after 10 ms: motors stop.
+    pub mix: Link<MixOutput>,
+    /// analog -> clamp, commander. 500 Hz, stale after 20 ms.
+    pub contact: Link<Contact>,
+    /// analog -> mixer, commander. 100 Hz, stale after 500 ms.
+    pub battery: Link<Battery>,
+    /// arms -> mixer, servos. 100 Hz, stale after 100 ms.
+    pub arms: Link<ArmAngles>,
+    /// commander -> clamp. 100 Hz, stale after 200 ms: forces are held then.
+    pub clamp_command: Link<ClampCommand>,
+    /// clamp -> servos. 100 Hz, stale after 200 ms: servos hold then.
+    pub tendons: Link<TendonForces>,
+    /// servos -> clamp. 50 Hz, stale after 200 ms: tension that the servos can be giving now, N.
+    pub tension: Link<PerArm<f32>>,
+    /// clamp -> commander. 100 Hz, stale after 100 ms.
+    pub grip: Link<GripState>,
+    /// rc -> commander. As frames come (50 to 500 Hz), stale after 500 ms: failsafe.
+    pub rc: Link<RcState>,
+    /// commander -> telemetry, log. 100 Hz, stale after 200 ms.
+    pub status: Link<Status>,
+    timing: [Mutex<Raw, Cell<Timing>>; TaskId::COUNT],
+}
+
+impl Links {
+    /// Links without messages.
+    pub const fn new(params: Params) -> Self {
+        const fn ms(n: u64) -> Duration {
+            Duration::from_millis(n)
+        }
+        Self {
+            params,
+            imu: Link::new(ms(5)),
+            attitude: Link::new(ms(5)),
+            setpoint: Link::new(ms(50)),
+            demand: Link::new(ms(5)),
+            mix: Link::new(ms(10)),
+            contact: Link::new(ms(20)),
+            battery: Link::new(ms(500)),
+            arms: Link::new(ms(100)),
+            clamp_command: Link::new(ms(200)),
+            tendons: Link::new(ms(200)),
+            tension: Link::new(ms(200)),
+            grip: Link::new(ms(100)),
+            rc: Link::new(ms(500)),
+            status: Link::new(ms(200)),
+            timing: [const { Mutex::new(Cell::new(Timing::new())) }; TaskId::COUNT],
+        }
+    }
+
+    /// What is known of a task's timing.
+    pub fn timing(&self, task: TaskId) -> Timing {
+        self.timing.get(task as usize).map_or(Timing::new(), |m| m.lock(Cell::get))
+    }
+
+    /// Records one run of a task.
+    pub fn record(&self, task: TaskId, update: impl FnOnce(&mut Timing)) {
+        if let Some(m) = self.timing.get(task as usize) {
+            m.lock(|cell| {
+                let mut timing = cell.get();
+                update(&mut timing);
+                cell.set(timing);
+            });
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! What a board implements. Every unit is SI unless said otherwise.
+
+use heapless::Vec;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
+
+/// Why a port gave nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PortError {
+    /// The part did not answer in time.
+    Timeout,
+    /// The part answered with something that fails its own check.
+    Corrupt,
+    /// The part is not there or was never set up.
+    Absent,
+}
+
+/// Most samples that an inertial sensor hands over at once.
+pub const IMU_BATCH: usize = 8;
+
+/// One sample of the vehicle's inertial sensor in body axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImuReading {
+    /// Angular rate, rad/s.
+    pub gyro: Vec3,
+    /// Specific force, m/s²: (0, 0, -9.81) at rest and level.
+    pub accel: Vec3,
+}
+
+/// The vehicle's inertial sensor.
+pub trait Imu {
+    /// Samples per second.
+    fn rate_hz(&self) -> f32;
+
+    /// Waits for data-ready and reads every sample since the last call, oldest first.
+    ///
+    /// # Errors
+    /// A silent or garbled sensor.
+    async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError>;
+}
+
+/// The four inertial sensors at the arm tips, one BNO055 each.
+pub trait ArmImus {
+    /// Reads the gravity vector of arm `arm` (0..=3) in that arm's axes, m/s²; the axes are the body's when
+    /// the arm is straight. Gravity points down: (0, 0, 9.81) for a level arm.
+    ///
+    /// # Errors
+    /// A silent, absent or uncalibrated sensor; the other three still work.
+    async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError>;
+}
+
+/// Raw conversions of the analog inputs, 12 bit, right-aligned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AnalogFrame {
+    /// Dividers of the four pressure sensors.
+    pub fsr: PerArm<u16>,
+    /// Divider of the battery voltage.
+    pub battery_voltage: u16,
+    /// Output of the current sensor.
+    pub battery_current: u16,
+}
+
+/// The analog inputs.
+pub trait Analog {
+    /// Scale of the battery voltage input, V per count.
+    fn volts_per_count(&self) -> f32;
+    /// Scale of the battery current input, A per count.
+    fn amps_per_count(&self) -> f32;
+
+    /// Converts all inputs once.
+    ///
+    /// # Errors
+    /// A converter that does not finish.
+    async fn read(&mut self) -> Result<AnalogFrame, PortError>;
+}
+
+/// The four motors.
+pub trait Motors {
+    /// Sends one command for each motor: 0 stops, 0 < c <= 1 is the share of full drive.
+    async fn write(&mut self, commands: PerArm<f32>);
+}
+
+/// The four tendon servos.
+pub trait Servos {
+    /// Sends one pulse width for each servo, µs; 0 switches the servo's pulse off.
+    async fn write(&mut self, pulses_us: PerArm<f32>);
+}
+
+/// The receiver's serial line towards the vehicle.
+pub trait RcReceiver {
+    /// Waits for bytes and puts them at the start of `buffer`; returns how many.
+    ///
+    /// # Errors
+    /// A line error; the next call starts afresh.
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError>;
+}
+
+/// The serial line towards the receiver, which carries telemetry to the pilot.
+pub trait TelemetryLink {
+    /// Sends all of `bytes`.
+    ///
+    /// # Errors
+    /// A line that does not take them.
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError>;
+}
+
+/// The independent watchdog.
+pub trait Watchdog {
+    /// Puts off the reset by the watchdog's period.
+    fn feed(&mut self);
+}
