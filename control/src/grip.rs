@@ -1,5 +1,8 @@
 //! The judgement whether an arm holds the pipe, and whether it is free of it.
 
+use crate::math;
+use crate::params::Params;
+
 /// What is known of one arm's grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmGrip {
@@ -31,4 +34,174 @@ pub enum ArmState {
     Faulty,
     /// Tendon paying out.
     Releasing,
+}
+
+/// Factor on the tolerance beyond which a proven grip is doubted: stopping the rotors and pushing the vehicle
+/// disturb the pressure without loosening the grip.
+const DOUBT: f32 = 4.0;
+/// Share of the force limit that a proven grip must stay below.
+const FORCE_SHARE: f32 = 0.98;
+/// Time for which an arm must look free before it counts as free, s.
+const FREE_DWELL: f32 = 0.1;
+/// The same for an arm whose sensor failed, s: its servo alone testifies, so the arm gets time to spring back.
+const FREE_DWELL_BLIND: f32 = 1.0;
+
+/// What a proof demands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demand {
+    /// Pressure, Pa.
+    pub pressure: f32,
+    /// Its tolerance, Pa.
+    pub tolerance: f32,
+    /// Time within the tolerance, s.
+    pub dwell: f32,
+    /// Largest force, N.
+    pub force: f32,
+    /// Pressure below which an arm is free, Pa.
+    pub release_pressure: f32,
+}
+
+impl Demand {
+    /// What the parameters demand, below the force limit `limit` (N).
+    pub fn from_params(p: &Params, limit: f32) -> Self {
+        Self {
+            pressure: p.grip_pressure,
+            tolerance: p.grip_tolerance,
+            dwell: p.grip_dwell,
+            force: FORCE_SHARE * limit,
+            release_pressure: p.release_pressure,
+        }
+    }
+}
+
+/// The proof that one arm holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HoldProof {
+    elapsed: f32,
+    within: f32,
+    doubt: f32,
+    entered: f32,
+    proven: bool,
+}
+
+impl HoldProof {
+    /// Adds `dt` s of closing or holding at the pressure `pressure` (Pa; `None`: unknown) and the force
+    /// `force` (N); returns whether the grip is proven.
+    ///
+    /// A pressure that is unknown or beyond four tolerances for the dwell time takes the proof away.
+    pub fn step(&mut self, demand: &Demand, pressure: Option<f32>, force: f32, dt: f32) -> bool {
+        self.elapsed = math::clamp(self.elapsed + dt, 0.0, 1e6);
+        let error = pressure.map_or(f32::INFINITY, |p| (p - demand.pressure).abs());
+        let good = error <= demand.tolerance && force < demand.force;
+        if self.proven {
+            // NaN counts as doubt.
+            self.doubt = if error <= DOUBT * demand.tolerance { 0.0 } else { self.doubt + dt };
+            if self.doubt > demand.dwell {
+                self.proven = false;
+                self.within = 0.0;
+            }
+        } else if good {
+            if self.within <= 0.0 {
+                self.entered = self.elapsed;
+            }
+            self.within += dt;
+            self.proven = self.within >= demand.dwell;
+            self.doubt = 0.0;
+        } else {
+            self.within = 0.0;
+        }
+        self.proven
+    }
+
+    /// Time from the start of closing until the pressure was within its tolerance for good, s; `None` while
+    /// the grip is not proven.
+    pub fn closure(&self) -> Option<f32> {
+        self.proven.then_some(self.entered)
+    }
+}
+
+/// The proof that one arm is free.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FreeProof {
+    free_for: f32,
+}
+
+impl FreeProof {
+    /// Adds `dt` s with the pressure `pressure` (Pa; `None`: unknown) and the tension that the servo can be
+    /// giving, `tension` (N; `None`: unknown; 0 only at the release position); returns whether the arm is free.
+    pub fn step(&mut self, demand: &Demand, pressure: Option<f32>, tension: Option<f32>, dt: f32) -> bool {
+        let home = tension.is_some_and(|t| t <= 0.0);
+        let light = pressure.is_none_or(|p| p < demand.release_pressure);
+        self.free_for = if home && light { math::clamp(self.free_for + dt, 0.0, 10.0) } else { 0.0 };
+        self.proven(pressure.is_some())
+    }
+
+    /// Whether the arm was free at the last step, with a sensor that feels or without.
+    pub fn proven(&self, felt: bool) -> bool {
+        self.free_for >= if felt { FREE_DWELL } else { FREE_DWELL_BLIND }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DEMAND: Demand =
+        Demand { pressure: 950.0, tolerance: 50.0, dwell: 0.5, force: 160.0, release_pressure: 80.0 };
+    const DT: f32 = 0.01;
+
+    fn run(proof: &mut HoldProof, pressure: Option<f32>, force: f32, seconds: f32) -> bool {
+        let mut proven = false;
+        for _ in 0..(seconds / DT + 0.5) as u32 {
+            proven = proof.step(&DEMAND, pressure, force, DT);
+        }
+        proven
+    }
+
+    #[test]
+    fn a_grip_is_proven_by_dwelling_and_closure_is_when_it_came_in_for_good() {
+        let mut proof = HoldProof::default();
+        assert!(!run(&mut proof, Some(500.0), 60.0, 2.0));
+        assert!(!run(&mut proof, Some(980.0), 60.0, 0.3));
+        // Out again: the first visit does not count.
+        assert!(!run(&mut proof, Some(1010.0), 60.0, 0.2));
+        assert!(!run(&mut proof, Some(960.0), 60.0, 0.45));
+        assert!(proof.closure().is_none());
+        assert!(run(&mut proof, Some(960.0), 60.0, 0.1));
+        assert!(proof.closure().is_some_and(|c| (c - 2.51).abs() < 0.015));
+    }
+
+    #[test]
+    fn a_force_at_its_limit_proves_nothing() {
+        assert!(!run(&mut HoldProof::default(), Some(950.0), 161.0, 5.0));
+        assert!(!run(&mut HoldProof::default(), Some(f32::NAN), 60.0, 5.0));
+    }
+
+    #[test]
+    fn a_push_is_forgiven_a_lost_pressure_is_not() {
+        let mut proof = HoldProof::default();
+        assert!(run(&mut proof, Some(950.0), 60.0, 1.0));
+        assert!(run(&mut proof, Some(1100.0), 60.0, 5.0));
+        assert!(run(&mut proof, Some(100.0), 60.0, 0.4));
+        assert!(run(&mut proof, Some(950.0), 60.0, 0.4));
+        assert!(!run(&mut proof, Some(100.0), 60.0, 0.6));
+        assert!(run(&mut proof, Some(950.0), 60.0, 0.6));
+        assert!(!run(&mut proof, None, 60.0, 0.6));
+        assert!(!run(&mut proof, None, 60.0, 5.0));
+    }
+
+    #[test]
+    fn an_arm_is_free_when_light_and_wound_back() {
+        let free = |pressure, tension, seconds: f32| {
+            let mut proof = FreeProof::default();
+            (0..(seconds / DT + 0.5) as u32).fold(false, |_, _| proof.step(&DEMAND, pressure, tension, DT))
+        };
+        assert!(free(Some(20.0), Some(0.0), 0.2));
+        assert!(!free(Some(90.0), Some(0.0), 5.0));
+        assert!(!free(Some(0.0), Some(0.5), 5.0));
+        assert!(!free(Some(0.0), None, 5.0));
+        assert!(!free(Some(f32::NAN), Some(0.0), 5.0));
+        // Without a sensor it takes longer.
+        assert!(!free(None, Some(0.0), 0.9) && free(None, Some(0.0), 1.1));
+    }
 }

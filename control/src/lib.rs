@@ -15,12 +15,28 @@
     clippy::float_cmp
 )]
 
+pub mod arming;
+pub mod attitude;
+pub mod battery;
+pub mod clamp;
+pub mod deflection;
 pub mod desaturation;
+pub mod effectiveness;
+pub mod estimator;
+pub mod filter;
+pub mod fsr;
 pub mod grip;
+pub mod imu_filter;
 pub mod math;
 pub mod mixer;
 pub mod mode;
 pub mod params;
+pub mod rate;
 pub mod rc;
+pub mod stability;
+pub mod support;
+pub mod tendon;
+pub mod thrust_curve;
+pub mod tilt;
 pub mod vector;
 pub mod wrench;

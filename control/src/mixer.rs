@@ -1,15 +1,362 @@
-//! Allocation.
+//! Allocation of a wrench to four rotors whose arms bend, recomputed at every step.
+//!
+//! What flies is [`Variant::Flexible`]: the wrench is inverted through the quasi-static Jacobian about the
+//! low-passed thrusts. Inverting the effectiveness at the frozen arm angle is wrong even with the true
+//! angle: a thrust changed for yaw bends its arm a moment later and yaws |C| times more, and an inverse
+//! that follows the angle turns this into a limit cycle.
+
+use crate::deflection::Algorithm1;
+use crate::desaturation::{Given, Patterns, desaturate};
+use crate::effectiveness::{Effectiveness, Geometry, Inverse};
+use crate::filter::LowPass;
+use crate::math;
+use crate::params::Params;
+use crate::tilt::TiltModel;
+use crate::wrench::{Configuration, FORE, PerArm, SIDE, Wrench, YAW};
 
 /// The allocation law in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Variant {
     /// The arms are taken as stiff.
     Rigid,
-    /// Algorithm 1 verbatim in the printed matrix (with its singular yaw row mended).
+    /// Algorithm 1 in the printed matrix, its singular yaw row mended: tilt enters the thrust row only.
     Paper,
-    /// The full effectiveness inverted at the frozen arm angle: for study, it limit-cycles.
+    /// The whole effectiveness inverted at the frozen arm angle: for study, it limit-cycles.
     Frozen,
     /// The quasi-static Jacobian about the low-passed thrust: what flies.
     #[default]
     Flexible,
+}
+
+/// Share of the stiff frame's yaw authority k_q below which yaw fades and entries are floored.
+const YAW_FLOOR: f32 = 0.35;
+
+/// What one step gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mix {
+    /// Thrust of each rotor, N.
+    pub thrusts: PerArm<f32>,
+    /// What was given up.
+    pub given: Given,
+    /// Yaw has no authority to be trusted: it was given up, its integrator is to be reset.
+    pub yaw_gated: bool,
+}
+
+/// What the mixer must know besides the wrench.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// Yaw may be used.
+    pub yaw: bool,
+    /// Battery voltage over nominal; less lowers the largest thrust.
+    pub battery_ratio: f32,
+    /// Step time, s.
+    pub dt: f32,
+}
+
+/// Damping ratio of the arm mode in [`DynamicTilt`] (assumed).
+const ARM_DAMPING: f32 = 0.15;
+
+/// Motor lag and the arm's bending mode, for the frozen inverse: where the arm is at this very moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct DynamicTilt {
+    motor: LowPass,
+    /// Thrust whose static tilt the arm has now, N.
+    load: f32,
+    speed: f32,
+    omega: f32,
+}
+
+impl DynamicTilt {
+    fn at(thrust: f32, mode_hz: f32) -> Self {
+        Self { motor: LowPass::at(thrust), load: thrust, speed: 0.0, omega: core::f32::consts::TAU * mode_hz }
+    }
+
+    fn step(&mut self, thrust: f32, motor_rate: f32, dt: f32) {
+        let thrust = self.motor.step(thrust, motor_rate, dt);
+        let pull = self.omega * (thrust - self.load) - 2.0 * ARM_DAMPING * self.speed;
+        self.speed += self.omega * pull * dt;
+        self.load += self.speed * dt;
+    }
+}
+
+/// Allocation with its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mixer {
+    variant: Variant,
+    geometry: Geometry,
+    tilt: TiltModel,
+    algorithm_1: Algorithm1,
+    dynamic: PerArm<DynamicTilt>,
+    last: PerArm<f32>,
+    idle: f32,
+    max: f32,
+    yaw_limit: f32,
+    gate: f32,
+    motor_rate: f32,
+}
+
+impl Mixer {
+    /// A mixer with idle rotors.
+    pub fn new(variant: Variant, configuration: Configuration, p: &Params) -> Self {
+        let tilt = TiltModel::new(p);
+        Self {
+            variant,
+            geometry: Geometry::from_params(p, configuration),
+            algorithm_1: Algorithm1::new(*tilt.model(), p.power_exponent),
+            tilt,
+            dynamic: [DynamicTilt::at(p.thrust_idle, p.notch_hz); 4],
+            last: [p.thrust_idle; 4],
+            idle: p.thrust_idle,
+            max: p.thrust_max,
+            yaw_limit: p.yaw_thrust_max,
+            gate: p.yaw_gate_thrust,
+            motor_rate: 1.0 / p.motor_tau,
+        }
+    }
+
+    /// The arms' tilt as the mixer believes it.
+    pub const fn tilt(&self) -> &TiltModel {
+        &self.tilt
+    }
+
+    /// Takes the tilts (rad) of the arms' own sensors, at 100 Hz, while the arms hang free.
+    pub fn correct_tilt(&mut self, measured: &PerArm<Option<f32>>) {
+        self.tilt.correct(measured);
+    }
+
+    /// Rotors at idle for one step.
+    pub fn idle(&mut self, dt: f32) -> Mix {
+        self.follow([self.idle; 4], dt);
+        Mix { thrusts: self.last, given: Given::ALL, yaw_gated: true }
+    }
+
+    /// Thrusts for the wrench `w`. A wrench that is not finite counts as none: idle.
+    pub fn mix(&mut self, w: Wrench, c: Conditions) -> Mix {
+        if !w.is_finite() {
+            return self.idle(c.dt);
+        }
+        let ratio = math::clamp(c.battery_ratio, 0.5, 1.0);
+        let high = self.max * ratio * ratio;
+        let (patterns, fade) = match self.variant {
+            Variant::Flexible => self.quasi_static(w),
+            Variant::Frozen => self.frozen(w),
+            Variant::Rigid => self.stiff(w, [0.0; 4]),
+            Variant::Paper => {
+                let tilt = self.last.map(|t| self.algorithm_1.angle(t, ratio * ratio));
+                self.stiff(w, tilt)
+            }
+        };
+        let mean = 0.25 * self.tilt.thrusts().iter().sum::<f32>();
+        let yaw_gated = !c.yaw || mean < self.gate || fade <= 0.0;
+        let patterns = if yaw_gated { Patterns { yaw: [0.0; 4], ..patterns } } else { patterns };
+        let (thrusts, given) = desaturate(&patterns, self.idle, high);
+        self.follow(thrusts, c.dt);
+        Mix { thrusts, given, yaw_gated }
+    }
+
+    /// Steps the models of arms and motors with the thrusts sent.
+    fn follow(&mut self, thrusts: PerArm<f32>, dt: f32) {
+        self.last = thrusts;
+        self.tilt.step(&thrusts, dt);
+        if self.variant == Variant::Frozen {
+            for (arm, t) in self.dynamic.iter_mut().zip(&thrusts) {
+                arm.step(*t, self.motor_rate, dt);
+            }
+        }
+    }
+
+    /// The law that flies: T = Tt + J⁻¹ (w - w(Tt)), J the static Jacobian at the low-passed thrusts Tt.
+    fn quasi_static(&self, w: Wrench) -> (Patterns, f32) {
+        let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
+        let mut e = Effectiveness::quasi_static(&self.geometry, self.tilt.model(), &thrusts, &tilt);
+        // The authority fades with its own quasi-static gain, and no entry may pass zero: the inverse of a
+        // vanishing entry would be a kick, and a reversed authority is not to be trusted.
+        let authority = 0.25 * e.yaw.iter().sum::<f32>();
+        let sign = if self.geometry.drag < 0.0 { -1.0 } else { 1.0 };
+        let least = YAW_FLOOR * self.geometry.drag * sign;
+        let fade = math::clamp((sign * authority - 0.5 * least) / (0.5 * least), 0.0, 1.0);
+        for y in &mut e.yaw {
+            *y = sign * math::clamp(sign * *y, least, 1.0);
+        }
+        let now = self.geometry.wrench(&thrusts, &tilt);
+        let rest = Wrench {
+            thrust: w.thrust - now.thrust,
+            roll: -now.roll,
+            pitch: -now.pitch,
+            yaw: -now.yaw * fade,
+        };
+        (self.patterns(e, thrusts, rest, w, fade), fade)
+    }
+
+    /// For study: T = M(α)⁻¹ w with the tilt that a model of motor lag and arm mode gives.
+    fn frozen(&self, w: Wrench) -> (Patterns, f32) {
+        let tilt = self.dynamic.map(|arm| self.tilt.model().angle(arm.load));
+        let e = Effectiveness::frozen(&self.geometry, &tilt);
+        (self.patterns(e, [0.0; 4], Wrench { thrust: w.thrust, ..Wrench::default() }, w, 1.0), 1.0)
+    }
+
+    /// Splits base + E⁻¹(rest + moments of w) into patterns; `rest` is what the collective part must add.
+    fn patterns(&self, e: Effectiveness, base: PerArm<f32>, rest: Wrench, w: Wrench, fade: f32) -> Patterns {
+        let Some(inverse) = Inverse::new(self.geometry, e) else {
+            // No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
+            return Patterns { yaw: [0.0; 4], ..self.stiff(w, [0.0; 4]).0 };
+        };
+        let mut collective = inverse.solve(rest);
+        for (c, b) in collective.iter_mut().zip(&base) {
+            *c += b;
+        }
+        Patterns {
+            collective,
+            shift: inverse.solve(Wrench { thrust: 1.0, ..Wrench::default() }),
+            roll_pitch: inverse.solve(Wrench { thrust: 0.0, yaw: 0.0, ..w }),
+            yaw: self.limit_yaw(inverse.solve(Wrench { yaw: w.yaw * fade, ..Wrench::default() })),
+        }
+    }
+
+    /// The printed matrix: stiff levers for roll, pitch and yaw, cos α in the thrust row alone.
+    fn stiff(&self, w: Wrench, tilt: PerArm<f32>) -> (Patterns, f32) {
+        let roll = 0.25 * w.roll / self.geometry.d;
+        let pitch = 0.25 * w.pitch / self.geometry.b;
+        let yaw = 0.25 * w.yaw / self.geometry.drag;
+        let lift = tilt.map(math::cos);
+        let mut p = Patterns::default();
+        let mut moments_lift = 0.0;
+        for ((rp, y), (s, (f, (n, l)))) in p
+            .roll_pitch
+            .iter_mut()
+            .zip(&mut p.yaw)
+            .zip(SIDE.iter().zip(FORE.iter().zip(YAW.iter().zip(&lift))))
+        {
+            *rp = s * roll + f * pitch;
+            *y = n * yaw;
+            moments_lift += l * (*rp + *y);
+        }
+        let inv_lift = 1.0 / lift.iter().sum::<f32>();
+        p.collective = [(w.thrust - moments_lift) * inv_lift; 4];
+        p.shift = [inv_lift; 4];
+        p.yaw = self.limit_yaw(p.yaw);
+        (p, 1.0)
+    }
+
+    /// Scales a yaw pattern so that no rotor gets more than the limit.
+    fn limit_yaw(&self, yaw: PerArm<f32>) -> PerArm<f32> {
+        let worst = yaw.iter().fold(0.0f32, |m, y| if *y > m { *y } else if -*y > m { -*y } else { m });
+        if worst > self.yaw_limit {
+            let k = self.yaw_limit / worst;
+            yaw.map(|y| y * k)
+        } else {
+            yaw
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const HOVER: Wrench = Wrench { thrust: 17.7, roll: 0.0, pitch: 0.0, yaw: 0.0 };
+
+    fn conditions() -> Conditions {
+        Conditions { yaw: true, battery_ratio: 1.0, dt: 1e-3 }
+    }
+
+    fn settled(variant: Variant, w: Wrench) -> (Mixer, Mix) {
+        let mut m = Mixer::new(variant, Configuration::B, &Params::default());
+        let mut mix = m.mix(w, conditions());
+        for _ in 0..3000 {
+            mix = m.mix(w, conditions());
+        }
+        (m, mix)
+    }
+
+    #[test]
+    fn hover_shares_the_weight_and_lifts_it() {
+        for variant in [Variant::Rigid, Variant::Paper, Variant::Frozen, Variant::Flexible] {
+            let (_, mix) = settled(variant, HOVER);
+            assert!(mix.thrusts.iter().all(|t| (t - 4.425).abs() < 0.02), "{variant:?} {:?}", mix.thrusts);
+        }
+    }
+
+    #[test]
+    fn the_flexible_mixer_gives_the_wrench_once_the_arms_have_followed() {
+        let w = Wrench { thrust: 18.0, roll: 0.3, pitch: -0.2, yaw: 0.04 };
+        let (m, mix) = settled(Variant::Flexible, w);
+        let p = Params::default();
+        let g = Geometry::from_params(&p, Configuration::B);
+        let model = *m.tilt().model();
+        let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
+        assert!((got.thrust - w.thrust).abs() < 0.02, "{got:?}");
+        assert!((got.roll - w.roll).abs() < 2e-3 && (got.pitch - w.pitch).abs() < 5e-3);
+        assert!((got.yaw - w.yaw).abs() < 2e-3, "{got:?}");
+    }
+
+    #[test]
+    fn the_rigid_mixer_yaws_too_much_by_one_plus_c() {
+        // |C| about 4.1·... at K 7.75, ρ 6.9: the arms answer a yaw command in the same sense.
+        let w = Wrench { yaw: 0.01, ..HOVER };
+        let (_, mix) = settled(Variant::Rigid, w);
+        let p = Params::default();
+        let model = crate::deflection::ArmModel::from_params(&p);
+        let g = Geometry::from_params(&p, Configuration::B);
+        let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
+        let c = crate::stability::yaw_derivative(&g, &model, 4.425);
+        assert!((got.yaw / w.yaw - (1.0 - c)).abs() < 0.15, "{} {c}", got.yaw / w.yaw);
+    }
+
+    #[test]
+    fn the_frozen_inverse_limit_cycles_where_c_is_large() {
+        // A loop of motor lag and static arm around the allocation alone, with a constant small yaw demand.
+        let swing = |variant, gain_k| {
+            let p = Params { gain_k, yaw_thrust_max: 5.0, ..Params::default() };
+            let mut m = Mixer::new(variant, Configuration::B, &p);
+            let w = Wrench { yaw: 0.03, ..HOVER };
+            let (mut low, mut high) = (f32::MAX, f32::MIN);
+            for i in 0..8000 {
+                let mix = m.mix(w, conditions());
+                if i > 4000 {
+                    low = low.min(mix.thrusts[0]);
+                    high = high.max(mix.thrusts[0]);
+                }
+            }
+            high - low
+        };
+        assert!(swing(Variant::Frozen, 7.75) > 1.0, "{}", swing(Variant::Frozen, 7.75));
+        assert!(swing(Variant::Frozen, 1.0) < 0.05, "{}", swing(Variant::Frozen, 1.0));
+        assert!(swing(Variant::Flexible, 7.75) < 0.05, "{}", swing(Variant::Flexible, 7.75));
+    }
+
+    #[test]
+    fn yaw_is_gated_during_spool_up_and_never_kicks() {
+        let mut m = Mixer::new(Variant::Flexible, Configuration::B, &Params::default());
+        let mut last = [0.25f32; 4];
+        for i in 0..4000 {
+            let thrust = 1.0 + 18.0 * i as f32 / 4000.0;
+            let mix = m.mix(Wrench { thrust, yaw: 0.05, ..Wrench::default() }, conditions());
+            let mean = 0.25 * m.tilt().thrusts().iter().sum::<f32>();
+            assert!(mix.yaw_gated == (mean < 1.95) || (mean - 1.95).abs() < 0.02);
+            for (a, b) in mix.thrusts.iter().zip(&last) {
+                assert!(i == 0 || (a - b).abs() < 1.6, "{i}: {b} -> {a}");
+            }
+            last = mix.thrusts;
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_input_gives_thrusts_within_the_limits(bits in prop::collection::vec(any::<[u32; 4]>(), 1..40)) {
+            for variant in [Variant::Rigid, Variant::Paper, Variant::Frozen, Variant::Flexible] {
+                let mut m = Mixer::new(variant, Configuration::B, &Params::default());
+                for [t, l, p, n] in &bits {
+                    let f = f32::from_bits;
+                    let w = Wrench { thrust: f(*t), roll: f(*l), pitch: f(*p), yaw: f(*n) };
+                    let mix = m.mix(w, Conditions { yaw: true, battery_ratio: f(*n), dt: 1e-3 });
+                    prop_assert!(mix.thrusts.iter().all(|t| (0.25..=8.3).contains(t)), "{:?}", mix);
+                    m.correct_tilt(&[Some(f(*t)), None, Some(f(*l)), Some(f(*p))]);
+                    prop_assert!(m.tilt().tilt().iter().all(|a| a.is_finite()));
+                }
+            }
+        }
+    }
 }

@@ -122,9 +122,9 @@ params! {
     tilt_bias_max = 0.2, "rad", 0.0 ..= 0.5;
 
     /// Accelerometer gain of the attitude estimator.
-    estimator_kp = 0.25, "1/s", 0.01 ..= 5.0;
+    estimator_kp = 0.1, "1/s", 0.01 ..= 5.0;
     /// Gyro bias gain of the attitude estimator.
-    estimator_ki = 0.01, "1/s2", 0.0 ..= 1.0;
+    estimator_ki = 0.002, "1/s2", 0.0 ..= 1.0;
     /// Cut-off of the gyro's low-pass filter.
     gyro_cutoff = 90.0, "Hz", 20.0 ..= 400.0;
 
@@ -148,8 +148,8 @@ params! {
     rate_yaw_p = 3.0, "1/s", 0.0 ..= 10.0;
     /// Integral gain, yaw.
     rate_yaw_i = 1.5, "1/s2", 0.0 ..= 20.0;
-    /// Largest change of the yaw rate setpoint.
-    yaw_slew = 0.5, "rad/s2", 0.05 ..= 20.0;
+    /// Fastest turn of the heading setpoint: torsion is the soft frame's weak side.
+    yaw_slew = 0.5, "rad/s", 0.05 ..= 6.0;
     /// Largest thrust that yaw may add to or take from one rotor.
     yaw_thrust_max = 1.5, "N", 0.1 ..= 5.0;
     /// Centre of the yaw notch: the arms' bending mode.
@@ -166,7 +166,7 @@ params! {
     /// Body rate of a full stick in rate mode.
     stick_rate = 3.0, "rad/s", 0.5 ..= 10.0;
     /// Yaw rate of a full stick.
-    stick_yaw_rate = 1.0, "rad/s", 0.1 ..= 6.0;
+    stick_yaw_rate = 0.5, "rad/s", 0.1 ..= 6.0;
     /// Roll and pitch torque of a full stick in direct mode.
     stick_torque = 1.0, "N m", 0.05 ..= 4.0;
     /// Yaw torque of a full stick in direct mode.
@@ -192,22 +192,32 @@ params! {
     servo_stall = 3.432, "N m", 0.1 ..= 5.0;
     /// Slew of the servo (MG996R datasheet, 0.17 s for 60 degrees at 4.8 V).
     servo_slew = 6.16, "rad/s", 0.5 ..= 20.0;
-    /// Travel of the servo from the release position.
-    servo_range = 3.14, "rad", 0.5 ..= 6.3;
+    /// Travel of the servo from the release position (assumed, the 270 degree version of 35 kgcm servos).
+    servo_range = 4.71, "rad", 0.5 ..= 6.3;
     /// Radius of the reel on the servo (assumed).
     reel_radius = 0.015, "m", 0.002 ..= 0.05;
     /// Distance of the tendon from the arm's neutral line (assumed).
     tendon_lever = 0.025, "m", 0.005 ..= 0.1;
-    /// Stiffness of tendon and anchors along the tendon (assumed).
-    tendon_stiffness = 4000.0, "N/m", 200.0 ..= 100000.0;
+    /// Stiffness along the tendon: nylon of 1 mm and 0.25 m, E 2.5 GPa (derived, 30 %).
+    tendon_stiffness = 8000.0, "N/m", 200.0 ..= 100000.0;
     /// Pressure loop: proportional gain, tendon force per pressure.
-    clamp_p = 0.006, "N/Pa", 0.0 ..= 0.2;
+    clamp_p = 0.003, "N/Pa", 0.0 ..= 0.2;
     /// Pressure loop: integral gain.
-    clamp_i = 0.03, "N/(Pa s)", 0.0 ..= 1.0;
+    clamp_i = 0.04, "N/(Pa s)", 0.0 ..= 1.0;
     /// Pressure loop: derivative gain on the measured pressure.
-    clamp_d = 0.0005, "N s/Pa", 0.0 ..= 0.05;
-    /// Fastest rise of the tendon force before an arm touches.
-    clamp_approach = 28.0, "N/s", 1.0 ..= 500.0;
+    clamp_d = 0.0003, "N s/Pa", 0.0 ..= 0.05;
+    /// Speed at which an arm is bent down until it touches; the force's rise follows from infill and gain_k.
+    clamp_approach = 0.6, "rad/s", 0.05 ..= 3.0;
+    /// Fastest fall of the tendon force on release.
+    clamp_release = 80.0, "N/s", 5.0 ..= 500.0;
+    /// Trim of servo 1 against its reel's release mark.
+    servo_trim_1 = 0.0, "us", -50.0 ..= 50.0;
+    /// Trim of servo 2.
+    servo_trim_2 = 0.0, "us", -50.0 ..= 50.0;
+    /// Trim of servo 3.
+    servo_trim_3 = 0.0, "us", -50.0 ..= 50.0;
+    /// Trim of servo 4.
+    servo_trim_4 = 0.0, "us", -50.0 ..= 50.0;
     /// Active area of the FSR (Interlink 406 datasheet, 38 mm square).
     fsr_area = 0.001444, "m2", 0.00005 ..= 0.01;
     /// Conductance of the FSR per force (Interlink 406 guide: about 10 kOhm at 1 N, assumed linear).

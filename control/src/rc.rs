@@ -1,4 +1,41 @@
 //! What the sticks and switches of the transmitter mean.
+//!
+//! Channels come as CRSF counts, 11 bit: 172 and 1811 are the ends of a stick's travel, 992 is its centre.
+//!
+//! | channel | what | low .. high |
+//! |---|---|---|
+//! | 1 | roll | left .. right |
+//! | 2 | pitch | pulled (nose up) .. pushed (nose down), as EdgeTX sends it |
+//! | 3 | throttle | 0 .. 1 |
+//! | 4 | yaw | left .. right |
+//! | 5 | arm switch | off, on |
+//! | 6 | stick mode | angle, rate, direct |
+//! | 7 | perch switch | off, on |
+//! | 8 | arms that close | all, front, rear |
+
+use crate::math::clamp;
+
+/// Channels in a frame.
+pub const CHANNELS: usize = 16;
+/// Channels that mean something here.
+const USED: usize = 8;
+/// Counts at the low end of a stick's travel.
+pub const RAW_LOW: u16 = 172;
+/// Counts at the centre.
+pub const RAW_CENTRE: u16 = 992;
+/// Counts at the high end.
+pub const RAW_HIGH: u16 = 1811;
+/// Lowest and highest count believed: 885 and 2115 µs. A receiver that has lost its transmitter sends less.
+const RAW_VALID: core::ops::RangeInclusive<u16> = 8..=1976;
+/// Half the travel of a centred stick, counts.
+const RAW_HALF: f32 = 819.5;
+/// The whole travel, counts.
+const RAW_SPAN: f32 = 1639.0;
+/// Share of the travel about the centre (or about the throttle's zero) that counts as zero: a gimbal's slack.
+pub const DEADBAND: f32 = 0.01;
+/// Counts that part the positions of a switch.
+const SWITCH_LOW: u16 = 582;
+const SWITCH_HIGH: u16 = 1402;
 
 /// How the sticks are read in flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,7 +77,7 @@ impl ArmChoice {
 pub struct Sticks {
     /// Right positive, -1..1.
     pub roll: f32,
-    /// Nose up positive, -1..1.
+    /// Nose up positive, -1..1: the stick pulled towards the pilot.
     pub pitch: f32,
     /// Clockwise from above positive, -1..1.
     pub yaw: f32,
@@ -54,4 +91,193 @@ pub struct Sticks {
     pub stick_mode: StickMode,
     /// Which arms are to close.
     pub arms: ArmChoice,
+}
+
+/// A channel whose count no transmitter sends on purpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChannelError {
+    /// Channel, from 1.
+    pub channel: u8,
+    /// Its count.
+    pub raw: u16,
+}
+
+impl Sticks {
+    /// The meaning of one frame of channels.
+    ///
+    /// # Errors
+    /// A used channel outside the range believed: the frame must be dropped as if it had not come.
+    pub fn from_channels(channels: &[u16; CHANNELS]) -> Result<Self, ChannelError> {
+        for (channel, &raw) in (1..).zip(channels.iter().take(USED)) {
+            if !RAW_VALID.contains(&raw) {
+                return Err(ChannelError { channel, raw });
+            }
+        }
+        let &[roll, pitch, throttle, yaw, arm, mode, perch, arms, ..] = channels;
+        Ok(Self {
+            roll: centred(roll),
+            pitch: -centred(pitch),
+            yaw: centred(yaw),
+            throttle: from_zero(throttle),
+            arm_switch: position(arm) == Position::High,
+            perch_switch: position(perch) == Position::High,
+            stick_mode: match position(mode) {
+                Position::Low => StickMode::Angle,
+                Position::Middle => StickMode::Rate,
+                Position::High => StickMode::Direct,
+            },
+            arms: match position(arms) {
+                Position::Low => ArmChoice::All,
+                Position::Middle => ArmChoice::Front,
+                Position::High => ArmChoice::Rear,
+            },
+        })
+    }
+
+    /// The frame that means this, to the count: what a transmitter sends. Channels 9 to 16 are centred.
+    pub fn to_channels(&self) -> [u16; CHANNELS] {
+        let c = RAW_CENTRE;
+        let two = |on| if on { RAW_HIGH } else { RAW_LOW };
+        let mode = match self.stick_mode {
+            StickMode::Angle => RAW_LOW,
+            StickMode::Rate => c,
+            StickMode::Direct => RAW_HIGH,
+        };
+        let arms = match self.arms {
+            ArmChoice::All => RAW_LOW,
+            ArmChoice::Front => c,
+            ArmChoice::Rear => RAW_HIGH,
+        };
+        let roll = to_centred(self.roll);
+        let pitch = to_centred(-self.pitch);
+        let yaw = to_centred(self.yaw);
+        let throttle = to_from_zero(self.throttle);
+        let (arm, perch) = (two(self.arm_switch), two(self.perch_switch));
+        [roll, pitch, throttle, yaw, arm, mode, perch, arms, c, c, c, c, c, c, c, c]
+    }
+}
+
+/// Position of a switch.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Position {
+    Low,
+    Middle,
+    High,
+}
+
+fn position(raw: u16) -> Position {
+    match raw {
+        SWITCH_HIGH.. => Position::High,
+        SWITCH_LOW.. => Position::Middle,
+        _ => Position::Low,
+    }
+}
+
+/// A centred stick, -1..1. The deadband is taken out, not cut out: the value grows from zero at its edge.
+fn centred(raw: u16) -> f32 {
+    let x = clamp((f32::from(raw) - f32::from(RAW_CENTRE)) / RAW_HALF, -1.0, 1.0);
+    let beyond = clamp(x.abs() - DEADBAND, 0.0, 1.0) / (1.0 - DEADBAND);
+    if x < 0.0 { -beyond } else { beyond }
+}
+
+/// A stick that rests at its low end, 0..1.
+fn from_zero(raw: u16) -> f32 {
+    let x = (f32::from(raw) - f32::from(RAW_LOW)) / RAW_SPAN;
+    clamp((x - DEADBAND) / (1.0 - DEADBAND), 0.0, 1.0)
+}
+
+fn to_centred(value: f32) -> u16 {
+    let size = clamp(value.abs(), 0.0, 1.0);
+    // Less than half a count: the stick is let go, and its spring centres it.
+    if size < 0.5 / RAW_HALF {
+        return RAW_CENTRE;
+    }
+    let x = DEADBAND + (1.0 - DEADBAND) * size;
+    let counts = f32::from(RAW_CENTRE) + RAW_HALF * if value < 0.0 { -x } else { x };
+    (clamp(counts, f32::from(RAW_LOW), f32::from(RAW_HIGH)) + 0.5) as u16
+}
+
+fn to_from_zero(value: f32) -> u16 {
+    let value = clamp(value, 0.0, 1.0);
+    let x = if value > 0.0 { DEADBAND + (1.0 - DEADBAND) * value } else { 0.0 };
+    (f32::from(RAW_LOW) + RAW_SPAN * x + 0.5) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn frame(edit: impl Fn(&mut [u16; CHANNELS])) -> Result<Sticks, ChannelError> {
+        let mut channels = Sticks::default().to_channels();
+        edit(&mut channels);
+        Sticks::from_channels(&channels)
+    }
+
+    #[test]
+    fn centred_sticks_and_switches_off_are_the_default() {
+        assert_eq!(frame(|_| ()), Ok(Sticks::default()));
+    }
+
+    #[test]
+    fn a_stick_to_the_right_or_pulled_is_positive() {
+        let s = frame(|c| (c[0], c[1], c[2], c[3]) = (1811, 172, 1811, 1811)).unwrap();
+        assert!(s.roll > 0.999 && s.pitch > 0.999 && s.throttle > 0.999 && s.yaw > 0.999, "{s:?}");
+        let s = frame(|c| (c[0], c[1], c[2], c[3]) = (172, 1811, 172, 172)).unwrap();
+        assert!(s.roll < -0.999 && s.pitch < -0.999 && s.throttle == 0.0 && s.yaw < -0.999, "{s:?}");
+    }
+
+    #[test]
+    fn the_deadband_swallows_a_gimbals_slack_and_nothing_more() {
+        for slack in [985, 992, 999] {
+            assert!(frame(|c| c[0] = slack).unwrap().roll == 0.0, "{slack}");
+        }
+        let edge = frame(|c| c[0] = 1002).unwrap().roll;
+        assert!(edge > 0.0 && edge < 0.005, "no step at the edge: {edge}");
+        assert!(frame(|c| c[2] = 185).unwrap().throttle == 0.0);
+    }
+
+    #[test]
+    fn switches_have_two_or_three_positions() {
+        let s = frame(|c| (c[4], c[5], c[6], c[7]) = (1811, 992, 1811, 992)).unwrap();
+        assert!(s.arm_switch && s.perch_switch);
+        assert_eq!((s.stick_mode, s.arms), (StickMode::Rate, ArmChoice::Front));
+        let s = frame(|c| (c[4], c[5], c[6], c[7]) = (992, 1811, 992, 1811)).unwrap();
+        assert!(!s.arm_switch && !s.perch_switch, "a switch in between is off");
+        assert_eq!((s.stick_mode, s.arms), (StickMode::Direct, ArmChoice::Rear));
+    }
+
+    #[test]
+    fn a_dead_receivers_counts_are_refused_and_named() {
+        assert_eq!(frame(|c| c[2] = 0), Err(ChannelError { channel: 3, raw: 0 }));
+        assert_eq!(frame(|c| c[7] = 2047), Err(ChannelError { channel: 8, raw: 2047 }));
+        assert!(frame(|c| c[8] = 2047).is_ok(), "channel 9 means nothing");
+    }
+
+    proptest! {
+        #[test]
+        fn any_frame_gives_values_in_range(raw in prop::array::uniform16(0u16..2048)) {
+            if let Ok(s) = Sticks::from_channels(&raw) {
+                for x in [s.roll, s.pitch, s.yaw] {
+                    prop_assert!((-1.0..=1.0).contains(&x));
+                }
+                prop_assert!((0.0..=1.0).contains(&s.throttle));
+            }
+        }
+
+        #[test]
+        fn what_is_sent_is_understood(
+            roll in -1.0f32..1.0, pitch in -1.0f32..1.0, yaw in -1.0f32..1.0, throttle in 0.0f32..1.0,
+            arm_switch: bool, perch_switch: bool,
+        ) {
+            let sent = Sticks { roll, pitch, yaw, throttle, arm_switch, perch_switch, ..Default::default() };
+            let got = Sticks::from_channels(&sent.to_channels()).unwrap();
+            // One count of a half travel, and the rounding about it.
+            for (a, b) in [(roll, got.roll), (pitch, got.pitch), (yaw, got.yaw), (throttle, got.throttle)] {
+                prop_assert!((a - b).abs() < 1.6e-3, "{a} {b}");
+            }
+            prop_assert!(got.arm_switch == arm_switch && got.perch_switch == perch_switch);
+        }
+    }
 }

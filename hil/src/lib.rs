@@ -1,4 +1,7 @@
 //! What stands in for SOPHIE's hardware: the plant, the virtual clock, the simulated board and the pilot.
 
+pub mod clock;
+pub mod plant;
 pub mod record;
 pub mod scenario;
+pub mod sensors;

@@ -13,6 +13,16 @@
 )]
 #![allow(async_fn_in_trait, reason = "ports are awaited in place; no caller needs a Send bound")]
 
+pub mod arms;
+pub mod commander;
+pub mod control;
 pub mod deadline;
+pub mod estimator;
+pub mod imu;
 pub mod links;
+pub mod mixer;
+pub mod motors;
 pub mod ports;
+pub mod rc;
+pub mod supervisor;
+pub mod telemetry;

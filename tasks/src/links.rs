@@ -280,6 +280,8 @@ pub struct Links {
     pub setpoint: Link<Setpoint>,
     /// control -> mixer. 1 kHz, stale after 5 ms.
     pub demand: Link<Demand>,
+    /// control -> log. 1 kHz, stale after 50 ms: roll, pitch and heading aimed at, rad.
+    pub target: Link<Vec3>,
     /// mixer -> motors, control (what it could not give), commander. 1 kHz, stale after 10 ms: motors stop.
     pub mix: Link<MixOutput>,
     /// analog -> clamp, commander. 500 Hz, stale after 20 ms.
@@ -315,6 +317,7 @@ impl Links {
             attitude: Link::new(ms(5)),
             setpoint: Link::new(ms(50)),
             demand: Link::new(ms(5)),
+            target: Link::new(ms(50)),
             mix: Link::new(ms(10)),
             contact: Link::new(ms(20)),
             battery: Link::new(ms(500)),

@@ -1,4 +1,22 @@
 //! A mission with everything that it needs to be repeated: vehicle, world, pilot, steps, seed.
+//!
+//! Scenarios are TOML files; `tests/scenarios/mission.toml` shows every key with its default. Units are in
+//! the names of the keys; in here everything is SI.
+
+mod defaults;
+mod error;
+pub mod keys;
+mod load;
+mod nearest;
+mod read;
+mod steps;
+#[cfg(test)]
+mod tests;
+
+pub use defaults::MISSION;
+pub use error::{Place, ScenarioError};
+pub use load::Overrides;
+pub use steps::{STEPS, StepKind, StepNumber};
 
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;

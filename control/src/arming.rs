@@ -1,0 +1,267 @@
+//! Arming: the gesture of the pilot, and everything that forbids it.
+
+use crate::math::cos;
+use crate::params::Params;
+use crate::rc::Sticks;
+
+/// Time for which the gesture must be held, s.
+pub const GESTURE_TIME: f32 = 1.0;
+/// Yaw stick beyond which the gesture counts, share of its travel.
+const GESTURE_STICK: f32 = 0.9;
+/// Largest tilt at which the rotors may start, rad (25°).
+pub const TILT_MAX: f32 = crate::math::deg(25.0);
+
+/// A gesture that has just been completed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gesture {
+    /// Arm switch on, throttle low, yaw full right for [`GESTURE_TIME`].
+    Arm,
+    /// Throttle low, yaw full left for [`GESTURE_TIME`].
+    Disarm,
+}
+
+/// Recognises the gestures; each is reported once, until the stick comes back.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GestureWatch {
+    shape: Option<Gesture>,
+    held: f32,
+}
+
+impl GestureWatch {
+    /// One step of `dt` s; `None` for the sticks when the radio is lost, which starts the gesture over.
+    pub fn step(&mut self, sticks: Option<&Sticks>, throttle_low: f32, dt: f32) -> Option<Gesture> {
+        let shape = sticks.and_then(|s| {
+            let low = s.throttle <= throttle_low;
+            if low && s.arm_switch && s.yaw > GESTURE_STICK {
+                Some(Gesture::Arm)
+            } else if low && s.yaw < -GESTURE_STICK {
+                Some(Gesture::Disarm)
+            } else {
+                None
+            }
+        });
+        if shape != self.shape {
+            *self = Self { shape, held: 0.0 };
+        }
+        let before = self.held;
+        self.held += dt;
+        shape.filter(|_| before < GESTURE_TIME && self.held >= GESTURE_TIME)
+    }
+}
+
+/// A reason why arming is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Refusal {
+    /// The gyro has not been calibrated at rest.
+    NotCalibrated,
+    /// No fresh attitude.
+    ImuStale,
+    /// No fresh frame from the receiver.
+    RcLost,
+    /// The throttle stick is not at its low end.
+    ThrottleNotLow,
+    /// The vehicle leans by more than [`TILT_MAX`].
+    TiltTooLarge,
+    /// The battery is below the warning voltage, or not measured.
+    BatteryLow,
+    /// The perch switch is on.
+    PerchSwitchOn,
+    /// A pressure sensor of a chosen arm is faulty or silent.
+    FsrFault,
+    /// The arm switch has been on since power-up.
+    SwitchOnAtPowerUp,
+    /// The flight level misses its deadlines.
+    Overruns,
+    /// The tendons are still closed.
+    ArmsClosed,
+}
+
+impl Refusal {
+    /// Every reason, the most basic first.
+    pub const ALL: [Self; 11] = [
+        Self::RcLost,
+        Self::ImuStale,
+        Self::NotCalibrated,
+        Self::SwitchOnAtPowerUp,
+        Self::ThrottleNotLow,
+        Self::PerchSwitchOn,
+        Self::ArmsClosed,
+        Self::TiltTooLarge,
+        Self::BatteryLow,
+        Self::FsrFault,
+        Self::Overruns,
+    ];
+
+    /// For the pilot's display.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::NotCalibrated => "not calibrated",
+            Self::ImuStale => "inertial sensor silent",
+            Self::RcLost => "radio lost",
+            Self::ThrottleNotLow => "throttle not low",
+            Self::TiltTooLarge => "tilt too large",
+            Self::BatteryLow => "battery low",
+            Self::PerchSwitchOn => "perch switch on",
+            Self::FsrFault => "pressure sensor fault",
+            Self::SwitchOnAtPowerUp => "arm switch on at power-up",
+            Self::Overruns => "deadlines missed",
+            Self::ArmsClosed => "arms closed",
+        }
+    }
+
+    const fn bit(self) -> u16 {
+        1 << self as u8
+    }
+}
+
+/// The reasons that hold now.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Refusals(u16);
+
+impl Refusals {
+    /// No reason: arming is free.
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// True when `reason` holds.
+    pub const fn contains(self, reason: Refusal) -> bool {
+        self.0 & reason.bit() != 0
+    }
+
+    /// The most basic reason.
+    pub fn first(self) -> Option<Refusal> {
+        self.iter().next()
+    }
+
+    /// Every reason that holds, the most basic first.
+    pub fn iter(self) -> impl Iterator<Item = Refusal> {
+        Refusal::ALL.into_iter().filter(move |&r| self.contains(r))
+    }
+}
+
+impl FromIterator<Refusal> for Refusals {
+    fn from_iter<I: IntoIterator<Item = Refusal>>(reasons: I) -> Self {
+        Self(reasons.into_iter().fold(0, |bits, r| bits | r.bit()))
+    }
+}
+
+/// What the arming checks look at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Checks {
+    /// Calibration at rest has ended.
+    pub calibrated: bool,
+    /// Cosine of the tilt; `None` without a fresh attitude.
+    pub cos_tilt: Option<f32>,
+    /// The pilot's wishes; `None` when the radio is lost.
+    pub sticks: Option<Sticks>,
+    /// The arm switch has been off since power-up.
+    pub switch_seen_off: bool,
+    /// Battery voltage, V; `None` when not measured.
+    pub battery: Option<f32>,
+    /// A pressure sensor of a chosen arm is faulty or silent.
+    pub fsr_fault: bool,
+    /// The flight level misses its deadlines.
+    pub late: bool,
+    /// The tendons are closed.
+    pub arms_closed: bool,
+}
+
+impl Checks {
+    /// Every reason against arming now.
+    pub fn refusals(&self, params: &Params) -> Refusals {
+        let sticks = self.sticks.unwrap_or_default();
+        // Written as "not good", so that a NaN refuses.
+        let upright = self.cos_tilt.is_none_or(|c| c >= cos(TILT_MAX));
+        let charged = self.battery.is_some_and(|v| v >= params.battery_warning);
+        let reasons = [
+            (Refusal::RcLost, self.sticks.is_none()),
+            (Refusal::ImuStale, self.cos_tilt.is_none()),
+            (Refusal::NotCalibrated, !self.calibrated),
+            (Refusal::SwitchOnAtPowerUp, self.sticks.is_some() && !self.switch_seen_off),
+            (Refusal::ThrottleNotLow, sticks.throttle > params.throttle_low),
+            (Refusal::PerchSwitchOn, sticks.perch_switch),
+            (Refusal::ArmsClosed, self.arms_closed),
+            (Refusal::TiltTooLarge, !upright),
+            (Refusal::BatteryLow, !charged),
+            (Refusal::FsrFault, self.fsr_fault),
+            (Refusal::Overruns, self.late),
+        ];
+        reasons.into_iter().filter(|&(_, holds)| holds).map(|(r, _)| r).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::deg;
+
+    fn good() -> Checks {
+        Checks {
+            calibrated: true,
+            cos_tilt: Some(1.0),
+            sticks: Some(Sticks { arm_switch: true, ..Default::default() }),
+            switch_seen_off: true,
+            battery: Some(16.0),
+            ..Default::default()
+        }
+    }
+
+    #[test]
+    fn each_check_refuses_for_its_own_reason_alone() {
+        let p = Params::default();
+        assert!(good().refusals(&p).is_empty());
+        let stick = |s| Some(Sticks { arm_switch: true, ..s });
+        let cases = [
+            (Checks { calibrated: false, ..good() }, Refusal::NotCalibrated),
+            (Checks { cos_tilt: None, ..good() }, Refusal::ImuStale),
+            (Checks { sticks: None, ..good() }, Refusal::RcLost),
+            (
+                Checks { sticks: stick(Sticks { throttle: 0.06, ..Default::default() }), ..good() },
+                Refusal::ThrottleNotLow,
+            ),
+            (Checks { cos_tilt: Some(f32::cos(deg(26.0))), ..good() }, Refusal::TiltTooLarge),
+            (Checks { cos_tilt: Some(f32::NAN), ..good() }, Refusal::TiltTooLarge),
+            (Checks { battery: Some(13.5), ..good() }, Refusal::BatteryLow),
+            (Checks { battery: None, ..good() }, Refusal::BatteryLow),
+            (
+                Checks { sticks: stick(Sticks { perch_switch: true, ..Default::default() }), ..good() },
+                Refusal::PerchSwitchOn,
+            ),
+            (Checks { fsr_fault: true, ..good() }, Refusal::FsrFault),
+            (Checks { switch_seen_off: false, ..good() }, Refusal::SwitchOnAtPowerUp),
+            (Checks { late: true, ..good() }, Refusal::Overruns),
+            (Checks { arms_closed: true, ..good() }, Refusal::ArmsClosed),
+        ];
+        for (checks, reason) in cases {
+            let refusals = checks.refusals(&p);
+            assert!(refusals.iter().eq([reason]), "{checks:?}");
+            assert!(!reason.text().is_empty() && reason.text().len() <= 30);
+        }
+    }
+
+    #[test]
+    fn the_gesture_needs_its_whole_time_and_fires_once() {
+        let mut g = GestureWatch::default();
+        let right = Sticks { arm_switch: true, yaw: 1.0, ..Default::default() };
+        let fired = |g: &mut GestureWatch, s: Option<&Sticks>, steps| {
+            (0..steps).filter_map(|_| g.step(s, 0.05, 0.01)).collect::<std::vec::Vec<_>>()
+        };
+        assert!(fired(&mut g, Some(&right), 98).is_empty());
+        assert!(fired(&mut g, None, 1).is_empty(), "a lost radio starts it over");
+        assert!(fired(&mut g, Some(&right), 98).is_empty());
+        assert_eq!(fired(&mut g, Some(&right), 300), [Gesture::Arm]);
+        let left = Sticks { yaw: -1.0, ..Default::default() };
+        assert_eq!(fired(&mut g, Some(&left), 300), [Gesture::Disarm]);
+        for other in [
+            Sticks { throttle: 0.1, ..right },
+            Sticks { arm_switch: false, ..right },
+            Sticks { yaw: 0.8, ..right },
+        ] {
+            assert!(fired(&mut g, Some(&other), 300).is_empty(), "{other:?}");
+        }
+    }
+
+    extern crate std;
+}

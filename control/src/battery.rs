@@ -1,0 +1,187 @@
+//! State of the flight battery from its voltage and current.
+
+use crate::filter::LowPass;
+use crate::math;
+use crate::params::Params;
+
+/// Cut-off of the voltage's low pass, rad/s: 2 Hz, slower than the sag of a manoeuvre is worth following,
+/// faster than the charge falls.
+const VOLTAGE_CUTOFF: f32 = 12.6;
+/// Cut-off of the current's low pass, rad/s (2 Hz).
+const CURRENT_CUTOFF: f32 = 12.6;
+/// Bounds of the voltage ratio that the thrust curve may be compensated by: 4S from 10.4 to 18.5 V.
+const RATIO_BOUNDS: (f32, f32) = (0.7, 1.25);
+/// Time below a level after which it counts, s: a punch-out is no empty battery.
+const DELAY: f32 = 2.0;
+/// Rise above a level after which it no longer counts, V.
+const HYSTERESIS: f32 = 0.3;
+/// Readings beyond these are the converter's, not the battery's: V, A.
+const SANE: (f32, f32) = (60.0, 300.0);
+
+/// How the battery stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Nothing to say.
+    #[default]
+    Good,
+    /// Below `battery_warning`: arming is refused, the pilot is told.
+    Warning,
+    /// Below `battery_critical`: time to land.
+    Critical,
+}
+
+/// One measurement, filtered.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// Voltage under load, V.
+    pub voltage: f32,
+    /// Current, A.
+    pub current: f32,
+    /// Charge drawn so far, A·s.
+    pub used: f32,
+    /// Voltage over nominal, within sane bounds.
+    pub ratio: f32,
+    /// How it stands.
+    pub level: Level,
+}
+
+/// The battery's filters and counters.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Monitor {
+    filters: Option<(LowPass, LowPass)>,
+    used: f32,
+    /// What of the charge is too small to add to `used` yet, A·s.
+    fraction: f32,
+    warning: LevelWatch,
+    critical: LevelWatch,
+}
+
+/// One level with its delay and hysteresis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LevelWatch {
+    below_for: f32,
+    reached: bool,
+}
+
+impl LevelWatch {
+    /// True while `voltage` (V) counts as below `level` (V); `dt` in s.
+    pub fn step(&mut self, voltage: f32, level: f32, dt: f32) -> bool {
+        if voltage < level {
+            self.below_for = math::clamp(self.below_for + dt, 0.0, DELAY);
+            self.reached |= self.below_for >= DELAY - 1e-4;
+        } else if voltage > level + HYSTERESIS {
+            *self = Self::default();
+        } else if !self.reached {
+            self.below_for = 0.0;
+        }
+        self.reached
+    }
+}
+
+impl Monitor {
+    /// Adds a measurement of `voltage` V and `current` A, `dt` s after the one before.
+    ///
+    /// A value that no battery has changes nothing; `None` until there was a sound one.
+    pub fn step(&mut self, p: &Params, voltage: f32, current: f32, dt: f32) -> Option<Reading> {
+        let dt = math::clamp(dt, 0.0, 1.0);
+        let sane = (0.0..SANE.0).contains(&voltage) && (-SANE.1..SANE.1).contains(&current);
+        if sane {
+            let (v, i) = self.filters.get_or_insert((LowPass::at(voltage), LowPass::at(current)));
+            let voltage = v.step(voltage, VOLTAGE_CUTOFF, dt);
+            let filtered = i.step(current, CURRENT_CUTOFF, dt);
+            self.add_charge(filtered * dt);
+            self.warning.step(voltage, p.battery_warning, dt);
+            self.critical.step(voltage, p.battery_critical, dt);
+        }
+        self.filters.map(|(v, i)| Reading {
+            voltage: v.value(),
+            current: i.value(),
+            used: self.used + self.fraction,
+            ratio: math::clamp(v.value() / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
+            level: if self.critical.reached {
+                Level::Critical
+            } else if self.warning.reached {
+                Level::Warning
+            } else {
+                Level::Good
+            },
+        })
+    }
+
+    /// Adds to the charge in portions of 1 A·s: 10 ms of 1 A on top of 6000 A·s would drown in an `f32`.
+    fn add_charge(&mut self, charge: f32) {
+        self.fraction += charge;
+        if self.fraction.abs() > 1.0 {
+            self.used = math::clamp(self.used + self.fraction, 0.0, 1e7);
+            self.fraction = 0.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn run(m: &mut Monitor, voltage: f32, current: f32, seconds: f32) -> Reading {
+        let p = Params::default();
+        let mut last = Reading::default();
+        for _ in 0..(seconds * 100.0) as u32 {
+            last = m.step(&p, voltage, current, 0.01).unwrap_or_default();
+        }
+        last
+    }
+
+    #[test]
+    fn charge_adds_up() {
+        let r = run(&mut Monitor::default(), 15.2, 12.0, 600.0);
+        // 12 A for 600 s; the rounding of 60,000 steps stays below 0.1 %.
+        assert!((r.used - 7200.0).abs() < 7.2, "{}", r.used);
+        assert!((r.ratio - 15.2 / 14.8).abs() < 1e-4 && r.level == Level::Good);
+    }
+
+    #[test]
+    fn the_first_reading_starts_the_filter() {
+        let r = Monitor::default().step(&Params::default(), 16.4, 0.5, 0.01);
+        assert!(r.is_some_and(|r| (r.voltage - 16.4).abs() < 1e-5));
+        assert!(Monitor::default().step(&Params::default(), f32::NAN, 0.5, 0.01).is_none());
+    }
+
+    #[test]
+    fn a_punch_is_no_empty_battery_and_an_empty_one_stays_empty() {
+        let p = Params::default();
+        let mut m = Monitor::default();
+        run(&mut m, 15.0, 10.0, 5.0);
+        assert!(run(&mut m, p.battery_critical - 0.5, 60.0, 1.5).level == Level::Good);
+        run(&mut m, 15.0, 10.0, 5.0);
+        // 2 s delay and the filter's lag: 0.16 s for each 63 % of the way.
+        assert!(run(&mut m, p.battery_warning - 0.2, 10.0, 3.0).level == Level::Warning);
+        assert!(run(&mut m, p.battery_warning + 0.2, 10.0, 9.0).level == Level::Warning);
+        assert!(run(&mut m, p.battery_warning + 0.4, 10.0, 9.0).level == Level::Good);
+        assert!(run(&mut m, p.battery_critical - 0.2, 10.0, 3.0).level == Level::Critical);
+    }
+
+    #[test]
+    fn the_ratio_stays_sane() {
+        let mut m = Monitor::default();
+        assert!((run(&mut m, 1.0, 0.0, 5.0).ratio - 0.7).abs() < 1e-6);
+        assert!((run(&mut m, 50.0, 0.0, 5.0).ratio - 1.25).abs() < 1e-6);
+    }
+
+    proptest! {
+        #[test]
+        fn no_input_makes_a_bad_reading(
+            inputs in proptest::collection::vec(
+                (proptest::num::f32::ANY, proptest::num::f32::ANY, proptest::num::f32::ANY), 1..40),
+        ) {
+            let mut m = Monitor::default();
+            for (v, i, dt) in inputs {
+                if let Some(r) = m.step(&Params::default(), v, i, dt) {
+                    prop_assert!(r.voltage.is_finite() && r.current.is_finite() && r.used.is_finite());
+                    prop_assert!((0.7..=1.25).contains(&r.ratio));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Static deflection of a soft arm under its rotor's thrust: Eq. 1 of the paper and what flies of it.
+//!
+//! α = α0 + K ((A1 + ρ A2) T + (B1 + ρ B2) T²) (P/P0)^C_P, in degrees, ρ in %, T in N.
+//!
+//! K is ours: the literal equation (K = 1) gives a fifth of the tilts that the paper's Table III shows.
+//! α0 is set so that the arm is level at half throttle, as the paper's text demands. The battery's factor
+//! stays 1 in flight: thrusts here are true thrusts, already compensated for the battery, and the factor
+//! would count the loss a second time. Only the printed [`Algorithm1`] uses it.
+
+use crate::math;
+use crate::params::Params;
+
+/// A1 of Table I, °/N.
+pub const A1: f32 = 2.4387;
+/// A2 of Table I, °/(N %).
+pub const A2: f32 = -0.1997;
+/// B1 of Table I, °/N².
+pub const B1: f32 = -0.162;
+/// B2 of Table I, °/(N² %).
+pub const B2: f32 = 0.0151;
+
+/// Tilt beyond which the paper's static model does not hold, rad.
+pub const VALID_TILT: f32 = math::deg(40.0);
+
+/// Eq. 1 of one arm with its numbers filled in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmModel {
+    /// Tilt without thrust, rad.
+    pub offset: f32,
+    /// Linear coefficient, rad/N.
+    pub linear: f32,
+    /// Quadratic coefficient, rad/N².
+    pub quadratic: f32,
+}
+
+impl ArmModel {
+    /// The arm of infill `infill` (%) with the gain `gain_k` on the elastic term, level at the thrust
+    /// `level_thrust` (N).
+    pub fn new(infill: f32, gain_k: f32, level_thrust: f32) -> Self {
+        let linear = math::deg(gain_k * (A1 + infill * A2));
+        let quadratic = math::deg(gain_k * (B1 + infill * B2));
+        let model = Self { offset: 0.0, linear, quadratic };
+        Self { offset: -model.elastic(level_thrust), ..model }
+    }
+
+    /// The arm that the parameters describe, level at half throttle.
+    pub fn from_params(p: &Params) -> Self {
+        Self::new(p.infill, p.gain_k, 0.5 * p.thrust_max)
+    }
+
+    /// Elastic part of the tilt at the thrust `thrust` (N), rad.
+    pub fn elastic(&self, thrust: f32) -> f32 {
+        (self.linear + self.quadratic * thrust) * thrust
+    }
+
+    /// Tilt at the thrust `thrust` (N), rad.
+    pub fn angle(&self, thrust: f32) -> f32 {
+        self.offset + self.elastic(thrust)
+    }
+
+    /// Compliance dα/dT at the thrust `thrust` (N), rad/N.
+    pub fn slope(&self, thrust: f32) -> f32 {
+        self.linear + 2.0 * self.quadratic * thrust
+    }
+}
+
+/// The paper's Algorithm 1, verbatim: tilt from the thrust of the step before, and 0 where it passes 40°.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Algorithm1 {
+    model: ArmModel,
+    power_exponent: f32,
+}
+
+impl Algorithm1 {
+    /// The algorithm for the arm `model` with the battery exponent C_P.
+    pub const fn new(model: ArmModel, power_exponent: f32) -> Self {
+        Self { model, power_exponent }
+    }
+
+    /// Tilt (rad) from the last step's thrust (N) and power ratio P/P0. It jumps by 40° where the printed
+    /// guard acts, and only on one side.
+    pub fn angle(&self, last_thrust: f32, power_ratio: f32) -> f32 {
+        let factor = math::pow_near_one(power_ratio, self.power_exponent);
+        let tilt = self.model.offset + self.model.elastic(last_thrust) * factor;
+        if tilt > VALID_TILT { 0.0 } else { tilt }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn degrees(x: f32) -> f32 {
+        math::to_deg(x)
+    }
+
+    #[test]
+    fn equation_1_by_hand() {
+        // ρ 6.9 %, K 1, 4 N: (2.4387 - 1.37793)·4 + (-0.162 + 0.10419)·16 = 4.24308 - 0.92496 = 3.31812°.
+        let m = ArmModel::new(6.9, 1.0, 0.0);
+        assert!((degrees(m.angle(4.0)) - 3.318_12).abs() < 1e-4);
+        // Its slope there: 1.06077 - 0.11562·4 = 0.59829 °/N.
+        assert!((degrees(m.slope(4.0)) - 0.598_29).abs() < 1e-4);
+    }
+
+    #[test]
+    fn table_3_follows_from_the_default_gain() {
+        // T1 8.28 N and T3 1.77 N: the table's 26.6, 21.3 and 16.8° within 1.5 %.
+        for (infill, printed) in [(6.0, 26.6), (8.0, 21.3), (10.0, 16.8)] {
+            let m = ArmModel::new(infill, 7.75, 4.15);
+            let difference = degrees(m.angle(8.28) - m.angle(1.77));
+            assert!((difference / printed - 1.0).abs() < 0.015, "{infill}: {difference}");
+        }
+    }
+
+    #[test]
+    fn arms_are_level_at_half_throttle_and_droop_at_idle() {
+        let m = ArmModel::from_params(&Params::default());
+        assert!(m.angle(4.15).abs() < 1e-6);
+        assert!((degrees(m.angle(0.0)) + 26.4).abs() < 0.1);
+        assert!(m.angle(8.0) > 0.0);
+    }
+
+    #[test]
+    fn algorithm_1_drops_to_zero_beyond_40_degrees() {
+        let a = Algorithm1::new(ArmModel { offset: 0.0, linear: math::deg(10.0), quadratic: 0.0 }, 1.7);
+        assert!((degrees(a.angle(3.9, 1.0)) - 39.0).abs() < 1e-3);
+        assert!(a.angle(4.1, 1.0).abs() < 1e-9);
+        // One-sided: the other way it goes on.
+        assert!((degrees(a.angle(-4.1, 1.0)) + 41.0).abs() < 1e-3);
+        // A weak battery bends less: 0.8^1.7 = 0.68432.
+        assert!((degrees(a.angle(3.0, 0.8)) - 30.0 * 0.684_32).abs() < 1e-2);
+    }
+
+    proptest! {
+        #[test]
+        fn the_slope_is_the_derivative(infill in 4.0f32..10.0, k in 1.0f32..8.4, t in 0.1f32..8.0) {
+            let m = ArmModel::new(infill, k, 4.15);
+            let h = 0.05;
+            let central = (m.angle(t + h) - m.angle(t - h)) / (2.0 * h);
+            prop_assert!((central - m.slope(t)).abs() < 1e-4);
+        }
+
+        #[test]
+        fn more_infill_bends_less(a in 4.0f32..10.0, b in 4.0f32..10.0, t in 0.1f32..8.0) {
+            let (soft, stiff) = if a < b { (a, b) } else { (b, a) };
+            let e = |infill| ArmModel::new(infill, 7.75, 4.15).elastic(t);
+            prop_assert!(e(soft) >= e(stiff) - 1e-6);
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Attitude from gyro and accelerometer: quaternion integration, a slow pull towards the accelerometer's
+//! vertical, and the gyro's bias.
+//!
+//! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (time constant 10 s at
+//! the default) and fades when the specific force is not 1 g. There is no compass: heading is integrated.
+
+use crate::math::{self, GRAVITY};
+use crate::params::Params;
+use crate::vector::{Quat, Vec3};
+
+/// Time at rest that the calibration takes, s.
+pub const CALIBRATION_TIME: f32 = 2.0;
+/// Rate beyond which the vehicle is not at rest, rad/s: above any part's bias.
+const REST_RATE: f32 = 0.15;
+/// Departure from the running mean beyond which the vehicle is not at rest, rad/s.
+const REST_DEVIATION: f32 = 0.04;
+/// Specific force error at which the accelerometer's pull has faded to nothing, as a share of gravity.
+const ACCEL_FADE: f32 = 0.15;
+/// Largest gyro bias believed, rad/s.
+const BIAS_MAX: f32 = 0.1;
+
+/// Attitude estimator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimator {
+    q: Quat,
+    bias: Vec3,
+    kp: f32,
+    ki: f32,
+    rest_time: f32,
+    rest_gyro: Vec3,
+    rest_accel: Vec3,
+    calibrated: bool,
+}
+
+impl Estimator {
+    /// An estimator that has yet to be calibrated at rest.
+    pub fn new(p: &Params) -> Self {
+        Self {
+            q: Quat::IDENTITY,
+            bias: Vec3::ZERO,
+            kp: p.estimator_kp,
+            ki: p.estimator_ki,
+            rest_time: 0.0,
+            rest_gyro: Vec3::ZERO,
+            rest_accel: Vec3::ZERO,
+            calibrated: false,
+        }
+    }
+
+    /// Calibration at rest has ended.
+    pub const fn calibrated(&self) -> bool {
+        self.calibrated
+    }
+
+    /// Body to world; heading 0 is where the nose pointed at calibration.
+    pub const fn attitude(&self) -> Quat {
+        self.q
+    }
+
+    /// Gyro bias, rad/s.
+    pub const fn bias(&self) -> Vec3 {
+        self.bias
+    }
+
+    /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without
+    /// its bias.
+    pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
+        if !self.calibrated {
+            self.calibrate(gyro, accel, dt);
+            return Vec3::ZERO;
+        }
+        let rate = gyro - self.bias;
+        // Down as measured (minus the specific force) against down as believed.
+        let norm2 = accel.norm_squared();
+        let inv = math::inv_sqrt(norm2);
+        let excess = norm2 * inv * (1.0 / GRAVITY) - 1.0;
+        let weight = 1.0 - (if excess < 0.0 { -excess } else { excess }) * (1.0 / ACCEL_FADE);
+        let weight = math::clamp(weight, 0.0, 1.0);
+        let error = (accel * -inv).cross(self.q.down_in_body()) * weight;
+        self.bias = (self.bias - error * (self.ki * dt)).map(|b| math::clamp_abs(b, BIAS_MAX));
+        self.integrate(rate + error * self.kp, dt);
+        rate
+    }
+
+    fn integrate(&mut self, rate: Vec3, dt: f32) {
+        let h = rate * (0.5 * dt);
+        let d = self.q * Quat { w: 0.0, x: h.x, y: h.y, z: h.z };
+        let q = Quat { w: self.q.w + d.w, x: self.q.x + d.x, y: self.q.y + d.y, z: self.q.z + d.z };
+        // One Newton step keeps a nearly unit quaternion unit.
+        let k = 1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+        let q = Quat { w: q.w * k, x: q.x * k, y: q.y * k, z: q.z * k };
+        self.q = if q.is_finite() { q } else { self.q };
+    }
+
+    /// Collects rest; any motion starts it afresh.
+    fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
+        let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
+        let still = limit(gyro, REST_RATE)
+            && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
+        if !still || self.rest_time <= 0.0 {
+            self.rest_time = dt;
+            self.rest_gyro = gyro;
+            self.rest_accel = accel;
+            return;
+        }
+        self.rest_time += dt;
+        let k = dt / self.rest_time;
+        self.rest_gyro += (gyro - self.rest_gyro) * k;
+        self.rest_accel += (accel - self.rest_accel) * k;
+        if self.rest_time >= CALIBRATION_TIME && self.rest_accel.norm() > 0.5 * GRAVITY {
+            self.bias = self.rest_gyro;
+            let up = self.rest_accel;
+            let roll = math::atan2(-up.y, -up.z);
+            let pitch = math::atan2(up.x, math::sqrt(up.y * up.y + up.z * up.z));
+            self.q = Quat::from_euler(roll, pitch, 0.0);
+            self.calibrated = true;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn at_rest(roll: f32, pitch: f32) -> Vec3 {
+        Quat::from_euler(roll, pitch, 0.0).rotate_inverse(Vec3::new(0.0, 0.0, -GRAVITY))
+    }
+
+    fn calibrated(gyro: Vec3, accel: Vec3) -> Estimator {
+        let mut e = Estimator::new(&Params::default());
+        for _ in 0..2100 {
+            e.step(gyro, accel, 1e-3);
+        }
+        assert!(e.calibrated());
+        e
+    }
+
+    #[test]
+    fn rest_gives_bias_and_tilt() {
+        let bias = Vec3::new(0.02, -0.01, 0.03);
+        let e = calibrated(bias, at_rest(0.1, -0.2));
+        let (roll, pitch, yaw) = e.attitude().to_euler();
+        assert!((e.bias() - bias).norm() < 1e-4);
+        assert!((roll - 0.1).abs() < 0.01 && (pitch + 0.2).abs() < 0.01 && yaw.abs() < 0.01);
+    }
+
+    #[test]
+    fn motion_holds_calibration_off() {
+        let mut e = Estimator::new(&Params::default());
+        for i in 0..5000 {
+            let wobble = if (i / 500) % 2 == 0 { 0.06 } else { -0.06 };
+            e.step(Vec3::new(wobble, 0.0, 0.0), at_rest(0.0, 0.0), 1e-3);
+        }
+        assert!(!e.calibrated());
+    }
+
+    #[test]
+    fn a_turn_is_integrated() {
+        let mut e = calibrated(Vec3::ZERO, at_rest(0.0, 0.0));
+        for _ in 0..1000 {
+            e.step(Vec3::new(0.0, 0.0, 0.5), at_rest(0.0, 0.0), 1e-3);
+        }
+        let (_, _, yaw) = e.attitude().to_euler();
+        assert!((yaw - 0.5).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_wrong_tilt_is_pulled_in_the_right_direction_in_ten_seconds() {
+        let mut e = calibrated(Vec3::ZERO, at_rest(0.3, 0.0));
+        // Levelled, but the estimator missed it.
+        for _ in 0..10_000 {
+            e.step(Vec3::ZERO, at_rest(0.0, 0.0), 1e-3);
+        }
+        let (roll, _, _) = e.attitude().to_euler();
+        assert!((0.03..0.16).contains(&roll), "{roll}");
+    }
+
+    #[test]
+    fn a_drifting_bias_is_found_in_roll() {
+        let p = Params { estimator_ki: 0.02, estimator_kp: 0.3, ..Params::default() };
+        let mut e = Estimator::new(&p);
+        for i in 0..240_000 {
+            let drift = if i < 3000 { 0.0 } else { 0.01 };
+            e.step(Vec3::new(drift, 0.0, 0.0), at_rest(0.0, 0.0), 1e-3);
+        }
+        assert!((e.bias().x - 0.01).abs() < 1e-3, "{:?}", e.bias());
+    }
+
+    proptest! {
+        #[test]
+        fn stays_a_unit_quaternion_for_any_motion(rates in prop::collection::vec(prop::array::uniform3(-30.0f32..30.0), 1..200)) {
+            let mut e = calibrated(Vec3::ZERO, at_rest(0.0, 0.0));
+            for r in rates {
+                e.step(Vec3::from(r), Vec3::from(r), 1e-3);
+                let q = e.attitude();
+                prop_assert!((q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0).abs() < 1e-3);
+            }
+        }
+    }
+}

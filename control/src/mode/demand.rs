@@ -1,0 +1,86 @@
+//! From sticks to a demand on the rotors, without a step in the collective and never out of range.
+
+use super::Rotors;
+use super::logic::stick_rates;
+use crate::math::{clamp, clamp_abs};
+use crate::params::Params;
+use crate::rc::{StickMode, Sticks};
+use crate::wrench::Wrench;
+
+/// Time over which the collective goes from one state's to the next one's, s.
+pub const HAND_OVER_TIME: f32 = 0.5;
+
+/// What the pilot asks for in free flight.
+pub fn from_sticks(s: &Sticks, p: &Params) -> Rotors {
+    let thrust = s.throttle * 4.0 * p.thrust_max;
+    match s.stick_mode {
+        StickMode::Angle => Rotors::Angle {
+            roll: s.roll * p.stick_angle,
+            pitch: s.pitch * p.stick_angle,
+            yaw_rate: s.yaw * p.stick_yaw_rate,
+            thrust,
+        },
+        StickMode::Rate => Rotors::Rate { rate: stick_rates(s, p), thrust },
+        StickMode::Direct => Rotors::Direct {
+            wrench: Wrench {
+                thrust,
+                roll: s.roll * p.stick_torque,
+                pitch: s.pitch * p.stick_torque,
+                yaw: s.yaw * p.stick_yaw_torque,
+            },
+        },
+    }
+}
+
+/// The collective over the changes of state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Collective {
+    /// Collective of the last step, N; `None` while the rotors are stopped or idle.
+    last: Option<f32>,
+    /// What is left of the difference to the state before, N, and the time left for it, s.
+    offset: f32,
+    left: f32,
+    pending: bool,
+}
+
+impl Collective {
+    /// A new state begins: its collective starts where the last one's is.
+    pub fn hand_over(&mut self) {
+        self.pending = true;
+    }
+
+    /// The demand as it goes out: handed over, limited to what four rotors give, stopped if it is no number.
+    pub fn finish(&mut self, wish: Rotors, p: &Params, dt: f32) -> Rotors {
+        let begins = core::mem::take(&mut self.pending);
+        if matches!(wish, Rotors::Stop | Rotors::Idle) || !wish.is_finite() {
+            *self = Self::default();
+            return if wish.is_finite() { wish } else { Rotors::Stop };
+        }
+        let full = 4.0 * p.thrust_max;
+        let target = wish.thrust();
+        if begins {
+            self.offset = self.last.map_or(0.0, |last| last - target);
+            self.left = HAND_OVER_TIME;
+        }
+        self.left = clamp(self.left - dt, 0.0, HAND_OVER_TIME);
+        let thrust = clamp(target + self.offset * self.left / HAND_OVER_TIME, 0.0, full);
+        self.last = Some(thrust);
+        with_thrust(wish, thrust)
+    }
+}
+
+fn with_thrust(rotors: Rotors, thrust: f32) -> Rotors {
+    // Angles beyond a quarter turn are nobody's wish; the limit only catches what should not be there.
+    let angle = |x| clamp_abs(x, 1.6);
+    match rotors {
+        Rotors::Angle { roll, pitch, yaw_rate, .. } => {
+            Rotors::Angle { roll: angle(roll), pitch: angle(pitch), yaw_rate, thrust }
+        }
+        Rotors::Rate { rate, .. } => Rotors::Rate { rate, thrust },
+        Rotors::Direct { wrench } => Rotors::Direct { wrench: Wrench { thrust, ..wrench } },
+        Rotors::Resting { roll, pitch, .. } => {
+            Rotors::Resting { roll: angle(roll), pitch: angle(pitch), thrust }
+        }
+        stopped => stopped,
+    }
+}

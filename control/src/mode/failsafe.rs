@@ -1,0 +1,152 @@
+//! What goes wrong, and what is done about it.
+//!
+//! | trouble | on the ground | in the air | on the pipe |
+//! |---|---|---|---|
+//! | arm switch off | stop | stop | stop, arms stay closed |
+//! | radio lost | stop | level, sink, stop on what carries | keep closing, keep the grip |
+//! | inertial sensor silent | stop | stop | stop, arms stay closed |
+//! | tipped over | stop | stop | stop, arms stay closed |
+//! | battery critical | - | sink, the pilot still steers | told; release refused |
+
+use super::logic::{ModeLogic, State};
+use super::{Inputs, Rotors, demand};
+use crate::math::{clamp, deg};
+use crate::params::Params;
+use crate::rc::{StickMode, Sticks};
+use crate::support::{HINT_FORCE, Held};
+
+/// Silence of the inertial sensor after which the rotors stop, s. Control has stopped them before: this makes
+/// it last.
+pub const IMU_LOST_TIME: f32 = 0.05;
+/// Tilt beyond which the vehicle has tipped over, rad, and the time for which it must, s.
+pub const TIPPED_TILT: f32 = deg(100.0);
+/// See [`TIPPED_TILT`].
+pub const TIPPED_TIME: f32 = 0.5;
+/// Time for which the voltage must stay below critical, s: a gust's current peak is no empty battery.
+pub const BATTERY_TIME: f32 = 1.0;
+/// Radio silence in the failsafe (beyond the link's own staleness) after which flight resumes by itself, s.
+pub const RESUME_TIME: f32 = 1.0;
+/// Roll or pitch stick by which the pilot takes over later than that, share of its travel.
+pub const RESUME_STICK: f32 = 0.3;
+/// Sink rate aimed at, m/s.
+const SINK_RATE: f32 = 0.8;
+/// Share of the weight taken off the collective to start sinking; given back as the sink rate is reached.
+const SINK_SHARE: f32 = 0.15;
+/// Fastest that the collective is taken away where something seems to carry the vehicle, share of the weight
+/// per second. In free air the seeming support shrinks with it, and it comes back.
+const PROBE_RATE: f32 = 0.5;
+
+/// Why the failsafe acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// No frame from the receiver.
+    RadioLost,
+    /// The battery is at its end.
+    BatteryCritical,
+}
+
+impl Cause {
+    /// For the pilot's display.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::RadioLost => "radio lost",
+            Self::BatteryCritical => "battery critical",
+        }
+    }
+}
+
+/// Timers of what may go wrong in any state.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Dangers {
+    imu: Held,
+    tipped: Held,
+    battery: Held,
+    /// Share of the weight taken away to see whether something carries it, 0..1.
+    probe: f32,
+}
+
+impl Dangers {
+    pub(super) fn step(&mut self, i: &Inputs, p: &Params, dt: f32) {
+        let sane = |m: super::Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
+        self.imu.step(!i.motion.is_some_and(sane), dt);
+        let tipped = i.motion.is_some_and(|m| m.q.down_in_body().z < crate::math::cos(TIPPED_TILT));
+        self.tipped.step(tipped, dt);
+        self.battery.step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
+    }
+
+    pub(super) fn battery_critical(&self) -> bool {
+        self.battery.time() >= BATTERY_TIME
+    }
+
+    fn stop(&self, sticks: Option<Sticks>) -> Option<&'static str> {
+        if sticks.is_some_and(|s| !s.arm_switch) {
+            Some("")
+        } else if self.imu.time() >= IMU_LOST_TIME {
+            Some("inertial sensor silent")
+        } else if self.tipped.time() >= TIPPED_TIME {
+            Some("tipped over")
+        } else {
+            None
+        }
+    }
+}
+
+impl ModeLogic {
+    /// The state for which everything is dropped, and why.
+    pub(super) fn emergency(&mut self, i: &Inputs) -> Option<(State, &'static str)> {
+        let why = self.dangers.stop(i.sticks)?;
+        let proven = i.grip.is_some_and(|g| g.proven);
+        let free = i.grip.is_some_and(|g| g.released);
+        let state = match self.state {
+            State::Calibrating | State::Disarmed { .. } | State::Perched { .. } => return None,
+            State::Releasing { opening: true, .. } if free => State::Disarmed { closed: None },
+            State::Clamping { hold, .. } | State::Releasing { hold, .. } => {
+                // Opening takes a new and deliberate turn of the switch.
+                self.perch_seen_on = false;
+                if proven && !matches!(self.state, State::Releasing { opening: true, .. }) {
+                    State::Perched { arms: hold.arms }
+                } else {
+                    State::Disarmed { closed: Some(hold.arms) }
+                }
+            }
+            _ => State::Disarmed { closed: None },
+        };
+        Some((state, why))
+    }
+
+    pub(super) fn failsafe(&mut self, cause: Cause, sticks: Option<Sticks>) -> State {
+        if self.support.resting() {
+            return self.stop(cause.text());
+        }
+        match (cause, sticks) {
+            (Cause::RadioLost, Some(_)) if self.dangers.battery_critical() => {
+                State::Failsafe(Cause::BatteryCritical)
+            }
+            (Cause::RadioLost, Some(s)) => {
+                let taken = s.roll.abs() > RESUME_STICK || s.pitch.abs() > RESUME_STICK;
+                if taken || self.since <= RESUME_TIME { State::Flight } else { State::Failsafe(cause) }
+            }
+            _ => State::Failsafe(cause),
+        }
+    }
+
+    /// Takes thrust away while something seems to carry the vehicle, gives it back where nothing does.
+    pub(super) fn probe(&mut self, dt: f32) {
+        let hint = self.state.mode() == super::Mode::Failsafe && self.support.force() > HINT_FORCE;
+        let rate = if hint { PROBE_RATE } else { -4.0 * PROBE_RATE };
+        self.dangers.probe = clamp(self.dangers.probe + rate * dt, 0.0, 1.0);
+    }
+
+    /// Level and sinking; with an empty battery the pilot still steers.
+    pub(super) fn descent(&self, cause: Cause, sticks: Option<Sticks>) -> Rotors {
+        let short = clamp(1.0 - self.support.sink() / SINK_RATE, 0.0, 1.0);
+        let share = clamp(1.0 - SINK_SHARE * short - self.dangers.probe, 0.0, 1.0);
+        let thrust = share * self.support.weight();
+        let steer = sticks.filter(|_| cause == Cause::BatteryCritical);
+        let steer = Sticks { stick_mode: StickMode::Angle, ..steer.unwrap_or_default() };
+        match demand::from_sticks(&steer, &self.params) {
+            Rotors::Angle { roll, pitch, yaw_rate, .. } => Rotors::Angle { roll, pitch, yaw_rate, thrust },
+            other => other,
+        }
+    }
+}

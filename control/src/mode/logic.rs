@@ -1,0 +1,315 @@
+//! The state machine: one step takes what is seen and gives what is to be done.
+
+use super::closing::{CLOSE_AGAIN, Hold, Spool};
+use super::failsafe::{Cause, Dangers};
+use super::{Inputs, Mode, Outputs, Rotors, Tendons, demand};
+use crate::arming::{Checks, Gesture, GestureWatch, Refusals, TILT_MAX};
+use crate::math::{clamp, cos};
+use crate::params::Params;
+use crate::rc::{ArmChoice, Sticks};
+use crate::support::{Felt, Support};
+use crate::vector::Vec3;
+
+/// Longest step believed, s: a stall of the commander must not end a timer.
+const STEP_MAX: f32 = 0.05;
+/// Time for which the rotors may idle before they are stopped, s.
+pub const IDLE_MAX: f32 = 30.0;
+/// Time from landing to disarming, s.
+pub const LANDED_TIME: f32 = 2.0;
+/// Time on the pipe before the tendons close, s.
+pub const CONTACT_TIME: f32 = 0.3;
+/// Throttle above `perch_throttle_max` by which the contact is given up, 1.
+const CONTACT_MARGIN: f32 = 0.03;
+/// Time for which a reason stays on the pilot's display, s.
+const NOTE_TIME: f32 = 10.0;
+
+/// The state with what belongs to it; [`Mode`] is its public name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum State {
+    Calibrating,
+    /// With the arms that were left closed: a grip outlives the rotors.
+    Disarmed {
+        closed: Option<ArmChoice>,
+    },
+    Armed,
+    Flight,
+    Contact {
+        hold: Hold,
+    },
+    Clamping {
+        hold: Hold,
+        spool: Spool,
+    },
+    Perched {
+        arms: ArmChoice,
+    },
+    Releasing {
+        hold: Hold,
+        /// Share of the collective that the rotors have reached, 0..1.
+        share: f32,
+        /// Time for which every arm has been free, s.
+        free: f32,
+        /// The tendons are paying out.
+        opening: bool,
+    },
+    Landed,
+    Failsafe(Cause),
+}
+
+impl State {
+    pub(super) fn mode(self) -> Mode {
+        match self {
+            Self::Calibrating => Mode::Calibrating,
+            Self::Disarmed { .. } => Mode::Disarmed,
+            Self::Armed => Mode::Armed,
+            Self::Flight => Mode::Flight,
+            Self::Contact { .. } => Mode::Contact,
+            Self::Clamping { .. } => Mode::Clamping,
+            Self::Perched { .. } => Mode::Perched,
+            Self::Releasing { .. } => Mode::Releasing,
+            Self::Landed => Mode::Landed,
+            Self::Failsafe(_) => Mode::Failsafe,
+        }
+    }
+}
+
+/// The mode logic of one vehicle.
+#[derive(Clone, Debug)]
+pub struct ModeLogic {
+    pub(super) params: Params,
+    pub(super) state: State,
+    /// Time in this mode, s.
+    pub(super) since: f32,
+    pub(super) support: Support,
+    pub(super) dangers: Dangers,
+    pub(super) gestures: GestureWatch,
+    /// The gesture completed in this step.
+    pub(super) gesture: Option<Gesture>,
+    /// The throttle last seen: held when the radio is lost on the pipe.
+    pub(super) throttle: f32,
+    /// The arm switch has been off since power-up.
+    pub(super) arm_seen_off: bool,
+    /// The perch switch has been off since the last try: on starts the next.
+    pub(super) perch_seen_off: bool,
+    /// The perch switch has been on since the arms closed: off opens them.
+    pub(super) perch_seen_on: bool,
+    pub(super) collective: demand::Collective,
+    note: (&'static str, f32),
+}
+
+impl ModeLogic {
+    /// A vehicle that has just been switched on.
+    pub fn new(params: &Params) -> Self {
+        Self {
+            params: *params,
+            state: State::Calibrating,
+            since: 0.0,
+            support: Support::new(params),
+            dangers: Dangers::default(),
+            gestures: GestureWatch::default(),
+            gesture: None,
+            throttle: 0.0,
+            arm_seen_off: false,
+            perch_seen_off: false,
+            perch_seen_on: false,
+            collective: demand::Collective::default(),
+            note: ("", 0.0),
+        }
+    }
+
+    /// One step, `dt` s after the one before.
+    pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
+        let dt = clamp(dt, 0.0, STEP_MAX);
+        self.observe(inputs, dt);
+        let next = match self.emergency(inputs) {
+            Some((state, why)) => {
+                self.note(why);
+                state
+            }
+            None => self.transition(inputs, dt),
+        };
+        if next.mode() != self.state.mode() {
+            self.since = 0.0;
+            self.collective.hand_over();
+            if next.mode() == Mode::Armed {
+                self.note("");
+            }
+        }
+        self.state = next;
+        self.decide(inputs, dt)
+    }
+
+    /// Updates everything that outlives a state.
+    fn observe(&mut self, i: &Inputs, dt: f32) {
+        self.since = clamp(self.since + dt, 0.0, 1e6);
+        self.note.1 -= dt;
+        self.gesture = self.gestures.step(i.sticks.as_ref(), self.params.throttle_low, dt);
+        if let Some(s) = i.sticks {
+            self.throttle = clamp(s.throttle, 0.0, 1.0);
+            self.arm_seen_off |= !s.arm_switch;
+            self.perch_seen_off |= !s.perch_switch;
+            self.perch_seen_on |= s.perch_switch;
+        }
+        let felt = i.motion.map(|m| Felt {
+            specific_force_z: m.accel.z,
+            down: m.q.rotate(m.accel).z + crate::math::GRAVITY,
+            rate: m.rate.norm(),
+            lift: i.lift,
+        });
+        self.support.step(felt, dt);
+        self.dangers.step(i, &self.params, dt);
+    }
+
+    fn transition(&mut self, i: &Inputs, dt: f32) -> State {
+        let low = |s: &Sticks| s.throttle <= self.params.throttle_low;
+        match (self.state, i.sticks) {
+            (State::Calibrating, _) if i.motion.is_some_and(|m| m.calibrated) => {
+                State::Disarmed { closed: None }
+            }
+            (State::Disarmed { closed }, Some(s)) => self.disarmed(i, s, closed),
+            (State::Armed | State::Landed, None) => self.stop("radio lost"),
+            (State::Armed | State::Landed, Some(_)) if self.gesture == Some(Gesture::Disarm) => self.stop(""),
+            (State::Armed | State::Landed, Some(s)) if !low(&s) => State::Flight,
+            (State::Armed, Some(_)) if self.since >= IDLE_MAX => self.stop("idle for too long"),
+            (State::Landed, Some(_)) if self.since >= LANDED_TIME => self.stop(""),
+            (State::Flight, None) => State::Failsafe(Cause::RadioLost),
+            (State::Flight, Some(_)) if self.dangers.battery_critical() => {
+                State::Failsafe(Cause::BatteryCritical)
+            }
+            (State::Flight, Some(s)) if low(&s) && self.support.grounded() => State::Landed,
+            (State::Flight, Some(s)) => self.touch(i, s).unwrap_or(State::Flight),
+            (State::Contact { hold }, sticks) => self.contact(hold, sticks),
+            (State::Clamping { hold, spool }, sticks) => self.clamping(i, hold, spool, sticks, dt),
+            (State::Perched { arms }, sticks) => self.perched(i, arms, sticks),
+            (State::Releasing { hold, share, free, opening }, sticks) => {
+                self.releasing(i, hold, (share, free, opening), sticks, dt)
+            }
+            (State::Failsafe(cause), sticks) => self.failsafe(cause, sticks),
+            (state, _) => state,
+        }
+    }
+
+    fn disarmed(&mut self, i: &Inputs, s: Sticks, closed: Option<ArmChoice>) -> State {
+        if closed.is_some() && !s.perch_switch && self.perch_seen_on {
+            // A person holds the vehicle and has turned the perch switch on and off again.
+            return State::Disarmed { closed: None };
+        }
+        if self.gesture == Some(Gesture::Arm) && self.refusals(i).is_empty() {
+            return State::Armed;
+        }
+        State::Disarmed { closed }
+    }
+
+    /// The touch of the pipe: perch switch turned on, throttle down, something carries, nearly level.
+    fn touch(&self, i: &Inputs, s: Sticks) -> Option<State> {
+        let motion = i.motion?;
+        let wanted = s.perch_switch && self.perch_seen_off && s.throttle <= self.params.perch_throttle_max;
+        let upright = motion.q.down_in_body().z >= cos(TILT_MAX);
+        if !(wanted && self.support.resting() && upright) {
+            return None;
+        }
+        let (roll, pitch, _) = motion.q.to_euler();
+        Some(State::Contact { hold: Hold { roll, pitch, arms: s.arms } })
+    }
+
+    fn contact(&mut self, hold: Hold, sticks: Option<Sticks>) -> State {
+        let most = self.params.perch_throttle_max + CONTACT_MARGIN;
+        if sticks.is_some_and(|s| !s.perch_switch || s.throttle > most) {
+            return State::Flight;
+        }
+        if !self.support.resting() {
+            // Lost the pipe, or the inertial sensor for a moment: back to where the pilot steers.
+            return State::Flight;
+        }
+        if self.since < CONTACT_TIME {
+            return State::Contact { hold };
+        }
+        // A radio lost just now finishes the landing that the pilot began.
+        self.perch_seen_on = sticks.is_some();
+        State::Clamping { hold, spool: Spool::at(1.0) }
+    }
+
+    /// Rotors off for good, from a state in which no arm is closed.
+    pub(super) fn stop(&mut self, why: &'static str) -> State {
+        self.note(why);
+        State::Disarmed { closed: None }
+    }
+
+    /// Shows `why` for a while.
+    pub(super) fn note(&mut self, why: &'static str) {
+        self.note = (why, NOTE_TIME);
+    }
+
+    fn refusals(&self, i: &Inputs) -> Refusals {
+        let chosen = i.sticks.unwrap_or_default().arms.mask();
+        Checks {
+            calibrated: i.motion.is_some_and(|m| m.calibrated),
+            cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
+            sticks: i.sticks,
+            switch_seen_off: self.arm_seen_off,
+            battery: i.battery,
+            fsr_fault: i.fsr_fault.iter().zip(chosen).any(|(&fault, chosen)| fault && chosen),
+            late: i.late,
+            arms_closed: !matches!(self.state, State::Disarmed { closed: None } | State::Calibrating),
+        }
+        .refusals(&self.params)
+    }
+
+    fn decide(&mut self, i: &Inputs, dt: f32) -> Outputs {
+        let mode = self.state.mode();
+        let tendons = match self.state {
+            State::Disarmed { closed: Some(arms) } | State::Perched { arms } => Tendons::Close(arms),
+            State::Clamping { hold, .. } | State::Releasing { hold, opening: false, .. } => {
+                Tendons::Close(hold.arms)
+            }
+            _ => Tendons::Release,
+        };
+        self.probe(dt);
+        let wish = self.wish(i);
+        let rotors = self.collective.finish(wish, &self.params, dt);
+        let grounded = matches!(mode, Mode::Calibrating | Mode::Disarmed);
+        let refusals = if grounded { self.refusals(i) } else { Refusals::default() };
+        let reason = self.reason(i, refusals);
+        Outputs { mode, rotors, tendons, reason, refusals }
+    }
+
+    /// Rotors for the present state, before the collective is handed over and limited.
+    fn wish(&self, i: &Inputs) -> Rotors {
+        let full = 4.0 * self.params.thrust_max;
+        let perch_throttle = clamp(self.throttle, 0.0, self.params.perch_throttle_max);
+        match (self.state, i.sticks) {
+            (State::Armed | State::Landed, _) => Rotors::Idle,
+            (State::Flight, Some(s)) => demand::from_sticks(&s, &self.params),
+            (State::Contact { hold }, _) => hold.rotors(perch_throttle * full),
+            (State::Clamping { spool, .. }, _) if spool.stopped() => Rotors::Stop,
+            (State::Clamping { hold, spool }, _) => hold.rotors(spool.share * perch_throttle * full),
+            (State::Releasing { hold, share, .. }, _) => {
+                let throttle = clamp(self.throttle, CLOSE_AGAIN, self.params.perch_throttle_max);
+                hold.rotors(share * throttle * full)
+            }
+            (State::Failsafe(cause), sticks) => self.descent(cause, sticks),
+            _ => Rotors::Stop,
+        }
+    }
+
+    fn reason(&self, i: &Inputs, refusals: Refusals) -> &'static str {
+        let note = if self.note.1 > 0.0 { self.note.0 } else { "" };
+        match self.state {
+            State::Calibrating if i.motion.is_none() => "inertial sensor silent",
+            State::Calibrating => "keep still",
+            State::Disarmed { .. } if i.sticks.is_some_and(|s| s.arm_switch) => {
+                refusals.first().map_or(note, crate::arming::Refusal::text)
+            }
+            State::Perched { arms } => self.perch_trouble(i, arms).unwrap_or(note),
+            State::Failsafe(cause) => cause.text(),
+            _ if self.dangers.battery_critical() => Cause::BatteryCritical.text(),
+            _ if i.sticks.is_none() && self.state.mode() != Mode::Disarmed => "radio lost",
+            _ => note,
+        }
+    }
+}
+
+/// Body rates of full sticks are the pilot's; the sign of each is the stick's.
+pub(super) fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
+    Vec3::new(s.roll * p.stick_rate, s.pitch * p.stick_rate, s.yaw * p.stick_yaw_rate)
+}

@@ -1,0 +1,93 @@
+//! Random pilots, sensors and grips: what must hold whatever happens.
+
+extern crate std;
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::tests::Rig;
+use super::*;
+use crate::grip::ArmState;
+use crate::rc::StickMode;
+
+fn number() -> impl Strategy<Value = f32> {
+    prop_oneof![8 => -1.0f32..1.0, 1 => Just(f32::NAN), 1 => Just(f32::INFINITY)]
+}
+
+fn sticks() -> impl Strategy<Value = Option<Sticks>> {
+    let throttle = prop_oneof![Just(0.0f32), Just(0.3), Just(0.55), 0.0f32..1.0];
+    let mode = prop_oneof![Just(StickMode::Angle), Just(StickMode::Rate), Just(StickMode::Direct)];
+    let arms = prop_oneof![Just(ArmChoice::All), Just(ArmChoice::Front), Just(ArmChoice::Rear)];
+    let yaw = prop_oneof![Just(1.0f32), Just(-1.0), number()];
+    let values = (number(), number(), yaw, throttle, mode, arms, prop::bool::weighted(0.9), any::<bool>());
+    let some = values.prop_map(|(roll, pitch, yaw, throttle, stick_mode, arms, arm_switch, perch_switch)| {
+        Some(Sticks { roll, pitch, yaw, throttle, arm_switch, perch_switch, stick_mode, arms })
+    });
+    prop_oneof![9 => some, 1 => Just(None)]
+}
+
+fn grip() -> impl Strategy<Value = Option<Grip>> {
+    let state = prop_oneof![
+        Just(ArmState::Free),
+        Just(ArmState::Touching),
+        Just(ArmState::Holding),
+        Just(ArmState::ForceLimited),
+        Just(ArmState::Faulty),
+    ];
+    let some = (prop::bool::weighted(0.7), any::<bool>(), state, 0.0f32..1000.0).prop_map(
+        |(proven, released, state, pressure)| {
+            let arm = ArmGrip { state, pressure, ..Default::default() };
+            Some(Grip { proven, released, arms: [arm; 4] })
+        },
+    );
+    prop_oneof![9 => some, 1 => Just(None)]
+}
+
+/// What the vehicle meets for a while: (steps, sticks, grip, roll, carried, battery, motion is there).
+type Spell = (u32, Option<Sticks>, Option<Grip>, f32, bool, Option<f32>, bool);
+
+fn spells() -> impl Strategy<Value = Vec<Spell>> {
+    let roll = prop_oneof![9 => -0.3f32..0.3, 1 => -3.1f32..3.1, 1 => Just(f32::NAN)];
+    let battery = prop_oneof![8 => Just(Some(16.0f32)), 1 => Just(Some(12.0)), 1 => Just(None)];
+    let spell = (1u32..250, sticks(), grip(), roll, any::<bool>(), battery, prop::bool::weighted(0.95));
+    prop::collection::vec(spell, 1..40)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..Default::default() })]
+    #[test]
+    fn whatever_happens(spells in spells(), start in 0u8..4) {
+        let mut r = match start {
+            0 => Rig::new(),
+            1 => Rig::armed(),
+            2 => Rig::flying(),
+            _ => Rig::perched(),
+        };
+        for (steps, sticks, grip, roll, carried, battery, there) in spells {
+            r.inputs.sticks = sticks;
+            r.inputs.grip = grip;
+            r.inputs.battery = battery;
+            r.carried = carried;
+            let q = Quat::from_euler(roll, 0.0, 0.0);
+            r.inputs.motion = there.then_some(Motion { q, calibrated: true, ..Default::default() });
+            for _ in 0..steps {
+                let before = r.out.mode;
+                r.step();
+                let Outputs { mode, rotors, tendons, reason, .. } = r.out;
+                let still = [Mode::Calibrating, Mode::Disarmed, Mode::Perched].contains(&mode);
+                prop_assert!(!(still && rotors.spin()), "{mode:?} {rotors:?}");
+                prop_assert!(mode != Mode::Perched || tendons != Tendons::Release);
+                prop_assert!(mode != Mode::Clamping || tendons != Tendons::Release);
+                prop_assert!(rotors.is_finite());
+                prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
+                prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
+                prop_assert!(reason.len() <= 40);
+                // Rotors start from rest only where the pilot asked for it in that very step.
+                if [Mode::Disarmed, Mode::Perched].contains(&before) && rotors.spin() {
+                    prop_assert!(sticks.is_some_and(|s| s.arm_switch));
+                    prop_assert!([Mode::Armed, Mode::Releasing].contains(&mode), "{before:?} -> {mode:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Rate control: PID on the body rates, in true units (1/s), so that gains do not depend on the inertia.
+//!
+//! The derivative acts on the measured rate and is filtered. The integrators stop where the mixer could not
+//! give what was asked, unless they would unwind. Yaw passes a notch at the arms' bending mode.
+
+use core::f32::consts::TAU;
+
+use crate::filter::{Biquad, Coefficients, LowPass};
+use crate::math;
+use crate::params::Params;
+use crate::vector::Vec3;
+
+/// Largest angular acceleration that an integrator may hold, rad/s².
+const INTEGRAL_MAX: Vec3 = Vec3::new(15.0, 15.0, 3.0);
+/// Share of a demand below which it counts as not given.
+const GIVEN: f32 = 0.999;
+
+/// How much of the last demand the mixer gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feedback {
+    /// Share of roll and pitch, 0..1.
+    pub roll_pitch: f32,
+    /// Share of yaw, 0..1.
+    pub yaw: f32,
+    /// Yaw was given up altogether.
+    pub yaw_gated: bool,
+}
+
+/// The rate loop's state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateLoop {
+    p: Vec3,
+    i: Vec3,
+    d: Vec3,
+    d_rate: f32,
+    inertia: Vec3,
+    integral: Vec3,
+    derivative: [LowPass; 3],
+    last: Option<Vec3>,
+    notch: Biquad,
+}
+
+impl RateLoop {
+    /// A loop at rest for steps at `rate_hz`.
+    pub fn new(p: &Params, rate_hz: f32) -> Self {
+        Self {
+            p: Vec3::new(p.rate_p, p.rate_p, p.rate_yaw_p),
+            i: Vec3::new(p.rate_i, p.rate_i, p.rate_yaw_i),
+            d: Vec3::new(p.rate_d, p.rate_d, 0.0),
+            d_rate: TAU * p.rate_d_cutoff,
+            inertia: Vec3::new(p.inertia_roll, p.inertia_pitch, p.inertia_yaw),
+            integral: Vec3::ZERO,
+            derivative: [LowPass::default(); 3],
+            last: None,
+            notch: Biquad::new(Coefficients::notch(
+                p.notch_hz,
+                p.notch_zeta_zero,
+                p.notch_zeta_pole,
+                rate_hz,
+            )),
+        }
+    }
+
+    /// Forgets integrals, derivatives and the notch's memory.
+    pub fn reset(&mut self) {
+        self.integral = Vec3::ZERO;
+        self.derivative = [LowPass::default(); 3];
+        self.last = None;
+        self.notch.reset(0.0);
+    }
+
+    /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s), step time `dt` s. `integrate` false
+    /// freezes the integrators, as while resting on something.
+    pub fn step(&mut self, setpoint: Vec3, rate: Vec3, feedback: Feedback, integrate: bool, dt: f32) -> Vec3 {
+        let error = setpoint - rate;
+        let slope = self.last.map_or(Vec3::ZERO, |last| (rate - last) * (1.0 / dt));
+        self.last = Some(rate);
+        let [dx, dy, dz] = &mut self.derivative;
+        let slope = Vec3::new(
+            dx.step(slope.x, self.d_rate, dt),
+            dy.step(slope.y, self.d_rate, dt),
+            dz.step(slope.z, self.d_rate, dt),
+        );
+        if feedback.yaw_gated {
+            self.integral.z = 0.0;
+            self.notch.reset(0.0);
+        }
+        if integrate {
+            let step = error.scale_by(self.i) * dt;
+            let add = |sum: f32, step: f32, limit: f32, given: bool| {
+                // What was not given must not wind up; what unwinds always may.
+                if given || sum * step < 0.0 { math::clamp_abs(sum + step, limit) } else { sum }
+            };
+            let tilt_given = feedback.roll_pitch > GIVEN;
+            let yaw_given = feedback.yaw > GIVEN && !feedback.yaw_gated;
+            self.integral = Vec3::new(
+                add(self.integral.x, step.x, INTEGRAL_MAX.x, tilt_given),
+                add(self.integral.y, step.y, INTEGRAL_MAX.y, tilt_given),
+                add(self.integral.z, step.z, INTEGRAL_MAX.z, yaw_given),
+            );
+        }
+        let acceleration = error.scale_by(self.p) + self.integral - slope.scale_by(self.d);
+        let moment = acceleration.scale_by(self.inertia);
+        let yaw = if feedback.yaw_gated { 0.0 } else { self.notch.step(moment.z) };
+        let moment = Vec3::new(moment.x, moment.y, yaw);
+        if moment.is_finite() {
+            moment
+        } else {
+            self.reset();
+            Vec3::ZERO
+        }
+    }
+
+    /// Integrators, rad/s².
+    pub const fn integral(&self) -> Vec3 {
+        self.integral
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const FREE: Feedback = Feedback { roll_pitch: 1.0, yaw: 1.0, yaw_gated: false };
+
+    fn rate_loop() -> RateLoop {
+        RateLoop::new(&Params::default(), 1000.0)
+    }
+
+    #[test]
+    fn proportional_moment_by_hand() {
+        // 0.5 rad/s of error: 0.5 · 10 1/s · 0.021 kg·m² = 0.105 N·m, plus one step of integral.
+        let m = rate_loop().step(Vec3::new(0.5, 0.0, 0.0), Vec3::ZERO, FREE, true, 1e-3);
+        assert!((m.x - 0.105).abs() < 2e-4 && m.y.abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_integral_grows_at_its_gain() {
+        let mut l = rate_loop();
+        for _ in 0..1000 {
+            l.step(Vec3::new(0.0, 0.2, 0.0), Vec3::ZERO, FREE, true, 1e-3);
+        }
+        assert!((l.integral().y - 1.6).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_was_not_given_does_not_wind_up_but_unwinds() {
+        let mut l = rate_loop();
+        let held = Feedback { roll_pitch: 0.5, yaw: 0.0, yaw_gated: false };
+        for _ in 0..500 {
+            l.step(Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO, held, true, 1e-3);
+        }
+        assert!(l.integral() == Vec3::ZERO);
+        for _ in 0..500 {
+            l.step(Vec3::new(1.0, 0.0, 0.0), Vec3::ZERO, FREE, true, 1e-3);
+        }
+        let wound = l.integral().x;
+        for _ in 0..100 {
+            l.step(Vec3::new(-1.0, 0.0, 0.0), Vec3::ZERO, held, true, 1e-3);
+        }
+        assert!(l.integral().x < wound - 0.5);
+    }
+
+    #[test]
+    fn a_setpoint_step_gives_no_derivative_kick_and_motion_is_damped() {
+        let mut l = RateLoop::new(&Params { rate_d: 0.1, ..Params::default() }, 1000.0);
+        l.step(Vec3::ZERO, Vec3::ZERO, FREE, false, 1e-3);
+        let m = l.step(Vec3::new(1.0, 0.0, 0.0), Vec3::ZERO, FREE, false, 1e-3);
+        assert!((m.x - 0.21).abs() < 1e-4);
+        let damped = l.step(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.05, 0.0, 0.0), FREE, false, 1e-3);
+        assert!(damped.x < 0.95 * 0.21);
+    }
+
+    #[test]
+    fn a_gated_yaw_is_silent_and_forgets() {
+        let mut l = rate_loop();
+        for _ in 0..500 {
+            l.step(Vec3::new(0.0, 0.0, 0.4), Vec3::ZERO, FREE, true, 1e-3);
+        }
+        let gated = Feedback { yaw_gated: true, ..FREE };
+        let m = l.step(Vec3::new(0.0, 0.0, 0.4), Vec3::ZERO, gated, true, 1e-3);
+        assert!(m.z == 0.0 && l.integral().z == 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn no_nan_comes_out_and_the_loop_recovers(bits in prop::collection::vec(any::<[u32; 6]>(), 1..20)) {
+            let mut l = rate_loop();
+            for b in bits {
+                let f = |i: usize| f32::from_bits(b[i]);
+                let m = l.step(Vec3::new(f(0), f(1), f(2)), Vec3::new(f(3), f(4), f(5)), FREE, true, 1e-3);
+                prop_assert!(m.is_finite());
+            }
+            // One step may still see the last bad rate as a slope.
+            l.step(Vec3::ZERO, Vec3::ZERO, FREE, true, 1e-3);
+            for _ in 0..2000 {
+                prop_assert!(l.step(Vec3::ZERO, Vec3::ZERO, FREE, true, 1e-3).is_finite());
+            }
+            prop_assert!(l.integral().is_finite());
+        }
+    }
+}

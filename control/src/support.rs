@@ -1,0 +1,221 @@
+//! Evidence that something carries the vehicle, from what it can feel itself.
+//!
+//! In free air the specific force along the thrust axis, times the mass, is the thrust. On the ground or on
+//! the pipe it is about the weight, whatever the thrust. The difference is the support:
+//!
+//!   support = -m f_z - Σ T_i cos α_i
+//!
+//! An error of 5 % in mass or thrust makes less than 1 N of it in hover.
+
+use crate::math::{GRAVITY, PI, clamp};
+use crate::params::Params;
+
+/// Support that counts as resting, N.
+pub const RESTING_FORCE: f32 = 3.0;
+/// Support below which the vehicle no longer rests, N.
+const LEAVING_FORCE: f32 = 1.5;
+/// Support that is worth looking into by taking thrust away, N.
+pub const HINT_FORCE: f32 = 1.8;
+/// Time for which the support must last, s.
+pub const RESTING_TIME: f32 = 0.3;
+/// Share of the weight that counts as all of it: the rotors are stopped or idle.
+const GROUNDED_SHARE: f32 = 0.7;
+/// Time for which it must last, s.
+pub const GROUNDED_TIME: f32 = 0.5;
+/// Largest body rate at which the evidence counts, rad/s: tumbling is no rest.
+const RATE_MAX: f32 = 0.7;
+/// Cut-off of the support's low-pass filter, Hz.
+const CUTOFF: f32 = 5.0;
+/// Silence of the inertial sensor after which the evidence starts over, s.
+const SILENCE_MAX: f32 = 0.05;
+/// Time over which the sink rate forgets, s: what an accelerometer's bias may add up to.
+const SINK_MEMORY: f32 = 5.0;
+/// Largest sink rate believed, m/s.
+const SINK_MAX: f32 = 10.0;
+
+/// Time for which a condition has held without a break.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Held(f32);
+
+impl Held {
+    /// One step; returns the time, s, 0 while the condition does not hold.
+    pub(crate) fn step(&mut self, holds: bool, dt: f32) -> f32 {
+        self.0 = if holds { clamp(self.0 + dt, 0.0, 1e6) } else { 0.0 };
+        self.0
+    }
+
+    /// The time, s.
+    pub(crate) fn time(self) -> f32 {
+        self.0
+    }
+}
+
+/// What is felt in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Felt {
+    /// Specific force along body z, m/s²; -9.81 at rest.
+    pub specific_force_z: f32,
+    /// Acceleration along world down, m/s².
+    pub down: f32,
+    /// Size of the angular rate, rad/s.
+    pub rate: f32,
+    /// Thrust asked of the rotors along -z, N.
+    pub lift: f32,
+}
+
+/// The support filter.
+#[derive(Clone, Copy, Debug)]
+pub struct Support {
+    mass: f32,
+    motor_tau: f32,
+    lift: f32,
+    force: f32,
+    sink: f32,
+    pressed: Held,
+    unloaded: Held,
+    full: Held,
+    silent: Held,
+    resting: bool,
+}
+
+impl Support {
+    /// No evidence yet.
+    pub fn new(params: &Params) -> Self {
+        Self {
+            mass: params.mass,
+            motor_tau: params.motor_tau,
+            lift: 0.0,
+            force: 0.0,
+            sink: 0.0,
+            pressed: Held::default(),
+            unloaded: Held::default(),
+            full: Held::default(),
+            silent: Held::default(),
+            resting: false,
+        }
+    }
+
+    /// One step of `dt` s; `None` without a fresh inertial sample: after 50 ms the evidence starts over.
+    pub fn step(&mut self, felt: Option<Felt>, dt: f32) {
+        let felt = felt.filter(|f| {
+            f.specific_force_z.is_finite() && f.down.is_finite() && f.rate.is_finite() && f.lift.is_finite()
+        });
+        let silent = self.silent.step(felt.is_none(), dt) >= SILENCE_MAX;
+        let Some(felt) = felt else {
+            if silent {
+                (self.pressed, self.unloaded, self.full) = Default::default();
+                self.resting = false;
+            }
+            return;
+        };
+        self.lift += (felt.lift - self.lift) * dt / (dt + self.motor_tau);
+        let support = -self.mass * felt.specific_force_z - self.lift;
+        self.force += (support - self.force) * dt / (dt + 1.0 / (2.0 * PI * CUTOFF));
+        self.sink = clamp(self.sink + (felt.down - self.sink / SINK_MEMORY) * dt, -SINK_MAX, SINK_MAX);
+
+        let still = felt.rate < RATE_MAX;
+        let pressed = self.pressed.step(still && self.force > RESTING_FORCE, dt);
+        let unloaded = self.unloaded.step(self.force < LEAVING_FORCE, dt);
+        self.full.step(still && self.force > GROUNDED_SHARE * self.weight(), dt);
+        if pressed >= RESTING_TIME {
+            self.resting = true;
+        } else if unloaded >= RESTING_TIME {
+            self.resting = false;
+        }
+    }
+
+    /// Weight of the vehicle, N.
+    pub fn weight(&self) -> f32 {
+        self.mass * GRAVITY
+    }
+
+    /// Force that something other than the rotors carries, N, low-passed.
+    pub fn force(&self) -> f32 {
+        self.force
+    }
+
+    /// True from [`RESTING_TIME`] of more than [`RESTING_FORCE`] until as long of less than half of it.
+    pub fn resting(&self) -> bool {
+        self.resting
+    }
+
+    /// True when nearly all of the weight has been carried for [`GROUNDED_TIME`].
+    pub fn grounded(&self) -> bool {
+        self.full.time() >= GROUNDED_TIME
+    }
+
+    /// Sink rate, m/s, downwards positive: the sum of what the accelerometer felt over the last seconds. Good
+    /// for damping a descent, not for knowing its speed.
+    pub fn sink(&self) -> f32 {
+        self.sink
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(s: &mut Support, specific_force_z: f32, lift: f32, seconds: f32) {
+        for _ in 0..(seconds * 100.0) as u32 {
+            let down = GRAVITY + specific_force_z;
+            s.step(Some(Felt { specific_force_z, down, rate: 0.0, lift }), 0.01);
+        }
+    }
+
+    #[test]
+    fn free_air_gives_no_support_at_any_thrust() {
+        let p = Params::default();
+        let mut s = Support::new(&p);
+        for share in [0.0, 0.3, 0.6, 1.0] {
+            let lift = share * 4.0 * p.thrust_max;
+            run(&mut s, -lift / p.mass, lift, 2.0);
+            assert!(s.force().abs() < 0.05 && !s.resting() && !s.grounded(), "{share}: {}", s.force());
+        }
+    }
+
+    #[test]
+    fn the_pipe_carries_what_the_rotors_do_not() {
+        let p = Params::default();
+        let mut s = Support::new(&p);
+        run(&mut s, -GRAVITY, 10.0, 0.25);
+        assert!(!s.resting(), "too soon");
+        run(&mut s, -GRAVITY, 10.0, 2.0);
+        assert!((s.force() - 7.701).abs() < 0.01, "1.805 kg of 9.80665 m/s² less 10 N: {}", s.force());
+        assert!(s.resting() && !s.grounded());
+        run(&mut s, -GRAVITY, 0.0, 1.0);
+        assert!(s.grounded());
+        run(&mut s, -GRAVITY, 17.5, 1.0);
+        assert!(!s.resting(), "the rotors carry nearly all again");
+    }
+
+    #[test]
+    fn a_bump_a_tumble_and_a_silent_sensor_are_no_rest() {
+        let p = Params::default();
+        let mut s = Support::new(&p);
+        run(&mut s, -2.0 * GRAVITY, 17.7, 0.1);
+        run(&mut s, -GRAVITY, 17.7, 0.5);
+        assert!(!s.resting(), "a bump of 0.1 s");
+        for _ in 0..300 {
+            s.step(Some(Felt { specific_force_z: -GRAVITY, down: 0.0, rate: 2.0, lift: 5.0 }), 0.01);
+        }
+        assert!(!s.resting(), "turning");
+        run(&mut s, -GRAVITY, 5.0, 1.0);
+        assert!(s.resting());
+        s.step(None, 0.01);
+        assert!(s.resting(), "one late sample");
+        for _ in 0..5 {
+            s.step(None, 0.01);
+        }
+        assert!(!s.resting() && !s.grounded());
+        s.step(Some(Felt { specific_force_z: f32::NAN, down: 0.0, rate: 0.0, lift: 5.0 }), 0.01);
+        assert!(s.force().is_finite());
+    }
+
+    #[test]
+    fn the_sink_rate_follows_a_short_fall() {
+        let p = Params::default();
+        let mut s = Support::new(&p);
+        run(&mut s, -0.9 * GRAVITY, 0.9 * 17.7, 1.0);
+        assert!((s.sink() - 0.89).abs() < 0.03, "0.98 m/s less what is forgotten: {}", s.sink());
+    }
+}

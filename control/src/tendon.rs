@@ -1,0 +1,309 @@
+//! From a tendon's force to the pulse of the servo that winds it, and back to the force that it can give.
+//!
+//! The reel must take up what the arm's tilt gives away, h (α_ref - α), and then stretch the tendon by F/k.
+//! The tilt comes late and noisy from the arm's own sensor, and feeding it to the reel is a positive feedback
+//! (a tighter tendon bends the arm, which asks for more reel), so it is low-passed well below the arm's
+//! bending mode. What that lag hides is reported by the tension observer, which extrapolates over it.
+
+use crate::filter::LowPass;
+use crate::math;
+use crate::params::Params;
+
+/// Pulse width at the release position, µs; 50 µs above the usual 500 so that a trim can reach below.
+pub const RELEASE_US: f32 = 550.0;
+/// Pulse width at full travel (`servo_range` from release), µs.
+pub const FULL_US: f32 = 2450.0;
+/// Tilt at which the tendon of a servo at release is just taut, rad: 26°, beyond what flight reaches, so that
+/// a flying arm never pulls on it (built so; assumed).
+pub const REFERENCE_TILT: f32 = 0.45;
+/// Largest trim of a servo, µs.
+pub const TRIM_MAX_US: f32 = 50.0;
+/// Tension (N) that is reported at least until the servo is back at its release position.
+pub const RESIDUE: f32 = 0.5;
+
+/// Share of the stall torque that a servo is trusted to give: near stall it neither moves nor cools.
+const STALL_SHARE: f32 = 0.85;
+/// Share of the servo's speed that is asked of it, so that the commanded angle is the true one.
+const SLEW_SHARE: f32 = 0.9;
+/// Speed of paying out on release, rad/s: half the servo's, the arms spring back gently.
+const PAY_OUT: f32 = 3.0;
+/// Cut-off of each of the two low passes on the tilt, rad/s: a loop gain below 1 at the taut arm's mode
+/// (8 Hz, Q about 5) with the static gain k h² / (k h² + arm) of 0.7 to 0.85.
+const TILT_CUTOFF: f32 = 25.0;
+/// Age of the tilt when it is used, s: sensor 20 ms, task periods half of 10 and 20 ms, output frame 10 ms.
+const TILT_AGE: f32 = 0.045;
+/// Tilts beyond this are not an arm's, rad.
+const TILT_MAX: f32 = 2.5;
+
+/// Largest force that the clamp loop may ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceLimit {
+    /// Force along the tendon, N.
+    pub force: f32,
+    /// The servo cannot give the torque that the parameters allow (`servo_torque_max`): its stall torque
+    /// limits the force. To be reported at start-up.
+    pub capped_by_servo: bool,
+}
+
+impl ForceLimit {
+    /// The limit by the parameters.
+    pub fn from_params(p: &Params) -> Self {
+        let servo = STALL_SHARE * p.servo_stall;
+        let capped_by_servo = servo < p.servo_torque_max;
+        let torque = if capped_by_servo { servo } else { p.servo_torque_max };
+        Self { force: math::clamp(torque / p.reel_radius, 0.0, 1e4), capped_by_servo }
+    }
+}
+
+/// Reel, tendon and servo as the parameters describe them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reel {
+    radius: f32,
+    lever: f32,
+    stiffness: f32,
+    stall: f32,
+    slew: f32,
+    range: f32,
+    limit: ForceLimit,
+}
+
+impl Reel {
+    /// The parts that the parameters describe.
+    pub fn from_params(p: &Params) -> Self {
+        Self {
+            radius: p.reel_radius,
+            lever: p.tendon_lever,
+            stiffness: p.tendon_stiffness,
+            stall: p.servo_stall,
+            slew: p.servo_slew,
+            range: p.servo_range,
+            limit: ForceLimit::from_params(p),
+        }
+    }
+
+    /// Angle of the servo (rad from release) that gives the force `force` (N) at the tilt `tilt` (rad),
+    /// within its travel.
+    pub fn angle(&self, force: f32, tilt: f32) -> f32 {
+        let take_up = self.lever * (REFERENCE_TILT - tilt) + force / self.stiffness;
+        math::clamp(take_up / self.radius, 0.0, self.range)
+    }
+
+    /// Force (N, >= 0) of a tendon on a servo at `angle` (rad) with the arm at `tilt` (rad).
+    pub fn force(&self, angle: f32, tilt: f32) -> f32 {
+        let stretch = self.radius * angle - self.lever * (REFERENCE_TILT - tilt);
+        math::clamp(self.stiffness * stretch, 0.0, f32::MAX)
+    }
+
+    /// Pulse width (µs) for the servo at `angle` (rad) with a trim of `trim` µs.
+    pub fn pulse(&self, angle: f32, trim: f32) -> f32 {
+        let travel = math::clamp(angle / self.range, 0.0, 1.0);
+        RELEASE_US + (FULL_US - RELEASE_US) * travel + math::clamp(trim, -TRIM_MAX_US, TRIM_MAX_US)
+    }
+
+    /// Speed (rad/s) that the servo has against the force `force` (N).
+    fn speed(&self, force: f32) -> f32 {
+        let load = math::clamp(force * self.radius / self.stall, 0.0, 1.0);
+        SLEW_SHARE * self.slew * (1.0 - load)
+    }
+}
+
+/// What the drive of one tendon puts out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drive {
+    /// Pulse width, µs.
+    pub pulse_us: f32,
+    /// Tension that the servo can be giving now, N; 0 only once it is back at its release position.
+    pub tension: f32,
+    /// The servo was held because the tilt is missing.
+    pub held: bool,
+}
+
+/// The drive of one tendon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TendonDrive {
+    trim: f32,
+    angle: f32,
+    tilt: Option<(LowPass, LowPass)>,
+}
+
+impl TendonDrive {
+    /// A drive at its release position; `trim` in µs.
+    pub const fn new(trim: f32) -> Self {
+        Self { trim, angle: 0.0, tilt: None }
+    }
+
+    /// One step of `dt` s towards `force` N (0, or anything that is no number: pay out to the release
+    /// position) with the arm's measured tilt (rad).
+    ///
+    /// Without a tilt the servo is held where it is, unless it is to pay out, which needs none.
+    pub fn step(&mut self, reel: &Reel, force: f32, tilt: Option<f32>, dt: f32) -> Drive {
+        let dt = math::clamp(dt, 0.0, 0.2);
+        let force = math::clamp(force, 0.0, reel.limit.force);
+        let tilt = tilt.filter(|t| t.abs() <= TILT_MAX);
+        if let Some(tilt) = tilt {
+            let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
+            let once = first.step(tilt, TILT_CUTOFF, dt);
+            second.step(once, TILT_CUTOFF, dt);
+        }
+        let pays_out = force <= 0.0;
+        let held = !pays_out && tilt.is_none();
+        if pays_out {
+            self.angle = math::slew(self.angle, 0.0, PAY_OUT * dt);
+        } else if let Some((_, filtered)) = self.tilt.filter(|_| !held) {
+            let target = reel.angle(force, filtered.value());
+            let speed = if target > self.angle { reel.speed(self.tension(reel)) } else { reel.speed(0.0) };
+            self.angle = math::slew(self.angle, target, speed * dt);
+        }
+        self.output(reel, held)
+    }
+
+    /// The output without a step: for when there is no order at all.
+    pub fn hold(&self, reel: &Reel) -> Drive {
+        self.output(reel, true)
+    }
+
+    fn output(&self, reel: &Reel, held: bool) -> Drive {
+        let wound = self.angle > 1e-3;
+        let tension = self.tension(reel);
+        Drive {
+            pulse_us: reel.pulse(self.angle, self.trim),
+            tension: if wound { math::clamp(tension, RESIDUE, f32::MAX) } else { 0.0 },
+            held,
+        }
+    }
+
+    /// Tension at the present tilt: the filtered one extrapolated over its lag and age, exact for a tilt
+    /// that moves evenly. The first filter leads the second by one lag.
+    fn tension(&self, reel: &Reel) -> f32 {
+        self.tilt.map_or(0.0, |(first, second)| {
+            let per_lag = first.value() - second.value();
+            let now = second.value() + per_lag * (2.0 + TILT_AGE * TILT_CUTOFF);
+            reel.force(self.angle, math::clamp_abs(now, TILT_MAX))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn params() -> Params {
+        Params {
+            reel_radius: 0.015,
+            tendon_lever: 0.025,
+            tendon_stiffness: 8000.0,
+            servo_range: 4.71,
+            servo_slew: 6.16,
+            servo_stall: 3.432,
+            servo_torque_max: 2.452,
+            ..Params::default()
+        }
+    }
+
+    fn close(a: f32, b: f32, tolerance: f32) -> bool {
+        (a - b).abs() <= tolerance
+    }
+
+    #[test]
+    fn the_reel_by_hand() {
+        let reel = Reel::from_params(&params());
+        // 0.025·(0.45 + 1.0) = 36.25 mm, 80 N stretch 10 mm: 46.25 mm on 15 mm is 3.0833 rad.
+        assert!(close(reel.angle(80.0, -1.0), 3.083_3, 1e-4));
+        assert!(close(reel.force(3.083_333, -1.0), 80.0, 0.01));
+        // 3.0833/4.71 of 1900 µs above 550 µs.
+        assert!(close(reel.pulse(3.083_333, 0.0), 1793.8, 0.1));
+        assert!(close(reel.pulse(0.0, -20.0), 530.0, 1e-3));
+        // A drooping arm is slack, and so is one in flight up to the reference.
+        assert!(reel.force(0.0, -0.46) == 0.0 && reel.force(0.0, 0.44) == 0.0);
+        assert!(reel.force(0.0, 0.46) > 0.0);
+        // Never beyond the travel.
+        assert!(close(reel.angle(160.0, -2.5), 4.71, 1e-6));
+    }
+
+    #[test]
+    fn a_weak_servo_caps_the_force_and_says_so() {
+        let paper = ForceLimit::from_params(&params());
+        assert!(!paper.capped_by_servo && close(paper.force, 2.452 / 0.015, 1e-3));
+        // 0.85·0.922 N·m on 15 mm.
+        let weak = ForceLimit::from_params(&Params { servo_stall: 0.922, ..params() });
+        assert!(weak.capped_by_servo && close(weak.force, 52.25, 0.01));
+    }
+
+    #[test]
+    fn the_drive_settles_on_the_force_within_the_servo_s_speed() {
+        let reel = Reel::from_params(&params());
+        let mut drive = TendonDrive::new(0.0);
+        let mut last = drive.hold(&reel).pulse_us;
+        let per_rad = (FULL_US - RELEASE_US) / 4.71;
+        let mut output = Drive::default();
+        for _ in 0..100 {
+            output = drive.step(&reel, 60.0, Some(-0.8), 0.02);
+            assert!((output.pulse_us - last).abs() <= 6.16 * 0.02 * per_rad + 1e-2);
+            last = output.pulse_us;
+        }
+        assert!(close(output.tension, 60.0, 0.1) && !output.held);
+        // 25 mm·1.25 + 7.5 mm = 38.75 mm: 2.5833 rad.
+        assert!(close(output.pulse_us, 550.0 + 2.583_3 * per_rad, 0.1));
+    }
+
+    #[test]
+    fn the_observer_sees_through_the_lag_of_a_moving_arm() {
+        let reel = Reel::from_params(&params());
+        let mut drive = TendonDrive::new(0.0);
+        let mut output = Drive::default();
+        for i in 0..100 {
+            // The arm falls at 0.5 rad/s; the sensor shows where it was 45 ms before.
+            let now = -0.2 - 0.5 * 0.02 * i as f32;
+            output = drive.step(&reel, 60.0, Some(now + 0.5 * TILT_AGE), 0.02);
+        }
+        // Lag 2/25 s and age 0.045 s at 0.5 rad/s on 8000 N/m · 0.025 m hide 12.5 N.
+        assert!(close(output.tension, 47.5, 0.5), "{}", output.tension);
+    }
+
+    #[test]
+    fn a_missing_tilt_holds_and_paying_out_needs_none() {
+        let reel = Reel::from_params(&params());
+        let mut drive = TendonDrive::new(0.0);
+        for _ in 0..100 {
+            drive.step(&reel, 60.0, Some(-0.8), 0.02);
+        }
+        let before = drive.hold(&reel).pulse_us;
+        let output = drive.step(&reel, 90.0, None, 0.02);
+        assert!(output.held && output.pulse_us == before);
+        let mut time = 0.0;
+        let mut output = drive.step(&reel, 0.0, None, 0.02);
+        while output.tension > 0.0 {
+            assert!(time < 5.0);
+            time += 0.02;
+            output = drive.step(&reel, 0.0, None, 0.02);
+        }
+        // 2.58 rad at 3 rad/s.
+        assert!(close(time, 0.86, 0.04) && close(output.pulse_us, RELEASE_US, 1.0) && !output.held);
+    }
+
+    proptest! {
+        #[test]
+        fn angle_and_force_undo_each_other(force in 0.0f32..160.0, tilt in -1.5f32..0.3) {
+            let reel = Reel::from_params(&params());
+            prop_assert!(close(reel.force(reel.angle(force, tilt), tilt), force, 0.05));
+        }
+
+        #[test]
+        fn no_input_makes_the_output_bad(
+            inputs in proptest::collection::vec(
+                (proptest::num::f32::ANY, proptest::option::of(proptest::num::f32::ANY), proptest::num::f32::ANY),
+                1..40,
+            ),
+        ) {
+            let reel = Reel::from_params(&params());
+            let mut drive = TendonDrive::new(0.0);
+            for (force, tilt, dt) in inputs {
+                let output = drive.step(&reel, force, tilt, dt);
+                prop_assert!(output.pulse_us >= RELEASE_US && output.pulse_us <= FULL_US);
+                prop_assert!(output.tension >= 0.0 && output.tension.is_finite());
+            }
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Motor command for a thrust, with the battery's voltage taken into account.
+
+use crate::math;
+use crate::params::Params;
+
+/// T / T_max = (V/V0)² (q u² + (1 - q) u): thrust of the command u at the voltage V.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrustCurve {
+    max: f32,
+    quadratic: f32,
+    linear: f32,
+    least_ratio: f32,
+}
+
+impl ThrustCurve {
+    /// The curve that the parameters describe.
+    pub fn from_params(p: &Params) -> Self {
+        let quadratic = math::clamp(p.thrust_curve, 0.0, 1.0);
+        Self { max: p.thrust_max, quadratic, linear: 1.0 - quadratic, least_ratio: 0.5 }
+    }
+
+    /// Command 0..1 for the thrust `thrust` (N) at the voltage ratio `ratio` (V/V0). 0 for no thrust.
+    pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
+        let ratio = math::clamp(ratio, self.least_ratio, 1.5);
+        let share = math::clamp(thrust / (self.max * ratio * ratio), 0.0, 1.0);
+        // The root of q u² + (1 - q) u = share in the form that also holds for q = 0.
+        let root = math::sqrt(self.linear * self.linear + 4.0 * self.quadratic * share);
+        let sum = self.linear + root;
+        if sum > 0.0 { math::clamp(2.0 * share / sum, 0.0, 1.0) } else { 0.0 }
+    }
+
+    /// Thrust (N) of the command `command` at the voltage ratio `ratio`.
+    pub fn thrust(&self, command: f32, ratio: f32) -> f32 {
+        let u = math::clamp(command, 0.0, 1.0);
+        self.max * ratio * ratio * (self.quadratic * u + self.linear) * u
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn full_command_is_full_thrust_and_none_is_none() {
+        let c = ThrustCurve::from_params(&Params::default());
+        assert!((c.command(8.3, 1.0) - 1.0).abs() < 1e-6 && c.command(0.0, 1.0) == 0.0);
+        // By hand: q 0.75, share 0.5: 0.75 u² + 0.25 u = 0.5 gives u = 0.66667.
+        assert!((c.command(4.15, 1.0) - 2.0 / 3.0).abs() < 1e-5);
+        assert!(c.command(f32::NAN, 1.0) == 0.0 && c.command(4.0, f32::NAN).is_finite());
+    }
+
+    proptest! {
+        #[test]
+        fn command_undoes_thrust(q in 0.0f32..1.0, u in 0.0f32..1.0, ratio in 0.7f32..1.2) {
+            let c = ThrustCurve::from_params(&Params { thrust_curve: q, ..Params::default() });
+            prop_assert!((c.command(c.thrust(u, ratio), ratio) - u).abs() < 1e-3);
+        }
+
+        #[test]
+        fn more_thrust_needs_more_command(t in 0.0f32..8.0, more in 0.01f32..0.3, ratio in 0.8f32..1.2) {
+            let c = ThrustCurve::from_params(&Params::default());
+            prop_assert!(c.command(t + more, ratio) >= c.command(t, ratio));
+            prop_assert!(c.command(t, ratio) >= c.command(t, ratio + 0.1));
+        }
+    }
+}

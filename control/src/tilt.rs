@@ -1,0 +1,172 @@
+//! Where each arm is: Eq. 1 about the low-passed thrust, plus a slow bias that the arm's own sensor finds.
+//!
+//! The sensor does not give the angle itself: its noise and latency in the allocation cost more than they
+//! bring. It only moves the bias, which takes up what the model does not know of this very arm.
+
+use core::f32::consts::TAU;
+
+use crate::deflection::{ArmModel, VALID_TILT};
+use crate::filter::LowPass;
+use crate::math;
+use crate::params::Params;
+use crate::wrench::PerArm;
+
+/// Time by which arm and sensor lag behind the thrust, on top of the motor's lag, s (assumed).
+const ARM_LAG: f32 = 0.05;
+/// Thrust below which the bias does not learn, N: on the ground the tips may be resting on something.
+const LEARN_THRUST: f32 = 2.2;
+
+/// Tilt of one arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Arm {
+    thrust: LowPass,
+    lagged: LowPass,
+    bias: f32,
+    tilt: f32,
+}
+
+/// Tilt of the four arms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TiltModel {
+    model: ArmModel,
+    cutoff: f32,
+    lag_rate: f32,
+    bias_gain: f32,
+    bias_max: f32,
+    arms: PerArm<Arm>,
+    fault: bool,
+}
+
+impl TiltModel {
+    /// Arms at rest with idle rotors and no known bias.
+    pub fn new(p: &Params) -> Self {
+        let model = ArmModel::from_params(p);
+        let thrust = p.thrust_idle;
+        let arm = Arm {
+            thrust: LowPass::at(thrust),
+            lagged: LowPass::at(thrust),
+            bias: 0.0,
+            tilt: model.angle(thrust),
+        };
+        Self {
+            model,
+            cutoff: TAU * p.tilt_cutoff,
+            lag_rate: 1.0 / (p.motor_tau + ARM_LAG),
+            bias_gain: p.tilt_bias_gain,
+            bias_max: p.tilt_bias_max,
+            arms: [arm; 4],
+            fault: false,
+        }
+    }
+
+    /// One step of `dt` s with the thrusts (N) commanded last.
+    pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
+        let (model, cutoff, lag_rate) = (self.model, self.cutoff, self.lag_rate);
+        let mut fault = false;
+        for (arm, thrust) in self.arms.iter_mut().zip(commanded) {
+            let thrust = arm.thrust.step(*thrust, cutoff, dt);
+            arm.lagged.step(thrust, lag_rate, dt);
+            let tilt = model.angle(thrust) + arm.bias;
+            // Outside the static model's range the last valid value is held: no jump, and a fault says so.
+            if (-VALID_TILT..=VALID_TILT).contains(&tilt) {
+                arm.tilt = tilt;
+            } else if thrust > LEARN_THRUST {
+                fault = true;
+            }
+        }
+        self.fault = fault;
+    }
+
+    /// Takes the tilts (rad) that the arms' sensors measured, at 100 Hz, while the arms hang free in the air.
+    pub fn correct(&mut self, measured: &PerArm<Option<f32>>) {
+        let (model, gain, limit) = (self.model, self.bias_gain, self.bias_max);
+        for (arm, measured) in self.arms.iter_mut().zip(measured) {
+            let Some(measured) = measured.filter(|m| m.is_finite()) else { continue };
+            if arm.lagged.value() > LEARN_THRUST {
+                let expected = model.angle(arm.lagged.value()) + arm.bias;
+                arm.bias = math::clamp_abs(arm.bias + gain * (measured - expected), limit);
+            }
+        }
+    }
+
+    /// The static model.
+    pub const fn model(&self) -> &ArmModel {
+        &self.model
+    }
+
+    /// Low-passed thrust of each rotor, N.
+    pub fn thrusts(&self) -> PerArm<f32> {
+        self.arms.map(|a| a.thrust.value())
+    }
+
+    /// Tilt of each arm, rad.
+    pub fn tilt(&self) -> PerArm<f32> {
+        self.arms.map(|a| a.tilt)
+    }
+
+    /// Bias of each arm against the model, rad.
+    pub fn bias(&self) -> PerArm<f32> {
+        self.arms.map(|a| a.bias)
+    }
+
+    /// A flying arm is outside the model's range of validity, and its last valid tilt is held.
+    pub const fn fault(&self) -> bool {
+        self.fault
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(thrust: f32) -> TiltModel {
+        let mut t = TiltModel::new(&Params::default());
+        for _ in 0..3000 {
+            t.step(&[thrust; 4], 1e-3);
+        }
+        t
+    }
+
+    #[test]
+    fn it_settles_on_equation_1() {
+        let t = settled(5.0);
+        assert!((t.tilt()[2] - t.model().angle(5.0)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn the_bias_takes_up_an_arm_that_hangs_three_degrees_lower() {
+        let mut t = settled(4.4);
+        let truth = t.model().angle(4.4) - math::deg(3.0);
+        for _ in 0..300 {
+            t.correct(&[Some(truth), None, Some(f32::NAN), Some(truth)]);
+            t.step(&[4.4; 4], 1e-2);
+        }
+        let tilt = t.tilt();
+        assert!((tilt[0] - truth).abs() < 2e-3 && (tilt[3] - truth).abs() < 2e-3);
+        assert!(t.bias()[1].abs() < 1e-9 && t.bias()[2].abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_arm_beyond_40_degrees_is_held_and_reported() {
+        let p = Params { infill: 4.0, gain_k: 10.0, thrust_max: 5.0, ..Params::default() };
+        let mut t = TiltModel::new(&p);
+        let mut last = t.tilt()[0];
+        for i in 0..6000 {
+            t.step(&[i as f32 * 2e-3; 4], 1e-3);
+            assert!((t.tilt()[0] - last).abs() < 0.01 && t.tilt()[0].abs() <= VALID_TILT);
+            last = t.tilt()[0];
+        }
+        let mut soft = TiltModel { model: ArmModel { offset: 0.0, linear: 0.2, quadratic: 0.0 }, ..t };
+        for _ in 0..3000 {
+            soft.step(&[8.0; 4], 1e-3);
+        }
+        assert!(soft.fault());
+    }
+
+    #[test]
+    fn nothing_is_learnt_on_the_ground() {
+        let mut t = settled(0.25);
+        t.correct(&[Some(0.1); 4]);
+        assert!(t.bias() == [0.0; 4]);
+    }
+}

@@ -1,0 +1,225 @@
+//! Equations of motion of the body with four hinged tip masses.
+//!
+//! A tip slides freely along its normal n and is held otherwise, so it adds m (1 - n nᵀ) to the body's inertia
+//! and hands the generalised force on its hinge on to the body as -Q/L along n. What is left is a
+//! 6×6 system for the body, solved by its 3×3 blocks; the tilts' accelerations follow one by one.
+
+use glam::{DMat3, DVec3};
+
+use super::arm::{Arm, TIP_MASS};
+use super::contact::{ARM_LENGTH, ARM_X, HINGE_Z, Pose};
+
+/// Mass of the vehicle, kg (paper, Table II).
+pub const MASS: f64 = 1.805;
+/// Moments of inertia of the whole vehicle with level arms, kg·m² (assumed, 30 %).
+pub const INERTIA: DVec3 = DVec3::new(0.021, 0.044, 0.063);
+
+/// State of the body.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyState {
+    /// Position, attitude and motion.
+    pub pose: Pose,
+}
+
+/// Accelerations of one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Accelerations {
+    /// Of the body's origin, m/s², body axes.
+    pub linear: DVec3,
+    /// Angular, rad/s², body.
+    pub angular: DVec3,
+    /// Of each arm's tilt, rad/s².
+    pub arms: [f64; 4],
+}
+
+/// The rigid part of the vehicle.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    coupled: bool,
+    mass: f64,
+    centre: DVec3,
+    inertia: DMat3,
+    inverse: DMat3,
+}
+
+impl Body {
+    /// The body; `coupled` gives the arms their tip masses, otherwise all mass is the body's.
+    ///
+    /// Its centre of mass lies where the whole vehicle's comes to the origin with level arms.
+    #[must_use]
+    pub fn new(coupled: bool) -> Self {
+        let (mass, centre, inertia) = if coupled {
+            let mass = MASS - 4.0 * TIP_MASS;
+            let (x2, y2, z2) = (ARM_X * ARM_X, ARM_LENGTH * ARM_LENGTH, HINGE_Z * HINGE_Z);
+            let tips = DVec3::new(y2 + z2, x2 + z2, x2 + y2) * (4.0 * TIP_MASS);
+            (mass, DVec3::new(0.0, 0.0, -4.0 * TIP_MASS * HINGE_Z / mass), INERTIA - tips)
+        } else {
+            (MASS, DVec3::ZERO, INERTIA)
+        };
+        let inertia = DMat3::from_diagonal(inertia);
+        Self { coupled, mass, centre, inertia, inverse: inertia.inverse() }
+    }
+
+    /// Accelerations under a force (N) and moment (N·m) from outside at the origin, body axes, without
+    /// gravity and thrusts, which come from `gravity` (m/s², body) and the loaded `arms`.
+    #[must_use]
+    pub fn accelerate(
+        &self,
+        pose: &Pose,
+        force: DVec3,
+        moment: DVec3,
+        gravity: DVec3,
+        arms: [&Arm; 4],
+    ) -> Accelerations {
+        let w = pose.omega;
+        let inertia_tip = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
+        let mut force = force + self.mass * (gravity - w.cross(w.cross(self.centre)));
+        let mut moment = moment + self.mass * self.centre.cross(gravity) - w.cross(self.inertia * w);
+        if !self.coupled {
+            for arm in arms {
+                let thrust = arm.normal() * arm.thrust;
+                force += thrust;
+                moment += arm.tip().cross(thrust);
+            }
+            return Accelerations {
+                linear: force / self.mass,
+                angular: self.inverse * moment,
+                arms: arms.map(|arm| arm.generalised / inertia_tip),
+            };
+        }
+
+        let centre = skew(self.centre) * self.mass;
+        let mut a = DMat3::from_diagonal(DVec3::splat(self.mass));
+        let mut coupling = centre * -1.0;
+        let mut j = self.inertia;
+        for arm in arms {
+            let (r, n, p) = (arm.tip(), arm.normal(), arm.constrained() * TIP_MASS);
+            let pr = p * skew(r);
+            a += p;
+            coupling -= pr;
+            j -= skew(r) * pr;
+            // Thrust and weight of the tip, less what accelerates the tip along its free direction.
+            let free = arm.generalised / ARM_LENGTH;
+            let f = n * (arm.thrust - free) + gravity * TIP_MASS - p * arm.bias_acceleration(w);
+            force += f;
+            moment += r.cross(f);
+        }
+        let a_inverse = a.inverse();
+        let through = coupling.transpose() * a_inverse;
+        let angular = (j - through * coupling).inverse() * (moment - through * force);
+        let linear = a_inverse * (force - coupling * angular);
+        let tilt = |arm: &Arm| {
+            let carried = linear + angular.cross(arm.tip()) + arm.bias_acceleration(w);
+            arm.generalised / inertia_tip - arm.normal().dot(carried) / ARM_LENGTH
+        };
+        Accelerations { linear, angular, arms: arms.map(tilt) }
+    }
+}
+
+/// The matrix of the cross product with `v`.
+fn skew(v: DVec3) -> DMat3 {
+    DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DQuat;
+
+    use super::super::arm::ArmSpec;
+    use super::super::{GRAVITY, STEP};
+    use super::*;
+
+    fn arms() -> [Arm; 4] {
+        std::array::from_fn(|i| Arm::new(i, ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15)))
+    }
+
+    fn pose() -> Pose {
+        Pose {
+            position: DVec3::ZERO,
+            attitude: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+            omega: DVec3::ZERO,
+        }
+    }
+
+    /// Steps a free vehicle; returns the time series of momentum about the world origin.
+    fn fly(thrust: f64, moment: DVec3, seconds: f64, omega: DVec3) -> (Pose, [Arm; 4], DVec3) {
+        let body = Body::new(true);
+        let (mut pose, mut arms) = (pose(), arms());
+        pose.omega = omega;
+        let gravity = DVec3::new(0.0, 0.0, GRAVITY);
+        for _ in 0..(seconds / STEP) as usize {
+            let g = pose.to_body(gravity);
+            for arm in &mut arms {
+                arm.load(thrust, 0.0, g, true);
+            }
+            let acc = body.accelerate(&pose, DVec3::ZERO, moment, g, arms.each_ref());
+            for (arm, a) in arms.iter_mut().zip(acc.arms) {
+                arm.integrate(STEP, a);
+            }
+            pose.velocity += pose.attitude * acc.linear * STEP;
+            pose.omega += acc.angular * STEP;
+            pose.position += pose.velocity * STEP;
+            let h = pose.omega * (0.5 * STEP);
+            pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
+        }
+        // Angular momentum about the origin, body axes: rigid part and tips.
+        let mut momentum = body.inertia * pose.omega
+            + body.mass * body.centre.cross(pose.attitude.conjugate() * pose.velocity);
+        for arm in &arms {
+            let v = pose.attitude.conjugate() * pose.velocity
+                + pose.omega.cross(arm.tip())
+                + arm.normal() * (ARM_LENGTH * arm.rate);
+            momentum += TIP_MASS * arm.tip().cross(v);
+        }
+        (pose, arms, pose.attitude * momentum)
+    }
+
+    #[test]
+    fn hover_thrust_hovers_with_arms_at_the_static_tilt() {
+        let (pose, arms, _) = fly(MASS * GRAVITY / 4.0 / 0.99978, DVec3::ZERO, 6.0, DVec3::ZERO);
+        let spec = ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15);
+        let expected = spec.static_tilt(MASS * GRAVITY / 4.0);
+        for arm in &arms {
+            assert!((arm.tilt - expected).abs() < 1e-4, "{} {expected}", arm.tilt);
+        }
+        // Falls while the arms come up from their droop, then keeps its speed.
+        assert!(pose.velocity.x.abs() < 1e-9 && pose.velocity.y.abs() < 1e-9);
+        assert!(pose.omega.length() < 1e-9);
+    }
+
+    #[test]
+    fn free_fall_turns_no_arm_and_keeps_angular_momentum() {
+        // Spinning without thrust: gravity alone makes no angular momentum about the centre of mass.
+        let (_, _, start) = fly(0.0, DVec3::ZERO, 0.0, DVec3::new(1.0, 0.5, -0.7));
+        let body = Body::new(true);
+        let omega = DVec3::new(1.0, 0.5, -0.7);
+        let (pose, arms, end) = fly(0.0, DVec3::ZERO, 0.4, omega);
+        // About the centre of mass: take off the centre's own momentum.
+        let centre = |pose: &Pose, arms: &[Arm; 4]| {
+            let mut c = body.mass * body.centre;
+            let mut p = body.mass
+                * (pose.attitude.conjugate() * pose.velocity + pose.omega.cross(body.centre));
+            for arm in arms {
+                c += TIP_MASS * arm.tip();
+                p += TIP_MASS
+                    * (pose.attitude.conjugate() * pose.velocity
+                        + pose.omega.cross(arm.tip())
+                        + arm.normal() * (ARM_LENGTH * arm.rate));
+            }
+            pose.attitude * (c / MASS).cross(p)
+        };
+        let mut initial = super::tests::pose();
+        initial.omega = omega;
+        let about_start = start - centre(&initial, &super::tests::arms());
+        let about_end = end - centre(&pose, &arms);
+        assert!((about_end - about_start).length() < 2e-3 * about_start.length(), "{about_start} {about_end}");
+    }
+
+    #[test]
+    fn a_slow_roll_moment_meets_the_whole_inertia() {
+        // The arms' inertia is felt in full once they are carried along: steady acceleration M / I.
+        let (pose, _, _) = fly(4.425, DVec3::new(0.0, 0.0, 0.0063), 3.0, DVec3::ZERO);
+        assert!((pose.omega.z / 0.3 - 1.0).abs() < 0.02, "{}", pose.omega.z);
+    }
+}

@@ -1,0 +1,340 @@
+//! What the vehicle feels where it touches the ground or the pipe.
+//!
+//! Points in body axes (FRD, origin at the centre of mass) with a spring and damper along the surface's
+//! normal, which never pull, and a bristle along it that sticks until Coulomb's limit and slides beyond.
+//! Every load comes as generalised forces: on the body (force and moment about its centre of mass, body axes)
+//! and on the tilt α of the arm. Stiffnesses are those of soft printed parts (assumed); all are stable with
+//! semi-implicit steps of 0.25 ms.
+
+use glam::{DQuat, DVec2, DVec3};
+use sophie_control::wrench::{FORE, SIDE};
+
+/// Height of the belly pads under the centre of mass, m, body z (assumed).
+pub const BELLY_Z: f64 = 0.04;
+/// Height of the arms' underside at its root, m, body z: the belly pads stand 5 mm proud (assumed), about what
+/// they sink beside the crown of a pipe.
+pub const UNDERSIDE_Z: f64 = 0.035;
+/// Height of the arms' neutral line at the hinge, m, body z (assumed).
+pub const HINGE_Z: f64 = 0.02;
+/// Length of an arm from the centre line to the rotor, m.
+pub const ARM_LENGTH: f64 = 0.178;
+/// Distance of the arms from the centre of mass along body x, m.
+pub const ARM_X: f64 = 0.178;
+/// Where the skin is felt, m along the arm from its root; the pressure sensor sits at the last.
+pub const STATIONS: [f64; 3] = [0.06, 0.11, 0.16];
+/// Width and length of the skin that a station stands for, m.
+const STATION_SIZE: (f64, f64) = (0.03, 0.05);
+/// Pressure per depth of the arms' skin, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
+pub const SKIN_STIFFNESS: f64 = 5.0e5;
+
+/// Position, attitude and motion of the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Centre of mass, NED, m.
+    pub position: DVec3,
+    /// Body to world.
+    pub attitude: DQuat,
+    /// Velocity of the centre of mass, NED, m/s.
+    pub velocity: DVec3,
+    /// Angular rate, body, rad/s.
+    pub omega: DVec3,
+}
+
+impl Pose {
+    /// World position of the body point `r`.
+    pub fn point(&self, r: DVec3) -> DVec3 {
+        self.position + self.attitude * r
+    }
+
+    /// World velocity of the body point `r` that itself moves at `relative` in body axes.
+    pub fn point_velocity(&self, r: DVec3, relative: DVec3) -> DVec3 {
+        self.velocity + self.attitude * (self.omega.cross(r) + relative)
+    }
+
+    /// A world vector in body axes.
+    pub fn to_body(&self, world: DVec3) -> DVec3 {
+        self.attitude.conjugate() * world
+    }
+}
+
+/// A straight pipe that runs north-south.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pipe {
+    /// Middle of the pipe, north, m.
+    pub north: f64,
+    /// Half of its length, m; may be infinite.
+    pub half_length: f64,
+    /// Axis, east, m.
+    pub east: f64,
+    /// Axis, down, m (negative above the ground).
+    pub down: f64,
+    /// Outer radius, m.
+    pub radius: f64,
+    /// Coefficient of friction.
+    pub friction: f64,
+}
+
+/// Something to touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface {
+    /// The plane z = 0 with this coefficient of friction.
+    Ground(f64),
+    /// A pipe.
+    Pipe(Pipe),
+}
+
+impl Surface {
+    /// Depth of `point` (m, NED) and the outward normal there; `None` outside.
+    fn probe(&self, point: DVec3) -> Option<(f64, DVec3)> {
+        match self {
+            Self::Ground(_) => (point.z > 0.0).then_some((point.z, DVec3::NEG_Z)),
+            Self::Pipe(p) => {
+                let across = DVec2::new(point.y - p.east, point.z - p.down);
+                let distance = across.length();
+                let depth = p.radius - distance;
+                if depth <= 0.0 || (point.x - p.north).abs() > p.half_length {
+                    return None;
+                }
+                let n = if distance > 1e-6 { across / distance } else { DVec2::new(0.0, -1.0) };
+                Some((depth, DVec3::new(0.0, n.x, n.y)))
+            }
+        }
+    }
+
+    fn friction(&self) -> f64 {
+        match self {
+            Self::Ground(friction) => *friction,
+            Self::Pipe(pipe) => pipe.friction,
+        }
+    }
+}
+
+/// Springs and dampers of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pad {
+    /// Along the normal, N/m.
+    pub stiffness: f64,
+    /// Along the normal, N·s/m, reached 1 mm deep so that a touch does not jerk.
+    pub damping: f64,
+    /// Of the bristle along the surface, N/m.
+    pub bristle: f64,
+    /// Of the bristle, N·s/m.
+    pub bristle_damping: f64,
+}
+
+/// A quarter of the vehicle on each belly pad: 15 Hz, damping ratio 0.5.
+const BELLY: Pad = Pad { stiffness: 4.0e3, damping: 42.0, bristle: 4.0e3, bristle_damping: 42.0 };
+/// One station of the skin.
+const SKIN: Pad = Pad {
+    stiffness: SKIN_STIFFNESS * STATION_SIZE.0 * STATION_SIZE.1,
+    damping: 8.0,
+    bristle: 400.0,
+    bristle_damping: 4.0,
+};
+/// An arm's tip of 77 g: 22 Hz, damping ratio 0.5; it glides.
+const TIP: Pad = Pad { stiffness: 1.5e3, damping: 10.0, bristle: 0.0, bristle_damping: 0.0 };
+
+/// What a point feels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Touch {
+    /// Force on the vehicle, N, NED.
+    pub force: DVec3,
+    /// Its part along the normal, N.
+    pub normal: f64,
+    /// Depth, m.
+    pub depth: f64,
+}
+
+/// The state of one point that can touch: the deflection of its bristle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactPoint {
+    bristle: DVec3,
+}
+
+impl ContactPoint {
+    /// Advances by `dt` s with the point at `position` and `velocity` (NED, m, m/s).
+    pub fn force(
+        &mut self,
+        dt: f64,
+        pad: &Pad,
+        position: DVec3,
+        velocity: DVec3,
+        surface: &Surface,
+    ) -> Touch {
+        let Some((depth, n)) = surface.probe(position) else {
+            self.bristle = DVec3::ZERO;
+            return Touch::default();
+        };
+        let along = velocity.dot(n);
+        let damping = pad.damping * (depth / 1e-3).min(1.0);
+        let normal = (pad.stiffness * depth - damping * along).max(0.0);
+
+        let slip = velocity - n * along;
+        let mut deflection = self.bristle + slip * dt;
+        deflection -= n * deflection.dot(n);
+        let limit = surface.friction() * normal;
+        let mut tangential = -(deflection * pad.bristle + slip * pad.bristle_damping);
+        if tangential.length() > limit {
+            tangential *= limit / tangential.length();
+            // A sliding bristle stays bent by what the friction can hold.
+            if deflection.length() * pad.bristle > limit {
+                deflection *= limit / (deflection.length() * pad.bristle);
+            }
+        }
+        self.bristle = deflection;
+        Touch { force: n * normal + tangential, normal, depth }
+    }
+}
+
+/// Load on the body alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyLoad {
+    /// Force, N, body.
+    pub force_body: DVec3,
+    /// Moment about the centre of mass, N·m, body.
+    pub moment_body: DVec3,
+    /// Sum of the normal forces, N.
+    pub normal: f64,
+}
+
+/// Load of an arm's contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SkinLoad {
+    /// Force on the vehicle, N, body.
+    pub force_body: DVec3,
+    /// Its moment about the centre of mass, N·m, body.
+    pub moment_body: DVec3,
+    /// Generalised moment on the arm's tilt, N·m: force times ∂r/∂α.
+    pub moment_alpha: f64,
+    /// Pressure at the sensor, Pa.
+    pub pressure: f64,
+}
+
+/// The four belly pads against one surface.
+#[derive(Clone, Debug, Default)]
+pub struct Belly {
+    points: [ContactPoint; 4],
+}
+
+impl Belly {
+    /// Body positions of the pads, m.
+    const PADS: [DVec3; 4] = [
+        DVec3::new(0.10, -0.03, BELLY_Z),
+        DVec3::new(-0.10, -0.03, BELLY_Z),
+        DVec3::new(0.10, 0.03, BELLY_Z),
+        DVec3::new(-0.10, 0.03, BELLY_Z),
+    ];
+
+    /// Advances by `dt` s.
+    pub fn step(&mut self, dt: f64, pose: &Pose, surface: &Surface) -> BodyLoad {
+        let mut load = BodyLoad::default();
+        for (point, r) in self.points.iter_mut().zip(Self::PADS) {
+            let velocity = pose.point_velocity(r, DVec3::ZERO);
+            let touch = point.force(dt, &BELLY, pose.point(r), velocity, surface);
+            let force = pose.to_body(touch.force);
+            load.force_body += force;
+            load.moment_body += r.cross(force);
+            load.normal += touch.normal;
+        }
+        load
+    }
+}
+
+/// The underside of one arm against the pipe.
+#[derive(Clone, Debug)]
+pub struct ArmSkin {
+    side: f64,
+    x: f64,
+    stations: [ContactPoint; 3],
+}
+
+impl ArmSkin {
+    /// The skin of arm `arm`, 0 to 3.
+    ///
+    /// # Panics
+    /// Beyond 3.
+    pub fn new(arm: usize) -> Self {
+        Self {
+            side: -f64::from(SIDE[arm]),
+            x: ARM_X * f64::from(FORE[arm]),
+            stations: Default::default(),
+        }
+    }
+
+    /// Body position (m) of the point `s` m along the underside at tilt `alpha` rad, and its derivative by α
+    /// (m/rad).
+    ///
+    /// The underside is an arc of constant curvature, level at its root, at α at its end.
+    pub fn point(&self, alpha: f64, s: f64) -> (DVec3, DVec3) {
+        let u = alpha * s / ARM_LENGTH;
+        let (y, z, dy, dz) = if u.abs() < 1e-3 {
+            // Series of the expressions below, which lose their digits near a straight arm.
+            let q = s * s / ARM_LENGTH;
+            (s * (1.0 - u * u / 6.0), 0.5 * s * u, -q * u / 3.0, q * (0.5 - u * u / 8.0))
+        } else {
+            let (sin, cos) = u.sin_cos();
+            let radius = ARM_LENGTH / alpha;
+            (
+                radius * sin,
+                radius * (1.0 - cos),
+                (s * cos - radius * sin) / alpha,
+                (s * sin - radius * (1.0 - cos)) / alpha,
+            )
+        };
+        (DVec3::new(self.x, self.side * y, UNDERSIDE_Z - z), DVec3::new(0.0, self.side * dy, -dz))
+    }
+
+    /// Advances by `dt` s with the arm at `alpha` rad turning at `alpha_rate` rad/s.
+    pub fn step(&mut self, dt: f64, alpha: f64, alpha_rate: f64, pose: &Pose, pipe: &Pipe) -> SkinLoad {
+        let mut load = SkinLoad::default();
+        let mut stations = self.stations;
+        for (station, s) in stations.iter_mut().zip(STATIONS) {
+            let (r, by_alpha) = self.point(alpha, s);
+            let velocity = pose.point_velocity(r, by_alpha * alpha_rate);
+            let touch = station.force(dt, &SKIN, pose.point(r), velocity, &Surface::Pipe(*pipe));
+            let force = pose.to_body(touch.force);
+            load.force_body += force;
+            load.moment_body += r.cross(force);
+            load.moment_alpha += force.dot(by_alpha);
+            // The last station's remains: there is the sensor.
+            load.pressure = touch.normal / (STATION_SIZE.0 * STATION_SIZE.1);
+        }
+        self.stations = stations;
+        load
+    }
+}
+
+/// The tip of one arm against the ground: pushes along the normal only.
+#[derive(Clone, Debug)]
+pub struct ArmTip {
+    side: f64,
+    x: f64,
+    point: ContactPoint,
+}
+
+impl ArmTip {
+    /// The tip of arm `arm`, 0 to 3.
+    ///
+    /// # Panics
+    /// Beyond 3.
+    pub fn new(arm: usize) -> Self {
+        let ArmSkin { side, x, .. } = ArmSkin::new(arm);
+        Self { side, x, point: ContactPoint::default() }
+    }
+
+    /// Advances by `dt` s; the load's pressure is 0.
+    pub fn step(&mut self, dt: f64, alpha: f64, alpha_rate: f64, pose: &Pose) -> SkinLoad {
+        let (sin, cos) = alpha.sin_cos();
+        let r = DVec3::new(self.x, self.side * ARM_LENGTH * cos, HINGE_Z - ARM_LENGTH * sin);
+        let by_alpha = DVec3::new(0.0, -self.side * ARM_LENGTH * sin, -ARM_LENGTH * cos);
+        let velocity = pose.point_velocity(r, by_alpha * alpha_rate);
+        let touch = self.point.force(dt, &TIP, pose.point(r), velocity, &Surface::Ground(0.0));
+        let force = pose.to_body(touch.force);
+        SkinLoad {
+            force_body: force,
+            moment_body: r.cross(force),
+            moment_alpha: force.dot(by_alpha),
+            pressure: 0.0,
+        }
+    }
+}

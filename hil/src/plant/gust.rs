@@ -1,0 +1,79 @@
+//! Gusts: forces and moments as first-order Gauss-Markov processes.
+
+use glam::DVec3;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+/// Correlation time of the force, s (assumed).
+const FORCE_TIME: f64 = 1.0;
+/// Correlation time of the moment, s (assumed).
+const MOMENT_TIME: f64 = 0.3;
+/// Steps of the plant for one step of the gust: 250 Hz is fast against both times.
+const DIVIDER: u32 = 16;
+
+/// A gust with its own random numbers.
+#[derive(Clone, Debug)]
+pub struct Gust {
+    force_rms: f64,
+    moment_rms: f64,
+    rng: Pcg64Mcg,
+    force: DVec3,
+    moment: DVec3,
+    count: u32,
+    elapsed: f64,
+}
+
+impl Gust {
+    /// Gusts of `force_rms` N (world axes; half of it vertically) and `moment_rms` N·m (body axes).
+    #[must_use]
+    pub fn new(force_rms: f64, moment_rms: f64, rng: Pcg64Mcg) -> Self {
+        Self { force_rms, moment_rms, rng, force: DVec3::ZERO, moment: DVec3::ZERO, count: 0, elapsed: 0.0 }
+    }
+
+    /// Advances by `dt` s.
+    pub fn step(&mut self, dt: f64) {
+        self.count += 1;
+        self.elapsed += dt;
+        if self.count < DIVIDER {
+            return;
+        }
+        let elapsed = std::mem::take(&mut self.elapsed);
+        self.count = 0;
+        let mut normal = || -> f64 { StandardNormal.sample(&mut self.rng) };
+        let (f, m) = (DVec3::from_array(std::array::from_fn(|_| normal())), DVec3::from_array(std::array::from_fn(|_| normal())));
+        let (kf, km) = (elapsed / FORCE_TIME, elapsed / MOMENT_TIME);
+        let rms = DVec3::new(1.0, 1.0, 0.5) * self.force_rms;
+        self.force += -self.force * kf + f * rms * (2.0 * kf).sqrt();
+        self.moment += -self.moment * km + m * (self.moment_rms * (2.0 * km).sqrt());
+    }
+
+    /// Force, N, NED.
+    #[must_use]
+    pub fn force(&self) -> DVec3 {
+        self.force
+    }
+
+    /// Moment, N·m, body.
+    #[must_use]
+    pub fn moment(&self) -> DVec3 {
+        self.moment
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gusts_have_the_stated_rms() {
+        let mut g = Gust::new(0.35, 0.015, Pcg64Mcg::new(7));
+        let (mut force, mut moment, n) = (0.0, 0.0, 4_000_000);
+        for _ in 0..n {
+            g.step(0.25e-3);
+            force += g.force().x.powi(2);
+            moment += g.moment().y.powi(2);
+        }
+        assert!(((force / f64::from(n)).sqrt() / 0.35 - 1.0).abs() < 0.15);
+        assert!(((moment / f64::from(n)).sqrt() / 0.015 - 1.0).abs() < 0.1);
+    }
+}

@@ -1,0 +1,252 @@
+//! The vehicle and its world in `f64`: six degrees of freedom, four soft arms that carry their own tip mass,
+//! rotors, battery, tendons, contacts.
+//!
+//! Semi-implicit Euler at 4 kHz. Body axes FRD, world NED, as in the flight stack; nothing of the flight
+//! stack is used here but constants that describe the same hardware.
+
+pub mod arm;
+pub mod battery;
+pub mod body;
+pub mod contact;
+pub mod gust;
+pub mod rotor;
+pub mod tendon;
+
+use glam::{DQuat, DVec3};
+use rand_pcg::Pcg64Mcg;
+use sophie_control::wrench::PerArm;
+
+use self::arm::{Arm, ArmSpec};
+use self::battery::Battery;
+use self::body::{Body, BodyState};
+use self::contact::{ArmSkin, ArmTip, Belly, Pipe, Pose, Surface};
+use self::gust::Gust;
+use self::rotor::Rotor;
+use self::tendon::{Tendon, TendonSpec};
+use crate::scenario::Scenario;
+
+/// Integration step, s.
+pub const STEP: f64 = 0.25e-3;
+/// Gravity, m/s².
+pub const GRAVITY: f64 = 9.806_65;
+/// Friction of the ground (assumed, TPU on concrete).
+const GROUND_FRICTION: f64 = 0.7;
+/// Linear air drag, N·s/m (assumed).
+const DRAG: f64 = 0.3;
+/// Pressure beyond which nothing else is near enough to be felt: distance at which contacts are computed, m.
+const NEAR: f64 = 0.45;
+
+/// What the flight stack drives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Actuators {
+    /// Command of each motor, 0..1.
+    pub motors: PerArm<f64>,
+    /// Pulse of each servo, µs; 0 is none.
+    pub servos: PerArm<f64>,
+}
+
+/// One arm with all that hangs on it.
+#[derive(Clone, Debug)]
+struct Limb {
+    arm: Arm,
+    rotor: Rotor,
+    tendon: Tendon,
+    skin: ArmSkin,
+    tip: ArmTip,
+    pressure: f64,
+}
+
+/// The vehicle in its world.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    body: Body,
+    state: BodyState,
+    limbs: PerArm<Limb>,
+    battery: Battery,
+    gust: Gust,
+    ground_belly: Belly,
+    pipe_belly: Belly,
+    pipe: Pipe,
+    coupled: bool,
+    /// Push at the centre of mass, N, NED, from outside.
+    pub push: DVec3,
+    specific_force: DVec3,
+}
+
+impl Plant {
+    /// The vehicle of `scenario` at rest on the ground at the origin, nose to the north.
+    #[must_use]
+    pub fn new(scenario: &Scenario, rng: Pcg64Mcg) -> Self {
+        let (v, w) = (&scenario.vehicle, &scenario.world);
+        let chi = f64::from(v.configuration.chi());
+        let radius = 0.5 * w.pipe_diameter;
+        let limb = |i: usize| {
+            let spec = ArmSpec::new(v.infill, v.gain_k, v.arm_gain[i], v.arm_offset[i], v.arm_damping);
+            Limb {
+                arm: Arm::new(i, spec),
+                rotor: Rotor::new(i, chi),
+                tendon: Tendon::new(v.servo.into(), TendonSpec::default()),
+                skin: ArmSkin::new(i),
+                tip: ArmTip::new(i),
+                pressure: 0.0,
+            }
+        };
+        Self {
+            body: Body::new(v.coupled_arms),
+            state: BodyState {
+                pose: Pose {
+                    position: DVec3::new(0.0, 0.0, -contact::BELLY_Z),
+                    attitude: DQuat::IDENTITY,
+                    velocity: DVec3::ZERO,
+                    omega: DVec3::ZERO,
+                },
+            },
+            limbs: std::array::from_fn(limb),
+            battery: Battery::new(v.battery_charge),
+            gust: Gust::new(w.gust_force, w.gust_moment, rng),
+            ground_belly: Belly::default(),
+            pipe_belly: Belly::default(),
+            pipe: Pipe {
+                north: w.pipe_position[0],
+                half_length: 1.0,
+                east: w.pipe_position[1],
+                down: -w.pipe_top + radius,
+                radius,
+                friction: w.pipe_friction,
+            },
+            coupled: v.coupled_arms,
+            push: DVec3::ZERO,
+            specific_force: DVec3::new(0.0, 0.0, -GRAVITY),
+        }
+    }
+
+    /// Advances by [`STEP`].
+    pub fn step(&mut self, actuators: &Actuators) {
+        let pose = self.state.pose;
+        let voltage = self.battery.voltage();
+        let gravity_body = pose.to_body(DVec3::new(0.0, 0.0, GRAVITY));
+
+        // Everything from outside on the body: gravity is added by the solver.
+        let mut force = pose.to_body(self.push - pose.velocity * DRAG + self.gust.force());
+        let mut moment = self.gust.moment();
+        self.gust.step(STEP);
+        let near_ground = pose.position.z > -NEAR;
+        if near_ground {
+            let load = self.ground_belly.step(STEP, &pose, &Surface::Ground(GROUND_FRICTION));
+            force += load.force_body;
+            moment += load.moment_body;
+        }
+        let across = pose.position - DVec3::new(pose.position.x, self.pipe.east, self.pipe.down);
+        let near_pipe = across.length_squared() < (self.pipe.radius + NEAR).powi(2);
+        if near_pipe {
+            let load = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));
+            force += load.force_body;
+            moment += load.moment_body;
+        }
+
+        let mut current = 0.0;
+        let commands = actuators.motors.iter().zip(&actuators.servos);
+        for (limb, (motor, servo)) in self.limbs.iter_mut().zip(commands) {
+            let thrust = limb.rotor.step(STEP, *motor, voltage);
+            current += limb.rotor.current(voltage);
+            let (alpha, alpha_rate) = (limb.arm.tilt, limb.arm.rate);
+            let mut moment_alpha = limb.tendon.step(STEP, *servo, alpha);
+            limb.pressure = 0.0;
+            if near_pipe {
+                let load = limb.skin.step(STEP, alpha, alpha_rate, &pose, &self.pipe);
+                force += load.force_body;
+                moment += load.moment_body;
+                moment_alpha += load.moment_alpha;
+                limb.pressure = load.pressure;
+            }
+            if near_ground {
+                let load = limb.tip.step(STEP, alpha, alpha_rate, &pose);
+                force += load.force_body;
+                moment += load.moment_body;
+                moment_alpha += load.moment_alpha;
+            }
+            moment += limb.rotor.drag_moment(limb.arm.normal());
+            limb.arm.load(thrust, moment_alpha, gravity_body, self.coupled);
+        }
+        self.battery.step(STEP, current);
+
+        let acceleration =
+            self.body.accelerate(&pose, force, moment, gravity_body, self.limbs.each_ref().map(|l| &l.arm));
+        self.specific_force = acceleration.linear - gravity_body;
+        for (limb, alpha_acceleration) in self.limbs.iter_mut().zip(acceleration.arms) {
+            limb.arm.integrate(STEP, alpha_acceleration);
+        }
+        let pose = &mut self.state.pose;
+        pose.velocity += pose.attitude * acceleration.linear * STEP;
+        pose.omega += acceleration.angular * STEP;
+        pose.position += pose.velocity * STEP;
+        let h = pose.omega * (0.5 * STEP);
+        pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
+    }
+
+    /// Position, attitude and motion.
+    #[must_use]
+    pub fn pose(&self) -> &Pose {
+        &self.state.pose
+    }
+
+    /// Roll, pitch and yaw, rad.
+    #[must_use]
+    pub fn euler(&self) -> [f64; 3] {
+        let q = self.state.pose.attitude;
+        let (w, x, y, z) = (q.w, q.x, q.y, q.z);
+        [
+            (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y)),
+            (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
+            (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
+        ]
+    }
+
+    /// Specific force at the body's origin, m/s², body.
+    #[must_use]
+    pub fn specific_force(&self) -> DVec3 {
+        self.specific_force
+    }
+
+    /// Tilt of each arm, rad.
+    #[must_use]
+    pub fn tilt(&self) -> PerArm<f64> {
+        self.limbs.each_ref().map(|l| l.arm.tilt)
+    }
+
+    /// Thrust of each rotor, N.
+    #[must_use]
+    pub fn thrust(&self) -> PerArm<f64> {
+        self.limbs.each_ref().map(|l| l.rotor.thrust())
+    }
+
+    /// Speed of each rotor, rad/s.
+    #[must_use]
+    pub fn rotor_speed(&self) -> PerArm<f64> {
+        self.limbs.each_ref().map(|l| l.rotor.speed())
+    }
+
+    /// Tension of each tendon, N.
+    #[must_use]
+    pub fn tension(&self) -> PerArm<f64> {
+        self.limbs.each_ref().map(|l| l.tendon.tension())
+    }
+
+    /// Contact pressure at each arm's sensor, Pa.
+    #[must_use]
+    pub fn pressure(&self) -> PerArm<f64> {
+        self.limbs.each_ref().map(|l| l.pressure)
+    }
+
+    /// Battery voltage under load, V.
+    #[must_use]
+    pub fn battery_voltage(&self) -> f64 {
+        self.battery.voltage()
+    }
+
+    /// Battery current, A.
+    #[must_use]
+    pub fn battery_current(&self) -> f64 {
+        self.battery.current()
+    }
+}

@@ -1,0 +1,154 @@
+//! Servo, reel and tendon of one arm.
+//!
+//! A hobby servo winds a nylon thread that runs along the arm's underside. The thread only pulls: it is slack
+//! until the reel has taken up what the arm's tilt gives away. All numbers are of the vehicle as built; what
+//! the flight stack believes about it is in the parameters.
+
+use sophie_control::tendon::{FULL_US, REFERENCE_TILT, RELEASE_US};
+
+use crate::scenario::ServoProfile;
+
+/// Time between two pulses that a servo obeys, s: the 50 Hz frame of analog servos.
+const FRAME: f64 = 0.02;
+/// Change of pulse width that a servo ignores, µs (digital servos state 2 to 5; MG996R datasheet 5).
+const DEADBAND_US: f64 = 2.0;
+/// Shortest and longest pulse that a servo takes for a command, µs.
+const PULSE_LIMITS_US: (f64, f64) = (450.0, 2550.0);
+/// Share of the stall torque that the gear's friction holds without a pulse (assumed).
+const GEAR_FRICTION: f64 = 0.35;
+
+/// A servo as built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ServoSpec {
+    /// Torque at which it stops, N·m.
+    pub stall: f64,
+    /// Speed without load, rad/s.
+    pub slew: f64,
+    /// Travel from [`RELEASE_US`] to [`FULL_US`], rad.
+    pub range: f64,
+}
+
+impl From<ServoProfile> for ServoSpec {
+    fn from(profile: ServoProfile) -> Self {
+        match profile {
+            // 35 kgcm (paper), the speed of the MG996R that it names, the 270 degree version of such servos.
+            ServoProfile::Paper => Self { stall: 3.432, slew: 6.16, range: 4.71 },
+            // 9.4 kgcm and 0.17 s for 60 degrees at 4.8 V (datasheet), 180 degrees.
+            ServoProfile::Mg996r => Self { stall: 0.922, slew: 6.16, range: 3.14 },
+        }
+    }
+}
+
+/// Reel and tendon as built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TendonSpec {
+    /// Radius of the reel, m (assumed).
+    pub reel_radius: f64,
+    /// Distance of the tendon from the arm's neutral line, m (assumed).
+    pub lever: f64,
+    /// Stiffness along the tendon, N/m: nylon of 1 mm and 0.25 m, E 2.5 GPa (derived, 30 %).
+    pub stiffness: f64,
+    /// Damping along the tendon, N·s/m: a loss factor of 0.1 at 8 Hz (assumed).
+    pub damping: f64,
+    /// Tilt at which the tendon of a servo at release is just taut, rad.
+    pub reference_tilt: f64,
+    /// Thread that was knotted too long, m; negative is too short.
+    pub slack_error: f64,
+}
+
+impl Default for TendonSpec {
+    fn default() -> Self {
+        Self {
+            reel_radius: 0.015,
+            lever: 0.025,
+            stiffness: 8000.0,
+            damping: 16.0,
+            reference_tilt: f64::from(REFERENCE_TILT),
+            slack_error: 0.0,
+        }
+    }
+}
+
+/// Servo, reel and tendon of one arm, with their state.
+#[derive(Clone, Debug)]
+pub struct Tendon {
+    servo: ServoSpec,
+    spec: TendonSpec,
+    position: f64,
+    target: Option<f64>,
+    to_next_frame: f64,
+    last_tilt: Option<f64>,
+    tension: f64,
+}
+
+impl Tendon {
+    /// A tendon whose servo stands at its release position.
+    pub fn new(servo: ServoSpec, spec: TendonSpec) -> Self {
+        Self { servo, spec, position: 0.0, target: None, to_next_frame: 0.0, last_tilt: None, tension: 0.0 }
+    }
+
+    /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) with the arm at tilt `alpha` rad; returns
+    /// the tendon's moment on the tilt, N·m (never positive: it pulls the tip down).
+    ///
+    /// Without pulses the servo's gear friction holds up to a third of the stall torque and gives way beyond.
+    pub fn step(&mut self, dt: f64, pulse_us: f64, alpha: f64) -> f64 {
+        self.to_next_frame -= dt;
+        if self.to_next_frame <= 0.0 {
+            self.to_next_frame += FRAME;
+            self.target = self.commanded(pulse_us);
+        }
+        let before = self.position;
+        self.position += self.speed(dt) * dt;
+        let tilt_change = alpha - self.last_tilt.replace(alpha).unwrap_or(alpha);
+
+        let TendonSpec { reel_radius: r, lever: h, stiffness, damping, reference_tilt, slack_error } = self.spec;
+        let stretch = r * self.position - slack_error - h * (reference_tilt - alpha);
+        let stretch_rate = (r * (self.position - before) + h * tilt_change) / dt;
+        self.tension = if stretch > 0.0 { (stiffness * stretch + damping * stretch_rate).max(0.0) } else { 0.0 };
+        -h * self.tension
+    }
+
+    /// Pull of the tendon, N.
+    pub fn tension(&self) -> f64 {
+        self.tension
+    }
+
+    /// Torque on the servo's shaft, N·m.
+    pub fn servo_torque(&self) -> f64 {
+        self.tension * self.spec.reel_radius
+    }
+
+    /// Angle of the servo from its release position, rad, winding positive.
+    pub fn servo_angle(&self) -> f64 {
+        self.position
+    }
+
+    /// Angle that a pulse asks for, rad; the one before when the change is within the deadband.
+    fn commanded(&self, pulse_us: f64) -> Option<f64> {
+        if !(pulse_us >= PULSE_LIMITS_US.0 && pulse_us <= PULSE_LIMITS_US.1) {
+            return None;
+        }
+        let (release, full) = (f64::from(RELEASE_US), f64::from(FULL_US));
+        let per_us = self.servo.range / (full - release);
+        let angle = (pulse_us - release) * per_us;
+        match self.target {
+            Some(held) if (angle - held).abs() < DEADBAND_US * per_us => Some(held),
+            _ => Some(angle),
+        }
+    }
+
+    /// Speed of the servo, rad/s: the straight line of a DC motor from full speed without load to a stop at
+    /// stall, and beyond it backwards; not more than what reaches the target within `dt`.
+    fn speed(&self, dt: f64) -> f64 {
+        let ServoSpec { stall, slew, .. } = self.servo;
+        let load = self.servo_torque() / stall;
+        match self.target {
+            None => -slew * ((load - GEAR_FRICTION) / (1.0 - GEAR_FRICTION)).clamp(0.0, 1.0),
+            Some(target) => {
+                let wanted = (target - self.position) / dt;
+                let winding = slew * (1.0 - load);
+                wanted.clamp(-slew, winding.max(-slew))
+            }
+        }
+    }
+}

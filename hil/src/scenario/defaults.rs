@@ -1,0 +1,100 @@
+//! The paper's vehicle in light air before its pipe: what a scenario file starts from.
+
+use std::sync::OnceLock;
+
+use sophie_control::mixer::Variant;
+use sophie_control::params::Params;
+use sophie_control::rc::ArmChoice;
+use sophie_control::wrench::Configuration;
+
+use super::{Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read};
+
+/// The default mission as a scenario file, with every key at its default.
+pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");
+
+impl Default for Vehicle {
+    fn default() -> Self {
+        Self {
+            infill: 6.9,
+            gain_k: 7.75,
+            configuration: Configuration::B,
+            arm_gain: [1.0; 4],
+            arm_offset: [0.0; 4],
+            coupled_arms: true,
+            arm_damping: 0.15,
+            battery_charge: 1.0,
+            servo: ServoProfile::Paper,
+        }
+    }
+}
+
+impl Default for World {
+    fn default() -> Self {
+        Self {
+            gust_force: 0.10,
+            gust_moment: 0.004,
+            pipe_diameter: 0.30,
+            pipe_position: [3.0, 0.0],
+            pipe_top: 1.5,
+            pipe_friction: 0.6,
+        }
+    }
+}
+
+impl Default for Pilot {
+    fn default() -> Self {
+        Self {
+            delay: 0.25,
+            bandwidth: 2.0,
+            eye_noise: 0.01,
+        }
+    }
+}
+
+impl Default for Expect {
+    fn default() -> Self {
+        Self {
+            accomplished: true,
+            reason: None,
+        }
+    }
+}
+
+impl Scenario {
+    /// The default mission: arm, take off, roll, perch on the pipe, hold, release, land, disarm.
+    pub fn default_mission() -> Self {
+        Self::default_mission_with(&Overrides::default())
+    }
+
+    /// The default mission with some settings changed.
+    pub fn default_mission_with(overrides: &Overrides) -> Self {
+        match Self::parse(MISSION, "mission.toml", overrides) {
+            Ok(scenario) => scenario,
+            // Not reachable: a test parses the embedded text, and overrides cannot fail.
+            Err(error) => unreachable!("{error}"),
+        }
+    }
+
+    /// Every setting at its default and nothing to do.
+    pub(super) fn empty() -> Self {
+        Self {
+            name: String::new(),
+            seed: 1,
+            time_limit: 300.0,
+            vehicle: Vehicle::default(),
+            params: Params::default(),
+            mixer: Variant::Flexible,
+            arms: ArmChoice::All,
+            world: World::default(),
+            pilot: Pilot::default(),
+            steps: Vec::new(),
+            expect: Expect::default(),
+        }
+    }
+}
+
+/// The steps of the default mission, for files that name none.
+pub(super) fn default_steps() -> Vec<Step> {
+    static STEPS: OnceLock<Vec<Step>> = OnceLock::new();
+    STEPS.get_or_init(|| read::steps_of(MISSION)).clone()
+}

@@ -1,0 +1,146 @@
+//! Why a scenario cannot be flown: always one line that names file, line, key, value and what is allowed.
+
+use core::fmt;
+
+/// A line of a scenario file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file as the user named it.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+}
+
+/// Why a scenario was refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ScenarioError {
+    /// The file is missing, a directory, too large or otherwise unreadable.
+    Unreadable {
+        /// The file as the user named it.
+        file: String,
+        /// The operating system's or our reason.
+        why: String,
+    },
+    /// The file is not UTF-8 text.
+    NotText {
+        /// Where the first bad byte is.
+        at: Place,
+    },
+    /// The file is not TOML.
+    Syntax {
+        /// Where it stops being TOML.
+        at: Place,
+        /// The parser's message.
+        message: String,
+    },
+    /// No such key.
+    UnknownKey {
+        /// Where it is.
+        at: Place,
+        /// The key with its table.
+        key: String,
+        /// Value given.
+        value: String,
+        /// The allowed keys that come nearest.
+        nearest: Vec<String>,
+    },
+    /// A key that must be given is not.
+    MissingKey {
+        /// Where it should be.
+        at: Place,
+        /// The key with its table.
+        key: String,
+        /// What it may be.
+        allowed: String,
+    },
+    /// The value has the wrong type, or is none of the choices, or is out of range.
+    BadValue {
+        /// Where it is.
+        at: Place,
+        /// The key with its table.
+        key: String,
+        /// Value given, as written.
+        value: String,
+        /// What it may be.
+        allowed: String,
+    },
+    /// A step that the vehicle cannot do in the state in which the steps before leave it.
+    StepOrder {
+        /// Where it is.
+        at: Place,
+        /// The key of the step, such as `steps[3]`.
+        key: String,
+        /// Name of the step.
+        step: String,
+        /// When it may be done, and what state the vehicle is in.
+        allowed: String,
+    },
+    /// There is nothing to fly.
+    NoSteps {
+        /// Where the empty list is.
+        at: Place,
+    },
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", one_line(&self.file, 200), self.line)
+    }
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { file, why } => {
+                write!(
+                    f,
+                    "{}: cannot be read: {}",
+                    one_line(file, 200),
+                    one_line(why, 120)
+                )
+            }
+            Self::NotText { at } => write!(f, "{at}: not UTF-8 text: allowed is a TOML file"),
+            Self::Syntax { at, message } => write!(f, "{at}: not valid TOML: {}", one_line(message, 200)),
+            Self::UnknownKey {
+                at,
+                key,
+                value,
+                nearest,
+            } => write!(
+                f,
+                "{at}: {} = {}: unknown key: nearest allowed {}",
+                one_line(key, 80),
+                one_line(value, 40),
+                nearest.join(", ")
+            ),
+            Self::MissingKey { at, key, allowed } => write!(f, "{at}: {key} is missing: allowed {allowed}"),
+            Self::BadValue {
+                at,
+                key,
+                value,
+                allowed,
+            } => {
+                write!(f, "{at}: {key} = {}: allowed {allowed}", one_line(value, 40))
+            }
+            Self::StepOrder {
+                at,
+                key,
+                step,
+                allowed,
+            } => write!(f, "{at}: {key} = {step}: allowed {allowed}"),
+            Self::NoSteps { at } => write!(f, "{at}: steps = []: allowed at least one step, such as arm"),
+        }
+    }
+}
+
+impl std::error::Error for ScenarioError {}
+
+/// `text` without control characters or runs of blanks, at most `limit` characters.
+pub(super) fn one_line(text: &str, limit: usize) -> String {
+    let words = text.split(|c: char| c.is_whitespace() || c.is_control());
+    let line = words.filter(|w| !w.is_empty()).collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(limit) {
+        Some((end, _)) => format!("{}…", line.get(..end).unwrap_or_default()),
+        None => line,
+    }
+}

@@ -1,0 +1,267 @@
+//! Every key of a scenario file in one table: name, kind, range. Units are in the names; the conversion to
+//! SI happens here and nowhere else.
+
+use core::f64::consts::PI;
+
+use sophie_control::mixer::Variant;
+use sophie_control::rc::ArmChoice;
+use sophie_control::wrench::{Configuration, PerArm};
+
+use super::{Scenario, ServoProfile};
+
+/// One key.
+pub struct Key {
+    /// Name with its table, such as `vehicle.infill`.
+    pub name: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+}
+
+/// What a key takes and where it goes.
+pub enum Kind {
+    /// A number.
+    Number(Range, fn(&mut Scenario) -> &mut f64),
+    /// Four numbers, one for each arm.
+    PerArm(Range, fn(&mut Scenario) -> &mut PerArm<f64>),
+    /// `true` or `false`.
+    Flag(fn(&mut Scenario) -> &mut bool),
+    /// One of a few words.
+    Choice(&'static [&'static str], fn(&mut Scenario, &str)),
+    /// A whole number from 0.
+    Seed(fn(&mut Scenario) -> &mut u64),
+    /// A line of text.
+    Text(fn(&mut Scenario, &str)),
+}
+
+/// Allowed range of a number, in the unit of the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Unit for messages; empty for a pure number.
+    pub unit: &'static str,
+    /// SI value of one unit.
+    pub si: f64,
+}
+
+impl Range {
+    /// A range in an SI unit.
+    pub const fn new(min: f64, max: f64, unit: &'static str) -> Self {
+        Self {
+            min,
+            max,
+            unit,
+            si: 1.0,
+        }
+    }
+
+    /// The same range with the SI value of its unit.
+    pub const fn times(self, si: f64) -> Self {
+        Self { si, ..self }
+    }
+
+    /// The value in SI, if it is in the range.
+    pub fn to_si(&self, value: f64) -> Option<f64> {
+        (value >= self.min && value <= self.max).then_some(value * self.si)
+    }
+
+    /// What is allowed, for messages: `4 to 10 %`.
+    pub fn allowed(&self) -> String {
+        format!("{} to {} {}", self.min, self.max, self.unit)
+            .trim_end()
+            .to_owned()
+    }
+}
+
+/// Words for the sense of rotation.
+pub const CONFIGURATIONS: &[&str] = &["A", "B"];
+/// Words for the allocation.
+pub const MIXERS: &[&str] = &["flexible", "rigid", "paper", "frozen"];
+/// Words for the arms that close.
+pub const ARMS: &[&str] = &["all", "front", "rear"];
+/// Words for the servo.
+pub const SERVOS: &[&str] = &["paper", "mg996r"];
+
+/// Infill that Eq. 1 of the paper covers.
+pub const INFILL: Range = Range::new(4.0, 10.0, "%");
+/// Gain on the elastic term of Eq. 1: 1 is the literal equation, Table III needs 5.0 to 8.4.
+pub const GAIN_K: Range = Range::new(1.0, 10.0, "");
+
+const DEGREE: f64 = PI / 180.0;
+const PERCENT: f64 = 0.01;
+
+/// A word from [`CONFIGURATIONS`].
+pub fn configuration(word: &str) -> Configuration {
+    if word == "A" {
+        Configuration::A
+    } else {
+        Configuration::B
+    }
+}
+
+/// A word from [`MIXERS`].
+pub fn mixer(word: &str) -> Variant {
+    match word {
+        "rigid" => Variant::Rigid,
+        "paper" => Variant::Paper,
+        "frozen" => Variant::Frozen,
+        _ => Variant::Flexible,
+    }
+}
+
+/// A word from [`ARMS`].
+pub fn arms(word: &str) -> ArmChoice {
+    match word {
+        "front" => ArmChoice::Front,
+        "rear" => ArmChoice::Rear,
+        _ => ArmChoice::All,
+    }
+}
+
+/// A word from [`SERVOS`].
+pub fn servo(word: &str) -> ServoProfile {
+    if word == "mg996r" {
+        ServoProfile::Mg996r
+    } else {
+        ServoProfile::Paper
+    }
+}
+
+/// The word of a sense of rotation.
+pub const fn configuration_word(configuration: Configuration) -> &'static str {
+    match configuration {
+        Configuration::A => "A",
+        Configuration::B => "B",
+    }
+}
+
+/// The word of an allocation.
+pub const fn mixer_word(mixer: Variant) -> &'static str {
+    match mixer {
+        Variant::Flexible => "flexible",
+        Variant::Rigid => "rigid",
+        Variant::Paper => "paper",
+        Variant::Frozen => "frozen",
+    }
+}
+
+/// The word of a choice of arms.
+pub const fn arms_word(arms: ArmChoice) -> &'static str {
+    match arms {
+        ArmChoice::All => "all",
+        ArmChoice::Front => "front",
+        ArmChoice::Rear => "rear",
+    }
+}
+
+/// The word of a servo.
+pub const fn servo_word(servo: ServoProfile) -> &'static str {
+    match servo {
+        ServoProfile::Paper => "paper",
+        ServoProfile::Mg996r => "mg996r",
+    }
+}
+
+macro_rules! number {
+    ($name:literal, $range:expr, $($field:tt)+) => {
+        Key { name: $name, kind: Kind::Number($range, |s| &mut s.$($field)+) }
+    };
+}
+
+/// The whole table. `steps` and `params` are read by their own tables.
+pub const KEYS: &[Key] = &[
+    Key {
+        name: "name",
+        kind: Kind::Text(|s, v| s.name = v.to_owned()),
+    },
+    Key {
+        name: "seed",
+        kind: Kind::Seed(|s| &mut s.seed),
+    },
+    number!("time_limit_s", Range::new(1.0, 3600.0, "s"), time_limit),
+    Key {
+        name: "mixer",
+        kind: Kind::Choice(MIXERS, |s, v| s.mixer = mixer(v)),
+    },
+    Key {
+        name: "arms",
+        kind: Kind::Choice(ARMS, |s, v| s.arms = arms(v)),
+    },
+    number!("vehicle.infill", INFILL, vehicle.infill),
+    number!("vehicle.gain_k", GAIN_K, vehicle.gain_k),
+    Key {
+        name: "vehicle.configuration",
+        kind: Kind::Choice(CONFIGURATIONS, |s, v| s.vehicle.configuration = configuration(v)),
+    },
+    Key {
+        name: "vehicle.arm_gain",
+        kind: Kind::PerArm(Range::new(0.5, 1.5, ""), |s| &mut s.vehicle.arm_gain),
+    },
+    Key {
+        name: "vehicle.arm_offset_deg",
+        kind: Kind::PerArm(Range::new(-10.0, 10.0, "deg").times(DEGREE), |s| {
+            &mut s.vehicle.arm_offset
+        }),
+    },
+    Key {
+        name: "vehicle.coupled_arms",
+        kind: Kind::Flag(|s| &mut s.vehicle.coupled_arms),
+    },
+    number!(
+        "vehicle.arm_damping",
+        Range::new(0.02, 1.0, ""),
+        vehicle.arm_damping
+    ),
+    number!(
+        "vehicle.battery_charge_percent",
+        Range::new(5.0, 100.0, "%").times(PERCENT),
+        vehicle.battery_charge
+    ),
+    Key {
+        name: "vehicle.servo",
+        kind: Kind::Choice(SERVOS, |s, v| s.vehicle.servo = servo(v)),
+    },
+    number!("world.gust_force_n", Range::new(0.0, 3.0, "N"), world.gust_force),
+    number!(
+        "world.gust_moment_nm",
+        Range::new(0.0, 0.1, "N m"),
+        world.gust_moment
+    ),
+    number!(
+        "world.pipe_diameter_m",
+        Range::new(0.15, 0.6, "m"),
+        world.pipe_diameter
+    ),
+    number!(
+        "world.pipe_north_m",
+        Range::new(-20.0, 20.0, "m"),
+        world.pipe_position[0]
+    ),
+    number!(
+        "world.pipe_east_m",
+        Range::new(-20.0, 20.0, "m"),
+        world.pipe_position[1]
+    ),
+    number!("world.pipe_top_m", Range::new(0.5, 10.0, "m"), world.pipe_top),
+    number!(
+        "world.pipe_friction",
+        Range::new(0.05, 1.5, ""),
+        world.pipe_friction
+    ),
+    number!("pilot.delay_s", Range::new(0.0, 1.0, "s"), pilot.delay),
+    number!("pilot.bandwidth_hz", Range::new(0.2, 20.0, "Hz"), pilot.bandwidth),
+    number!("pilot.eye_noise_m", Range::new(0.0, 0.5, "m"), pilot.eye_noise),
+    Key {
+        name: "expect.accomplished",
+        kind: Kind::Flag(|s| &mut s.expect.accomplished),
+    },
+    Key {
+        name: "expect.reason",
+        kind: Kind::Text(|s, v| s.expect.reason = Some(v.to_owned())),
+    },
+];
+
+/// Tables of a scenario file, besides the list `steps`.
+pub const TABLES: &[&str] = &["vehicle", "world", "pilot", "params", "expect"];

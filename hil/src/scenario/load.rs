@@ -1,0 +1,107 @@
+//! Scenarios from files, and what a command line changes in them.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use sophie_control::mixer::Variant;
+use sophie_control::rc::ArmChoice;
+use sophie_control::wrench::Configuration;
+
+use super::Scenario;
+use super::error::{Place, ScenarioError};
+use super::read::Source;
+
+/// No scenario is this long; a device or a wrong file may be.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// Settings of the command line; they win over the file's.
+///
+/// The values must be within the ranges of [`keys`](super::keys). The stack's parameters follow them as
+/// they follow the file's vehicle; the file's `[params]` wins over both.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Overrides {
+    /// Infill, %.
+    pub infill: Option<f64>,
+    /// Gain on the elastic term of Eq. 1.
+    pub gain_k: Option<f64>,
+    /// Sense of rotation.
+    pub configuration: Option<Configuration>,
+    /// Allocation.
+    pub mixer: Option<Variant>,
+    /// Arms that close.
+    pub arms: Option<ArmChoice>,
+    /// Seed.
+    pub seed: Option<u64>,
+}
+
+impl Overrides {
+    pub(super) fn apply(&self, scenario: &mut Scenario) {
+        fn set<T: Copy>(to: &mut T, from: Option<T>) {
+            if let Some(value) = from {
+                *to = value;
+            }
+        }
+        set(&mut scenario.vehicle.infill, self.infill);
+        set(&mut scenario.vehicle.gain_k, self.gain_k);
+        set(&mut scenario.vehicle.configuration, self.configuration);
+        set(&mut scenario.mixer, self.mixer);
+        set(&mut scenario.arms, self.arms);
+        set(&mut scenario.seed, self.seed);
+    }
+}
+
+impl Scenario {
+    /// Reads a scenario file; without a `name` it is called after the file.
+    ///
+    /// # Errors
+    /// One line that names file, line, key, value and what is allowed.
+    pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        let file = path.display().to_string();
+        let unreadable = |why: String| ScenarioError::Unreadable {
+            file: file.clone(),
+            why,
+        };
+        if path.is_dir() {
+            return Err(unreadable("it is a directory; allowed is a TOML file".to_owned()));
+        }
+        let mut bytes = Vec::new();
+        File::open(path)
+            .and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes))
+            .map_err(|error| unreadable(error.to_string()))?;
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(unreadable(
+                "it is longer than 1 MiB; allowed is a short TOML file".to_owned(),
+            ));
+        }
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = error
+                .as_bytes()
+                .get(..error.utf8_error().valid_up_to())
+                .unwrap_or_default();
+            let line = 1 + good.iter().filter(|b| **b == b'\n').count();
+            ScenarioError::NotText {
+                at: Place {
+                    file: file.clone(),
+                    line,
+                },
+            }
+        })?;
+        let mut scenario = Self::parse(&text, &file, overrides)?;
+        if scenario.name.is_empty() {
+            scenario.name = path
+                .file_stem()
+                .map(|s| s.to_string_lossy().into_owned())
+                .unwrap_or_default();
+        }
+        Ok(scenario)
+    }
+
+    /// Reads the text of a scenario; `file` is its name for messages.
+    ///
+    /// # Errors
+    /// As [`Scenario::load`].
+    pub fn parse(text: &str, file: &str, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        Source { file, text }.scenario(overrides)
+    }
+}

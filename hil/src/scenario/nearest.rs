@@ -1,0 +1,76 @@
+//! The allowed keys that come nearest to a mistyped one.
+
+/// At most three of `candidates` nearest to `key` (both with their table, as in `vehicle.infill`), nearest
+/// first; always at least one when there are candidates.
+pub(super) fn nearest<'a>(key: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut ranked: Vec<(usize, &str)> = candidates.map(|c| (distance(key, c), c)).collect();
+    ranked.sort();
+    let Some(&(best, _)) = ranked.first() else {
+        return Vec::new();
+    };
+    // Two typing errors worse than the best is no longer a likely meaning.
+    ranked
+        .iter()
+        .filter(|(d, _)| *d <= best + 2)
+        .take(3)
+        .map(|(_, c)| (*c).to_owned())
+        .collect()
+}
+
+/// Distance of two keys: that of their names, plus one when the tables differ.
+fn distance(a: &str, b: &str) -> usize {
+    let split = |key| <str>::rsplit_once(key, '.').unwrap_or(("", key));
+    let ((table_a, name_a), (table_b, name_b)) = (split(a), split(b));
+    edits(name_a, name_b) + usize::from(table_a != table_b)
+}
+
+/// Edits (insert, delete, replace) that lead from `a` to `b`; adding a unit at the end counts one.
+fn edits(a: &str, b: &str) -> usize {
+    if b.strip_prefix(a).is_some_and(|rest| rest.starts_with('_')) {
+        return 1;
+    }
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    // Very long keys are no typing errors; their tail decides nothing.
+    for (i, ca) in a.chars().take(64).enumerate() {
+        let mut next = vec![i + 1];
+        for (j, cb) in b.iter().enumerate() {
+            let at = |row: &[usize], k: usize| row.get(k).copied().unwrap_or(usize::MAX - 1);
+            let replace = at(&row, j) + usize::from(ca != *cb);
+            next.push(replace.min(at(&row, j + 1) + 1).min(at(&next, j) + 1));
+        }
+        row = next;
+    }
+    row.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edits_are_counted() {
+        assert_eq!(edits("infill", "infill"), 0);
+        assert_eq!(edits("infil", "infill"), 1);
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(edits("", "abc"), 3);
+        assert_eq!(edits("pipe_top", "pipe_top_m"), 1);
+    }
+
+    #[test]
+    fn the_likely_meaning_comes_first() {
+        let keys = [
+            "vehicle.infill",
+            "vehicle.gain_k",
+            "world.pipe_top_m",
+            "params.infill",
+        ];
+        assert_eq!(
+            nearest("vehicle.infil", keys.into_iter()).first().unwrap(),
+            "vehicle.infill"
+        );
+        assert_eq!(nearest("world.pipe_top", keys.into_iter()), ["world.pipe_top_m"]);
+        assert!(!nearest("qqqqqqqqqqqqqqq", keys.into_iter()).is_empty());
+        assert!(nearest("x", [].into_iter()).is_empty());
+    }
+}

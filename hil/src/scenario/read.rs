@@ -1,0 +1,306 @@
+//! From the text of a scenario file to a [`Scenario`].
+//!
+//! The document is walked by hand against the tables in [`keys`](super::keys) and [`steps`](super::steps)
+//! rather than through derived structs: only so can every message name key, value and what is allowed.
+
+use core::ops::Range as Span;
+
+use sophie_control::params::{ParamError, Params};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{Place, ScenarioError};
+use super::keys::{KEYS, Key, Kind, Range, TABLES};
+use super::nearest::nearest;
+use super::steps::{STEPS, StepKind, Whereabouts};
+use super::{Overrides, Scenario, ServoProfile, Step, defaults};
+
+type Result<T> = core::result::Result<T, ScenarioError>;
+type Value<'a> = Spanned<DeValue<'a>>;
+
+/// Stall torque of an MG996R at 4.8 V by its datasheet, N·m (9.4 kgcm).
+const MG996R_STALL: f32 = 0.92;
+
+/// A text with its name, for messages.
+pub(super) struct Source<'a> {
+    pub file: &'a str,
+    pub text: &'a str,
+}
+
+impl Source<'_> {
+    fn at(&self, span: &Span<usize>) -> Place {
+        let before = self.text.as_bytes().get(..span.start).unwrap_or_default();
+        Place {
+            file: self.file.to_owned(),
+            line: 1 + before.iter().filter(|b| **b == b'\n').count(),
+        }
+    }
+
+    fn bad(&self, key: &str, value: &Value<'_>, allowed: impl Into<String>) -> ScenarioError {
+        let span = value.span();
+        ScenarioError::BadValue {
+            at: self.at(&span),
+            key: key.to_owned(),
+            value: self.text.get(span).unwrap_or_default().to_owned(),
+            allowed: allowed.into(),
+        }
+    }
+
+    fn unknown(
+        &self,
+        key: &str,
+        span: &Span<usize>,
+        value: &Value<'_>,
+        known: impl Iterator<Item = String>,
+    ) -> ScenarioError {
+        let known: Vec<String> = known.collect();
+        ScenarioError::UnknownKey {
+            at: self.at(span),
+            key: key.to_owned(),
+            value: self.text.get(value.span()).unwrap_or_default().to_owned(),
+            nearest: nearest(key, known.iter().map(String::as_str)),
+        }
+    }
+
+    /// The whole file.
+    pub(super) fn scenario(&self, overrides: &Overrides) -> Result<Scenario> {
+        let root = self.document()?;
+        let mut scenario = Scenario::empty();
+        let (mut steps, mut params) = (None, None);
+        for (name, span, value) in in_order(root.get_ref()) {
+            match (name, value.get_ref()) {
+                ("steps", DeValue::Array(_)) => steps = Some(self.steps(value)?),
+                ("steps", _) => return Err(self.bad("steps", value, "a list such as [{ do = \"arm\" }]")),
+                ("params", DeValue::Table(table)) => params = Some(table),
+                (_, DeValue::Table(table)) if TABLES.contains(&name) => {
+                    self.table(name, table, &mut scenario)?
+                }
+                (_, _) if TABLES.contains(&name) => {
+                    return Err(self.bad(name, value, format!("a table, written [{name}]")));
+                }
+                _ => self.key(name, &span, value, &mut scenario)?,
+            }
+        }
+        overrides.apply(&mut scenario);
+        believe_the_vehicle(&mut scenario);
+        if let Some(table) = params {
+            self.params(table, &mut scenario.params)?;
+        }
+        self.pipe_clear_of_the_ground(&root, &scenario)?;
+        scenario.steps = steps.unwrap_or_else(defaults::default_steps);
+        Ok(scenario)
+    }
+
+    fn document(&self) -> Result<Spanned<DeTable<'_>>> {
+        DeTable::parse(self.text).map_err(|error| ScenarioError::Syntax {
+            at: self.at(&error.span().unwrap_or_default()),
+            message: error.message().to_owned(),
+        })
+    }
+
+    fn table(&self, table: &str, content: &DeTable<'_>, scenario: &mut Scenario) -> Result<()> {
+        for (name, span, value) in in_order(content) {
+            self.key(&format!("{table}.{name}"), &span, value, scenario)?;
+        }
+        Ok(())
+    }
+
+    fn key(&self, name: &str, span: &Span<usize>, value: &Value<'_>, scenario: &mut Scenario) -> Result<()> {
+        let Some(Key { kind, .. }) = KEYS.iter().find(|k| k.name == name) else {
+            let known = KEYS
+                .iter()
+                .map(|k| k.name)
+                .chain(TABLES.iter().copied())
+                .chain(["steps"]);
+            return Err(self.unknown(name, span, value, known.map(str::to_owned)));
+        };
+        match kind {
+            Kind::Number(range, field) => *field(scenario) = self.number(name, value, range)?,
+            Kind::PerArm(range, field) => {
+                let allowed = || format!("four numbers, each {}", range.allowed());
+                let items = value.get_ref().as_array().filter(|a| a.len() == 4);
+                let items = items.ok_or_else(|| self.bad(name, value, allowed()))?;
+                for (slot, item) in field(scenario).iter_mut().zip(items.iter()) {
+                    *slot = self.number(name, item, range)?;
+                }
+            }
+            Kind::Flag(field) => {
+                let flag = value.get_ref().as_bool();
+                *field(scenario) = flag.ok_or_else(|| self.bad(name, value, "true or false"))?;
+            }
+            Kind::Choice(words, set) => {
+                let word = value.get_ref().as_str().filter(|w| words.contains(w));
+                set(
+                    scenario,
+                    word.ok_or_else(|| self.bad(name, value, words.join(", ")))?,
+                );
+            }
+            Kind::Seed(field) => {
+                let seed = as_number(value).filter(|v| v.fract() == 0.0 && (0.0..9.1e15).contains(v));
+                let seed = seed.ok_or_else(|| self.bad(name, value, "a whole number from 0 to 9e15"))?;
+                *field(scenario) = seed as u64;
+            }
+            Kind::Text(set) => {
+                let text = value
+                    .get_ref()
+                    .as_str()
+                    .filter(|t| !t.chars().any(char::is_control));
+                set(
+                    scenario,
+                    text.ok_or_else(|| self.bad(name, value, "one line of text"))?,
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// A number in its range, as SI.
+    fn number(&self, key: &str, value: &Value<'_>, range: &Range) -> Result<f64> {
+        let si = as_number(value).and_then(|v| range.to_si(v));
+        si.ok_or_else(|| self.bad(key, value, range.allowed()))
+    }
+
+    fn params(&self, table: &DeTable<'_>, params: &mut Params) -> Result<()> {
+        for (name, span, value) in in_order(table) {
+            let key = format!("params.{name}");
+            let number = as_number(value).ok_or_else(|| self.bad(&key, value, "a number"));
+            match params.set(name, number? as f32) {
+                Ok(()) => {}
+                Err(ParamError::Unknown) => {
+                    let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
+                    return Err(self.unknown(&key, &span, value, known));
+                }
+                Err(ParamError::OutOfRange { min, max, unit }) => {
+                    let unit = if unit == "1" { "" } else { unit };
+                    let allowed = format!("{min} to {max} {unit}");
+                    return Err(self.bad(&key, value, allowed.trim_end()));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn steps(&self, list: &Value<'_>) -> Result<Vec<Step>> {
+        let items = list.get_ref().as_array().map(|a| a.iter()).unwrap_or_default();
+        let mut steps = Vec::new();
+        let mut whereabouts = Whereabouts::OnGroundDisarmed;
+        for (i, item) in items.enumerate() {
+            let key = format!("steps[{i}]");
+            let step = self.step(&key, item)?;
+            whereabouts = whereabouts
+                .after(&step)
+                .map_err(|allowed| ScenarioError::StepOrder {
+                    at: self.at(&item.span()),
+                    key,
+                    step: step.name().to_owned(),
+                    allowed,
+                })?;
+            steps.push(step);
+        }
+        if steps.is_empty() {
+            return Err(ScenarioError::NoSteps {
+                at: self.at(&list.span()),
+            });
+        }
+        Ok(steps)
+    }
+
+    fn step(&self, key: &str, item: &Value<'_>) -> Result<Step> {
+        let names = || STEPS.iter().map(|k| k.name).collect::<Vec<_>>().join(", ");
+        let table = item.get_ref().as_table();
+        let table = table.ok_or_else(|| self.bad(key, item, "a table such as { do = \"arm\" }"))?;
+        let Some((_, name)) = table.iter().find(|(name, _)| name.get_ref() == "do") else {
+            let (at, key) = (self.at(&item.span()), format!("{key}.do"));
+            return Err(ScenarioError::MissingKey {
+                at,
+                key,
+                allowed: names(),
+            });
+        };
+        let kind = name
+            .get_ref()
+            .as_str()
+            .and_then(|word| STEPS.iter().find(|k| k.name == word));
+        let kind = kind.ok_or_else(|| self.bad(&format!("{key}.do"), name, names()))?;
+        Ok((kind.build)(self.step_numbers(key, kind, table)?))
+    }
+
+    fn step_numbers(&self, key: &str, kind: &StepKind, table: &DeTable<'_>) -> Result<[f64; 3]> {
+        let mut numbers = [0.0; 3];
+        for (slot, number) in numbers.iter_mut().zip(kind.numbers) {
+            *slot = number.default * number.range.si;
+        }
+        for (name, span, value) in in_order(table).into_iter().filter(|(name, ..)| *name != "do") {
+            let key = format!("{key}.{name}");
+            let slots = numbers.iter_mut().zip(kind.numbers);
+            let Some((slot, number)) = slots.into_iter().find(|(_, n)| n.key == name) else {
+                let table = key.strip_suffix(name).unwrap_or_default();
+                let known = kind
+                    .numbers
+                    .iter()
+                    .map(|n| n.key)
+                    .chain(["do"])
+                    .map(|n| format!("{table}{n}"));
+                return Err(self.unknown(&key, &span, value, known));
+            };
+            *slot = self.number(&key, value, &number.range)?;
+        }
+        Ok(numbers)
+    }
+
+    /// A pipe must leave room below it, whichever of its two keys the file sets.
+    fn pipe_clear_of_the_ground(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
+        let lowest = scenario.world.pipe_diameter + 0.2;
+        if scenario.world.pipe_top >= lowest {
+            return Ok(());
+        }
+        let world = root.get_ref().iter().find(|(name, _)| name.get_ref() == "world");
+        let keys = world.and_then(|(_, table)| table.get_ref().as_table());
+        let find = |wanted: &str| keys.and_then(|t| t.iter().find(|(name, _)| name.get_ref() == wanted));
+        let allowed = format!("pipe_top_m at least 0.2 m above pipe_diameter_m, here {lowest:.3} m");
+        for name in ["pipe_top_m", "pipe_diameter_m"] {
+            if let Some((_, value)) = find(name) {
+                return Err(self.bad(&format!("world.{name}"), value, allowed));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The steps of a text that is known to be good.
+pub(super) fn steps_of(text: &str) -> Vec<Step> {
+    let source = Source { file: "", text };
+    let Ok(root) = source.document() else {
+        return Vec::new();
+    };
+    let list = root.get_ref().iter().find(|(name, _)| name.get_ref() == "steps");
+    list.and_then(|(_, value)| source.steps(value).ok())
+        .unwrap_or_default()
+}
+
+/// Builders tell the stack what they built: the parameters follow the vehicle unless the file says otherwise.
+fn believe_the_vehicle(scenario: &mut Scenario) {
+    scenario.params.infill = scenario.vehicle.infill as f32;
+    scenario.params.gain_k = scenario.vehicle.gain_k as f32;
+    if scenario.vehicle.servo == ServoProfile::Mg996r {
+        scenario.params.servo_stall = MG996R_STALL;
+    }
+}
+
+/// The entries as the file has them, so that the first mistake is the one reported.
+fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usize>, &'t Value<'i>)> {
+    let mut entries: Vec<_> = table
+        .iter()
+        .map(|(k, v)| (k.get_ref().as_ref(), k.span(), v))
+        .collect();
+    entries.sort_by_key(|(_, span, _)| span.start);
+    entries
+}
+
+fn as_number(value: &Value<'_>) -> Option<f64> {
+    match value.get_ref() {
+        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|v| v as f64),
+        DeValue::Float(f) => f.as_str().parse().ok(),
+        _ => None,
+    }
+}

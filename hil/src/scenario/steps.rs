@@ -1,0 +1,184 @@
+//! The steps of a mission in a scenario file: their names, their numbers, and the order in which they make
+//! sense.
+
+use core::f64::consts::PI;
+
+use super::Step;
+use super::keys::Range;
+
+/// One kind of step.
+pub struct StepKind {
+    /// Name in the file and in the record.
+    pub name: &'static str,
+    /// Its numbers.
+    pub numbers: &'static [StepNumber],
+    /// Makes the step from its numbers (SI), in their order.
+    pub build: fn([f64; 3]) -> Step,
+}
+
+/// One number of a step.
+pub struct StepNumber {
+    /// Key in the file.
+    pub key: &'static str,
+    /// What it may be.
+    pub range: Range,
+    /// Value when the key is not given, in the unit of the file.
+    pub default: f64,
+}
+
+const fn number(key: &'static str, range: Range, default: f64) -> StepNumber {
+    StepNumber { key, range, default }
+}
+
+const HEIGHT: Range = Range::new(0.5, 30.0, "m");
+const PLACE: Range = Range::new(-50.0, 50.0, "m");
+
+/// Every kind of step.
+pub const STEPS: &[StepKind] = &[
+    StepKind {
+        name: "arm",
+        numbers: &[],
+        build: |_| Step::Arm,
+    },
+    StepKind {
+        name: "take-off",
+        numbers: &[number("height_m", HEIGHT, 3.0)],
+        build: |[height, ..]| Step::TakeOff { height },
+    },
+    StepKind {
+        name: "hover",
+        numbers: &[number("seconds", Range::new(0.1, 600.0, "s"), 5.0)],
+        build: |[seconds, ..]| Step::Hover { seconds },
+    },
+    StepKind {
+        name: "roll",
+        numbers: &[
+            number("angle_deg", Range::new(1.0, 35.0, "deg").times(PI / 180.0), 25.0),
+            number("seconds", Range::new(0.1, 5.0, "s"), 0.6),
+        ],
+        build: |[angle, seconds, _]| Step::Roll { angle, seconds },
+    },
+    StepKind {
+        name: "fly-to-pipe",
+        numbers: &[],
+        build: |_| Step::FlyToPipe,
+    },
+    StepKind {
+        name: "touch",
+        numbers: &[],
+        build: |_| Step::Touch,
+    },
+    StepKind {
+        name: "perch",
+        numbers: &[number(
+            "throttle_percent",
+            Range::new(5.0, 60.0, "%").times(0.01),
+            30.0,
+        )],
+        build: |[throttle, ..]| Step::Perch { throttle },
+    },
+    StepKind {
+        name: "hold",
+        numbers: &[
+            number("seconds", Range::new(0.1, 600.0, "s"), 20.0),
+            number("push_n", Range::new(0.0, 20.0, "N"), 1.5),
+        ],
+        build: |[seconds, push, _]| Step::Hold { seconds, push },
+    },
+    StepKind {
+        name: "release",
+        numbers: &[],
+        build: |_| Step::Release,
+    },
+    StepKind {
+        name: "fly-to",
+        numbers: &[
+            number("north_m", PLACE, 0.0),
+            number("east_m", PLACE, 0.0),
+            number("height_m", HEIGHT, 2.0),
+        ],
+        build: |[north, east, height]| Step::FlyTo { north, east, height },
+    },
+    StepKind {
+        name: "land",
+        numbers: &[],
+        build: |_| Step::Land,
+    },
+    StepKind {
+        name: "disarm",
+        numbers: &[],
+        build: |_| Step::Disarm,
+    },
+];
+
+impl Step {
+    /// Name of the step, as in scenario files and in the record of a flight.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Arm => "arm",
+            Self::TakeOff { .. } => "take-off",
+            Self::Hover { .. } => "hover",
+            Self::Roll { .. } => "roll",
+            Self::FlyToPipe => "fly-to-pipe",
+            Self::Touch => "touch",
+            Self::Perch { .. } => "perch",
+            Self::Hold { .. } => "hold",
+            Self::Release => "release",
+            Self::FlyTo { .. } => "fly-to",
+            Self::Land => "land",
+            Self::Disarm => "disarm",
+        }
+    }
+}
+
+/// Where the vehicle is between two steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Whereabouts {
+    OnGroundDisarmed,
+    OnGroundArmed,
+    InAir,
+    OverPipe,
+    OnPipe,
+    Clamped,
+}
+
+impl Whereabouts {
+    /// Where `step` leads from here, or the reason why it cannot be done: when it may be.
+    pub(super) fn after(self, step: &Step) -> Result<Self, String> {
+        use Whereabouts::*;
+        let (from, to): (&[Self], Self) = match step {
+            Step::Arm => (&[OnGroundDisarmed], OnGroundArmed),
+            Step::TakeOff { .. } => (&[OnGroundArmed], InAir),
+            Step::Hover { .. } => (&[InAir, OverPipe], self),
+            Step::Roll { .. } | Step::FlyTo { .. } => (&[InAir, OverPipe], InAir),
+            Step::FlyToPipe => (&[InAir], OverPipe),
+            Step::Touch => (&[OverPipe], OnPipe),
+            Step::Perch { .. } => (&[OnPipe], Clamped),
+            Step::Hold { .. } => (&[Clamped], Clamped),
+            Step::Release => (&[Clamped], OverPipe),
+            // Over the pipe there is no ground below: it must be flown away from first.
+            Step::Land => (&[InAir], OnGroundArmed),
+            Step::Disarm => (&[OnGroundArmed], OnGroundDisarmed),
+        };
+        if from.contains(&self) {
+            return Ok(to);
+        }
+        let when: Vec<&str> = from.iter().map(|w| w.words()).collect();
+        Err(format!(
+            "only {}, but here the vehicle is {}",
+            when.join(" or "),
+            self.words()
+        ))
+    }
+
+    const fn words(self) -> &'static str {
+        match self {
+            Self::OnGroundDisarmed => "on the ground, disarmed",
+            Self::OnGroundArmed => "on the ground, armed",
+            Self::InAir => "in free flight",
+            Self::OverPipe => "over the pipe",
+            Self::OnPipe => "touching the pipe",
+            Self::Clamped => "clamped to the pipe",
+        }
+    }
+}

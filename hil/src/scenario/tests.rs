@@ -1,0 +1,360 @@
+//! Every message that a bad scenario can give, word for word, and that the good ones are read right.
+
+use std::path::Path;
+
+use sophie_control::mixer::Variant;
+use sophie_control::params::Params;
+use sophie_control::rc::ArmChoice;
+use sophie_control::wrench::Configuration;
+
+use super::keys::{KEYS, Kind};
+use super::*;
+
+fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+    Scenario::parse(text, "perch.toml", &Overrides::default())
+}
+
+fn complaint(text: &str) -> String {
+    let line = parse(text).expect_err(text).to_string();
+    assert!(!line.contains('\n') && line.len() < 500, "{line}");
+    line
+}
+
+#[test]
+fn the_default_mission_states_the_defaults() {
+    let mission = Scenario::default_mission();
+    let empty = Scenario::empty();
+    assert_eq!(format!("{:?}", mission.vehicle), format!("{:?}", empty.vehicle));
+    assert_eq!(format!("{:?}", mission.world), format!("{:?}", empty.world));
+    assert_eq!(format!("{:?}", mission.pilot), format!("{:?}", empty.pilot));
+    assert_eq!(
+        mission.params,
+        Params {
+            infill: 6.9,
+            gain_k: 7.75,
+            ..Params::default()
+        }
+    );
+    assert_eq!(
+        (mission.mixer, mission.arms, mission.seed),
+        (Variant::Flexible, ArmChoice::All, 1)
+    );
+    assert_eq!(mission.time_limit, empty.time_limit);
+    let names: Vec<&str> = mission.steps.iter().map(Step::name).collect();
+    assert_eq!(
+        names.join(" "),
+        "arm take-off hover roll fly-to-pipe touch perch hold release fly-to land disarm"
+    );
+    assert_eq!(mission.steps.get(6), Some(&Step::Perch { throttle: 0.3 }));
+    // A file without steps flies the same ones, and a step without numbers has the same numbers.
+    assert_eq!(parse("").unwrap().steps, mission.steps);
+    let bare: Vec<String> = names.iter().map(|n| format!("{{ do = \"{n}\" }}")).collect();
+    assert_eq!(
+        parse(&format!("steps = [{}]", bare.join(", "))).unwrap().steps,
+        mission.steps
+    );
+}
+
+#[test]
+fn the_default_mission_shows_every_key() {
+    for key in KEYS.iter().filter(|k| k.name != "expect.reason") {
+        let name = key.name.rsplit('.').next().unwrap();
+        assert!(
+            MISSION.lines().any(|l| l.starts_with(&format!("{name} = "))),
+            "{name}"
+        );
+    }
+    for kind in STEPS {
+        assert!(
+            MISSION.contains(&format!("do = \"{}\"", kind.name)),
+            "{}",
+            kind.name
+        );
+        for number in kind.numbers {
+            assert!(MISSION.contains(number.key), "{}", number.key);
+        }
+    }
+}
+
+#[test]
+fn numbers_are_converted_once() {
+    let s = parse(
+        "steps = [{ do = 'arm' }, { do = 'take-off', height_m = 4 }, { do = 'roll', angle_deg = 18 }]\n\
+         [vehicle]\narm_offset_deg = [0, 1.8, 0, -1.8]\nbattery_charge_percent = 50\n",
+    )
+    .unwrap();
+    assert!((s.vehicle.arm_offset[1] - 0.01 * core::f64::consts::PI).abs() < 1e-12);
+    assert_eq!(s.vehicle.battery_charge, 0.5);
+    assert!(matches!(s.steps.get(2), Some(Step::Roll { angle, .. }) if (angle - 0.314_159).abs() < 1e-6));
+}
+
+#[test]
+fn the_stack_believes_the_vehicle_unless_told_otherwise() {
+    let s = parse("[vehicle]\ninfill = 8\ngain_k = 5\nservo = 'mg996r'").unwrap();
+    assert_eq!(
+        (s.params.infill, s.params.gain_k, s.params.servo_stall),
+        (8.0, 5.0, 0.92)
+    );
+    let s = parse("[vehicle]\ninfill = 8\n[params]\ninfill = 6\nrate_p = 9").unwrap();
+    assert_eq!(
+        (s.vehicle.infill, s.params.infill, s.params.rate_p),
+        (8.0, 6.0, 9.0)
+    );
+}
+
+#[test]
+fn the_command_line_wins_over_the_file() {
+    let overrides = Overrides {
+        infill: Some(9.0),
+        gain_k: Some(2.0),
+        configuration: Some(Configuration::A),
+        mixer: Some(Variant::Paper),
+        arms: Some(ArmChoice::Rear),
+        seed: Some(77),
+    };
+    let text = "seed = 3\nmixer = 'rigid'\narms = 'front'\n[vehicle]\ninfill = 8\nconfiguration = 'B'";
+    let s = Scenario::parse(text, "f", &overrides).unwrap();
+    assert_eq!((s.vehicle.infill, s.vehicle.gain_k, s.seed), (9.0, 2.0, 77));
+    assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
+    assert_eq!(
+        (s.vehicle.configuration, s.mixer, s.arms),
+        (Configuration::A, Variant::Paper, ArmChoice::Rear)
+    );
+}
+
+#[test]
+fn bad_values_name_file_line_key_value_and_what_is_allowed() {
+    for (text, line) in [
+        (
+            "[vehicle]\n\ninfill = 3.5",
+            "perch.toml:3: vehicle.infill = 3.5: allowed 4 to 10 %",
+        ),
+        (
+            "[vehicle]\ninfill = nan",
+            "perch.toml:2: vehicle.infill = nan: allowed 4 to 10 %",
+        ),
+        (
+            "[vehicle]\ninfill = 'soft'",
+            "perch.toml:2: vehicle.infill = 'soft': allowed 4 to 10 %",
+        ),
+        (
+            "vehicle = 3",
+            "perch.toml:1: vehicle = 3: allowed a table, written [vehicle]",
+        ),
+        (
+            "mixer = 'best'",
+            "perch.toml:1: mixer = 'best': allowed flexible, rigid, paper, frozen",
+        ),
+        ("arms = 4", "perch.toml:1: arms = 4: allowed all, front, rear"),
+        (
+            "seed = -1",
+            "perch.toml:1: seed = -1: allowed a whole number from 0 to 9e15",
+        ),
+        (
+            "seed = 1.5",
+            "perch.toml:1: seed = 1.5: allowed a whole number from 0 to 9e15",
+        ),
+        (
+            "name = \"a\\nb\"",
+            "perch.toml:1: name = \"a\\nb\": allowed one line of text",
+        ),
+        (
+            "[vehicle]\narm_gain = [1, 1, 1]",
+            "perch.toml:2: vehicle.arm_gain = [1, 1, 1]: allowed four numbers, each 0.5 to 1.5",
+        ),
+        (
+            "[vehicle]\narm_gain = [1, 1,\n 9, 1]",
+            "perch.toml:3: vehicle.arm_gain = 9: allowed 0.5 to 1.5",
+        ),
+        (
+            "[vehicle]\ncoupled_arms = 1",
+            "perch.toml:2: vehicle.coupled_arms = 1: allowed true or false",
+        ),
+        (
+            "[params]\nrate_p = 99",
+            "perch.toml:2: params.rate_p = 99: allowed 0 to 40 1/s",
+        ),
+        (
+            "[params]\ngain_k = 0",
+            "perch.toml:2: params.gain_k = 0: allowed 1 to 10",
+        ),
+        (
+            "[params]\nrate_p = true",
+            "perch.toml:2: params.rate_p = true: allowed a number",
+        ),
+        (
+            "[world]\npipe_top_m = 0.6\npipe_diameter_m = 0.5",
+            "perch.toml:2: world.pipe_top_m = 0.6: \
+             allowed pipe_top_m at least 0.2 m above pipe_diameter_m, here 0.700 m",
+        ),
+    ] {
+        assert_eq!(complaint(text), line);
+    }
+}
+
+#[test]
+fn unknown_keys_name_the_nearest() {
+    for (text, line) in [
+        (
+            "[vehicle]\ninfil = 6",
+            "perch.toml:2: vehicle.infil = 6: unknown key: nearest allowed vehicle.infill",
+        ),
+        (
+            "[world]\npipe_top = 2",
+            "perch.toml:2: world.pipe_top = 2: unknown key: nearest allowed world.pipe_top_m",
+        ),
+        (
+            "infill = 6",
+            "perch.toml:1: infill = 6: unknown key: nearest allowed vehicle.infill",
+        ),
+        (
+            "[vehicel]\n",
+            "perch.toml:1: vehicel = [vehicel]: unknown key: nearest allowed vehicle",
+        ),
+        (
+            "[params]\nrate_pp = 1",
+            "perch.toml:2: params.rate_pp = 1: unknown key: nearest allowed params.rate_p, params.rate_d, \
+             params.rate_i",
+        ),
+        (
+            "steps = [{ do = 'arm' }, { do = 'take-off', height = 2 }]",
+            "perch.toml:1: steps[1].height = 2: unknown key: nearest allowed steps[1].height_m",
+        ),
+    ] {
+        assert_eq!(complaint(text), line);
+    }
+}
+
+#[test]
+fn steps_must_make_a_mission() {
+    for (text, line) in [
+        (
+            "steps = []",
+            "perch.toml:1: steps = []: allowed at least one step, such as arm",
+        ),
+        (
+            "steps = 'arm'",
+            "perch.toml:1: steps = 'arm': allowed a list such as [{ do = \"arm\" }]",
+        ),
+        (
+            "steps = ['arm']",
+            "perch.toml:1: steps[0] = 'arm': allowed a table such as { do = \"arm\" }",
+        ),
+        (
+            "steps = [\n  { do = 'arm' },\n  { do = 'perch' },\n]",
+            "perch.toml:3: steps[1] = perch: allowed only touching the pipe, \
+             but here the vehicle is on the ground, armed",
+        ),
+        (
+            "steps = [{ do = 'hover' }]",
+            "perch.toml:1: steps[0] = hover: allowed only in free flight or over the pipe, \
+             but here the vehicle is on the ground, disarmed",
+        ),
+        (
+            "steps = [{ do = 'arm' }, { do = 'take-off', height_m = 99 }]",
+            "perch.toml:1: steps[1].height_m = 99: allowed 0.5 to 30 m",
+        ),
+    ] {
+        assert_eq!(complaint(text), line);
+    }
+    assert!(
+        complaint("steps = [{ height_m = 1 }]")
+            .starts_with("perch.toml:1: steps[0].do is missing: allowed arm, ")
+    );
+    assert!(
+        complaint("steps = [{ do = 'fly' }]").starts_with("perch.toml:1: steps[0].do = 'fly': allowed arm, ")
+    );
+}
+
+#[test]
+fn what_is_no_toml_is_refused_in_one_line() {
+    for text in [
+        "infill = ",
+        "[vehicle",
+        "a = 1\na = 2",
+        "{",
+        "steps = [",
+        "\u{0}",
+        "x = \"\n\"",
+        "[vehicle]\n[vehicle]",
+    ] {
+        let error = parse(text).expect_err(text);
+        assert!(matches!(error, ScenarioError::Syntax { .. }), "{text}: {error:?}");
+        assert!(complaint(text).contains(": not valid TOML: "), "{text}");
+    }
+    assert!(complaint("seed = 1\nseed = 2").starts_with("perch.toml:2: not valid TOML: "));
+}
+
+#[test]
+fn unreadable_files_are_refused_in_one_line() {
+    let load = |path: &Path| Scenario::load(path, &Overrides::default()).expect_err("refused");
+    let missing = load(Path::new("no/such/file.toml"));
+    assert!(
+        missing
+            .to_string()
+            .starts_with("no/such/file.toml: cannot be read: No such file"),
+        "{missing}"
+    );
+    let directory = load(Path::new("."));
+    assert_eq!(
+        directory.to_string(),
+        ".: cannot be read: it is a directory; allowed is a TOML file"
+    );
+    let file = std::env::temp_dir().join(format!("sophie-{}-latin1.toml", std::process::id()));
+    std::fs::write(&file, b"seed = 1\nname = \"caf\xe9\"\n").unwrap();
+    let latin = load(&file);
+    std::fs::remove_file(&file).unwrap();
+    assert_eq!(
+        latin.to_string(),
+        format!("{}:2: not UTF-8 text: allowed is a TOML file", file.display())
+    );
+}
+
+#[test]
+fn long_and_odd_values_stay_on_one_line() {
+    let line = complaint(&format!("[vehicle]\ninfill = \"{}\"", "x".repeat(5000)));
+    assert!(line.len() < 200, "{line}");
+    complaint("\"a\\nb\" = 1");
+    complaint("steps = [{ do = \"\"\"arm\nland\"\"\" }]");
+}
+
+#[test]
+fn every_number_takes_its_bounds_and_nothing_beyond() {
+    for key in KEYS {
+        let Kind::Number(range, _) = &key.kind else {
+            continue;
+        };
+        let text = |value: f64| {
+            let (table, name) = key.name.rsplit_once('.').unwrap_or(("", key.name));
+            let head = if table.is_empty() {
+                String::new()
+            } else {
+                format!("[{table}]\n")
+            };
+            // Room for the largest pipe.
+            let room = if name == "pipe_diameter_m" {
+                "pipe_top_m = 5\n"
+            } else {
+                ""
+            };
+            let slim = if name == "pipe_top_m" {
+                "pipe_diameter_m = 0.2\n"
+            } else {
+                ""
+            };
+            format!("{head}{room}{slim}{name} = {value:?}\n").replace("NaN", "nan")
+        };
+        assert!(
+            parse(&text(range.min)).is_ok() && parse(&text(range.max)).is_ok(),
+            "{}",
+            key.name
+        );
+        for bad in [range.min - 1e-3, range.max + 1e-3, f64::NAN, f64::INFINITY] {
+            assert!(
+                matches!(parse(&text(bad)), Err(ScenarioError::BadValue { .. })),
+                "{} {bad}",
+                key.name
+            );
+        }
+    }
+}

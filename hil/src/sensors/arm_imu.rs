@@ -1,0 +1,88 @@
+//! The sensor at an arm's tip, after the BNO055's datasheet: its fused gravity vector.
+
+use std::collections::VecDeque;
+
+use glam::{DQuat, DVec3};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::SIDE;
+
+/// Fusion steps per second (datasheet).
+pub const RATE_HZ: f64 = 100.0;
+/// Steps by which the output is late: 20 ms (assumed).
+const LATENCY: usize = 2;
+/// One count, m/s² (datasheet).
+const LSB: f64 = 0.01;
+/// Noise of the fused vector, m/s² (assumed).
+const NOISE: f64 = 0.03;
+/// Largest mounting error, rad (assumed, half a degree).
+const MOUNTING: f64 = 0.0087;
+/// Share of the motion's acceleration that leaks into the vector, and its time constant, s (assumed).
+const LEAK: (f64, f64) = (0.1, 0.3);
+
+/// One arm's sensor.
+#[derive(Clone, Debug)]
+pub struct ArmImu {
+    side: f64,
+    mounting: f64,
+    leaked: DVec3,
+    pipeline: VecDeque<Vec3>,
+    rng: Pcg64Mcg,
+}
+
+impl ArmImu {
+    /// The sensor of arm `arm`, 0 to 3, with a mounting error of its own.
+    #[must_use]
+    pub fn new(arm: usize, mut rng: Pcg64Mcg) -> Self {
+        let mounting = rng.random_range(-MOUNTING..MOUNTING);
+        Self {
+            side: f64::from(SIDE[arm]),
+            mounting,
+            leaked: DVec3::ZERO,
+            pipeline: VecDeque::with_capacity(LATENCY + 1),
+            rng,
+        }
+    }
+
+    /// One fusion step on an arm tilted by `tilt` rad on a body at `attitude` that feels `specific_force`
+    /// (m/s², body): the gravity vector that is read now, m/s², arm axes.
+    pub fn sample(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3) -> Vec3 {
+        let down = attitude.conjugate() * DVec3::new(0.0, 0.0, 9.806_65);
+        let motion = -specific_force - down;
+        self.leaked += (motion * LEAK.0 - self.leaked) * (1.0 / (RATE_HZ * LEAK.1));
+        let arm = DQuat::from_rotation_x(self.side * (tilt + self.mounting));
+        let seen = arm.conjugate() * (down + self.leaked);
+        let mut axis = |x: f64| {
+            let n: f64 = StandardNormal.sample(&mut self.rng);
+            (((x + n * NOISE) / LSB).round() * LSB) as f32
+        };
+        self.pipeline.push_back(Vec3::new(axis(seen.x), axis(seen.y), axis(seen.z)));
+        if self.pipeline.len() > LATENCY {
+            self.pipeline.pop_front().unwrap_or_default()
+        } else {
+            self.pipeline.front().copied().unwrap_or_default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tilted_arm_sees_gravity_turned_20_ms_late() {
+        let mut imu = ArmImu::new(0, Pcg64Mcg::new(5));
+        let rest = DVec3::new(0.0, 0.0, -9.806_65);
+        for _ in 0..10 {
+            imu.sample(DQuat::IDENTITY, 0.0, rest);
+        }
+        let old = imu.sample(DQuat::IDENTITY, 0.5, rest);
+        assert!(old.y.abs() < 0.25, "{old:?}");
+        imu.sample(DQuat::IDENTITY, 0.5, rest);
+        let new = imu.sample(DQuat::IDENTITY, 0.5, rest);
+        // Left arm, tip up: turned by +0.5 about x, so gravity appears at y = g sin 0.5.
+        assert!((f64::from(new.y) - 9.806_65 * 0.5f64.sin()).abs() < 0.25, "{new:?}");
+    }
+}

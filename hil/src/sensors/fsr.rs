@@ -1,0 +1,146 @@
+//! A force-sensing resistor under an arm's skin, its divider and the converter behind it.
+//!
+//! Interlink FSR 406 as its datasheet and integration guide describe it: it conducts nothing below 0.1 N, then
+//! in proportion to about the force (10 kΩ at 1 N), differs from part to part, remembers where it came from
+//! and creeps. The sum is the paper's error of about 50 N/m² at 950 N/m².
+
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal, Uniform};
+
+/// Active area: 38 mm square (datasheet), m².
+const AREA: f64 = 0.038 * 0.038;
+/// Force below which it does not conduct, N (datasheet, actuation force).
+const THRESHOLD: f64 = 0.1;
+/// Conductance at 1 N, S (guide, about 10 kΩ).
+const GAIN: f64 = 1e-4;
+/// Largest part-to-part error of the gain once calibrated in the arm (assumed; 6 % from the reel, datasheet).
+const PART_ERROR: f64 = 0.04;
+/// Exponent of the force: from this to 1 (assumed; the guide's log-log plot is straight near 1).
+const EXPONENT_MIN: f64 = 0.97;
+/// Half width of the hysteresis as a share of the force (assumed for slow changes; datasheet 10 % over the
+/// whole range).
+const HYSTERESIS: f64 = 0.015;
+/// RMS of the creep and its time constant, s (assumed; datasheet below 5 % per decade of time).
+const CREEP: (f64, f64) = (0.008, 20.0);
+/// RMS of the noise as a share of the conductance (assumed).
+const NOISE: f64 = 0.004;
+/// Divider's resistor to ground, Ω, and the largest error of it.
+const DIVIDER: (f64, f64) = (10_000.0, 0.01);
+/// RMS noise of the converter, counts.
+const ADC_NOISE: f64 = 1.2;
+
+/// What has gone wrong with a sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FsrBreak {
+    /// A lead broke: nothing conducts any more.
+    Open,
+    /// The leads touch.
+    Short,
+}
+
+/// One sensor with its divider.
+#[derive(Clone, Debug)]
+pub struct FsrSensor {
+    gain: f64,
+    exponent: f64,
+    divider: f64,
+    felt: f64,
+    creep: f64,
+    broken: Option<FsrBreak>,
+}
+
+impl FsrSensor {
+    /// A sensor out of the bag that `rng` holds.
+    pub fn new(rng: &mut impl Rng) -> Self {
+        let mut within = |low: f64, high: f64| Uniform::new(low, high).map_or(low, |u| u.sample(rng));
+        Self {
+            gain: GAIN * within(1.0 - PART_ERROR, 1.0 + PART_ERROR),
+            exponent: within(EXPONENT_MIN, 1.0),
+            divider: DIVIDER.0 * within(1.0 - DIVIDER.1, 1.0 + DIVIDER.1),
+            felt: 0.0,
+            creep: 0.0,
+            broken: None,
+        }
+    }
+
+    /// Breaks the sensor, or mends it.
+    pub fn set_broken(&mut self, broken: Option<FsrBreak>) {
+        self.broken = broken;
+    }
+
+    /// Counts of the 12-bit converter under the true pressure `pressure` (Pa), `dt` s after the sample before.
+    pub fn sample(&mut self, pressure: f64, dt: f64, rng: &mut impl Rng) -> u16 {
+        let mut normal = || -> f64 { StandardNormal.sample(rng) };
+        let force = pressure.max(0.0) * AREA;
+        // Play: the felt force moves only when pushed by either edge.
+        self.felt = self.felt.clamp(force * (1.0 - HYSTERESIS), force * (1.0 + HYSTERESIS));
+        let keep = (-dt / CREEP.1).exp();
+        self.creep = self.creep * keep + CREEP.0 * (1.0 - keep * keep).sqrt() * normal();
+        let x = match self.broken {
+            Some(FsrBreak::Open) => 0.0,
+            Some(FsrBreak::Short) => 1.0,
+            None if force < THRESHOLD => 0.0,
+            None => {
+                let drift = 1.0 + self.creep + NOISE * normal();
+                let load = self.gain * self.felt.powf(self.exponent) * drift * self.divider;
+                load / (1.0 + load)
+            }
+        };
+        // A grounded or railed pin has no noise to speak of; a divider has.
+        let noise = if x > 0.0 && x < 1.0 { ADC_NOISE * normal() } else { 0.0 };
+        (x * 4095.0 + noise).round().clamp(0.0, 4095.0) as u16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+
+    #[test]
+    fn the_error_at_the_grip_pressure_is_the_paper_s() {
+        let mut rng = Pcg64Mcg::seed_from_u64(7);
+        let (mut square, mut worst) = (0.0, 0.0_f64);
+        let n = 400;
+        for _ in 0..n {
+            let mut s = FsrSensor::new(&mut rng);
+            let mut counts = 0.0;
+            for i in 0..500 {
+                let p = 950.0 * (f64::from(i) / 300.0).min(1.0);
+                counts = f64::from(s.sample(p, 0.002, &mut rng));
+            }
+            let x = counts / 4095.0;
+            let error = x / (1.0 - x) / 10_000.0 / 1e-4 / AREA - 950.0;
+            square += error * error;
+            worst = worst.max(error.abs());
+        }
+        let rms = (square / f64::from(n)).sqrt();
+        assert!((20.0..40.0).contains(&rms) && (50.0..90.0).contains(&worst), "{rms} {worst}");
+    }
+
+    #[test]
+    fn it_feels_nothing_below_its_threshold_and_remembers_where_it_came_from() {
+        let mut rng = Pcg64Mcg::seed_from_u64(3);
+        let mut s = FsrSensor::new(&mut rng);
+        assert!(s.sample(60.0, 0.002, &mut rng) == 0);
+        let mut mean = |p: f64| {
+            (0..2000).map(|_| f64::from(s.sample(p, 0.0, &mut rng))).sum::<f64>() / 2000.0
+        };
+        let up = mean(900.0);
+        mean(1500.0);
+        let down = mean(900.0);
+        assert!(down > up + 20.0, "{up} {down}");
+    }
+
+    #[test]
+    fn broken_leads() {
+        let mut rng = Pcg64Mcg::seed_from_u64(3);
+        let mut s = FsrSensor::new(&mut rng);
+        s.set_broken(Some(FsrBreak::Open));
+        assert!(s.sample(950.0, 0.002, &mut rng) == 0);
+        s.set_broken(Some(FsrBreak::Short));
+        assert!(s.sample(950.0, 0.002, &mut rng) == 4095);
+    }
+}

@@ -1,0 +1,99 @@
+//! The vehicle's inertial sensor, after the ICM-42688-P's datasheet.
+
+use glam::DVec3;
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use sophie_control::vector::Vec3;
+use sophie_tasks::ports::ImuReading;
+
+/// Samples per second.
+pub const RATE_HZ: f64 = 4000.0;
+/// Gyro noise, rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
+const GYRO_NOISE: f64 = 2.8e-3 * (std::f64::consts::PI / 180.0) * 44.7;
+/// Accelerometer noise, m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
+const ACCEL_NOISE: f64 = 70e-6 * 9.806_65 * 44.7;
+/// Largest gyro bias, rad/s: ±0.5 dps (datasheet).
+const GYRO_BIAS: f64 = 0.5 * (std::f64::consts::PI / 180.0);
+/// Largest accelerometer bias, m/s²: ±20 mg (datasheet).
+const ACCEL_BIAS: f64 = 0.020 * 9.806_65;
+/// One count of the gyro at ±2000 dps, rad/s.
+const GYRO_LSB: f64 = 2000.0 * (std::f64::consts::PI / 180.0) / 32768.0;
+/// One count of the accelerometer at ±16 g, m/s².
+const ACCEL_LSB: f64 = 16.0 * 9.806_65 / 32768.0;
+/// Vibration at the rotor's speed for each rotor at 600 rad/s: rad/s and m/s² (assumed; soft arms isolate).
+const VIBRATION: (f64, f64) = (0.01, 0.25);
+
+/// The sensor with its errors.
+#[derive(Clone, Debug)]
+pub struct Imu {
+    gyro_bias: DVec3,
+    accel_bias: DVec3,
+    rng: Pcg64Mcg,
+    pipeline: ImuReading,
+    phase: [f64; 4],
+}
+
+impl Imu {
+    /// A part with biases of its own.
+    #[must_use]
+    pub fn new(mut rng: Pcg64Mcg) -> Self {
+        let mut within = |limit: f64| {
+            DVec3::from_array(std::array::from_fn(|_| rng.random_range(-limit..limit)))
+        };
+        let (gyro_bias, accel_bias) = (within(GYRO_BIAS), within(ACCEL_BIAS));
+        Self { gyro_bias, accel_bias, rng, pipeline: ImuReading::default(), phase: [0.0; 4] }
+    }
+
+    /// One sample of the body rate (rad/s) and specific force (m/s²) with the rotors at `rotors` rad/s. It comes
+    /// out one sample late, as from the part's own filter.
+    pub fn sample(&mut self, rate: DVec3, specific_force: DVec3, rotors: &[f64; 4]) -> ImuReading {
+        let (mut shake_gyro, mut shake_accel) = (DVec3::ZERO, DVec3::ZERO);
+        for (i, (phase, speed)) in self.phase.iter_mut().zip(rotors).enumerate() {
+            *phase = (*phase + speed / RATE_HZ) % std::f64::consts::TAU;
+            let size = (speed / 600.0).powi(2) * (*phase + i as f64).sin();
+            shake_gyro += DVec3::new(size, -size, 0.3 * size) * VIBRATION.0;
+            shake_accel += DVec3::new(size, 0.7 * size, size) * VIBRATION.1;
+        }
+        let gyro = self.measure(rate + self.gyro_bias + shake_gyro, GYRO_NOISE, GYRO_LSB);
+        let accel = self.measure(specific_force + self.accel_bias + shake_accel, ACCEL_NOISE, ACCEL_LSB);
+        std::mem::replace(&mut self.pipeline, ImuReading { gyro, accel })
+    }
+
+    /// Adds noise of `noise` rms, rounds to counts of `lsb` and stops at full scale.
+    fn measure(&mut self, truth: DVec3, noise: f64, lsb: f64) -> Vec3 {
+        let mut axis = |x: f64| {
+            let n: f64 = StandardNormal.sample(&mut self.rng);
+            (((x + n * noise) / lsb).round().clamp(-32768.0, 32767.0) * lsb) as f32
+        };
+        Vec3::new(axis(truth.x), axis(truth.y), axis(truth.z))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_and_bias_are_those_of_the_datasheet() {
+        let mut imu = Imu::new(Pcg64Mcg::new(3));
+        let n = 40_000;
+        let (mut sum, mut square) = (0.0, 0.0);
+        for _ in 0..n {
+            let x = f64::from(imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]).gyro.x);
+            sum += x;
+            square += x * x;
+        }
+        let mean = sum / f64::from(n);
+        let sd = (square / f64::from(n) - mean * mean).sqrt();
+        assert!(mean.abs() <= GYRO_BIAS && (sd / GYRO_NOISE - 1.0).abs() < 0.05);
+    }
+
+    #[test]
+    fn it_saturates_at_full_scale() {
+        let mut imu = Imu::new(Pcg64Mcg::new(3));
+        imu.sample(DVec3::splat(100.0), DVec3::splat(-500.0), &[0.0; 4]);
+        let r = imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]);
+        assert!((r.gyro.x - 34.905).abs() < 0.01 && (r.accel.y + 156.9).abs() < 0.1);
+    }
+}

@@ -1,0 +1,6 @@
+//! What the sensors make of the truth.
+
+pub mod analog;
+pub mod arm_imu;
+pub mod fsr;
+pub mod imu;

@@ -1,0 +1,195 @@
+//! Options of the command line and their ranges.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand};
+use sophie_control::mixer::Variant;
+use sophie_control::rc::ArmChoice;
+use sophie_control::wrench::Configuration;
+use sophie_hil::scenario::Overrides;
+use sophie_hil::scenario::keys::{self, Range};
+
+/// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
+#[derive(Parser)]
+#[command(name = "sophie", version, args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    fly: FlyArgs,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Fly a mission and report it (the default; the word may be left out).
+    ///
+    /// Exit status: 0 mission accomplished, 1 not accomplished, 2 bad input or unwritable output.
+    Fly(FlyArgs),
+}
+
+/// What to fly and where to report it. Options win over the file.
+#[derive(Args, Debug)]
+pub struct FlyArgs {
+    /// Scenario file; without one the default mission is flown.
+    pub scenario: Option<PathBuf>,
+    /// Infill of the arms, 4 to 10 %.
+    #[arg(long, visible_alias = "rho", value_name = "PERCENT", value_parser = infill, allow_negative_numbers = true)]
+    infill: Option<f64>,
+    /// Sense of rotation: A or B.
+    #[arg(long, value_name = "A|B", value_parser = configuration)]
+    config: Option<Configuration>,
+    /// Allocation: flexible, rigid, paper or frozen.
+    #[arg(long, value_name = "NAME", value_parser = mixer)]
+    mixer: Option<Variant>,
+    /// Arms that close: 4 (all), 2 (front pair) or rear.
+    #[arg(long, value_name = "2|4|rear", value_parser = arms, allow_negative_numbers = true)]
+    arms: Option<ArmChoice>,
+    /// Gain on the elastic term of the arm equation, 1 (literal) to 10.
+    #[arg(long, value_name = "K", value_parser = gain_k, allow_negative_numbers = true)]
+    gain_k: Option<f64>,
+    /// Seed of every random number.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Directory for report.html, flight.mcap and summary.json.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the summary as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl FlyArgs {
+    /// What they change in a scenario.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            infill: self.infill,
+            gain_k: self.gain_k,
+            configuration: self.config,
+            mixer: self.mixer,
+            arms: self.arms,
+            seed: self.seed,
+        }
+    }
+}
+
+/// Something to show instead of a flight: help, version, or a refusal.
+pub struct Message(clap::Error);
+
+impl Message {
+    /// Shows it and gives the exit status.
+    pub fn show(&self) -> ExitCode {
+        match self.0.kind() {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                // A closed pipe is no failure: whoever reads has read enough.
+                let _ = self.0.print();
+                ExitCode::SUCCESS
+            }
+            _ => super::refuse(&self.line()),
+        }
+    }
+
+    /// clap's message without its usage and hints at help, as one line.
+    fn line(&self) -> String {
+        let text = self.0.to_string();
+        let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+        let told = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
+        let line = told.collect::<Vec<_>>().join("; ");
+        line.strip_prefix("error: ").unwrap_or(&line).to_owned()
+    }
+}
+
+/// The options of this process.
+pub fn parse() -> Result<FlyArgs, Message> {
+    parse_from(std::env::args_os())
+}
+
+fn parse_from(args: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>) -> Result<FlyArgs, Message> {
+    let cli = Cli::try_parse_from(args).map_err(Message)?;
+    Ok(match cli.command {
+        Some(Command::Fly(fly)) => fly,
+        None => cli.fly,
+    })
+}
+
+fn number(text: &str, range: Range) -> Result<f64, String> {
+    let value = text.parse().ok().and_then(|v| range.to_si(v));
+    value.ok_or_else(|| format!("allowed {}", range.allowed()))
+}
+
+fn infill(text: &str) -> Result<f64, String> {
+    number(text, keys::INFILL)
+}
+
+fn gain_k(text: &str) -> Result<f64, String> {
+    number(text, keys::GAIN_K)
+}
+
+fn configuration(text: &str) -> Result<Configuration, String> {
+    word(&text.to_uppercase(), keys::CONFIGURATIONS).map(keys::configuration)
+}
+
+fn mixer(text: &str) -> Result<Variant, String> {
+    word(text, keys::MIXERS).map(keys::mixer)
+}
+
+fn arms(text: &str) -> Result<ArmChoice, String> {
+    match text {
+        "4" => Ok(ArmChoice::All),
+        "2" => Ok(ArmChoice::Front),
+        _ => word(text, keys::ARMS).map(keys::arms).map_err(|_| "allowed 4 or all, 2 or front, rear".to_owned()),
+    }
+}
+
+fn word<'a>(text: &'a str, allowed: &[&str]) -> Result<&'a str, String> {
+    if allowed.contains(&text) { Ok(text) } else { Err(format!("allowed {}", allowed.join(", "))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn args(line: &str) -> Result<FlyArgs, String> {
+        parse_from(["sophie"].into_iter().chain(line.split_whitespace())).map_err(|m| m.line())
+    }
+
+    #[test]
+    fn clap_agrees_with_the_definition() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn fly_may_be_left_out() {
+        for line in ["--infill 8 --arms 2 x.toml", "fly x.toml --rho 8 --arms front", "fly --arms 2 --infill=8 x.toml"] {
+            let fly = args(line).unwrap();
+            assert_eq!(fly.scenario, Some(PathBuf::from("x.toml")), "{line}");
+            let o = fly.overrides();
+            assert_eq!((o.infill, o.arms, o.seed), (Some(8.0), Some(ArmChoice::Front), None), "{line}");
+        }
+        let fly = args("").unwrap();
+        assert!(fly.scenario.is_none() && !fly.json && fly.out == PathBuf::from("out"));
+        let o = args("--config a --mixer paper --gain-k 1 --seed 9 --json").unwrap().overrides();
+        assert_eq!((o.configuration, o.mixer), (Some(Configuration::A), Some(Variant::Paper)));
+        assert_eq!((o.gain_k, o.seed), (Some(1.0), Some(9)));
+    }
+
+    #[test]
+    fn refusals_are_one_line_that_says_what_is_allowed() {
+        for (line, told) in [
+            ("--infill 3.5", "invalid value '3.5' for '--infill <PERCENT>': allowed 4 to 10 %"),
+            ("--rho -1", "invalid value '-1' for '--infill <PERCENT>': allowed 4 to 10 %"),
+            ("--gain-k NaN", "invalid value 'NaN' for '--gain-k <K>': allowed 1 to 10"),
+            ("--config C", "invalid value 'C' for '--config <A|B>': allowed A, B"),
+            ("--mixer best", "invalid value 'best' for '--mixer <NAME>': allowed flexible, rigid, paper, frozen"),
+            ("--arms 3", "invalid value '3' for '--arms <2|4|rear>': allowed 4 or all, 2 or front, rear"),
+        ] {
+            assert_eq!(args(line).unwrap_err(), told);
+        }
+        for line in ["--seed -1", "--seed x", "--infil 6", "--out", "a.toml b.toml", "--infill 6 --infill 7"] {
+            let told = args(line).unwrap_err();
+            assert!(!told.contains('\n') && told.len() < 200 && !told.contains("Usage"), "{told}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The arms' own inertial sensors: tilt of each arm against the body.
+//!
+//! Background level: the sensors stretch the I2C clock, and nothing in flight waits for them. 100 Hz; a round
+//! of four sensors must end within its period.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::math;
+use sophie_control::vector::{Quat, Vec3};
+use sophie_control::wrench::{PerArm, SIDE};
+
+use crate::deadline::{FixedRate, TaskId};
+use crate::links::{ArmAngles, Links};
+use crate::ports::ArmImus;
+
+/// Time between two rounds.
+pub const PERIOD: Duration = Duration::from_millis(10);
+
+/// Serves the arm sensors for ever. A sensor that fails leaves `None` for its arm.
+pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
+    let mut rate = FixedRate::new(links, TaskId::Arms, PERIOD, PERIOD);
+    loop {
+        rate.next().await;
+        let mut gravity: PerArm<Option<Vec3>> = [None; 4];
+        for (arm, g) in gravity.iter_mut().enumerate() {
+            *g = port.gravity(arm).await.ok();
+        }
+        let Some(body) = links.attitude.fresh().filter(|a| a.calibrated) else { continue };
+        let mut tilt = [None; 4];
+        for ((tilt, gravity), side) in tilt.iter_mut().zip(&gravity).zip(&SIDE) {
+            *tilt = gravity.and_then(|g| arm_tilt(body.q, g, *side));
+        }
+        links.arms.send(Instant::now(), ArmAngles { tilt });
+    }
+}
+
+/// Tilt (rad, tip up) of an arm on side `side` that sees gravity along `gravity` (m/s², its own axes), on
+/// a body at the attitude `q`. `None` for a vector that cannot be gravity.
+///
+/// A left arm whose tip goes up turns about +x, a right arm about -x; the turn shows as the angle
+/// between the two gravity directions in the y-z plane.
+fn arm_tilt(q: Quat, gravity: Vec3, side: f32) -> Option<f32> {
+    /// Least share of gravity in the y-z plane for its direction to mean anything.
+    const LEAST: f32 = 0.3;
+    let plausible = gravity.is_finite() && (5.0..15.0).contains(&gravity.norm());
+    let body = q.down_in_body();
+    let planar = |v: Vec3, length: f32| v.y * v.y + v.z * v.z > (LEAST * length) * (LEAST * length);
+    if !plausible || !planar(gravity, gravity.norm()) || !planar(body, 1.0) {
+        return None;
+    }
+    // Gravity turned by +a about x: (y, z) of the arm's view is the body's view turned back by a.
+    let turn = math::atan2(gravity.y, gravity.z) - math::atan2(body.y, body.z);
+    Some(math::wrap_pi(turn) * side)
+}
+
+#[cfg(test)]
+mod tests {
+    use sophie_control::math::{GRAVITY, deg};
+
+    use super::*;
+
+    /// What a sensor on an arm tilted by `tilt` sees on a body at `q`.
+    fn seen(q: Quat, tilt: f32, side: f32) -> Vec3 {
+        let arm = Quat::from_euler(side * tilt, 0.0, 0.0);
+        (q * arm).rotate_inverse(Vec3::new(0.0, 0.0, GRAVITY))
+    }
+
+    #[test]
+    fn tilt_is_found_on_both_sides_whatever_the_attitude() {
+        for side in [1.0, -1.0] {
+            for tilt in [-90.0f32, -64.0, -26.0, 0.0, 11.0, 30.0].map(deg) {
+                for (roll, pitch) in [(0.0, 0.0), (0.3, 0.0), (-0.4, 0.2), (0.1, -0.3)] {
+                    let q = Quat::from_euler(roll, pitch, 0.7);
+                    let got = arm_tilt(q, seen(q, tilt, side), side).unwrap();
+                    // Pitch couples into the planar angle by less than 1 - cos(pitch); micromath adds its own.
+                    assert!((got - tilt).abs() < 0.015, "{side} {tilt} {roll} {pitch}: {got}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let q = Quat::IDENTITY;
+        for bad in [Vec3::ZERO, Vec3::new(f32::NAN, 0.0, 9.8), Vec3::new(0.0, 0.0, 30.0), Vec3::new(9.8, 0.0, 0.5)] {
+            assert!(arm_tilt(q, bad, 1.0).is_none());
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The commander: everything's health in, the mode and what follows from it out.
+//!
+//! 100 Hz, steady level. A miss costs one step of a state machine whose shortest timer is 50 ms; rotors stop
+//! when its setpoint has been silent for 50 ms.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::math::cos;
+use sophie_control::mode::{Grip, Inputs, ModeLogic, Motion, Outputs, Rotors, Tendons};
+
+use crate::deadline::{FixedRate, TaskId};
+use crate::links::{ClampCommand, Links, MixOutput, Setpoint, Status};
+
+/// Time between two steps.
+pub const PERIOD: Duration = Duration::from_millis(10);
+/// Tasks whose missed deadlines forbid arming.
+const FLIGHT_LEVEL: [TaskId; 5] =
+    [TaskId::Imu, TaskId::Estimator, TaskId::Control, TaskId::Mixer, TaskId::Motors];
+/// Time over which missed deadlines are counted.
+const LATE_WINDOW: Duration = Duration::from_secs(1);
+/// Misses of the whole flight level in that time beyond which it counts as late: 1 % of one task's runs.
+const LATE_MAX: u32 = 10;
+
+/// Steps the mode logic for ever.
+pub async fn run(links: &Links) -> ! {
+    let mut logic = ModeLogic::new(&links.params);
+    let mut late = Lateness::new();
+    let mut rate = FixedRate::new(links, TaskId::Commander, PERIOD, PERIOD);
+    loop {
+        let tick = rate.next().await;
+        let inputs = collect(links, late.step(links, tick.started));
+        let Outputs { mode, rotors, tendons, reason, .. } = logic.step(&inputs, tick.dt);
+        links.setpoint.send(tick.started, setpoint(rotors));
+        links.clamp_command.send(tick.started, clamp_command(tendons));
+        links.status.send(tick.started, Status { mode, reason });
+    }
+}
+
+/// What the links say now; a stale message counts as none.
+fn collect(links: &Links, late: bool) -> Inputs {
+    Inputs {
+        sticks: links.rc.fresh().map(|rc| rc.sticks),
+        motion: links.attitude.fresh().map(|a| Motion {
+            q: a.q,
+            rate: a.rate,
+            accel: a.accel,
+            calibrated: a.calibrated,
+        }),
+        lift: links.mix.fresh().map_or(0.0, |mix| lift(&mix)),
+        grip: links.grip.fresh().map(|g| Grip { proven: g.proven, released: g.released, arms: g.arms }),
+        fsr_fault: links.contact.fresh().map_or([true; 4], |c| c.fault),
+        battery: links.battery.fresh().map(|b| b.voltage),
+        late,
+    }
+}
+
+/// Thrust along body -z that the mixer asks for, N.
+fn lift(mix: &MixOutput) -> f32 {
+    if !mix.running {
+        return 0.0;
+    }
+    mix.thrusts.iter().zip(mix.tilt).map(|(thrust, tilt)| thrust * cos(tilt)).sum()
+}
+
+fn setpoint(rotors: Rotors) -> Setpoint {
+    match rotors {
+        Rotors::Stop => Setpoint::Stop,
+        Rotors::Idle => Setpoint::Idle,
+        Rotors::Angle { roll, pitch, yaw_rate, thrust } => Setpoint::Angle { roll, pitch, yaw_rate, thrust },
+        Rotors::Rate { rate, thrust } => Setpoint::Rate { rate, thrust },
+        Rotors::Direct { wrench } => Setpoint::Direct { wrench },
+        Rotors::Resting { roll, pitch, thrust } => Setpoint::Resting { roll, pitch, thrust },
+    }
+}
+
+fn clamp_command(tendons: Tendons) -> ClampCommand {
+    match tendons {
+        Tendons::Release => ClampCommand::Release,
+        Tendons::Close(arms) => ClampCommand::Close { arms },
+    }
+}
+
+/// Missed deadlines of the flight level over the last window.
+struct Lateness {
+    window_start: Instant,
+    count_at_start: u32,
+    late: bool,
+}
+
+impl Lateness {
+    fn new() -> Self {
+        Self { window_start: Instant::now(), count_at_start: 0, late: false }
+    }
+
+    fn step(&mut self, links: &Links, now: Instant) -> bool {
+        let count = FLIGHT_LEVEL.iter().fold(0u32, |n, &t| n.wrapping_add(links.timing(t).overruns));
+        let many = count.wrapping_sub(self.count_at_start) > LATE_MAX;
+        self.late |= many;
+        if now.saturating_duration_since(self.window_start) >= LATE_WINDOW {
+            *self = Self { window_start: now, count_at_start: count, late: many };
+        }
+        self.late
+    }
+}

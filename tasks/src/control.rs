@@ -1,0 +1,79 @@
+//! Attitude and rate control, one step for each attitude.
+//!
+//! Flight level. Deadline: 400 µs after data-ready. Without a fresh setpoint the rotors stop.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
+use sophie_control::rate::{Feedback, RateLoop};
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::Wrench;
+
+use crate::deadline::{TaskId, record_run};
+use crate::imu::CONTROL_RATE_HZ;
+use crate::links::{Attitude, Demand, Links, Setpoint};
+
+/// Time from data-ready to the demand.
+pub const DEADLINE: Duration = Duration::from_micros(400);
+
+/// Controls for ever; returns only if the link has no receiver left.
+pub async fn run(links: &Links) {
+    let Some(mut attitude) = links.attitude.receiver() else { return };
+    let mut loops = Loops {
+        attitude: AttitudeLoop::new(&links.params),
+        rate: RateLoop::new(&links.params, CONTROL_RATE_HZ),
+        running: false,
+    };
+    loop {
+        let estimate = attitude.changed().await;
+        let started = Instant::now();
+        let setpoint = links.setpoint.fresh().unwrap_or(Setpoint::Stop);
+        let feedback = links.mix.fresh().map_or(NOTHING_GIVEN, |mix| Feedback {
+            roll_pitch: mix.given.roll_pitch,
+            yaw: mix.given.yaw,
+            yaw_gated: mix.yaw_gated,
+        });
+        let demand = loops.step(&estimate.value, setpoint, feedback);
+        links.demand.send(estimate.at, demand);
+        links.target.send(estimate.at, loops.attitude.target());
+        record_run(links, TaskId::Control, estimate.at, started, DEADLINE);
+    }
+}
+
+const NOTHING_GIVEN: Feedback = Feedback { roll_pitch: 0.0, yaw: 0.0, yaw_gated: true };
+
+struct Loops {
+    attitude: AttitudeLoop,
+    rate: RateLoop,
+    running: bool,
+}
+
+impl Loops {
+    fn step(&mut self, a: &Attitude, setpoint: Setpoint, feedback: Feedback) -> Demand {
+        let running = !matches!(setpoint, Setpoint::Stop | Setpoint::Idle);
+        if !running || !self.running {
+            self.attitude.reset(a.q);
+            self.rate.reset();
+        }
+        self.running = running;
+        if feedback.yaw_gated {
+            self.attitude.capture_heading(a.q);
+        }
+        let (wanted, thrust, resting) = match setpoint {
+            Setpoint::Stop => return Demand::Stop,
+            Setpoint::Idle => return Demand::Idle,
+            Setpoint::Direct { wrench } => return Demand::Wrench { wrench, yaw: true },
+            Setpoint::Rate { rate, thrust } => (rate, thrust, false),
+            Setpoint::Angle { roll, pitch, yaw_rate, thrust } => {
+                let angle = AttitudeSetpoint { roll, pitch, yaw_rate };
+                (self.attitude.step(a.q, angle, a.dt), thrust, false)
+            }
+            Setpoint::Resting { roll, pitch, thrust } => {
+                let angle = AttitudeSetpoint { roll, pitch, yaw_rate: 0.0 };
+                (self.attitude.step(a.q, angle, a.dt), thrust, true)
+            }
+        };
+        let Vec3 { x: roll, y: pitch, z: yaw } = self.rate.step(wanted, a.rate, feedback, !resting, a.dt);
+        let yaw = if resting { 0.0 } else { yaw };
+        Demand::Wrench { wrench: Wrench { thrust, roll, pitch, yaw }, yaw: !resting }
+    }
+}

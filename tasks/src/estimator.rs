@@ -1,0 +1,36 @@
+//! Attitude estimation, one step for each inertial sample.
+//!
+//! Flight level. Deadline: 300 µs after the sample's data-ready.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::estimator::Estimator;
+
+use crate::deadline::{TaskId, record_run};
+use crate::links::{Attitude, Links};
+
+/// Time from data-ready to the estimate.
+pub const DEADLINE: Duration = Duration::from_micros(300);
+
+/// Estimates for ever; returns only if the link has no receiver left.
+pub async fn run(links: &Links) {
+    let Some(mut imu) = links.imu.receiver() else { return };
+    let mut estimator = Estimator::new(&links.params);
+    loop {
+        let sample = imu.changed().await;
+        let started = Instant::now();
+        let s = sample.value;
+        let rate = estimator.step(s.gyro, s.accel, s.dt);
+        links.attitude.send(
+            sample.at,
+            Attitude {
+                q: estimator.attitude(),
+                rate,
+                accel: s.accel,
+                gyro_bias: estimator.bias(),
+                calibrated: estimator.calibrated(),
+                dt: s.dt,
+            },
+        );
+        record_run(links, TaskId::Estimator, sample.at, started, DEADLINE);
+    }
+}

@@ -1,0 +1,50 @@
+//! Inertial sensor: waits for data-ready, filters at the sensor's own rate, hands on at 1 kHz.
+//!
+//! Flight level. Deadline: the filtered sample leaves within 200 µs of the last reading of its batch.
+
+use embassy_time::{Duration, Instant, with_timeout};
+use sophie_control::imu_filter::ImuFilter;
+use sophie_control::math;
+use sophie_control::vector::Vec3;
+
+use crate::deadline::{TaskId, record_run};
+use crate::links::{ImuSample, Links};
+use crate::ports::Imu;
+
+/// Rate at which samples are handed on, Hz.
+pub const CONTROL_RATE_HZ: f32 = 1000.0;
+/// Time from data-ready to the handed-on sample.
+pub const DEADLINE: Duration = Duration::from_micros(200);
+/// A sensor that says nothing for this long is tried again.
+pub const SILENCE: Duration = Duration::from_millis(3);
+
+/// Serves the inertial sensor for ever. A failed or silent read sends nothing: readers see the age.
+pub async fn run(links: &Links, mut port: impl Imu) -> ! {
+    let rate_hz = port.rate_hz();
+    let mut filter = ImuFilter::new(links.params.gyro_cutoff, rate_hz);
+    let per_output = math::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0);
+    let mut collected = 0.0f32;
+    let mut last_sent: Option<Instant> = None;
+    let mut newest = (Vec3::ZERO, Vec3::ZERO);
+    loop {
+        let Ok(Ok(batch)) = with_timeout(SILENCE, port.read()).await else {
+            continue;
+        };
+        let released = Instant::now();
+        for reading in &batch {
+            if let Some(filtered) = filter.step(reading.gyro, reading.accel) {
+                newest = filtered;
+                collected += 1.0;
+            }
+        }
+        if collected + 0.5 < per_output {
+            continue;
+        }
+        collected = 0.0;
+        let dt = last_sent.map_or(1.0 / CONTROL_RATE_HZ, |t| (released - t).as_micros() as f32 * 1e-6);
+        last_sent = Some(released);
+        let (gyro, accel) = newest;
+        links.imu.send(released, ImuSample { gyro, accel, dt: math::clamp(dt, 0.5e-3, 5e-3) });
+        record_run(links, TaskId::Imu, released, released, DEADLINE);
+    }
+}

@@ -1,0 +1,68 @@
+//! Allocation, one step for each demand, with the arms' present tilt in it.
+//!
+//! Flight level. Deadline: 500 µs after data-ready.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::mixer::{Conditions, Mix, Mixer, Variant};
+use sophie_control::thrust_curve::ThrustCurve;
+use sophie_control::wrench::Configuration;
+
+use crate::deadline::{TaskId, record_run};
+use crate::links::{Battery, Demand, Links, MixOutput, Setpoint};
+
+/// Time from data-ready to the motor commands.
+pub const DEADLINE: Duration = Duration::from_micros(500);
+/// Step time when no estimate tells it, s.
+const NOMINAL_DT: f32 = 1e-3;
+
+/// Allocates for ever; returns only if the link has no receiver left.
+pub async fn run(links: &Links, variant: Variant, configuration: Configuration) {
+    let Some(mut demand) = links.demand.receiver() else { return };
+    let mut mixer = Mixer::new(variant, configuration, &links.params);
+    let curve = ThrustCurve::from_params(&links.params);
+    let mut arms_seen = Instant::MIN;
+    let mut last = Instant::MIN;
+    loop {
+        let message = demand.changed().await;
+        let started = Instant::now();
+        let dt = (message.at.saturating_duration_since(last).as_micros() as f32 * 1e-6).clamp(0.5e-3, 5e-3);
+        let dt = if last == Instant::MIN { NOMINAL_DT } else { dt };
+        last = message.at;
+        // Without a fresh voltage the last one still is the best guess; without any, nominal.
+        let ratio = links.battery.latest().map_or(1.0, |b: crate::links::Stamped<Battery>| b.value.ratio);
+        let resting = links.setpoint.latest().is_some_and(|s| matches!(s.value, Setpoint::Resting { .. }));
+        if let Some(arms) = links.arms.latest()
+            && arms.at > arms_seen
+            && !resting
+        {
+            arms_seen = arms.at;
+            if let Some(arms) = arms.fresh(links.arms.stale_after) {
+                mixer.correct_tilt(&arms.tilt);
+            }
+        }
+        let (mix, running) = match message.value {
+            Demand::Stop => (Mix { yaw_gated: true, ..mixer.idle(dt) }, false),
+            Demand::Idle => (mixer.idle(dt), true),
+            Demand::Wrench { wrench, yaw } => {
+                (mixer.mix(wrench, Conditions { yaw, battery_ratio: ratio, dt }), true)
+            }
+        };
+        let tilt = mixer.tilt();
+        let (thrusts, commands) =
+            if running { (mix.thrusts, mix.thrusts.map(|t| curve.command(t, ratio))) } else { ([0.0; 4], [0.0; 4]) };
+        links.mix.send(
+            message.at,
+            MixOutput {
+                running,
+                thrusts,
+                commands,
+                given: mix.given,
+                yaw_gated: mix.yaw_gated,
+                tilt: tilt.tilt(),
+                tilt_bias: tilt.bias(),
+                tilt_fault: tilt.fault(),
+            },
+        );
+        record_run(links, TaskId::Mixer, message.at, started, DEADLINE);
+    }
+}

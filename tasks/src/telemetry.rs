@@ -1,0 +1,144 @@
+//! Telemetry to the pilot's transmitter, over the receiver's serial line.
+//!
+//! 20 Hz, background: one frame a run, so that the thin downlink never queues.
+//!
+//! | frame | type | rate |
+//! |---|---|---|
+//! | attitude | 0x1E | 10 Hz |
+//! | flight mode: `MODE`, or `MODE: reason` | 0x21 | 8 Hz, and at once when the mode changes |
+//! | battery | 0x08 | 2 Hz |
+
+use core::fmt::Write;
+
+use embassy_time::Duration;
+use heapless::String;
+use sophie_control::mode::Mode;
+use uf_crsf::packets::{self, CrsfPacket, PacketAddress};
+use uf_crsf::write_packet_to_buffer;
+
+use crate::deadline::{FixedRate, TaskId};
+use crate::links::{Battery, Links, Status};
+use crate::ports::TelemetryLink;
+
+/// Time between two frames.
+pub const PERIOD: Duration = Duration::from_millis(50);
+/// Runs after which the order of the frames repeats.
+const CYCLE: u8 = 10;
+/// The run of each cycle that carries the battery.
+const BATTERY_SLOT: u8 = 9;
+/// Longest text of a flight-mode frame.
+const TEXT: usize = 59;
+/// Usable charge of a fresh flight battery, A·s (1800 mAh).
+const CHARGE: f32 = 1.8 * 3600.0;
+
+/// A frame ready to be sent.
+type Frame = heapless::Vec<u8, 64>;
+
+/// Sends frames for ever.
+pub async fn run(links: &Links, mut port: impl TelemetryLink) -> ! {
+    let mut rate = FixedRate::new(links, TaskId::Telemetry, PERIOD, PERIOD);
+    let mut slot = 0;
+    let mut shown = None;
+    loop {
+        rate.next().await;
+        let status = links.status.fresh().unwrap_or_default();
+        let frame = if shown == Some(status.mode) {
+            let frame = scheduled(links, status, slot);
+            slot = (slot + 1) % CYCLE;
+            frame
+        } else {
+            shown = Some(status.mode);
+            encode(packets::FlightMode::new(&mode_text(status)).ok())
+        };
+        if let Some(frame) = frame {
+            // A line that does not take the frame loses it; the next one says more anyway.
+            let _ = port.write(&frame).await;
+        }
+    }
+}
+
+fn scheduled(links: &Links, status: Status, slot: u8) -> Option<Frame> {
+    if slot == BATTERY_SLOT {
+        encode(links.battery.fresh().map(battery))
+    } else if slot % 2 == 1 {
+        encode(packets::FlightMode::new(&mode_text(status)).ok())
+    } else {
+        let (roll, pitch, yaw) = links.attitude.fresh()?.q.to_euler();
+        let [roll, pitch, yaw] = [roll, pitch, yaw].map(tenths_of_mrad);
+        encode(Some(packets::Attitude { pitch, roll, yaw }))
+    }
+}
+
+/// The mode's name, with the reason behind a colon when there is one.
+fn mode_text(status: Status) -> String<TEXT> {
+    let Status { mode, reason } = status;
+    let mut text = String::new();
+    let written = if reason.is_empty() {
+        text.write_str(mode.name())
+    } else {
+        write!(text, "{}: {reason}", mode.name())
+    };
+    if written.is_err() {
+        // The name always fits; a reason that does not is left out.
+        text.clear();
+        let _ = text.write_str(mode.name());
+    }
+    text
+}
+
+/// The mode and the reason in the text of a flight-mode frame: what a display does with it.
+pub fn parse_mode_text(text: &str) -> Option<(Mode, &str)> {
+    let (name, reason) = text.split_once(": ").unwrap_or((text, ""));
+    Some((Mode::from_name(name)?, reason))
+}
+
+fn tenths_of_mrad(angle: f32) -> i16 {
+    // Float to integer conversion saturates and takes NaN as 0.
+    (angle * 1e4) as i16
+}
+
+fn battery(b: Battery) -> packets::Battery {
+    let remaining = 100.0 * (1.0 - b.used / CHARGE);
+    packets::Battery {
+        voltage: (b.voltage * 10.0 + 0.5) as i16,
+        current: (b.current * 10.0 + 0.5) as i16,
+        // A·s to mAh.
+        capacity_used: (b.used / 3.6) as u32,
+        remaining: remaining as u8,
+        id: 0,
+    }
+}
+
+fn encode<P: CrsfPacket>(packet: Option<P>) -> Option<Frame> {
+    let mut bytes = [0; 64];
+    let count = write_packet_to_buffer(&mut bytes, PacketAddress::FlightController, &packet?).ok()?;
+    Frame::from_slice(bytes.get(..count)?).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_of_every_mode_can_be_read_back() {
+        for mode in Mode::ALL {
+            for reason in ["", "battery low", "force limit reached without grip"] {
+                let text = mode_text(Status { mode, reason });
+                assert_eq!(parse_mode_text(&text), Some((mode, reason)));
+                assert!(encode(packets::FlightMode::new(&text).ok()).is_some());
+            }
+        }
+        let long = "a reason far too long for the one line that a transmitter's display has for it";
+        assert_eq!(mode_text(Status { mode: Mode::Disarmed, reason: long }), "DISARMED");
+        assert_eq!(parse_mode_text("ANGLE"), None);
+    }
+
+    #[test]
+    fn the_battery_comes_in_the_frames_units() {
+        let b = battery(Battery { voltage: 15.26, current: 21.3, used: 1800.0, ratio: 1.0 });
+        assert_eq!((b.voltage, b.current, b.capacity_used, b.remaining), (153, 213, 500, 72));
+        assert_eq!(battery(Battery { used: 1e9, ..Default::default() }).remaining, 0);
+        assert_eq!(tenths_of_mrad(f32::NAN), 0);
+        assert_eq!(tenths_of_mrad(-core::f32::consts::PI), -31415);
+    }
+}
