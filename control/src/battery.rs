@@ -86,7 +86,9 @@ impl Monitor {
         let dt = math::clamp(dt, 0.0, 1.0);
         let sane = (0.0..SANE.0).contains(&voltage) && (-SANE.1..SANE.1).contains(&current);
         if sane {
-            let (v, i) = self.filters.get_or_insert((LowPass::at(voltage), LowPass::at(current)));
+            let (v, i) = self
+                .filters
+                .get_or_insert((LowPass::at(voltage), LowPass::at(current)));
             let voltage = v.step(voltage, VOLTAGE_CUTOFF, dt);
             let filtered = i.step(current, CURRENT_CUTOFF, dt);
             self.add_charge(filtered * dt);
@@ -145,7 +147,11 @@ mod tests {
     fn the_first_reading_starts_the_filter() {
         let r = Monitor::default().step(&Params::default(), 16.4, 0.5, 0.01);
         assert!(r.is_some_and(|r| (r.voltage - 16.4).abs() < 1e-5));
-        assert!(Monitor::default().step(&Params::default(), f32::NAN, 0.5, 0.01).is_none());
+        assert!(
+            Monitor::default()
+                .step(&Params::default(), f32::NAN, 0.5, 0.01)
+                .is_none()
+        );
     }
 
     #[test]

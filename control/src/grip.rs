@@ -95,7 +95,11 @@ impl HoldProof {
         let good = error <= demand.tolerance && force < demand.force;
         if self.proven {
             // NaN counts as doubt.
-            self.doubt = if error <= DOUBT * demand.tolerance { 0.0 } else { self.doubt + dt };
+            self.doubt = if error <= DOUBT * demand.tolerance {
+                0.0
+            } else {
+                self.doubt + dt
+            };
             if self.doubt > demand.dwell {
                 self.proven = false;
                 self.within = 0.0;
@@ -132,7 +136,11 @@ impl FreeProof {
     pub fn step(&mut self, demand: &Demand, pressure: Option<f32>, tension: Option<f32>, dt: f32) -> bool {
         let home = tension.is_some_and(|t| t <= 0.0);
         let light = pressure.is_none_or(|p| p < demand.release_pressure);
-        self.free_for = if home && light { math::clamp(self.free_for + dt, 0.0, 10.0) } else { 0.0 };
+        self.free_for = if home && light {
+            math::clamp(self.free_for + dt, 0.0, 10.0)
+        } else {
+            0.0
+        };
         self.proven(pressure.is_some())
     }
 
@@ -146,8 +154,13 @@ impl FreeProof {
 mod tests {
     use super::*;
 
-    const DEMAND: Demand =
-        Demand { pressure: 950.0, tolerance: 50.0, dwell: 0.5, force: 160.0, release_pressure: 80.0 };
+    const DEMAND: Demand = Demand {
+        pressure: 950.0,
+        tolerance: 50.0,
+        dwell: 0.5,
+        force: 160.0,
+        release_pressure: 80.0,
+    };
     const DT: f32 = 0.01;
 
     fn run(proof: &mut HoldProof, pressure: Option<f32>, force: f32, seconds: f32) -> bool {

@@ -205,9 +205,9 @@ params! {
     /// Pressure loop: integral gain.
     clamp_i = 0.04, "N/(Pa s)", 0.0 ..= 1.0;
     /// Pressure loop: derivative gain on the measured pressure.
-    clamp_d = 0.0003, "N s/Pa", 0.0 ..= 0.05;
+    clamp_d = 0.00005, "N s/Pa", 0.0 ..= 0.05;
     /// Speed at which an arm is bent down until it touches; the force's rise follows from infill and gain_k.
-    clamp_approach = 0.6, "rad/s", 0.05 ..= 3.0;
+    clamp_approach = 0.7, "rad/s", 0.05 ..= 3.0;
     /// Fastest fall of the tendon force on release.
     clamp_release = 80.0, "N/s", 5.0 ..= 500.0;
     /// Trim of servo 1 against its reel's release mark.

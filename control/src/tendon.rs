@@ -13,9 +13,9 @@ use crate::params::Params;
 pub const RELEASE_US: f32 = 550.0;
 /// Pulse width at full travel (`servo_range` from release), µs.
 pub const FULL_US: f32 = 2450.0;
-/// Tilt at which the tendon of a servo at release is just taut, rad: 26°, beyond what flight reaches, so that
+/// Tilt at which the tendon of a servo at release is just taut, rad: 23°, beyond what flight reaches, so that
 /// a flying arm never pulls on it (built so; assumed).
-pub const REFERENCE_TILT: f32 = 0.45;
+pub const REFERENCE_TILT: f32 = 0.4;
 /// Largest trim of a servo, µs.
 pub const TRIM_MAX_US: f32 = 50.0;
 /// Tension (N) that is reported at least until the servo is back at its release position.
@@ -29,7 +29,11 @@ const SLEW_SHARE: f32 = 0.9;
 const PAY_OUT: f32 = 3.0;
 /// Cut-off of each of the two low passes on the tilt, rad/s: a loop gain below 1 at the taut arm's mode
 /// (8 Hz, Q about 5) with the static gain k h² / (k h² + arm) of 0.7 to 0.85.
-const TILT_CUTOFF: f32 = 25.0;
+pub const TILT_CUTOFF: f32 = 25.0;
+/// The same while the arm stands still, rad/s: a sensor noise of 4 mrad would else move the grip by 30 Pa.
+const STILL_CUTOFF: f32 = 5.0;
+/// Distance of the tilt from its filter from which the arm counts as moving, rad.
+const MOVING: f32 = 0.04;
 /// Age of the tilt when it is used, s: sensor 20 ms, task periods half of 10 and 20 ms, output frame 10 ms.
 const TILT_AGE: f32 = 0.045;
 /// Tilts beyond this are not an arm's, rad.
@@ -50,8 +54,15 @@ impl ForceLimit {
     pub fn from_params(p: &Params) -> Self {
         let servo = STALL_SHARE * p.servo_stall;
         let capped_by_servo = servo < p.servo_torque_max;
-        let torque = if capped_by_servo { servo } else { p.servo_torque_max };
-        Self { force: math::clamp(torque / p.reel_radius, 0.0, 1e4), capped_by_servo }
+        let torque = if capped_by_servo {
+            servo
+        } else {
+            p.servo_torque_max
+        };
+        Self {
+            force: math::clamp(torque / p.reel_radius, 0.0, 1e4),
+            capped_by_servo,
+        }
     }
 }
 
@@ -124,12 +135,19 @@ pub struct TendonDrive {
     trim: f32,
     angle: f32,
     tilt: Option<(LowPass, LowPass)>,
+    /// Cut-off of both at the last step, rad/s.
+    cutoff: f32,
 }
 
 impl TendonDrive {
     /// A drive at its release position; `trim` in µs.
     pub const fn new(trim: f32) -> Self {
-        Self { trim, angle: 0.0, tilt: None }
+        Self {
+            trim,
+            angle: 0.0,
+            tilt: None,
+            cutoff: TILT_CUTOFF,
+        }
     }
 
     /// One step of `dt` s towards `force` N (0, or anything that is no number: pay out to the release
@@ -142,8 +160,10 @@ impl TendonDrive {
         let tilt = tilt.filter(|t| t.abs() <= TILT_MAX);
         if let Some(tilt) = tilt {
             let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
-            let once = first.step(tilt, TILT_CUTOFF, dt);
-            second.step(once, TILT_CUTOFF, dt);
+            let moving = math::clamp((tilt - second.value()).abs() / MOVING, 0.0, 1.0);
+            self.cutoff = STILL_CUTOFF + (TILT_CUTOFF - STILL_CUTOFF) * moving;
+            let once = first.step(tilt, self.cutoff, dt);
+            second.step(once, self.cutoff, dt);
         }
         let pays_out = force <= 0.0;
         let held = !pays_out && tilt.is_none();
@@ -151,7 +171,11 @@ impl TendonDrive {
             self.angle = math::slew(self.angle, 0.0, PAY_OUT * dt);
         } else if let Some((_, filtered)) = self.tilt.filter(|_| !held) {
             let target = reel.angle(force, filtered.value());
-            let speed = if target > self.angle { reel.speed(self.tension(reel)) } else { reel.speed(0.0) };
+            let speed = if target > self.angle {
+                reel.speed(self.tension(reel))
+            } else {
+                reel.speed(0.0)
+            };
             self.angle = math::slew(self.angle, target, speed * dt);
         }
         self.output(reel, held)
@@ -167,7 +191,11 @@ impl TendonDrive {
         let tension = self.tension(reel);
         Drive {
             pulse_us: reel.pulse(self.angle, self.trim),
-            tension: if wound { math::clamp(tension, RESIDUE, f32::MAX) } else { 0.0 },
+            tension: if wound {
+                math::clamp(tension, RESIDUE, f32::MAX)
+            } else {
+                0.0
+            },
             held,
         }
     }
@@ -177,7 +205,7 @@ impl TendonDrive {
     fn tension(&self, reel: &Reel) -> f32 {
         self.tilt.map_or(0.0, |(first, second)| {
             let per_lag = first.value() - second.value();
-            let now = second.value() + per_lag * (2.0 + TILT_AGE * TILT_CUTOFF);
+            let now = second.value() + per_lag * (2.0 + TILT_AGE * self.cutoff);
             reel.force(self.angle, math::clamp_abs(now, TILT_MAX))
         })
     }
@@ -209,15 +237,15 @@ mod tests {
     #[test]
     fn the_reel_by_hand() {
         let reel = Reel::from_params(&params());
-        // 0.025·(0.45 + 1.0) = 36.25 mm, 80 N stretch 10 mm: 46.25 mm on 15 mm is 3.0833 rad.
-        assert!(close(reel.angle(80.0, -1.0), 3.083_3, 1e-4));
-        assert!(close(reel.force(3.083_333, -1.0), 80.0, 0.01));
-        // 3.0833/4.71 of 1900 µs above 550 µs.
-        assert!(close(reel.pulse(3.083_333, 0.0), 1793.8, 0.1));
+        // 0.025·(0.4 + 1.0) = 35 mm, 80 N stretch 10 mm: 45 mm on 15 mm are 3 rad.
+        assert!(close(reel.angle(80.0, -1.0), 3.0, 1e-4));
+        assert!(close(reel.force(3.0, -1.0), 80.0, 0.01));
+        // 3/4.71 of 1900 µs above 550 µs.
+        assert!(close(reel.pulse(3.0, 0.0), 1760.2, 0.1));
         assert!(close(reel.pulse(0.0, -20.0), 530.0, 1e-3));
         // A drooping arm is slack, and so is one in flight up to the reference.
-        assert!(reel.force(0.0, -0.46) == 0.0 && reel.force(0.0, 0.44) == 0.0);
-        assert!(reel.force(0.0, 0.46) > 0.0);
+        assert!(reel.force(0.0, -0.46) == 0.0 && reel.force(0.0, 0.39) == 0.0);
+        assert!(reel.force(0.0, 0.41) > 0.0);
         // Never beyond the travel.
         assert!(close(reel.angle(160.0, -2.5), 4.71, 1e-6));
     }
@@ -227,7 +255,10 @@ mod tests {
         let paper = ForceLimit::from_params(&params());
         assert!(!paper.capped_by_servo && close(paper.force, 2.452 / 0.015, 1e-3));
         // 0.85·0.922 N·m on 15 mm.
-        let weak = ForceLimit::from_params(&Params { servo_stall: 0.922, ..params() });
+        let weak = ForceLimit::from_params(&Params {
+            servo_stall: 0.922,
+            ..params()
+        });
         assert!(weak.capped_by_servo && close(weak.force, 52.25, 0.01));
     }
 
@@ -244,8 +275,8 @@ mod tests {
             last = output.pulse_us;
         }
         assert!(close(output.tension, 60.0, 0.1) && !output.held);
-        // 25 mm·1.25 + 7.5 mm = 38.75 mm: 2.5833 rad.
-        assert!(close(output.pulse_us, 550.0 + 2.583_3 * per_rad, 0.1));
+        // 25 mm·1.2 + 7.5 mm = 37.5 mm: 2.5 rad.
+        assert!(close(output.pulse_us, 550.0 + 2.5 * per_rad, 0.1));
     }
 
     #[test]
@@ -279,8 +310,8 @@ mod tests {
             time += 0.02;
             output = drive.step(&reel, 0.0, None, 0.02);
         }
-        // 2.58 rad at 3 rad/s.
-        assert!(close(time, 0.86, 0.04) && close(output.pulse_us, RELEASE_US, 1.0) && !output.held);
+        // 2.5 rad at 3 rad/s.
+        assert!(close(time, 0.83, 0.04) && close(output.pulse_us, RELEASE_US, 1.0) && !output.held);
     }
 
     proptest! {

@@ -1,6 +1,10 @@
 //! What stands in for SOPHIE's hardware: the plant, the virtual clock, the simulated board and the pilot.
 
+pub mod board;
 pub mod clock;
+pub mod crsf;
+pub mod flight;
+pub mod pilot;
 pub mod plant;
 pub mod record;
 pub mod scenario;

@@ -13,7 +13,12 @@ use sophie_hil::scenario::keys::{self, Range};
 
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
-#[command(name = "sophie", version, args_conflicts_with_subcommands = true, disable_help_subcommand = true)]
+#[command(
+    name = "sophie",
+    version,
+    args_conflicts_with_subcommands = true,
+    disable_help_subcommand = true
+)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -105,7 +110,9 @@ pub fn parse() -> Result<FlyArgs, Message> {
     parse_from(std::env::args_os())
 }
 
-fn parse_from(args: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>) -> Result<FlyArgs, Message> {
+fn parse_from(
+    args: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>,
+) -> Result<FlyArgs, Message> {
     let cli = Cli::try_parse_from(args).map_err(Message)?;
     Ok(match cli.command {
         Some(Command::Fly(fly)) => fly,
@@ -138,12 +145,18 @@ fn arms(text: &str) -> Result<ArmChoice, String> {
     match text {
         "4" => Ok(ArmChoice::All),
         "2" => Ok(ArmChoice::Front),
-        _ => word(text, keys::ARMS).map(keys::arms).map_err(|_| "allowed 4 or all, 2 or front, rear".to_owned()),
+        _ => word(text, keys::ARMS)
+            .map(keys::arms)
+            .map_err(|_| "allowed 4 or all, 2 or front, rear".to_owned()),
     }
 }
 
 fn word<'a>(text: &'a str, allowed: &[&str]) -> Result<&'a str, String> {
-    if allowed.contains(&text) { Ok(text) } else { Err(format!("allowed {}", allowed.join(", "))) }
+    if allowed.contains(&text) {
+        Ok(text)
+    } else {
+        Err(format!("allowed {}", allowed.join(", ")))
+    }
 }
 
 #[cfg(test)]
@@ -162,34 +175,75 @@ mod tests {
 
     #[test]
     fn fly_may_be_left_out() {
-        for line in ["--infill 8 --arms 2 x.toml", "fly x.toml --rho 8 --arms front", "fly --arms 2 --infill=8 x.toml"] {
+        for line in [
+            "--infill 8 --arms 2 x.toml",
+            "fly x.toml --rho 8 --arms front",
+            "fly --arms 2 --infill=8 x.toml",
+        ] {
             let fly = args(line).unwrap();
             assert_eq!(fly.scenario, Some(PathBuf::from("x.toml")), "{line}");
             let o = fly.overrides();
-            assert_eq!((o.infill, o.arms, o.seed), (Some(8.0), Some(ArmChoice::Front), None), "{line}");
+            assert_eq!(
+                (o.infill, o.arms, o.seed),
+                (Some(8.0), Some(ArmChoice::Front), None),
+                "{line}"
+            );
         }
         let fly = args("").unwrap();
         assert!(fly.scenario.is_none() && !fly.json && fly.out == PathBuf::from("out"));
-        let o = args("--config a --mixer paper --gain-k 1 --seed 9 --json").unwrap().overrides();
-        assert_eq!((o.configuration, o.mixer), (Some(Configuration::A), Some(Variant::Paper)));
+        let o = args("--config a --mixer paper --gain-k 1 --seed 9 --json")
+            .unwrap()
+            .overrides();
+        assert_eq!(
+            (o.configuration, o.mixer),
+            (Some(Configuration::A), Some(Variant::Paper))
+        );
         assert_eq!((o.gain_k, o.seed), (Some(1.0), Some(9)));
     }
 
     #[test]
     fn refusals_are_one_line_that_says_what_is_allowed() {
         for (line, told) in [
-            ("--infill 3.5", "invalid value '3.5' for '--infill <PERCENT>': allowed 4 to 10 %"),
-            ("--rho -1", "invalid value '-1' for '--infill <PERCENT>': allowed 4 to 10 %"),
-            ("--gain-k NaN", "invalid value 'NaN' for '--gain-k <K>': allowed 1 to 10"),
-            ("--config C", "invalid value 'C' for '--config <A|B>': allowed A, B"),
-            ("--mixer best", "invalid value 'best' for '--mixer <NAME>': allowed flexible, rigid, paper, frozen"),
-            ("--arms 3", "invalid value '3' for '--arms <2|4|rear>': allowed 4 or all, 2 or front, rear"),
+            (
+                "--infill 3.5",
+                "invalid value '3.5' for '--infill <PERCENT>': allowed 4 to 10 %",
+            ),
+            (
+                "--rho -1",
+                "invalid value '-1' for '--infill <PERCENT>': allowed 4 to 10 %",
+            ),
+            (
+                "--gain-k NaN",
+                "invalid value 'NaN' for '--gain-k <K>': allowed 1 to 10",
+            ),
+            (
+                "--config C",
+                "invalid value 'C' for '--config <A|B>': allowed A, B",
+            ),
+            (
+                "--mixer best",
+                "invalid value 'best' for '--mixer <NAME>': allowed flexible, rigid, paper, frozen",
+            ),
+            (
+                "--arms 3",
+                "invalid value '3' for '--arms <2|4|rear>': allowed 4 or all, 2 or front, rear",
+            ),
         ] {
             assert_eq!(args(line).unwrap_err(), told);
         }
-        for line in ["--seed -1", "--seed x", "--infil 6", "--out", "a.toml b.toml", "--infill 6 --infill 7"] {
+        for line in [
+            "--seed -1",
+            "--seed x",
+            "--infil 6",
+            "--out",
+            "a.toml b.toml",
+            "--infill 6 --infill 7",
+        ] {
             let told = args(line).unwrap_err();
-            assert!(!told.contains('\n') && told.len() < 200 && !told.contains("Usage"), "{told}");
+            assert!(
+                !told.contains('\n') && told.len() < 200 && !told.contains("Usage"),
+                "{told}"
+            );
         }
     }
 }

@@ -17,8 +17,16 @@ pub struct Console {
 impl Console {
     /// A console on stdout, or on stderr if `json`.
     pub fn new(json: bool) -> Self {
-        let terminal = if json { std::io::stderr().is_terminal() } else { std::io::stdout().is_terminal() };
-        Self { to_stderr: json, terminal, closed: Cell::new(false) }
+        let terminal = if json {
+            std::io::stderr().is_terminal()
+        } else {
+            std::io::stdout().is_terminal()
+        };
+        Self {
+            to_stderr: json,
+            terminal,
+            closed: Cell::new(false),
+        }
     }
 
     /// Shows one line. Once nobody reads any more, nothing is shown and the work goes on.
@@ -49,7 +57,11 @@ impl Console {
 
     /// The line that says how the flight ended.
     pub fn verdict(&self, record: &FlightRecord) -> String {
-        let word = if record.outcome.accomplished { "accomplished" } else { "NOT accomplished" };
+        let word = if record.outcome.accomplished {
+            "accomplished"
+        } else {
+            "NOT accomplished"
+        };
         let speed = record.sim_seconds / record.wall_seconds.max(1e-6);
         format!(
             "{}: {:.1} s flown in {:.2} s ({speed:.0} times real time), {} overruns",
@@ -83,5 +95,9 @@ pub fn print(line: &str) {
 
 /// `text` as one line.
 pub fn one_line(text: &str) -> String {
-    text.split(char::is_control).map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ")
+    text.split(char::is_control)
+        .map(str::trim)
+        .filter(|l| !l.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ")
 }

@@ -20,7 +20,8 @@ impl<'a> Lines<'a> {
 
 impl Observer for Lines<'_> {
     fn step_began(&mut self, t: f64, index: usize, count: usize, name: &str) {
-        self.console.say(&format!("{t:8.2} s  {:>2}/{count} {name}", index + 1));
+        self.console
+            .say(&format!("{t:8.2} s  {:>2}/{count} {name}", index + 1));
     }
 
     fn step_ended(&mut self, _: f64, _: &Phase) {}
@@ -45,11 +46,22 @@ pub struct Bar {
 impl Bar {
     /// A bar on stderr or stdout.
     pub fn new(to_stderr: bool) -> Self {
-        let target = if to_stderr { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::stdout() };
+        let target = if to_stderr {
+            ProgressDrawTarget::stderr()
+        } else {
+            ProgressDrawTarget::stdout()
+        };
         let bar = ProgressBar::with_draw_target(None, target);
         let style = ProgressStyle::with_template("{bar:24.cyan} step {pos} of {len}  {wide_msg}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━╸─"));
-        Self { bar, step: String::new() }
+        bar.set_style(
+            style
+                .unwrap_or_else(|_| ProgressStyle::default_bar())
+                .progress_chars("━╸─"),
+        );
+        Self {
+            bar,
+            step: String::new(),
+        }
     }
 
     /// Takes the bar away.
@@ -67,12 +79,20 @@ impl Observer for Bar {
 
     fn step_ended(&mut self, t: f64, phase: &Phase) {
         let word = if phase.done { "done" } else { "given up" };
-        let line = format!("{t:8.2} s  {:<12} {word} after {:.1} s", phase.name, phase.end - phase.start);
+        let line = format!(
+            "{t:8.2} s  {:<12} {word} after {:.1} s",
+            phase.name,
+            phase.end - phase.start
+        );
         self.bar.println(line);
     }
 
     fn progress(&mut self, t: f64, mode: Mode, height: f64) {
-        self.bar.set_message(format!("{:<12} {t:7.1} s  {:<11}  height {height:5.2} m", self.step, mode.name()));
+        self.bar.set_message(format!(
+            "{:<12} {t:7.1} s  {:<11}  height {height:5.2} m",
+            self.step,
+            mode.name()
+        ));
     }
 
     fn event(&mut self, event: &Event) {

@@ -70,7 +70,10 @@ fn finish(record: &FlightRecord, out: &OutDir, console: &Console, json: bool) ->
         console::print(summary.trim_end());
     }
     if !record.outcome.accomplished {
-        eprintln_safely(&format!("sophie: not accomplished: {}", console::one_line(&record.outcome.reason)));
+        eprintln_safely(&format!(
+            "sophie: not accomplished: {}",
+            console::one_line(&record.outcome.reason)
+        ));
     }
     Ok(record.outcome.accomplished)
 }

@@ -15,13 +15,18 @@ impl OutDir {
     /// # Errors
     /// One line that names the directory, the reason and what is allowed.
     pub fn prepare(path: &Path) -> Result<Self, String> {
-        let out = Self { path: path.to_owned() };
+        let out = Self {
+            path: path.to_owned(),
+        };
         let probe = out.partial("probe");
         fs::create_dir_all(path)
             .and_then(|()| fs::write(&probe, b""))
             .and_then(|()| fs::remove_file(&probe))
             .map_err(|error| {
-                format!("--out {}: cannot be written: {error}: allowed is a writable directory", path.display())
+                format!(
+                    "--out {}: cannot be written: {error}: allowed is a writable directory",
+                    path.display()
+                )
             })?;
         Ok(out)
     }
@@ -43,7 +48,10 @@ impl OutDir {
 
     fn try_write(&self, files: &[(&str, Vec<u8>)]) -> Result<Vec<String>, String> {
         let told = |name: &str, error: io::Error| {
-            format!("--out {}: cannot be written: {error}", self.path.join(name).display())
+            format!(
+                "--out {}: cannot be written: {error}",
+                self.path.join(name).display()
+            )
         };
         for (name, content) in files {
             fs::write(self.partial(name), content).map_err(|error| told(name, error))?;
@@ -72,7 +80,9 @@ mod tests {
     }
 
     fn names(path: &Path) -> Vec<String> {
-        let entries = fs::read_dir(path).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        let entries = fs::read_dir(path)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap());
         let mut names: Vec<String> = entries.collect();
         names.sort();
         names
@@ -96,7 +106,11 @@ mod tests {
         fs::create_dir_all(path.join("b")).unwrap();
         let out = OutDir::prepare(&path).unwrap();
         // A directory stands where the second file should go.
-        assert!(out.write(&[("a", vec![]), ("b", vec![])]).unwrap_err().contains("/b: cannot be written"));
+        assert!(
+            out.write(&[("a", vec![]), ("b", vec![])])
+                .unwrap_err()
+                .contains("/b: cannot be written")
+        );
         assert!(names(&path).iter().all(|n| !n.contains("partial")));
         fs::remove_dir_all(path).unwrap();
     }
@@ -107,7 +121,9 @@ mod tests {
         fs::write(&path, b"").unwrap();
         for bad in [path.clone(), path.join("below")] {
             let line = OutDir::prepare(&bad).map(|_| ()).unwrap_err();
-            assert!(line.contains(&*bad.to_string_lossy()) && line.contains("allowed is a writable directory"));
+            assert!(
+                line.contains(&*bad.to_string_lossy()) && line.contains("allowed is a writable directory")
+            );
         }
         fs::remove_file(path).unwrap();
     }

@@ -41,7 +41,7 @@ fn phases(record: &FlightRecord) -> Table {
         ("saturated %", Right),
         ("battery V", Right),
         ("overruns", Right),
-        ("", Left),
+        ("status", Left),
     ]);
     for p in &record.phases {
         table.row([
@@ -52,7 +52,11 @@ fn phases(record: &FlightRecord) -> Table {
             format!("{:.1}", 100.0 * p.saturation),
             format!("{:.2}", p.battery_voltage),
             p.overruns.to_string(),
-            if p.done { String::new() } else { "not done".to_owned() },
+            if p.done {
+                "done".to_owned()
+            } else {
+                "not done".to_owned()
+            },
         ]);
     }
     table

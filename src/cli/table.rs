@@ -18,7 +18,13 @@ pub struct Table {
 impl Table {
     /// An empty table with its columns.
     pub fn new(columns: &[(&str, Align)]) -> Self {
-        Self { columns: columns.iter().map(|(title, align)| ((*title).to_owned(), *align)).collect(), rows: vec![] }
+        Self {
+            columns: columns
+                .iter()
+                .map(|(title, align)| ((*title).to_owned(), *align))
+                .collect(),
+            rows: vec![],
+        }
     }
 
     /// Adds a row; missing cells stay empty.
@@ -30,9 +36,21 @@ impl Table {
     pub fn lines(&self) -> Vec<String> {
         let titles: Vec<String> = self.columns.iter().map(|(title, _)| title.clone()).collect();
         let widths: Vec<usize> = (0..self.columns.len())
-            .map(|i| self.rows.iter().chain([&titles]).filter_map(|r| r.get(i)).map(|c| width(c)).max().unwrap_or(0))
+            .map(|i| {
+                self.rows
+                    .iter()
+                    .chain([&titles])
+                    .filter_map(|r| r.get(i))
+                    .map(|c| width(c))
+                    .max()
+                    .unwrap_or(0)
+            })
             .collect();
-        let rule = widths.iter().map(|w| "─".repeat(*w)).collect::<Vec<_>>().join("──");
+        let rule = widths
+            .iter()
+            .map(|w| "─".repeat(*w))
+            .collect::<Vec<_>>()
+            .join("──");
         let mut lines = vec![self.line(&titles, &widths), rule];
         lines.extend(self.rows.iter().map(|row| self.line(row, &widths)));
         lines
@@ -65,7 +83,11 @@ mod tests {
 
     #[test]
     fn columns_line_up() {
-        let mut table = Table::new(&[("step", Align::Left), ("α, deg", Align::Right), ("note", Align::Left)]);
+        let mut table = Table::new(&[
+            ("step", Align::Left),
+            ("α, deg", Align::Right),
+            ("note", Align::Left),
+        ]);
         table.row(["arm", "0.1", ""].map(str::to_owned));
         table.row(["fly-to-pipe", "-12.34", "é"].map(str::to_owned));
         table.row(["x".to_owned()]);

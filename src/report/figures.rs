@@ -5,6 +5,9 @@ use sophie_hil::record::{FlightRecord, Sample};
 use super::plot::{Panel, Span, Trace, figure};
 use super::units::{deg, kgcm, tension_kgcm};
 
+/// CSS class and meaning of each kind of line.
+pub type Legend = Vec<(&'static str, String)>;
+
 /// One figure of the page.
 pub struct Figure {
     /// Heading.
@@ -12,7 +15,7 @@ pub struct Figure {
     /// One sentence on what is shown.
     pub note: String,
     /// CSS class and meaning of each kind of line.
-    pub legend: Vec<(&'static str, &'static str)>,
+    pub legend: Legend,
     /// The drawing.
     pub svg: String,
 }
@@ -25,7 +28,12 @@ pub const ARM_NAMES: [&str; 4] = ["1 front left", "2 rear left", "3 front right"
 /// All figures, in the order of the page.
 pub fn all(record: &FlightRecord) -> Vec<Figure> {
     let span = Span::all(record);
-    let mut figures = vec![attitude(record, span), height(record, span), tilt(record, span), thrust(record, span)];
+    let mut figures = vec![
+        attitude(record, span),
+        height(record, span),
+        tilt(record, span),
+        thrust(record, span),
+    ];
     figures.push(grip(record, span, "Tendons and grip", String::new()));
     if let Some((span, note)) = closing(record) {
         figures.push(grip(record, span, "Closing on the pipe", note));
@@ -38,25 +46,47 @@ fn series(record: &FlightRecord, f: impl Fn(&Sample) -> f64) -> Vec<f64> {
     record.samples.iter().map(f).collect()
 }
 
-fn arm_series(record: &FlightRecord, f: impl Fn(&Sample) -> &[f64; 4], si: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
-    (0..4).map(|i| series(record, |s| f(s).get(i).map_or(f64::NAN, |v| si(*v)))).collect()
+fn arm_series(
+    record: &FlightRecord,
+    f: impl Fn(&Sample) -> &[f64; 4],
+    si: impl Fn(f64) -> f64,
+) -> Vec<Vec<f64>> {
+    (0..4)
+        .map(|i| series(record, |s| f(s).get(i).map_or(f64::NAN, |v| si(*v))))
+        .collect()
 }
 
-fn arm_legend() -> Vec<(&'static str, &'static str)> {
-    ARM.into_iter().zip(ARM_NAMES).collect()
+fn legend(keys: &[(&'static str, &str)]) -> Legend {
+    keys.iter()
+        .map(|(class, meaning)| (*class, (*meaning).to_owned()))
+        .collect()
+}
+
+fn arm_legend() -> Legend {
+    ARM.into_iter().zip(ARM_NAMES.map(str::to_owned)).collect()
 }
 
 fn attitude(record: &FlightRecord, span: Span) -> Figure {
     let axis = |i: usize, name: &str| {
-        let pick = |f: fn(&Sample) -> &[f64; 3]| series(record, |s| f(s).get(i).map_or(f64::NAN, |v| deg(*v)));
+        let pick =
+            |f: fn(&Sample) -> &[f64; 3]| series(record, |s| f(s).get(i).map_or(f64::NAN, |v| deg(*v)));
         Panel {
             axis: format!("{name} (deg)"),
             height: 120.0,
             span: 6.0,
             traces: vec![
-                Trace { class: "estimate", values: pick(|s| &s.attitude_estimate) },
-                Trace { class: "true", values: pick(|s| &s.attitude) },
-                Trace { class: "setpoint", values: pick(|s| &s.attitude_setpoint) },
+                Trace {
+                    class: "estimate",
+                    values: pick(|s| &s.attitude_estimate),
+                },
+                Trace {
+                    class: "true",
+                    values: pick(|s| &s.attitude),
+                },
+                Trace {
+                    class: "setpoint",
+                    values: pick(|s| &s.attitude_setpoint),
+                },
             ],
             ..Panel::default()
         }
@@ -64,8 +94,13 @@ fn attitude(record: &FlightRecord, span: Span) -> Figure {
     let panels = [axis(0, "roll"), axis(1, "pitch"), axis(2, "yaw")];
     Figure {
         title: "Attitude",
-        note: "The setpoint is what the attitude controller aims at; it has none while the rotors stand.".into(),
-        legend: vec![("true", "true"), ("setpoint", "setpoint"), ("estimate", "estimate")],
+        note: "The setpoint is what the attitude controller aims at; it has none while the rotors stand."
+            .into(),
+        legend: legend(&[
+            ("true", "true"),
+            ("setpoint", "setpoint"),
+            ("estimate", "estimate"),
+        ]),
         svg: figure(record, span, "roll, pitch and yaw over time", &panels),
     }
 }
@@ -75,8 +110,11 @@ fn height(record: &FlightRecord, span: Span) -> Figure {
     let panel = Panel {
         axis: "height (m)".into(),
         height: 130.0,
-        traces: vec![Trace { class: "true", values: series(record, |s| -s.position[2]) }],
-        levels: vec![(top, "top of the pipe".into())],
+        traces: vec![Trace {
+            class: "true",
+            values: series(record, |s| -s.position[2]),
+        }],
+        levels: vec![top],
         include: vec![0.0, top],
         ..Panel::default()
     };
@@ -85,15 +123,26 @@ fn height(record: &FlightRecord, span: Span) -> Figure {
         height: 110.0,
         span: 1.0,
         traces: vec![
-            Trace { class: "north", values: series(record, |s| s.position[0]) },
-            Trace { class: "east", values: series(record, |s| s.position[1]) },
+            Trace {
+                class: "north",
+                values: series(record, |s| s.position[0]),
+            },
+            Trace {
+                class: "east",
+                values: series(record, |s| s.position[1]),
+            },
         ],
         ..Panel::default()
     };
     Figure {
         title: "Height and place",
         note: "Of the centre of mass, from the take-off point.".into(),
-        legend: vec![("true", "height"), ("north", "north"), ("east", "east")],
+        legend: legend(&[
+            ("true", "height"),
+            ("level", "top of the pipe"),
+            ("north", "north"),
+            ("east", "east"),
+        ]),
         svg: figure(record, span, "height and place over time", &[panel, ground_track]),
     }
 }
@@ -110,9 +159,18 @@ fn tilt(record: &FlightRecord, span: Span) -> Figure {
             height: 100.0,
             span: 10.0,
             traces: vec![
-                Trace { class: "estimate", values: measured },
-                Trace { class: "true", values: real },
-                Trace { class: "setpoint", values: model },
+                Trace {
+                    class: "estimate",
+                    values: measured,
+                },
+                Trace {
+                    class: "true",
+                    values: real,
+                },
+                Trace {
+                    class: "setpoint",
+                    values: model,
+                },
             ],
             ..Panel::default()
         })
@@ -120,7 +178,11 @@ fn tilt(record: &FlightRecord, span: Span) -> Figure {
     Figure {
         title: "Arm tilt",
         note: format!("Positive is tip up. Arms {}.", ARM_NAMES.join(", ")),
-        legend: vec![("true", "true"), ("setpoint", "model in the mixer"), ("estimate", "measured by the arm's IMU")],
+        legend: legend(&[
+            ("true", "true"),
+            ("setpoint", "model in the mixer"),
+            ("estimate", "measured by the arm's IMU"),
+        ]),
         svg: figure(record, span, "tilt of the four arms over time", &panels),
     }
 }
@@ -131,14 +193,19 @@ fn thrust(record: &FlightRecord, span: Span) -> Figure {
     let panel = Panel {
         axis: "thrust (N)".into(),
         height: 210.0,
-        traces: ARM.into_iter().zip(values).map(|(class, values)| Trace { class, values }).collect(),
-        levels: vec![(max, "largest thrust".into())],
+        traces: ARM
+            .into_iter()
+            .zip(values)
+            .map(|(class, values)| Trace { class, values })
+            .collect(),
+        levels: vec![max],
         include: vec![0.0, max * 1.02],
         marks: saturated(record),
         ..Panel::default()
     };
     let mut legend = arm_legend();
-    legend.push(("mark", "saturated"));
+    legend.push(("level", "largest thrust".into()));
+    legend.push(("mark", "saturated".into()));
     Figure {
         title: "Rotor thrust",
         note: "True thrust of each rotor.".into(),
@@ -162,17 +229,25 @@ fn saturated(record: &FlightRecord) -> Vec<(f64, f64)> {
 fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String) -> Figure {
     let p = &record.scenario.params;
     let (aim, tolerance) = (f64::from(p.grip_pressure), f64::from(p.grip_tolerance));
-    let arms = |values: Vec<Vec<f64>>| ARM.into_iter().zip(values).map(|(class, values)| Trace { class, values });
+    let arms = |values: Vec<Vec<f64>>| {
+        ARM.into_iter()
+            .zip(values)
+            .map(|(class, values)| Trace { class, values })
+    };
     let force = |v: f64| tension_kgcm(record, v);
     let limit = kgcm(f64::from(p.servo_torque_max.min(p.servo_stall)));
-    let largest = record.samples.iter().flat_map(|s| s.tension).fold(0.0, |a: f64, v| a.max(force(v)));
+    let largest = record
+        .samples
+        .iter()
+        .flat_map(|s| s.tension)
+        .fold(0.0, |a: f64, v| a.max(force(v)));
     // The limit is shown where it matters; far above the curves it would flatten them.
     let near = largest > 0.5 * limit;
     let tension = Panel {
         axis: "tendon force (kgcm)".into(),
         height: 170.0,
         traces: arms(arm_series(record, |s| &s.tension, force)).collect(),
-        levels: if near { vec![(limit, format!("limit {limit:.1} kgcm"))] } else { vec![] },
+        levels: near.then_some(limit).into_iter().collect(),
         include: if near { vec![0.0, limit] } else { vec![0.0] },
         span: 1.0,
         ..Panel::default()
@@ -185,24 +260,48 @@ fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String) ->
         include: vec![0.0, aim + 2.0 * tolerance],
         ..Panel::default()
     };
-    let band = format!("Measured contact pressure; shaded: {aim:.0} ± {tolerance:.0} N/m², the proof of grip. {note}");
+    let band = format!(
+        "Measured contact pressure; shaded: {aim:.0} ± {tolerance:.0} N/m², the proof of grip. {note}"
+    );
     let mut legend = arm_legend();
-    legend.push(("target", "target pressure"));
+    legend.push(("target", "target pressure".into()));
+    if near {
+        legend.push(("level", format!("limit {limit:.1} kgcm")));
+    }
     Figure {
         title,
         note: band.trim_end().to_owned(),
         legend,
-        svg: figure(record, span, "tendon force and contact pressure over time", &[tension, pressure]),
+        svg: figure(
+            record,
+            span,
+            "tendon force and contact pressure over time",
+            &[tension, pressure],
+        ),
     }
 }
 
 /// The first closing of the arms, a little more on both sides.
 fn closing(record: &FlightRecord) -> Option<(Span, String)> {
     let phase = record.phases.iter().find(|p| p.name == "perch")?;
-    let times: Vec<String> =
-        record.grip.iter().take(4).map(|g| format!("arm {} {:.2} s", g.arm, g.closure)).collect();
-    let note = if times.is_empty() { String::new() } else { format!("Closed after: {}.", times.join(", ")) };
-    Some((Span { from: (phase.start - 0.5).max(0.0), to: phase.end + 1.5 }, note))
+    let times: Vec<String> = record
+        .grip
+        .iter()
+        .take(4)
+        .map(|g| format!("arm {} {:.2} s", g.arm, g.closure))
+        .collect();
+    let note = if times.is_empty() {
+        String::new()
+    } else {
+        format!("Closed after: {}.", times.join(", "))
+    };
+    Some((
+        Span {
+            from: (phase.start - 0.5).max(0.0),
+            to: phase.end + 1.5,
+        },
+        note,
+    ))
 }
 
 fn battery(record: &FlightRecord, span: Span) -> Figure {
@@ -215,22 +314,37 @@ fn battery(record: &FlightRecord, span: Span) -> Figure {
         axis: "battery (V)".into(),
         height: 120.0,
         span: 1.0,
-        traces: vec![Trace { class: "true", values: volts }],
-        levels: if near { vec![(warning, "warning".into())] } else { vec![] },
+        traces: vec![Trace {
+            class: "true",
+            values: volts,
+        }],
+        levels: near.then_some(warning).into_iter().collect(),
         include: if near { vec![warning] } else { vec![] },
         ..Panel::default()
     };
     let throttle = Panel {
         axis: "throttle (%)".into(),
         height: 100.0,
-        traces: vec![Trace { class: "north", values: series(record, |s| 100.0 * s.throttle) }],
+        traces: vec![Trace {
+            class: "north",
+            values: series(record, |s| 100.0 * s.throttle),
+        }],
         include: vec![0.0, 60.0],
         ..Panel::default()
     };
+    let mut legend = legend(&[("true", "battery"), ("north", "throttle")]);
+    if near {
+        legend.push(("level", "warning".into()));
+    }
     Figure {
         title: "Battery and throttle",
         note: "Voltage under load; the pilot's throttle as a share of the largest collective thrust.".into(),
-        legend: vec![("true", "battery"), ("north", "throttle")],
-        svg: figure(record, span, "battery voltage and throttle over time", &[voltage, throttle]),
+        legend,
+        svg: figure(
+            record,
+            span,
+            "battery voltage and throttle over time",
+            &[voltage, throttle],
+        ),
     }
 }

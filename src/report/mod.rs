@@ -6,6 +6,7 @@ pub mod log;
 mod moments;
 pub mod page;
 mod plot;
+mod scene;
 mod schemas;
 pub mod summary;
 mod svg;

@@ -31,8 +31,8 @@ pub struct Panel<'a> {
     pub traces: Vec<Trace<'a>>,
     /// Shaded range of values.
     pub target: Option<(f64, f64)>,
-    /// Dashed levels, with a label.
-    pub levels: Vec<(f64, String)>,
+    /// Dashed levels.
+    pub levels: Vec<f64>,
     /// Values that the axis must show at least.
     pub include: Vec<f64>,
     /// Smallest span of the axis, so that noise does not fill a panel.
@@ -68,7 +68,10 @@ pub struct Span {
 impl Span {
     /// The whole flight.
     pub fn all(record: &FlightRecord) -> Self {
-        Self { from: 0.0, to: record.sim_seconds.max(1.0) }
+        Self {
+            from: 0.0,
+            to: record.sim_seconds.max(1.0),
+        }
     }
 
     fn x(self, t: f64) -> f64 {
@@ -92,7 +95,7 @@ pub fn figure(record: &FlightRecord, span: Span, title: &str, panels: &[Panel<'_
         super::svg::escape(title)
     );
     let bottom = panels_height - GAP + 12.0;
-    let ticks = ticks(span.from, span.to, 12);
+    let ticks = ticks(span.from, span.to, 16);
     let mut top = 12.0;
     for panel in panels {
         svg += &draw_panel(record, span, panel, top, &ticks);
@@ -104,8 +107,16 @@ pub fn figure(record: &FlightRecord, span: Span, title: &str, panels: &[Panel<'_
         svg += &line(span.x(*t), foot, span.x(*t), foot + 4.0, "axis");
         svg += &text(span.x(*t), foot + 17.0, "tick mid", &short(*t, 2));
     }
-    svg += &text((LEFT + WIDTH - RIGHT) / 2.0, foot + 34.0, "title mid", "simulated time (s)");
-    svg += &format!("<line class=\"cursor\" x1=\"0\" x2=\"0\" y1=\"12\" y2=\"{}\"/>", short(foot, 1));
+    svg += &text(
+        (LEFT + WIDTH - RIGHT) / 2.0,
+        foot + 34.0,
+        "title mid",
+        "simulated time (s)",
+    );
+    svg += &format!(
+        "<line class=\"cursor\" x1=\"0\" x2=\"0\" y1=\"12\" y2=\"{}\"/>",
+        short(foot, 1)
+    );
     svg + "</svg>"
 }
 
@@ -115,28 +126,44 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
     let (left, right, bottom) = (LEFT, WIDTH - RIGHT, top + panel.height);
     let mut out = rect(left, top, right - left, panel.height, "field", "");
     if let Some((a, b)) = panel.target {
-        out += &rect(left, y(b.min(high)), right - left, y(a.max(low)) - y(b.min(high)), "target", "");
+        out += &rect(
+            left,
+            y(b.min(high)),
+            right - left,
+            y(a.max(low)) - y(b.min(high)),
+            "target",
+            "",
+        );
     }
     for t in times {
         out += &line(span.x(*t), top, span.x(*t), bottom, "grid");
     }
     let rows = if panel.height < 110.0 { 4 } else { 6 };
     for v in ticks(low, high, rows) {
-        out += &line(left, y(v), right, y(v), if v == 0.0 { "grid zero" } else { "grid" });
+        out += &line(
+            left,
+            y(v),
+            right,
+            y(v),
+            if v == 0.0 { "grid zero" } else { "grid" },
+        );
         out += &text(left - 7.0, y(v) + 4.0, "tick end", &short(v, 3));
     }
-    for (level, label) in &panel.levels {
+    for level in &panel.levels {
         out += &line(left, y(*level), right, y(*level), "level");
-        // Below the line at the top of a panel, above it elsewhere.
-        let side = if y(*level) - top < 18.0 { 13.0 } else { -5.0 };
-        out += &text(right - 6.0, y(*level) + side, "tick end halo", label);
     }
-    for (a, b) in panel.marks.iter().filter(|(a, b)| *b >= span.from && *a <= span.to) {
+    for (a, b) in panel
+        .marks
+        .iter()
+        .filter(|(a, b)| *b >= span.from && *a <= span.to)
+    {
         let (a, b) = (span.x(a.max(span.from)), span.x(b.min(span.to)));
         out += &rect(a, top, (b - a).max(1.5), 5.0, "mark", "");
     }
     for trace in &panel.traces {
-        let points = thin(record, span, &trace.values).into_iter().map(|(t, v)| (span.x(t), y(v)));
+        let points = thin(record, span, &trace.values)
+            .into_iter()
+            .map(|(t, v)| (span.x(t), y(v)));
         out += &format!("<path class=\"trace {}\" d=\"{}\"/>", trace.class, path(points));
     }
     let (x, middle) = (17.0, top + panel.height / 2.0);
@@ -148,9 +175,16 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
 fn limits(record: &FlightRecord, span: Span, panel: &Panel<'_>) -> (f64, f64) {
     let shown = |values: &'_ [f64]| -> Vec<f64> {
         let pairs = record.samples.iter().zip(values);
-        pairs.filter(|(s, v)| span.contains(s.t) && v.is_finite()).map(|(_, v)| *v).collect()
+        pairs
+            .filter(|(s, v)| span.contains(s.t) && v.is_finite())
+            .map(|(_, v)| *v)
+            .collect()
     };
-    let values = panel.traces.iter().flat_map(|t| shown(&t.values)).chain(panel.include.iter().copied());
+    let values = panel
+        .traces
+        .iter()
+        .flat_map(|t| shown(&t.values))
+        .chain(panel.include.iter().copied());
     let (low, high) = values.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
     if low > high {
         return (0.0, 1.0);
@@ -167,8 +201,13 @@ fn limits(record: &FlightRecord, span: Span, panel: &Panel<'_>) -> (f64, f64) {
 
 /// The curve as its smallest and largest value in each column, in the order in which they come.
 fn thin(record: &FlightRecord, span: Span, values: &[f64]) -> Vec<(f64, f64)> {
-    let shown: Vec<(f64, f64)> =
-        record.samples.iter().zip(values).map(|(s, v)| (s.t, *v)).filter(|(t, _)| span.contains(*t)).collect();
+    let shown: Vec<(f64, f64)> = record
+        .samples
+        .iter()
+        .zip(values)
+        .map(|(s, v)| (s.t, *v))
+        .filter(|(t, _)| span.contains(*t))
+        .collect();
     if shown.len() <= 2 * COLUMNS {
         return shown;
     }
@@ -192,19 +231,33 @@ fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
     let mut out = String::new();
     let mut start = 0;
     for end in 1..=record.samples.len() {
-        let (Some(first), Some(last)) = (record.samples.get(start), record.samples.get(end - 1)) else { break };
+        let (Some(first), Some(last)) = (record.samples.get(start), record.samples.get(end - 1)) else {
+            break;
+        };
         if record.samples.get(end).is_some_and(|s| s.mode == first.mode) {
             continue;
         }
         start = end;
         let until = record.samples.get(end).map_or(last.t, |s| s.t);
         let name = first.mode.name();
-        out += &block(span, first.t, until, top, &format!("mode m-{}", name.to_lowercase()), name, name);
+        out += &block(
+            span,
+            first.t,
+            until,
+            top,
+            &format!("mode m-{}", name.to_lowercase()),
+            name,
+            name,
+        );
     }
     for (i, phase) in record.phases.iter().enumerate() {
         let number = (i + 1).to_string();
         let tip = format!("{number} {}", phase.name);
-        let named = if wide(span, phase.start, phase.end, &tip) { &tip } else { &number };
+        let named = if wide(span, phase.start, phase.end, &tip) {
+            &tip
+        } else {
+            &number
+        };
         out += &block(span, phase.start, phase.end, top + BAND, "step", named, &tip);
     }
     out += &text(LEFT - 7.0, top + 12.5, "tick end", "mode");
@@ -218,7 +271,12 @@ fn block(span: Span, from: f64, to: f64, top: f64, class: &str, label: &str, tip
     let (from, to) = (from.max(span.from), to.min(span.to));
     let mut out = rect(span.x(from), top, span.x(to) - span.x(from), BAND, class, tip);
     if wide(span, from, to, label) {
-        out += &text((span.x(from) + span.x(to)) / 2.0, top + 12.5, "band-label mid", label);
+        out += &text(
+            (span.x(from) + span.x(to)) / 2.0,
+            top + 12.5,
+            "band-label mid",
+            label,
+        );
     }
     out
 }
@@ -232,7 +290,10 @@ fn wide(span: Span, from: f64, to: f64, label: &str) -> bool {
 /// Round values between `low` and `high`, about `count` of them.
 fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     let step = tick_step(low, high, count);
-    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+    let (first, last) = (
+        (low / step - 1e-9).ceil() as i64,
+        (high / step + 1e-9).floor() as i64,
+    );
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
@@ -240,7 +301,9 @@ fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
 fn tick_step(low: f64, high: f64, count: usize) -> f64 {
     let raw = ((high - low) / count.max(1) as f64).max(1e-9);
     let power = 10_f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= raw * 0.999);
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|m| m * power >= raw * 0.999);
     step.unwrap_or(10.0) * power
 }
 
@@ -277,7 +340,13 @@ mod tests {
         record.samples.clear();
         record.phases.clear();
         record.sim_seconds = 0.0;
-        let panel = Panel { traces: vec![Trace { class: "a1", values: vec![] }], ..Panel::default() };
+        let panel = Panel {
+            traces: vec![Trace {
+                class: "a1",
+                values: vec![],
+            }],
+            ..Panel::default()
+        };
         assert!(figure(&record, Span::all(&record), "t", &[panel]).ends_with("</svg>"));
     }
 }

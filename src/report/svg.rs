@@ -21,8 +21,16 @@ pub fn escape(text: &str) -> String {
 /// A number with at most `digits` decimals and no needless zeros.
 pub fn short(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
 }
 
 /// Path data through `points` (px); a break wherever a point is not finite.
@@ -35,7 +43,13 @@ pub fn path(points: impl IntoIterator<Item = (f64, f64)>) -> String {
             continue;
         }
         // Writing to a string cannot fail.
-        let _ = write!(data, "{}{} {}", if pen_down { 'L' } else { 'M' }, short(x, 1), short(y, 1));
+        let _ = write!(
+            data,
+            "{}{} {}",
+            if pen_down { 'L' } else { 'M' },
+            short(x, 1),
+            short(y, 1)
+        );
         pen_down = true;
     }
     data
@@ -43,7 +57,12 @@ pub fn path(points: impl IntoIterator<Item = (f64, f64)>) -> String {
 
 /// A text element.
 pub fn text(x: f64, y: f64, class: &str, content: &str) -> String {
-    format!("<text x=\"{}\" y=\"{}\" class=\"{class}\">{}</text>", short(x, 1), short(y, 1), escape(content))
+    format!(
+        "<text x=\"{}\" y=\"{}\" class=\"{class}\">{}</text>",
+        short(x, 1),
+        short(y, 1),
+        escape(content)
+    )
 }
 
 /// A straight line.
@@ -59,7 +78,11 @@ pub fn line(x1: f64, y1: f64, x2: f64, y2: f64, class: &str) -> String {
 
 /// A rectangle with a tooltip (none if empty).
 pub fn rect(x: f64, y: f64, w: f64, h: f64, class: &str, tip: &str) -> String {
-    let tip = if tip.is_empty() { String::new() } else { format!("<title>{}</title>", escape(tip)) };
+    let tip = if tip.is_empty() {
+        String::new()
+    } else {
+        format!("<title>{}</title>", escape(tip))
+    };
     format!(
         "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"{class}\">{tip}</rect>",
         short(x, 1),
@@ -80,7 +103,10 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        assert_eq!((short(1.0, 1), short(-0.01, 1), short(12.34, 1), short(100.0, 0)), ("1".into(), "0".into(), "12.3".into(), "100".into()));
+        assert_eq!(
+            (short(1.0, 1), short(-0.01, 1), short(12.34, 1), short(100.0, 0)),
+            ("1".into(), "0".into(), "12.3".into(), "100".into())
+        );
     }
 
     #[test]

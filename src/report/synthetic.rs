@@ -22,18 +22,30 @@ pub fn record() -> FlightRecord {
             done: true,
             worst_attitude_error: 0.02 + 0.01 * duration,
             worst_tilt: -0.1 - 0.02 * duration,
-            saturation: if matches!(step, Step::Roll { .. }) { 0.034 } else { 0.0 },
+            saturation: if matches!(step, Step::Roll { .. }) {
+                0.034
+            } else {
+                0.0
+            },
             battery_voltage: 16.4 - 0.01 * start,
             overruns: 0,
         });
         start += duration;
     }
-    let samples = (0..(start * SAMPLE_HZ) as usize).map(|i| sample(i as f64 / SAMPLE_HZ, &phases)).collect();
-    let event = |t, text: &str| Event { t, text: text.to_owned() };
+    let samples = (0..(start * SAMPLE_HZ) as usize)
+        .map(|i| sample(i as f64 / SAMPLE_HZ, &phases))
+        .collect();
+    let event = |t, text: &str| Event {
+        t,
+        text: text.to_owned(),
+    };
     let closure = [2.61, 2.83, 3.65, 3.85];
     let torque = [0.39, 0.51, 0.81, 0.90];
     FlightRecord {
-        outcome: Outcome { accomplished: true, reason: "mission accomplished".to_owned() },
+        outcome: Outcome {
+            accomplished: true,
+            reason: "mission accomplished".to_owned(),
+        },
         samples,
         events: vec![
             event(2.0, "calibrated: gyro bias 0.31 0.12 -0.20 deg/s"),
@@ -75,17 +87,33 @@ fn sample(t: f64, phases: &[Phase]) -> Sample {
         6 if u < 0.2 => (Mode::Contact, 1.54, 3.0, 0.0, 2.5),
         6 => (Mode::Clamping, 1.54, 3.0, ((u - 0.2) / 0.55).min(1.0), 2.5),
         7 => (Mode::Perched, 1.54, 3.0, 1.0, 0.0),
-        8 => (Mode::Releasing, ramp(1.54, 2.54), 3.0, (1.0 - u * 2.0).max(0.0), 4.5),
+        8 => (
+            Mode::Releasing,
+            ramp(1.54, 2.54),
+            3.0,
+            (1.0 - u * 2.0).max(0.0),
+            4.5,
+        ),
         9 => (Mode::Flight, ramp(2.54, 2.0), ramp(3.0, 0.0), 0.0, 4.4),
         10 => (Mode::Landed, ramp(2.0, 0.04), 0.0, 0.0, 4.3),
         _ => (Mode::Disarmed, 0.04, 0.0, 0.0, 0.0),
     };
-    let roll_target = if index == 3 { 0.436 * (u * TAU).sin().signum() } else { 0.0 };
-    let roll = if index == 3 { 0.43 * (u * TAU).sin().cbrt() } else { 0.01 * noise(1.0) };
+    let roll_target = if index == 3 {
+        0.436 * (u * TAU).sin().signum()
+    } else {
+        0.0
+    };
+    let roll = if index == 3 {
+        0.43 * (u * TAU).sin().cbrt()
+    } else {
+        0.01 * noise(1.0)
+    };
     let free = (mean - 4.2) * 0.12;
     let per_arm = |f: &dyn Fn(f64, f64) -> f64| [f(1.0, 0.0), f(1.0, 1.0), f(-1.0, 2.0), f(-1.0, 3.0)];
-    let tilt = per_arm(&|side, k| free * (1.0 - closed) - 0.95 * closed + side * roll * 0.4 + 0.01 * noise(k + 2.0));
-    let thrust = per_arm(&|side, k| (mean + side * 2.0 * (roll_target - roll) + 0.1 * noise(k)).clamp(0.0, 8.3));
+    let tilt =
+        per_arm(&|side, k| free * (1.0 - closed) - 0.95 * closed + side * roll * 0.4 + 0.01 * noise(k + 2.0));
+    let thrust =
+        per_arm(&|side, k| (mean + side * 2.0 * (roll_target - roll) + 0.1 * noise(k)).clamp(0.0, 8.3));
     let force = per_arm(&|_, k| closed * (26.0 + 11.0 * k));
     let pressure = per_arm(&|_, k| 950.0 * ((closed * 1.4 - 0.4).max(0.0) + 0.01 * noise(k) * closed));
     Sample {
@@ -95,7 +123,11 @@ fn sample(t: f64, phases: &[Phase]) -> Sample {
         velocity: [0.0; 3],
         attitude: [roll, 0.02 * noise(0.7), 0.03 * noise(0.2)],
         attitude_estimate: [roll + 0.004, 0.02 * noise(0.7) + 0.003, 0.03 * noise(0.2)],
-        attitude_setpoint: if mean > 0.0 { [roll_target, 0.0, 0.0] } else { [f64::NAN; 3] },
+        attitude_setpoint: if mean > 0.0 {
+            [roll_target, 0.0, 0.0]
+        } else {
+            [f64::NAN; 3]
+        },
         rate: [0.0; 3],
         tilt,
         tilt_measured: tilt.map(|a| a + 0.01 * noise(5.0)),

@@ -13,7 +13,9 @@
 )]
 #![allow(async_fn_in_trait, reason = "ports are awaited in place; no caller needs a Send bound")]
 
+pub mod analog;
 pub mod arms;
+pub mod clamp;
 pub mod commander;
 pub mod control;
 pub mod deadline;
@@ -24,5 +26,6 @@ pub mod mixer;
 pub mod motors;
 pub mod ports;
 pub mod rc;
+pub mod servos;
 pub mod supervisor;
 pub mod telemetry;

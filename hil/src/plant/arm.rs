@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3};
 use sophie_control::wrench::{FORE, SIDE};
 
 use super::GRAVITY;
-use super::contact::{ARM_LENGTH, ARM_X, HINGE_Z};
+use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
 
 /// Mass at the arm's tip: motor, propeller and the arm's share, kg (assumed, sets the mode to 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
@@ -105,10 +105,11 @@ pub struct Arm {
 }
 
 impl Arm {
-    /// Arm `index`, 0 to 3, drooping without thrust.
+    /// Arm `index`, 0 to 3, drooping without thrust as far as the ground under the belly lets it.
     #[must_use]
     pub fn new(index: usize, spec: ArmSpec) -> Self {
-        let tilt = spec.static_tilt(0.0);
+        let on_ground = -((BELLY_Z - HINGE_Z) / ARM_LENGTH).asin();
+        let tilt = spec.static_tilt(0.0).max(on_ground);
         Self {
             spec,
             side: f64::from(SIDE[index]),

@@ -95,7 +95,11 @@ impl Surface {
                 if depth <= 0.0 || (point.x - p.north).abs() > p.half_length {
                     return None;
                 }
-                let n = if distance > 1e-6 { across / distance } else { DVec2::new(0.0, -1.0) };
+                let n = if distance > 1e-6 {
+                    across / distance
+                } else {
+                    DVec2::new(0.0, -1.0)
+                };
                 Some((depth, DVec3::new(0.0, n.x, n.y)))
             }
         }
@@ -123,7 +127,12 @@ pub struct Pad {
 }
 
 /// A quarter of the vehicle on each belly pad: 15 Hz, damping ratio 0.5.
-const BELLY: Pad = Pad { stiffness: 4.0e3, damping: 42.0, bristle: 4.0e3, bristle_damping: 42.0 };
+const BELLY: Pad = Pad {
+    stiffness: 4.0e3,
+    damping: 42.0,
+    bristle: 4.0e3,
+    bristle_damping: 42.0,
+};
 /// One station of the skin.
 const SKIN: Pad = Pad {
     stiffness: SKIN_STIFFNESS * STATION_SIZE.0 * STATION_SIZE.1,
@@ -132,7 +141,12 @@ const SKIN: Pad = Pad {
     bristle_damping: 4.0,
 };
 /// An arm's tip of 77 g: 22 Hz, damping ratio 0.5; it glides.
-const TIP: Pad = Pad { stiffness: 1.5e3, damping: 10.0, bristle: 0.0, bristle_damping: 0.0 };
+const TIP: Pad = Pad {
+    stiffness: 1.5e3,
+    damping: 10.0,
+    bristle: 0.0,
+    bristle_damping: 0.0,
+};
 
 /// What a point feels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -182,7 +196,11 @@ impl ContactPoint {
             }
         }
         self.bristle = deflection;
-        Touch { force: n * normal + tangential, normal, depth }
+        Touch {
+            force: n * normal + tangential,
+            normal,
+            depth,
+        }
     }
 }
 
@@ -270,7 +288,12 @@ impl ArmSkin {
         let (y, z, dy, dz) = if u.abs() < 1e-3 {
             // Series of the expressions below, which lose their digits near a straight arm.
             let q = s * s / ARM_LENGTH;
-            (s * (1.0 - u * u / 6.0), 0.5 * s * u, -q * u / 3.0, q * (0.5 - u * u / 8.0))
+            (
+                s * (1.0 - u * u / 6.0),
+                0.5 * s * u,
+                -q * u / 3.0,
+                q * (0.5 - u * u / 8.0),
+            )
         } else {
             let (sin, cos) = u.sin_cos();
             let radius = ARM_LENGTH / alpha;
@@ -281,7 +304,10 @@ impl ArmSkin {
                 (s * sin - radius * (1.0 - cos)) / alpha,
             )
         };
-        (DVec3::new(self.x, self.side * y, UNDERSIDE_Z - z), DVec3::new(0.0, self.side * dy, -dz))
+        (
+            DVec3::new(self.x, self.side * y, UNDERSIDE_Z - z),
+            DVec3::new(0.0, self.side * dy, -dz),
+        )
     }
 
     /// Advances by `dt` s with the arm at `alpha` rad turning at `alpha_rate` rad/s.
@@ -319,7 +345,11 @@ impl ArmTip {
     /// Beyond 3.
     pub fn new(arm: usize) -> Self {
         let ArmSkin { side, x, .. } = ArmSkin::new(arm);
-        Self { side, x, point: ContactPoint::default() }
+        Self {
+            side,
+            x,
+            point: ContactPoint::default(),
+        }
     }
 
     /// Advances by `dt` s; the load's pressure is 0.
@@ -328,7 +358,9 @@ impl ArmTip {
         let r = DVec3::new(self.x, self.side * ARM_LENGTH * cos, HINGE_Z - ARM_LENGTH * sin);
         let by_alpha = DVec3::new(0.0, -self.side * ARM_LENGTH * sin, -ARM_LENGTH * cos);
         let velocity = pose.point_velocity(r, by_alpha * alpha_rate);
-        let touch = self.point.force(dt, &TIP, pose.point(r), velocity, &Surface::Ground(0.0));
+        let touch = self
+            .point
+            .force(dt, &TIP, pose.point(r), velocity, &Surface::Ground(0.0));
         let force = pose.to_body(touch.force);
         SkinLoad {
             force_body: force,

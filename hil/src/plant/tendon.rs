@@ -32,9 +32,17 @@ impl From<ServoProfile> for ServoSpec {
     fn from(profile: ServoProfile) -> Self {
         match profile {
             // 35 kgcm (paper), the speed of the MG996R that it names, the 270 degree version of such servos.
-            ServoProfile::Paper => Self { stall: 3.432, slew: 6.16, range: 4.71 },
+            ServoProfile::Paper => Self {
+                stall: 3.432,
+                slew: 6.16,
+                range: 4.71,
+            },
             // 9.4 kgcm and 0.17 s for 60 degrees at 4.8 V (datasheet), 180 degrees.
-            ServoProfile::Mg996r => Self { stall: 0.922, slew: 6.16, range: 3.14 },
+            ServoProfile::Mg996r => Self {
+                stall: 0.922,
+                slew: 6.16,
+                range: 3.14,
+            },
         }
     }
 }
@@ -84,7 +92,15 @@ pub struct Tendon {
 impl Tendon {
     /// A tendon whose servo stands at its release position.
     pub fn new(servo: ServoSpec, spec: TendonSpec) -> Self {
-        Self { servo, spec, position: 0.0, target: None, to_next_frame: 0.0, last_tilt: None, tension: 0.0 }
+        Self {
+            servo,
+            spec,
+            position: 0.0,
+            target: None,
+            to_next_frame: 0.0,
+            last_tilt: None,
+            tension: 0.0,
+        }
     }
 
     /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) with the arm at tilt `alpha` rad; returns
@@ -101,10 +117,21 @@ impl Tendon {
         self.position += self.speed(dt) * dt;
         let tilt_change = alpha - self.last_tilt.replace(alpha).unwrap_or(alpha);
 
-        let TendonSpec { reel_radius: r, lever: h, stiffness, damping, reference_tilt, slack_error } = self.spec;
+        let TendonSpec {
+            reel_radius: r,
+            lever: h,
+            stiffness,
+            damping,
+            reference_tilt,
+            slack_error,
+        } = self.spec;
         let stretch = r * self.position - slack_error - h * (reference_tilt - alpha);
         let stretch_rate = (r * (self.position - before) + h * tilt_change) / dt;
-        self.tension = if stretch > 0.0 { (stiffness * stretch + damping * stretch_rate).max(0.0) } else { 0.0 };
+        self.tension = if stretch > 0.0 {
+            (stiffness * stretch + damping * stretch_rate).max(0.0)
+        } else {
+            0.0
+        };
         -h * self.tension
     }
 

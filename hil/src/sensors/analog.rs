@@ -47,7 +47,10 @@ impl BatteryInputs {
 
     /// Counts for a true current (A).
     pub fn current(&self, amps: f64, rng: &mut impl Rng) -> u16 {
-        counts((amps * self.current_gain + self.current_offset) / AMPS_PER_COUNT, rng)
+        counts(
+            (amps * self.current_gain + self.current_offset) / AMPS_PER_COUNT,
+            rng,
+        )
     }
 }
 
@@ -71,7 +74,10 @@ mod tests {
             let v = f64::from(b.voltage(15.2, &mut rng)) * VOLTS_PER_COUNT;
             let i = f64::from(b.current(40.0, &mut rng)) * AMPS_PER_COUNT;
             // 1 % and four sigma of 2 counts; 3 %, the offset and four sigma.
-            assert!((v - 15.2).abs() < 0.152 + 0.08 && (i - 40.0).abs() < 1.2 + 0.3 + 0.45, "{v} {i}");
+            assert!(
+                (v - 15.2).abs() < 0.152 + 0.08 && (i - 40.0).abs() < 1.2 + 0.3 + 0.45,
+                "{v} {i}"
+            );
         }
         let b = BatteryInputs::new(&mut rng);
         assert!(b.voltage(100.0, &mut rng) == 4095 && b.current(-50.0, &mut rng) == 0);

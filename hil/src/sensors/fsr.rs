@@ -73,7 +73,9 @@ impl FsrSensor {
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
         // Play: the felt force moves only when pushed by either edge.
-        self.felt = self.felt.clamp(force * (1.0 - HYSTERESIS), force * (1.0 + HYSTERESIS));
+        self.felt = self
+            .felt
+            .clamp(force * (1.0 - HYSTERESIS), force * (1.0 + HYSTERESIS));
         let keep = (-dt / CREEP.1).exp();
         self.creep = self.creep * keep + CREEP.0 * (1.0 - keep * keep).sqrt() * normal();
         let x = match self.broken {
@@ -87,7 +89,11 @@ impl FsrSensor {
             }
         };
         // A grounded or railed pin has no noise to speak of; a divider has.
-        let noise = if x > 0.0 && x < 1.0 { ADC_NOISE * normal() } else { 0.0 };
+        let noise = if x > 0.0 && x < 1.0 {
+            ADC_NOISE * normal()
+        } else {
+            0.0
+        };
         (x * 4095.0 + noise).round().clamp(0.0, 4095.0) as u16
     }
 }
@@ -117,7 +123,10 @@ mod tests {
             worst = worst.max(error.abs());
         }
         let rms = (square / f64::from(n)).sqrt();
-        assert!((20.0..40.0).contains(&rms) && (50.0..90.0).contains(&worst), "{rms} {worst}");
+        assert!(
+            (20.0..40.0).contains(&rms) && (50.0..90.0).contains(&worst),
+            "{rms} {worst}"
+        );
     }
 
     #[test]
@@ -126,7 +135,10 @@ mod tests {
         let mut s = FsrSensor::new(&mut rng);
         assert!(s.sample(60.0, 0.002, &mut rng) == 0);
         let mut mean = |p: f64| {
-            (0..2000).map(|_| f64::from(s.sample(p, 0.0, &mut rng))).sum::<f64>() / 2000.0
+            (0..2000)
+                .map(|_| f64::from(s.sample(p, 0.0, &mut rng)))
+                .sum::<f64>()
+                / 2000.0
         };
         let up = mean(900.0);
         mean(1500.0);

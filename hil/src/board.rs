@@ -1,0 +1,230 @@
+//! The simulated board: the ports that the tasks see, wired to the plant through its sensors.
+//!
+//! The world steps the plant for a millisecond, then lets the tasks run; what they write takes effect in the
+//! next millisecond. Nothing but sensor readings crosses over to the tasks.
+
+use std::cell::{Cell, RefCell};
+
+use embassy_sync::pipe::Pipe;
+use embassy_sync::signal::Signal;
+use embassy_time::Timer;
+use heapless::Vec;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
+use sophie_tasks::links::Raw;
+use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
+
+use crate::plant::{Actuators, Plant};
+use crate::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
+use crate::sensors::arm_imu::{self, ArmImu};
+use crate::sensors::fsr::FsrSensor;
+use crate::sensors::imu::{self, Imu};
+
+/// Bytes that a serial line holds until they are read: half a hardware ring of 512.
+const LINE_BYTES: usize = 256;
+/// Time that one conversion of all analog inputs takes, µs.
+const CONVERSION_US: u64 = 30;
+/// Time that reading one arm's sensor over 400 kHz I2C takes, µs.
+const ARM_READ_US: u64 = 400;
+
+/// The board's state, shared by its ports and the world.
+pub struct Board {
+    imu_ready: Signal<Raw, Vec<ImuReading, IMU_BATCH>>,
+    actuators: Cell<Actuators>,
+    rc: Pipe<Raw, LINE_BYTES>,
+    telemetry: Pipe<Raw, LINE_BYTES>,
+    sensors: RefCell<Sensors>,
+    truth: Cell<AnalogTruth>,
+    arm_gravity: Cell<PerArm<Vec3>>,
+    feeds: Cell<u32>,
+}
+
+/// What the analog inputs are connected to.
+#[derive(Clone, Copy, Default)]
+struct AnalogTruth {
+    pressure: PerArm<f64>,
+    voltage: f64,
+    current: f64,
+    /// Time since the last conversion, s.
+    elapsed: f64,
+}
+
+struct Sensors {
+    imu: Imu,
+    arms: PerArm<ArmImu>,
+    fsr: PerArm<FsrSensor>,
+    battery: BatteryInputs,
+    rng: Pcg64Mcg,
+    arm_clock: f64,
+}
+
+impl Board {
+    /// A board whose parts have errors drawn from `rng`.
+    #[must_use]
+    pub fn new(rng: &mut Pcg64Mcg) -> Self {
+        let imu = Imu::new(Pcg64Mcg::from_rng(rng));
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
+        let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
+        let battery = BatteryInputs::new(rng);
+        Self {
+            imu_ready: Signal::new(),
+            actuators: Cell::default(),
+            rc: Pipe::new(),
+            telemetry: Pipe::new(),
+            sensors: RefCell::new(Sensors {
+                imu,
+                arms,
+                fsr,
+                battery,
+                rng: Pcg64Mcg::from_rng(rng),
+                arm_clock: 0.0,
+            }),
+            truth: Cell::default(),
+            arm_gravity: Cell::default(),
+            feeds: Cell::new(0),
+        }
+    }
+
+    /// Steps the plant by a millisecond under what the tasks wrote last and takes the sensors' readings.
+    pub fn step_world(&self, plant: &mut Plant) {
+        let per_sample = (1.0 / (imu::RATE_HZ * crate::plant::STEP)).round() as usize;
+        let samples = (1e-3 * imu::RATE_HZ).round() as usize;
+        let actuators = self.actuators.get();
+        let mut sensors = self.sensors.borrow_mut();
+        let mut batch = Vec::new();
+        for _ in 0..samples {
+            for _ in 0..per_sample {
+                plant.step(&actuators);
+            }
+            let reading =
+                sensors.imu.sample(plant.pose().omega, plant.specific_force(), &plant.rotor_speed());
+            // The batch holds more than a millisecond's samples.
+            let _ = batch.push(reading);
+        }
+        sensors.arm_clock += 1e-3 * arm_imu::RATE_HZ;
+        if sensors.arm_clock >= 1.0 {
+            sensors.arm_clock -= 1.0;
+            let (attitude, force, tilt) = (plant.pose().attitude, plant.specific_force(), plant.tilt());
+            let mut gravity = self.arm_gravity.get();
+            for ((g, arm), tilt) in gravity.iter_mut().zip(&mut sensors.arms).zip(tilt) {
+                *g = arm.sample(attitude, tilt, force);
+            }
+            self.arm_gravity.set(gravity);
+        }
+        self.truth.set(AnalogTruth {
+            pressure: plant.pressure(),
+            voltage: plant.battery_voltage(),
+            current: plant.battery_current(),
+            elapsed: self.truth.get().elapsed + 1e-3,
+        });
+        self.imu_ready.signal(batch);
+    }
+
+    /// Puts bytes on the receiver's line; what does not fit is lost, as on a line nobody reads.
+    pub fn receive(&self, bytes: &[u8]) {
+        let _ = self.rc.try_write(bytes);
+    }
+
+    /// Takes the telemetry bytes sent since the last call.
+    pub fn take_telemetry(&self, buffer: &mut [u8]) -> usize {
+        self.telemetry.try_read(buffer).unwrap_or(0)
+    }
+
+    /// What the tasks wrote last.
+    #[must_use]
+    pub fn actuators(&self) -> Actuators {
+        self.actuators.get()
+    }
+
+    /// Times that the watchdog was fed.
+    #[must_use]
+    pub fn watchdog_feeds(&self) -> u32 {
+        self.feeds.get()
+    }
+}
+
+/// A port of the simulated board; one type serves them all.
+#[derive(Clone, Copy)]
+pub struct Port(pub &'static Board);
+
+impl ports::Imu for Port {
+    fn rate_hz(&self) -> f32 {
+        imu::RATE_HZ as f32
+    }
+
+    async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {
+        Ok(self.0.imu_ready.wait().await)
+    }
+}
+
+impl ports::ArmImus for Port {
+    async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
+        Timer::after_micros(ARM_READ_US).await;
+        self.0.arm_gravity.get().get(arm).copied().ok_or(PortError::Absent)
+    }
+}
+
+impl ports::Analog for Port {
+    fn volts_per_count(&self) -> f32 {
+        VOLTS_PER_COUNT as f32
+    }
+
+    fn amps_per_count(&self) -> f32 {
+        AMPS_PER_COUNT as f32
+    }
+
+    async fn read(&mut self) -> Result<AnalogFrame, PortError> {
+        Timer::after_micros(CONVERSION_US).await;
+        let truth = self.0.truth.get();
+        self.0.truth.set(AnalogTruth { elapsed: 0.0, ..truth });
+        let Sensors { fsr, battery, rng, .. } = &mut *self.0.sensors.borrow_mut();
+        let mut frame = AnalogFrame {
+            fsr: [0; 4],
+            battery_voltage: battery.voltage(truth.voltage, rng),
+            battery_current: battery.current(truth.current, rng),
+        };
+        for ((counts, sensor), pressure) in frame.fsr.iter_mut().zip(fsr).zip(truth.pressure) {
+            *counts = sensor.sample(pressure, truth.elapsed, rng);
+        }
+        Ok(frame)
+    }
+}
+
+impl ports::Motors for Port {
+    async fn write(&mut self, commands: PerArm<f32>) {
+        let actuators = self.0.actuators.get();
+        self.0.actuators.set(Actuators { motors: commands.map(f64::from), ..actuators });
+    }
+}
+
+impl ports::Servos for Port {
+    async fn write(&mut self, pulses_us: PerArm<f32>) {
+        let actuators = self.0.actuators.get();
+        self.0.actuators.set(Actuators { servos: pulses_us.map(f64::from), ..actuators });
+    }
+}
+
+impl ports::RcReceiver for Port {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        Ok(self.0.rc.read(buffer).await)
+    }
+}
+
+impl ports::TelemetryLink for Port {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let written = self.0.telemetry.write(rest).await;
+            rest = rest.get(written..).unwrap_or_default();
+        }
+        Ok(())
+    }
+}
+
+impl ports::Watchdog for Port {
+    fn feed(&mut self) {
+        self.0.feeds.set(self.0.feeds.get().wrapping_add(1));
+    }
+}

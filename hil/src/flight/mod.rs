@@ -1,0 +1,98 @@
+//! Flies a scenario: world, board, tasks and pilot in lockstep under virtual time.
+
+mod judge;
+mod recorder;
+mod stack;
+
+use std::time::Instant as WallInstant;
+
+use glam::DVec3;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+use self::judge::Judge;
+use self::recorder::Recorder;
+use self::stack::Stack;
+use crate::pilot::{Pilot, Seen};
+use crate::plant::Plant;
+use crate::record::{Event, FlightRecord, Observer, Outcome};
+use crate::scenario::{Scenario, Step};
+
+/// Milliseconds between two calls of [`Observer::progress`].
+const PROGRESS_MS: u64 = 250;
+/// Bytes of telemetry taken at once.
+const TELEMETRY_BYTES: usize = 256;
+
+/// Flies `scenario`, telling `observer` what happens.
+///
+/// The same scenario and seed give the same record to the bit, whatever other threads do; only
+/// [`FlightRecord::wall_seconds`] differs.
+pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
+    let wall = WallInstant::now();
+    let mut seeds = Pcg64Mcg::seed_from_u64(scenario.seed);
+    let mut plant = Plant::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
+    let stack = Stack::new(scenario, &mut seeds);
+    let mut pilot = Pilot::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
+    let mut recorder = Recorder::new(scenario);
+    let mut judge = Judge::new(scenario);
+    let mut telemetry = [0u8; TELEMETRY_BYTES];
+
+    let limit_ms = (scenario.time_limit * 1e3) as u64;
+    let mut outcome = Outcome {
+        accomplished: false,
+        reason: format!("time limit of {:.0} s reached", scenario.time_limit),
+    };
+    let mut began = (usize::MAX, 0.0);
+    let mut ms = 0;
+    while ms < limit_ms {
+        ms += 1;
+        let t = ms as f64 * 1e-3;
+        stack.board.step_world(&mut plant);
+        let received = stack.board.take_telemetry(&mut telemetry);
+        let output = pilot.step(1e-3, seen(&plant, t), &telemetry[..received]);
+        if let Some(frame) = &output.rc_bytes {
+            stack.board.receive(frame);
+        }
+        stack.run_until(ms * 1000);
+
+        let step = scenario.steps.get(output.step).map(|s| (output.step, s));
+        if output.step != began.0 {
+            began = (output.step, t);
+        }
+        let judged = judge.step(t, step, &plant, &stack);
+        plant.push = push(step, t - began.1);
+        recorder.step(ms, step, &plant, &stack, pilot.throttle(), observer);
+        if ms % PROGRESS_MS == 0 {
+            observer.progress(t, stack.mode(), -plant.pose().position.z);
+        }
+        if let Some(reason) = judged {
+            outcome.reason = format!("{reason} (at {t:.1} s)");
+            break;
+        }
+        if let Some(end) = output.outcome {
+            outcome = end;
+            break;
+        }
+    }
+    let event = Event { t: ms as f64 * 1e-3, text: outcome.reason.clone() };
+    recorder.finish(scenario, &stack, outcome, event, wall.elapsed().as_secs_f64(), observer)
+}
+
+/// What the pilot can see of the vehicle.
+fn seen(plant: &Plant, t: f64) -> Seen {
+    let pose = plant.pose();
+    let [roll, pitch, yaw] = plant.euler();
+    Seen { t, position: pose.position, velocity: pose.velocity, roll, pitch, yaw }
+}
+
+/// The disturbance of the inspection: a sideways push during the middle third of the hold.
+fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
+    match step {
+        Some((_, Step::Hold { seconds, push }))
+            if (seconds / 3.0..2.0 * seconds / 3.0).contains(&step_time) =>
+        {
+            DVec3::new(0.0, *push, 0.0)
+        }
+        _ => DVec3::ZERO,
+    }
+}

@@ -1,0 +1,268 @@
+//! Keeps what the report needs: samples, phases, events, grips, and a digest of it all.
+
+use sophie_control::mode::Mode;
+use sophie_control::wrench::PerArm;
+
+use super::stack::Stack;
+use crate::plant::Plant;
+use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample};
+use crate::scenario::{Scenario, Step};
+
+/// Milliseconds between two samples.
+const SAMPLE_MS: u64 = (1000.0 / SAMPLE_HZ) as u64;
+
+/// The record under way.
+pub struct Recorder {
+    samples: Vec<Sample>,
+    phases: Vec<Phase>,
+    events: Vec<Event>,
+    grip: Vec<Grip>,
+    steps: usize,
+    chosen: PerArm<bool>,
+    reel_radius: f64,
+    current: Option<Current>,
+    mode: Mode,
+    reason: &'static str,
+    proven: bool,
+    digest: Digest,
+}
+
+/// The phase under way.
+struct Current {
+    index: usize,
+    phase: Phase,
+    overruns_before: u32,
+    samples: u32,
+    saturated: u32,
+}
+
+impl Recorder {
+    /// An empty record of `scenario`.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            samples: Vec::new(),
+            phases: Vec::new(),
+            events: Vec::new(),
+            grip: Vec::new(),
+            steps: scenario.steps.len(),
+            chosen: scenario.arms.mask(),
+            reel_radius: f64::from(scenario.params.reel_radius),
+            current: None,
+            mode: Mode::Calibrating,
+            reason: "",
+            proven: false,
+            digest: Digest::new(),
+        }
+    }
+
+    /// Looks at the flight `ms` milliseconds after power-up.
+    pub fn step(
+        &mut self,
+        ms: u64,
+        step: Option<(usize, &Step)>,
+        plant: &Plant,
+        stack: &Stack,
+        throttle: f64,
+        observer: &mut dyn Observer,
+    ) {
+        let t = ms as f64 * 1e-3;
+        if step.map(|(i, _)| i) != self.current.as_ref().map(|c| c.index) {
+            self.end_phase(t, true, plant.battery_voltage(), stack, observer);
+            if let Some((index, step)) = step {
+                observer.step_began(t, index, self.steps, step.name());
+                self.begin_phase(t, index, step, stack);
+            }
+        }
+        self.watch_stack(t, plant, stack, observer);
+        if ms % SAMPLE_MS == 0 {
+            let sample = sample(t, plant, stack, throttle);
+            self.digest.add(&sample);
+            self.account(&sample);
+            self.samples.push(sample);
+        }
+    }
+
+    /// Ends the record.
+    pub fn finish(
+        mut self,
+        scenario: &Scenario,
+        stack: &Stack,
+        outcome: Outcome,
+        last: Event,
+        wall_seconds: f64,
+        observer: &mut dyn Observer,
+    ) -> FlightRecord {
+        let voltage = self.samples.last().map_or(0.0, |s| s.battery_voltage);
+        self.end_phase(last.t, outcome.accomplished, voltage, stack, observer);
+        let sim_seconds = last.t;
+        self.note(last, observer);
+        FlightRecord {
+            scenario: scenario.clone(),
+            outcome,
+            samples: self.samples,
+            phases: self.phases,
+            events: self.events,
+            grip: self.grip,
+            sim_seconds,
+            wall_seconds,
+            overruns: stack.overruns(),
+            digest: self.digest.0,
+        }
+    }
+
+    fn begin_phase(&mut self, t: f64, index: usize, step: &Step, stack: &Stack) {
+        self.current = Some(Current {
+            index,
+            phase: Phase {
+                name: step.name().to_owned(),
+                start: t,
+                end: t,
+                done: false,
+                worst_attitude_error: 0.0,
+                worst_tilt: 0.0,
+                saturation: 0.0,
+                battery_voltage: 0.0,
+                overruns: 0,
+            },
+            overruns_before: stack.overruns(),
+            samples: 0,
+            saturated: 0,
+        });
+    }
+
+    fn end_phase(&mut self, t: f64, done: bool, voltage: f64, stack: &Stack, observer: &mut dyn Observer) {
+        let Some(mut current) = self.current.take() else { return };
+        current.phase.end = t;
+        current.phase.done = done;
+        current.phase.battery_voltage = voltage;
+        current.phase.overruns = stack.overruns() - current.overruns_before;
+        current.phase.saturation = f64::from(current.saturated) / f64::from(current.samples.max(1));
+        observer.step_ended(t, &current.phase);
+        self.phases.push(current.phase);
+    }
+
+    /// Takes changes of mode, reasons and proofs of grip from the stack.
+    fn watch_stack(&mut self, t: f64, plant: &Plant, stack: &Stack, observer: &mut dyn Observer) {
+        if let Some(status) = stack.links.status.latest().map(|s| s.value) {
+            if status.mode != self.mode {
+                self.mode = status.mode;
+                self.note(Event { t, text: format!("mode {}", status.mode.name()) }, observer);
+            }
+            if status.reason != self.reason {
+                self.reason = status.reason;
+                if !status.reason.is_empty() {
+                    self.note(Event { t, text: status.reason.to_owned() }, observer);
+                }
+            }
+        }
+        let Some(grip) = stack.links.grip.latest().map(|g| g.value) else { return };
+        if grip.proven && !self.proven {
+            let truth = plant.pressure();
+            for (i, (arm, chosen)) in grip.arms.iter().zip(self.chosen).enumerate() {
+                if chosen {
+                    self.grip.push(Grip {
+                        arm: i as u8 + 1,
+                        pressure: f64::from(arm.pressure),
+                        pressure_true: truth[i],
+                        torque: f64::from(arm.force) * self.reel_radius,
+                        closure: arm.closure.map_or(f64::NAN, f64::from),
+                    });
+                }
+            }
+            self.note(Event { t, text: "grip proven".to_owned() }, observer);
+        }
+        self.proven = grip.proven;
+    }
+
+    fn note(&mut self, event: Event, observer: &mut dyn Observer) {
+        observer.event(&event);
+        self.events.push(event);
+    }
+
+    /// Adds a sample to the phase under way.
+    fn account(&mut self, s: &Sample) {
+        let Some(current) = &mut self.current else { return };
+        current.samples += 1;
+        current.saturated += u32::from(s.saturated);
+        let phase = &mut current.phase;
+        let flying = s.thrust_asked.iter().any(|t| *t > 1.0);
+        for axis in 0..2 {
+            let error = (s.attitude[axis] - s.attitude_setpoint[axis]).abs();
+            if flying && error > phase.worst_attitude_error {
+                phase.worst_attitude_error = error;
+            }
+        }
+        for tilt in s.tilt {
+            if tilt.abs() > phase.worst_tilt.abs() {
+                phase.worst_tilt = tilt;
+            }
+        }
+    }
+}
+
+/// Truth and belief now.
+fn sample(t: f64, plant: &Plant, stack: &Stack, throttle: f64) -> Sample {
+    let links = stack.links;
+    let pose = plant.pose();
+    let wide = |v: PerArm<f32>| v.map(f64::from);
+    let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
+    let estimate = links.attitude.latest().map(|a| a.value.q.to_euler()).unwrap_or_default();
+    let target = links.target.latest().map(|v| v.value.to_array().map(f64::from));
+    let arms = links.arms.fresh().unwrap_or_default();
+    Sample {
+        t,
+        mode: stack.mode(),
+        position: pose.position.to_array(),
+        velocity: pose.velocity.to_array(),
+        attitude: plant.euler(),
+        attitude_estimate: [estimate.0, estimate.1, estimate.2].map(f64::from),
+        attitude_setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
+        rate: pose.omega.to_array(),
+        tilt: plant.tilt(),
+        tilt_measured: arms.tilt.map(|a| a.map_or(f64::NAN, f64::from)),
+        tilt_model: wide(mix.tilt),
+        thrust: plant.thrust(),
+        thrust_asked: wide(mix.thrusts),
+        tension: plant.tension(),
+        tension_asked: wide(links.tendons.latest().map(|f| f.value.force).unwrap_or_default()),
+        pressure: plant.pressure(),
+        pressure_measured: wide(links.contact.latest().map(|c| c.value.pressure).unwrap_or_default()),
+        battery_voltage: plant.battery_voltage(),
+        throttle,
+        saturated: mix.running && mix.given.saturated(),
+    }
+}
+
+/// FNV-1a over the bits of every sample.
+struct Digest(u64);
+
+impl Digest {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn word(&mut self, word: u64) {
+        self.0 = (self.0 ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+    }
+
+    fn add(&mut self, s: &Sample) {
+        self.word(s.mode as u64);
+        let scalars = [s.t, s.battery_voltage, s.throttle];
+        let vectors = [s.position, s.velocity, s.attitude, s.attitude_estimate, s.rate];
+        let arms = [
+            s.tilt,
+            s.tilt_measured,
+            s.tilt_model,
+            s.thrust,
+            s.thrust_asked,
+            s.tension,
+            s.tension_asked,
+            s.pressure,
+            s.pressure_measured,
+        ];
+        let values = scalars.iter().chain(vectors.iter().flatten()).chain(arms.iter().flatten());
+        for value in values {
+            self.word(value.to_bits());
+        }
+    }
+}

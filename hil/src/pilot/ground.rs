@@ -1,0 +1,102 @@
+//! Steps that begin or end on the ground: arm, take off, land, disarm.
+
+use sophie_control::mode::Mode;
+
+use super::hands::Wish;
+use super::mind::{Mind, Phase, Progress, View};
+
+/// Speed of the throttle while the weight is taken up, and given back, 1/s.
+const TAKE_UP: f64 = 0.3;
+const GIVE_BACK: f64 = 0.6;
+/// Rise from the ground that is seen as flying, m, and its speed, m/s.
+const RISEN: f64 = 0.08;
+const RISING: f64 = 0.2;
+/// Error of a height that is reached, m, and speed at which it counts, m/s.
+const REACHED: f64 = 0.15;
+const REACHED_SPEED: f64 = 0.25;
+/// Rates of descent, m/s: from high above, and over the last bit.
+const DESCENT: f64 = 0.4;
+const LAST_DESCENT: f64 = 0.2;
+/// Height over the ground at which the last bit begins, m.
+const LAST_BIT: f64 = 0.8;
+/// Height below which a vehicle that does not sink any more stands, m.
+const STANDS: f64 = 0.4;
+/// Sink rate of a vehicle that stands, m/s, and the time for which it must last, s.
+const STOPPED: f64 = 0.06;
+const STOPPED_TIME: f64 = 0.5;
+
+impl Mind {
+    pub(super) fn arm(&mut self, v: &View<'_>) -> Progress {
+        match (self.phase, v.mode) {
+            (Phase::Start, Some(Mode::Disarmed)) => {
+                self.arm_switch = true;
+                self.enter(Phase::Gesture);
+                Progress::Going(Wish::default())
+            }
+            (Phase::Gesture, Some(Mode::Armed)) => {
+                self.enter(Phase::Wait);
+                Progress::Going(Wish::default())
+            }
+            (Phase::Gesture, _) => Progress::Going(Wish { yaw: 1.0, ..Default::default() }),
+            (Phase::Wait, _) if self.phase_time > 0.5 => Progress::Done(Wish::default()),
+            _ => Progress::Going(Wish::default()),
+        }
+    }
+
+    pub(super) fn take_off(&mut self, v: &View<'_>, height: f64, dt: f64) -> Progress {
+        if self.phase == Phase::Start {
+            if self.step_time <= dt {
+                self.spot = v.seen.position.truncate();
+                self.throttle = 0.0;
+            }
+            let risen = v.height() > self.height + RISEN || v.seen.velocity.z < -RISING;
+            if !risen {
+                return Progress::Going(self.throttle_to(0.85, TAKE_UP, dt));
+            }
+            self.enter(Phase::Fly);
+        }
+        let wish = self.go_to(v, self.spot, height, dt);
+        let there = (v.height() - height).abs() < REACHED && v.seen.velocity.length() < REACHED_SPEED;
+        if self.held_for(there, 1.0, dt) { Progress::Done(wish) } else { Progress::Going(wish) }
+    }
+
+    pub(super) fn land(&mut self, v: &View<'_>, dt: f64) -> Progress {
+        match self.phase {
+            Phase::Throttle => {
+                let wish = self.throttle_to(0.0, GIVE_BACK, dt);
+                let stands = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
+                if stands && self.throttle <= 0.0 { Progress::Done(wish) } else { Progress::Going(wish) }
+            }
+            _ => {
+                if self.phase == Phase::Start {
+                    self.spot = v.seen.position.truncate();
+                    self.enter(Phase::Descend);
+                }
+                let rate = if v.height() > LAST_BIT { DESCENT } else { LAST_DESCENT };
+                let wish = self.climb_over(v, self.spot, -rate, dt);
+                let stands = v.height() < STANDS && v.seen.velocity.z.abs() < STOPPED;
+                // A failsafe or the vehicle itself may have ended the flight already.
+                let over = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
+                if self.held_for(stands || over, STOPPED_TIME, dt) {
+                    self.throttle = wish.throttle;
+                    self.enter(Phase::Throttle);
+                }
+                Progress::Going(wish)
+            }
+        }
+    }
+
+    pub(super) fn disarm(&mut self, v: &View<'_>) -> Progress {
+        match (self.phase, v.mode) {
+            (Phase::Wait, Some(Mode::Disarmed)) if self.phase_time > 0.5 => Progress::Done(Wish::default()),
+            (Phase::Wait, _) => Progress::Going(Wish::default()),
+            (_, Some(Mode::Disarmed)) => {
+                // Switched off only now: the gesture is the way of a pilot who trusts his vehicle.
+                self.arm_switch = false;
+                self.enter(Phase::Wait);
+                Progress::Going(Wish::default())
+            }
+            _ => Progress::Going(Wish { yaw: -1.0, ..Default::default() }),
+        }
+    }
+}

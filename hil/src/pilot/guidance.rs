@@ -1,0 +1,155 @@
+//! How the pilot flies: position to velocity to lean, height to climb to throttle, heading to rudder.
+//!
+//! Gentle: velocity crossover 0.28 Hz, lean at most 14°. Two trims take up the steady wind and the throttle of
+//! hover.
+
+use glam::{DVec2, DVec3};
+use sophie_control::params::Params;
+
+use super::Seen;
+use super::eyes::Foresight;
+use super::hands::Wish;
+
+/// Gravity, m/s².
+const GRAVITY: f64 = 9.806_65;
+/// Distance to speed, 1/s.
+const POSITION_GAIN: f64 = 0.7;
+/// Fastest flight, m/s.
+const SPEED_MAX: f64 = 1.2;
+/// Speed error to acceleration, 1/s. The foresight feeds the acceleration back, which leaves 1.8 of it.
+const SPEED_GAIN: f64 = 3.2;
+/// Speed error to the wind trim, 1/s², and the distance within which it is learned, m.
+const WIND_GAIN: f64 = 0.2;
+const WIND_NEAR: f64 = 0.7;
+/// Largest wind trim, m/s².
+const WIND_MAX: f64 = 1.5;
+/// Largest acceleration asked for, m/s² (14° of lean).
+const ACCELERATION_MAX: f64 = 2.5;
+/// Height error to climb rate, 1/s.
+const HEIGHT_GAIN: f64 = 0.9;
+/// Fastest climb and descent, m/s.
+const CLIMB_MAX: f64 = 0.7;
+const DESCENT_MAX: f64 = 0.5;
+/// Climb error to throttle, s/m; and to the hover trim, 1/m.
+const CLIMB_GAIN: f64 = 0.09;
+const HOVER_GAIN: f64 = 0.035;
+/// Throttle range used in the air.
+const THROTTLE_MIN: f64 = 0.25;
+const THROTTLE_MAX: f64 = 0.85;
+/// Fastest motion of the throttle, 1/s.
+const THROTTLE_SLEW: f64 = 0.8;
+/// Heading error to yaw rate, 1/s.
+const HEADING_GAIN: f64 = 0.4;
+
+/// How the height is flown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Vertical {
+    /// Go to this height over the ground, m.
+    Height(f64),
+    /// Climb at this rate, m/s.
+    Climb(f64),
+}
+
+/// The trained part of the pilot.
+#[derive(Clone, Debug)]
+pub struct Guidance {
+    stick_angle: f64,
+    stick_yaw_rate: f64,
+    /// Throttle of hover as learned so far, 0..1.
+    hover: f64,
+    wind: DVec2,
+    throttle: f64,
+    foresight: Foresight,
+    /// Where the vehicle will be when the hands act: position and velocity, NED.
+    ahead: (DVec3, DVec3),
+}
+
+impl Guidance {
+    /// A pilot who knows the weight and the stick travels, and sees `delay` s late.
+    pub fn new(params: &Params, delay: f64) -> Self {
+        let hover = f64::from(params.mass) * GRAVITY / (4.0 * f64::from(params.thrust_max));
+        Self {
+            stick_angle: f64::from(params.stick_angle),
+            stick_yaw_rate: f64::from(params.stick_yaw_rate),
+            hover,
+            wind: DVec2::ZERO,
+            throttle: 0.0,
+            foresight: Foresight::new(delay),
+            ahead: Default::default(),
+        }
+    }
+
+    /// Where the vehicle will be when the hands act, NED, m.
+    pub fn position_ahead(&self) -> DVec3 {
+        self.ahead.0
+    }
+
+    /// The vehicle stands on something: the throttle is set by other means, nothing is learned.
+    pub fn stand(&mut self, throttle: f64) {
+        self.throttle = throttle;
+        self.foresight.forget();
+    }
+
+    /// Updates the foresight from where the sticks are (roll, pitch, yaw, throttle).
+    pub fn foresee(&mut self, seen: &Seen, now: f64, sticks: [f64; 4], dt: f64) {
+        let [roll, pitch, _, throttle] = sticks;
+        let body = DVec2::new(
+            -GRAVITY * (pitch * self.stick_angle).tan(),
+            GRAVITY * (roll * self.stick_angle).tan(),
+        );
+        let level = DVec2::from_angle(seen.yaw).rotate(body) - self.wind;
+        let upright = (roll * self.stick_angle).cos() * (pitch * self.stick_angle).cos();
+        let down = GRAVITY * (1.0 - throttle * upright / self.hover);
+        self.foresight.note(now, level, down, dt);
+        self.ahead = self.foresight.ahead(seen, dt);
+    }
+
+    /// Steers to `target` (north, east, m) with the nose at `heading` (rad).
+    pub fn steer(
+        &mut self,
+        seen: &Seen,
+        target: DVec2,
+        vertical: Vertical,
+        heading: f64,
+        dt: f64,
+    ) -> Wish {
+        let (position, velocity) = self.ahead;
+        let away = target - position.truncate();
+        let speed = (away * POSITION_GAIN).clamp_length_max(SPEED_MAX);
+        let error = speed - velocity.truncate();
+        if away.length() < WIND_NEAR {
+            self.wind = (self.wind + error * (WIND_GAIN * dt)).clamp_length_max(WIND_MAX);
+        }
+        let level = (error * SPEED_GAIN + self.wind).clamp_length_max(ACCELERATION_MAX);
+        let body = DVec2::from_angle(-seen.yaw).rotate(level);
+        let (pitch, roll) = (-(body.x / GRAVITY).atan(), (body.y / GRAVITY).atan());
+        Wish {
+            roll: roll / self.stick_angle,
+            pitch: pitch / self.stick_angle,
+            yaw: self.rudder(seen, heading),
+            throttle: self.climb(vertical, roll.cos() * pitch.cos(), dt),
+            ..Default::default()
+        }
+    }
+
+    /// Throttle for `vertical` with a lean of cosine `upright`.
+    pub fn climb(&mut self, vertical: Vertical, upright: f64, dt: f64) -> f64 {
+        let (position, velocity) = self.ahead;
+        let rate = match vertical {
+            Vertical::Height(height) => {
+                (HEIGHT_GAIN * (height + position.z)).clamp(-DESCENT_MAX, CLIMB_MAX)
+            }
+            Vertical::Climb(rate) => rate,
+        };
+        let error = rate + velocity.z;
+        self.hover = (self.hover + HOVER_GAIN * error * dt).clamp(0.35, 0.75);
+        let goal = ((self.hover + CLIMB_GAIN * error) / upright).clamp(THROTTLE_MIN, THROTTLE_MAX);
+        self.throttle += (goal - self.throttle).clamp(-THROTTLE_SLEW * dt, THROTTLE_SLEW * dt);
+        self.throttle
+    }
+
+    /// Yaw stick that turns the nose to `heading`.
+    pub fn rudder(&self, seen: &Seen, heading: f64) -> f64 {
+        (HEADING_GAIN * super::wrap(heading - seen.yaw) / self.stick_yaw_rate).clamp(-1.0, 1.0)
+    }
+}

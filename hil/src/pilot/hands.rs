@@ -1,0 +1,68 @@
+//! The pilot's hands: sticks that move with a limited bandwidth, switches that are flipped.
+
+use core::f64::consts::PI;
+
+use sophie_control::rc::{ArmChoice, StickMode, Sticks};
+
+/// What the pilot wants the sticks to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wish {
+    /// Right positive, -1..1.
+    pub roll: f64,
+    /// Nose up positive, -1..1.
+    pub pitch: f64,
+    /// Clockwise from above positive, -1..1.
+    pub yaw: f64,
+    /// 0..1.
+    pub throttle: f64,
+    /// The arm switch is on.
+    pub arm_switch: bool,
+    /// The perch switch is on.
+    pub perch_switch: bool,
+}
+
+/// The hands.
+#[derive(Clone, Debug)]
+pub struct Hands {
+    bandwidth: f64,
+    arms: ArmChoice,
+    /// Where the sticks are: roll, pitch, yaw, throttle.
+    sticks: [f64; 4],
+}
+
+impl Hands {
+    /// Hands of `bandwidth` Hz; the switch for the arms is set before the flight.
+    pub fn new(bandwidth: f64, arms: ArmChoice) -> Self {
+        Self { bandwidth, arms, sticks: [0.0; 4] }
+    }
+
+    /// Where the sticks are: roll, pitch, yaw, throttle.
+    pub fn at(&self) -> [f64; 4] {
+        self.sticks
+    }
+
+    /// Moves towards `wish` for `dt` s.
+    pub fn move_to(&mut self, wish: &Wish, dt: f64) -> Sticks {
+        let k = dt / (dt + 1.0 / (2.0 * PI * self.bandwidth));
+        let goals = [wish.roll, wish.pitch, wish.yaw, wish.throttle];
+        let lows = [-1.0, -1.0, -1.0, 0.0];
+        for ((stick, goal), low) in self.sticks.iter_mut().zip(goals).zip(lows) {
+            *stick += k * (goal.clamp(low, 1.0) - *stick);
+            // A finger that is as good as there is there: the gesture and the throttle's stop are reached.
+            if (goal - *stick).abs() < 1e-3 {
+                *stick = goal.clamp(low, 1.0);
+            }
+        }
+        let [roll, pitch, yaw, throttle] = self.sticks.map(|x| x as f32);
+        Sticks {
+            roll,
+            pitch,
+            yaw,
+            throttle,
+            arm_switch: wish.arm_switch,
+            perch_switch: wish.perch_switch,
+            stick_mode: StickMode::Angle,
+            arms: self.arms,
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! How long each step may take before the pilot gives the mission up.
+
+use crate::scenario::Step;
+
+/// Longest time for `step`, s.
+pub fn of(step: &Step) -> f64 {
+    match *step {
+        // Calibration at rest is part of it.
+        Step::Arm => 30.0,
+        Step::TakeOff { height } => 12.0 + 4.0 * height,
+        Step::Hover { seconds } => seconds + 1.0,
+        Step::Roll { seconds, .. } => 2.0 * seconds + 30.0,
+        Step::FlyToPipe => 90.0,
+        // With room for going around a few times.
+        Step::Touch => 90.0,
+        Step::Perch { .. } => 60.0,
+        Step::Hold { seconds, .. } => seconds + 1.0,
+        Step::Release => 45.0,
+        Step::FlyTo { .. } => 120.0,
+        Step::Land => 90.0,
+        Step::Disarm => 10.0,
+    }
+}

@@ -1,0 +1,218 @@
+//! The pilot's mind: what he remembers over a mission, and the moves that several steps share.
+
+use glam::DVec2;
+use sophie_control::mode::Mode;
+
+use super::Seen;
+use super::guidance::{Guidance, Vertical};
+use super::hands::Wish;
+use super::limits;
+use crate::scenario::{Scenario, Step};
+
+/// Heading flown throughout, rad: the nose to the north, along the pipe.
+pub const HEADING: f64 = 0.0;
+
+/// What the pilot goes by in one step.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The vehicle as it reaches his mind.
+    pub seen: Seen,
+    /// Time now, s.
+    pub now: f64,
+    /// The mode that he has read.
+    pub mode: Option<Mode>,
+    /// The reason beside it.
+    pub reason: &'a str,
+}
+
+impl View<'_> {
+    /// Height over the ground, m.
+    pub fn height(&self) -> f64 {
+        -self.seen.position.z
+    }
+
+    /// The mode as the display words it.
+    pub fn shown(&self) -> String {
+        let name = self.mode.map_or("nothing", Mode::name);
+        if self.reason.is_empty() { format!("display {name}") } else { format!("display {name}: {}", self.reason) }
+    }
+}
+
+/// How far a step has come.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Progress {
+    /// Not done; the sticks wanted.
+    Going(Wish),
+    /// Done; the sticks wanted.
+    Done(Wish),
+    /// Given up, with one line why.
+    Failed(String),
+}
+
+/// Where a step is; each step uses the phases that it needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The step has just begun.
+    Start,
+    /// Sticks held over for the arming or disarming gesture.
+    Gesture,
+    /// Waiting for the display.
+    Wait,
+    /// Flying to the step's target.
+    Fly,
+    /// Leaning to the right, then to the left.
+    Right,
+    /// See [`Phase::Right`].
+    Left,
+    /// Going down until something carries.
+    Descend,
+    /// Moving the throttle to where it must be.
+    Throttle,
+    /// Up again, for another try.
+    GoAround,
+}
+
+/// The mind.
+#[derive(Clone, Debug)]
+pub struct Mind {
+    pub(super) guidance: Guidance,
+    pub(super) pipe: DVec2,
+    pub(super) pipe_top: f64,
+    pub(super) stick_angle: f64,
+    pub(super) arm_switch: bool,
+    pub(super) perch_switch: bool,
+    pub(super) phase: Phase,
+    /// Time since the step and since the phase began, s.
+    pub(super) step_time: f64,
+    pub(super) phase_time: f64,
+    /// Time for which the condition waited for has held, s.
+    pub(super) held: f64,
+    /// Where the step holds: north, east, m; and the height at its beginning.
+    pub(super) spot: DVec2,
+    pub(super) height: f64,
+    /// Throttle set by hand, outside of flight.
+    pub(super) throttle: f64,
+    /// Tries of the landing on the pipe that failed.
+    pub(super) missed: u32,
+}
+
+impl Mind {
+    /// A pilot who has read the scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let [north, east] = scenario.world.pipe_position;
+        Self {
+            guidance: Guidance::new(&scenario.params, scenario.pilot.delay),
+            pipe: DVec2::new(north, east),
+            pipe_top: scenario.world.pipe_top,
+            stick_angle: f64::from(scenario.params.stick_angle),
+            arm_switch: false,
+            perch_switch: false,
+            phase: Phase::Start,
+            step_time: 0.0,
+            phase_time: 0.0,
+            held: 0.0,
+            spot: DVec2::ZERO,
+            height: 0.0,
+            throttle: 0.0,
+            missed: 0,
+        }
+    }
+
+    /// A step begins with this to see.
+    pub fn begin(&mut self, seen: &Seen) {
+        self.enter(Phase::Start);
+        self.step_time = 0.0;
+        self.missed = 0;
+        self.height = -seen.position.z;
+    }
+
+    /// Flies `step` for `dt` s; `sticks` is where the sticks are (roll, pitch, yaw, throttle).
+    pub fn fly(&mut self, step: &Step, view: &View<'_>, sticks: [f64; 4], dt: f64) -> Progress {
+        self.step_time += dt;
+        self.phase_time += dt;
+        self.guidance.foresee(&view.seen, view.now, sticks, dt);
+        let progress = match *step {
+            Step::Arm => self.arm(view),
+            Step::TakeOff { height } => self.take_off(view, height, dt),
+            Step::Hover { seconds } => self.hover(view, seconds, dt),
+            Step::Roll { angle, seconds } => self.roll(view, angle, seconds, dt),
+            Step::FlyTo { north, east, height } => self.fly_to(view, DVec2::new(north, east), height, dt),
+            Step::FlyToPipe => self.fly_to_pipe(view, dt),
+            Step::Touch => self.touch(view, dt),
+            Step::Perch { throttle } => self.perch(view, throttle, dt),
+            Step::Hold { seconds, .. } => self.hold(view, seconds, dt),
+            Step::Release => self.release(view, dt),
+            Step::Land => self.land(view, dt),
+            Step::Disarm => self.disarm(view),
+        };
+        let limit = limits::of(step);
+        match progress {
+            Progress::Going(_) if self.step_time > limit => {
+                Progress::Failed(format!("not done after {limit:.0} s: {}", self.shortfall(step, view)))
+            }
+            Progress::Going(wish) => Progress::Going(self.switches(wish)),
+            Progress::Done(wish) => Progress::Done(self.switches(wish)),
+            failed @ Progress::Failed(_) => failed,
+        }
+    }
+
+    fn switches(&self, wish: Wish) -> Wish {
+        Wish { arm_switch: self.arm_switch, perch_switch: self.perch_switch, ..wish }
+    }
+
+    pub(super) fn enter(&mut self, phase: Phase) {
+        self.phase = phase;
+        self.phase_time = 0.0;
+        self.held = 0.0;
+    }
+
+    /// True once `holds` has held for `seconds`.
+    pub(super) fn held_for(&mut self, holds: bool, seconds: f64, dt: f64) -> bool {
+        self.held = if holds { self.held + dt } else { 0.0 };
+        self.held >= seconds
+    }
+
+    /// Flies to `target` at `height`.
+    pub(super) fn go_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> Wish {
+        self.guidance.steer(&v.seen, target, Vertical::Height(height), HEADING, dt)
+    }
+
+    /// Climbs (or sinks) at `rate` m/s over `target`.
+    pub(super) fn climb_over(&mut self, v: &View<'_>, target: DVec2, rate: f64, dt: f64) -> Wish {
+        self.guidance.steer(&v.seen, target, Vertical::Climb(rate), HEADING, dt)
+    }
+
+    /// Sticks let go, throttle moved by hand towards `goal` at `rate` 1/s.
+    pub(super) fn throttle_to(&mut self, goal: f64, rate: f64, dt: f64) -> Wish {
+        self.throttle += (goal - self.throttle).clamp(-rate * dt, rate * dt);
+        self.guidance.stand(self.throttle);
+        Wish { throttle: self.throttle, ..Default::default() }
+    }
+
+    /// What the vehicle has not reached, for the reason of a failure.
+    fn shortfall(&self, step: &Step, v: &View<'_>) -> String {
+        let p = v.seen.position;
+        let off = |target: DVec2| (p.truncate() - target).length();
+        match *step {
+            Step::TakeOff { height } => {
+                format!("height {:.2} m of {height:.2} m, {}", v.height(), v.shown())
+            }
+            Step::Roll { .. } => {
+                format!("{:.2} m off the spot at {:.2} m/s", off(self.spot), v.seen.velocity.length())
+            }
+            Step::FlyToPipe | Step::Touch | Step::Perch { .. } => format!(
+                "{:.2} m beside the spot, {:.2} m over the pipe, {} missed tries, {}",
+                off(self.pipe),
+                v.height() - self.pipe_top,
+                self.missed,
+                v.shown()
+            ),
+            Step::FlyTo { north, east, height } => {
+                let away = off(DVec2::new(north, east)).hypot(v.height() - height);
+                format!("{away:.2} m from the point, {}", v.shown())
+            }
+            Step::Land => format!("height {:.2} m, {}", v.height(), v.shown()),
+            _ => v.shown(),
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! The pilot alone, on a vehicle just good enough.
+
+use glam::{DVec2, DVec3};
+use sophie_control::mode::Mode;
+
+use super::toy::Toy;
+use super::*;
+use crate::scenario::World;
+
+fn scenario(seed: u64, steps: &[Step]) -> Scenario {
+    let mut s = Scenario { seed, steps: steps.to_vec(), ..Scenario::default_mission() };
+    s.world = World { gust_force: 0.1, pipe_diameter: 0.3, pipe_top: 1.5, pipe_position: [3.0, 0.0], ..s.world };
+    s
+}
+
+const UP: [Step; 2] = [Step::Arm, Step::TakeOff { height: 3.0 }];
+
+fn with(steps: &[Step]) -> Vec<Step> {
+    UP.iter().chain(steps).cloned().collect()
+}
+
+#[test]
+fn a_hover_stays_within_15_cm_rms_in_light_gusts_and_steady_wind() {
+    for (seed, wind) in [(1, 0.0), (2, 0.0), (3, 0.5)] {
+        let s = scenario(seed, &with(&[Step::Hover { seconds: 90.0 }]));
+        let mut toy = Toy::new(&s);
+        toy.wind = DVec3::new(0.7 * wind, -0.7 * wind, 0.0);
+        let (mut sum, mut count, mut spot, mut began) = (DVec3::ZERO, 0.0, DVec3::ZERO, 0.0);
+        toy.fly(120.0, |toy, out| {
+            if out.events.contains(&StepEvent::Began(2)) {
+                (spot, began) = (toy.seen.position, toy.seen.t);
+            }
+            // Once the wind has been trimmed out.
+            if began > 0.0 && toy.seen.t > began + 15.0 {
+                let e = toy.seen.position - spot;
+                sum += e * e;
+                count += 1.0;
+            }
+        });
+        assert!(toy.pilot.outcome().unwrap().accomplished, "{:?}", toy.pilot.outcome());
+        let rms = (sum / count).map(f64::sqrt);
+        println!("wind {wind} N: {rms:.3}");
+        assert!(rms.truncate().length() < 0.15 && rms.z < 0.08, "{rms}");
+    }
+}
+
+#[test]
+fn a_step_of_3_m_settles() {
+    let s = scenario(4, &with(&[Step::FlyTo { north: 3.0, east: 0.0, height: 3.0 }]));
+    let mut toy = Toy::new(&s);
+    let (mut began, mut last_out, mut worst) = (0.0, 0.0, f64::MIN);
+    toy.fly(60.0, |toy, out| {
+        if out.events.contains(&StepEvent::Began(2)) {
+            began = toy.seen.t;
+        }
+        let off = (toy.seen.position.truncate() - DVec2::new(3.0, 0.0)).length();
+        if began > 0.0 && off > 0.3 {
+            last_out = toy.seen.t - began;
+        }
+        worst = worst.max(toy.seen.position.x);
+    });
+    println!("settled after {last_out:.1} s, farthest {worst:.2} m");
+    assert!(toy.pilot.outcome().unwrap().accomplished, "{:?}", toy.pilot.outcome());
+    assert!(last_out < 6.5 && worst < 3.3, "{last_out} s, {worst} m");
+}
+
+#[test]
+fn the_touch_is_within_6_cm_of_the_crown() {
+    let mut worst: f64 = 0.0;
+    for seed in 10..22 {
+        let s = scenario(seed, &with(&[Step::FlyToPipe, Step::Touch]));
+        let mut toy = Toy::new(&s);
+        toy.fly(200.0, |_, _| ());
+        assert!(toy.pilot.outcome().unwrap().accomplished, "{seed}: {:?}", toy.pilot.outcome());
+        assert!((toy.seen.position.z + 1.54).abs() < 0.03, "on the pipe");
+        worst = worst.max(toy.seen.position.y.abs());
+    }
+    println!("worst {worst:.3} m");
+    assert!(worst <= 0.06, "{worst}");
+}
+
+#[test]
+fn the_whole_mission_passes_the_modes_in_order() {
+    let steps = with(&[
+        Step::Hover { seconds: 3.0 },
+        Step::Roll { angle: 0.436, seconds: 0.6 },
+        Step::FlyToPipe,
+        Step::Touch,
+        Step::Perch { throttle: 0.3 },
+        Step::Hold { seconds: 5.0, push: 0.0 },
+        Step::Release,
+        Step::FlyTo { north: 0.0, east: 0.0, height: 2.0 },
+        Step::Land,
+        Step::Disarm,
+    ]);
+    for (seed, strength) in [(30, 1.0), (31, 0.93), (32, 1.07)] {
+        let s = scenario(seed, &steps);
+        let mut toy = Toy::new(&s);
+        toy.strength = strength;
+        let (mut modes, mut ended, mut leant) = (Vec::new(), 0, 0.0f64);
+        toy.fly(300.0, |toy, out| {
+            if modes.last() != Some(&toy.out.mode) {
+                modes.push(toy.out.mode);
+            }
+            for event in &out.events {
+                println!("{:6.1} {event:?}", toy.seen.t);
+                ended += usize::from(matches!(event, StepEvent::Ended { done: true, .. }));
+            }
+            if out.step == 3 {
+                leant = leant.max(toy.seen.roll.abs());
+            }
+        });
+        println!("{:?} {modes:?}", toy.pilot.outcome());
+        assert!(toy.pilot.outcome().unwrap().accomplished);
+        assert_eq!(ended, steps.len());
+        assert!((0.34..0.46).contains(&leant), "leant by {leant}");
+        use Mode::*;
+        let order = [
+            Calibrating, Disarmed, Armed, Flight, Contact, Clamping, Perched, Releasing, Flight, Landed, Disarmed,
+        ];
+        assert_eq!(modes, order);
+    }
+}
+
+#[test]
+fn a_grip_that_is_not_proven_fails_the_mission_and_names_the_reason() {
+    let s = scenario(40, &with(&[Step::FlyToPipe, Step::Touch, Step::Perch { throttle: 0.3 }]));
+    let mut toy = Toy::new(&s);
+    toy.pressure = 600.0;
+    toy.fly(200.0, |_, _| ());
+    let outcome = toy.pilot.outcome().unwrap();
+    assert!(!outcome.accomplished);
+    assert!(outcome.reason.starts_with("perch: no proven grip"), "{}", outcome.reason);
+}
+
+#[test]
+fn a_vehicle_that_spins_has_lost_yaw_and_one_too_weak_does_not_get_up() {
+    let s = scenario(50, &with(&[Step::Hover { seconds: 30.0 }]));
+    let mut toy = Toy::new(&s);
+    toy.fly(60.0, |_, _| ());
+    assert!(toy.pilot.outcome().unwrap().accomplished);
+    let mut toy = Toy::new(&s);
+    toy.spin = 1.0;
+    toy.fly(60.0, |_, _| ());
+    let reason = &toy.pilot.outcome().unwrap().reason;
+    assert!(reason.contains("lost yaw"), "{reason}");
+    let mut toy = Toy::new(&s);
+    toy.strength = 0.5;
+    toy.fly(60.0, |_, _| ());
+    let reason = &toy.pilot.outcome().unwrap().reason;
+    assert!(reason.starts_with("take-off: not done after 24 s: height 0.0"), "{reason}");
+}
+
+#[test]
+fn a_vehicle_on_the_wrong_side_of_the_referee_is_lost() {
+    let mut referee = referee::Referee::default();
+    let good = Seen::default();
+    assert_eq!(referee.judge(&good, 0.0, 0.01), None);
+    let lost = [
+        (Seen { roll: 1.5, ..good }, "tipped over"),
+        (Seen { position: DVec3::new(0.0, 0.0, 0.6), ..good }, "height -0.60 m"),
+        (Seen { position: DVec3::new(31.0, 0.0, -2.0), ..good }, "31 m away"),
+        (Seen { position: DVec3::NAN, ..good }, "no number"),
+    ];
+    for (seen, words) in lost {
+        let why = referee.judge(&seen, 0.0, 0.01).unwrap();
+        assert!(why.contains(words), "{why}");
+    }
+}
+
+#[test]
+fn frames_come_150_times_a_second_and_one_seed_gives_one_flight() {
+    let fly = || {
+        let s = scenario(60, &with(&[Step::Hover { seconds: 2.0 }]));
+        let mut toy = Toy::new(&s);
+        let mut bytes = Vec::new();
+        for _ in 0..5000 {
+            if let Some(frame) = toy.step().rc_bytes {
+                bytes.extend_from_slice(&frame);
+            }
+        }
+        bytes
+    };
+    let bytes = fly();
+    assert!((bytes.len() as i64 / 26 - 1500).abs() <= 1, "{}", bytes.len() / 26);
+    assert!(bytes == fly());
+}

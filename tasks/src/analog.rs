@@ -1,0 +1,64 @@
+//! Contact pressures and the battery, from the same converter.
+//!
+//! Steady level. Pressures at 500 Hz, the battery at every fifth conversion; a conversion must be over before
+//! the next. A converter that fails publishes nothing: its links go stale, and their readers know what to do.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::battery::Monitor;
+use sophie_control::fsr::{Fsr, FsrScale};
+
+use crate::deadline::{FixedRate, TaskId};
+use crate::links::{Battery, Contact, Links};
+use crate::ports::Analog;
+
+/// Time between two conversions.
+pub const PERIOD: Duration = Duration::from_millis(2);
+/// Conversions for one battery reading.
+const BATTERY_EVERY: u8 = 5;
+
+/// Serves the analog inputs for ever.
+pub async fn run(links: &Links, mut port: impl Analog) -> ! {
+    let mut rate = FixedRate::new(links, TaskId::Analog, PERIOD, PERIOD);
+    let scale = FsrScale::from_params(&links.params);
+    let mut sensors = [Fsr::default(); 4];
+    let mut battery = Monitor::default();
+    let mut battery_dt = 0.0;
+    let mut until_battery = BATTERY_EVERY;
+    let mut sensor_dt = 0.0;
+    loop {
+        let tick = rate.next().await;
+        sensor_dt += tick.dt;
+        battery_dt += tick.dt;
+        let at = Instant::now();
+        let Ok(frame) = port.read().await else { continue };
+
+        let mut contact = Contact::default();
+        let slots = contact.pressure.iter_mut().zip(contact.fault.iter_mut());
+        for ((sensor, counts), (pressure, fault)) in sensors.iter_mut().zip(frame.fsr).zip(slots) {
+            match sensor.step(&scale, counts, sensor_dt) {
+                Ok(p) => *pressure = p,
+                Err(_) => *fault = true,
+            }
+        }
+        sensor_dt = 0.0;
+        links.contact.send(at, contact);
+
+        until_battery -= 1;
+        if until_battery > 0 {
+            continue;
+        }
+        until_battery = BATTERY_EVERY;
+        let voltage = f32::from(frame.battery_voltage) * port.volts_per_count();
+        let current = f32::from(frame.battery_current) * port.amps_per_count();
+        if let Some(r) = battery.step(&links.params, voltage, current, battery_dt) {
+            let message = Battery {
+                voltage: r.voltage,
+                current: r.current,
+                used: r.used,
+                ratio: r.ratio,
+            };
+            links.battery.send(at, message);
+        }
+        battery_dt = 0.0;
+    }
+}

@@ -1,0 +1,48 @@
+//! The tendon servos: forces asked for become pulses, and the tension that they can be giving is told.
+//!
+//! Steady level, at the servos' frame of 50 Hz. Until the first force there are no pulses: after a reset on
+//! the pipe the gears hold, and nothing moves before the clamp loop knows what it wants. Forces older than
+//! 200 ms hold the servos; so does a missing tilt (100 ms) for its arm, unless that arm is to be released.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::tendon::{Drive, Reel, TendonDrive};
+
+use crate::deadline::{FixedRate, TaskId};
+use crate::links::{ArmAngles, Links};
+use crate::ports::Servos;
+
+/// Time between two frames.
+pub const PERIOD: Duration = Duration::from_millis(20);
+
+/// Serves the servos for ever.
+pub async fn run(links: &Links, mut port: impl Servos) -> ! {
+    let mut rate = FixedRate::new(links, TaskId::Servos, PERIOD, PERIOD);
+    let p = &links.params;
+    let reel = Reel::from_params(p);
+    let mut drives = [p.servo_trim_1, p.servo_trim_2, p.servo_trim_3, p.servo_trim_4].map(TendonDrive::new);
+    loop {
+        let tick = rate.next().await;
+        if links.tendons.latest().is_none() {
+            port.write([0.0; 4]).await;
+            continue;
+        }
+        let forces = links.tendons.fresh();
+        let tilts = links.arms.fresh().unwrap_or(ArmAngles::default()).tilt;
+        let mut output = [Drive::default(); 4];
+        match forces {
+            Some(forces) => {
+                let asked = forces.force.into_iter().zip(tilts);
+                for ((drive, out), (force, tilt)) in drives.iter_mut().zip(output.iter_mut()).zip(asked) {
+                    *out = drive.step(&reel, force, tilt, tick.dt);
+                }
+            }
+            None => {
+                for (drive, out) in drives.iter().zip(output.iter_mut()) {
+                    *out = drive.hold(&reel);
+                }
+            }
+        }
+        port.write(output.map(|o| o.pulse_us)).await;
+        links.tension.send(Instant::now(), output.map(|o| o.tension));
+    }
+}
