@@ -179,7 +179,10 @@ impl Checks {
             (Refusal::RcLost, self.sticks.is_none()),
             (Refusal::ImuStale, self.cos_tilt.is_none()),
             (Refusal::NotCalibrated, !self.calibrated),
-            (Refusal::SwitchOnAtPowerUp, self.sticks.is_some() && !self.switch_seen_off),
+            (
+                Refusal::SwitchOnAtPowerUp,
+                self.sticks.is_some() && !self.switch_seen_off,
+            ),
             (Refusal::ThrottleNotLow, sticks.throttle > params.throttle_low),
             (Refusal::PerchSwitchOn, sticks.perch_switch),
             (Refusal::ArmsClosed, self.arms_closed),
@@ -188,7 +191,11 @@ impl Checks {
             (Refusal::FsrFault, self.fsr_fault),
             (Refusal::Overruns, self.late),
         ];
-        reasons.into_iter().filter(|&(_, holds)| holds).map(|(r, _)| r).collect()
+        reasons
+            .into_iter()
+            .filter(|&(_, holds)| holds)
+            .map(|(r, _)| r)
+            .collect()
     }
 }
 
@@ -201,7 +208,10 @@ mod tests {
         Checks {
             calibrated: true,
             cos_tilt: Some(1.0),
-            sticks: Some(Sticks { arm_switch: true, ..Default::default() }),
+            sticks: Some(Sticks {
+                arm_switch: true,
+                ..Default::default()
+            }),
             switch_seen_off: true,
             battery: Some(16.0),
             ..Default::default()
@@ -212,27 +222,104 @@ mod tests {
     fn each_check_refuses_for_its_own_reason_alone() {
         let p = Params::default();
         assert!(good().refusals(&p).is_empty());
-        let stick = |s| Some(Sticks { arm_switch: true, ..s });
+        let stick = |s| {
+            Some(Sticks {
+                arm_switch: true,
+                ..s
+            })
+        };
         let cases = [
-            (Checks { calibrated: false, ..good() }, Refusal::NotCalibrated),
-            (Checks { cos_tilt: None, ..good() }, Refusal::ImuStale),
-            (Checks { sticks: None, ..good() }, Refusal::RcLost),
             (
-                Checks { sticks: stick(Sticks { throttle: 0.06, ..Default::default() }), ..good() },
+                Checks {
+                    calibrated: false,
+                    ..good()
+                },
+                Refusal::NotCalibrated,
+            ),
+            (
+                Checks {
+                    cos_tilt: None,
+                    ..good()
+                },
+                Refusal::ImuStale,
+            ),
+            (
+                Checks {
+                    sticks: None,
+                    ..good()
+                },
+                Refusal::RcLost,
+            ),
+            (
+                Checks {
+                    sticks: stick(Sticks {
+                        throttle: 0.06,
+                        ..Default::default()
+                    }),
+                    ..good()
+                },
                 Refusal::ThrottleNotLow,
             ),
-            (Checks { cos_tilt: Some(f32::cos(deg(26.0))), ..good() }, Refusal::TiltTooLarge),
-            (Checks { cos_tilt: Some(f32::NAN), ..good() }, Refusal::TiltTooLarge),
-            (Checks { battery: Some(13.5), ..good() }, Refusal::BatteryLow),
-            (Checks { battery: None, ..good() }, Refusal::BatteryLow),
             (
-                Checks { sticks: stick(Sticks { perch_switch: true, ..Default::default() }), ..good() },
+                Checks {
+                    cos_tilt: Some(f32::cos(deg(26.0))),
+                    ..good()
+                },
+                Refusal::TiltTooLarge,
+            ),
+            (
+                Checks {
+                    cos_tilt: Some(f32::NAN),
+                    ..good()
+                },
+                Refusal::TiltTooLarge,
+            ),
+            (
+                Checks {
+                    battery: Some(13.5),
+                    ..good()
+                },
+                Refusal::BatteryLow,
+            ),
+            (
+                Checks {
+                    battery: None,
+                    ..good()
+                },
+                Refusal::BatteryLow,
+            ),
+            (
+                Checks {
+                    sticks: stick(Sticks {
+                        perch_switch: true,
+                        ..Default::default()
+                    }),
+                    ..good()
+                },
                 Refusal::PerchSwitchOn,
             ),
-            (Checks { fsr_fault: true, ..good() }, Refusal::FsrFault),
-            (Checks { switch_seen_off: false, ..good() }, Refusal::SwitchOnAtPowerUp),
+            (
+                Checks {
+                    fsr_fault: true,
+                    ..good()
+                },
+                Refusal::FsrFault,
+            ),
+            (
+                Checks {
+                    switch_seen_off: false,
+                    ..good()
+                },
+                Refusal::SwitchOnAtPowerUp,
+            ),
             (Checks { late: true, ..good() }, Refusal::Overruns),
-            (Checks { arms_closed: true, ..good() }, Refusal::ArmsClosed),
+            (
+                Checks {
+                    arms_closed: true,
+                    ..good()
+                },
+                Refusal::ArmsClosed,
+            ),
         ];
         for (checks, reason) in cases {
             let refusals = checks.refusals(&p);
@@ -244,19 +331,34 @@ mod tests {
     #[test]
     fn the_gesture_needs_its_whole_time_and_fires_once() {
         let mut g = GestureWatch::default();
-        let right = Sticks { arm_switch: true, yaw: 1.0, ..Default::default() };
+        let right = Sticks {
+            arm_switch: true,
+            yaw: 1.0,
+            ..Default::default()
+        };
         let fired = |g: &mut GestureWatch, s: Option<&Sticks>, steps| {
-            (0..steps).filter_map(|_| g.step(s, 0.05, 0.01)).collect::<std::vec::Vec<_>>()
+            (0..steps)
+                .filter_map(|_| g.step(s, 0.05, 0.01))
+                .collect::<std::vec::Vec<_>>()
         };
         assert!(fired(&mut g, Some(&right), 98).is_empty());
         assert!(fired(&mut g, None, 1).is_empty(), "a lost radio starts it over");
         assert!(fired(&mut g, Some(&right), 98).is_empty());
         assert_eq!(fired(&mut g, Some(&right), 300), [Gesture::Arm]);
-        let left = Sticks { yaw: -1.0, ..Default::default() };
+        let left = Sticks {
+            yaw: -1.0,
+            ..Default::default()
+        };
         assert_eq!(fired(&mut g, Some(&left), 300), [Gesture::Disarm]);
         for other in [
-            Sticks { throttle: 0.1, ..right },
-            Sticks { arm_switch: false, ..right },
+            Sticks {
+                throttle: 0.1,
+                ..right
+            },
+            Sticks {
+                arm_switch: false,
+                ..right
+            },
             Sticks { yaw: 0.8, ..right },
         ] {
             assert!(fired(&mut g, Some(&other), 300).is_empty(), "{other:?}");

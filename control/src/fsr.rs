@@ -69,7 +69,7 @@ impl Fsr {
     pub fn step(&mut self, scale: &FsrScale, counts: u16, dt: f32) -> Result<f32, FsrFault> {
         let now = match counts {
             0..=SHORT_COUNTS => None,
-            ..=4095 => Some(FsrFault::Short),
+            c if f32::from(c) <= FULL_SCALE => Some(FsrFault::Short),
             _ => Some(FsrFault::Converter),
         };
         if let Some(fault) = now {

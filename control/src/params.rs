@@ -201,11 +201,11 @@ params! {
     /// Stiffness along the tendon: nylon of 1 mm and 0.25 m, E 2.5 GPa (derived, 30 %).
     tendon_stiffness = 8000.0, "N/m", 200.0 ..= 100000.0;
     /// Pressure loop: proportional gain, tendon force per pressure.
-    clamp_p = 0.003, "N/Pa", 0.0 ..= 0.2;
+    clamp_p = 0.0035, "N/Pa", 0.0 ..= 0.2;
     /// Pressure loop: integral gain.
-    clamp_i = 0.04, "N/(Pa s)", 0.0 ..= 1.0;
+    clamp_i = 0.05, "N/(Pa s)", 0.0 ..= 1.0;
     /// Pressure loop: derivative gain on the measured pressure.
-    clamp_d = 0.00005, "N s/Pa", 0.0 ..= 0.05;
+    clamp_d = 0.00003, "N s/Pa", 0.0 ..= 0.05;
     /// Speed at which an arm is bent down until it touches; the force's rise follows from infill and gain_k.
     clamp_approach = 0.7, "rad/s", 0.05 ..= 3.0;
     /// Fastest fall of the tendon force on release.

@@ -153,7 +153,9 @@ impl Sticks {
         let yaw = to_centred(self.yaw);
         let throttle = to_from_zero(self.throttle);
         let (arm, perch) = (two(self.arm_switch), two(self.perch_switch));
-        [roll, pitch, throttle, yaw, arm, mode, perch, arms, c, c, c, c, c, c, c, c]
+        [
+            roll, pitch, throttle, yaw, arm, mode, perch, arms, c, c, c, c, c, c, c, c,
+        ]
     }
 }
 
@@ -199,7 +201,11 @@ fn to_centred(value: f32) -> u16 {
 
 fn to_from_zero(value: f32) -> u16 {
     let value = clamp(value, 0.0, 1.0);
-    let x = if value > 0.0 { DEADBAND + (1.0 - DEADBAND) * value } else { 0.0 };
+    let x = if value > 0.0 {
+        DEADBAND + (1.0 - DEADBAND) * value
+    } else {
+        0.0
+    };
     (f32::from(RAW_LOW) + RAW_SPAN * x + 0.5) as u16
 }
 
@@ -223,9 +229,15 @@ mod tests {
     #[test]
     fn a_stick_to_the_right_or_pulled_is_positive() {
         let s = frame(|c| (c[0], c[1], c[2], c[3]) = (1811, 172, 1811, 1811)).unwrap();
-        assert!(s.roll > 0.999 && s.pitch > 0.999 && s.throttle > 0.999 && s.yaw > 0.999, "{s:?}");
+        assert!(
+            s.roll > 0.999 && s.pitch > 0.999 && s.throttle > 0.999 && s.yaw > 0.999,
+            "{s:?}"
+        );
         let s = frame(|c| (c[0], c[1], c[2], c[3]) = (172, 1811, 172, 172)).unwrap();
-        assert!(s.roll < -0.999 && s.pitch < -0.999 && s.throttle == 0.0 && s.yaw < -0.999, "{s:?}");
+        assert!(
+            s.roll < -0.999 && s.pitch < -0.999 && s.throttle == 0.0 && s.yaw < -0.999,
+            "{s:?}"
+        );
     }
 
     #[test]
@@ -251,7 +263,13 @@ mod tests {
     #[test]
     fn a_dead_receivers_counts_are_refused_and_named() {
         assert_eq!(frame(|c| c[2] = 0), Err(ChannelError { channel: 3, raw: 0 }));
-        assert_eq!(frame(|c| c[7] = 2047), Err(ChannelError { channel: 8, raw: 2047 }));
+        assert_eq!(
+            frame(|c| c[7] = 2047),
+            Err(ChannelError {
+                channel: 8,
+                raw: 2047
+            })
+        );
         assert!(frame(|c| c[8] = 2047).is_ok(), "channel 9 means nothing");
     }
 

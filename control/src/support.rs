@@ -111,12 +111,17 @@ impl Support {
         self.lift += (felt.lift - self.lift) * dt / (dt + self.motor_tau);
         let support = -self.mass * felt.specific_force_z - self.lift;
         self.force += (support - self.force) * dt / (dt + 1.0 / (2.0 * PI * CUTOFF));
-        self.sink = clamp(self.sink + (felt.down - self.sink / SINK_MEMORY) * dt, -SINK_MAX, SINK_MAX);
+        self.sink = clamp(
+            self.sink + (felt.down - self.sink / SINK_MEMORY) * dt,
+            -SINK_MAX,
+            SINK_MAX,
+        );
 
         let still = felt.rate < RATE_MAX;
         let pressed = self.pressed.step(still && self.force > RESTING_FORCE, dt);
         let unloaded = self.unloaded.step(self.force < LEAVING_FORCE, dt);
-        self.full.step(still && self.force > GROUNDED_SHARE * self.weight(), dt);
+        self.full
+            .step(still && self.force > GROUNDED_SHARE * self.weight(), dt);
         if pressed >= RESTING_TIME {
             self.resting = true;
         } else if unloaded >= RESTING_TIME {
@@ -158,7 +163,15 @@ mod tests {
     fn run(s: &mut Support, specific_force_z: f32, lift: f32, seconds: f32) {
         for _ in 0..(seconds * 100.0) as u32 {
             let down = GRAVITY + specific_force_z;
-            s.step(Some(Felt { specific_force_z, down, rate: 0.0, lift }), 0.01);
+            s.step(
+                Some(Felt {
+                    specific_force_z,
+                    down,
+                    rate: 0.0,
+                    lift,
+                }),
+                0.01,
+            );
         }
     }
 
@@ -169,7 +182,11 @@ mod tests {
         for share in [0.0, 0.3, 0.6, 1.0] {
             let lift = share * 4.0 * p.thrust_max;
             run(&mut s, -lift / p.mass, lift, 2.0);
-            assert!(s.force().abs() < 0.05 && !s.resting() && !s.grounded(), "{share}: {}", s.force());
+            assert!(
+                s.force().abs() < 0.05 && !s.resting() && !s.grounded(),
+                "{share}: {}",
+                s.force()
+            );
         }
     }
 
@@ -180,7 +197,11 @@ mod tests {
         run(&mut s, -GRAVITY, 10.0, 0.25);
         assert!(!s.resting(), "too soon");
         run(&mut s, -GRAVITY, 10.0, 2.0);
-        assert!((s.force() - 7.701).abs() < 0.01, "1.805 kg of 9.80665 m/s² less 10 N: {}", s.force());
+        assert!(
+            (s.force() - 7.701).abs() < 0.01,
+            "1.805 kg of 9.80665 m/s² less 10 N: {}",
+            s.force()
+        );
         assert!(s.resting() && !s.grounded());
         run(&mut s, -GRAVITY, 0.0, 1.0);
         assert!(s.grounded());
@@ -196,7 +217,15 @@ mod tests {
         run(&mut s, -GRAVITY, 17.7, 0.5);
         assert!(!s.resting(), "a bump of 0.1 s");
         for _ in 0..300 {
-            s.step(Some(Felt { specific_force_z: -GRAVITY, down: 0.0, rate: 2.0, lift: 5.0 }), 0.01);
+            s.step(
+                Some(Felt {
+                    specific_force_z: -GRAVITY,
+                    down: 0.0,
+                    rate: 2.0,
+                    lift: 5.0,
+                }),
+                0.01,
+            );
         }
         assert!(!s.resting(), "turning");
         run(&mut s, -GRAVITY, 5.0, 1.0);
@@ -207,7 +236,15 @@ mod tests {
             s.step(None, 0.01);
         }
         assert!(!s.resting() && !s.grounded());
-        s.step(Some(Felt { specific_force_z: f32::NAN, down: 0.0, rate: 0.0, lift: 5.0 }), 0.01);
+        s.step(
+            Some(Felt {
+                specific_force_z: f32::NAN,
+                down: 0.0,
+                rate: 0.0,
+                lift: 5.0,
+            }),
+            0.01,
+        );
         assert!(s.force().is_finite());
     }
 
@@ -216,6 +253,10 @@ mod tests {
         let p = Params::default();
         let mut s = Support::new(&p);
         run(&mut s, -0.9 * GRAVITY, 0.9 * 17.7, 1.0);
-        assert!((s.sink() - 0.89).abs() < 0.03, "0.98 m/s less what is forgotten: {}", s.sink());
+        assert!(
+            (s.sink() - 0.89).abs() < 0.03,
+            "0.98 m/s less what is forgotten: {}",
+            s.sink()
+        );
     }
 }

@@ -302,7 +302,7 @@ mod tests {
         }
         let before = drive.hold(&reel).pulse_us;
         let output = drive.step(&reel, 90.0, None, 0.02);
-        assert!(output.held && output.pulse_us == before);
+        assert!(output.held && close(output.pulse_us, before, 1e-6));
         let mut time = 0.0;
         let mut output = drive.step(&reel, 0.0, None, 0.02);
         while output.tension > 0.0 {

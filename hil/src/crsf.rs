@@ -107,9 +107,10 @@ mod tests {
     fn the_display_follows_the_mode_and_survives_garbage() {
         let mut t = Telemetry::default();
         let mut bytes = [0; 64];
-        for (text, mode, reason) in
-            [("FLIGHT", Mode::Flight, ""), ("DISARMED: battery low", Mode::Disarmed, "battery low")]
-        {
+        for (text, mode, reason) in [
+            ("FLIGHT", Mode::Flight, ""),
+            ("DISARMED: battery low", Mode::Disarmed, "battery low"),
+        ] {
             let packet = FlightMode::new(text).unwrap();
             let n = write_packet_to_buffer(&mut bytes, PacketAddress::FlightController, &packet).unwrap();
             t.take(&[0x00; 3]);

@@ -72,7 +72,7 @@ impl Bench {
             ..Params::default()
         };
         if servo == ServoProfile::Mg996r {
-            (params.servo_stall, params.servo_range) = (0.922, 3.14);
+            (params.servo_stall, params.servo_range) = (0.922, std::f32::consts::PI);
         }
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut within = |x: f64| rng.random_range(-x..x);
@@ -286,10 +286,14 @@ fn whole_run(infill: f64, diameter: f64, seed: u64) -> Option<Outcome> {
             b.grip
         );
     }
-    let error = f64::from(b.grip.pressure) - 950.0;
+    // Noise of the tilt and the servo's deadband move the pressure; its mean must be back.
+    let mean = (0..100).fold(0.0, |sum, _| {
+        b.run(0.01);
+        sum + 0.01 * f64::from(b.grip.pressure)
+    });
     assert!(
-        error.abs() < 50.0,
-        "{what}: does not come back after a push: {error}"
+        (mean - 950.0).abs() < 25.0,
+        "{what}: does not come back after a push: {mean}"
     );
 
     b.ramp_thrust(2.5, 1.0);

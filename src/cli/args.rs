@@ -190,7 +190,7 @@ mod tests {
             );
         }
         let fly = args("").unwrap();
-        assert!(fly.scenario.is_none() && !fly.json && fly.out == PathBuf::from("out"));
+        assert!(fly.scenario.is_none() && !fly.json && fly.out.as_os_str() == "out");
         let o = args("--config a --mixer paper --gain-k 1 --seed 9 --json")
             .unwrap()
             .overrides();

@@ -52,7 +52,7 @@ impl Bar {
             ProgressDrawTarget::stdout()
         };
         let bar = ProgressBar::with_draw_target(None, target);
-        let style = ProgressStyle::with_template("{bar:24.cyan} step {pos} of {len}  {wide_msg}");
+        let style = ProgressStyle::with_template("{bar:16.cyan} step {pos} of {len}  {wide_msg}");
         bar.set_style(
             style
                 .unwrap_or_else(|_| ProgressStyle::default_bar())
@@ -88,8 +88,9 @@ impl Observer for Bar {
     }
 
     fn progress(&mut self, t: f64, mode: Mode, height: f64) {
+        // With the bar just within 80 columns.
         self.bar.set_message(format!(
-            "{:<12} {t:7.1} s  {:<11}  height {height:5.2} m",
+            "{:<11} {t:6.1} s  {:<11} {height:5.2} m",
             self.step,
             mode.name()
         ));

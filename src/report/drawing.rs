@@ -234,7 +234,7 @@ struct Arm {
 
 impl Arm {
     fn new(index: usize, tilt: f64) -> Self {
-        let x = if index % 2 == 0 { ARM_X } else { -ARM_X };
+        let x = if index.is_multiple_of(2) { ARM_X } else { -ARM_X };
         Self {
             x,
             side: if index < 2 { -1.0 } else { 1.0 },

@@ -2,8 +2,9 @@
 
 use sophie_hil::record::{FlightRecord, Sample};
 
+use super::grip_figure::{closing, grip};
 use super::plot::{Panel, Span, Trace, figure};
-use super::units::{deg, kgcm, tension_kgcm};
+use super::units::deg;
 
 /// CSS class and meaning of each kind of line.
 pub type Legend = Vec<(&'static str, String)>;
@@ -21,7 +22,7 @@ pub struct Figure {
 }
 
 /// CSS classes of the four arms.
-const ARM: [&str; 4] = ["a1", "a2", "a3", "a4"];
+pub const ARM: [&str; 4] = ["a1", "a2", "a3", "a4"];
 /// Names of the four arms.
 pub const ARM_NAMES: [&str; 4] = ["1 front left", "2 rear left", "3 front right", "4 rear right"];
 
@@ -46,7 +47,8 @@ fn series(record: &FlightRecord, f: impl Fn(&Sample) -> f64) -> Vec<f64> {
     record.samples.iter().map(f).collect()
 }
 
-fn arm_series(
+/// One curve for each arm, in the unit that `unit` makes of SI.
+pub fn arm_series(
     record: &FlightRecord,
     f: impl Fn(&Sample) -> &[f64; 4],
     si: impl Fn(f64) -> f64,
@@ -62,7 +64,8 @@ fn legend(keys: &[(&'static str, &str)]) -> Legend {
         .collect()
 }
 
-fn arm_legend() -> Legend {
+/// The four arms.
+pub fn arm_legend() -> Legend {
     ARM.into_iter().zip(ARM_NAMES.map(str::to_owned)).collect()
 }
 
@@ -94,7 +97,7 @@ fn attitude(record: &FlightRecord, span: Span) -> Figure {
     let panels = [axis(0, "roll"), axis(1, "pitch"), axis(2, "yaw")];
     Figure {
         title: "Attitude",
-        note: "The setpoint is what the attitude controller aims at; it has none while the rotors stand."
+        note: "The setpoint is what the attitude controller aims at, behind the prefilter of the sticks."
             .into(),
         legend: legend(&[
             ("true", "true"),
@@ -224,84 +227,6 @@ fn saturated(record: &FlightRecord) -> Vec<(f64, f64)> {
         }
     }
     spans
-}
-
-fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String) -> Figure {
-    let p = &record.scenario.params;
-    let (aim, tolerance) = (f64::from(p.grip_pressure), f64::from(p.grip_tolerance));
-    let arms = |values: Vec<Vec<f64>>| {
-        ARM.into_iter()
-            .zip(values)
-            .map(|(class, values)| Trace { class, values })
-    };
-    let force = |v: f64| tension_kgcm(record, v);
-    let limit = kgcm(f64::from(p.servo_torque_max.min(p.servo_stall)));
-    let largest = record
-        .samples
-        .iter()
-        .flat_map(|s| s.tension)
-        .fold(0.0, |a: f64, v| a.max(force(v)));
-    // The limit is shown where it matters; far above the curves it would flatten them.
-    let near = largest > 0.5 * limit;
-    let tension = Panel {
-        axis: "tendon force (kgcm)".into(),
-        height: 170.0,
-        traces: arms(arm_series(record, |s| &s.tension, force)).collect(),
-        levels: near.then_some(limit).into_iter().collect(),
-        include: if near { vec![0.0, limit] } else { vec![0.0] },
-        span: 1.0,
-        ..Panel::default()
-    };
-    let pressure = Panel {
-        axis: "pressure (N/m²)".into(),
-        height: 190.0,
-        traces: arms(arm_series(record, |s| &s.pressure_measured, |v| v)).collect(),
-        target: Some((aim - tolerance, aim + tolerance)),
-        include: vec![0.0, aim + 2.0 * tolerance],
-        ..Panel::default()
-    };
-    let band = format!(
-        "Measured contact pressure; shaded: {aim:.0} ± {tolerance:.0} N/m², the proof of grip. {note}"
-    );
-    let mut legend = arm_legend();
-    legend.push(("target", "target pressure".into()));
-    if near {
-        legend.push(("level", format!("limit {limit:.1} kgcm")));
-    }
-    Figure {
-        title,
-        note: band.trim_end().to_owned(),
-        legend,
-        svg: figure(
-            record,
-            span,
-            "tendon force and contact pressure over time",
-            &[tension, pressure],
-        ),
-    }
-}
-
-/// The first closing of the arms, a little more on both sides.
-fn closing(record: &FlightRecord) -> Option<(Span, String)> {
-    let phase = record.phases.iter().find(|p| p.name == "perch")?;
-    let times: Vec<String> = record
-        .grip
-        .iter()
-        .take(4)
-        .map(|g| format!("arm {} {:.2} s", g.arm, g.closure))
-        .collect();
-    let note = if times.is_empty() {
-        String::new()
-    } else {
-        format!("Closed after: {}.", times.join(", "))
-    };
-    Some((
-        Span {
-            from: (phase.start - 0.5).max(0.0),
-            to: phase.end + 1.5,
-        },
-        note,
-    ))
 }
 
 fn battery(record: &FlightRecord, span: Span) -> Figure {

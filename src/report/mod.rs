@@ -1,11 +1,14 @@
 //! What is kept of a flight on disk: a page to read, a log to plot, a summary for programs.
 
+mod bands;
 mod drawing;
 mod figures;
+mod grip_figure;
 pub mod log;
 mod moments;
 pub mod page;
 mod plot;
+mod scale;
 mod scene;
 mod schemas;
 pub mod summary;

@@ -35,7 +35,7 @@ pub fn html(record: &FlightRecord) -> String {
         page += &plot(&figure);
     }
     page += &footer(record);
-    page + "</main><script>" + SCRIPT + "</script></body></html>\n"
+    page + "</main><output id=\"time\"></output><script>" + SCRIPT + "</script></body></html>\n"
 }
 
 fn headline(record: &FlightRecord) -> String {
@@ -88,13 +88,14 @@ fn key_figures(record: &FlightRecord) -> String {
         ),
         (or_dash(most(|g| g.closure), 2), "s", "slowest closure"),
         (
-            or_dash(most(|g| kgcm(g.torque)), 2),
+            or_dash(most(|g| kgcm(g.torque)), 1),
             "kgcm",
             "largest steady force",
         ),
         (or_dash(end, 2), "V", "battery at the end"),
         (record.overruns.to_string(), "", "missed deadlines"),
     ] {
+        let unit = if value == "–" { "" } else { unit };
         out += &format!("<div><b>{value} <i>{unit}</i></b><small>{name}</small></div>");
     }
     out + "</div>"
@@ -105,7 +106,13 @@ fn scenes(record: &FlightRecord) -> String {
     if moments.is_empty() {
         return String::new();
     }
-    let mut out = String::from("<div class=\"scenes\">");
+    // Four side by side rather than three and one.
+    let class = if moments.len() == 4 {
+        "scenes four"
+    } else {
+        "scenes"
+    };
+    let mut out = format!("<div class=\"{class}\">");
     for moment in &moments {
         let caption = caption(moment);
         out += &format!(
@@ -142,8 +149,7 @@ fn modes(record: &FlightRecord) -> String {
         let name = mode.name();
         out += &format!("<li><span class=\"m-{}\"></span>{name}</li>", name.to_lowercase());
     }
-    let note = "Under each plot: the state of the stack, and the step with its number in the table above. \
-                <span id=\"time\"></span>";
+    let note = "Under each plot: the state of the stack, and the step with its number in the table above.";
     section("Modes", note, &(out + "</ul>"))
 }
 

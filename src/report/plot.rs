@@ -2,16 +2,16 @@
 
 use sophie_hil::record::FlightRecord;
 
+use super::bands::{BAND, bands};
+use super::scale::{thin, tick_step, ticks};
 use super::svg::{line, path, rect, short, text};
 
 /// Size of the drawing, px; it scales with the page.
 const WIDTH: f64 = 1000.0;
-const LEFT: f64 = 74.0;
+/// Room for the titles on the left, px.
+pub const LEFT: f64 = 74.0;
 const RIGHT: f64 = 14.0;
 const GAP: f64 = 22.0;
-const BAND: f64 = 17.0;
-/// Columns into which a curve is thinned: about two to a pixel of the drawing.
-const COLUMNS: usize = 460;
 
 /// One curve.
 pub struct Trace<'a> {
@@ -74,11 +74,13 @@ impl Span {
         }
     }
 
-    fn x(self, t: f64) -> f64 {
+    /// Horizontal place of a time, px.
+    pub fn x(self, t: f64) -> f64 {
         LEFT + (t - self.from) / (self.to - self.from) * (WIDTH - LEFT - RIGHT)
     }
 
-    fn contains(self, t: f64) -> bool {
+    /// Whether a time is shown.
+    pub fn contains(self, t: f64) -> bool {
         (self.from..=self.to).contains(&t)
     }
 }
@@ -86,7 +88,7 @@ impl Span {
 /// A figure of panels, one below the other.
 pub fn figure(record: &FlightRecord, span: Span, title: &str, panels: &[Panel<'_>]) -> String {
     let panels_height: f64 = panels.iter().map(|p| p.height + GAP).sum();
-    let height = panels_height + 2.0 * BAND + 46.0;
+    let height = panels_height + 2.0 * BAND + 36.0;
     let mut svg = format!(
         "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" data-from=\"{}\" data-to=\"{}\" \
          aria-label=\"{}\">",
@@ -138,7 +140,7 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
     for t in times {
         out += &line(span.x(*t), top, span.x(*t), bottom, "grid");
     }
-    let rows = if panel.height < 110.0 { 4 } else { 6 };
+    let rows = if panel.height < 125.0 { 5 } else { 6 };
     for v in ticks(low, high, rows) {
         out += &line(
             left,
@@ -199,140 +201,10 @@ fn limits(record: &FlightRecord, span: Span, panel: &Panel<'_>) -> (f64, f64) {
     (round(low, f64::floor), round(high + room, f64::ceil))
 }
 
-/// The curve as its smallest and largest value in each column, in the order in which they come.
-fn thin(record: &FlightRecord, span: Span, values: &[f64]) -> Vec<(f64, f64)> {
-    let shown: Vec<(f64, f64)> = record
-        .samples
-        .iter()
-        .zip(values)
-        .map(|(s, v)| (s.t, *v))
-        .filter(|(t, _)| span.contains(*t))
-        .collect();
-    if shown.len() <= 2 * COLUMNS {
-        return shown;
-    }
-    let size = shown.len().div_ceil(COLUMNS);
-    let mut out = Vec::with_capacity(2 * COLUMNS);
-    for column in shown.chunks(size) {
-        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        let finite = || column.iter().filter(|(_, v)| v.is_finite());
-        match (finite().min_by(by_value), finite().max_by(by_value)) {
-            (Some(a), Some(b)) if a.0 < b.0 => out.extend([*a, *b]),
-            (Some(a), Some(b)) if a.0 > b.0 => out.extend([*b, *a]),
-            (Some(a), _) => out.push(*a),
-            _ => out.extend(column.first()),
-        }
-    }
-    out
-}
-
-/// Two bands below the panels: the state of the stack, and the number of the step.
-fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
-    let mut out = String::new();
-    let mut start = 0;
-    for end in 1..=record.samples.len() {
-        let (Some(first), Some(last)) = (record.samples.get(start), record.samples.get(end - 1)) else {
-            break;
-        };
-        if record.samples.get(end).is_some_and(|s| s.mode == first.mode) {
-            continue;
-        }
-        start = end;
-        let until = record.samples.get(end).map_or(last.t, |s| s.t);
-        let name = first.mode.name();
-        out += &block(
-            span,
-            first.t,
-            until,
-            top,
-            &format!("mode m-{}", name.to_lowercase()),
-            name,
-            name,
-        );
-    }
-    for (i, phase) in record.phases.iter().enumerate() {
-        let number = (i + 1).to_string();
-        let tip = format!("{number} {}", phase.name);
-        let named = if wide(span, phase.start, phase.end, &tip) {
-            &tip
-        } else {
-            &number
-        };
-        out += &block(span, phase.start, phase.end, top + BAND, "step", named, &tip);
-    }
-    out += &text(LEFT - 7.0, top + 12.5, "tick end", "mode");
-    out + &text(LEFT - 7.0, top + BAND + 12.5, "tick end", "step")
-}
-
-fn block(span: Span, from: f64, to: f64, top: f64, class: &str, label: &str, tip: &str) -> String {
-    if to < span.from || from > span.to {
-        return String::new();
-    }
-    let (from, to) = (from.max(span.from), to.min(span.to));
-    let mut out = rect(span.x(from), top, span.x(to) - span.x(from), BAND, class, tip);
-    if wide(span, from, to, label) {
-        out += &text(
-            (span.x(from) + span.x(to)) / 2.0,
-            top + 12.5,
-            "band-label mid",
-            label,
-        );
-    }
-    out
-}
-
-/// Whether a label fits between two times.
-fn wide(span: Span, from: f64, to: f64, label: &str) -> bool {
-    let (from, to) = (from.max(span.from), to.min(span.to));
-    span.x(to) - span.x(from) > 5.0 + 6.9 * label.chars().count() as f64
-}
-
-/// Round values between `low` and `high`, about `count` of them.
-fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
-    let step = tick_step(low, high, count);
-    let (first, last) = (
-        (low / step - 1e-9).ceil() as i64,
-        (high / step + 1e-9).floor() as i64,
-    );
-    (first..=last).map(|i| i as f64 * step).collect()
-}
-
-/// 1, 2 or 5 times a power of ten.
-fn tick_step(low: f64, high: f64, count: usize) -> f64 {
-    let raw = ((high - low) / count.max(1) as f64).max(1e-9);
-    let power = 10_f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|m| m * power >= raw * 0.999);
-    step.unwrap_or(10.0) * power
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::synthetic;
     use super::*;
-
-    #[test]
-    fn ticks_are_round() {
-        assert_eq!(ticks(0.0, 10.0, 5), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
-        assert_eq!(ticks(-0.5, 0.5, 4), [-0.5, 0.0, 0.5]);
-        assert!(ticks(0.0, 72.0, 12).contains(&70.0));
-    }
-
-    #[test]
-    fn thinning_keeps_peaks_and_order() {
-        let record = synthetic::record();
-        let mut values = vec![0.0; record.samples.len()];
-        values[3210] = 7.0;
-        values[3211] = -5.0;
-        let thinned = thin(&record, Span::all(&record), &values);
-        assert!(thinned.len() <= 2 * COLUMNS);
-        assert!(thinned.iter().any(|(_, v)| *v == 7.0) && thinned.iter().any(|(_, v)| *v == -5.0));
-        assert!(thinned.windows(2).all(|w| w[0].0 < w[1].0));
-        // Where there is no value, the gap stays.
-        let gap = thin(&record, Span::all(&record), &vec![f64::NAN; record.samples.len()]);
-        assert!(!gap.is_empty() && gap.iter().all(|(_, v)| v.is_nan()));
-    }
 
     #[test]
     fn a_flight_without_samples_still_makes_a_figure() {

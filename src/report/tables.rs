@@ -75,7 +75,12 @@ pub fn events(record: &FlightRecord) -> String {
 
 /// With a minus sign as wide as the plus.
 pub fn signed(value: f64) -> String {
-    format!("{value:+.1}").replace('-', "−")
+    let text = format!("{value:+.1}");
+    if text == "-0.0" {
+        "0.0".to_owned()
+    } else {
+        text.replace('-', "−").replace("+0.0", "0.0")
+    }
 }
 
 fn table(head: &[&str], rows: impl Iterator<Item = Vec<String>>, words: &[usize]) -> String {

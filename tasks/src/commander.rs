@@ -13,8 +13,13 @@ use crate::links::{ClampCommand, Links, MixOutput, Setpoint, Status};
 /// Time between two steps.
 pub const PERIOD: Duration = Duration::from_millis(10);
 /// Tasks whose missed deadlines forbid arming.
-const FLIGHT_LEVEL: [TaskId; 5] =
-    [TaskId::Imu, TaskId::Estimator, TaskId::Control, TaskId::Mixer, TaskId::Motors];
+const FLIGHT_LEVEL: [TaskId; 5] = [
+    TaskId::Imu,
+    TaskId::Estimator,
+    TaskId::Control,
+    TaskId::Mixer,
+    TaskId::Motors,
+];
 /// Time over which missed deadlines are counted.
 const LATE_WINDOW: Duration = Duration::from_secs(1);
 /// Misses of the whole flight level in that time beyond which it counts as late: 1 % of one task's runs.
@@ -28,7 +33,13 @@ pub async fn run(links: &Links) -> ! {
     loop {
         let tick = rate.next().await;
         let inputs = collect(links, late.step(links, tick.started));
-        let Outputs { mode, rotors, tendons, reason, .. } = logic.step(&inputs, tick.dt);
+        let Outputs {
+            mode,
+            rotors,
+            tendons,
+            reason,
+            ..
+        } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, setpoint(rotors));
         links.clamp_command.send(tick.started, clamp_command(tendons));
         links.status.send(tick.started, Status { mode, reason });
@@ -46,7 +57,11 @@ fn collect(links: &Links, late: bool) -> Inputs {
             calibrated: a.calibrated,
         }),
         lift: links.mix.fresh().map_or(0.0, |mix| lift(&mix)),
-        grip: links.grip.fresh().map(|g| Grip { proven: g.proven, released: g.released, arms: g.arms }),
+        grip: links.grip.fresh().map(|g| Grip {
+            proven: g.proven,
+            released: g.released,
+            arms: g.arms,
+        }),
         fsr_fault: links.contact.fresh().map_or([true; 4], |c| c.fault),
         battery: links.battery.fresh().map(|b| b.voltage),
         late,
@@ -58,14 +73,28 @@ fn lift(mix: &MixOutput) -> f32 {
     if !mix.running {
         return 0.0;
     }
-    mix.thrusts.iter().zip(mix.tilt).map(|(thrust, tilt)| thrust * cos(tilt)).sum()
+    mix.thrusts
+        .iter()
+        .zip(mix.tilt)
+        .map(|(thrust, tilt)| thrust * cos(tilt))
+        .sum()
 }
 
 fn setpoint(rotors: Rotors) -> Setpoint {
     match rotors {
         Rotors::Stop => Setpoint::Stop,
         Rotors::Idle => Setpoint::Idle,
-        Rotors::Angle { roll, pitch, yaw_rate, thrust } => Setpoint::Angle { roll, pitch, yaw_rate, thrust },
+        Rotors::Angle {
+            roll,
+            pitch,
+            yaw_rate,
+            thrust,
+        } => Setpoint::Angle {
+            roll,
+            pitch,
+            yaw_rate,
+            thrust,
+        },
         Rotors::Rate { rate, thrust } => Setpoint::Rate { rate, thrust },
         Rotors::Direct { wrench } => Setpoint::Direct { wrench },
         Rotors::Resting { roll, pitch, thrust } => Setpoint::Resting { roll, pitch, thrust },
@@ -88,15 +117,25 @@ struct Lateness {
 
 impl Lateness {
     fn new() -> Self {
-        Self { window_start: Instant::now(), count_at_start: 0, late: false }
+        Self {
+            window_start: Instant::now(),
+            count_at_start: 0,
+            late: false,
+        }
     }
 
     fn step(&mut self, links: &Links, now: Instant) -> bool {
-        let count = FLIGHT_LEVEL.iter().fold(0u32, |n, &t| n.wrapping_add(links.timing(t).overruns));
+        let count = FLIGHT_LEVEL
+            .iter()
+            .fold(0u32, |n, &t| n.wrapping_add(links.timing(t).overruns));
         let many = count.wrapping_sub(self.count_at_start) > LATE_MAX;
         self.late |= many;
         if now.saturating_duration_since(self.window_start) >= LATE_WINDOW {
-            *self = Self { window_start: now, count_at_start: count, late: many };
+            *self = Self {
+                window_start: now,
+                count_at_start: count,
+                late: many,
+            };
         }
         self.late
     }

@@ -51,7 +51,10 @@ struct Decoder {
 
 impl Decoder {
     fn new() -> Self {
-        Self { parser: CrsfParser::new(), state: RcState::default() }
+        Self {
+            parser: CrsfParser::new(),
+            state: RcState::default(),
+        }
     }
 
     /// Takes bytes; gives the state when they held at least one good frame of channels.
@@ -97,8 +100,14 @@ mod tests {
     fn every_frame_is_decoded_however_the_bytes_are_cut() {
         for cut in [1, 7, 26, 32, 64] {
             let mut decoder = Decoder::new();
-            let bytes: Vec<u8> =
-                (0..50).flat_map(|i| frame(Sticks { throttle: 0.02 * i as f32, ..Default::default() })).collect();
+            let bytes: Vec<u8> = (0..50)
+                .flat_map(|i| {
+                    frame(Sticks {
+                        throttle: 0.02 * i as f32,
+                        ..Default::default()
+                    })
+                })
+                .collect();
             for chunk in bytes.chunks(cut) {
                 let _ = decoder.take(chunk);
             }
@@ -110,7 +119,10 @@ mod tests {
     #[test]
     fn garbage_is_counted_and_the_next_frame_is_understood() {
         let mut decoder = Decoder::new();
-        let good = frame(Sticks { roll: 0.5, ..Default::default() });
+        let good = frame(Sticks {
+            roll: 0.5,
+            ..Default::default()
+        });
         let mut broken = good.clone();
         if let Some(byte) = broken.get_mut(5) {
             *byte ^= 0x10;
@@ -120,7 +132,11 @@ mod tests {
         for _ in 0..3 {
             let _ = decoder.take(&good);
         }
-        assert!(decoder.state.errors > 0 && decoder.state.frames >= 2, "{:?}", decoder.state);
+        assert!(
+            decoder.state.errors > 0 && decoder.state.frames >= 2,
+            "{:?}",
+            decoder.state
+        );
         assert!((decoder.state.sticks.roll - 0.5).abs() < 2e-3);
     }
 }

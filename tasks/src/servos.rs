@@ -8,7 +8,7 @@ use embassy_time::{Duration, Instant};
 use sophie_control::tendon::{Drive, Reel, TendonDrive};
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ArmAngles, Links};
+use crate::links::Links;
 use crate::ports::Servos;
 
 /// Time between two frames.
@@ -27,7 +27,7 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
             continue;
         }
         let forces = links.tendons.fresh();
-        let tilts = links.arms.fresh().unwrap_or(ArmAngles::default()).tilt;
+        let tilts = links.arms.fresh().unwrap_or_default().tilt;
         let mut output = [Drive::default(); 4];
         match forces {
             Some(forces) => {

@@ -29,15 +29,51 @@ struct Watched {
 }
 
 const WATCHED: [Watched; 9] = [
-    Watched { task: TaskId::Imu, least: 50, flight_level: true },
-    Watched { task: TaskId::Estimator, least: 50, flight_level: true },
-    Watched { task: TaskId::Control, least: 50, flight_level: true },
-    Watched { task: TaskId::Mixer, least: 50, flight_level: true },
-    Watched { task: TaskId::Motors, least: 50, flight_level: true },
-    Watched { task: TaskId::Analog, least: 25, flight_level: false },
-    Watched { task: TaskId::Clamp, least: 5, flight_level: false },
-    Watched { task: TaskId::Servos, least: 2, flight_level: false },
-    Watched { task: TaskId::Commander, least: 5, flight_level: false },
+    Watched {
+        task: TaskId::Imu,
+        least: 50,
+        flight_level: true,
+    },
+    Watched {
+        task: TaskId::Estimator,
+        least: 50,
+        flight_level: true,
+    },
+    Watched {
+        task: TaskId::Control,
+        least: 50,
+        flight_level: true,
+    },
+    Watched {
+        task: TaskId::Mixer,
+        least: 50,
+        flight_level: true,
+    },
+    Watched {
+        task: TaskId::Motors,
+        least: 50,
+        flight_level: true,
+    },
+    Watched {
+        task: TaskId::Analog,
+        least: 25,
+        flight_level: false,
+    },
+    Watched {
+        task: TaskId::Clamp,
+        least: 5,
+        flight_level: false,
+    },
+    Watched {
+        task: TaskId::Servos,
+        least: 2,
+        flight_level: false,
+    },
+    Watched {
+        task: TaskId::Commander,
+        least: 5,
+        flight_level: false,
+    },
 ];
 
 /// Watches for ever.
@@ -63,7 +99,13 @@ struct Health {
 
 impl Health {
     fn new(links: &Links, now: Instant) -> Self {
-        Self { power_up: now, looks: 0, runs: runs(links), alive: true, calibrated: false }
+        Self {
+            power_up: now,
+            looks: 0,
+            runs: runs(links),
+            alive: true,
+            calibrated: false,
+        }
     }
 
     /// One look; true while the watchdog may be fed.
@@ -79,9 +121,12 @@ impl Health {
         if self.looks >= WINDOW {
             self.looks = 0;
             let before = core::mem::replace(&mut self.runs, runs(links));
-            self.alive = WATCHED.iter().zip(self.runs.iter().zip(before)).all(|(w, (&now, before))| {
-                now.wrapping_sub(before) >= w.least || (w.flight_level && !self.calibrated)
-            });
+            self.alive = WATCHED
+                .iter()
+                .zip(self.runs.iter().zip(before))
+                .all(|(w, (&now, before))| {
+                    now.wrapping_sub(before) >= w.least || (w.flight_level && !self.calibrated)
+                });
         }
         let fresh = links.attitude.fresh().is_some() && links.mix.fresh().is_some();
         let booting = now.saturating_duration_since(self.power_up) < BOOT_TIME;

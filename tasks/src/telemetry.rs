@@ -129,15 +129,36 @@ mod tests {
             }
         }
         let long = "a reason far too long for the one line that a transmitter's display has for it";
-        assert_eq!(mode_text(Status { mode: Mode::Disarmed, reason: long }), "DISARMED");
+        assert_eq!(
+            mode_text(Status {
+                mode: Mode::Disarmed,
+                reason: long
+            }),
+            "DISARMED"
+        );
         assert_eq!(parse_mode_text("ANGLE"), None);
     }
 
     #[test]
     fn the_battery_comes_in_the_frames_units() {
-        let b = battery(Battery { voltage: 15.26, current: 21.3, used: 1800.0, ratio: 1.0 });
-        assert_eq!((b.voltage, b.current, b.capacity_used, b.remaining), (153, 213, 500, 72));
-        assert_eq!(battery(Battery { used: 1e9, ..Default::default() }).remaining, 0);
+        let b = battery(Battery {
+            voltage: 15.26,
+            current: 21.3,
+            used: 1800.0,
+            ratio: 1.0,
+        });
+        assert_eq!(
+            (b.voltage, b.current, b.capacity_used, b.remaining),
+            (153, 213, 500, 72)
+        );
+        assert_eq!(
+            battery(Battery {
+                used: 1e9,
+                ..Default::default()
+            })
+            .remaining,
+            0
+        );
         assert_eq!(tenths_of_mrad(f32::NAN), 0);
         assert_eq!(tenths_of_mrad(-core::f32::consts::PI), -31415);
     }

@@ -3,7 +3,7 @@
 use super::logic::{ModeLogic, State};
 use super::{Grip, Inputs, Rotors};
 use crate::grip::{ArmGrip, ArmState};
-use crate::math::clamp;
+use crate::math::{clamp, clamp_abs};
 use crate::params::Params;
 use crate::rc::{ArmChoice, Sticks};
 
@@ -11,6 +11,10 @@ use crate::rc::{ArmChoice, Sticks};
 pub const SPOOL_TIME: f32 = 1.5;
 /// Time from the end of the ramp until the rotors stand still, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
+/// Speed at which a lean at contact is taken out, rad/s.
+const LEVEL_RATE: f32 = 0.2;
+/// Time constant with which the attitude held follows the present one while the rotors spool down, s.
+const FOLLOW_TIME: f32 = 0.2;
 /// Time for which the grip may lack its proof after the rotors have stopped, s.
 const PROOF_TIME: f32 = 3.0;
 /// Share of the grip pressure above which an arm still holds, though not within the tolerance: the load
@@ -41,9 +45,30 @@ pub struct Hold {
 }
 
 impl Hold {
+    /// One step of levelling the roll. The crown of a pipe is an unstable seat: a lean that is merely held
+    /// grows as the rotors give the weight back. Pitch stays: it is the slope of the pipe.
+    pub(super) fn levelled(self, dt: f32) -> Self {
+        Self { roll: self.roll - clamp_abs(self.roll, LEVEL_RATE * dt), ..self }
+    }
+
+    /// One step of following the present attitude: what the grip holds the rotors need not, and what they do
+    /// not do any more cannot end with a jolt when they stop.
+    fn following(self, i: &Inputs, dt: f32) -> Self {
+        let Some(motion) = i.motion else {
+            return self;
+        };
+        let (roll, pitch, _) = motion.q.to_euler();
+        let k = dt / (dt + FOLLOW_TIME);
+        Self { roll: self.roll + k * (roll - self.roll), pitch: self.pitch + k * (pitch - self.pitch), ..self }
+    }
+
     /// Resting with a collective of `thrust` N.
     pub fn rotors(self, thrust: f32) -> Rotors {
-        Rotors::Resting { roll: self.roll, pitch: self.pitch, thrust }
+        Rotors::Resting {
+            roll: self.roll,
+            pitch: self.pitch,
+            thrust,
+        }
     }
 }
 
@@ -63,7 +88,12 @@ pub struct Spool {
 impl Spool {
     /// Closing with this share of the collective.
     pub fn at(share: f32) -> Self {
-        Self { share, down: false, still: 0.0, hopeless: 0.0 }
+        Self {
+            share,
+            down: false,
+            still: 0.0,
+            hopeless: 0.0,
+        }
     }
 
     /// The rotors are to stand still.
@@ -75,13 +105,23 @@ impl Spool {
 /// Every chosen arm presses the pipe with a good part of the grip pressure.
 fn held(grip: Option<Grip>, arms: ArmChoice, p: &Params) -> bool {
     let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
-    grip.is_some_and(|g| g.arms.iter().zip(arms.mask()).all(|(a, chosen)| !chosen || firm(a)))
+    grip.is_some_and(|g| {
+        g.arms
+            .iter()
+            .zip(arms.mask())
+            .all(|(a, chosen)| !chosen || firm(a))
+    })
 }
 
 /// Why a chosen arm will never hold.
 fn hopeless(grip: Option<Grip>, arms: ArmChoice) -> Option<&'static str> {
     let grip = grip?;
-    let any = |s| grip.arms.iter().zip(arms.mask()).any(|(a, chosen)| chosen && a.state == s);
+    let any = |s| {
+        grip.arms
+            .iter()
+            .zip(arms.mask())
+            .any(|(a, chosen)| chosen && a.state == s)
+    };
     if any(ArmState::Faulty) {
         Some("pressure sensor fault")
     } else if any(ArmState::ForceLimited) {
@@ -101,7 +141,12 @@ impl ModeLogic {
         dt: f32,
     ) -> State {
         let proven = i.grip.is_some_and(|g| g.proven);
-        let give_up = State::Releasing { hold, share: spool.share, free: 0.0, opening: false };
+        let give_up = State::Releasing {
+            hold,
+            share: spool.share,
+            free: 0.0,
+            opening: false,
+        };
 
         // Without the radio nobody could fly away: a poor grip is then better than none.
         if let Some(s) = sticks {
@@ -110,7 +155,11 @@ impl ModeLogic {
                 return give_up;
             }
             let hope = hopeless(i.grip, hold.arms);
-            spool.hopeless = if hope.is_some() && !proven { spool.hopeless + dt } else { 0.0 };
+            spool.hopeless = if hope.is_some() && !proven {
+                spool.hopeless + dt
+            } else {
+                0.0
+            };
             let limit = self.params.clamp_timeout + if spool.down { SPOOL_ALLOWANCE } else { 0.0 };
             let lost = match hope {
                 Some(why) if spool.hopeless >= HOPELESS_TIME => Some(why),
@@ -126,7 +175,11 @@ impl ModeLogic {
 
         // Nobody could fly away and the rotors are about to stop anyway: down slowly, on whatever grip there is.
         let last_resort = sticks.is_none() && self.dangers.battery_critical();
-        let down = if spool.down { held(i.grip, hold.arms, &self.params) } else { proven };
+        let down = if spool.down {
+            held(i.grip, hold.arms, &self.params)
+        } else {
+            proven
+        };
         if down || last_resort {
             spool.down = true;
             spool.share = clamp(spool.share - dt / SPOOL_TIME, 0.0, 1.0);
@@ -136,18 +189,24 @@ impl ModeLogic {
                 self.note("grip lost while spooling down");
             }
             let share = clamp(spool.share + dt / SPOOL_TIME, 0.0, 1.0);
-            spool = Spool { hopeless: spool.hopeless, ..Spool::at(share) };
+            spool = Spool {
+                hopeless: spool.hopeless,
+                ..Spool::at(share)
+            };
         }
         if spool.still >= STOP_TIME && proven {
             return State::Perched { arms: hold.arms };
         }
         if spool.still >= STOP_TIME && last_resort {
-            return State::Disarmed { closed: Some(hold.arms) };
+            return State::Disarmed {
+                closed: Some(hold.arms),
+            };
         }
         if spool.still >= STOP_TIME + PROOF_TIME {
             // Holds, but not as it should: carry part of the weight again and let the loop prove it.
             spool = Spool::at(0.0);
         }
+        let hold = if spool.down { hold.following(i, dt) } else { hold.levelled(dt) };
         State::Clamping { hold, spool }
     }
 
@@ -169,7 +228,12 @@ impl ModeLogic {
             Some(m) if asked && !self.dangers.battery_critical() => {
                 let (roll, pitch, _) = m.q.to_euler();
                 let hold = Hold { roll, pitch, arms };
-                State::Releasing { hold, share: 0.0, free: 0.0, opening: false }
+                State::Releasing {
+                    hold,
+                    share: 0.0,
+                    free: 0.0,
+                    opening: false,
+                }
             }
             _ => State::Perched { arms },
         }
@@ -177,7 +241,9 @@ impl ModeLogic {
 
     /// What the pilot should know while perched.
     pub(super) fn perch_trouble(&self, i: &Inputs, arms: ArmChoice) -> Option<&'static str> {
-        let asked = i.sticks.is_some_and(|s| !s.perch_switch && s.throttle >= RELEASE_THROTTLE_MIN);
+        let asked = i
+            .sticks
+            .is_some_and(|s| !s.perch_switch && s.throttle >= RELEASE_THROTTLE_MIN);
         if i.grip.is_none() {
             Some("clamp loop silent")
         } else if !held(i.grip, arms, &self.params) {
@@ -216,12 +282,20 @@ impl ModeLogic {
         if again && !released {
             // Radio lost: hold on. A later release takes a new turn of the switch.
             self.perch_seen_on = sticks.is_some();
-            return State::Clamping { hold, spool: Spool::at(share) };
+            return State::Clamping {
+                hold,
+                spool: Spool::at(share),
+            };
         }
         let share = clamp(share + dt / SPOOL_TIME, 0.0, 1.0);
         if self.since >= STUCK_TIME {
             self.note("arms do not come free");
         }
-        State::Releasing { hold, share, free, opening: opening || share >= 1.0 }
+        State::Releasing {
+            hold,
+            share,
+            free,
+            opening: opening || share >= 1.0,
+        }
     }
 }

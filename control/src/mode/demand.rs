@@ -20,7 +20,10 @@ pub fn from_sticks(s: &Sticks, p: &Params) -> Rotors {
             yaw_rate: s.yaw * p.stick_yaw_rate,
             thrust,
         },
-        StickMode::Rate => Rotors::Rate { rate: stick_rates(s, p), thrust },
+        StickMode::Rate => Rotors::Rate {
+            rate: stick_rates(s, p),
+            thrust,
+        },
         StickMode::Direct => Rotors::Direct {
             wrench: Wrench {
                 thrust,
@@ -73,14 +76,26 @@ fn with_thrust(rotors: Rotors, thrust: f32) -> Rotors {
     // Angles beyond a quarter turn are nobody's wish; the limit only catches what should not be there.
     let angle = |x| clamp_abs(x, 1.6);
     match rotors {
-        Rotors::Angle { roll, pitch, yaw_rate, .. } => {
-            Rotors::Angle { roll: angle(roll), pitch: angle(pitch), yaw_rate, thrust }
-        }
+        Rotors::Angle {
+            roll,
+            pitch,
+            yaw_rate,
+            ..
+        } => Rotors::Angle {
+            roll: angle(roll),
+            pitch: angle(pitch),
+            yaw_rate,
+            thrust,
+        },
         Rotors::Rate { rate, .. } => Rotors::Rate { rate, thrust },
-        Rotors::Direct { wrench } => Rotors::Direct { wrench: Wrench { thrust, ..wrench } },
-        Rotors::Resting { roll, pitch, .. } => {
-            Rotors::Resting { roll: angle(roll), pitch: angle(pitch), thrust }
-        }
+        Rotors::Direct { wrench } => Rotors::Direct {
+            wrench: Wrench { thrust, ..wrench },
+        },
+        Rotors::Resting { roll, pitch, .. } => Rotors::Resting {
+            roll: angle(roll),
+            pitch: angle(pitch),
+            thrust,
+        },
         stopped => stopped,
     }
 }

@@ -69,9 +69,12 @@ impl Dangers {
     pub(super) fn step(&mut self, i: &Inputs, p: &Params, dt: f32) {
         let sane = |m: super::Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
         self.imu.step(!i.motion.is_some_and(sane), dt);
-        let tipped = i.motion.is_some_and(|m| m.q.down_in_body().z < crate::math::cos(TIPPED_TILT));
+        let tipped = i
+            .motion
+            .is_some_and(|m| m.q.down_in_body().z < crate::math::cos(TIPPED_TILT));
         self.tipped.step(tipped, dt);
-        self.battery.step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
+        self.battery
+            .step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
     }
 
     pub(super) fn battery_critical(&self) -> bool {
@@ -106,7 +109,9 @@ impl ModeLogic {
                 if proven && !matches!(self.state, State::Releasing { opening: true, .. }) {
                     State::Perched { arms: hold.arms }
                 } else {
-                    State::Disarmed { closed: Some(hold.arms) }
+                    State::Disarmed {
+                        closed: Some(hold.arms),
+                    }
                 }
             }
             _ => State::Disarmed { closed: None },
@@ -124,7 +129,11 @@ impl ModeLogic {
             }
             (Cause::RadioLost, Some(s)) => {
                 let taken = s.roll.abs() > RESUME_STICK || s.pitch.abs() > RESUME_STICK;
-                if taken || self.since <= RESUME_TIME { State::Flight } else { State::Failsafe(cause) }
+                if taken || self.since <= RESUME_TIME {
+                    State::Flight
+                } else {
+                    State::Failsafe(cause)
+                }
             }
             _ => State::Failsafe(cause),
         }
@@ -143,9 +152,22 @@ impl ModeLogic {
         let share = clamp(1.0 - SINK_SHARE * short - self.dangers.probe, 0.0, 1.0);
         let thrust = share * self.support.weight();
         let steer = sticks.filter(|_| cause == Cause::BatteryCritical);
-        let steer = Sticks { stick_mode: StickMode::Angle, ..steer.unwrap_or_default() };
+        let steer = Sticks {
+            stick_mode: StickMode::Angle,
+            ..steer.unwrap_or_default()
+        };
         match demand::from_sticks(&steer, &self.params) {
-            Rotors::Angle { roll, pitch, yaw_rate, .. } => Rotors::Angle { roll, pitch, yaw_rate, thrust },
+            Rotors::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                ..
+            } => Rotors::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
+            },
             other => other,
         }
     }

@@ -143,7 +143,9 @@ impl ModeLogic {
     fn observe(&mut self, i: &Inputs, dt: f32) {
         self.since = clamp(self.since + dt, 0.0, 1e6);
         self.note.1 -= dt;
-        self.gesture = self.gestures.step(i.sticks.as_ref(), self.params.throttle_low, dt);
+        self.gesture = self
+            .gestures
+            .step(i.sticks.as_ref(), self.params.throttle_low, dt);
         if let Some(s) = i.sticks {
             self.throttle = clamp(s.throttle, 0.0, 1.0);
             self.arm_seen_off |= !s.arm_switch;
@@ -178,12 +180,18 @@ impl ModeLogic {
             }
             (State::Flight, Some(s)) if low(&s) && self.support.grounded() => State::Landed,
             (State::Flight, Some(s)) => self.touch(i, s).unwrap_or(State::Flight),
-            (State::Contact { hold }, sticks) => self.contact(hold, sticks),
+            (State::Contact { hold }, sticks) => self.contact(hold, sticks, dt),
             (State::Clamping { hold, spool }, sticks) => self.clamping(i, hold, spool, sticks, dt),
             (State::Perched { arms }, sticks) => self.perched(i, arms, sticks),
-            (State::Releasing { hold, share, free, opening }, sticks) => {
-                self.releasing(i, hold, (share, free, opening), sticks, dt)
-            }
+            (
+                State::Releasing {
+                    hold,
+                    share,
+                    free,
+                    opening,
+                },
+                sticks,
+            ) => self.releasing(i, hold, (share, free, opening), sticks, dt),
             (State::Failsafe(cause), sticks) => self.failsafe(cause, sticks),
             (state, _) => state,
         }
@@ -209,10 +217,16 @@ impl ModeLogic {
             return None;
         }
         let (roll, pitch, _) = motion.q.to_euler();
-        Some(State::Contact { hold: Hold { roll, pitch, arms: s.arms } })
+        Some(State::Contact {
+            hold: Hold {
+                roll,
+                pitch,
+                arms: s.arms,
+            },
+        })
     }
 
-    fn contact(&mut self, hold: Hold, sticks: Option<Sticks>) -> State {
+    fn contact(&mut self, hold: Hold, sticks: Option<Sticks>, dt: f32) -> State {
         let most = self.params.perch_throttle_max + CONTACT_MARGIN;
         if sticks.is_some_and(|s| !s.perch_switch || s.throttle > most) {
             return State::Flight;
@@ -222,11 +236,14 @@ impl ModeLogic {
             return State::Flight;
         }
         if self.since < CONTACT_TIME {
-            return State::Contact { hold };
+            return State::Contact { hold: hold.levelled(dt) };
         }
         // A radio lost just now finishes the landing that the pilot began.
         self.perch_seen_on = sticks.is_some();
-        State::Clamping { hold, spool: Spool::at(1.0) }
+        State::Clamping {
+            hold,
+            spool: Spool::at(1.0),
+        }
     }
 
     /// Rotors off for good, from a state in which no arm is closed.
@@ -248,7 +265,11 @@ impl ModeLogic {
             sticks: i.sticks,
             switch_seen_off: self.arm_seen_off,
             battery: i.battery,
-            fsr_fault: i.fsr_fault.iter().zip(chosen).any(|(&fault, chosen)| fault && chosen),
+            fsr_fault: i
+                .fsr_fault
+                .iter()
+                .zip(chosen)
+                .any(|(&fault, chosen)| fault && chosen),
             late: i.late,
             arms_closed: !matches!(self.state, State::Disarmed { closed: None } | State::Calibrating),
         }
@@ -259,18 +280,29 @@ impl ModeLogic {
         let mode = self.state.mode();
         let tendons = match self.state {
             State::Disarmed { closed: Some(arms) } | State::Perched { arms } => Tendons::Close(arms),
-            State::Clamping { hold, .. } | State::Releasing { hold, opening: false, .. } => {
-                Tendons::Close(hold.arms)
-            }
+            State::Clamping { hold, .. }
+            | State::Releasing {
+                hold, opening: false, ..
+            } => Tendons::Close(hold.arms),
             _ => Tendons::Release,
         };
         self.probe(dt);
         let wish = self.wish(i);
         let rotors = self.collective.finish(wish, &self.params, dt);
         let grounded = matches!(mode, Mode::Calibrating | Mode::Disarmed);
-        let refusals = if grounded { self.refusals(i) } else { Refusals::default() };
+        let refusals = if grounded {
+            self.refusals(i)
+        } else {
+            Refusals::default()
+        };
         let reason = self.reason(i, refusals);
-        Outputs { mode, rotors, tendons, reason, refusals }
+        Outputs {
+            mode,
+            rotors,
+            tendons,
+            reason,
+            refusals,
+        }
     }
 
     /// Rotors for the present state, before the collective is handed over and limited.
@@ -311,5 +343,9 @@ impl ModeLogic {
 
 /// Body rates of full sticks are the pilot's; the sign of each is the stick's.
 pub(super) fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
-    Vec3::new(s.roll * p.stick_rate, s.pitch * p.stick_rate, s.yaw * p.stick_yaw_rate)
+    Vec3::new(
+        s.roll * p.stick_rate,
+        s.pitch * p.stick_rate,
+        s.yaw * p.stick_yaw_rate,
+    )
 }

@@ -16,13 +16,41 @@ fn number() -> impl Strategy<Value = f32> {
 
 fn sticks() -> impl Strategy<Value = Option<Sticks>> {
     let throttle = prop_oneof![Just(0.0f32), Just(0.3), Just(0.55), 0.0f32..1.0];
-    let mode = prop_oneof![Just(StickMode::Angle), Just(StickMode::Rate), Just(StickMode::Direct)];
-    let arms = prop_oneof![Just(ArmChoice::All), Just(ArmChoice::Front), Just(ArmChoice::Rear)];
+    let mode = prop_oneof![
+        Just(StickMode::Angle),
+        Just(StickMode::Rate),
+        Just(StickMode::Direct)
+    ];
+    let arms = prop_oneof![
+        Just(ArmChoice::All),
+        Just(ArmChoice::Front),
+        Just(ArmChoice::Rear)
+    ];
     let yaw = prop_oneof![Just(1.0f32), Just(-1.0), number()];
-    let values = (number(), number(), yaw, throttle, mode, arms, prop::bool::weighted(0.9), any::<bool>());
-    let some = values.prop_map(|(roll, pitch, yaw, throttle, stick_mode, arms, arm_switch, perch_switch)| {
-        Some(Sticks { roll, pitch, yaw, throttle, arm_switch, perch_switch, stick_mode, arms })
-    });
+    let values = (
+        number(),
+        number(),
+        yaw,
+        throttle,
+        mode,
+        arms,
+        prop::bool::weighted(0.9),
+        any::<bool>(),
+    );
+    let some = values.prop_map(
+        |(roll, pitch, yaw, throttle, stick_mode, arms, arm_switch, perch_switch)| {
+            Some(Sticks {
+                roll,
+                pitch,
+                yaw,
+                throttle,
+                arm_switch,
+                perch_switch,
+                stick_mode,
+                arms,
+            })
+        },
+    );
     prop_oneof![9 => some, 1 => Just(None)]
 }
 
@@ -36,8 +64,16 @@ fn grip() -> impl Strategy<Value = Option<Grip>> {
     ];
     let some = (prop::bool::weighted(0.7), any::<bool>(), state, 0.0f32..1000.0).prop_map(
         |(proven, released, state, pressure)| {
-            let arm = ArmGrip { state, pressure, ..Default::default() };
-            Some(Grip { proven, released, arms: [arm; 4] })
+            let arm = ArmGrip {
+                state,
+                pressure,
+                ..Default::default()
+            };
+            Some(Grip {
+                proven,
+                released,
+                arms: [arm; 4],
+            })
         },
     );
     prop_oneof![9 => some, 1 => Just(None)]
@@ -49,7 +85,15 @@ type Spell = (u32, Option<Sticks>, Option<Grip>, f32, bool, Option<f32>, bool);
 fn spells() -> impl Strategy<Value = Vec<Spell>> {
     let roll = prop_oneof![9 => -0.3f32..0.3, 1 => -3.1f32..3.1, 1 => Just(f32::NAN)];
     let battery = prop_oneof![8 => Just(Some(16.0f32)), 1 => Just(Some(12.0)), 1 => Just(None)];
-    let spell = (1u32..250, sticks(), grip(), roll, any::<bool>(), battery, prop::bool::weighted(0.95));
+    let spell = (
+        1u32..250,
+        sticks(),
+        grip(),
+        roll,
+        any::<bool>(),
+        battery,
+        prop::bool::weighted(0.95),
+    );
     prop::collection::vec(spell, 1..40)
 }
 

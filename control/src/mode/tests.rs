@@ -28,11 +28,20 @@ impl Rig {
         let inputs = Inputs {
             sticks: Some(Sticks::default()),
             motion: Some(Motion::default()),
-            grip: Some(Grip { released: true, ..Default::default() }),
+            grip: Some(Grip {
+                released: true,
+                ..Default::default()
+            }),
             battery: Some(16.0),
             ..Default::default()
         };
-        Self { logic: ModeLogic::new(&params), inputs, carried: true, out: Outputs::default(), params }
+        Self {
+            logic: ModeLogic::new(&params),
+            inputs,
+            carried: true,
+            out: Outputs::default(),
+            params,
+        }
     }
 
     pub(super) fn sticks(&mut self) -> &mut Sticks {
@@ -40,14 +49,26 @@ impl Rig {
     }
 
     fn grip(&mut self, proven: bool, released: bool, state: ArmState, pressure: f32) {
-        let arm = ArmGrip { state, pressure, ..Default::default() };
-        self.inputs.grip = Some(Grip { proven, released, arms: [arm; 4] });
+        let arm = ArmGrip {
+            state,
+            pressure,
+            ..Default::default()
+        };
+        self.inputs.grip = Some(Grip {
+            proven,
+            released,
+            arms: [arm; 4],
+        });
     }
 
     pub(super) fn step(&mut self) {
         self.inputs.lift = self.out.rotors.thrust();
         if let Some(m) = &mut self.inputs.motion {
-            let carried = if self.carried { GRAVITY } else { self.inputs.lift / self.params.mass };
+            let carried = if self.carried {
+                GRAVITY
+            } else {
+                self.inputs.lift / self.params.mass
+            };
             m.accel = Vec3::new(0.0, 0.0, -carried);
         }
         self.out = self.logic.step(&self.inputs, DT);
@@ -68,9 +89,16 @@ impl Rig {
     pub(super) fn armed() -> Self {
         let mut r = Self::new();
         r.expect(0.5, Mode::Calibrating);
-        r.inputs.motion = Some(Motion { calibrated: true, ..Default::default() });
+        r.inputs.motion = Some(Motion {
+            calibrated: true,
+            ..Default::default()
+        });
         r.expect(0.1, Mode::Disarmed);
-        *r.sticks() = Sticks { arm_switch: true, yaw: 1.0, ..Default::default() };
+        *r.sticks() = Sticks {
+            arm_switch: true,
+            yaw: 1.0,
+            ..Default::default()
+        };
         r.expect(0.9, Mode::Disarmed);
         r.expect(0.2, Mode::Armed);
         assert_eq!(r.out.rotors, Rotors::Idle);
@@ -129,7 +157,11 @@ impl Rig {
 fn a_whole_mission_passes_every_state_in_order() {
     let mut r = Rig::releasing();
     r.expect(SPOOL_TIME - 0.2, Mode::Releasing);
-    assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All), "not before the rotors carry");
+    assert_eq!(
+        r.out.tendons,
+        Tendons::Close(ArmChoice::All),
+        "not before the rotors carry"
+    );
     r.run(0.2);
     assert_eq!(r.out.tendons, Tendons::Release);
     assert!((r.out.rotors.thrust() - 0.3 * 33.2).abs() < 0.1);
@@ -173,19 +205,44 @@ fn the_collective_never_steps_while_the_rotors_work() {
 #[test]
 fn sticks_mean_what_the_stick_mode_says() {
     let mut r = Rig::flying();
-    *r.sticks() =
-        Sticks { roll: 0.5, pitch: -0.5, yaw: 1.0, throttle: 0.5, arm_switch: true, ..Default::default() };
+    *r.sticks() = Sticks {
+        roll: 0.5,
+        pitch: -0.5,
+        yaw: 1.0,
+        throttle: 0.5,
+        arm_switch: true,
+        ..Default::default()
+    };
     r.run(1.0);
     let thrust = r.out.rotors.thrust();
     let yaw_rate = r.params.stick_yaw_rate;
     assert!((thrust - 16.6).abs() < 1e-3);
-    assert_eq!(r.out.rotors, Rotors::Angle { roll: 0.305, pitch: -0.305, yaw_rate, thrust });
+    assert_eq!(
+        r.out.rotors,
+        Rotors::Angle {
+            roll: 0.305,
+            pitch: -0.305,
+            yaw_rate,
+            thrust
+        }
+    );
     r.sticks().stick_mode = StickMode::Rate;
     r.step();
-    assert_eq!(r.out.rotors, Rotors::Rate { rate: Vec3::new(1.5, -1.5, yaw_rate), thrust });
+    assert_eq!(
+        r.out.rotors,
+        Rotors::Rate {
+            rate: Vec3::new(1.5, -1.5, yaw_rate),
+            thrust
+        }
+    );
     r.sticks().stick_mode = StickMode::Direct;
     r.step();
-    let wrench = Wrench { thrust, roll: 0.5, pitch: -0.5, yaw: 0.1 };
+    let wrench = Wrench {
+        thrust,
+        roll: 0.5,
+        pitch: -0.5,
+        yaw: 0.1,
+    };
     assert_eq!(r.out.rotors, Rotors::Direct { wrench });
 }
 
@@ -212,7 +269,10 @@ fn the_arm_switch_stops_the_rotors_in_one_step_and_never_opens_a_grip() {
 fn arming_is_refused_with_a_reason_that_can_be_read() {
     let mut r = Rig::new();
     r.sticks().arm_switch = true;
-    r.inputs.motion = Some(Motion { calibrated: true, ..Default::default() });
+    r.inputs.motion = Some(Motion {
+        calibrated: true,
+        ..Default::default()
+    });
     r.sticks().yaw = 1.0;
     r.expect(3.0, Mode::Disarmed);
     assert_eq!(r.out.reason, "arm switch on at power-up");
@@ -268,7 +328,11 @@ fn the_landing_on_the_pipe_needs_switch_throttle_and_evidence() {
         r.sticks().perch_switch = perch_switch;
         r.carried = carried;
         let q = Quat::from_euler(tilt, 0.0, 0.0);
-        r.inputs.motion = Some(Motion { q, calibrated: true, ..Default::default() });
+        r.inputs.motion = Some(Motion {
+            q,
+            calibrated: true,
+            ..Default::default()
+        });
         r.expect(3.0, Mode::Flight);
     }
 }
@@ -287,7 +351,11 @@ fn a_contact_that_is_lost_or_called_off_is_flight_again() {
 fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
     for (state, seconds, why) in [
         (ArmState::Closing, 10.0, "grip not proven in time"),
-        (ArmState::ForceLimited, HOPELESS_TIME, "force limit reached without grip"),
+        (
+            ArmState::ForceLimited,
+            HOPELESS_TIME,
+            "force limit reached without grip",
+        ),
         (ArmState::Faulty, HOPELESS_TIME, "pressure sensor fault"),
     ] {
         let mut r = Rig::clamping();
@@ -376,7 +444,15 @@ fn a_lost_radio_in_flight_sinks_and_stops_on_what_carries() {
     let weight = r.params.mass * GRAVITY;
     let share = r.out.rotors.thrust() / weight;
     assert!((0.84..1.0).contains(&share), "{share}");
-    assert!(matches!(r.out.rotors, Rotors::Angle { roll: 0.0, pitch: 0.0, yaw_rate: 0.0, .. }));
+    assert!(matches!(
+        r.out.rotors,
+        Rotors::Angle {
+            roll: 0.0,
+            pitch: 0.0,
+            yaw_rate: 0.0,
+            ..
+        }
+    ));
     r.expect(20.0, Mode::Failsafe);
     r.carried = true;
     r.expect(6.0, Mode::Disarmed);
@@ -418,15 +494,36 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
     r.inputs.sticks = None;
     r.inputs.battery = Some(12.0);
     r.expect(5.0, Mode::Disarmed);
-    assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All), "no proof, no battery, no radio: hold on");
+    assert_eq!(
+        r.out.tendons,
+        Tendons::Close(ArmChoice::All),
+        "no proof, no battery, no radio: hold on"
+    );
 }
 
 #[test]
 fn a_silent_sensor_or_a_crash_stops_the_rotors() {
-    let over = Motion { q: Quat::from_euler(deg(120.0), 0.0, 0.0), calibrated: true, ..Default::default() };
-    let broken = Motion { rate: Vec3::new(f32::NAN, 0.0, 0.0), calibrated: true, ..Default::default() };
-    for (motion, after) in [(None, IMU_LOST_TIME), (Some(over), TIPPED_TIME), (Some(broken), IMU_LOST_TIME)] {
-        for make in [Rig::armed as fn() -> Rig, Rig::flying, Rig::touched, Rig::clamping] {
+    let over = Motion {
+        q: Quat::from_euler(deg(120.0), 0.0, 0.0),
+        calibrated: true,
+        ..Default::default()
+    };
+    let broken = Motion {
+        rate: Vec3::new(f32::NAN, 0.0, 0.0),
+        calibrated: true,
+        ..Default::default()
+    };
+    for (motion, after) in [
+        (None, IMU_LOST_TIME),
+        (Some(over), TIPPED_TIME),
+        (Some(broken), IMU_LOST_TIME),
+    ] {
+        for make in [
+            Rig::armed as fn() -> Rig,
+            Rig::flying,
+            Rig::touched,
+            Rig::clamping,
+        ] {
             let mut r = make();
             r.inputs.motion = motion;
             r.run(after + 0.03);

@@ -20,7 +20,11 @@ impl Mind {
     /// The vehicle has stopped in the air: nothing that a pilot could do.
     fn stopped(v: &View<'_>) -> Option<Progress> {
         (v.mode == Some(Mode::Disarmed)).then(|| {
-            Progress::Failed(format!("rotors stopped at a height of {:.2} m, {}", v.height(), v.shown()))
+            Progress::Failed(format!(
+                "rotors stopped at a height of {:.2} m, {}",
+                v.height(),
+                v.shown()
+            ))
         })
     }
 
@@ -33,7 +37,11 @@ impl Mind {
             self.enter(Phase::Fly);
         }
         let wish = self.go_to(v, self.spot, self.height, dt);
-        if self.phase_time >= seconds { Progress::Done(wish) } else { Progress::Going(wish) }
+        if self.phase_time >= seconds {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
     }
 
     pub(super) fn roll(&mut self, v: &View<'_>, angle: f64, seconds: f64, dt: f64) -> Progress {
@@ -62,7 +70,11 @@ impl Mind {
             let wish = self.go_to(v, self.spot, self.height, dt);
             let off = (v.seen.position.truncate() - self.spot).length();
             let there = off < RECOVERED && v.seen.velocity.length() < RECOVERED_SPEED;
-            return if self.held_for(there, 0.5, dt) { Progress::Done(wish) } else { Progress::Going(wish) };
+            return if self.held_for(there, 0.5, dt) {
+                Progress::Done(wish)
+            } else {
+                Progress::Going(wish)
+            };
         }
         let lean = angle.min(FRAC_PI_2 * 0.8);
         let throttle = self.guidance.climb(Vertical::Height(self.height), lean.cos(), dt);
@@ -80,8 +92,14 @@ impl Mind {
             return failed;
         }
         let wish = self.go_to(v, target, height, dt);
-        let off = (v.seen.position.truncate() - target).length().hypot(v.height() - height);
+        let off = (v.seen.position.truncate() - target)
+            .length()
+            .hypot(v.height() - height);
         let there = off < REACHED && v.seen.velocity.length() < REACHED_SPEED;
-        if self.held_for(there, 1.0, dt) { Progress::Done(wish) } else { Progress::Going(wish) }
+        if self.held_for(there, 1.0, dt) {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
     }
 }

@@ -77,7 +77,7 @@ pub struct Foresight {
 }
 
 /// Time that the vehicle takes to lean, s, and to change its thrust: what a pilot knows of his vehicle.
-const LEAN_TIME: f64 = 0.3;
+const LEAN_TIME: f64 = 0.35;
 const THRUST_TIME: f64 = 0.08;
 /// Time by which he steers ahead of the present, s: his hands and half of the lean.
 const AHEAD_LEVEL: f64 = 0.25;
@@ -86,7 +86,12 @@ const AHEAD_DOWN: f64 = 0.12;
 impl Foresight {
     /// Foresight over `delay` s.
     pub fn new(delay: f64) -> Self {
-        Self { delay, past: VecDeque::new(), level: DVec2::ZERO, down: 0.0 }
+        Self {
+            delay,
+            past: VecDeque::new(),
+            level: DVec2::ZERO,
+            down: 0.0,
+        }
     }
 
     /// Notes what the hands ask for now: accelerations, m/s², without the trims that only hold against the wind

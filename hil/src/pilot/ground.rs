@@ -37,7 +37,10 @@ impl Mind {
                 self.enter(Phase::Wait);
                 Progress::Going(Wish::default())
             }
-            (Phase::Gesture, _) => Progress::Going(Wish { yaw: 1.0, ..Default::default() }),
+            (Phase::Gesture, _) => Progress::Going(Wish {
+                yaw: 1.0,
+                ..Default::default()
+            }),
             (Phase::Wait, _) if self.phase_time > 0.5 => Progress::Done(Wish::default()),
             _ => Progress::Going(Wish::default()),
         }
@@ -57,7 +60,11 @@ impl Mind {
         }
         let wish = self.go_to(v, self.spot, height, dt);
         let there = (v.height() - height).abs() < REACHED && v.seen.velocity.length() < REACHED_SPEED;
-        if self.held_for(there, 1.0, dt) { Progress::Done(wish) } else { Progress::Going(wish) }
+        if self.held_for(there, 1.0, dt) {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
     }
 
     pub(super) fn land(&mut self, v: &View<'_>, dt: f64) -> Progress {
@@ -65,14 +72,22 @@ impl Mind {
             Phase::Throttle => {
                 let wish = self.throttle_to(0.0, GIVE_BACK, dt);
                 let stands = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
-                if stands && self.throttle <= 0.0 { Progress::Done(wish) } else { Progress::Going(wish) }
+                if stands && self.throttle <= 0.0 {
+                    Progress::Done(wish)
+                } else {
+                    Progress::Going(wish)
+                }
             }
             _ => {
                 if self.phase == Phase::Start {
                     self.spot = v.seen.position.truncate();
                     self.enter(Phase::Descend);
                 }
-                let rate = if v.height() > LAST_BIT { DESCENT } else { LAST_DESCENT };
+                let rate = if v.height() > LAST_BIT {
+                    DESCENT
+                } else {
+                    LAST_DESCENT
+                };
                 let wish = self.climb_over(v, self.spot, -rate, dt);
                 let stands = v.height() < STANDS && v.seen.velocity.z.abs() < STOPPED;
                 // A failsafe or the vehicle itself may have ended the flight already.
@@ -96,7 +111,10 @@ impl Mind {
                 self.enter(Phase::Wait);
                 Progress::Going(Wish::default())
             }
-            _ => Progress::Going(Wish { yaw: -1.0, ..Default::default() }),
+            _ => Progress::Going(Wish {
+                yaw: -1.0,
+                ..Default::default()
+            }),
         }
     }
 }

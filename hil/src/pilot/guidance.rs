@@ -1,6 +1,6 @@
 //! How the pilot flies: position to velocity to lean, height to climb to throttle, heading to rudder.
 //!
-//! Gentle: velocity crossover 0.28 Hz, lean at most 14°. Two trims take up the steady wind and the throttle of
+//! Gentle: velocity crossover 0.3 Hz, lean at most 14°. Two trims take up the steady wind and the throttle of
 //! hover.
 
 use glam::{DVec2, DVec3};
@@ -16,8 +16,8 @@ const GRAVITY: f64 = 9.806_65;
 const POSITION_GAIN: f64 = 0.7;
 /// Fastest flight, m/s.
 const SPEED_MAX: f64 = 1.2;
-/// Speed error to acceleration, 1/s. The foresight feeds the acceleration back, which leaves 1.8 of it.
-const SPEED_GAIN: f64 = 3.2;
+/// Speed error to acceleration, 1/s. The foresight feeds the acceleration back, which leaves 1.9 of it.
+const SPEED_GAIN: f64 = 3.6;
 /// Speed error to the wind trim, 1/s², and the distance within which it is learned, m.
 const WIND_GAIN: f64 = 0.2;
 const WIND_NEAR: f64 = 0.7;
@@ -79,9 +79,9 @@ impl Guidance {
         }
     }
 
-    /// Where the vehicle will be when the hands act, NED, m.
-    pub fn position_ahead(&self) -> DVec3 {
-        self.ahead.0
+    /// Position, m, and velocity, m/s, NED, that the vehicle will have when the hands act.
+    pub fn ahead(&self) -> (DVec3, DVec3) {
+        self.ahead
     }
 
     /// The vehicle stands on something: the throttle is set by other means, nothing is learned.
@@ -105,14 +105,7 @@ impl Guidance {
     }
 
     /// Steers to `target` (north, east, m) with the nose at `heading` (rad).
-    pub fn steer(
-        &mut self,
-        seen: &Seen,
-        target: DVec2,
-        vertical: Vertical,
-        heading: f64,
-        dt: f64,
-    ) -> Wish {
+    pub fn steer(&mut self, seen: &Seen, target: DVec2, vertical: Vertical, heading: f64, dt: f64) -> Wish {
         let (position, velocity) = self.ahead;
         let away = target - position.truncate();
         let speed = (away * POSITION_GAIN).clamp_length_max(SPEED_MAX);
@@ -136,9 +129,7 @@ impl Guidance {
     pub fn climb(&mut self, vertical: Vertical, upright: f64, dt: f64) -> f64 {
         let (position, velocity) = self.ahead;
         let rate = match vertical {
-            Vertical::Height(height) => {
-                (HEIGHT_GAIN * (height + position.z)).clamp(-DESCENT_MAX, CLIMB_MAX)
-            }
+            Vertical::Height(height) => (HEIGHT_GAIN * (height + position.z)).clamp(-DESCENT_MAX, CLIMB_MAX),
             Vertical::Climb(rate) => rate,
         };
         let error = rate + velocity.z;

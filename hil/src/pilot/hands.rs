@@ -33,7 +33,11 @@ pub struct Hands {
 impl Hands {
     /// Hands of `bandwidth` Hz; the switch for the arms is set before the flight.
     pub fn new(bandwidth: f64, arms: ArmChoice) -> Self {
-        Self { bandwidth, arms, sticks: [0.0; 4] }
+        Self {
+            bandwidth,
+            arms,
+            sticks: [0.0; 4],
+        }
     }
 
     /// Where the sticks are: roll, pitch, yaw, throttle.

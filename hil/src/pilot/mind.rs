@@ -34,7 +34,11 @@ impl View<'_> {
     /// The mode as the display words it.
     pub fn shown(&self) -> String {
         let name = self.mode.map_or("nothing", Mode::name);
-        if self.reason.is_empty() { format!("display {name}") } else { format!("display {name}: {}", self.reason) }
+        if self.reason.is_empty() {
+            format!("display {name}")
+        } else {
+            format!("display {name}: {}", self.reason)
+        }
     }
 }
 
@@ -64,8 +68,12 @@ pub enum Phase {
     Right,
     /// See [`Phase::Right`].
     Left,
-    /// Going down until something carries.
+    /// Going down: to the ground, or to the gate over the pipe.
     Descend,
+    /// Going on from the gate onto the pipe.
+    Commit,
+    /// Sticks let go, the weight put onto the pipe.
+    Plant,
     /// Moving the throttle to where it must be.
     Throttle,
     /// Up again, for another try.
@@ -78,6 +86,7 @@ pub struct Mind {
     pub(super) guidance: Guidance,
     pub(super) pipe: DVec2,
     pub(super) pipe_top: f64,
+    pub(super) pipe_radius: f64,
     pub(super) stick_angle: f64,
     pub(super) arm_switch: bool,
     pub(super) perch_switch: bool,
@@ -104,6 +113,7 @@ impl Mind {
             guidance: Guidance::new(&scenario.params, scenario.pilot.delay),
             pipe: DVec2::new(north, east),
             pipe_top: scenario.world.pipe_top,
+            pipe_radius: 0.5 * scenario.world.pipe_diameter,
             stick_angle: f64::from(scenario.params.stick_angle),
             arm_switch: false,
             perch_switch: false,
@@ -138,8 +148,8 @@ impl Mind {
             Step::Roll { angle, seconds } => self.roll(view, angle, seconds, dt),
             Step::FlyTo { north, east, height } => self.fly_to(view, DVec2::new(north, east), height, dt),
             Step::FlyToPipe => self.fly_to_pipe(view, dt),
-            Step::Touch => self.touch(view, dt),
-            Step::Perch { throttle } => self.perch(view, throttle, dt),
+            Step::Touch => self.touch(view, sticks[3], dt),
+            Step::Perch { throttle } => self.perch(view, throttle, sticks[3], dt),
             Step::Hold { seconds, .. } => self.hold(view, seconds, dt),
             Step::Release => self.release(view, dt),
             Step::Land => self.land(view, dt),
@@ -147,9 +157,10 @@ impl Mind {
         };
         let limit = limits::of(step);
         match progress {
-            Progress::Going(_) if self.step_time > limit => {
-                Progress::Failed(format!("not done after {limit:.0} s: {}", self.shortfall(step, view)))
-            }
+            Progress::Going(_) if self.step_time > limit => Progress::Failed(format!(
+                "not done after {limit:.0} s: {}",
+                self.shortfall(step, view)
+            )),
             Progress::Going(wish) => Progress::Going(self.switches(wish)),
             Progress::Done(wish) => Progress::Done(self.switches(wish)),
             failed @ Progress::Failed(_) => failed,
@@ -157,7 +168,11 @@ impl Mind {
     }
 
     fn switches(&self, wish: Wish) -> Wish {
-        Wish { arm_switch: self.arm_switch, perch_switch: self.perch_switch, ..wish }
+        Wish {
+            arm_switch: self.arm_switch,
+            perch_switch: self.perch_switch,
+            ..wish
+        }
     }
 
     pub(super) fn enter(&mut self, phase: Phase) {
@@ -174,19 +189,24 @@ impl Mind {
 
     /// Flies to `target` at `height`.
     pub(super) fn go_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> Wish {
-        self.guidance.steer(&v.seen, target, Vertical::Height(height), HEADING, dt)
+        self.guidance
+            .steer(&v.seen, target, Vertical::Height(height), HEADING, dt)
     }
 
     /// Climbs (or sinks) at `rate` m/s over `target`.
     pub(super) fn climb_over(&mut self, v: &View<'_>, target: DVec2, rate: f64, dt: f64) -> Wish {
-        self.guidance.steer(&v.seen, target, Vertical::Climb(rate), HEADING, dt)
+        self.guidance
+            .steer(&v.seen, target, Vertical::Climb(rate), HEADING, dt)
     }
 
     /// Sticks let go, throttle moved by hand towards `goal` at `rate` 1/s.
     pub(super) fn throttle_to(&mut self, goal: f64, rate: f64, dt: f64) -> Wish {
         self.throttle += (goal - self.throttle).clamp(-rate * dt, rate * dt);
         self.guidance.stand(self.throttle);
-        Wish { throttle: self.throttle, ..Default::default() }
+        Wish {
+            throttle: self.throttle,
+            ..Default::default()
+        }
     }
 
     /// What the vehicle has not reached, for the reason of a failure.
@@ -198,7 +218,11 @@ impl Mind {
                 format!("height {:.2} m of {height:.2} m, {}", v.height(), v.shown())
             }
             Step::Roll { .. } => {
-                format!("{:.2} m off the spot at {:.2} m/s", off(self.spot), v.seen.velocity.length())
+                format!(
+                    "{:.2} m off the spot at {:.2} m/s",
+                    off(self.spot),
+                    v.seen.velocity.length()
+                )
             }
             Step::FlyToPipe | Step::Touch | Step::Perch { .. } => format!(
                 "{:.2} m beside the spot, {:.2} m over the pipe, {} missed tries, {}",

@@ -122,10 +122,11 @@ impl Pilot {
     pub fn step(&mut self, dt: f64, seen: Seen, telemetry_bytes: &[u8]) -> PilotOutput {
         let mut out = PilotOutput { step: self.index, ..Default::default() };
         self.telemetry.take(telemetry_bytes);
-        if self.outcome.is_none() && self.index > 0 {
-            if let Some(why) = self.referee.judge(&seen, mind::HEADING, dt) {
-                self.fail(&why, &mut out);
-            }
+        if self.outcome.is_none()
+            && self.index > 0
+            && let Some(why) = self.referee.judge(&seen, mind::HEADING, dt)
+        {
+            self.fail(&why, &mut out);
         }
         self.elapsed += dt;
         if self.elapsed >= 1.0 / FRAME_HZ {

@@ -7,37 +7,51 @@ use super::mind::{Mind, Phase, Progress, View};
 
 /// Height over the pipe from which it is approached, and to which the vehicle goes after a release, m.
 const OVER: f64 = 1.0;
+/// Height over the pipe to which a missed approach goes up again, m.
+const OVER_AGAIN: f64 = 0.6;
 /// Distance, m, speed, m/s, and time, s, at which the vehicle has settled over the pipe.
 const SETTLED: f64 = 0.08;
 const SETTLED_SPEED: f64 = 0.10;
 const SETTLED_TIME: f64 = 1.5;
-/// Rate of descent onto the pipe, m/s.
+/// Rates of descent, m/s: to the gate over the pipe, and from there onto it.
 const DESCENT: f64 = 0.15;
-/// Height over the pipe below which being off it matters, and by which a missed approach goes up again, m.
-const NEAR: f64 = 0.4;
-/// Largest distance beside the pipe's crown, and along it from the spot, on the last bit, m.
-const BESIDE: f64 = 0.10;
+const LAST_DESCENT: f64 = 0.25;
+/// Height of the centre of mass over the pipe's top at the gate, where the pilot waits until he is over the
+/// crown, and the height at which the belly touches, m.
+const GATE: f64 = 0.11;
+const BELLY: f64 = 0.05;
+/// Distance beside the crown, m, now and after the time that the last bit takes, s, and speed, m/s, at which he
+/// goes on from the gate; time for which all must hold, s.
+const CENTRED: f64 = 0.02;
+const CENTRED_SPEED: f64 = 0.06;
+const LAST_TIME: f64 = 0.5;
+const CENTRED_TIME: f64 = 0.15;
+/// Largest distance along the pipe from the spot, m.
 const ALONG: f64 = 0.25;
-/// Distance beside the crown at which the vehicle waits at its height, and the least height over the pipe at
-/// which it can: below that it goes down, m.
-const WAIT: f64 = 0.035;
-const WAIT_OVER: f64 = 0.12;
+/// Height over the pipe below which being far off it matters, m, and how far that is, m.
+const NEAR: f64 = 0.4;
+const ASTRAY: f64 = 0.20;
+/// Distance beside the crown at which a vehicle on the pipe will not stay, share of the pipe's radius.
+const SLIPPING: f64 = 0.3;
 /// Height over the pipe at which a vehicle that does not sink any more stands on it, m.
-const STANDS: f64 = 0.25;
-/// Depth below the pipe's top by which it was missed, m.
+const STANDS: f64 = 0.12;
+/// Depth of the centre of mass below the pipe's top by which it was missed, m.
 const MISSED: f64 = 0.05;
 /// Sink rate of a vehicle that stands, m/s, and the time for which it must last, s.
 const STOPPED: f64 = 0.05;
-const STOPPED_TIME: f64 = 0.5;
+const STOPPED_TIME: f64 = 0.3;
+/// Throttle at which the vehicle stands firmly, and the speed at which it is set, 1/s: with nearly all of the
+/// weight on the rotors the slightest lean makes it slide.
+const FIRM_THROTTLE: f64 = 0.42;
+const FIRM_EASE: f64 = 0.5;
 /// Tries after which the pilot gives up.
-const TRIES: u32 = 5;
+const TRIES: u32 = 8;
 /// Speed of the throttle on the pipe, 1/s.
 const EASE: f64 = 0.25;
 /// Throttle at which the arms are opened.
 const RELEASE_THROTTLE: f64 = 0.30;
-/// Distance beside the crown at which the vehicle has slid off, and depth below where it stood, m.
-const SLID: f64 = 0.20;
-const SUNK: f64 = 0.12;
+/// Depth below where it stood at which the vehicle has slid off, m.
+const SUNK: f64 = 0.06;
 /// Time for which the display may tell of a lost grip, s.
 const GRIP_LOST_TIME: f64 = 1.0;
 /// Rise at which the vehicle is clear of the pipe and the sticks are used again, m.
@@ -46,60 +60,100 @@ const CLEAR: f64 = 0.06;
 impl Mind {
     pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {
         let wish = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
-        if self.settled(v, dt) { Progress::Done(wish) } else { Progress::Going(wish) }
+        if self.settled(v, OVER, dt) {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
     }
 
-    fn settled(&mut self, v: &View<'_>, dt: f64) -> bool {
-        let off = (v.seen.position.truncate() - self.pipe).length().hypot(v.height() - self.pipe_top - OVER);
+    fn settled(&mut self, v: &View<'_>, over: f64, dt: f64) -> bool {
+        let off = (v.seen.position.truncate() - self.pipe)
+            .length()
+            .hypot(v.height() - self.pipe_top - over);
         let there = off < SETTLED && v.seen.velocity.length() < SETTLED_SPEED;
         self.held_for(there, SETTLED_TIME, dt)
     }
 
-    pub(super) fn touch(&mut self, v: &View<'_>, dt: f64) -> Progress {
-        let (wish, felt) = self.approach(v, dt);
+    pub(super) fn touch(&mut self, v: &View<'_>, stick: f64, dt: f64) -> Progress {
+        let (wish, felt) = self.approach(v, stick, dt);
         if self.missed >= TRIES {
             return Progress::Failed(format!(
                 "missed the pipe {TRIES} times, last {:.2} m beside it",
                 (v.seen.position.y - self.pipe.y).abs()
             ));
         }
-        if felt { Progress::Done(wish) } else { Progress::Going(wish) }
+        if felt {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
     }
 
     /// Descends onto the pipe, and up again for another try when it would be missed. True once it carries.
-    fn approach(&mut self, v: &View<'_>, dt: f64) -> (Wish, bool) {
+    /// `throttle` is where that stick is.
+    fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (Wish, bool) {
         if self.phase == Phase::GoAround {
-            let wish = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
-            if self.settled(v, dt) {
+            let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
+            if self.settled(v, OVER_AGAIN, dt) {
                 self.enter(Phase::Descend);
             }
             return (wish, false);
         }
-        if self.phase != Phase::Descend {
-            self.enter(Phase::Descend);
-        }
         let over = v.height() - self.pipe_top;
         let off = v.seen.position.truncate() - self.pipe;
-        let astray = over < NEAR && (off.y.abs() > BESIDE || off.x.abs() > ALONG);
-        if astray || over < -MISSED {
+        let (position, velocity) = self.guidance.ahead();
+        let away = position.truncate() - self.pipe;
+        let over_ahead = -position.z - self.pipe_top;
+        let astray = over < NEAR && (off.y.abs() > ASTRAY || off.x.abs() > 2.0 * ALONG);
+        let slips = self.phase == Phase::Plant && off.y.abs() > SLIPPING * self.pipe_radius;
+        if astray || slips || over < -MISSED {
             self.missed += 1;
             self.enter(Phase::GoAround);
         }
-        let beside = (self.guidance.position_ahead().y - self.pipe.y).abs();
-        let wait = (WAIT_OVER..NEAR).contains(&over) && beside > WAIT;
-        let wish = self.climb_over(v, self.pipe, if wait { 0.0 } else { -DESCENT }, dt);
-        let stands = over < STANDS && v.seen.velocity.z.abs() < STOPPED;
-        let felt = self.held_for(stands, STOPPED_TIME, dt);
-        if felt {
-            self.throttle = wish.throttle;
-            self.height = v.height();
+        match self.phase {
+            Phase::Commit => {
+                let drifts = away.y.abs() > 2.0 * CENTRED || velocity.y.abs() > 2.0 * CENTRED_SPEED;
+                if drifts && over_ahead > BELLY + 0.02 {
+                    self.enter(Phase::Descend);
+                } else if over_ahead < BELLY {
+                    self.throttle = throttle;
+                    self.enter(Phase::Plant);
+                }
+                (self.climb_over(v, self.pipe, -LAST_DESCENT, dt), false)
+            }
+            Phase::Plant => {
+                let stands = over < STANDS && v.seen.velocity.z.abs() < STOPPED;
+                let wish = self.throttle_to(FIRM_THROTTLE, FIRM_EASE, dt);
+                let felt = self.held_for(stands && self.throttle <= FIRM_THROTTLE, STOPPED_TIME, dt);
+                if felt {
+                    self.height = v.height();
+                }
+                (wish, felt)
+            }
+            Phase::GoAround => (self.climb_over(v, self.pipe, DESCENT, dt), false),
+            _ => {
+                if self.phase != Phase::Descend {
+                    self.enter(Phase::Descend);
+                }
+                let centred = away.y.abs() < 1.5 * CENTRED
+                    && (away.y + LAST_TIME * velocity.y).abs() < CENTRED
+                    && velocity.y.abs() < CENTRED_SPEED
+                    && away.x.abs() < ALONG
+                    && velocity.x.abs() < 2.0 * CENTRED_SPEED;
+                let at_gate = over_ahead < 1.5 * GATE;
+                if self.held_for(at_gate && centred, CENTRED_TIME, dt) {
+                    self.enter(Phase::Commit);
+                }
+                let rate = (1.5 * (GATE - over_ahead)).clamp(-DESCENT, DESCENT);
+                (self.climb_over(v, self.pipe, rate, dt), false)
+            }
         }
-        (wish, felt)
     }
 
-    pub(super) fn perch(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> Progress {
-        if matches!(self.phase, Phase::GoAround | Phase::Descend) {
-            let (wish, felt) = self.approach(v, dt);
+    pub(super) fn perch(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
+        if matches!(self.phase, Phase::GoAround | Phase::Descend | Phase::Commit | Phase::Plant) {
+            let (wish, felt) = self.approach(v, stick, dt);
             if felt {
                 self.enter(Phase::Throttle);
             }
@@ -114,15 +168,19 @@ impl Mind {
             self.enter(Phase::Wait);
         }
         let beside = (v.seen.position.y - self.pipe.y).abs();
-        if self.phase == Phase::Throttle && (beside > SLID || v.height() < self.height - SUNK) {
+        if self.phase == Phase::Throttle && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK) {
             self.perch_switch = false;
             self.missed += 1;
             if self.missed >= TRIES {
-                return Progress::Failed(format!("slid off the pipe {TRIES} times, last {beside:.2} m beside it"));
+                return Progress::Failed(format!(
+                    "slid off the pipe {TRIES} times, last {beside:.2} m beside it"
+                ));
             }
             self.enter(Phase::GoAround);
         }
-        if self.phase == Phase::Wait && matches!(v.mode, Some(Mode::Releasing | Mode::Flight | Mode::Failsafe)) {
+        if self.phase == Phase::Wait
+            && matches!(v.mode, Some(Mode::Releasing | Mode::Flight | Mode::Failsafe))
+        {
             return Progress::Failed(format!("no proven grip, {}", v.shown()));
         }
         if v.mode == Some(Mode::Disarmed) {
@@ -130,18 +188,30 @@ impl Mind {
         }
         let perched = v.mode == Some(Mode::Perched);
         let wish = self.throttle_to(if perched { 0.0 } else { throttle }, EASE, dt);
-        if perched && self.throttle <= 0.0 { Progress::Done(wish) } else { Progress::Going(wish) }
+        if perched && self.throttle <= 0.0 {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
     }
 
     pub(super) fn hold(&mut self, v: &View<'_>, seconds: f64, dt: f64) -> Progress {
         if v.mode != Some(Mode::Perched) {
-            return Progress::Failed(format!("no longer perched after {:.1} s, {}", self.step_time, v.shown()));
+            return Progress::Failed(format!(
+                "no longer perched after {:.1} s, {}",
+                self.step_time,
+                v.shown()
+            ));
         }
         if self.held_for(v.reason == "grip lost", GRIP_LOST_TIME, dt) {
             return Progress::Failed(format!("grip lost after {:.1} s", self.step_time));
         }
         let wish = Wish::default();
-        if self.step_time >= seconds { Progress::Done(wish) } else { Progress::Going(wish) }
+        if self.step_time >= seconds {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
     }
 
     pub(super) fn release(&mut self, v: &View<'_>, dt: f64) -> Progress {
@@ -174,7 +244,11 @@ impl Mind {
                     (wish.roll, wish.pitch, wish.yaw) = (0.0, 0.0, 0.0);
                 }
                 let there = (v.height() - self.height - OVER).abs() < 0.2 && v.seen.velocity.length() < 0.3;
-                if self.held_for(there, 0.5, dt) { Progress::Done(wish) } else { Progress::Going(wish) }
+                if self.held_for(there, 0.5, dt) {
+                    Progress::Done(wish)
+                } else {
+                    Progress::Going(wish)
+                }
             }
         }
     }

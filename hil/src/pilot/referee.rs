@@ -41,7 +41,9 @@ impl Referee {
         let deg = 180.0 / PI;
         if self.astray >= YAW_TIME {
             let (error, turn) = (error * deg, self.turn * deg);
-            return Some(format!("lost yaw: heading {error:.0} deg off, turning at {turn:.0} deg/s"));
+            return Some(format!(
+                "lost yaw: heading {error:.0} deg off, turning at {turn:.0} deg/s"
+            ));
         }
         let tilt = (truth.roll.cos() * truth.pitch.cos()).clamp(-1.0, 1.0).acos();
         let p = truth.position;
@@ -49,8 +51,16 @@ impl Referee {
             return Some("lost the vehicle: its position is no number".to_owned());
         }
         if tilt > TILT_MAX {
-            let cause = if astray { "lost yaw and tipped over" } else { "tipped over" };
-            return Some(format!("{cause}: tilt {:.0} deg at a height of {:.2} m", tilt * deg, -p.z));
+            let cause = if astray {
+                "lost yaw and tipped over"
+            } else {
+                "tipped over"
+            };
+            return Some(format!(
+                "{cause}: tilt {:.0} deg at a height of {:.2} m",
+                tilt * deg,
+                -p.z
+            ));
         }
         if p.z > DEPTH_MAX {
             return Some(format!("lost the vehicle: height {:.2} m", -p.z));

@@ -8,8 +8,18 @@ use super::*;
 use crate::scenario::World;
 
 fn scenario(seed: u64, steps: &[Step]) -> Scenario {
-    let mut s = Scenario { seed, steps: steps.to_vec(), ..Scenario::default_mission() };
-    s.world = World { gust_force: 0.1, pipe_diameter: 0.3, pipe_top: 1.5, pipe_position: [3.0, 0.0], ..s.world };
+    let mut s = Scenario {
+        seed,
+        steps: steps.to_vec(),
+        ..Scenario::default_mission()
+    };
+    s.world = World {
+        gust_force: 0.1,
+        pipe_diameter: 0.3,
+        pipe_top: 1.5,
+        pipe_position: [3.0, 0.0],
+        ..s.world
+    };
     s
 }
 
@@ -37,7 +47,11 @@ fn a_hover_stays_within_15_cm_rms_in_light_gusts_and_steady_wind() {
                 count += 1.0;
             }
         });
-        assert!(toy.pilot.outcome().unwrap().accomplished, "{:?}", toy.pilot.outcome());
+        assert!(
+            toy.pilot.outcome().unwrap().accomplished,
+            "{:?}",
+            toy.pilot.outcome()
+        );
         let rms = (sum / count).map(f64::sqrt);
         println!("wind {wind} N: {rms:.3}");
         assert!(rms.truncate().length() < 0.15 && rms.z < 0.08, "{rms}");
@@ -46,7 +60,14 @@ fn a_hover_stays_within_15_cm_rms_in_light_gusts_and_steady_wind() {
 
 #[test]
 fn a_step_of_3_m_settles() {
-    let s = scenario(4, &with(&[Step::FlyTo { north: 3.0, east: 0.0, height: 3.0 }]));
+    let s = scenario(
+        4,
+        &with(&[Step::FlyTo {
+            north: 3.0,
+            east: 0.0,
+            height: 3.0,
+        }]),
+    );
     let mut toy = Toy::new(&s);
     let (mut began, mut last_out, mut worst) = (0.0, 0.0, f64::MIN);
     toy.fly(60.0, |toy, out| {
@@ -60,7 +81,11 @@ fn a_step_of_3_m_settles() {
         worst = worst.max(toy.seen.position.x);
     });
     println!("settled after {last_out:.1} s, farthest {worst:.2} m");
-    assert!(toy.pilot.outcome().unwrap().accomplished, "{:?}", toy.pilot.outcome());
+    assert!(
+        toy.pilot.outcome().unwrap().accomplished,
+        "{:?}",
+        toy.pilot.outcome()
+    );
     assert!(last_out < 6.5 && worst < 3.3, "{last_out} s, {worst} m");
 }
 
@@ -71,7 +96,11 @@ fn the_touch_is_within_6_cm_of_the_crown() {
         let s = scenario(seed, &with(&[Step::FlyToPipe, Step::Touch]));
         let mut toy = Toy::new(&s);
         toy.fly(200.0, |_, _| ());
-        assert!(toy.pilot.outcome().unwrap().accomplished, "{seed}: {:?}", toy.pilot.outcome());
+        assert!(
+            toy.pilot.outcome().unwrap().accomplished,
+            "{seed}: {:?}",
+            toy.pilot.outcome()
+        );
         assert!((toy.seen.position.z + 1.54).abs() < 0.03, "on the pipe");
         worst = worst.max(toy.seen.position.y.abs());
     }
@@ -83,13 +112,23 @@ fn the_touch_is_within_6_cm_of_the_crown() {
 fn the_whole_mission_passes_the_modes_in_order() {
     let steps = with(&[
         Step::Hover { seconds: 3.0 },
-        Step::Roll { angle: 0.436, seconds: 0.6 },
+        Step::Roll {
+            angle: 0.436,
+            seconds: 0.6,
+        },
         Step::FlyToPipe,
         Step::Touch,
         Step::Perch { throttle: 0.3 },
-        Step::Hold { seconds: 5.0, push: 0.0 },
+        Step::Hold {
+            seconds: 5.0,
+            push: 0.0,
+        },
         Step::Release,
-        Step::FlyTo { north: 0.0, east: 0.0, height: 2.0 },
+        Step::FlyTo {
+            north: 0.0,
+            east: 0.0,
+            height: 2.0,
+        },
         Step::Land,
         Step::Disarm,
     ]);
@@ -116,7 +155,17 @@ fn the_whole_mission_passes_the_modes_in_order() {
         assert!((0.34..0.46).contains(&leant), "leant by {leant}");
         use Mode::*;
         let order = [
-            Calibrating, Disarmed, Armed, Flight, Contact, Clamping, Perched, Releasing, Flight, Landed, Disarmed,
+            Calibrating,
+            Disarmed,
+            Armed,
+            Flight,
+            Contact,
+            Clamping,
+            Perched,
+            Releasing,
+            Flight,
+            Landed,
+            Disarmed,
         ];
         assert_eq!(modes, order);
     }
@@ -124,13 +173,20 @@ fn the_whole_mission_passes_the_modes_in_order() {
 
 #[test]
 fn a_grip_that_is_not_proven_fails_the_mission_and_names_the_reason() {
-    let s = scenario(40, &with(&[Step::FlyToPipe, Step::Touch, Step::Perch { throttle: 0.3 }]));
+    let s = scenario(
+        40,
+        &with(&[Step::FlyToPipe, Step::Touch, Step::Perch { throttle: 0.3 }]),
+    );
     let mut toy = Toy::new(&s);
     toy.pressure = 600.0;
     toy.fly(200.0, |_, _| ());
     let outcome = toy.pilot.outcome().unwrap();
     assert!(!outcome.accomplished);
-    assert!(outcome.reason.starts_with("perch: no proven grip"), "{}", outcome.reason);
+    assert!(
+        outcome.reason.starts_with("perch: no proven grip"),
+        "{}",
+        outcome.reason
+    );
 }
 
 #[test]
@@ -148,7 +204,10 @@ fn a_vehicle_that_spins_has_lost_yaw_and_one_too_weak_does_not_get_up() {
     toy.strength = 0.5;
     toy.fly(60.0, |_, _| ());
     let reason = &toy.pilot.outcome().unwrap().reason;
-    assert!(reason.starts_with("take-off: not done after 24 s: height 0.0"), "{reason}");
+    assert!(
+        reason.starts_with("take-off: not done after 24 s: height 0.0"),
+        "{reason}"
+    );
 }
 
 #[test]
@@ -158,9 +217,27 @@ fn a_vehicle_on_the_wrong_side_of_the_referee_is_lost() {
     assert_eq!(referee.judge(&good, 0.0, 0.01), None);
     let lost = [
         (Seen { roll: 1.5, ..good }, "tipped over"),
-        (Seen { position: DVec3::new(0.0, 0.0, 0.6), ..good }, "height -0.60 m"),
-        (Seen { position: DVec3::new(31.0, 0.0, -2.0), ..good }, "31 m away"),
-        (Seen { position: DVec3::NAN, ..good }, "no number"),
+        (
+            Seen {
+                position: DVec3::new(0.0, 0.0, 0.6),
+                ..good
+            },
+            "height -0.60 m",
+        ),
+        (
+            Seen {
+                position: DVec3::new(31.0, 0.0, -2.0),
+                ..good
+            },
+            "31 m away",
+        ),
+        (
+            Seen {
+                position: DVec3::NAN,
+                ..good
+            },
+            "no number",
+        ),
     ];
     for (seen, words) in lost {
         let why = referee.judge(&seen, 0.0, 0.01).unwrap();
@@ -182,6 +259,10 @@ fn frames_come_150_times_a_second_and_one_seed_gives_one_flight() {
         bytes
     };
     let bytes = fly();
-    assert!((bytes.len() as i64 / 26 - 1500).abs() <= 1, "{}", bytes.len() / 26);
+    assert!(
+        (bytes.len() as i64 / 26 - 1500).abs() <= 1,
+        "{}",
+        bytes.len() / 26
+    );
     assert!(bytes == fly());
 }

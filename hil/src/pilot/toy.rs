@@ -51,7 +51,10 @@ impl Toy {
         let gust_rng = Pcg64Mcg::from_rng(&mut rng);
         Self {
             pilot: Pilot::new(scenario, rng),
-            seen: Seen { position: DVec3::new(0.0, 0.0, -BELLY), ..Default::default() },
+            seen: Seen {
+                position: DVec3::new(0.0, 0.0, -BELLY),
+                ..Default::default()
+            },
             out: Outputs::default(),
             sticks: None,
             wind: DVec3::ZERO,
@@ -114,19 +117,32 @@ impl Toy {
         let close = self.out.tendons != Tendons::Release;
         self.closed = (self.closed + if close { dt } else { -3.0 * dt }).clamp(0.0, CLOSING + 1.0);
         let pressure = self.pressure * (self.closed / CLOSING).min(1.0) as f32;
-        let state = if self.closed > 0.0 { ArmState::Touching } else { ArmState::Free };
+        let state = if self.closed > 0.0 {
+            ArmState::Touching
+        } else {
+            ArmState::Free
+        };
         let proven = self.closed > CLOSING + 0.5 && (pressure - 950.0).abs() < 50.0;
         let s = &self.seen;
         let q = Quat::from_euler(s.roll as f32, s.pitch as f32, s.yaw as f32);
         let felt = Vec3::new(0.0, 0.0, self.down as f32 - GRAVITY);
         let inputs = Inputs {
             sticks: self.sticks,
-            motion: Some(Motion { q, accel: felt, calibrated: s.t > 2.0, ..Default::default() }),
+            motion: Some(Motion {
+                q,
+                accel: felt,
+                calibrated: s.t > 2.0,
+                ..Default::default()
+            }),
             lift: self.out.rotors.thrust(),
             grip: Some(Grip {
                 proven,
                 released: self.closed <= 0.0,
-                arms: [ArmGrip { state, pressure, ..Default::default() }; 4],
+                arms: [ArmGrip {
+                    state,
+                    pressure,
+                    ..Default::default()
+                }; 4],
             }),
             battery: Some(15.5),
             ..Default::default()
@@ -138,7 +154,12 @@ impl Toy {
         let (roll, pitch, yaw_rate, thrust) = match self.out.rotors {
             Rotors::Stop => (0.0, 0.0, 0.0, 0.0),
             Rotors::Idle => (0.0, 0.0, 0.0, 1.0),
-            Rotors::Angle { roll, pitch, yaw_rate, thrust } => (roll, pitch, yaw_rate, thrust),
+            Rotors::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
+            } => (roll, pitch, yaw_rate, thrust),
             Rotors::Resting { roll, pitch, thrust } => (roll, pitch, 0.0, thrust),
             Rotors::Rate { .. } | Rotors::Direct { .. } => panic!("the pilot flies angles"),
         };
@@ -180,5 +201,9 @@ fn floor(scenario: &Scenario, position: DVec3) -> f64 {
     let w = &scenario.world;
     let radius = 0.5 * w.pipe_diameter;
     let [along, beside] = [position.x - w.pipe_position[0], position.y - w.pipe_position[1]];
-    if along.abs() < 1.0 && beside.abs() < radius { w.pipe_top - radius + (radius * radius - beside * beside).sqrt() } else { 0.0 }
+    if along.abs() < 1.0 && beside.abs() < radius {
+        w.pipe_top - radius + (radius * radius - beside * beside).sqrt()
+    } else {
+        0.0
+    }
 }

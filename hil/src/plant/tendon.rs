@@ -4,6 +4,8 @@
 //! until the reel has taken up what the arm's tilt gives away. All numbers are of the vehicle as built; what
 //! the flight stack believes about it is in the parameters.
 
+use std::f64::consts::PI;
+
 use sophie_control::tendon::{FULL_US, REFERENCE_TILT, RELEASE_US};
 
 use crate::scenario::ServoProfile;
@@ -41,7 +43,7 @@ impl From<ServoProfile> for ServoSpec {
             ServoProfile::Mg996r => Self {
                 stall: 0.922,
                 slew: 6.16,
-                range: 3.14,
+                range: PI,
             },
         }
     }
@@ -177,5 +179,85 @@ impl Tendon {
                 wanted.clamp(-slew, winding.max(-slew))
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DT: f64 = 0.25e-3;
+
+    fn run(t: &mut Tendon, pulse: f64, alpha: f64, seconds: f64) -> f64 {
+        (0..(seconds / DT) as u64).fold(0.0, |_, _| t.step(DT, pulse, alpha))
+    }
+
+    fn paper() -> Tendon {
+        Tendon::new(ServoProfile::Paper.into(), TendonSpec::default())
+    }
+
+    #[test]
+    fn a_released_tendon_is_slack_in_flight_and_at_rest() {
+        let mut t = paper();
+        for alpha in [-0.55, -0.2, 0.0, 0.35] {
+            assert!(
+                run(&mut t, f64::from(RELEASE_US), alpha, 0.2) == 0.0 && t.tension() == 0.0,
+                "{alpha}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_tension_by_hand() {
+        // 1700 µs: 1150/1900 · 4.71 rad = 2.85079 rad on 15 mm are 42.762 mm; at -1 rad 25 mm · 1.4 = 35 mm
+        // are taken up: 7.762 mm of stretch, 62.09 N, 1.552 N·m on the arm, 0.931 N·m on the servo.
+        let mut t = paper();
+        let moment = run(&mut t, 1700.0, -1.0, 3.0);
+        assert!(
+            (t.tension() - 62.09).abs() < 0.02 && (moment + 1.5523).abs() < 1e-3,
+            "{}",
+            t.tension()
+        );
+        assert!((t.servo_torque() - 0.9314).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_servo_takes_its_time() {
+        let mut t = paper();
+        // 4.71 rad at 6.16 rad/s with the tendon slack: 0.765 s, and a frame.
+        run(&mut t, f64::from(FULL_US), -2.5, 0.74);
+        assert!(t.servo_angle() < 4.6);
+        run(&mut t, f64::from(FULL_US), -2.5, 0.1);
+        assert!((t.servo_angle() - 4.71).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_weak_servo_stalls_below_its_target() {
+        let mut t = Tendon::new(ServoProfile::Mg996r.into(), TendonSpec::default());
+        run(&mut t, f64::from(FULL_US), 0.0, 5.0);
+        assert!((t.servo_torque() - 0.922).abs() < 1e-3 && t.servo_angle() < 3.0);
+    }
+
+    #[test]
+    fn without_pulses_the_gears_hold_and_slip_under_too_much() {
+        let mut t = paper();
+        run(&mut t, 1700.0, -1.0, 3.0);
+        let angle = t.servo_angle();
+        run(&mut t, 0.0, -1.0, 3.0);
+        assert!((t.servo_angle() - angle).abs() < 1e-12);
+        // The arm is forced up: beyond 0.35 · 3.432 N·m they give way.
+        run(&mut t, 0.0, -0.6, 3.0);
+        assert!(t.servo_angle() < angle && (t.servo_torque() - 1.2012).abs() < 1e-2);
+    }
+
+    #[test]
+    fn changes_within_the_deadband_are_ignored() {
+        let mut t = paper();
+        run(&mut t, 1500.0, -2.0, 2.0);
+        let angle = t.servo_angle();
+        run(&mut t, 1501.5, -2.0, 1.0);
+        assert!((t.servo_angle() - angle).abs() < 1e-12);
+        run(&mut t, 1503.0, -2.0, 1.0);
+        assert!(t.servo_angle() > angle);
     }
 }

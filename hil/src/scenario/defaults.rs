@@ -7,7 +7,7 @@ use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 
-use super::{Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read};
+use super::{Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read_steps};
 
 /// The default mission as a scenario file, with every key at its default.
 pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");
@@ -96,5 +96,5 @@ impl Scenario {
 /// The steps of the default mission, for files that name none.
 pub(super) fn default_steps() -> Vec<Step> {
     static STEPS: OnceLock<Vec<Step>> = OnceLock::new();
-    STEPS.get_or_init(|| read::steps_of(MISSION)).clone()
+    STEPS.get_or_init(|| read_steps::steps_of(MISSION)).clone()
 }

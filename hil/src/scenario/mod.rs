@@ -9,6 +9,7 @@ pub mod keys;
 mod load;
 mod nearest;
 mod read;
+mod read_steps;
 mod steps;
 #[cfg(test)]
 mod tests;

@@ -12,11 +12,10 @@ use toml::de::{DeTable, DeValue};
 use super::error::{Place, ScenarioError};
 use super::keys::{KEYS, Key, Kind, Range, TABLES};
 use super::nearest::nearest;
-use super::steps::{STEPS, StepKind, Whereabouts};
-use super::{Overrides, Scenario, ServoProfile, Step, defaults};
+use super::{Overrides, Scenario, ServoProfile, defaults};
 
-type Result<T> = core::result::Result<T, ScenarioError>;
-type Value<'a> = Spanned<DeValue<'a>>;
+pub(super) type Result<T> = core::result::Result<T, ScenarioError>;
+pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
 /// Stall torque of an MG996R at 4.8 V by its datasheet, N·m (9.4 kgcm).
 const MG996R_STALL: f32 = 0.92;
@@ -28,7 +27,7 @@ pub(super) struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn at(&self, span: &Span<usize>) -> Place {
+    pub(super) fn at(&self, span: &Span<usize>) -> Place {
         let before = self.text.as_bytes().get(..span.start).unwrap_or_default();
         Place {
             file: self.file.to_owned(),
@@ -36,7 +35,7 @@ impl Source<'_> {
         }
     }
 
-    fn bad(&self, key: &str, value: &Value<'_>, allowed: impl Into<String>) -> ScenarioError {
+    pub(super) fn bad(&self, key: &str, value: &Value<'_>, allowed: impl Into<String>) -> ScenarioError {
         let span = value.span();
         ScenarioError::BadValue {
             at: self.at(&span),
@@ -46,7 +45,7 @@ impl Source<'_> {
         }
     }
 
-    fn unknown(
+    pub(super) fn unknown(
         &self,
         key: &str,
         span: &Span<usize>,
@@ -91,7 +90,7 @@ impl Source<'_> {
         Ok(scenario)
     }
 
-    fn document(&self) -> Result<Spanned<DeTable<'_>>> {
+    pub(super) fn document(&self) -> Result<Spanned<DeTable<'_>>> {
         DeTable::parse(self.text).map_err(|error| ScenarioError::Syntax {
             at: self.at(&error.span().unwrap_or_default()),
             message: error.message().to_owned(),
@@ -155,7 +154,7 @@ impl Source<'_> {
     }
 
     /// A number in its range, as SI.
-    fn number(&self, key: &str, value: &Value<'_>, range: &Range) -> Result<f64> {
+    pub(super) fn number(&self, key: &str, value: &Value<'_>, range: &Range) -> Result<f64> {
         let si = as_number(value).and_then(|v| range.to_si(v));
         si.ok_or_else(|| self.bad(key, value, range.allowed()))
     }
@@ -180,74 +179,6 @@ impl Source<'_> {
         Ok(())
     }
 
-    fn steps(&self, list: &Value<'_>) -> Result<Vec<Step>> {
-        let items = list.get_ref().as_array().map(|a| a.iter()).unwrap_or_default();
-        let mut steps = Vec::new();
-        let mut whereabouts = Whereabouts::OnGroundDisarmed;
-        for (i, item) in items.enumerate() {
-            let key = format!("steps[{i}]");
-            let step = self.step(&key, item)?;
-            whereabouts = whereabouts
-                .after(&step)
-                .map_err(|allowed| ScenarioError::StepOrder {
-                    at: self.at(&item.span()),
-                    key,
-                    step: step.name().to_owned(),
-                    allowed,
-                })?;
-            steps.push(step);
-        }
-        if steps.is_empty() {
-            return Err(ScenarioError::NoSteps {
-                at: self.at(&list.span()),
-            });
-        }
-        Ok(steps)
-    }
-
-    fn step(&self, key: &str, item: &Value<'_>) -> Result<Step> {
-        let names = || STEPS.iter().map(|k| k.name).collect::<Vec<_>>().join(", ");
-        let table = item.get_ref().as_table();
-        let table = table.ok_or_else(|| self.bad(key, item, "a table such as { do = \"arm\" }"))?;
-        let Some((_, name)) = table.iter().find(|(name, _)| name.get_ref() == "do") else {
-            let (at, key) = (self.at(&item.span()), format!("{key}.do"));
-            return Err(ScenarioError::MissingKey {
-                at,
-                key,
-                allowed: names(),
-            });
-        };
-        let kind = name
-            .get_ref()
-            .as_str()
-            .and_then(|word| STEPS.iter().find(|k| k.name == word));
-        let kind = kind.ok_or_else(|| self.bad(&format!("{key}.do"), name, names()))?;
-        Ok((kind.build)(self.step_numbers(key, kind, table)?))
-    }
-
-    fn step_numbers(&self, key: &str, kind: &StepKind, table: &DeTable<'_>) -> Result<[f64; 3]> {
-        let mut numbers = [0.0; 3];
-        for (slot, number) in numbers.iter_mut().zip(kind.numbers) {
-            *slot = number.default * number.range.si;
-        }
-        for (name, span, value) in in_order(table).into_iter().filter(|(name, ..)| *name != "do") {
-            let key = format!("{key}.{name}");
-            let slots = numbers.iter_mut().zip(kind.numbers);
-            let Some((slot, number)) = slots.into_iter().find(|(_, n)| n.key == name) else {
-                let table = key.strip_suffix(name).unwrap_or_default();
-                let known = kind
-                    .numbers
-                    .iter()
-                    .map(|n| n.key)
-                    .chain(["do"])
-                    .map(|n| format!("{table}{n}"));
-                return Err(self.unknown(&key, &span, value, known));
-            };
-            *slot = self.number(&key, value, &number.range)?;
-        }
-        Ok(numbers)
-    }
-
     /// A pipe must leave room below it, whichever of its two keys the file sets.
     fn pipe_clear_of_the_ground(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         let lowest = scenario.world.pipe_diameter + 0.2;
@@ -267,17 +198,6 @@ impl Source<'_> {
     }
 }
 
-/// The steps of a text that is known to be good.
-pub(super) fn steps_of(text: &str) -> Vec<Step> {
-    let source = Source { file: "", text };
-    let Ok(root) = source.document() else {
-        return Vec::new();
-    };
-    let list = root.get_ref().iter().find(|(name, _)| name.get_ref() == "steps");
-    list.and_then(|(_, value)| source.steps(value).ok())
-        .unwrap_or_default()
-}
-
 /// Builders tell the stack what they built: the parameters follow the vehicle unless the file says otherwise.
 fn believe_the_vehicle(scenario: &mut Scenario) {
     scenario.params.infill = scenario.vehicle.infill as f32;
@@ -288,7 +208,7 @@ fn believe_the_vehicle(scenario: &mut Scenario) {
 }
 
 /// The entries as the file has them, so that the first mistake is the one reported.
-fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usize>, &'t Value<'i>)> {
+pub(super) fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usize>, &'t Value<'i>)> {
     let mut entries: Vec<_> = table
         .iter()
         .map(|(k, v)| (k.get_ref().as_ref(), k.span(), v))

@@ -358,3 +358,39 @@ fn every_number_takes_its_bounds_and_nothing_beyond() {
         }
     }
 }
+
+#[test]
+fn no_damage_to_a_file_makes_more_than_one_line() {
+    // A fixed generator: the same damage in every run.
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let (mut good, mut bad) = (0, 0);
+    for _ in 0..3000 {
+        let mut text: Vec<char> = MISSION.chars().collect();
+        for _ in 0..=random(3) {
+            let at = random(text.len());
+            match random(3) {
+                0 => text[at] = ['"', '[', '\n', '9', '-', '=', 'é', '\0', '.', '}'][random(10)],
+                1 => drop(text.remove(at)),
+                _ => drop(text.drain(at..(at + 1 + random(40)).min(text.len()))),
+            }
+        }
+        match parse(&text.into_iter().collect::<String>()) {
+            Ok(_) => good += 1,
+            Err(error) => {
+                bad += 1;
+                let line = error.to_string();
+                assert!(
+                    line.starts_with("perch.toml:") && !line.contains('\n') && line.len() < 800,
+                    "{line}"
+                );
+            }
+        }
+    }
+    assert!(good > 100 && bad > 100, "{good} {bad}");
+}

@@ -1,0 +1,259 @@
+//! The `sophie` command as a user meets it: exit status, one line for every mistake, nothing half-written.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A directory of its own for one test, gone afterwards.
+struct Temp(PathBuf);
+
+impl Temp {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("sophie-cli-{}-{name}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, content: &[u8]) -> String {
+        let path = self.0.join(name);
+        fs::write(&path, content).unwrap();
+        path.display().to_string()
+    }
+
+    fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(&self.0)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Temp {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn command(directory: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sophie"));
+    command.current_dir(directory).args(args).stdin(Stdio::null());
+    command
+}
+
+fn sophie(temp: &Temp, args: &[&str]) -> Output {
+    command(&temp.0, args).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Refused: exit status 2, nothing on stdout, one line on stderr (given back), no output directory.
+fn refused(temp: &Temp, args: &[&str]) -> String {
+    let output = sophie(temp, args);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
+    assert!(output.stdout.is_empty(), "{args:?}: {}", text(&output.stdout));
+    assert!(
+        told.ends_with('\n') && told.lines().count() == 1 && told.len() < 500,
+        "{args:?}: {told}"
+    );
+    assert!(!temp.0.join("out").exists(), "{args:?} left an output directory");
+    told.trim_end().to_owned()
+}
+
+/// A short flight, so that tests of the command do not fly whole missions.
+const HOP: &[u8] =
+    b"steps = [{ do = 'arm' }, { do = 'take-off', height_m = 1 }, { do = 'land' }, { do = 'disarm' }]\n";
+
+#[test]
+fn options_out_of_range_are_refused_in_one_line() {
+    let temp = Temp::new("options");
+    let line = refused(&temp, &["--infill", "3.5"]);
+    assert_eq!(
+        line,
+        "sophie: invalid value '3.5' for '--infill <PERCENT>': allowed 4 to 10 %"
+    );
+    for args in [
+        &["fly", "--rho", "11"][..],
+        &["--gain-k", "0.5"],
+        &["--gain-k", "nan"],
+        &["--config", "C"],
+        &["--mixer", "soft"],
+        &["--arms", "3"],
+        &["--seed", "-1"],
+        &["--seed", "1e3"],
+        &["--nonsense"],
+        &["--infill"],
+        &["one.toml", "two.toml"],
+        &["fly", "fly", "fly"],
+    ] {
+        refused(&temp, args);
+    }
+}
+
+#[test]
+fn bad_files_are_refused_in_one_line_that_names_them() {
+    let temp = Temp::new("files");
+    for (content, told) in [
+        (
+            &b"[vehicle]\ninfill = 3.5"[..],
+            ":2: vehicle.infill = 3.5: allowed 4 to 10 %",
+        ),
+        (
+            b"[vehicle]\ninfil = 6",
+            ":2: vehicle.infil = 6: unknown key: nearest allowed vehicle.infill",
+        ),
+        (
+            b"steps = []",
+            ":1: steps = []: allowed at least one step, such as arm",
+        ),
+        (b"seed = ", ":1: not valid TOML: "),
+        (b"\xff\xfe", ":1: not UTF-8 text"),
+        (
+            b"steps = [{ do = 'perch' }]",
+            ":1: steps[0] = perch: allowed only touching the pipe",
+        ),
+        (
+            b"[params]\nrate_p = 1e9",
+            ":2: params.rate_p = 1e9: allowed 0 to ",
+        ),
+    ] {
+        let file = temp.file("bad.toml", content);
+        let line = refused(&temp, &[&file]);
+        assert!(line.starts_with(&format!("sophie: {file}{told}")), "{line}");
+    }
+    let line = refused(&temp, &["missing.toml"]);
+    assert!(
+        line.starts_with("sophie: missing.toml: cannot be read: No such file"),
+        "{line}"
+    );
+    let line = refused(&temp, &["."]);
+    assert!(line.contains(".: cannot be read: it is a directory"), "{line}");
+}
+
+#[test]
+fn an_unwritable_directory_is_told_before_the_flight() {
+    let temp = Temp::new("unwritable");
+    let file = temp.file("taken", b"");
+    for out in [file.clone(), format!("{file}/below")] {
+        let line = refused(&temp, &["--out", &out]);
+        assert!(
+            line.starts_with(&format!("sophie: --out {out}: cannot be written: ")),
+            "{line}"
+        );
+    }
+    assert_eq!(temp.names(), ["taken"]);
+}
+
+#[test]
+fn a_bad_scenario_leaves_an_old_report_alone() {
+    let temp = Temp::new("old");
+    fs::create_dir(temp.0.join("kept")).unwrap();
+    let old = temp.file("kept/report.html", b"old");
+    let bad = temp.file("bad.toml", b"seed = -1");
+    refused(&temp, &[&bad, "--out", "kept"]);
+    assert_eq!(fs::read(old).unwrap(), b"old");
+}
+
+#[test]
+fn help_and_version_are_on_stdout() {
+    let temp = Temp::new("help");
+    for args in [&["--help"][..], &["fly", "--help"], &["--version"]] {
+        let output = sophie(&temp, args);
+        assert!(output.status.success() && output.stderr.is_empty(), "{args:?}");
+        assert!(text(&output.stdout).contains("sophie") || text(&output.stdout).contains("--infill"));
+    }
+}
+
+#[test]
+fn a_flight_writes_three_files_and_says_where() {
+    let temp = Temp::new("hop");
+    let hop = temp.file("hop.toml", HOP);
+    let output = sophie(&temp, &["fly", &hop, "--seed", "5"]);
+    let told = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{told}{}", text(&output.stderr));
+    assert!(
+        output.stderr.is_empty() && !told.contains('\x1b'),
+        "plain lines where no terminal is: {told}"
+    );
+    for part in [
+        "seed 5",
+        "1/4 arm",
+        "4/4 disarm",
+        "accomplished: ",
+        "out/report.html",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let out = temp.0.join("out");
+    let mut names: Vec<_> = fs::read_dir(&out)
+        .unwrap()
+        .map(|e| e.unwrap().file_name())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["flight.mcap", "report.html", "summary.json"]);
+    let summary: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(
+        (&summary["accomplished"], &summary["seed"]),
+        (&true.into(), &5.into())
+    );
+    assert_eq!(summary["scenario"], "hop");
+}
+
+#[test]
+fn json_has_stdout_to_itself() {
+    let temp = Temp::new("json");
+    let hop = temp.file("hop.toml", HOP);
+    let output = sophie(&temp, &[&hop, "--json", "--infill", "8"]);
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["settings"]["infill_percent"], 8.0);
+    assert!(text(&output.stderr).contains("1/4 arm"));
+    assert_eq!(
+        text(&output.stdout),
+        fs::read_to_string(temp.0.join("out/summary.json")).unwrap()
+    );
+}
+
+#[test]
+fn a_mission_that_fails_ends_with_1_and_the_reason() {
+    let temp = Temp::new("fail");
+    let late = temp.file("late.toml", &[b"time_limit_s = 3\n", HOP].concat());
+    let output = sophie(&temp, &[&late]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = text(&output.stderr);
+    assert!(
+        told.starts_with("sophie: not accomplished: ") && told.lines().count() == 1,
+        "{told}"
+    );
+    assert!(text(&output.stdout).contains("NOT accomplished"));
+    let summary = fs::read_to_string(temp.0.join("out/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["accomplished"], false);
+    assert!(told.contains(summary["reason"].as_str().unwrap()));
+}
+
+#[test]
+fn a_reader_that_leaves_does_not_stop_the_flight() {
+    let temp = Temp::new("pipe");
+    let hop = temp.file("hop.toml", HOP);
+    let mut child = command(&temp.0, &[&hop])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut first = String::new();
+    BufReader::new(child.stdout.take().unwrap())
+        .read_line(&mut first)
+        .unwrap();
+    // The reader is dropped here: whatever is written from now on meets a closed pipe.
+    let output = child.wait_with_output().unwrap();
+    assert!(first.starts_with("hop: "), "{first}");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(output.stderr.is_empty() && temp.0.join("out/report.html").exists());
+}

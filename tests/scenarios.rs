@@ -1,0 +1,98 @@
+//! Every scenario file is a test: it is flown, and the flight must end as the file's `[expect]` says.
+
+use std::error::Error;
+use std::path::Path;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sophie_hil::flight::fly;
+use sophie_hil::record::{FlightRecord, Silent};
+use sophie_hil::scenario::{Expect, Overrides, Scenario};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::from_args();
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenarios");
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(directory)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err("no scenario files found".into());
+    }
+    let trials = files.into_iter().map(|path| {
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        Trial::test(name, move || flown_as_expected(&path))
+    });
+    libtest_mimic::run(&arguments, trials.collect()).exit()
+}
+
+fn flown_as_expected(path: &Path) -> Result<(), Failed> {
+    let scenario = Scenario::load(path, &Overrides::default())?;
+    let record = fly(&scenario, &mut Silent);
+    judge(&scenario.expect, &record)?;
+    // Whatever was expected: deadlines are never missed in virtual time.
+    if record.overruns > 0 {
+        return Err(format!("{} deadlines missed", record.overruns).into());
+    }
+    Ok(())
+}
+
+fn judge(expect: &Expect, record: &FlightRecord) -> Result<(), Failed> {
+    let outcome = &record.outcome;
+    if outcome.accomplished != expect.accomplished {
+        let wanted = if expect.accomplished {
+            "accomplished"
+        } else {
+            "not accomplished"
+        };
+        return Err(format!("expected {wanted}, got: {}", outcome.reason).into());
+    }
+    if !outcome.accomplished {
+        let words = expect.reason.as_deref().unwrap_or_default();
+        if !outcome.reason.contains(words) {
+            return Err(format!("expected a reason with \"{words}\", got: {}", outcome.reason).into());
+        }
+        return Ok(());
+    }
+    let undone: Vec<&str> = record
+        .phases
+        .iter()
+        .filter(|p| !p.done)
+        .map(|p| p.name.as_str())
+        .collect();
+    if !undone.is_empty() {
+        return Err(format!("accomplished, but not done: {}", undone.join(", ")).into());
+    }
+    proven(record)
+}
+
+/// A mission with a perch is only accomplished with a grip within its tolerance on every chosen arm.
+fn proven(record: &FlightRecord) -> Result<(), Failed> {
+    let perches = record.phases.iter().filter(|p| p.name == "perch").count();
+    let arms = record.scenario.arms.mask().into_iter().filter(|m| *m).count();
+    if record.grip.len() != perches * arms {
+        return Err(format!("{} grips proven of {}", record.grip.len(), perches * arms).into());
+    }
+    let p = &record.scenario.params;
+    for grip in &record.grip {
+        let error = (grip.pressure - f64::from(p.grip_pressure)).abs();
+        // A NaN must not pass.
+        if error.is_nan() || error > f64::from(p.grip_tolerance) {
+            return Err(format!("arm {} proven at {:.0} N/m²", grip.arm, grip.pressure).into());
+        }
+        if !(grip.torque > 0.0 && grip.torque <= f64::from(p.servo_torque_max)) {
+            return Err(format!("arm {} held with {:.2} N·m", grip.arm, grip.torque).into());
+        }
+        if !(grip.closure > 0.0 && grip.closure <= f64::from(p.clamp_timeout)) {
+            return Err(format!("arm {} closed in {:.2} s", grip.arm, grip.closure).into());
+        }
+    }
+    Ok(())
+}
