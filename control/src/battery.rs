@@ -11,24 +11,8 @@ const VOLTAGE_CUTOFF: f32 = 12.6;
 const CURRENT_CUTOFF: f32 = 12.6;
 /// Bounds of the voltage ratio that the thrust curve may be compensated by: 4S from 10.4 to 18.5 V.
 const RATIO_BOUNDS: (f32, f32) = (0.7, 1.25);
-/// Time below a level after which it counts, s: a punch-out is no empty battery.
-const DELAY: f32 = 2.0;
-/// Rise above a level after which it no longer counts, V.
-const HYSTERESIS: f32 = 0.3;
 /// Readings beyond these are the converter's, not the battery's: V, A.
 const SANE: (f32, f32) = (60.0, 300.0);
-
-/// How the battery stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// Nothing to say.
-    #[default]
-    Good,
-    /// Below `battery_warning`: arming is refused, the pilot is told.
-    Warning,
-    /// Below `battery_critical`: time to land.
-    Critical,
-}
 
 /// One measurement, filtered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,8 +25,6 @@ pub struct Reading {
     pub used: f32,
     /// Voltage over nominal, within sane bounds.
     pub ratio: f32,
-    /// How it stands.
-    pub level: Level,
 }
 
 /// The battery's filters and counters.
@@ -52,30 +34,6 @@ pub struct Monitor {
     used: f32,
     /// What of the charge is too small to add to `used` yet, A·s.
     fraction: f32,
-    warning: LevelWatch,
-    critical: LevelWatch,
-}
-
-/// One level with its delay and hysteresis.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LevelWatch {
-    below_for: f32,
-    reached: bool,
-}
-
-impl LevelWatch {
-    /// True while `voltage` (V) counts as below `level` (V); `dt` in s.
-    pub fn step(&mut self, voltage: f32, level: f32, dt: f32) -> bool {
-        if voltage < level {
-            self.below_for = math::clamp(self.below_for + dt, 0.0, DELAY);
-            self.reached |= self.below_for >= DELAY - 1e-4;
-        } else if voltage > level + HYSTERESIS {
-            *self = Self::default();
-        } else if !self.reached {
-            self.below_for = 0.0;
-        }
-        self.reached
-    }
 }
 
 impl Monitor {
@@ -89,24 +47,15 @@ impl Monitor {
             let (v, i) = self
                 .filters
                 .get_or_insert((LowPass::at(voltage), LowPass::at(current)));
-            let voltage = v.step(voltage, VOLTAGE_CUTOFF, dt);
+            v.step(voltage, VOLTAGE_CUTOFF, dt);
             let filtered = i.step(current, CURRENT_CUTOFF, dt);
             self.add_charge(filtered * dt);
-            self.warning.step(voltage, p.battery_warning, dt);
-            self.critical.step(voltage, p.battery_critical, dt);
         }
         self.filters.map(|(v, i)| Reading {
             voltage: v.value(),
             current: i.value(),
             used: self.used + self.fraction,
             ratio: math::clamp(v.value() / p.battery_nominal, RATIO_BOUNDS.0, RATIO_BOUNDS.1),
-            level: if self.critical.reached {
-                Level::Critical
-            } else if self.warning.reached {
-                Level::Warning
-            } else {
-                Level::Good
-            },
         })
     }
 
@@ -140,7 +89,7 @@ mod tests {
         let r = run(&mut Monitor::default(), 15.2, 12.0, 600.0);
         // 12 A for 600 s; the rounding of 60,000 steps stays below 0.1 %.
         assert!((r.used - 7200.0).abs() < 7.2, "{}", r.used);
-        assert!((r.ratio - 15.2 / 14.8).abs() < 1e-4 && r.level == Level::Good);
+        assert!((r.ratio - 15.2 / 14.8).abs() < 1e-4);
     }
 
     #[test]
@@ -152,20 +101,6 @@ mod tests {
                 .step(&Params::default(), f32::NAN, 0.5, 0.01)
                 .is_none()
         );
-    }
-
-    #[test]
-    fn a_punch_is_no_empty_battery_and_an_empty_one_stays_empty() {
-        let p = Params::default();
-        let mut m = Monitor::default();
-        run(&mut m, 15.0, 10.0, 5.0);
-        assert!(run(&mut m, p.battery_critical - 0.5, 60.0, 1.5).level == Level::Good);
-        run(&mut m, 15.0, 10.0, 5.0);
-        // 2 s delay and the filter's lag: 0.16 s for each 63 % of the way.
-        assert!(run(&mut m, p.battery_warning - 0.2, 10.0, 3.0).level == Level::Warning);
-        assert!(run(&mut m, p.battery_warning + 0.2, 10.0, 9.0).level == Level::Warning);
-        assert!(run(&mut m, p.battery_warning + 0.4, 10.0, 9.0).level == Level::Good);
-        assert!(run(&mut m, p.battery_critical - 0.2, 10.0, 3.0).level == Level::Critical);
     }
 
     #[test]

@@ -12,13 +12,19 @@
 //! ```
 
 mod closing;
+mod decide;
 mod demand;
 mod failsafe;
+mod hold;
 mod logic;
 #[cfg(test)]
 mod random;
 #[cfg(test)]
+mod rig;
+#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod trouble;
 
 pub use self::logic::ModeLogic;
 use crate::arming::Refusals;
@@ -194,7 +200,12 @@ impl Rotors {
     pub fn is_finite(self) -> bool {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,
-            Self::Angle { roll, pitch, yaw_rate, .. } => roll + pitch + yaw_rate,
+            Self::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                ..
+            } => roll + pitch + yaw_rate,
             Self::Rate { rate, .. } => rate.x + rate.y + rate.z,
             Self::Direct { wrench } => wrench.roll + wrench.pitch + wrench.yaw,
             Self::Resting { roll, pitch, .. } => roll + pitch,

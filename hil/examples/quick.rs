@@ -11,6 +11,8 @@ impl Observer for P {
 fn main() {
     let mut s = Scenario::default_mission();
     if let Some(seed) = std::env::args().nth(1) { s.seed = seed.parse().unwrap(); }
+    if let Ok(v) = std::env::var("RHO") { s.vehicle.infill = v.parse().unwrap(); s.params.infill = s.vehicle.infill as f32; }
+    if std::env::var("TWO").is_ok() { s.arms = sophie_control::rc::ArmChoice::Front; }
     if let Ok(v) = std::env::var("EYE") { s.pilot.eye_noise = v.parse().unwrap(); }
     if let Ok(v) = std::env::var("GUST") { s.world.gust_force = v.parse().unwrap(); }
     let r = sophie_hil::flight::fly(&s, &mut P);

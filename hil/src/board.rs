@@ -16,7 +16,7 @@ use sophie_control::wrench::PerArm;
 use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
 
-use crate::plant::{Actuators, Plant};
+use crate::plant::{Actuators, Plant, STEP};
 use crate::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
@@ -28,6 +28,11 @@ const LINE_BYTES: usize = 256;
 const CONVERSION_US: u64 = 30;
 /// Time that reading one arm's sensor over 400 kHz I2C takes, µs.
 const ARM_READ_US: u64 = 400;
+
+/// Plant steps in a millisecond.
+const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
+/// Samples of the inertial sensor in a plant step.
+const SAMPLES_PER_STEP: u32 = (imu::RATE_HZ * STEP) as u32;
 
 /// The board's state, shared by its ports and the world.
 pub struct Board {
@@ -89,19 +94,21 @@ impl Board {
 
     /// Steps the plant by a millisecond under what the tasks wrote last and takes the sensors' readings.
     pub fn step_world(&self, plant: &mut Plant) {
-        let per_sample = (1.0 / (imu::RATE_HZ * crate::plant::STEP)).round() as usize;
-        let samples = (1e-3 * imu::RATE_HZ).round() as usize;
         let actuators = self.actuators.get();
         let mut sensors = self.sensors.borrow_mut();
         let mut batch = Vec::new();
-        for _ in 0..samples {
-            for _ in 0..per_sample {
-                plant.step(&actuators);
+        for _ in 0..STEPS_PER_MS {
+            let (rate, force) = (plant.pose().omega, plant.specific_force());
+            plant.step(&actuators);
+            let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
+            for k in 1..=SAMPLES_PER_STEP {
+                // The part samples faster than the plant steps: on the line between two steps.
+                let share = f64::from(k) / f64::from(SAMPLES_PER_STEP);
+                let rotors = plant.rotor_speed();
+                let reading = sensors.imu.sample(rate + rate_step * share, force + force_step * share, &rotors);
+                // The batch holds more than a millisecond's samples.
+                let _ = batch.push(reading);
             }
-            let reading =
-                sensors.imu.sample(plant.pose().omega, plant.specific_force(), &plant.rotor_speed());
-            // The batch holds more than a millisecond's samples.
-            let _ = batch.push(reading);
         }
         sensors.arm_clock += 1e-3 * arm_imu::RATE_HZ;
         if sensors.arm_clock >= 1.0 {

@@ -4,6 +4,7 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
+use sophie_control::math;
 use sophie_control::rate::{Feedback, RateLoop};
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::Wrench;
@@ -21,6 +22,7 @@ pub async fn run(links: &Links) {
     let mut loops = Loops {
         attitude: AttitudeLoop::new(&links.params),
         rate: RateLoop::new(&links.params, CONTROL_RATE_HZ),
+        levers: [links.params.arm_d, links.params.arm_b],
         running: false,
     };
     loop {
@@ -39,11 +41,16 @@ pub async fn run(links: &Links) {
     }
 }
 
+/// Largest share of a rotor's thrust that roll and pitch may each add or take while resting on the pipe.
+const RESTING_SHARE: f32 = 0.4;
+
 const NOTHING_GIVEN: Feedback = Feedback { roll_pitch: 0.0, yaw: 0.0, yaw_gated: true };
 
 struct Loops {
     attitude: AttitudeLoop,
     rate: RateLoop,
+    /// Sideways and fore-aft lever of a rotor, m.
+    levers: [f32; 2],
     running: bool,
 }
 
@@ -73,7 +80,13 @@ impl Loops {
             }
         };
         let Vec3 { x: roll, y: pitch, z: yaw } = self.rate.step(wanted, a.rate, feedback, !resting, a.dt);
-        let yaw = if resting { 0.0 } else { yaw };
-        Demand::Wrench { wrench: Wrench { thrust, roll, pitch, yaw }, yaw: !resting }
+        if resting {
+            // Moments fade with the thrust, so that rotors which spool down stop alike: whatever differs
+            // between them at the end vanishes faster than the tendons can follow.
+            let [roll_max, pitch_max] = self.levers.map(|lever| RESTING_SHARE * thrust * lever);
+            let (roll, pitch) = (math::clamp_abs(roll, roll_max), math::clamp_abs(pitch, pitch_max));
+            return Demand::Wrench { wrench: Wrench { thrust, roll, pitch, yaw: 0.0 }, yaw: false };
+        }
+        Demand::Wrench { wrench: Wrench { thrust, roll, pitch, yaw }, yaw: true }
     }
 }

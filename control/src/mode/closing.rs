@@ -1,25 +1,17 @@
 //! On the pipe: closing, proof of grip, spooling down, holding, spooling up, opening.
 
+use super::Inputs;
+use super::hold::{Hold, Spool, held, hopeless};
 use super::logic::{ModeLogic, State};
-use super::{Grip, Inputs, Rotors};
-use crate::grip::{ArmGrip, ArmState};
-use crate::math::{clamp, clamp_abs};
-use crate::params::Params;
+use crate::math::clamp;
 use crate::rc::{ArmChoice, Sticks};
 
 /// Time of the linear ramp of the collective between the pilot's throttle and nothing, s.
 pub const SPOOL_TIME: f32 = 1.5;
 /// Time from the end of the ramp until the rotors stand still, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
-/// Speed at which a lean at contact is taken out, rad/s.
-const LEVEL_RATE: f32 = 0.2;
-/// Time constant with which the attitude held follows the present one while the rotors spool down, s.
-const FOLLOW_TIME: f32 = 0.2;
 /// Time for which the grip may lack its proof after the rotors have stopped, s.
 const PROOF_TIME: f32 = 3.0;
-/// Share of the grip pressure above which an arm still holds, though not within the tolerance: the load
-/// moves from the rotors onto the arms while they spool down.
-const HELD_SHARE: f32 = 0.6;
 /// Time for which a chosen arm may be at its force limit, or faulty, before the closing is given up, s.
 pub const HOPELESS_TIME: f32 = 1.0;
 /// Time beyond `clamp_timeout` for spooling down and proving the grip, s.
@@ -32,104 +24,6 @@ pub(super) const CLOSE_AGAIN: f32 = RELEASE_THROTTLE_MIN;
 pub const FREE_TIME: f32 = 0.3;
 /// Time after which arms that do not come free are reported, s.
 const STUCK_TIME: f32 = 10.0;
-
-/// The attitude held on the pipe and the arms that close.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
-    /// Roll at contact, rad.
-    pub roll: f32,
-    /// Pitch at contact, rad.
-    pub pitch: f32,
-    /// The arms chosen at contact; the switch is not read again until they are free.
-    pub arms: ArmChoice,
-}
-
-impl Hold {
-    /// One step of levelling the roll. The crown of a pipe is an unstable seat: a lean that is merely held
-    /// grows as the rotors give the weight back. Pitch stays: it is the slope of the pipe.
-    pub(super) fn levelled(self, dt: f32) -> Self {
-        Self { roll: self.roll - clamp_abs(self.roll, LEVEL_RATE * dt), ..self }
-    }
-
-    /// One step of following the present attitude: what the grip holds the rotors need not, and what they do
-    /// not do any more cannot end with a jolt when they stop.
-    fn following(self, i: &Inputs, dt: f32) -> Self {
-        let Some(motion) = i.motion else {
-            return self;
-        };
-        let (roll, pitch, _) = motion.q.to_euler();
-        let k = dt / (dt + FOLLOW_TIME);
-        Self { roll: self.roll + k * (roll - self.roll), pitch: self.pitch + k * (pitch - self.pitch), ..self }
-    }
-
-    /// Resting with a collective of `thrust` N.
-    pub fn rotors(self, thrust: f32) -> Rotors {
-        Rotors::Resting {
-            roll: self.roll,
-            pitch: self.pitch,
-            thrust,
-        }
-    }
-}
-
-/// Progress of the closing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spool {
-    /// Share of the pilot's collective, 1 while closing, falling to 0.
-    pub share: f32,
-    /// The grip was proven: the share falls as long as the arms hold.
-    pub down: bool,
-    /// Time at share 0, s.
-    pub still: f32,
-    /// Time for which a chosen arm has been hopeless, s.
-    pub hopeless: f32,
-}
-
-impl Spool {
-    /// Closing with this share of the collective.
-    pub fn at(share: f32) -> Self {
-        Self {
-            share,
-            down: false,
-            still: 0.0,
-            hopeless: 0.0,
-        }
-    }
-
-    /// The rotors are to stand still.
-    pub fn stopped(self) -> bool {
-        self.down && self.share <= 0.0
-    }
-}
-
-/// Every chosen arm presses the pipe with a good part of the grip pressure.
-fn held(grip: Option<Grip>, arms: ArmChoice, p: &Params) -> bool {
-    let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
-    grip.is_some_and(|g| {
-        g.arms
-            .iter()
-            .zip(arms.mask())
-            .all(|(a, chosen)| !chosen || firm(a))
-    })
-}
-
-/// Why a chosen arm will never hold.
-fn hopeless(grip: Option<Grip>, arms: ArmChoice) -> Option<&'static str> {
-    let grip = grip?;
-    let any = |s| {
-        grip.arms
-            .iter()
-            .zip(arms.mask())
-            .any(|(a, chosen)| chosen && a.state == s)
-    };
-    if any(ArmState::Faulty) {
-        Some("pressure sensor fault")
-    } else if any(ArmState::ForceLimited) {
-        Some("force limit reached without grip")
-    } else {
-        None
-    }
-}
 
 impl ModeLogic {
     pub(super) fn clamping(
@@ -206,7 +100,11 @@ impl ModeLogic {
             // Holds, but not as it should: carry part of the weight again and let the loop prove it.
             spool = Spool::at(0.0);
         }
-        let hold = if spool.down { hold.following(i, dt) } else { hold.levelled(dt) };
+        let hold = if spool.down {
+            hold.following(i, dt)
+        } else {
+            hold.levelled(dt)
+        };
         State::Clamping { hold, spool }
     }
 
@@ -292,7 +190,7 @@ impl ModeLogic {
             self.note("arms do not come free");
         }
         State::Releasing {
-            hold,
+            hold: hold.levelled(dt),
             share,
             free,
             opening: opening || share >= 1.0,

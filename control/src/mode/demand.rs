@@ -1,10 +1,10 @@
 //! From sticks to a demand on the rotors, without a step in the collective and never out of range.
 
 use super::Rotors;
-use super::logic::stick_rates;
 use crate::math::{clamp, clamp_abs};
 use crate::params::Params;
 use crate::rc::{StickMode, Sticks};
+use crate::vector::Vec3;
 use crate::wrench::Wrench;
 
 /// Time over which the collective goes from one state's to the next one's, s.
@@ -33,6 +33,15 @@ pub fn from_sticks(s: &Sticks, p: &Params) -> Rotors {
             },
         },
     }
+}
+
+/// Body rates of full sticks are the pilot's; the sign of each is the stick's.
+fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
+    Vec3::new(
+        s.roll * p.stick_rate,
+        s.pitch * p.stick_rate,
+        s.yaw * p.stick_yaw_rate,
+    )
 }
 
 /// The collective over the changes of state.

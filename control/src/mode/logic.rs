@@ -1,14 +1,13 @@
 //! The state machine: one step takes what is seen and gives what is to be done.
 
-use super::closing::{CLOSE_AGAIN, Hold, Spool};
 use super::failsafe::{Cause, Dangers};
-use super::{Inputs, Mode, Outputs, Rotors, Tendons, demand};
-use crate::arming::{Checks, Gesture, GestureWatch, Refusals, TILT_MAX};
+use super::hold::{Hold, Spool};
+use super::{Inputs, Mode, Outputs, demand};
+use crate::arming::{Gesture, GestureWatch, TILT_MAX};
 use crate::math::{clamp, cos};
 use crate::params::Params;
 use crate::rc::{ArmChoice, Sticks};
 use crate::support::{Felt, Support};
-use crate::vector::Vec3;
 
 /// Longest step believed, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
@@ -94,7 +93,8 @@ pub struct ModeLogic {
     /// The perch switch has been on since the arms closed: off opens them.
     pub(super) perch_seen_on: bool,
     pub(super) collective: demand::Collective,
-    note: (&'static str, f32),
+    /// A reason and the time for which it is still shown, s.
+    pub(super) note: (&'static str, f32),
 }
 
 impl ModeLogic {
@@ -236,7 +236,9 @@ impl ModeLogic {
             return State::Flight;
         }
         if self.since < CONTACT_TIME {
-            return State::Contact { hold: hold.levelled(dt) };
+            return State::Contact {
+                hold: hold.levelled(dt),
+            };
         }
         // A radio lost just now finishes the landing that the pilot began.
         self.perch_seen_on = sticks.is_some();
@@ -256,96 +258,4 @@ impl ModeLogic {
     pub(super) fn note(&mut self, why: &'static str) {
         self.note = (why, NOTE_TIME);
     }
-
-    fn refusals(&self, i: &Inputs) -> Refusals {
-        let chosen = i.sticks.unwrap_or_default().arms.mask();
-        Checks {
-            calibrated: i.motion.is_some_and(|m| m.calibrated),
-            cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
-            sticks: i.sticks,
-            switch_seen_off: self.arm_seen_off,
-            battery: i.battery,
-            fsr_fault: i
-                .fsr_fault
-                .iter()
-                .zip(chosen)
-                .any(|(&fault, chosen)| fault && chosen),
-            late: i.late,
-            arms_closed: !matches!(self.state, State::Disarmed { closed: None } | State::Calibrating),
-        }
-        .refusals(&self.params)
-    }
-
-    fn decide(&mut self, i: &Inputs, dt: f32) -> Outputs {
-        let mode = self.state.mode();
-        let tendons = match self.state {
-            State::Disarmed { closed: Some(arms) } | State::Perched { arms } => Tendons::Close(arms),
-            State::Clamping { hold, .. }
-            | State::Releasing {
-                hold, opening: false, ..
-            } => Tendons::Close(hold.arms),
-            _ => Tendons::Release,
-        };
-        self.probe(dt);
-        let wish = self.wish(i);
-        let rotors = self.collective.finish(wish, &self.params, dt);
-        let grounded = matches!(mode, Mode::Calibrating | Mode::Disarmed);
-        let refusals = if grounded {
-            self.refusals(i)
-        } else {
-            Refusals::default()
-        };
-        let reason = self.reason(i, refusals);
-        Outputs {
-            mode,
-            rotors,
-            tendons,
-            reason,
-            refusals,
-        }
-    }
-
-    /// Rotors for the present state, before the collective is handed over and limited.
-    fn wish(&self, i: &Inputs) -> Rotors {
-        let full = 4.0 * self.params.thrust_max;
-        let perch_throttle = clamp(self.throttle, 0.0, self.params.perch_throttle_max);
-        match (self.state, i.sticks) {
-            (State::Armed | State::Landed, _) => Rotors::Idle,
-            (State::Flight, Some(s)) => demand::from_sticks(&s, &self.params),
-            (State::Contact { hold }, _) => hold.rotors(perch_throttle * full),
-            (State::Clamping { spool, .. }, _) if spool.stopped() => Rotors::Stop,
-            (State::Clamping { hold, spool }, _) => hold.rotors(spool.share * perch_throttle * full),
-            (State::Releasing { hold, share, .. }, _) => {
-                let throttle = clamp(self.throttle, CLOSE_AGAIN, self.params.perch_throttle_max);
-                hold.rotors(share * throttle * full)
-            }
-            (State::Failsafe(cause), sticks) => self.descent(cause, sticks),
-            _ => Rotors::Stop,
-        }
-    }
-
-    fn reason(&self, i: &Inputs, refusals: Refusals) -> &'static str {
-        let note = if self.note.1 > 0.0 { self.note.0 } else { "" };
-        match self.state {
-            State::Calibrating if i.motion.is_none() => "inertial sensor silent",
-            State::Calibrating => "keep still",
-            State::Disarmed { .. } if i.sticks.is_some_and(|s| s.arm_switch) => {
-                refusals.first().map_or(note, crate::arming::Refusal::text)
-            }
-            State::Perched { arms } => self.perch_trouble(i, arms).unwrap_or(note),
-            State::Failsafe(cause) => cause.text(),
-            _ if self.dangers.battery_critical() => Cause::BatteryCritical.text(),
-            _ if i.sticks.is_none() && self.state.mode() != Mode::Disarmed => "radio lost",
-            _ => note,
-        }
-    }
-}
-
-/// Body rates of full sticks are the pilot's; the sign of each is the stick's.
-pub(super) fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
-    Vec3::new(
-        s.roll * p.stick_rate,
-        s.pitch * p.stick_rate,
-        s.yaw * p.stick_yaw_rate,
-    )
 }

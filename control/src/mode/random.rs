@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use proptest::prelude::*;
 
-use super::tests::Rig;
+use super::rig::Rig;
 use super::*;
 use crate::grip::ArmState;
 use crate::rc::StickMode;

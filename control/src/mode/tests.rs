@@ -1,157 +1,12 @@
-//! Every transition of the state machine, each trouble in each state.
+//! Every transition of a flight in which nothing goes wrong.
 
-extern crate std;
-use super::closing::{FREE_TIME, HOPELESS_TIME, SPOOL_TIME, STOP_TIME};
-use super::failsafe::{BATTERY_TIME, IMU_LOST_TIME, RESUME_TIME, TIPPED_TIME};
-use super::logic::{CONTACT_TIME, IDLE_MAX, LANDED_TIME};
+use super::closing::{FREE_TIME, SPOOL_TIME};
+use super::logic::{IDLE_MAX, LANDED_TIME};
+use super::rig::{DT, Rig};
 use super::*;
-use crate::arming::Refusal;
 use crate::grip::ArmState;
-use crate::math::{GRAVITY, deg};
-use crate::params::Params;
+use crate::math::deg;
 use crate::rc::StickMode;
-
-const DT: f32 = 0.01;
-
-/// A vehicle in a world of two switches: carried or not.
-pub(super) struct Rig {
-    pub(super) logic: ModeLogic,
-    pub(super) inputs: Inputs,
-    pub(super) carried: bool,
-    pub(super) out: Outputs,
-    pub(super) params: Params,
-}
-
-impl Rig {
-    pub(super) fn new() -> Self {
-        let params = Params::default();
-        let inputs = Inputs {
-            sticks: Some(Sticks::default()),
-            motion: Some(Motion::default()),
-            grip: Some(Grip {
-                released: true,
-                ..Default::default()
-            }),
-            battery: Some(16.0),
-            ..Default::default()
-        };
-        Self {
-            logic: ModeLogic::new(&params),
-            inputs,
-            carried: true,
-            out: Outputs::default(),
-            params,
-        }
-    }
-
-    pub(super) fn sticks(&mut self) -> &mut Sticks {
-        self.inputs.sticks.get_or_insert_default()
-    }
-
-    fn grip(&mut self, proven: bool, released: bool, state: ArmState, pressure: f32) {
-        let arm = ArmGrip {
-            state,
-            pressure,
-            ..Default::default()
-        };
-        self.inputs.grip = Some(Grip {
-            proven,
-            released,
-            arms: [arm; 4],
-        });
-    }
-
-    pub(super) fn step(&mut self) {
-        self.inputs.lift = self.out.rotors.thrust();
-        if let Some(m) = &mut self.inputs.motion {
-            let carried = if self.carried {
-                GRAVITY
-            } else {
-                self.inputs.lift / self.params.mass
-            };
-            m.accel = Vec3::new(0.0, 0.0, -carried);
-        }
-        self.out = self.logic.step(&self.inputs, DT);
-    }
-
-    fn run(&mut self, seconds: f32) -> Mode {
-        for _ in 0..(seconds / DT + 0.5) as u32 {
-            self.step();
-        }
-        self.out.mode
-    }
-
-    fn expect(&mut self, seconds: f32, mode: Mode) {
-        let got = self.run(seconds);
-        assert_eq!(got, mode, "after {seconds} s, reason '{}'", self.out.reason);
-    }
-
-    pub(super) fn armed() -> Self {
-        let mut r = Self::new();
-        r.expect(0.5, Mode::Calibrating);
-        r.inputs.motion = Some(Motion {
-            calibrated: true,
-            ..Default::default()
-        });
-        r.expect(0.1, Mode::Disarmed);
-        *r.sticks() = Sticks {
-            arm_switch: true,
-            yaw: 1.0,
-            ..Default::default()
-        };
-        r.expect(0.9, Mode::Disarmed);
-        r.expect(0.2, Mode::Armed);
-        assert_eq!(r.out.rotors, Rotors::Idle);
-        r.sticks().yaw = 0.0;
-        r
-    }
-
-    pub(super) fn flying() -> Self {
-        let mut r = Self::armed();
-        r.sticks().throttle = 0.53;
-        r.carried = false;
-        r.expect(1.0, Mode::Flight);
-        r
-    }
-
-    fn touched() -> Self {
-        let mut r = Self::flying();
-        r.sticks().throttle = 0.3;
-        r.sticks().perch_switch = true;
-        r.expect(1.0, Mode::Flight);
-        r.carried = true;
-        r.expect(0.2, Mode::Flight);
-        r.expect(0.25, Mode::Contact);
-        r
-    }
-
-    fn clamping() -> Self {
-        let mut r = Self::touched();
-        r.grip(false, false, ArmState::Closing, 0.0);
-        r.expect(CONTACT_TIME, Mode::Clamping);
-        assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
-        r
-    }
-
-    pub(super) fn perched() -> Self {
-        let mut r = Self::clamping();
-        r.expect(3.0, Mode::Clamping);
-        r.grip(true, false, ArmState::Holding, 950.0);
-        r.expect(SPOOL_TIME + STOP_TIME + 0.1, Mode::Perched);
-        r.sticks().throttle = 0.0;
-        r.expect(5.0, Mode::Perched);
-        assert_eq!(r.out.reason, "");
-        r
-    }
-
-    fn releasing() -> Self {
-        let mut r = Self::perched();
-        r.sticks().throttle = 0.3;
-        r.sticks().perch_switch = false;
-        r.expect(0.1, Mode::Releasing);
-        r
-    }
-}
 
 #[test]
 fn a_whole_mission_passes_every_state_in_order() {
@@ -247,54 +102,6 @@ fn sticks_mean_what_the_stick_mode_says() {
 }
 
 #[test]
-fn the_arm_switch_stops_the_rotors_in_one_step_and_never_opens_a_grip() {
-    for (make, after, closed) in [
-        (Rig::armed as fn() -> Rig, Mode::Disarmed, false),
-        (Rig::flying, Mode::Disarmed, false),
-        (Rig::touched, Mode::Disarmed, false),
-        (Rig::clamping, Mode::Disarmed, true),
-        (Rig::perched, Mode::Perched, true),
-        (Rig::releasing, Mode::Perched, true),
-    ] {
-        let mut r = make();
-        r.sticks().arm_switch = false;
-        r.step();
-        assert_eq!((r.out.mode, r.out.rotors), (after, Rotors::Stop));
-        assert_eq!(r.out.tendons != Tendons::Release, closed, "{after:?}");
-        r.expect(3.0, after);
-    }
-}
-
-#[test]
-fn arming_is_refused_with_a_reason_that_can_be_read() {
-    let mut r = Rig::new();
-    r.sticks().arm_switch = true;
-    r.inputs.motion = Some(Motion {
-        calibrated: true,
-        ..Default::default()
-    });
-    r.sticks().yaw = 1.0;
-    r.expect(3.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, "arm switch on at power-up");
-    r.sticks().arm_switch = false;
-    r.run(0.1);
-    r.sticks().arm_switch = true;
-    r.inputs.battery = Some(13.0);
-    r.expect(3.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, "battery low");
-    assert!(r.out.refusals.contains(Refusal::BatteryLow));
-    r.inputs.battery = Some(16.0);
-    r.inputs.fsr_fault = [false, true, false, false];
-    r.sticks().arms = ArmChoice::Front;
-    r.run(0.1);
-    assert!(r.out.refusals.is_empty(), "a sensor that nobody needs");
-    r.sticks().yaw = 0.0;
-    r.run(0.1);
-    r.sticks().yaw = 1.0;
-    r.expect(1.1, Mode::Armed);
-}
-
-#[test]
 fn idling_ends_by_gesture_by_time_or_in_flight() {
     let mut r = Rig::armed();
     r.sticks().yaw = -1.0;
@@ -348,33 +155,6 @@ fn a_contact_that_is_lost_or_called_off_is_flight_again() {
 }
 
 #[test]
-fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
-    for (state, seconds, why) in [
-        (ArmState::Closing, 10.0, "grip not proven in time"),
-        (
-            ArmState::ForceLimited,
-            HOPELESS_TIME,
-            "force limit reached without grip",
-        ),
-        (ArmState::Faulty, HOPELESS_TIME, "pressure sensor fault"),
-    ] {
-        let mut r = Rig::clamping();
-        r.grip(false, false, state, 500.0);
-        r.expect(seconds + 0.1, Mode::Releasing);
-        assert_eq!(r.out.reason, why);
-        assert!(r.out.rotors.spin());
-        r.run(0.1);
-        assert_eq!(r.out.tendons, Tendons::Release);
-        r.grip(false, true, ArmState::Free, 0.0);
-        r.expect(3.0, Mode::Flight);
-        r.sticks().perch_switch = false;
-        r.run(0.1);
-        r.sticks().perch_switch = true;
-        r.expect(0.1, Mode::Contact);
-    }
-}
-
-#[test]
 fn the_pilot_calls_a_closing_off_or_a_release_back() {
     let mut r = Rig::clamping();
     r.sticks().perch_switch = false;
@@ -384,167 +164,40 @@ fn the_pilot_calls_a_closing_off_or_a_release_back() {
 }
 
 #[test]
-fn a_grip_lost_while_spooling_down_brings_the_rotors_back() {
-    let mut r = Rig::clamping();
-    r.grip(true, false, ArmState::Holding, 950.0);
-    r.run(1.0);
-    let low = r.out.rotors.thrust();
-    r.grip(false, false, ArmState::Touching, 700.0);
-    r.run(0.2);
-    assert!(r.out.rotors.thrust() < low, "outside its tolerance, but it holds");
-    r.grip(false, false, ArmState::Touching, 100.0);
-    r.expect(2.0, Mode::Clamping);
-    assert!(r.out.rotors.thrust() > 9.9);
-}
-
-#[test]
-fn nothing_but_the_pilot_starts_the_rotors_of_a_perched_vehicle() {
-    type Edit = fn(&mut Rig);
-    let cases: [(Edit, &str); 5] = [
-        (|r| r.grip(false, false, ArmState::Touching, 100.0), "grip lost"),
-        (|r| r.inputs.grip = None, "clamp loop silent"),
-        (|r| r.inputs.sticks = None, "radio lost"),
-        (|r| r.inputs.motion = None, "inertial sensor silent"),
-        (|r| r.inputs.battery = Some(12.0), "battery critical"),
-    ];
-    for (edit, why) in cases {
-        let mut r = Rig::perched();
-        edit(&mut r);
-        r.expect(10.0, Mode::Perched);
-        assert_eq!((r.out.reason, r.out.rotors), (why, Rotors::Stop));
-        assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
-    }
-    for throttle in [0.0, 0.19, 0.43, 1.0] {
-        let mut r = Rig::perched();
-        r.sticks().throttle = throttle;
-        r.sticks().perch_switch = false;
-        r.expect(1.0, Mode::Perched);
-    }
-}
-
-#[test]
-fn a_person_opens_the_arms_of_a_disarmed_vehicle_on_purpose() {
-    let mut r = Rig::perched();
-    r.sticks().arm_switch = false;
-    r.sticks().yaw = -1.0;
-    r.expect(1.1, Mode::Disarmed);
-    assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
-    assert!(r.out.refusals.contains(Refusal::ArmsClosed));
-    r.sticks().perch_switch = false;
-    r.run(0.1);
-    assert_eq!(r.out.tendons, Tendons::Release);
-}
-
-#[test]
-fn a_lost_radio_in_flight_sinks_and_stops_on_what_carries() {
-    let mut r = Rig::flying();
-    r.inputs.sticks = None;
-    r.expect(0.02, Mode::Failsafe);
-    r.run(0.6);
-    let weight = r.params.mass * GRAVITY;
-    let share = r.out.rotors.thrust() / weight;
-    assert!((0.84..1.0).contains(&share), "{share}");
-    assert!(matches!(
-        r.out.rotors,
-        Rotors::Angle {
-            roll: 0.0,
-            pitch: 0.0,
-            yaw_rate: 0.0,
-            ..
-        }
-    ));
-    r.expect(20.0, Mode::Failsafe);
-    r.carried = true;
-    r.expect(6.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, "radio lost");
-}
-
-#[test]
-fn the_radio_comes_back_by_itself_at_once_and_by_the_sticks_later() {
-    let back = |after: f32, roll: f32| {
-        let mut r = Rig::flying();
-        let sticks = r.inputs.sticks.take();
-        r.run(after);
-        r.inputs.sticks = sticks;
-        r.sticks().roll = roll;
-        r.run(0.05)
+fn a_lean_is_taken_out_on_the_pipe_and_left_to_the_grip_when_it_holds() {
+    let lean = |rotors| match rotors {
+        Rotors::Resting { roll, pitch, .. } => (roll, pitch),
+        other => panic!("{other:?}"),
     };
-    assert_eq!(back(RESUME_TIME - 0.1, 0.0), Mode::Flight);
-    assert_eq!(back(RESUME_TIME + 0.1, 0.0), Mode::Failsafe);
-    assert_eq!(back(RESUME_TIME + 0.1, -0.4), Mode::Flight);
-}
-
-#[test]
-fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
-    for make in [Rig::touched as fn() -> Rig, Rig::clamping, Rig::releasing] {
-        let mut r = make();
-        r.inputs.sticks = None;
-        r.expect(CONTACT_TIME + 0.05, Mode::Clamping);
-        assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
-        r.grip(true, false, ArmState::Holding, 950.0);
-        r.expect(3.0, Mode::Perched);
-    }
-    let mut r = Rig::releasing();
-    let sticks = r.inputs.sticks.take();
-    r.expect(3.0, Mode::Perched);
-    r.inputs.sticks = sticks;
-    r.expect(3.0, Mode::Perched);
-    assert_eq!(r.out.reason, "turn perch switch on first");
-    let mut r = Rig::clamping();
-    r.inputs.sticks = None;
-    r.inputs.battery = Some(12.0);
-    r.expect(5.0, Mode::Disarmed);
-    assert_eq!(
-        r.out.tendons,
-        Tendons::Close(ArmChoice::All),
-        "no proof, no battery, no radio: hold on"
+    let mut r = Rig::flying();
+    r.sticks().throttle = 0.3;
+    r.sticks().perch_switch = true;
+    r.carried = true;
+    let q = Quat::from_euler(0.15, 0.1, 0.0);
+    r.inputs.motion = Some(Motion {
+        q,
+        calibrated: true,
+        ..Default::default()
+    });
+    r.expect(0.4, Mode::Contact);
+    let (roll, pitch) = lean(r.out.rotors);
+    assert!(
+        (0.12..0.16).contains(&roll) && (pitch - 0.1).abs() < 0.01,
+        "{roll} {pitch}"
     );
-}
-
-#[test]
-fn a_silent_sensor_or_a_crash_stops_the_rotors() {
-    let over = Motion {
-        q: Quat::from_euler(deg(120.0), 0.0, 0.0),
-        calibrated: true,
-        ..Default::default()
-    };
-    let broken = Motion {
-        rate: Vec3::new(f32::NAN, 0.0, 0.0),
-        calibrated: true,
-        ..Default::default()
-    };
-    for (motion, after) in [
-        (None, IMU_LOST_TIME),
-        (Some(over), TIPPED_TIME),
-        (Some(broken), IMU_LOST_TIME),
-    ] {
-        for make in [
-            Rig::armed as fn() -> Rig,
-            Rig::flying,
-            Rig::touched,
-            Rig::clamping,
-        ] {
-            let mut r = make();
-            r.inputs.motion = motion;
-            r.run(after + 0.03);
-            assert_eq!((r.out.mode, r.out.rotors), (Mode::Disarmed, Rotors::Stop));
-            let clamped = matches!(r.out.tendons, Tendons::Close(_));
-            assert_eq!(clamped, r.out.refusals.contains(Refusal::ArmsClosed));
-        }
-    }
-}
-
-#[test]
-fn an_empty_battery_lands_under_the_pilots_sticks() {
-    let mut r = Rig::flying();
-    r.inputs.battery = Some(12.5);
-    r.expect(BATTERY_TIME - 0.1, Mode::Flight);
-    r.expect(0.2, Mode::Failsafe);
-    assert_eq!(r.out.reason, "battery critical");
-    r.sticks().roll = 0.5;
-    r.sticks().stick_mode = StickMode::Direct;
-    r.run(1.0);
-    assert!(matches!(r.out.rotors, Rotors::Angle { roll, .. } if roll > 0.3));
-    r.carried = true;
-    r.expect(6.0, Mode::Disarmed);
+    r.expect(2.0, Mode::Clamping);
+    let (roll, pitch) = lean(r.out.rotors);
+    assert!(
+        roll.abs() < 1e-3 && (pitch - 0.1).abs() < 0.01,
+        "levelled across the pipe: {roll} {pitch}"
+    );
+    r.grip(true, false, ArmState::Holding, 950.0);
+    r.expect(0.45 * SPOOL_TIME, Mode::Clamping);
+    assert!(
+        lean(r.out.rotors).0 > 0.13,
+        "the grip holds the lean: no moment is left"
+    );
+    r.expect(0.3 * SPOOL_TIME, Mode::Clamping);
+    let lifting = |w: Wrench| w.thrust > 0.0 && w.roll.abs() + w.pitch.abs() + w.yaw.abs() <= 0.0;
+    assert!(matches!(r.out.rotors, Rotors::Direct { wrench } if lifting(wrench)));
 }

@@ -12,8 +12,8 @@ pub fn of(step: &Step) -> f64 {
         Step::Roll { seconds, .. } => 2.0 * seconds + 30.0,
         Step::FlyToPipe => 90.0,
         // With room for going around a few times.
-        Step::Touch => 150.0,
-        Step::Perch { .. } => 60.0,
+        Step::Touch => 180.0,
+        Step::Perch { .. } => 120.0,
         Step::Hold { seconds, .. } => seconds + 1.0,
         Step::Release => 45.0,
         Step::FlyTo { .. } => 120.0,

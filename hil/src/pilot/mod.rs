@@ -120,7 +120,10 @@ impl Pilot {
 
     /// One step of `dt` s (at most a few ms): what there is to see now, and the bytes that the vehicle sent.
     pub fn step(&mut self, dt: f64, seen: Seen, telemetry_bytes: &[u8]) -> PilotOutput {
-        let mut out = PilotOutput { step: self.index, ..Default::default() };
+        let mut out = PilotOutput {
+            step: self.index,
+            ..Default::default()
+        };
         self.telemetry.take(telemetry_bytes);
         if self.outcome.is_none()
             && self.index > 0
@@ -167,7 +170,10 @@ impl Pilot {
         }
         let mode = self.display.front().copied().flatten();
         let Some(step) = self.steps.get(self.index).cloned() else {
-            self.outcome = Some(Outcome { accomplished: true, reason: "mission accomplished".to_owned() });
+            self.outcome = Some(Outcome {
+                accomplished: true,
+                reason: "mission accomplished".to_owned(),
+            });
             out.outcome.clone_from(&self.outcome);
             return;
         };
@@ -176,12 +182,20 @@ impl Pilot {
             self.mind.begin(&seen);
             out.events.push(StepEvent::Began(self.index));
         }
-        let view = View { seen, now: now.t, mode, reason: &self.telemetry.reason };
+        let view = View {
+            seen,
+            now: now.t,
+            mode,
+            reason: &self.telemetry.reason,
+        };
         match self.mind.fly(&step, &view, self.hands.at(), dt) {
             Progress::Going(wish) => self.wish = wish,
             Progress::Done(wish) => {
                 self.wish = wish;
-                out.events.push(StepEvent::Ended { index: self.index, done: true });
+                out.events.push(StepEvent::Ended {
+                    index: self.index,
+                    done: true,
+                });
                 self.index += 1;
                 self.begun = false;
             }
@@ -191,10 +205,16 @@ impl Pilot {
 
     fn fail(&mut self, why: &str, out: &mut PilotOutput) {
         let name = self.steps.get(self.index).map_or("end", Step::name);
-        self.outcome = Some(Outcome { accomplished: false, reason: format!("{name}: {why}") });
+        self.outcome = Some(Outcome {
+            accomplished: false,
+            reason: format!("{name}: {why}"),
+        });
         out.outcome.clone_from(&self.outcome);
         if self.begun {
-            out.events.push(StepEvent::Ended { index: self.index, done: false });
+            out.events.push(StepEvent::Ended {
+                index: self.index,
+                done: false,
+            });
         }
     }
 }

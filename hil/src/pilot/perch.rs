@@ -8,7 +8,7 @@ use super::mind::{Mind, Phase, Progress, View};
 /// Height over the pipe from which it is approached, and to which the vehicle goes after a release, m.
 const OVER: f64 = 1.0;
 /// Height over the pipe to which a missed approach goes up again, m.
-const OVER_AGAIN: f64 = 0.6;
+const OVER_AGAIN: f64 = 0.4;
 /// Distance, m, speed, m/s, and time, s, at which the vehicle has settled over the pipe.
 const SETTLED: f64 = 0.08;
 const SETTLED_SPEED: f64 = 0.10;
@@ -25,6 +25,8 @@ const BELLY: f64 = 0.05;
 const CENTRED: f64 = 0.02;
 const CENTRED_SPEED: f64 = 0.06;
 const LAST_TIME: f64 = 0.5;
+/// Time at the gate over which he comes to be content with twice the distance, s.
+const PATIENCE: f64 = 25.0;
 const CENTRED_TIME: f64 = 0.15;
 /// Largest distance along the pipe from the spot, m.
 const ALONG: f64 = 0.25;
@@ -32,7 +34,7 @@ const ALONG: f64 = 0.25;
 const NEAR: f64 = 0.4;
 const ASTRAY: f64 = 0.20;
 /// Distance beside the crown at which a vehicle on the pipe will not stay, share of the pipe's radius.
-const SLIPPING: f64 = 0.3;
+const SLIPPING: f64 = 0.36;
 /// Height over the pipe at which a vehicle that does not sink any more stands on it, m.
 const STANDS: f64 = 0.12;
 /// Depth of the centre of mass below the pipe's top by which it was missed, m.
@@ -42,14 +44,15 @@ const STOPPED: f64 = 0.05;
 const STOPPED_TIME: f64 = 0.3;
 /// Throttle at which the vehicle stands firmly, and the speed at which it is set, 1/s: with nearly all of the
 /// weight on the rotors the slightest lean makes it slide.
-const FIRM_THROTTLE: f64 = 0.42;
+const FIRM_THROTTLE: f64 = 0.36;
 const FIRM_EASE: f64 = 0.5;
 /// Tries after which the pilot gives up.
 const TRIES: u32 = 8;
 /// Speed of the throttle on the pipe, 1/s.
 const EASE: f64 = 0.25;
-/// Throttle at which the arms are opened.
-const RELEASE_THROTTLE: f64 = 0.30;
+/// Throttle at which the arms are opened: enough to steer by, but most of the weight still presses the belly onto
+/// the pipe. The more thrust, the more of it pushes a leaning vehicle off the crown.
+const RELEASE_THROTTLE: f64 = 0.25;
 /// Depth below where it stood at which the vehicle has slid off, m.
 const SUNK: f64 = 0.06;
 /// Time for which the display may tell of a lost grip, s.
@@ -60,17 +63,17 @@ const CLEAR: f64 = 0.06;
 impl Mind {
     pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {
         let wish = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
-        if self.settled(v, OVER, dt) {
+        if self.settled(v, dt) {
             Progress::Done(wish)
         } else {
             Progress::Going(wish)
         }
     }
 
-    fn settled(&mut self, v: &View<'_>, over: f64, dt: f64) -> bool {
+    fn settled(&mut self, v: &View<'_>, dt: f64) -> bool {
         let off = (v.seen.position.truncate() - self.pipe)
             .length()
-            .hypot(v.height() - self.pipe_top - over);
+            .hypot(v.height() - self.pipe_top - OVER);
         let there = off < SETTLED && v.seen.velocity.length() < SETTLED_SPEED;
         self.held_for(there, SETTLED_TIME, dt)
     }
@@ -93,15 +96,15 @@ impl Mind {
     /// Descends onto the pipe, and up again for another try when it would be missed. True once it carries.
     /// `throttle` is where that stick is.
     fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (Wish, bool) {
+        let over = v.height() - self.pipe_top;
+        let off = v.seen.position.truncate() - self.pipe;
         if self.phase == Phase::GoAround {
             let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
-            if self.settled(v, OVER_AGAIN, dt) {
+            if over > 0.75 * OVER_AGAIN && off.length() < ASTRAY {
                 self.enter(Phase::Descend);
             }
             return (wish, false);
         }
-        let over = v.height() - self.pipe_top;
-        let off = v.seen.position.truncate() - self.pipe;
         let (position, velocity) = self.guidance.ahead();
         let away = position.truncate() - self.pipe;
         let over_ahead = -position.z - self.pipe_top;
@@ -136,9 +139,10 @@ impl Mind {
                 if self.phase != Phase::Descend {
                     self.enter(Phase::Descend);
                 }
-                let centred = away.y.abs() < 1.5 * CENTRED
-                    && (away.y + LAST_TIME * velocity.y).abs() < CENTRED
-                    && velocity.y.abs() < CENTRED_SPEED
+                let patience = (1.0 + self.phase_time / PATIENCE).min(1.75);
+                let centred = away.y.abs() < 1.5 * CENTRED * patience
+                    && (away.y + LAST_TIME * velocity.y).abs() < CENTRED * patience
+                    && velocity.y.abs() < CENTRED_SPEED * patience
                     && away.x.abs() < ALONG
                     && velocity.x.abs() < 2.0 * CENTRED_SPEED;
                 let at_gate = over_ahead < 1.5 * GATE;
@@ -152,7 +156,10 @@ impl Mind {
     }
 
     pub(super) fn perch(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
-        if matches!(self.phase, Phase::GoAround | Phase::Descend | Phase::Commit | Phase::Plant) {
+        if matches!(
+            self.phase,
+            Phase::GoAround | Phase::Descend | Phase::Commit | Phase::Plant
+        ) {
             let (wish, felt) = self.approach(v, stick, dt);
             if felt {
                 self.enter(Phase::Throttle);
@@ -168,7 +175,9 @@ impl Mind {
             self.enter(Phase::Wait);
         }
         let beside = (v.seen.position.y - self.pipe.y).abs();
-        if self.phase == Phase::Throttle && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK) {
+        if self.phase == Phase::Throttle
+            && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK)
+        {
             self.perch_switch = false;
             self.missed += 1;
             if self.missed >= TRIES {

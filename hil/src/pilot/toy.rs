@@ -88,7 +88,7 @@ impl Toy {
         self.steps += 1;
         let mut telemetry = [0; 64];
         let mut count = 0;
-        if self.steps % 50 == 0 {
+        if self.steps.is_multiple_of(50) {
             let text = match self.out.reason {
                 "" => self.out.mode.name().to_owned(),
                 why => format!("{}: {why}", self.out.mode.name()),
@@ -105,7 +105,7 @@ impl Toy {
                 }
             }
         }
-        if self.steps % 5 == 0 {
+        if self.steps.is_multiple_of(5) {
             self.command();
         }
         self.move_on();
@@ -161,7 +161,9 @@ impl Toy {
                 thrust,
             } => (roll, pitch, yaw_rate, thrust),
             Rotors::Resting { roll, pitch, thrust } => (roll, pitch, 0.0, thrust),
-            Rotors::Rate { .. } | Rotors::Direct { .. } => panic!("the pilot flies angles"),
+            // Spooling down in a proven grip: no moments.
+            Rotors::Direct { wrench } => (self.seen.roll as f32, self.seen.pitch as f32, 0.0, wrench.thrust),
+            Rotors::Rate { .. } => panic!("the pilot flies angles"),
         };
         let s = &mut self.seen;
         self.setpoint += (DVec2::new(f64::from(roll), f64::from(pitch)) - self.setpoint) * (10.0 * DT);

@@ -5,7 +5,7 @@
 //! α is the static tilt. The mode's frequency follows from the tangent stiffness and the tip mass: 5 Hz in
 //! hover at ρ 6.9 %, K 7.75.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use sophie_control::wrench::{FORE, SIDE};
 
 use super::GRAVITY;
@@ -135,20 +135,17 @@ impl Arm {
         DVec3::new(0.0, self.side * self.sin, -self.cos)
     }
 
-    /// Projection on what the hinge constrains: everything but [`Self::normal`].
+    /// Direction from the hinge to the tip: unit vector, body.
     #[must_use]
-    pub fn constrained(&self) -> DMat3 {
-        let n = self.normal();
-        DMat3::IDENTITY - DMat3::from_cols(n * n.x, n * n.y, n * n.z)
+    pub fn outward(&self) -> DVec3 {
+        DVec3::new(0.0, -self.side * self.cos, -self.sin)
     }
 
     /// Acceleration (m/s²) of the tip that the present motion alone causes, on a body turning at `omega`.
     #[must_use]
     pub fn bias_acceleration(&self, omega: DVec3) -> DVec3 {
-        let r = self.tip();
-        let outward = DVec3::new(0.0, -self.side * self.cos, -self.sin);
-        omega.cross(omega.cross(r)) + 2.0 * omega.cross(self.normal() * (ARM_LENGTH * self.rate))
-            - outward * (ARM_LENGTH * self.rate * self.rate)
+        omega.cross(omega.cross(self.tip())) + 2.0 * omega.cross(self.normal() * (ARM_LENGTH * self.rate))
+            - self.outward() * (ARM_LENGTH * self.rate * self.rate)
     }
 
     /// Sums the generalised force of the step: thrust (N), moments of tendon and contact (N·m), spring,

@@ -1,6 +1,6 @@
 //! Equations of motion of the body with four hinged tip masses.
 //!
-//! A tip slides freely along its normal n and is held otherwise, so it adds m (1 - n nᵀ) to the body's inertia
+//! A tip slides freely along its normal n and is held otherwise, so it adds m (1 - n nᵀ) to the body's mass
 //! and hands the generalised force on its hinge on to the body as -Q/L along n. What is left is a
 //! 6×6 system for the body, solved by its 3×3 blocks; the tilts' accelerations follow one by one.
 
@@ -88,26 +88,21 @@ impl Body {
             };
         }
 
-        let centre = skew(self.centre) * self.mass;
-        let mut a = DMat3::from_diagonal(DVec3::splat(self.mass));
-        let mut coupling = centre * -1.0;
-        let mut j = self.inertia;
+        let mut m = MassMatrix::new(self.mass, self.centre, self.inertia);
         for arm in arms {
-            let (r, n, p) = (arm.tip(), arm.normal(), arm.constrained() * TIP_MASS);
-            let pr = p * skew(r);
-            a += p;
-            coupling -= pr;
-            j -= skew(r) * pr;
+            // The hinge holds the tip along x and along the arm: m (1 - n nᵀ) is the sum over these two
+            // directions u of m u uᵀ, felt at the origin through (u, r × u).
+            let (r, n, along) = (arm.tip(), arm.normal(), arm.outward());
+            m.add_tip(r, along);
+            let bias = arm.bias_acceleration(w);
+            let held = (DVec3::X * bias.x + along * along.dot(bias)) * TIP_MASS;
             // Thrust and weight of the tip, less what accelerates the tip along its free direction.
             let free = arm.generalised / ARM_LENGTH;
-            let f = n * (arm.thrust - free) + gravity * TIP_MASS - p * arm.bias_acceleration(w);
+            let f = n * (arm.thrust - free) + gravity * TIP_MASS - held;
             force += f;
             moment += r.cross(f);
         }
-        let a_inverse = a.inverse();
-        let through = coupling.transpose() * a_inverse;
-        let angular = (j - through * coupling).inverse() * (moment - through * force);
-        let linear = a_inverse * (force - coupling * angular);
+        let (linear, angular) = m.solve(force, moment);
         let tilt = |arm: &Arm| {
             let carried = linear + angular.cross(arm.tip()) + arm.bias_acceleration(w);
             arm.generalised / inertia_tip - arm.normal().dot(carried) / ARM_LENGTH
@@ -116,9 +111,63 @@ impl Body {
     }
 }
 
-/// The matrix of the cross product with `v`.
-fn skew(v: DVec3) -> DMat3 {
-    DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
+/// The 6×6 mass matrix by its blocks: linear `a`, coupling (rows linear, columns angular) `c`, angular `j`.
+///
+/// Written out by entries: every tip adds to a few only, and this is a third of the plant's time.
+struct MassMatrix {
+    mass: f64,
+    ayy: f64,
+    ayz: f64,
+    azz: f64,
+    c: [DVec3; 3],
+    j: DMat3,
+}
+
+impl MassMatrix {
+    /// Of the rigid part alone, its centre of mass at `centre`.
+    fn new(mass: f64, centre: DVec3, inertia: DMat3) -> Self {
+        let DVec3 { x, y, z } = centre * mass;
+        let c = [DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0)];
+        Self { mass, ayy: mass, ayz: 0.0, azz: mass, c, j: inertia }
+    }
+
+    /// Adds a tip at `r` that is held along x and along `along`, a unit vector in the y-z plane.
+    fn add_tip(&mut self, r: DVec3, along: DVec3) {
+        let (ey, ez) = (along.y, along.z);
+        let lever_x = DVec3::new(0.0, r.z, -r.y);
+        let lever = DVec3::new(r.y * ez - r.z * ey, -r.x * ez, r.x * ey);
+        let (mx, my, mz) = (TIP_MASS, TIP_MASS * ey, TIP_MASS * ez);
+        self.mass += mx;
+        self.ayy += my * ey;
+        self.ayz += my * ez;
+        self.azz += mz * ez;
+        self.c[0] += lever_x * mx;
+        self.c[1] += lever * my;
+        self.c[2] += lever * mz;
+        let (tx, t) = (lever_x * TIP_MASS, lever * TIP_MASS);
+        self.j.x_axis += t * lever.x;
+        self.j.y_axis += tx * lever_x.y + t * lever.y;
+        self.j.z_axis += tx * lever_x.z + t * lever.z;
+    }
+
+    /// Linear and angular acceleration under `force` and `moment`.
+    fn solve(&self, force: DVec3, moment: DVec3) -> (DVec3, DVec3) {
+        let inv_x = 1.0 / self.mass;
+        let inv_det = 1.0 / (self.ayy * self.azz - self.ayz * self.ayz);
+        let (byy, byz, bzz) = (self.azz * inv_det, -self.ayz * inv_det, self.ayy * inv_det);
+        let [cx, cy, cz] = self.c;
+        // Rows of A⁻¹ C.
+        let (gx, gy, gz) = (cx * inv_x, cy * byy + cz * byz, cy * byz + cz * bzz);
+        let mut j = self.j;
+        j.x_axis -= cx * gx.x + cy * gy.x + cz * gz.x;
+        j.y_axis -= cx * gx.y + cy * gy.y + cz * gz.y;
+        j.z_axis -= cx * gx.z + cy * gy.z + cz * gz.z;
+        let angular = j.inverse() * (moment - gx * force.x - gy * force.y - gz * force.z);
+        let rest = force - DVec3::new(cx.dot(angular), cy.dot(angular), cz.dot(angular));
+        let linear =
+            DVec3::new(inv_x * rest.x, byy * rest.y + byz * rest.z, byz * rest.y + bzz * rest.z);
+        (linear, angular)
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The vehicle and its world in `f64`: six degrees of freedom, four soft arms that carry their own tip mass,
 //! rotors, battery, tendons, contacts.
 //!
-//! Semi-implicit Euler at 4 kHz. Body axes FRD, world NED, as in the flight stack; nothing of the flight
+//! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 30 Hz. Body axes FRD, world NED, as in the flight stack; nothing of the flight
 //! stack is used here but constants that describe the same hardware.
 
 pub mod arm;
@@ -26,15 +26,16 @@ use self::tendon::{Tendon, TendonSpec};
 use crate::scenario::Scenario;
 
 /// Integration step, s.
-pub const STEP: f64 = 0.25e-3;
+pub const STEP: f64 = 0.5e-3;
 /// Gravity, m/s².
 pub const GRAVITY: f64 = 9.806_65;
 /// Friction of the ground (assumed, TPU on concrete).
 const GROUND_FRICTION: f64 = 0.7;
 /// Linear air drag, N·s/m (assumed).
 const DRAG: f64 = 0.3;
-/// Pressure beyond which nothing else is near enough to be felt: distance at which contacts are computed, m.
-const NEAR: f64 = 0.45;
+/// Distance of the origin from a surface beyond which no part of the vehicle reaches it, m: an arm's length,
+/// the depth of its hinge and some margin.
+const NEAR: f64 = 0.25;
 
 /// What the flight stack drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -12,13 +12,12 @@ use toml::de::{DeTable, DeValue};
 use super::error::{Place, ScenarioError};
 use super::keys::{KEYS, Key, Kind, Range, TABLES};
 use super::nearest::nearest;
-use super::{Overrides, Scenario, ServoProfile, defaults};
+use super::{Overrides, Scenario, defaults};
+use crate::plant::tendon::ServoSpec;
 
 pub(super) type Result<T> = core::result::Result<T, ScenarioError>;
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
-/// Stall torque of an MG996R at 4.8 V by its datasheet, N·m (9.4 kgcm).
-const MG996R_STALL: f32 = 0.92;
 
 /// A text with its name, for messages.
 pub(super) struct Source<'a> {
@@ -202,9 +201,10 @@ impl Source<'_> {
 fn believe_the_vehicle(scenario: &mut Scenario) {
     scenario.params.infill = scenario.vehicle.infill as f32;
     scenario.params.gain_k = scenario.vehicle.gain_k as f32;
-    if scenario.vehicle.servo == ServoProfile::Mg996r {
-        scenario.params.servo_stall = MG996R_STALL;
-    }
+    let servo = ServoSpec::from(scenario.vehicle.servo);
+    scenario.params.servo_stall = servo.stall as f32;
+    scenario.params.servo_slew = servo.slew as f32;
+    scenario.params.servo_range = servo.range as f32;
 }
 
 /// The entries as the file has them, so that the first mistake is the one reported.

@@ -1,0 +1,150 @@
+//! A vehicle for the tests: the mode logic in a world that carries it or does not.
+
+use super::closing::{SPOOL_TIME, STOP_TIME};
+use super::logic::CONTACT_TIME;
+use super::*;
+use crate::grip::ArmState;
+use crate::math::GRAVITY;
+use crate::params::Params;
+
+pub(super) const DT: f32 = 0.01;
+
+/// A vehicle in a world of two switches: carried or not.
+pub(super) struct Rig {
+    pub(super) logic: ModeLogic,
+    pub(super) inputs: Inputs,
+    pub(super) carried: bool,
+    pub(super) out: Outputs,
+    pub(super) params: Params,
+}
+
+impl Rig {
+    pub(super) fn new() -> Self {
+        let params = Params::default();
+        let inputs = Inputs {
+            sticks: Some(Sticks::default()),
+            motion: Some(Motion::default()),
+            grip: Some(Grip {
+                released: true,
+                ..Default::default()
+            }),
+            battery: Some(16.0),
+            ..Default::default()
+        };
+        Self {
+            logic: ModeLogic::new(&params),
+            inputs,
+            carried: true,
+            out: Outputs::default(),
+            params,
+        }
+    }
+
+    pub(super) fn sticks(&mut self) -> &mut Sticks {
+        self.inputs.sticks.get_or_insert_default()
+    }
+
+    pub(super) fn grip(&mut self, proven: bool, released: bool, state: ArmState, pressure: f32) {
+        let arm = ArmGrip {
+            state,
+            pressure,
+            ..Default::default()
+        };
+        self.inputs.grip = Some(Grip {
+            proven,
+            released,
+            arms: [arm; 4],
+        });
+    }
+
+    pub(super) fn step(&mut self) {
+        self.inputs.lift = self.out.rotors.thrust();
+        if let Some(m) = &mut self.inputs.motion {
+            let carried = if self.carried {
+                GRAVITY
+            } else {
+                self.inputs.lift / self.params.mass
+            };
+            m.accel = Vec3::new(0.0, 0.0, -carried);
+        }
+        self.out = self.logic.step(&self.inputs, DT);
+    }
+
+    pub(super) fn run(&mut self, seconds: f32) -> Mode {
+        for _ in 0..(seconds / DT + 0.5) as u32 {
+            self.step();
+        }
+        self.out.mode
+    }
+
+    pub(super) fn expect(&mut self, seconds: f32, mode: Mode) {
+        let got = self.run(seconds);
+        assert_eq!(got, mode, "after {seconds} s, reason '{}'", self.out.reason);
+    }
+
+    pub(super) fn armed() -> Self {
+        let mut r = Self::new();
+        r.expect(0.5, Mode::Calibrating);
+        r.inputs.motion = Some(Motion {
+            calibrated: true,
+            ..Default::default()
+        });
+        r.expect(0.1, Mode::Disarmed);
+        *r.sticks() = Sticks {
+            arm_switch: true,
+            yaw: 1.0,
+            ..Default::default()
+        };
+        r.expect(0.9, Mode::Disarmed);
+        r.expect(0.2, Mode::Armed);
+        assert_eq!(r.out.rotors, Rotors::Idle);
+        r.sticks().yaw = 0.0;
+        r
+    }
+
+    pub(super) fn flying() -> Self {
+        let mut r = Self::armed();
+        r.sticks().throttle = 0.53;
+        r.carried = false;
+        r.expect(1.0, Mode::Flight);
+        r
+    }
+
+    pub(super) fn touched() -> Self {
+        let mut r = Self::flying();
+        r.sticks().throttle = 0.3;
+        r.sticks().perch_switch = true;
+        r.expect(1.0, Mode::Flight);
+        r.carried = true;
+        r.expect(0.2, Mode::Flight);
+        r.expect(0.25, Mode::Contact);
+        r
+    }
+
+    pub(super) fn clamping() -> Self {
+        let mut r = Self::touched();
+        r.grip(false, false, ArmState::Closing, 0.0);
+        r.expect(CONTACT_TIME, Mode::Clamping);
+        assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
+        r
+    }
+
+    pub(super) fn perched() -> Self {
+        let mut r = Self::clamping();
+        r.expect(3.0, Mode::Clamping);
+        r.grip(true, false, ArmState::Holding, 950.0);
+        r.expect(SPOOL_TIME + STOP_TIME + 0.1, Mode::Perched);
+        r.sticks().throttle = 0.0;
+        r.expect(5.0, Mode::Perched);
+        assert_eq!(r.out.reason, "");
+        r
+    }
+
+    pub(super) fn releasing() -> Self {
+        let mut r = Self::perched();
+        r.sticks().throttle = 0.3;
+        r.sticks().perch_switch = false;
+        r.expect(0.1, Mode::Releasing);
+        r
+    }
+}

@@ -1,0 +1,41 @@
+//! A seed means one flight, to the bit, whatever other threads do.
+
+use std::thread;
+
+use sophie_hil::flight::fly;
+use sophie_hil::record::Silent;
+use sophie_hil::scenario::{Scenario, Step};
+
+/// A short flight, so that several fit into a test.
+fn hop(seed: u64) -> Scenario {
+    let steps =
+        vec![Step::Arm, Step::TakeOff { height: 2.0 }, Step::Hover { seconds: 3.0 }, Step::Land, Step::Disarm];
+    Scenario { seed, steps, ..Scenario::default_mission() }
+}
+
+fn digest(seed: u64) -> u64 {
+    let record = fly(&hop(seed), &mut Silent);
+    assert!(record.outcome.accomplished, "{}", record.outcome.reason);
+    record.digest
+}
+
+#[test]
+fn two_runs_of_a_seed_are_equal_to_the_bit_and_two_seeds_are_not() {
+    assert_eq!(digest(1), digest(1));
+    assert_ne!(digest(1), digest(2));
+}
+
+#[test]
+fn flights_in_parallel_threads_do_not_disturb_each_other() {
+    let alone: Vec<u64> = (1..=4).map(digest).collect();
+    let together: Vec<_> = (1..=4).map(|seed| thread::spawn(move || digest(seed))).collect();
+    let together: Vec<u64> = together.into_iter().map(|t| t.join().expect("flight")).collect();
+    assert_eq!(alone, together);
+}
+
+#[test]
+fn a_second_flight_in_one_thread_starts_afresh() {
+    let first = digest(3);
+    digest(4);
+    assert_eq!(first, digest(3));
+}
