@@ -137,8 +137,10 @@ impl Mixer {
         }
         let ratio = math::clamp(c.battery_ratio, 0.5, 1.0);
         let high = self.max * ratio * ratio;
+        let mean = 0.25 * self.tilt.thrusts().iter().sum::<f32>();
+        let usable = c.yaw && mean >= self.gate;
         let (patterns, fade) = match self.variant {
-            Variant::Flexible => self.quasi_static(w),
+            Variant::Flexible => self.quasi_static(w, usable),
             Variant::Frozen => self.frozen(w),
             Variant::Rigid => self.stiff(w, [0.0; 4]),
             Variant::Paper => {
@@ -146,8 +148,7 @@ impl Mixer {
                 self.stiff(w, tilt)
             }
         };
-        let mean = 0.25 * self.tilt.thrusts().iter().sum::<f32>();
-        let yaw_gated = !c.yaw || mean < self.gate || fade <= 0.0;
+        let yaw_gated = !usable || fade <= 0.0;
         let patterns = if yaw_gated { Patterns { yaw: [0.0; 4], ..patterns } } else { patterns };
         let (thrusts, given) = desaturate(&patterns, self.idle, high);
         self.follow(thrusts, c.dt);
@@ -166,7 +167,7 @@ impl Mixer {
     }
 
     /// The law that flies: T = Tt + J⁻¹ (w - w(Tt)), J the static Jacobian at the low-passed thrusts Tt.
-    fn quasi_static(&self, w: Wrench) -> (Patterns, f32) {
+    fn quasi_static(&self, w: Wrench, yaw_usable: bool) -> (Patterns, f32) {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
         let mut e = Effectiveness::quasi_static(&self.geometry, self.tilt.model(), &thrusts, &tilt);
         // The authority fades with its own quasi-static gain, and no entry may pass zero: the inverse of a
@@ -174,7 +175,11 @@ impl Mixer {
         let authority = 0.25 * e.yaw.iter().sum::<f32>();
         let sign = if self.geometry.drag < 0.0 { -1.0 } else { 1.0 };
         let least = YAW_FLOOR * self.geometry.drag * sign;
-        let fade = math::clamp((sign * authority - 0.5 * least) / (0.5 * least), 0.0, 1.0);
+        let fade = if yaw_usable {
+            math::clamp((sign * authority - 0.5 * least) / (0.5 * least), 0.0, 1.0)
+        } else {
+            0.0
+        };
         for y in &mut e.yaw {
             *y = sign * math::clamp(sign * *y, least, 1.0);
         }
@@ -185,7 +190,14 @@ impl Mixer {
             pitch: -now.pitch,
             yaw: -now.yaw * fade,
         };
-        (self.patterns(e, thrusts, rest, w, fade), fade)
+        let mut patterns = self.patterns(e, thrusts, rest, w, fade);
+        // The collective goes on from the last thrusts. Where yaw is given up nothing corrects what they have
+        // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
+        let left = 0.25 * patterns.collective.iter().zip(&YAW).map(|(t, y)| t * y).sum::<f32>();
+        for (t, y) in patterns.collective.iter_mut().zip(&YAW) {
+            *t -= (1.0 - fade) * left * y;
+        }
+        (patterns, fade)
     }
 
     /// For study: T = M(α)⁻¹ w with the tilt that a model of motor lag and arm mode gives.
@@ -341,6 +353,20 @@ mod tests {
             }
             last = mix.thrusts;
         }
+    }
+
+    #[test]
+    fn giving_yaw_up_leaves_no_yaw_pattern_behind() {
+        let (mut m, before) = settled(Variant::Flexible, Wrench { yaw: 0.06, ..HOVER });
+        assert!(before.thrusts[0] - before.thrusts[1] > 0.3);
+        let mut mix = before;
+        for i in 0..3000 {
+            let thrust = 17.7 * (1.0 - i as f32 / 3000.0);
+            let c = Conditions { yaw: false, ..conditions() };
+            mix = m.mix(Wrench { thrust, ..Wrench::default() }, c);
+        }
+        let [a, b, c, d] = mix.thrusts;
+        assert!((a - b).abs() < 0.01 && (a - c).abs() < 0.01 && (a - d).abs() < 0.01, "{:?}", mix.thrusts);
     }
 
     proptest! {

@@ -3,7 +3,7 @@
 use super::failsafe::{Cause, Dangers};
 use super::hold::{Hold, Spool};
 use super::{Inputs, Mode, Outputs, demand};
-use crate::arming::{Gesture, GestureWatch, TILT_MAX};
+use crate::arming::{Gesture, GestureWatch};
 use crate::math::{clamp, cos};
 use crate::params::Params;
 use crate::rc::{ArmChoice, Sticks};
@@ -19,6 +19,9 @@ pub const LANDED_TIME: f32 = 2.0;
 pub const CONTACT_TIME: f32 = 0.3;
 /// Throttle above `perch_throttle_max` by which the contact is given up, 1.
 const CONTACT_MARGIN: f32 = 0.03;
+/// Lean beyond which the arms are not closed, rad. Before the arms hold, a vehicle that leans by θ along a pipe's
+/// flank stays only while sin θ <= μ (cos θ - T/W): 14° at μ 0.6 and 30 % throttle.
+pub const PERCH_LEAN_MAX: f32 = crate::math::deg(11.0);
 /// Time for which a reason stays on the pilot's display, s.
 const NOTE_TIME: f32 = 10.0;
 
@@ -209,11 +212,14 @@ impl ModeLogic {
     }
 
     /// The touch of the pipe: perch switch turned on, throttle down, something carries, nearly level.
-    fn touch(&self, i: &Inputs, s: Sticks) -> Option<State> {
+    fn touch(&mut self, i: &Inputs, s: Sticks) -> Option<State> {
         let motion = i.motion?;
         let wanted = s.perch_switch && self.perch_seen_off && s.throttle <= self.params.perch_throttle_max;
-        let upright = motion.q.down_in_body().z >= cos(TILT_MAX);
-        if !(wanted && self.support.resting() && upright) {
+        if !(wanted && self.support.resting()) {
+            return None;
+        }
+        if motion.q.down_in_body().z < cos(PERCH_LEAN_MAX) {
+            self.note("leaning, not on the crown");
             return None;
         }
         let (roll, pitch, _) = motion.q.to_euler();

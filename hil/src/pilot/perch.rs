@@ -34,7 +34,7 @@ const ALONG: f64 = 0.25;
 const NEAR: f64 = 0.4;
 const ASTRAY: f64 = 0.20;
 /// Distance beside the crown at which a vehicle on the pipe will not stay, share of the pipe's radius.
-const SLIPPING: f64 = 0.36;
+const SLIPPING: f64 = 0.33;
 /// Height over the pipe at which a vehicle that does not sink any more stands on it, m.
 const STANDS: f64 = 0.12;
 /// Depth of the centre of mass below the pipe's top by which it was missed, m.
