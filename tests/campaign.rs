@@ -22,10 +22,18 @@ fn campaign(infill: f64, two: bool) {
         let chosen = if two { 2 } else { 4 };
         let gripped = record.grip.len() == chosen;
         if !record.outcome.accomplished || record.overruns > 0 || !gripped {
-            failures.push(format!("seed {seed}: {}, {} overruns", record.outcome.reason, record.overruns));
+            failures.push(format!(
+                "seed {seed}: {}, {} overruns",
+                record.outcome.reason, record.overruns
+            ));
         }
     }
-    assert!(failures.is_empty(), "{} of {SEEDS} failed:\n{}", failures.len(), failures.join("\n"));
+    assert!(
+        failures.is_empty(),
+        "{} of {SEEDS} failed:\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
 }
 
 macro_rules! campaigns {

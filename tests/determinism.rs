@@ -8,9 +8,18 @@ use sophie_hil::scenario::{Scenario, Step};
 
 /// A short flight, so that several fit into a test.
 fn hop(seed: u64) -> Scenario {
-    let steps =
-        vec![Step::Arm, Step::TakeOff { height: 2.0 }, Step::Hover { seconds: 3.0 }, Step::Land, Step::Disarm];
-    Scenario { seed, steps, ..Scenario::default_mission() }
+    let steps = vec![
+        Step::Arm,
+        Step::TakeOff { height: 2.0 },
+        Step::Hover { seconds: 3.0 },
+        Step::Land,
+        Step::Disarm,
+    ];
+    Scenario {
+        seed,
+        steps,
+        ..Scenario::default_mission()
+    }
 }
 
 fn digest(seed: u64) -> u64 {

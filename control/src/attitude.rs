@@ -81,10 +81,17 @@ impl AttitudeLoop {
 
         // The shortest turn from here to the wanted tilt, in body axes.
         let error = q.conjugate() * Quat::from_euler(roll, pitch, now);
-        let gain = if error.w < 0.0 { -2.0 * self.p } else { 2.0 * self.p };
+        let gain = if error.w < 0.0 {
+            -2.0 * self.p
+        } else {
+            2.0 * self.p
+        };
 
-        let yaw_rate =
-            self.yaw_rate.step(math::clamp_abs(setpoint.yaw_rate, self.yaw_rate_max), 1.0 / YAW_RATE_TAU, dt);
+        let yaw_rate = self.yaw_rate.step(
+            math::clamp_abs(setpoint.yaw_rate, self.yaw_rate_max),
+            1.0 / YAW_RATE_TAU,
+            dt,
+        );
         let ahead = math::wrap_pi(self.heading + yaw_rate * dt - now);
         let ahead = math::clamp_abs(ahead, HEADING_LEASH);
         self.heading = math::wrap_pi(now + ahead);
@@ -128,9 +135,24 @@ mod tests {
 
     #[test]
     fn the_rate_is_p_times_the_error() {
-        let r = settled(Quat::IDENTITY, AttitudeSetpoint { roll: 0.1, ..Default::default() });
-        assert!((r.x - 0.45).abs() < 0.01 && r.y.abs() < 0.01 && r.z.abs() < 0.02, "{r:?}");
-        let r = settled(Quat::IDENTITY, AttitudeSetpoint { pitch: -0.1, ..Default::default() });
+        let r = settled(
+            Quat::IDENTITY,
+            AttitudeSetpoint {
+                roll: 0.1,
+                ..Default::default()
+            },
+        );
+        assert!(
+            (r.x - 0.45).abs() < 0.01 && r.y.abs() < 0.01 && r.z.abs() < 0.02,
+            "{r:?}"
+        );
+        let r = settled(
+            Quat::IDENTITY,
+            AttitudeSetpoint {
+                pitch: -0.1,
+                ..Default::default()
+            },
+        );
         assert!((r.y + 0.45).abs() < 0.01 && r.x.abs() < 0.01);
     }
 
@@ -150,7 +172,14 @@ mod tests {
         let mut a = AttitudeLoop::new(&Params::default());
         let mut yaw = 0.0f32;
         for _ in 0..4000 {
-            let r = a.step(Quat::from_euler(0.0, 0.0, yaw), AttitudeSetpoint { yaw_rate: 3.0, ..Default::default() }, 1e-3);
+            let r = a.step(
+                Quat::from_euler(0.0, 0.0, yaw),
+                AttitudeSetpoint {
+                    yaw_rate: 3.0,
+                    ..Default::default()
+                },
+                1e-3,
+            );
             yaw += r.z * 1e-3;
             assert!(r.z <= 1.01);
         }

@@ -39,8 +39,15 @@ impl ArmModel {
     pub fn new(infill: f32, gain_k: f32, level_thrust: f32) -> Self {
         let linear = math::deg(gain_k * (A1 + infill * A2));
         let quadratic = math::deg(gain_k * (B1 + infill * B2));
-        let model = Self { offset: 0.0, linear, quadratic };
-        Self { offset: -model.elastic(level_thrust), ..model }
+        let model = Self {
+            offset: 0.0,
+            linear,
+            quadratic,
+        };
+        Self {
+            offset: -model.elastic(level_thrust),
+            ..model
+        }
     }
 
     /// The arm that the parameters describe, level at half throttle.
@@ -74,7 +81,10 @@ pub struct Algorithm1 {
 impl Algorithm1 {
     /// The algorithm for the arm `model` with the battery exponent C_P.
     pub const fn new(model: ArmModel, power_exponent: f32) -> Self {
-        Self { model, power_exponent }
+        Self {
+            model,
+            power_exponent,
+        }
     }
 
     /// Tilt (rad) from the last step's thrust (N) and power ratio P/P0. It jumps by 40° where the printed
@@ -111,7 +121,10 @@ mod tests {
         for (infill, printed) in [(6.0, 26.6), (8.0, 21.3), (10.0, 16.8)] {
             let m = ArmModel::new(infill, 7.75, 4.15);
             let difference = degrees(m.angle(8.28) - m.angle(1.77));
-            assert!((difference / printed - 1.0).abs() < 0.015, "{infill}: {difference}");
+            assert!(
+                (difference / printed - 1.0).abs() < 0.015,
+                "{infill}: {difference}"
+            );
         }
     }
 
@@ -125,7 +138,14 @@ mod tests {
 
     #[test]
     fn algorithm_1_drops_to_zero_beyond_40_degrees() {
-        let a = Algorithm1::new(ArmModel { offset: 0.0, linear: math::deg(10.0), quadratic: 0.0 }, 1.7);
+        let a = Algorithm1::new(
+            ArmModel {
+                offset: 0.0,
+                linear: math::deg(10.0),
+                quadratic: 0.0,
+            },
+            1.7,
+        );
         assert!((degrees(a.angle(3.9, 1.0)) - 39.0).abs() < 1e-3);
         assert!(a.angle(4.1, 1.0).abs() < 1e-9);
         // One-sided: the other way it goes on.

@@ -16,7 +16,11 @@ pub struct Given {
 
 impl Given {
     /// All that was asked.
-    pub const ALL: Self = Self { roll_pitch: 1.0, thrust_shift: 0.0, yaw: 1.0 };
+    pub const ALL: Self = Self {
+        roll_pitch: 1.0,
+        thrust_shift: 0.0,
+        yaw: 1.0,
+    };
 
     /// True when something was given up.
     pub fn saturated(&self) -> bool {
@@ -81,7 +85,11 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     // Yaw: whatever room is left.
     let mut yaw = 1.0f32;
     let mut thrusts = p.collective;
-    for ((t, r), (s, y)) in thrusts.iter_mut().zip(&p.roll_pitch).zip(p.shift.iter().zip(&p.yaw)) {
+    for ((t, r), (s, y)) in thrusts
+        .iter_mut()
+        .zip(&p.roll_pitch)
+        .zip(p.shift.iter().zip(&p.yaw))
+    {
         *t += share * r + shift * s;
         let room = if *y > 0.0 { high - *t } else { *t - low };
         let need = if *y > 0.0 { *y } else { -*y };
@@ -92,7 +100,14 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     for (t, y) in thrusts.iter_mut().zip(&p.yaw) {
         *t = math::clamp(*t + yaw * y, low, high);
     }
-    (thrusts, Given { roll_pitch: share, thrust_shift: shift, yaw })
+    (
+        thrusts,
+        Given {
+            roll_pitch: share,
+            thrust_shift: shift,
+            yaw,
+        },
+    )
 }
 
 #[cfg(test)]
@@ -106,7 +121,11 @@ mod tests {
     const HIGH: f32 = 8.3;
 
     fn patterns(collective: f32, roll: f32, pitch: f32, yaw: f32) -> Patterns {
-        let mut p = Patterns { collective: [collective; 4], shift: [0.25; 4], ..Patterns::default() };
+        let mut p = Patterns {
+            collective: [collective; 4],
+            shift: [0.25; 4],
+            ..Patterns::default()
+        };
         for i in 0..4 {
             p.roll_pitch[i] = SIDE[i] * roll + FORE[i] * pitch;
             p.yaw[i] = YAW[i] * yaw;

@@ -23,14 +23,20 @@ pub struct Geometry {
 impl Geometry {
     /// The geometry that the parameters describe.
     pub fn from_params(p: &Params, configuration: Configuration) -> Self {
-        Self { d: p.arm_d, b: p.arm_b, drag: configuration.chi() * p.torque_ratio }
+        Self {
+            d: p.arm_d,
+            b: p.arm_b,
+            drag: configuration.chi() * p.torque_ratio,
+        }
     }
 
     /// The wrench of the thrusts (N) of rotors tilted by `tilt` (rad).
     pub fn wrench(&self, thrusts: &PerArm<f32>, tilt: &PerArm<f32>) -> Wrench {
         let mut w = Wrench::default();
-        for ((t, a), (side, (fore, yaw))) in
-            thrusts.iter().zip(tilt).zip(SIDE.iter().zip(FORE.iter().zip(&YAW)))
+        for ((t, a), (side, (fore, yaw))) in thrusts
+            .iter()
+            .zip(tilt)
+            .zip(SIDE.iter().zip(FORE.iter().zip(&YAW)))
         {
             let lift = t * math::cos(*a);
             w.thrust += lift;
@@ -54,7 +60,10 @@ pub struct Effectiveness {
 impl Effectiveness {
     /// At the frozen tilt: what a change of thrust does before the arm has moved.
     pub fn frozen(geometry: &Geometry, tilt: &PerArm<f32>) -> Self {
-        Self { lift: tilt.map(math::cos), yaw: tilt.map(|a| geometry.b * math::sin(a) + geometry.drag) }
+        Self {
+            lift: tilt.map(math::cos),
+            yaw: tilt.map(|a| geometry.b * math::sin(a) + geometry.drag),
+        }
     }
 
     /// Quasi-static: what a change of thrust does once the arm has followed, with T dα/dT in it.
@@ -64,7 +73,10 @@ impl Effectiveness {
         thrusts: &PerArm<f32>,
         tilt: &PerArm<f32>,
     ) -> Self {
-        let mut e = Self { lift: [1.0; 4], yaw: [geometry.drag; 4] };
+        let mut e = Self {
+            lift: [1.0; 4],
+            yaw: [geometry.drag; 4],
+        };
         for ((lift, yaw), (t, a)) in e.lift.iter_mut().zip(&mut e.yaw).zip(thrusts.iter().zip(tilt)) {
             let (s, c) = (math::sin(*a), math::cos(*a));
             let follow = t * model.slope(*t);
@@ -103,7 +115,7 @@ impl Inverse {
         let (ratio_front, ratio_rear) = (l1 * inv_lift_3, l2 * inv_lift_4);
         let (yaw_front, yaw_rear) = (y1 + y3 * ratio_front, y2 + y4 * ratio_rear);
         let determinant = (1.0 + ratio_front) * yaw_rear + (1.0 + ratio_rear) * yaw_front;
-        let usable = determinant > LEAST || determinant < -LEAST;
+        let usable = !(-LEAST..=LEAST).contains(&determinant);
         (usable && inv_lift_3.is_finite() && inv_lift_4.is_finite()).then(|| Self {
             geometry,
             e,
@@ -130,7 +142,12 @@ impl Inverse {
         let yaw = w.yaw + y3 * f3 - y4 * r4;
         let t1 = (roll * self.yaw_rear + yaw * (1.0 + self.ratio_rear)) * self.inv_determinant;
         let t2 = (roll * self.yaw_front - yaw * (1.0 + self.ratio_front)) * self.inv_determinant;
-        [t1, t2, (front - l1 * t1) * self.inv_lift_3, (rear - l2 * t2) * self.inv_lift_4]
+        [
+            t1,
+            t2,
+            (front - l1 * t1) * self.inv_lift_3,
+            (rear - l2 * t2) * self.inv_lift_4,
+        ]
     }
 }
 
@@ -141,7 +158,11 @@ mod tests {
     use super::*;
 
     fn geometry() -> Geometry {
-        Geometry { d: 0.178, b: 0.178, drag: 0.016 }
+        Geometry {
+            d: 0.178,
+            b: 0.178,
+            drag: 0.016,
+        }
     }
 
     #[test]
@@ -151,8 +172,14 @@ mod tests {
         let w = g.wrench(&thrusts, &tilt);
         let (mut force, mut moment) = ([0.0f32; 3], [0.0f32; 3]);
         for i in 0..4 {
-            let (t, a) = (thrusts.get(i).copied().unwrap_or(0.0), tilt.get(i).copied().unwrap_or(0.0));
-            let (fore, left) = (if i % 2 == 0 { 1.0 } else { -1.0 }, if i < 2 { 1.0 } else { -1.0 });
+            let (t, a) = (
+                thrusts.get(i).copied().unwrap_or(0.0),
+                tilt.get(i).copied().unwrap_or(0.0),
+            );
+            let (fore, left) = (
+                if i % 2 == 0 { 1.0 } else { -1.0 },
+                if i < 2 { 1.0 } else { -1.0 },
+            );
             // Arm hinged at the centre line: its tip, and the thrust perpendicular to it.
             let r = crate::vector::Vec3::new(fore * g.b, -left * g.d * a.cos(), -g.d * a.sin());
             let f = crate::vector::Vec3::new(0.0, left * t * a.sin(), -t * a.cos());

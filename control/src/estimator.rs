@@ -85,19 +85,35 @@ impl Estimator {
 
     fn integrate(&mut self, rate: Vec3, dt: f32) {
         let h = rate * (0.5 * dt);
-        let d = self.q * Quat { w: 0.0, x: h.x, y: h.y, z: h.z };
-        let q = Quat { w: self.q.w + d.w, x: self.q.x + d.x, y: self.q.y + d.y, z: self.q.z + d.z };
+        let d = self.q
+            * Quat {
+                w: 0.0,
+                x: h.x,
+                y: h.y,
+                z: h.z,
+            };
+        let q = Quat {
+            w: self.q.w + d.w,
+            x: self.q.x + d.x,
+            y: self.q.y + d.y,
+            z: self.q.z + d.z,
+        };
         // One Newton step keeps a nearly unit quaternion unit.
         let k = 1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-        let q = Quat { w: q.w * k, x: q.x * k, y: q.y * k, z: q.z * k };
+        let q = Quat {
+            w: q.w * k,
+            x: q.x * k,
+            y: q.y * k,
+            z: q.z * k,
+        };
         self.q = if q.is_finite() { q } else { self.q };
     }
 
     /// Collects rest; any motion starts it afresh.
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
         let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
-        let still = limit(gyro, REST_RATE)
-            && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
+        let still =
+            limit(gyro, REST_RATE) && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
         if !still || self.rest_time <= 0.0 {
             self.rest_time = dt;
             self.rest_gyro = gyro;
@@ -180,7 +196,11 @@ mod tests {
 
     #[test]
     fn a_drifting_bias_is_found_in_roll() {
-        let p = Params { estimator_ki: 0.02, estimator_kp: 0.3, ..Params::default() };
+        let p = Params {
+            estimator_ki: 0.02,
+            estimator_kp: 0.3,
+            ..Params::default()
+        };
         let mut e = Estimator::new(&p);
         for i in 0..240_000 {
             let drift = if i < 3000 { 0.0 } else { 0.01 };

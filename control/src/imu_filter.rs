@@ -14,7 +14,11 @@ pub struct AxisFilter {
 impl AxisFilter {
     /// The filter `c` on each axis, at rest.
     pub const fn new(c: Coefficients) -> Self {
-        Self { x: Biquad::new(c), y: Biquad::new(c), z: Biquad::new(c) }
+        Self {
+            x: Biquad::new(c),
+            y: Biquad::new(c),
+            z: Biquad::new(c),
+        }
     }
 
     /// One sample.

@@ -11,9 +11,10 @@
     clippy::indexing_slicing,
     clippy::unwrap_used,
     clippy::expect_used,
-    clippy::panic,
-    clippy::float_cmp
+    clippy::panic
 )]
+// Tests compare exactly where exactness is the point.
+#![cfg_attr(not(test), deny(clippy::float_cmp))]
 
 pub mod arming;
 pub mod attitude;

@@ -98,7 +98,8 @@ pub fn pow_near_one(base: f32, exponent: f32) -> f32 {
     // ln x = 2 artanh((x - 1) / (x + 1)).
     let z = (base - 1.0) / (base + 1.0);
     let z2 = z * z;
-    let series = 1.0 + z2 * (1.0 / 3.0 + z2 * (0.2 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 * (1.0 / 11.0 + z2 / 13.0)))));
+    let series = 1.0
+        + z2 * (1.0 / 3.0 + z2 * (0.2 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 * (1.0 / 11.0 + z2 / 13.0)))));
     // exp(y) = exp(y/8)^8, the inner one by its series.
     let y = exponent * 2.0 * z * series * 0.125;
     let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0 + y / 720.0)))));
@@ -154,7 +155,10 @@ mod tests {
         for i in -120..=120 {
             let x = i as f32 * 0.01;
             let exact = f64::tan(f64::from(x));
-            assert!((f64::from(tan(x)) - exact).abs() <= 2e-6 * exact.abs() + 1e-9, "{x}");
+            assert!(
+                (f64::from(tan(x)) - exact).abs() <= 2e-6 * exact.abs() + 1e-9,
+                "{x}"
+            );
         }
     }
 

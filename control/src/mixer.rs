@@ -68,7 +68,12 @@ struct DynamicTilt {
 
 impl DynamicTilt {
     fn at(thrust: f32, mode_hz: f32) -> Self {
-        Self { motor: LowPass::at(thrust), load: thrust, speed: 0.0, omega: core::f32::consts::TAU * mode_hz }
+        Self {
+            motor: LowPass::at(thrust),
+            load: thrust,
+            speed: 0.0,
+            omega: core::f32::consts::TAU * mode_hz,
+        }
     }
 
     fn step(&mut self, thrust: f32, motor_rate: f32, dt: f32) {
@@ -127,7 +132,11 @@ impl Mixer {
     /// Rotors at idle for one step.
     pub fn idle(&mut self, dt: f32) -> Mix {
         self.follow([self.idle; 4], dt);
-        Mix { thrusts: self.last, given: Given::ALL, yaw_gated: true }
+        Mix {
+            thrusts: self.last,
+            given: Given::ALL,
+            yaw_gated: true,
+        }
     }
 
     /// Thrusts for the wrench `w`. A wrench that is not finite counts as none: idle.
@@ -149,10 +158,21 @@ impl Mixer {
             }
         };
         let yaw_gated = !usable || fade <= 0.0;
-        let patterns = if yaw_gated { Patterns { yaw: [0.0; 4], ..patterns } } else { patterns };
+        let patterns = if yaw_gated {
+            Patterns {
+                yaw: [0.0; 4],
+                ..patterns
+            }
+        } else {
+            patterns
+        };
         let (thrusts, given) = desaturate(&patterns, self.idle, high);
         self.follow(thrusts, c.dt);
-        Mix { thrusts, given, yaw_gated }
+        Mix {
+            thrusts,
+            given,
+            yaw_gated,
+        }
     }
 
     /// Steps the models of arms and motors with the thrusts sent.
@@ -193,7 +213,13 @@ impl Mixer {
         let mut patterns = self.patterns(e, thrusts, rest, w, fade);
         // The collective goes on from the last thrusts. Where yaw is given up nothing corrects what they have
         // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
-        let left = 0.25 * patterns.collective.iter().zip(&YAW).map(|(t, y)| t * y).sum::<f32>();
+        let left = 0.25
+            * patterns
+                .collective
+                .iter()
+                .zip(&YAW)
+                .map(|(t, y)| t * y)
+                .sum::<f32>();
         for (t, y) in patterns.collective.iter_mut().zip(&YAW) {
             *t -= (1.0 - fade) * left * y;
         }
@@ -204,14 +230,29 @@ impl Mixer {
     fn frozen(&self, w: Wrench) -> (Patterns, f32) {
         let tilt = self.dynamic.map(|arm| self.tilt.model().angle(arm.load));
         let e = Effectiveness::frozen(&self.geometry, &tilt);
-        (self.patterns(e, [0.0; 4], Wrench { thrust: w.thrust, ..Wrench::default() }, w, 1.0), 1.0)
+        (
+            self.patterns(
+                e,
+                [0.0; 4],
+                Wrench {
+                    thrust: w.thrust,
+                    ..Wrench::default()
+                },
+                w,
+                1.0,
+            ),
+            1.0,
+        )
     }
 
     /// Splits base + E⁻¹(rest + moments of w) into patterns; `rest` is what the collective part must add.
     fn patterns(&self, e: Effectiveness, base: PerArm<f32>, rest: Wrench, w: Wrench, fade: f32) -> Patterns {
         let Some(inverse) = Inverse::new(self.geometry, e) else {
             // No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
-            return Patterns { yaw: [0.0; 4], ..self.stiff(w, [0.0; 4]).0 };
+            return Patterns {
+                yaw: [0.0; 4],
+                ..self.stiff(w, [0.0; 4]).0
+            };
         };
         let mut collective = inverse.solve(rest);
         for (c, b) in collective.iter_mut().zip(&base) {
@@ -219,9 +260,19 @@ impl Mixer {
         }
         Patterns {
             collective,
-            shift: inverse.solve(Wrench { thrust: 1.0, ..Wrench::default() }),
-            roll_pitch: inverse.solve(Wrench { thrust: 0.0, yaw: 0.0, ..w }),
-            yaw: self.limit_yaw(inverse.solve(Wrench { yaw: w.yaw * fade, ..Wrench::default() })),
+            shift: inverse.solve(Wrench {
+                thrust: 1.0,
+                ..Wrench::default()
+            }),
+            roll_pitch: inverse.solve(Wrench {
+                thrust: 0.0,
+                yaw: 0.0,
+                ..w
+            }),
+            yaw: self.limit_yaw(inverse.solve(Wrench {
+                yaw: w.yaw * fade,
+                ..Wrench::default()
+            })),
         }
     }
 
@@ -252,7 +303,15 @@ impl Mixer {
 
     /// Scales a yaw pattern so that no rotor gets more than the limit.
     fn limit_yaw(&self, yaw: PerArm<f32>) -> PerArm<f32> {
-        let worst = yaw.iter().fold(0.0f32, |m, y| if *y > m { *y } else if -*y > m { -*y } else { m });
+        let worst = yaw.iter().fold(0.0f32, |m, y| {
+            if *y > m {
+                *y
+            } else if -*y > m {
+                -*y
+            } else {
+                m
+            }
+        });
         if worst > self.yaw_limit {
             let k = self.yaw_limit / worst;
             yaw.map(|y| y * k)
@@ -268,10 +327,19 @@ mod tests {
 
     use super::*;
 
-    const HOVER: Wrench = Wrench { thrust: 17.7, roll: 0.0, pitch: 0.0, yaw: 0.0 };
+    const HOVER: Wrench = Wrench {
+        thrust: 17.7,
+        roll: 0.0,
+        pitch: 0.0,
+        yaw: 0.0,
+    };
 
     fn conditions() -> Conditions {
-        Conditions { yaw: true, battery_ratio: 1.0, dt: 1e-3 }
+        Conditions {
+            yaw: true,
+            battery_ratio: 1.0,
+            dt: 1e-3,
+        }
     }
 
     fn settled(variant: Variant, w: Wrench) -> (Mixer, Mix) {
@@ -287,13 +355,22 @@ mod tests {
     fn hover_shares_the_weight_and_lifts_it() {
         for variant in [Variant::Rigid, Variant::Paper, Variant::Frozen, Variant::Flexible] {
             let (_, mix) = settled(variant, HOVER);
-            assert!(mix.thrusts.iter().all(|t| (t - 4.425).abs() < 0.02), "{variant:?} {:?}", mix.thrusts);
+            assert!(
+                mix.thrusts.iter().all(|t| (t - 4.425).abs() < 0.02),
+                "{variant:?} {:?}",
+                mix.thrusts
+            );
         }
     }
 
     #[test]
     fn the_flexible_mixer_gives_the_wrench_once_the_arms_have_followed() {
-        let w = Wrench { thrust: 18.0, roll: 0.3, pitch: -0.2, yaw: 0.04 };
+        let w = Wrench {
+            thrust: 18.0,
+            roll: 0.3,
+            pitch: -0.2,
+            yaw: 0.04,
+        };
         let (m, mix) = settled(Variant::Flexible, w);
         let p = Params::default();
         let g = Geometry::from_params(&p, Configuration::B);
@@ -314,14 +391,22 @@ mod tests {
         let g = Geometry::from_params(&p, Configuration::B);
         let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
         let c = crate::stability::yaw_derivative(&g, &model, 4.425);
-        assert!((got.yaw / w.yaw - (1.0 - c)).abs() < 0.15, "{} {c}", got.yaw / w.yaw);
+        assert!(
+            (got.yaw / w.yaw - (1.0 - c)).abs() < 0.15,
+            "{} {c}",
+            got.yaw / w.yaw
+        );
     }
 
     #[test]
     fn the_frozen_inverse_limit_cycles_where_c_is_large() {
         // A loop of motor lag and static arm around the allocation alone, with a constant small yaw demand.
         let swing = |variant, gain_k| {
-            let p = Params { gain_k, yaw_thrust_max: 5.0, ..Params::default() };
+            let p = Params {
+                gain_k,
+                yaw_thrust_max: 5.0,
+                ..Params::default()
+            };
             let mut m = Mixer::new(variant, Configuration::B, &p);
             let w = Wrench { yaw: 0.03, ..HOVER };
             let (mut low, mut high) = (f32::MAX, f32::MIN);
@@ -334,9 +419,21 @@ mod tests {
             }
             high - low
         };
-        assert!(swing(Variant::Frozen, 7.75) > 1.0, "{}", swing(Variant::Frozen, 7.75));
-        assert!(swing(Variant::Frozen, 1.0) < 0.05, "{}", swing(Variant::Frozen, 1.0));
-        assert!(swing(Variant::Flexible, 7.75) < 0.05, "{}", swing(Variant::Flexible, 7.75));
+        assert!(
+            swing(Variant::Frozen, 7.75) > 1.0,
+            "{}",
+            swing(Variant::Frozen, 7.75)
+        );
+        assert!(
+            swing(Variant::Frozen, 1.0) < 0.05,
+            "{}",
+            swing(Variant::Frozen, 1.0)
+        );
+        assert!(
+            swing(Variant::Flexible, 7.75) < 0.05,
+            "{}",
+            swing(Variant::Flexible, 7.75)
+        );
     }
 
     #[test]
@@ -345,7 +442,14 @@ mod tests {
         let mut last = [0.25f32; 4];
         for i in 0..4000 {
             let thrust = 1.0 + 18.0 * i as f32 / 4000.0;
-            let mix = m.mix(Wrench { thrust, yaw: 0.05, ..Wrench::default() }, conditions());
+            let mix = m.mix(
+                Wrench {
+                    thrust,
+                    yaw: 0.05,
+                    ..Wrench::default()
+                },
+                conditions(),
+            );
             let mean = 0.25 * m.tilt().thrusts().iter().sum::<f32>();
             assert!(mix.yaw_gated == (mean < 1.95) || (mean - 1.95).abs() < 0.02);
             for (a, b) in mix.thrusts.iter().zip(&last) {
@@ -362,11 +466,24 @@ mod tests {
         let mut mix = before;
         for i in 0..3000 {
             let thrust = 17.7 * (1.0 - i as f32 / 3000.0);
-            let c = Conditions { yaw: false, ..conditions() };
-            mix = m.mix(Wrench { thrust, ..Wrench::default() }, c);
+            let c = Conditions {
+                yaw: false,
+                ..conditions()
+            };
+            mix = m.mix(
+                Wrench {
+                    thrust,
+                    ..Wrench::default()
+                },
+                c,
+            );
         }
         let [a, b, c, d] = mix.thrusts;
-        assert!((a - b).abs() < 0.01 && (a - c).abs() < 0.01 && (a - d).abs() < 0.01, "{:?}", mix.thrusts);
+        assert!(
+            (a - b).abs() < 0.01 && (a - c).abs() < 0.01 && (a - d).abs() < 0.01,
+            "{:?}",
+            mix.thrusts
+        );
     }
 
     proptest! {

@@ -71,7 +71,7 @@ macro_rules! params {
             pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
                 match name {
                     $( stringify!($name) => {
-                        if !(value >= $min && value <= $max) {
+                        if !($min..=$max).contains(&value) {
                             return Err(ParamError::OutOfRange { min: $min, max: $max, unit: $unit });
                         }
                         self.$name = value;
@@ -243,8 +243,16 @@ mod tests {
             let mut p = Params::default();
             assert!(p.get(row.name) == Some(row.default), "{}", row.name);
             assert!(p.set(row.name, row.default).is_ok(), "{}", row.name);
-            assert!(p.set(row.name, row.max).is_ok() && p.get(row.name) == Some(row.max), "{}", row.name);
-            assert!(p.set(row.name, row.min).is_ok() && p.get(row.name) == Some(row.min), "{}", row.name);
+            assert!(
+                p.set(row.name, row.max).is_ok() && p.get(row.name) == Some(row.max),
+                "{}",
+                row.name
+            );
+            assert!(
+                p.set(row.name, row.min).is_ok() && p.get(row.name) == Some(row.min),
+                "{}",
+                row.name
+            );
         }
     }
 
@@ -252,7 +260,10 @@ mod tests {
     fn a_bad_value_changes_nothing() {
         let mut p = Params::default();
         for bad in [f32::NAN, f32::INFINITY, -1.0, 11.0, 3.9] {
-            assert!(matches!(p.set("infill", bad), Err(ParamError::OutOfRange { .. })), "{bad}");
+            assert!(
+                matches!(p.set("infill", bad), Err(ParamError::OutOfRange { .. })),
+                "{bad}"
+            );
         }
         assert!(p.set("infil", 6.0) == Err(ParamError::Unknown));
         assert!(p == Params::default());

@@ -89,7 +89,11 @@ impl RateLoop {
             let step = error.scale_by(self.i) * dt;
             let add = |sum: f32, step: f32, limit: f32, given: bool| {
                 // What was not given must not wind up; what unwinds always may.
-                if given || sum * step < 0.0 { math::clamp_abs(sum + step, limit) } else { sum }
+                if given || sum * step < 0.0 {
+                    math::clamp_abs(sum + step, limit)
+                } else {
+                    sum
+                }
             };
             let tilt_given = feedback.roll_pitch > GIVEN;
             let yaw_given = feedback.yaw > GIVEN && !feedback.yaw_gated;
@@ -101,7 +105,11 @@ impl RateLoop {
         }
         let acceleration = error.scale_by(self.p) + self.integral - slope.scale_by(self.d);
         let moment = acceleration.scale_by(self.inertia);
-        let yaw = if feedback.yaw_gated { 0.0 } else { self.notch.step(moment.z) };
+        let yaw = if feedback.yaw_gated {
+            0.0
+        } else {
+            self.notch.step(moment.z)
+        };
         let moment = Vec3::new(moment.x, moment.y, yaw);
         if moment.is_finite() {
             moment
@@ -123,7 +131,11 @@ mod tests {
 
     use super::*;
 
-    const FREE: Feedback = Feedback { roll_pitch: 1.0, yaw: 1.0, yaw_gated: false };
+    const FREE: Feedback = Feedback {
+        roll_pitch: 1.0,
+        yaw: 1.0,
+        yaw_gated: false,
+    };
 
     fn rate_loop() -> RateLoop {
         RateLoop::new(&Params::default(), 1000.0)
@@ -148,7 +160,11 @@ mod tests {
     #[test]
     fn what_was_not_given_does_not_wind_up_but_unwinds() {
         let mut l = rate_loop();
-        let held = Feedback { roll_pitch: 0.5, yaw: 0.0, yaw_gated: false };
+        let held = Feedback {
+            roll_pitch: 0.5,
+            yaw: 0.0,
+            yaw_gated: false,
+        };
         for _ in 0..500 {
             l.step(Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO, held, true, 1e-3);
         }
@@ -165,11 +181,23 @@ mod tests {
 
     #[test]
     fn a_setpoint_step_gives_no_derivative_kick_and_motion_is_damped() {
-        let mut l = RateLoop::new(&Params { rate_d: 0.1, ..Params::default() }, 1000.0);
+        let mut l = RateLoop::new(
+            &Params {
+                rate_d: 0.1,
+                ..Params::default()
+            },
+            1000.0,
+        );
         l.step(Vec3::ZERO, Vec3::ZERO, FREE, false, 1e-3);
         let m = l.step(Vec3::new(1.0, 0.0, 0.0), Vec3::ZERO, FREE, false, 1e-3);
         assert!((m.x - 0.21).abs() < 1e-4);
-        let damped = l.step(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.05, 0.0, 0.0), FREE, false, 1e-3);
+        let damped = l.step(
+            Vec3::new(1.0, 0.0, 0.0),
+            Vec3::new(0.05, 0.0, 0.0),
+            FREE,
+            false,
+            1e-3,
+        );
         assert!(damped.x < 0.95 * 0.21);
     }
 
@@ -179,7 +207,10 @@ mod tests {
         for _ in 0..500 {
             l.step(Vec3::new(0.0, 0.0, 0.4), Vec3::ZERO, FREE, true, 1e-3);
         }
-        let gated = Feedback { yaw_gated: true, ..FREE };
+        let gated = Feedback {
+            yaw_gated: true,
+            ..FREE
+        };
         let m = l.step(Vec3::new(0.0, 0.0, 0.4), Vec3::ZERO, gated, true, 1e-3);
         assert!(m.z == 0.0 && l.integral().z == 0.0);
     }

@@ -22,7 +22,11 @@ impl Derivatives {
         let e = Effectiveness::quasi_static(geometry, model, &[thrust; 4], &[model.angle(thrust); 4]);
         let [lift, ..] = e.lift;
         let [yaw, ..] = e.yaw;
-        Self { roll: 0.0, pitch: 1.0 - lift, yaw: 1.0 - yaw / geometry.drag }
+        Self {
+            roll: 0.0,
+            pitch: 1.0 - lift,
+            yaw: 1.0 - yaw / geometry.drag,
+        }
     }
 }
 
@@ -38,8 +42,16 @@ mod tests {
     use crate::wrench::Configuration;
 
     fn c(configuration: Configuration, infill: f32, gain_k: f32) -> f32 {
-        let p = Params { infill, gain_k, ..Params::default() };
-        yaw_derivative(&Geometry::from_params(&p, configuration), &ArmModel::from_params(&p), 4.425)
+        let p = Params {
+            infill,
+            gain_k,
+            ..Params::default()
+        };
+        yaw_derivative(
+            &Geometry::from_params(&p, configuration),
+            &ArmModel::from_params(&p),
+            4.425,
+        )
     }
 
     #[test]
@@ -58,7 +70,11 @@ mod tests {
         // α(4.425) = 7.75·(1.06077·0.275 - 0.05781·(4.425² - 4.15²)) = 1.204° = 0.02102 rad;
         // slope 7.75·(1.06077 - 0.11562·4.425) = 4.256 °/N = 0.07428 rad/N;
         // d(T sin α)/dT = 0.02102 + 4.425·0.99978·0.07428 = 0.3496; times b/k_q = 11.125: 3.889.
-        assert!((c(Configuration::B, 6.9, 7.75) + 3.889).abs() < 0.03, "{}", c(Configuration::B, 6.9, 7.75));
+        assert!(
+            (c(Configuration::B, 6.9, 7.75) + 3.889).abs() < 0.03,
+            "{}",
+            c(Configuration::B, 6.9, 7.75)
+        );
     }
 
     #[test]

@@ -16,7 +16,12 @@ impl ThrustCurve {
     /// The curve that the parameters describe.
     pub fn from_params(p: &Params) -> Self {
         let quadratic = math::clamp(p.thrust_curve, 0.0, 1.0);
-        Self { max: p.thrust_max, quadratic, linear: 1.0 - quadratic, least_ratio: 0.5 }
+        Self {
+            max: p.thrust_max,
+            quadratic,
+            linear: 1.0 - quadratic,
+            least_ratio: 0.5,
+        }
     }
 
     /// Command 0..1 for the thrust `thrust` (N) at the voltage ratio `ratio` (V/V0). 0 for no thrust.
@@ -26,7 +31,11 @@ impl ThrustCurve {
         // The root of q u² + (1 - q) u = share in the form that also holds for q = 0.
         let root = math::sqrt(self.linear * self.linear + 4.0 * self.quadratic * share);
         let sum = self.linear + root;
-        if sum > 0.0 { math::clamp(2.0 * share / sum, 0.0, 1.0) } else { 0.0 }
+        if sum > 0.0 {
+            math::clamp(2.0 * share / sum, 0.0, 1.0)
+        } else {
+            0.0
+        }
     }
 
     /// Thrust (N) of the command `command` at the voltage ratio `ratio`.

@@ -81,7 +81,9 @@ impl TiltModel {
     pub fn correct(&mut self, measured: &PerArm<Option<f32>>) {
         let (model, gain, limit) = (self.model, self.bias_gain, self.bias_max);
         for (arm, measured) in self.arms.iter_mut().zip(measured) {
-            let Some(measured) = measured.filter(|m| m.is_finite()) else { continue };
+            let Some(measured) = measured.filter(|m| m.is_finite()) else {
+                continue;
+            };
             if arm.lagged.value() > LEARN_THRUST {
                 let expected = model.angle(arm.lagged.value()) + arm.bias;
                 arm.bias = math::clamp_abs(arm.bias + gain * (measured - expected), limit);
@@ -148,7 +150,12 @@ mod tests {
 
     #[test]
     fn an_arm_beyond_40_degrees_is_held_and_reported() {
-        let p = Params { infill: 4.0, gain_k: 10.0, thrust_max: 5.0, ..Params::default() };
+        let p = Params {
+            infill: 4.0,
+            gain_k: 10.0,
+            thrust_max: 5.0,
+            ..Params::default()
+        };
         let mut t = TiltModel::new(&p);
         let mut last = t.tilt()[0];
         for i in 0..6000 {
@@ -156,7 +163,14 @@ mod tests {
             assert!((t.tilt()[0] - last).abs() < 0.01 && t.tilt()[0].abs() <= VALID_TILT);
             last = t.tilt()[0];
         }
-        let mut soft = TiltModel { model: ArmModel { offset: 0.0, linear: 0.2, quadratic: 0.0 }, ..t };
+        let mut soft = TiltModel {
+            model: ArmModel {
+                offset: 0.0,
+                linear: 0.2,
+                quadratic: 0.0,
+            },
+            ..t
+        };
         for _ in 0..3000 {
             soft.step(&[8.0; 4], 1e-3);
         }

@@ -130,7 +130,12 @@ impl Default for Quat {
 
 impl Quat {
     /// No rotation.
-    pub const IDENTITY: Self = Self { w: 1.0, x: 0.0, y: 0.0, z: 0.0 };
+    pub const IDENTITY: Self = Self {
+        w: 1.0,
+        x: 0.0,
+        y: 0.0,
+        z: 0.0,
+    };
 
     /// From roll, pitch and yaw (rad), applied in the order yaw, pitch, roll.
     pub fn from_euler(roll: f32, pitch: f32, yaw: f32) -> Self {
@@ -157,7 +162,12 @@ impl Quat {
 
     /// The inverse rotation.
     pub fn conjugate(self) -> Self {
-        Self { w: self.w, x: -self.x, y: -self.y, z: -self.z }
+        Self {
+            w: self.w,
+            x: -self.x,
+            y: -self.y,
+            z: -self.z,
+        }
     }
 
     /// The same rotation with length one; identity when the length vanished or is not finite.
@@ -165,7 +175,12 @@ impl Quat {
         let n2 = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
         let k = math::inv_sqrt(n2);
         if k > 0.0 {
-            Self { w: self.w * k, x: self.x * k, y: self.y * k, z: self.z * k }
+            Self {
+                w: self.w * k,
+                x: self.x * k,
+                y: self.y * k,
+                z: self.z * k,
+            }
         } else {
             Self::IDENTITY
         }
@@ -186,7 +201,11 @@ impl Quat {
     /// The world's down direction in body axes: the third row of the rotation matrix.
     pub fn down_in_body(self) -> Vec3 {
         let Self { w, x, y, z } = self;
-        Vec3::new(2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+        Vec3::new(
+            2.0 * (x * z - w * y),
+            2.0 * (y * z + w * x),
+            1.0 - 2.0 * (x * x + y * y),
+        )
     }
 
     /// True when every component is finite.

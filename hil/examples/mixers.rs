@@ -23,11 +23,15 @@ fn hover(configuration: Configuration, gain_k: f64, mixer: Variant, gain: f32, m
     s.params.rate_yaw_p = gain;
     s.params.rate_yaw_i = 0.5 * gain;
     let e = Rig::new(&s).fly(40.0, level);
-    if e.worst_yaw > 60.0 { "lost".to_owned() } else { format!("{:.2}", e.rms_yaw) }
+    if e.worst_yaw > 60.0 {
+        "lost".to_owned()
+    } else {
+        format!("{:.2}° / {:.2} N", e.rms_yaw, e.swing)
+    }
 }
 
 fn main() {
-    println!("yaw RMS, degrees; seed 1, ρ 6.9 %, gusts 0.35 N and 0.015 N·m RMS, 40 s of hover\n");
+    println!("yaw RMS / swing of rotor 1; seed 1, ρ 6.9 %, gusts 0.35 N and 0.015 N·m RMS, 35 s of hover\n");
     println!("| configuration | K | mixer | yaw gain 1/s | matched arms | mismatched arms |");
     println!("|---|---|---|---|---|---|");
     for (configuration, gain_k) in [(B, 7.75), (B, 1.0), (A, 7.75), (A, 1.0)] {

@@ -105,7 +105,10 @@ impl Board {
                 // The part samples faster than the plant steps: on the line between two steps.
                 let share = f64::from(k) / f64::from(SAMPLES_PER_STEP);
                 let rotors = plant.rotor_speed();
-                let reading = sensors.imu.sample(rate + rate_step * share, force + force_step * share, &rotors);
+                let reading =
+                    sensors
+                        .imu
+                        .sample(rate + rate_step * share, force + force_step * share, &rotors);
                 // The batch holds more than a millisecond's samples.
                 let _ = batch.push(reading);
             }
@@ -169,7 +172,12 @@ impl ports::Imu for Port {
 impl ports::ArmImus for Port {
     async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
         Timer::after_micros(ARM_READ_US).await;
-        self.0.arm_gravity.get().get(arm).copied().ok_or(PortError::Absent)
+        self.0
+            .arm_gravity
+            .get()
+            .get(arm)
+            .copied()
+            .ok_or(PortError::Absent)
     }
 }
 
@@ -185,8 +193,13 @@ impl ports::Analog for Port {
     async fn read(&mut self) -> Result<AnalogFrame, PortError> {
         Timer::after_micros(CONVERSION_US).await;
         let truth = self.0.truth.get();
-        self.0.truth.set(AnalogTruth { elapsed: 0.0, ..truth });
-        let Sensors { fsr, battery, rng, .. } = &mut *self.0.sensors.borrow_mut();
+        self.0.truth.set(AnalogTruth {
+            elapsed: 0.0,
+            ..truth
+        });
+        let Sensors {
+            fsr, battery, rng, ..
+        } = &mut *self.0.sensors.borrow_mut();
         let mut frame = AnalogFrame {
             fsr: [0; 4],
             battery_voltage: battery.voltage(truth.voltage, rng),
@@ -202,14 +215,20 @@ impl ports::Analog for Port {
 impl ports::Motors for Port {
     async fn write(&mut self, commands: PerArm<f32>) {
         let actuators = self.0.actuators.get();
-        self.0.actuators.set(Actuators { motors: commands.map(f64::from), ..actuators });
+        self.0.actuators.set(Actuators {
+            motors: commands.map(f64::from),
+            ..actuators
+        });
     }
 }
 
 impl ports::Servos for Port {
     async fn write(&mut self, pulses_us: PerArm<f32>) {
         let actuators = self.0.actuators.get();
-        self.0.actuators.set(Actuators { servos: pulses_us.map(f64::from), ..actuators });
+        self.0.actuators.set(Actuators {
+            servos: pulses_us.map(f64::from),
+            ..actuators
+        });
     }
 }
 

@@ -60,14 +60,19 @@ pub struct VirtualTime {
 impl VirtualTime {
     /// A clock at 0 and an executor without tasks; forgets what an earlier flight left in this thread.
     #[must_use]
-    #[allow(clippy::new_without_default, reason = "it resets the thread's clock: not a default of anything")]
+    #[allow(
+        clippy::new_without_default,
+        reason = "it resets the thread's clock: not a default of anything"
+    )]
     pub fn new() -> Self {
         NOW.set(0);
         NEXT.set(u64::MAX);
         QUEUE.set(Queue::new());
         PENDED.set(false);
         // Leaked on purpose: wakers of the flight may point to it for as long as the process lives.
-        Self { executor: Box::leak(Box::new(raw::Executor::new(core::ptr::null_mut()))) }
+        Self {
+            executor: Box::leak(Box::new(raw::Executor::new(core::ptr::null_mut()))),
+        }
     }
 
     /// Spawns a task.

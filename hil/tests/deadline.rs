@@ -35,10 +35,22 @@ fn run(ms: u64, work: impl Fn(usize) -> u64 + 'static) -> (Vec<Tick>, &'static L
 fn an_idle_loop_keeps_its_rate_exactly() {
     let (ticks, links) = run(1000, |_| 100);
     assert_eq!(ticks.len(), 1001);
-    assert!(ticks.iter().enumerate().all(|(i, t)| t.started == Instant::from_millis(i as u64)));
+    assert!(
+        ticks
+            .iter()
+            .enumerate()
+            .all(|(i, t)| t.started == Instant::from_millis(i as u64))
+    );
     assert!(ticks.iter().all(|t| (t.dt - 1e-3).abs() < 1e-9));
     let timing = links.timing(TaskId::Clamp);
-    assert_eq!((timing.overruns, timing.worst_response_us, timing.worst_lateness_us), (0, 100, 0));
+    assert_eq!(
+        (
+            timing.overruns,
+            timing.worst_response_us,
+            timing.worst_lateness_us
+        ),
+        (0, 100, 0)
+    );
 }
 
 #[test]

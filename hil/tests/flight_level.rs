@@ -20,13 +20,19 @@ fn doublet(t: f64) -> Wish {
 #[test]
 fn it_hovers() {
     let e = Rig::new(&Scenario::default_mission()).fly(15.0, level);
-    assert!(e.worst_roll < 3.0 && e.worst_pitch < 3.0 && e.worst_yaw < 6.0, "{e:?}");
+    assert!(
+        e.worst_roll < 3.0 && e.worst_pitch < 3.0 && e.worst_yaw < 6.0,
+        "{e:?}"
+    );
 }
 
 #[test]
 fn it_turns_with_the_stick() {
     let mut rig = Rig::new(&Scenario::default_mission());
-    rig.fly(12.0, |t| Wish { roll: 0.0, yaw_rate: if (5.0..9.0).contains(&t) { 0.4 } else { 0.0 } });
+    rig.fly(12.0, |t| Wish {
+        roll: 0.0,
+        yaw_rate: if (5.0..9.0).contains(&t) { 0.4 } else { 0.0 },
+    });
     let yaw = rig.plant.euler()[2];
     assert!((1.4..1.8).contains(&yaw), "{yaw}");
 }
@@ -36,7 +42,10 @@ fn the_flexible_mixer_flies_b_for_every_gain_and_infill() {
     for gain_k in [1.0, 5.03, 7.75, 8.4] {
         for infill in [4.0, 6.0, 6.9, 8.0, 10.0] {
             let e = Rig::new(&vehicle(B, gain_k, infill, Flexible)).fly(16.0, doublet);
-            assert!(e.worst_yaw < 6.0 && e.rms_roll < 8.0, "K {gain_k}, {infill} %: {e:?}");
+            assert!(
+                e.worst_yaw < 6.0 && e.rms_roll < 8.0,
+                "K {gain_k}, {infill} %: {e:?}"
+            );
         }
     }
 }
@@ -57,7 +66,10 @@ fn the_frozen_inverse_limit_cycles_where_c_is_large_and_only_there() {
     let stiff = Rig::new(&vehicle(B, 1.0, 6.9, Frozen)).fly(16.0, level);
     let flexible = Rig::new(&vehicle(B, 7.75, 6.9, Flexible)).fly(16.0, level);
     assert!(cycling.swing > 1.5 && cycling.worst_yaw > 5.0, "{cycling:?}");
-    assert!(stiff.swing < 0.7 && flexible.swing < 0.7, "{stiff:?} {flexible:?}");
+    assert!(
+        stiff.swing < 0.7 && flexible.swing < 0.7,
+        "{stiff:?} {flexible:?}"
+    );
 }
 
 #[test]
@@ -80,5 +92,8 @@ fn mismatched_arms_are_learnt_by_their_sensors() {
     let with = off(Flexible, 1.0, true);
     let without = off(Flexible, 1.0, false);
     let rigid = off(Rigid, 1.0 / 4.9, false);
-    assert!(with < 3.0 && without > 2.0 * with && rigid > 2.0 * with, "{with} {without} {rigid}");
+    assert!(
+        with < 3.0 && without > 2.0 * with && rigid > 2.0 * with,
+        "{with} {without} {rigid}"
+    );
 }

@@ -16,7 +16,11 @@ fn rig() -> (VirtualTime, &'static Links, &'static Board) {
 }
 
 fn spin(links: &Links, at_us: u64, command: f32) {
-    let mix = MixOutput { running: true, commands: [command; 4], ..MixOutput::default() };
+    let mix = MixOutput {
+        running: true,
+        commands: [command; 4],
+        ..MixOutput::default()
+    };
     links.mix.send(Instant::from_micros(at_us), mix);
 }
 

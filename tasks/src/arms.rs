@@ -24,7 +24,9 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
         for (arm, g) in gravity.iter_mut().enumerate() {
             *g = port.gravity(arm).await.ok();
         }
-        let Some(body) = links.attitude.fresh().filter(|a| a.calibrated) else { continue };
+        let Some(body) = links.attitude.fresh().filter(|a| a.calibrated) else {
+            continue;
+        };
         let mut tilt = [None; 4];
         for ((tilt, gravity), side) in tilt.iter_mut().zip(&gravity).zip(&SIDE) {
             *tilt = gravity.and_then(|g| arm_tilt(body.q, g, *side));
@@ -81,7 +83,12 @@ mod tests {
     #[test]
     fn nonsense_is_refused() {
         let q = Quat::IDENTITY;
-        for bad in [Vec3::ZERO, Vec3::new(f32::NAN, 0.0, 9.8), Vec3::new(0.0, 0.0, 30.0), Vec3::new(9.8, 0.0, 0.5)] {
+        for bad in [
+            Vec3::ZERO,
+            Vec3::new(f32::NAN, 0.0, 9.8),
+            Vec3::new(0.0, 0.0, 30.0),
+            Vec3::new(9.8, 0.0, 0.5),
+        ] {
             assert!(arm_tilt(q, bad, 1.0).is_none());
         }
     }

@@ -18,7 +18,9 @@ pub const DEADLINE: Duration = Duration::from_micros(400);
 
 /// Controls for ever; returns only if the link has no receiver left.
 pub async fn run(links: &Links) {
-    let Some(mut attitude) = links.attitude.receiver() else { return };
+    let Some(mut attitude) = links.attitude.receiver() else {
+        return;
+    };
     let mut loops = Loops {
         attitude: AttitudeLoop::new(&links.params),
         rate: RateLoop::new(&links.params, CONTROL_RATE_HZ),
@@ -44,7 +46,11 @@ pub async fn run(links: &Links) {
 /// Largest share of a rotor's thrust that roll and pitch may each add or take while resting on the pipe.
 const RESTING_SHARE: f32 = 0.4;
 
-const NOTHING_GIVEN: Feedback = Feedback { roll_pitch: 0.0, yaw: 0.0, yaw_gated: true };
+const NOTHING_GIVEN: Feedback = Feedback {
+    roll_pitch: 0.0,
+    yaw: 0.0,
+    yaw_gated: true,
+};
 
 struct Loops {
     attitude: AttitudeLoop,
@@ -70,23 +76,56 @@ impl Loops {
             Setpoint::Idle => return Demand::Idle,
             Setpoint::Direct { wrench } => return Demand::Wrench { wrench, yaw: true },
             Setpoint::Rate { rate, thrust } => (rate, thrust, false),
-            Setpoint::Angle { roll, pitch, yaw_rate, thrust } => {
-                let angle = AttitudeSetpoint { roll, pitch, yaw_rate };
+            Setpoint::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
+            } => {
+                let angle = AttitudeSetpoint {
+                    roll,
+                    pitch,
+                    yaw_rate,
+                };
                 (self.attitude.step(a.q, angle, a.dt), thrust, false)
             }
             Setpoint::Resting { roll, pitch, thrust } => {
-                let angle = AttitudeSetpoint { roll, pitch, yaw_rate: 0.0 };
+                let angle = AttitudeSetpoint {
+                    roll,
+                    pitch,
+                    yaw_rate: 0.0,
+                };
                 (self.attitude.step(a.q, angle, a.dt), thrust, true)
             }
         };
-        let Vec3 { x: roll, y: pitch, z: yaw } = self.rate.step(wanted, a.rate, feedback, !resting, a.dt);
+        let Vec3 {
+            x: roll,
+            y: pitch,
+            z: yaw,
+        } = self.rate.step(wanted, a.rate, feedback, !resting, a.dt);
         if resting {
             // Moments fade with the thrust, so that rotors which spool down stop alike: whatever differs
             // between them at the end vanishes faster than the tendons can follow.
             let [roll_max, pitch_max] = self.levers.map(|lever| RESTING_SHARE * thrust * lever);
             let (roll, pitch) = (math::clamp_abs(roll, roll_max), math::clamp_abs(pitch, pitch_max));
-            return Demand::Wrench { wrench: Wrench { thrust, roll, pitch, yaw: 0.0 }, yaw: false };
+            return Demand::Wrench {
+                wrench: Wrench {
+                    thrust,
+                    roll,
+                    pitch,
+                    yaw: 0.0,
+                },
+                yaw: false,
+            };
         }
-        Demand::Wrench { wrench: Wrench { thrust, roll, pitch, yaw }, yaw: true }
+        Demand::Wrench {
+            wrench: Wrench {
+                thrust,
+                roll,
+                pitch,
+                yaw,
+            },
+            yaw: true,
+        }
     }
 }

@@ -95,7 +95,13 @@ pub struct Timing {
 impl Timing {
     /// Nothing measured yet.
     pub const fn new() -> Self {
-        Self { runs: 0, overruns: 0, worst_lateness_us: 0, worst_response_us: 0, worst_execution_us: 0 }
+        Self {
+            runs: 0,
+            overruns: 0,
+            worst_lateness_us: 0,
+            worst_response_us: 0,
+            worst_execution_us: 0,
+        }
     }
 
     /// Adds a run that was released at `released`, started at `started`, ended at `ended` and had to end
@@ -104,10 +110,16 @@ impl Timing {
         let us = |d: Duration| u32::try_from(d.as_micros()).unwrap_or(u32::MAX);
         let response = ended.saturating_duration_since(released);
         self.runs = self.runs.wrapping_add(1);
-        self.overruns = self.overruns.saturating_add(skipped + u32::from(response > deadline));
-        self.worst_lateness_us = self.worst_lateness_us.max(us(started.saturating_duration_since(released)));
+        self.overruns = self
+            .overruns
+            .saturating_add(skipped + u32::from(response > deadline));
+        self.worst_lateness_us = self
+            .worst_lateness_us
+            .max(us(started.saturating_duration_since(released)));
         self.worst_response_us = self.worst_response_us.max(us(response));
-        self.worst_execution_us = self.worst_execution_us.max(us(ended.saturating_duration_since(started)));
+        self.worst_execution_us = self
+            .worst_execution_us
+            .max(us(ended.saturating_duration_since(started)));
     }
 }
 
@@ -146,7 +158,15 @@ pub struct FixedRate<'a> {
 impl<'a> FixedRate<'a> {
     /// A loop of `period` whose work must end within `deadline` of its release. The first release is now.
     pub fn new(links: &'a Links, task: TaskId, period: Duration, deadline: Duration) -> Self {
-        Self { links, task, period, deadline, next: Instant::now(), current: None, skipped: 0 }
+        Self {
+            links,
+            task,
+            period,
+            deadline,
+            next: Instant::now(),
+            current: None,
+            skipped: 0,
+        }
     }
 
     /// Ends the run before, if any, and waits for the next release.
@@ -155,7 +175,9 @@ impl<'a> FixedRate<'a> {
         let previous = self.current.take();
         if let Some(tick) = previous {
             let (ended, deadline, skipped) = (Instant::now(), self.deadline, self.skipped);
-            self.links.record(self.task, |t| t.add(tick.released, tick.started, ended, deadline, skipped));
+            self.links.record(self.task, |t| {
+                t.add(tick.released, tick.started, ended, deadline, skipped)
+            });
         }
         self.skipped = 0;
         Timer::at(self.next).await;
@@ -172,7 +194,11 @@ impl<'a> FixedRate<'a> {
             started.saturating_duration_since(p.started).as_micros() as f32 * 1e-6
         });
         let dt = sophie_control::math::clamp(dt, 0.5 * period_s, 4.0 * period_s);
-        let tick = Tick { released, started, dt };
+        let tick = Tick {
+            released,
+            started,
+            dt,
+        };
         self.current = Some(tick);
         tick
     }

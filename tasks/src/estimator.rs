@@ -13,7 +13,9 @@ pub const DEADLINE: Duration = Duration::from_micros(300);
 
 /// Estimates for ever; returns only if the link has no receiver left.
 pub async fn run(links: &Links) {
-    let Some(mut imu) = links.imu.receiver() else { return };
+    let Some(mut imu) = links.imu.receiver() else {
+        return;
+    };
     let mut estimator = Estimator::new(&links.params);
     loop {
         let sample = imu.changed().await;

@@ -41,10 +41,19 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
             continue;
         }
         collected = 0.0;
-        let dt = last_sent.map_or(1.0 / CONTROL_RATE_HZ, |t| (released - t).as_micros() as f32 * 1e-6);
+        let dt = last_sent.map_or(1.0 / CONTROL_RATE_HZ, |t| {
+            (released - t).as_micros() as f32 * 1e-6
+        });
         last_sent = Some(released);
         let (gyro, accel) = newest;
-        links.imu.send(released, ImuSample { gyro, accel, dt: math::clamp(dt, 0.5e-3, 5e-3) });
+        links.imu.send(
+            released,
+            ImuSample {
+                gyro,
+                accel,
+                dt: math::clamp(dt, 0.5e-3, 5e-3),
+            },
+        );
         record_run(links, TaskId::Imu, released, released, DEADLINE);
     }
 }

@@ -56,7 +56,10 @@ pub struct Link<T: Clone> {
 
 impl<T: Clone> Link<T> {
     const fn new(stale_after: Duration) -> Self {
-        Self { watch: Watch::new(), stale_after }
+        Self {
+            watch: Watch::new(),
+            stale_after,
+        }
     }
 
     /// Publishes `value`, measured at `at`.
@@ -334,7 +337,9 @@ impl Links {
 
     /// What is known of a task's timing.
     pub fn timing(&self, task: TaskId) -> Timing {
-        self.timing.get(task as usize).map_or(Timing::new(), |m| m.lock(Cell::get))
+        self.timing
+            .get(task as usize)
+            .map_or(Timing::new(), |m| m.lock(Cell::get))
     }
 
     /// Records one run of a task.

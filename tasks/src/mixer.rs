@@ -17,7 +17,9 @@ const NOMINAL_DT: f32 = 1e-3;
 
 /// Allocates for ever; returns only if the link has no receiver left.
 pub async fn run(links: &Links, variant: Variant, configuration: Configuration) {
-    let Some(mut demand) = links.demand.receiver() else { return };
+    let Some(mut demand) = links.demand.receiver() else {
+        return;
+    };
     let mut mixer = Mixer::new(variant, configuration, &links.params);
     let curve = ThrustCurve::from_params(&links.params);
     let mut arms_seen = Instant::MIN;
@@ -29,8 +31,14 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
         let dt = if last == Instant::MIN { NOMINAL_DT } else { dt };
         last = message.at;
         // Without a fresh voltage the last one still is the best guess; without any, nominal.
-        let ratio = links.battery.latest().map_or(1.0, |b: crate::links::Stamped<Battery>| b.value.ratio);
-        let resting = links.setpoint.latest().is_some_and(|s| matches!(s.value, Setpoint::Resting { .. }));
+        let ratio = links
+            .battery
+            .latest()
+            .map_or(1.0, |b: crate::links::Stamped<Battery>| b.value.ratio);
+        let resting = links
+            .setpoint
+            .latest()
+            .is_some_and(|s| matches!(s.value, Setpoint::Resting { .. }));
         if let Some(arms) = links.arms.latest()
             && arms.at > arms_seen
             && !resting
@@ -41,15 +49,32 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
             }
         }
         let (mix, running) = match message.value {
-            Demand::Stop => (Mix { yaw_gated: true, ..mixer.idle(dt) }, false),
+            Demand::Stop => (
+                Mix {
+                    yaw_gated: true,
+                    ..mixer.idle(dt)
+                },
+                false,
+            ),
             Demand::Idle => (mixer.idle(dt), true),
-            Demand::Wrench { wrench, yaw } => {
-                (mixer.mix(wrench, Conditions { yaw, battery_ratio: ratio, dt }), true)
-            }
+            Demand::Wrench { wrench, yaw } => (
+                mixer.mix(
+                    wrench,
+                    Conditions {
+                        yaw,
+                        battery_ratio: ratio,
+                        dt,
+                    },
+                ),
+                true,
+            ),
         };
         let tilt = mixer.tilt();
-        let (thrusts, commands) =
-            if running { (mix.thrusts, mix.thrusts.map(|t| curve.command(t, ratio))) } else { ([0.0; 4], [0.0; 4]) };
+        let (thrusts, commands) = if running {
+            (mix.thrusts, mix.thrusts.map(|t| curve.command(t, ratio)))
+        } else {
+            ([0.0; 4], [0.0; 4])
+        };
         links.mix.send(
             message.at,
             MixOutput {

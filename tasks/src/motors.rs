@@ -14,14 +14,19 @@ pub const DEADLINE: Duration = Duration::from_micros(600);
 /// Serves the motors for ever; returns, motors stopped, only if the link has no receiver left.
 pub async fn run(links: &Links, mut port: impl Motors) {
     port.write([0.0; 4]).await;
-    let Some(mut mix) = links.mix.receiver() else { return };
+    let Some(mut mix) = links.mix.receiver() else {
+        return;
+    };
     loop {
         // `fresh` beside the timeout: a mix that was computed from an old sample must not spin a motor.
         match with_timeout(links.mix.stale_after, mix.changed()).await {
             Ok(message) => {
                 let started = Instant::now();
-                let commands = message.fresh(links.mix.stale_after).map_or([0.0; 4], |m| m.commands);
-                port.write(commands.map(|c| if c.is_finite() { c } else { 0.0 })).await;
+                let commands = message
+                    .fresh(links.mix.stale_after)
+                    .map_or([0.0; 4], |m| m.commands);
+                port.write(commands.map(|c| if c.is_finite() { c } else { 0.0 }))
+                    .await;
                 record_run(links, TaskId::Motors, message.at, started, DEADLINE);
             }
             Err(_) => port.write([0.0; 4]).await,

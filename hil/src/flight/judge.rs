@@ -58,7 +58,9 @@ impl Judge {
             return Some(format!("crashed into the ground at {:.1} m/s", pose.velocity.z));
         }
         if let Some((arm, pressure)) = worst(plant.pressure()).filter(|(_, p)| *p > PRESSURE_MAX) {
-            return Some(format!("pressure on arm {arm} reached {pressure:.0} N/m2, allowed {PRESSURE_MAX:.0}"));
+            return Some(format!(
+                "pressure on arm {arm} reached {pressure:.0} N/m2, allowed {PRESSURE_MAX:.0}"
+            ));
         }
 
         let index = step.map(|(i, _)| i);
@@ -66,17 +68,26 @@ impl Judge {
             self.last_step = index;
             self.hold_start = None;
         }
-        let Some((_, Step::Hold { .. })) = step else { return None };
+        let Some((_, Step::Hold { .. })) = step else {
+            return None;
+        };
         let (start, place) = *self.hold_start.get_or_insert((t, pose.position));
         if stack.mode() != Mode::Perched {
-            return Some(format!("left the perch during the hold: mode {}", stack.mode().name()));
+            return Some(format!(
+                "left the perch during the hold: mode {}",
+                stack.mode().name()
+            ));
         }
         if plant.thrust().iter().any(|thrust| *thrust > STOPPED) && t - start > SETTLE {
             return Some("a rotor turned during the hold".to_owned());
         }
         let slip = (pose.position - place).length();
         if slip > SLIP {
-            return Some(format!("slipped {:.0} mm on the pipe, allowed {:.0}", slip * 1e3, SLIP * 1e3));
+            return Some(format!(
+                "slipped {:.0} mm on the pipe, allowed {:.0}",
+                slip * 1e3,
+                SLIP * 1e3
+            ));
         }
         if t - start > SETTLE && plant.push == DVec3::ZERO {
             let allowed = self.tolerance + SENSOR_ERROR;
@@ -97,5 +108,9 @@ impl Judge {
 
 /// The largest of four values with its arm, 1 to 4.
 fn worst(values: PerArm<f64>) -> Option<(usize, f64)> {
-    values.into_iter().enumerate().map(|(i, v)| (i + 1, v)).max_by(|a, b| a.1.total_cmp(&b.1))
+    values
+        .into_iter()
+        .enumerate()
+        .map(|(i, v)| (i + 1, v))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -62,7 +62,7 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
         let judged = judge.step(t, step, &plant, &stack);
         plant.push = push(step, t - began.1);
         recorder.step(ms, step, &plant, &stack, pilot.throttle(), observer);
-        if ms % PROGRESS_MS == 0 {
+        if ms.is_multiple_of(PROGRESS_MS) {
             observer.progress(t, stack.mode(), -plant.pose().position.z);
         }
         if let Some(reason) = judged {
@@ -74,15 +74,32 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
             break;
         }
     }
-    let event = Event { t: ms as f64 * 1e-3, text: outcome.reason.clone() };
-    recorder.finish(scenario, &stack, outcome, event, wall.elapsed().as_secs_f64(), observer)
+    let event = Event {
+        t: ms as f64 * 1e-3,
+        text: outcome.reason.clone(),
+    };
+    recorder.finish(
+        scenario,
+        &stack,
+        outcome,
+        event,
+        wall.elapsed().as_secs_f64(),
+        observer,
+    )
 }
 
 /// What the pilot can see of the vehicle.
 fn seen(plant: &Plant, t: f64) -> Seen {
     let pose = plant.pose();
     let [roll, pitch, yaw] = plant.euler();
-    Seen { t, position: pose.position, velocity: pose.velocity, roll, pitch, yaw }
+    Seen {
+        t,
+        position: pose.position,
+        velocity: pose.velocity,
+        roll,
+        pitch,
+        yaw,
+    }
 }
 
 /// The disturbance of the inspection: a sideways push during the middle third of the hold.

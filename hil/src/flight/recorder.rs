@@ -74,7 +74,7 @@ impl Recorder {
             }
         }
         self.watch_stack(t, plant, stack, observer);
-        if ms % SAMPLE_MS == 0 {
+        if ms.is_multiple_of(SAMPLE_MS) {
             let sample = sample(t, plant, stack, throttle);
             self.digest.add(&sample);
             self.account(&sample);
@@ -131,7 +131,9 @@ impl Recorder {
     }
 
     fn end_phase(&mut self, t: f64, done: bool, voltage: f64, stack: &Stack, observer: &mut dyn Observer) {
-        let Some(mut current) = self.current.take() else { return };
+        let Some(mut current) = self.current.take() else {
+            return;
+        };
         current.phase.end = t;
         current.phase.done = done;
         current.phase.battery_voltage = voltage;
@@ -146,16 +148,30 @@ impl Recorder {
         if let Some(status) = stack.links.status.latest().map(|s| s.value) {
             if status.mode != self.mode {
                 self.mode = status.mode;
-                self.note(Event { t, text: format!("mode {}", status.mode.name()) }, observer);
+                self.note(
+                    Event {
+                        t,
+                        text: format!("mode {}", status.mode.name()),
+                    },
+                    observer,
+                );
             }
             if status.reason != self.reason {
                 self.reason = status.reason;
                 if !status.reason.is_empty() {
-                    self.note(Event { t, text: status.reason.to_owned() }, observer);
+                    self.note(
+                        Event {
+                            t,
+                            text: status.reason.to_owned(),
+                        },
+                        observer,
+                    );
                 }
             }
         }
-        let Some(grip) = stack.links.grip.latest().map(|g| g.value) else { return };
+        let Some(grip) = stack.links.grip.latest().map(|g| g.value) else {
+            return;
+        };
         if grip.proven && !self.proven {
             let truth = plant.pressure();
             for (i, (arm, chosen)) in grip.arms.iter().zip(self.chosen).enumerate() {
@@ -169,7 +185,13 @@ impl Recorder {
                     });
                 }
             }
-            self.note(Event { t, text: "grip proven".to_owned() }, observer);
+            self.note(
+                Event {
+                    t,
+                    text: "grip proven".to_owned(),
+                },
+                observer,
+            );
         }
         self.proven = grip.proven;
     }
@@ -206,7 +228,11 @@ fn sample(t: f64, plant: &Plant, stack: &Stack, throttle: f64) -> Sample {
     let pose = plant.pose();
     let wide = |v: PerArm<f32>| v.map(f64::from);
     let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
-    let estimate = links.attitude.latest().map(|a| a.value.q.to_euler()).unwrap_or_default();
+    let estimate = links
+        .attitude
+        .latest()
+        .map(|a| a.value.q.to_euler())
+        .unwrap_or_default();
     let target = links.target.latest().map(|v| v.value.to_array().map(f64::from));
     let arms = links.arms.fresh().unwrap_or_default();
     Sample {
@@ -226,7 +252,13 @@ fn sample(t: f64, plant: &Plant, stack: &Stack, throttle: f64) -> Sample {
         tension: plant.tension(),
         tension_asked: wide(links.tendons.latest().map(|f| f.value.force).unwrap_or_default()),
         pressure: plant.pressure(),
-        pressure_measured: wide(links.contact.latest().map(|c| c.value.pressure).unwrap_or_default()),
+        pressure_measured: wide(
+            links
+                .contact
+                .latest()
+                .map(|c| c.value.pressure)
+                .unwrap_or_default(),
+        ),
         battery_voltage: plant.battery_voltage(),
         throttle,
         saturated: mix.running && mix.given.saturated(),
@@ -260,7 +292,10 @@ impl Digest {
             s.pressure,
             s.pressure_measured,
         ];
-        let values = scalars.iter().chain(vectors.iter().flatten()).chain(arms.iter().flatten());
+        let values = scalars
+            .iter()
+            .chain(vectors.iter().flatten())
+            .chain(arms.iter().flatten());
         for value in values {
             self.word(value.to_bits());
         }

@@ -54,11 +54,17 @@ impl Stack {
 
     /// State of the vehicle.
     pub fn mode(&self) -> Mode {
-        self.links.status.latest().map_or(Mode::Calibrating, |s| s.value.mode)
+        self.links
+            .status
+            .latest()
+            .map_or(Mode::Calibrating, |s| s.value.mode)
     }
 
     /// Missed deadlines of all tasks since power-up.
     pub fn overruns(&self) -> u32 {
-        TaskId::ALL.iter().map(|&task| self.links.timing(task).overruns).sum()
+        TaskId::ALL
+            .iter()
+            .map(|&task| self.links.timing(task).overruns)
+            .sum()
     }
 }

@@ -126,7 +126,11 @@ impl Arm {
     /// Position of the tip, m, body.
     #[must_use]
     pub fn tip(&self) -> DVec3 {
-        DVec3::new(self.x, -self.side * ARM_LENGTH * self.cos, HINGE_Z - ARM_LENGTH * self.sin)
+        DVec3::new(
+            self.x,
+            -self.side * ARM_LENGTH * self.cos,
+            HINGE_Z - ARM_LENGTH * self.sin,
+        )
     }
 
     /// Direction in which the tip moves when the tilt grows, and of the thrust: unit vector, body.
@@ -158,8 +162,7 @@ impl Arm {
             0.0
         };
         self.thrust = thrust;
-        self.generalised =
-            ARM_LENGTH * (thrust - load) + weight + moment - self.spec.damping * self.rate;
+        self.generalised = ARM_LENGTH * (thrust - load) + weight + moment - self.spec.damping * self.rate;
     }
 
     /// Advances by `dt` s with the acceleration `acceleration` (rad/s²) of the tilt.
@@ -194,14 +197,23 @@ mod tests {
         let model = sophie_control::deflection::ArmModel::new(6.9, 7.75, 4.15);
         for i in 0..70 {
             let t = 0.1 * f64::from(i);
-            assert!((spec().static_tilt(t) - f64::from(model.angle(t as f32))).abs() < 1e-5, "{t}");
+            assert!(
+                (spec().static_tilt(t) - f64::from(model.angle(t as f32))).abs() < 1e-5,
+                "{t}"
+            );
         }
     }
 
     #[test]
     fn the_mode_is_at_five_hertz_in_hover() {
         // A held body in level rest: ring down about hover and count zero crossings.
-        let mut arm = Arm::new(0, ArmSpec { damping: 0.0, ..spec() });
+        let mut arm = Arm::new(
+            0,
+            ArmSpec {
+                damping: 0.0,
+                ..spec()
+            },
+        );
         let rest = arm.spec.static_tilt(4.425);
         arm.tilt = rest + 0.02;
         arm.integrate(0.0, 0.0);

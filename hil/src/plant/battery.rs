@@ -22,7 +22,10 @@ impl Battery {
     /// A battery with `charge` (0..1) of its capacity.
     #[must_use]
     pub fn new(charge: f64) -> Self {
-        Self { charge: charge.clamp(0.0, 1.0), current: ELECTRONICS }
+        Self {
+            charge: charge.clamp(0.0, 1.0),
+            current: ELECTRONICS,
+        }
     }
 
     /// Draws `motors` A for `dt` s.
@@ -57,6 +60,10 @@ mod tests {
         assert!((b.voltage() + ELECTRONICS * RESISTANCE - 16.8).abs() < 1e-9);
         b.step(CAPACITY / 20.0, 10.0 - ELECTRONICS);
         // Half a capacity drawn at 10 A.
-        assert!((b.voltage() - (4.0 * 3.84 - 0.35)).abs() < 1e-9, "{}", b.voltage());
+        assert!(
+            (b.voltage() - (4.0 * 3.84 - 0.35)).abs() < 1e-9,
+            "{}",
+            b.voltage()
+        );
     }
 }

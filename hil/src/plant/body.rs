@@ -52,12 +52,22 @@ impl Body {
             let mass = MASS - 4.0 * TIP_MASS;
             let (x2, y2, z2) = (ARM_X * ARM_X, ARM_LENGTH * ARM_LENGTH, HINGE_Z * HINGE_Z);
             let tips = DVec3::new(y2 + z2, x2 + z2, x2 + y2) * (4.0 * TIP_MASS);
-            (mass, DVec3::new(0.0, 0.0, -4.0 * TIP_MASS * HINGE_Z / mass), INERTIA - tips)
+            (
+                mass,
+                DVec3::new(0.0, 0.0, -4.0 * TIP_MASS * HINGE_Z / mass),
+                INERTIA - tips,
+            )
         } else {
             (MASS, DVec3::ZERO, INERTIA)
         };
         let inertia = DMat3::from_diagonal(inertia);
-        Self { coupled, mass, centre, inertia, inverse: inertia.inverse() }
+        Self {
+            coupled,
+            mass,
+            centre,
+            inertia,
+            inverse: inertia.inverse(),
+        }
     }
 
     /// Accelerations under a force (N) and moment (N·m) from outside at the origin, body axes, without
@@ -107,7 +117,11 @@ impl Body {
             let carried = linear + angular.cross(arm.tip()) + arm.bias_acceleration(w);
             arm.generalised / inertia_tip - arm.normal().dot(carried) / ARM_LENGTH
         };
-        Accelerations { linear, angular, arms: arms.map(tilt) }
+        Accelerations {
+            linear,
+            angular,
+            arms: arms.map(tilt),
+        }
     }
 }
 
@@ -127,8 +141,19 @@ impl MassMatrix {
     /// Of the rigid part alone, its centre of mass at `centre`.
     fn new(mass: f64, centre: DVec3, inertia: DMat3) -> Self {
         let DVec3 { x, y, z } = centre * mass;
-        let c = [DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0)];
-        Self { mass, ayy: mass, ayz: 0.0, azz: mass, c, j: inertia }
+        let c = [
+            DVec3::new(0.0, z, -y),
+            DVec3::new(-z, 0.0, x),
+            DVec3::new(y, -x, 0.0),
+        ];
+        Self {
+            mass,
+            ayy: mass,
+            ayz: 0.0,
+            azz: mass,
+            c,
+            j: inertia,
+        }
     }
 
     /// Adds a tip at `r` that is held along x and along `along`, a unit vector in the y-z plane.
@@ -164,8 +189,11 @@ impl MassMatrix {
         j.z_axis -= cx * gx.z + cy * gy.z + cz * gz.z;
         let angular = j.inverse() * (moment - gx * force.x - gy * force.y - gz * force.z);
         let rest = force - DVec3::new(cx.dot(angular), cy.dot(angular), cz.dot(angular));
-        let linear =
-            DVec3::new(inv_x * rest.x, byy * rest.y + byz * rest.z, byz * rest.y + bzz * rest.z);
+        let linear = DVec3::new(
+            inv_x * rest.x,
+            byy * rest.y + byz * rest.z,
+            byz * rest.y + bzz * rest.z,
+        );
         (linear, angular)
     }
 }
@@ -247,8 +275,8 @@ mod tests {
         // About the centre of mass: take off the centre's own momentum.
         let centre = |pose: &Pose, arms: &[Arm; 4]| {
             let mut c = body.mass * body.centre;
-            let mut p = body.mass
-                * (pose.attitude.conjugate() * pose.velocity + pose.omega.cross(body.centre));
+            let mut p =
+                body.mass * (pose.attitude.conjugate() * pose.velocity + pose.omega.cross(body.centre));
             for arm in arms {
                 c += TIP_MASS * arm.tip();
                 p += TIP_MASS
@@ -262,7 +290,10 @@ mod tests {
         initial.omega = omega;
         let about_start = start - centre(&initial, &super::tests::arms());
         let about_end = end - centre(&pose, &arms);
-        assert!((about_end - about_start).length() < 2e-3 * about_start.length(), "{about_start} {about_end}");
+        assert!(
+            (about_end - about_start).length() < 2e-3 * about_start.length(),
+            "{about_start} {about_end}"
+        );
     }
 
     #[test]

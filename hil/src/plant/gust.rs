@@ -27,7 +27,15 @@ impl Gust {
     /// Gusts of `force_rms` N (world axes; half of it vertically) and `moment_rms` N·m (body axes).
     #[must_use]
     pub fn new(force_rms: f64, moment_rms: f64, rng: Pcg64Mcg) -> Self {
-        Self { force_rms, moment_rms, rng, force: DVec3::ZERO, moment: DVec3::ZERO, count: 0, elapsed: 0.0 }
+        Self {
+            force_rms,
+            moment_rms,
+            rng,
+            force: DVec3::ZERO,
+            moment: DVec3::ZERO,
+            count: 0,
+            elapsed: 0.0,
+        }
     }
 
     /// Advances by `dt` s.
@@ -40,7 +48,10 @@ impl Gust {
         let elapsed = std::mem::take(&mut self.elapsed);
         self.count = 0;
         let mut normal = || -> f64 { StandardNormal.sample(&mut self.rng) };
-        let (f, m) = (DVec3::from_array(std::array::from_fn(|_| normal())), DVec3::from_array(std::array::from_fn(|_| normal())));
+        let (f, m) = (
+            DVec3::from_array(std::array::from_fn(|_| normal())),
+            DVec3::from_array(std::array::from_fn(|_| normal())),
+        );
         let (kf, km) = (elapsed / FORCE_TIME, elapsed / MOMENT_TIME);
         let rms = DVec3::new(1.0, 1.0, 0.5) * self.force_rms;
         self.force += -self.force * kf + f * rms * (2.0 * kf).sqrt();

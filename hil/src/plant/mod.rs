@@ -133,7 +133,9 @@ impl Plant {
         self.gust.step(STEP);
         let near_ground = pose.position.z > -NEAR;
         if near_ground {
-            let load = self.ground_belly.step(STEP, &pose, &Surface::Ground(GROUND_FRICTION));
+            let load = self
+                .ground_belly
+                .step(STEP, &pose, &Surface::Ground(GROUND_FRICTION));
             force += load.force_body;
             moment += load.moment_body;
         }
@@ -171,8 +173,13 @@ impl Plant {
         }
         self.battery.step(STEP, current);
 
-        let acceleration =
-            self.body.accelerate(&pose, force, moment, gravity_body, self.limbs.each_ref().map(|l| &l.arm));
+        let acceleration = self.body.accelerate(
+            &pose,
+            force,
+            moment,
+            gravity_body,
+            self.limbs.each_ref().map(|l| &l.arm),
+        );
         self.specific_force = acceleration.linear - gravity_body;
         for (limb, alpha_acceleration) in self.limbs.iter_mut().zip(acceleration.arms) {
             limb.arm.integrate(STEP, alpha_acceleration);

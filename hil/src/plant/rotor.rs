@@ -33,7 +33,10 @@ impl Rotor {
     /// Rotor `index`, 0 to 3, of configuration B (`chi` +1) or A (-1), at a stop.
     #[must_use]
     pub fn new(index: usize, chi: f64) -> Self {
-        Self { spin: chi * f64::from(YAW[index]), speed: 0.0 }
+        Self {
+            spin: chi * f64::from(YAW[index]),
+            speed: 0.0,
+        }
     }
 
     /// Advances by `dt` s under the command `command` (0..1) at `voltage` V; returns the thrust, N.
@@ -100,6 +103,11 @@ mod tests {
             r.step(0.25e-3, 0.5, NOMINAL_VOLTAGE);
         }
         assert!(r.drag_moment(DVec3::new(0.0, 0.0, -1.0)).z > 0.0);
-        assert!(Rotor { spin: -1.0, ..r }.drag_moment(DVec3::new(0.0, 0.0, -1.0)).z < 0.0);
+        assert!(
+            Rotor { spin: -1.0, ..r }
+                .drag_moment(DVec3::new(0.0, 0.0, -1.0))
+                .z
+                < 0.0
+        );
     }
 }

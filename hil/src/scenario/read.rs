@@ -18,7 +18,6 @@ use crate::plant::tendon::ServoSpec;
 pub(super) type Result<T> = core::result::Result<T, ScenarioError>;
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
-
 /// A text with its name, for messages.
 pub(super) struct Source<'a> {
     pub file: &'a str,

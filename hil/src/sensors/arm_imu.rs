@@ -58,7 +58,8 @@ impl ArmImu {
             let n: f64 = StandardNormal.sample(&mut self.rng);
             (((x + n * NOISE) / LSB).round() * LSB) as f32
         };
-        self.pipeline.push_back(Vec3::new(axis(seen.x), axis(seen.y), axis(seen.z)));
+        self.pipeline
+            .push_back(Vec3::new(axis(seen.x), axis(seen.y), axis(seen.z)));
         if self.pipeline.len() > LATENCY {
             self.pipeline.pop_front().unwrap_or_default()
         } else {
@@ -83,6 +84,9 @@ mod tests {
         imu.sample(DQuat::IDENTITY, 0.5, rest);
         let new = imu.sample(DQuat::IDENTITY, 0.5, rest);
         // Left arm, tip up: turned by +0.5 about x, so gravity appears at y = g sin 0.5.
-        assert!((f64::from(new.y) - 9.806_65 * 0.5f64.sin()).abs() < 0.25, "{new:?}");
+        assert!(
+            (f64::from(new.y) - 9.806_65 * 0.5f64.sin()).abs() < 0.25,
+            "{new:?}"
+        );
     }
 }

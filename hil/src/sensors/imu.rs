@@ -40,11 +40,16 @@ impl Imu {
     /// A part with biases of its own.
     #[must_use]
     pub fn new(mut rng: Pcg64Mcg) -> Self {
-        let mut within = |limit: f64| {
-            DVec3::from_array(std::array::from_fn(|_| rng.random_range(-limit..limit)))
-        };
+        let mut within =
+            |limit: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-limit..limit)));
         let (gyro_bias, accel_bias) = (within(GYRO_BIAS), within(ACCEL_BIAS));
-        Self { gyro_bias, accel_bias, rng, pipeline: ImuReading::default(), phase: [0.0; 4] }
+        Self {
+            gyro_bias,
+            accel_bias,
+            rng,
+            pipeline: ImuReading::default(),
+            phase: [0.0; 4],
+        }
     }
 
     /// One sample of the body rate (rad/s) and specific force (m/s²) with the rotors at `rotors` rad/s. It comes
@@ -61,7 +66,11 @@ impl Imu {
             shake_accel += DVec3::new(size, 0.7 * size, size) * VIBRATION.1;
         }
         let gyro = self.measure(rate + self.gyro_bias + shake_gyro, GYRO_NOISE, GYRO_LSB);
-        let accel = self.measure(specific_force + self.accel_bias + shake_accel, ACCEL_NOISE, ACCEL_LSB);
+        let accel = self.measure(
+            specific_force + self.accel_bias + shake_accel,
+            ACCEL_NOISE,
+            ACCEL_LSB,
+        );
         std::mem::replace(&mut self.pipeline, ImuReading { gyro, accel })
     }
 

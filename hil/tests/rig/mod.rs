@@ -23,7 +23,10 @@ pub struct Wish {
 
 /// Hover.
 pub fn level(_: f64) -> Wish {
-    Wish { roll: 0.0, yaw_rate: 0.0 }
+    Wish {
+        roll: 0.0,
+        yaw_rate: 0.0,
+    }
 }
 
 /// Errors after take-off, degrees, and thrust, N.
@@ -73,13 +76,21 @@ impl Rig {
         time.spawn(sophie_tasks::motors::run(links, Port(board)));
         time.spawn(sophie_tasks::arms::run(links, Port(board)));
         time.spawn(sophie_tasks::analog::run(links, Port(board)));
-        Self { time, board, links, plant, ms: 0 }
+        Self {
+            time,
+            board,
+            links,
+            plant,
+            ms: 0,
+        }
     }
 
     pub fn step(&mut self, setpoint: Setpoint) {
         self.board.step_world(&mut self.plant);
         self.ms += 1;
-        self.links.setpoint.send(Instant::from_micros(self.ms * 1000), setpoint);
+        self.links
+            .setpoint
+            .send(Instant::from_micros(self.ms * 1000), setpoint);
         self.time.run_until(self.ms * 1000);
     }
 
@@ -88,7 +99,10 @@ impl Rig {
         for _ in 0..4000 {
             self.step(Setpoint::Idle);
         }
-        assert!(self.links.attitude.latest().is_some_and(|a| a.value.calibrated), "not calibrated at rest");
+        assert!(
+            self.links.attitude.latest().is_some_and(|a| a.value.calibrated),
+            "not calibrated at rest"
+        );
         let mut e = Errors::default();
         let (mut sum, mut n) = (0.0, 0.0);
         let (mut low, mut high) = (f64::MAX, f64::MIN);
@@ -100,7 +114,12 @@ impl Rig {
             sum = (sum + error * 1e-3).clamp(-2.0, 2.0);
             let thrust = (17.7 + 5.0 * error + 2.0 * sum) * (t / 1.0).min(1.0);
             let Wish { roll, yaw_rate } = wish(t);
-            self.step(Setpoint::Angle { roll, pitch: 0.0, yaw_rate, thrust: thrust.clamp(0.0, 30.0) as f32 });
+            self.step(Setpoint::Angle {
+                roll,
+                pitch: 0.0,
+                yaw_rate,
+                thrust: thrust.clamp(0.0, 30.0) as f32,
+            });
             if t < SETTLE {
                 continue;
             }
@@ -112,7 +131,11 @@ impl Rig {
             e.worst_yaw = e.worst_yaw.max(y.abs());
             e.rms_roll += (r - target).powi(2);
             e.rms_yaw += y.powi(2);
-            let thrust = self.links.mix.latest().map_or(0.0, |m| f64::from(m.value.thrusts[0]));
+            let thrust = self
+                .links
+                .mix
+                .latest()
+                .map_or(0.0, |m| f64::from(m.value.thrusts[0]));
             low = low.min(thrust);
             high = high.max(thrust);
         }
