@@ -2,6 +2,18 @@
 
 use crate::math;
 use crate::params::Params;
+use crate::wrench::PerArm;
+
+/// What the clamp loop knows of the grip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GripState {
+    /// Every chosen arm held the pressure for the dwell time with a force below the limit.
+    pub proven: bool,
+    /// Every arm is free: no pressure, tendon slack, servo back at release.
+    pub released: bool,
+    /// Arm by arm.
+    pub arms: PerArm<ArmGrip>,
+}
 
 /// What is known of one arm's grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

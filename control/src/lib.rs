@@ -34,6 +34,7 @@ pub mod mode;
 pub mod params;
 pub mod rate;
 pub mod rc;
+pub mod setpoint;
 pub mod stability;
 pub mod support;
 pub mod tendon;

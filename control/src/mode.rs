@@ -28,10 +28,11 @@ mod trouble;
 
 pub use self::logic::ModeLogic;
 use crate::arming::Refusals;
-use crate::grip::ArmGrip;
-use crate::rc::{ArmChoice, Sticks};
+use crate::grip::GripState;
+use crate::rc::Sticks;
+use crate::setpoint::{ClampCommand, Setpoint};
 use crate::vector::{Quat, Vec3};
-use crate::wrench::{PerArm, Wrench};
+use crate::wrench::PerArm;
 
 /// What the vehicle is doing; the commander alone changes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -41,17 +42,17 @@ pub enum Mode {
     Calibrating,
     /// Motors stopped, ready to be armed.
     Disarmed,
-    /// Rotors idle on the ground, throttle low.
+    /// Setpoint idle on the ground, throttle low.
     Armed,
     /// Free flight under the pilot's sticks.
     Flight,
     /// Resting on the pipe with the rotors still helping; attitude held, yaw given up.
     Contact,
-    /// Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
+    /// ClampCommand closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
     Clamping,
-    /// Grip proven, rotors stopped.
+    /// GripState proven, rotors stopped.
     Perched,
-    /// Rotors spooled up again, tendons paying out until every arm is proven free.
+    /// Setpoint spooled up again, tendons paying out until every arm is proven free.
     Releasing,
     /// On the ground again, rotors idle, about to disarm.
     Landed,
@@ -109,17 +110,6 @@ pub struct Motion {
     pub calibrated: bool,
 }
 
-/// What the clamp loop says of the grip.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grip {
-    /// Every chosen arm held the pressure for the dwell time with a force below the limit.
-    pub proven: bool,
-    /// Every arm is free.
-    pub released: bool,
-    /// Arm by arm.
-    pub arms: PerArm<ArmGrip>,
-}
-
 /// What the mode logic sees in one step; `None` stands for a message that is stale.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
@@ -130,7 +120,7 @@ pub struct Inputs {
     /// Thrust asked of the rotors along body -z, Σ T cos α, N; 0 when stopped.
     pub lift: f32,
     /// The grip.
-    pub grip: Option<Grip>,
+    pub grip: Option<GripState>,
     /// Pressure sensors that are faulty or silent.
     pub fsr_fault: PerArm<bool>,
     /// Battery voltage under load, V.
@@ -139,100 +129,15 @@ pub struct Inputs {
     pub late: bool,
 }
 
-/// What the rotors are to do.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Rotors {
-    /// Stopped.
-    #[default]
-    Stop,
-    /// Idle, controllers reset.
-    Idle,
-    /// Hold roll and pitch (rad), turn at a yaw rate (rad/s), with a collective thrust (N).
-    Angle {
-        /// Roll, rad.
-        roll: f32,
-        /// Pitch, rad.
-        pitch: f32,
-        /// Yaw rate, rad/s.
-        yaw_rate: f32,
-        /// Collective thrust, N.
-        thrust: f32,
-    },
-    /// Turn at body rates (rad/s) with a collective thrust (N).
-    Rate {
-        /// Body rates, rad/s.
-        rate: Vec3,
-        /// Collective thrust, N.
-        thrust: f32,
-    },
-    /// This wrench.
-    Direct {
-        /// The wrench.
-        wrench: Wrench,
-    },
-    /// On the pipe: hold roll and pitch (rad) without integral action, give yaw up.
-    Resting {
-        /// Roll, rad.
-        roll: f32,
-        /// Pitch, rad.
-        pitch: f32,
-        /// Collective thrust, N.
-        thrust: f32,
-    },
-}
-
-impl Rotors {
-    /// True when the rotors turn.
-    pub fn spin(self) -> bool {
-        self != Self::Stop
-    }
-
-    /// Collective thrust, N; 0 when stopped or idle.
-    pub fn thrust(self) -> f32 {
-        match self {
-            Self::Stop | Self::Idle => 0.0,
-            Self::Angle { thrust, .. } | Self::Rate { thrust, .. } | Self::Resting { thrust, .. } => thrust,
-            Self::Direct { wrench } => wrench.thrust,
-        }
-    }
-
-    /// True when every number in it is finite.
-    pub fn is_finite(self) -> bool {
-        let sum = match self {
-            Self::Stop | Self::Idle => 0.0,
-            Self::Angle {
-                roll,
-                pitch,
-                yaw_rate,
-                ..
-            } => roll + pitch + yaw_rate,
-            Self::Rate { rate, .. } => rate.x + rate.y + rate.z,
-            Self::Direct { wrench } => wrench.roll + wrench.pitch + wrench.yaw,
-            Self::Resting { roll, pitch, .. } => roll + pitch,
-        };
-        sum.is_finite() && self.thrust().is_finite()
-    }
-}
-
-/// What the tendons are to do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tendons {
-    /// Pay out.
-    #[default]
-    Release,
-    /// Close these arms and hold.
-    Close(ArmChoice),
-}
-
 /// What the mode logic decides in one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
     /// State of the vehicle.
     pub mode: Mode,
     /// What the rotors are to do.
-    pub rotors: Rotors,
+    pub rotors: Setpoint,
     /// What the tendons are to do.
-    pub tendons: Tendons,
+    pub tendons: ClampCommand,
     /// Why arming is refused, the failsafe acts or the last state was left; empty when nothing is wrong.
     pub reason: &'static str,
     /// Everything against arming; empty while armed.

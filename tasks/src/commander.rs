@@ -5,10 +5,10 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::math::cos;
-use sophie_control::mode::{Grip, Inputs, ModeLogic, Motion, Outputs, Rotors, Tendons};
+use sophie_control::mode::{Inputs, ModeLogic, Motion, Outputs};
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ClampCommand, Links, MixOutput, Setpoint, Status};
+use crate::links::{Links, MixOutput, Status};
 
 /// Time between two steps.
 pub const PERIOD: Duration = Duration::from_millis(10);
@@ -40,8 +40,8 @@ pub async fn run(links: &Links) -> ! {
             reason,
             ..
         } = logic.step(&inputs, tick.dt);
-        links.setpoint.send(tick.started, setpoint(rotors));
-        links.clamp_command.send(tick.started, clamp_command(tendons));
+        links.setpoint.send(tick.started, rotors);
+        links.clamp_command.send(tick.started, tendons);
         links.status.send(tick.started, Status { mode, reason });
     }
 }
@@ -57,11 +57,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
             calibrated: a.calibrated,
         }),
         lift: links.mix.fresh().map_or(0.0, |mix| lift(&mix)),
-        grip: links.grip.fresh().map(|g| Grip {
-            proven: g.proven,
-            released: g.released,
-            arms: g.arms,
-        }),
+        grip: links.grip.fresh(),
         fsr_fault: links.contact.fresh().map_or([true; 4], |c| c.fault),
         battery: links.battery.fresh().map(|b| b.voltage),
         late,
@@ -78,34 +74,6 @@ fn lift(mix: &MixOutput) -> f32 {
         .zip(mix.tilt)
         .map(|(thrust, tilt)| thrust * cos(tilt))
         .sum()
-}
-
-fn setpoint(rotors: Rotors) -> Setpoint {
-    match rotors {
-        Rotors::Stop => Setpoint::Stop,
-        Rotors::Idle => Setpoint::Idle,
-        Rotors::Angle {
-            roll,
-            pitch,
-            yaw_rate,
-            thrust,
-        } => Setpoint::Angle {
-            roll,
-            pitch,
-            yaw_rate,
-            thrust,
-        },
-        Rotors::Rate { rate, thrust } => Setpoint::Rate { rate, thrust },
-        Rotors::Direct { wrench } => Setpoint::Direct { wrench },
-        Rotors::Resting { roll, pitch, thrust } => Setpoint::Resting { roll, pitch, thrust },
-    }
-}
-
-fn clamp_command(tendons: Tendons) -> ClampCommand {
-    match tendons {
-        Tendons::Release => ClampCommand::Release,
-        Tendons::Close(arms) => ClampCommand::Close { arms },
-    }
 }
 
 /// Missed deadlines of the flight level over the last window.

@@ -17,9 +17,11 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
+pub use sophie_control::grip::GripState;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_control::rc::{ArmChoice, Sticks};
+use sophie_control::rc::Sticks;
+pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::{PerArm, Wrench};
 
@@ -111,48 +113,6 @@ pub struct Attitude {
     pub dt: f32,
 }
 
-/// What the rotors are to do.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Setpoint {
-    /// Rotors stopped.
-    #[default]
-    Stop,
-    /// Rotors at idle, controllers reset.
-    Idle,
-    /// Hold roll and pitch (rad), turn at a yaw rate (rad/s), with a collective thrust (N).
-    Angle {
-        /// Roll, rad.
-        roll: f32,
-        /// Pitch, rad.
-        pitch: f32,
-        /// Yaw rate, rad/s.
-        yaw_rate: f32,
-        /// Collective thrust, N.
-        thrust: f32,
-    },
-    /// Turn at body rates (rad/s).
-    Rate {
-        /// Body rates, rad/s.
-        rate: Vec3,
-        /// Collective thrust, N.
-        thrust: f32,
-    },
-    /// The wrench itself.
-    Direct {
-        /// The wrench asked for.
-        wrench: Wrench,
-    },
-    /// On the pipe: hold roll and pitch (rad) without integral action, give yaw up.
-    Resting {
-        /// Roll, rad.
-        roll: f32,
-        /// Pitch, rad.
-        pitch: f32,
-        /// Collective thrust, N.
-        thrust: f32,
-    },
-}
-
 /// What the controllers ask of the mixer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Demand {
@@ -220,35 +180,11 @@ pub struct ArmAngles {
     pub tilt: PerArm<Option<f32>>,
 }
 
-/// What the tendons are to do.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum ClampCommand {
-    /// Tendons slack, servos at their release position.
-    #[default]
-    Release,
-    /// Close the chosen arms to the grip pressure and hold it.
-    Close {
-        /// Which arms.
-        arms: ArmChoice,
-    },
-}
-
 /// Tension asked of each tendon, N, and the arm tilt it is meant for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TendonForces {
     /// Tension, N; 0 is slack.
     pub force: PerArm<f32>,
-}
-
-/// What the clamp loop knows of the grip.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GripState {
-    /// Every chosen arm held the pressure for the dwell time with a force below the limit.
-    pub proven: bool,
-    /// Every arm is free: no pressure, tendon slack, servo back at release.
-    pub released: bool,
-    /// Arm by arm.
-    pub arms: PerArm<sophie_control::grip::ArmGrip>,
 }
 
 /// State of the radio link.

@@ -3,7 +3,7 @@
 use super::closing::CLOSE_AGAIN;
 use super::failsafe::Cause;
 use super::logic::{ModeLogic, State};
-use super::{Inputs, Mode, Outputs, Rotors, Tendons, demand};
+use super::{ClampCommand, Inputs, Mode, Outputs, Setpoint, demand};
 use crate::arming::{Checks, Refusal, Refusals};
 use crate::math::clamp;
 
@@ -30,12 +30,12 @@ impl ModeLogic {
     pub(super) fn decide(&mut self, i: &Inputs, dt: f32) -> Outputs {
         let mode = self.state.mode();
         let tendons = match self.state {
-            State::Disarmed { closed: Some(arms) } | State::Perched { arms } => Tendons::Close(arms),
+            State::Disarmed { closed: Some(arms) } | State::Perched { arms } => ClampCommand::Close { arms },
             State::Clamping { hold, .. }
             | State::Releasing {
                 hold, opening: false, ..
-            } => Tendons::Close(hold.arms),
-            _ => Tendons::Release,
+            } => ClampCommand::Close { arms: hold.arms },
+            _ => ClampCommand::Release,
         };
         self.probe(dt);
         let wish = self.wish(i);
@@ -56,22 +56,22 @@ impl ModeLogic {
         }
     }
 
-    /// Rotors for the present state, before the collective is handed over and limited.
-    fn wish(&self, i: &Inputs) -> Rotors {
+    /// Setpoint for the present state, before the collective is handed over and limited.
+    fn wish(&self, i: &Inputs) -> Setpoint {
         let full = 4.0 * self.params.thrust_max;
         let perch_throttle = clamp(self.throttle, 0.0, self.params.perch_throttle_max);
         match (self.state, i.sticks) {
-            (State::Armed | State::Landed, _) => Rotors::Idle,
+            (State::Armed | State::Landed, _) => Setpoint::Idle,
             (State::Flight, Some(s)) => demand::from_sticks(&s, &self.params),
             (State::Contact { hold }, _) => hold.rotors(perch_throttle * full),
-            (State::Clamping { spool, .. }, _) if spool.stopped() => Rotors::Stop,
+            (State::Clamping { spool, .. }, _) if spool.stopped() => Setpoint::Stop,
             (State::Clamping { hold, spool }, _) => spool.rotors(hold, perch_throttle * full),
             (State::Releasing { hold, share, .. }, _) => {
                 let throttle = clamp(self.throttle, CLOSE_AGAIN, self.params.perch_throttle_max);
                 hold.rotors(share * throttle * full)
             }
             (State::Failsafe(cause), sticks) => self.descent(cause, sticks),
-            _ => Rotors::Stop,
+            _ => Setpoint::Stop,
         }
     }
 

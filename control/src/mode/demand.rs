@@ -1,6 +1,6 @@
 //! From sticks to a demand on the rotors, without a step in the collective and never out of range.
 
-use super::Rotors;
+use super::Setpoint;
 use crate::math::{clamp, clamp_abs};
 use crate::params::Params;
 use crate::rc::{StickMode, Sticks};
@@ -11,20 +11,20 @@ use crate::wrench::Wrench;
 pub const HAND_OVER_TIME: f32 = 0.5;
 
 /// What the pilot asks for in free flight.
-pub fn from_sticks(s: &Sticks, p: &Params) -> Rotors {
+pub fn from_sticks(s: &Sticks, p: &Params) -> Setpoint {
     let thrust = s.throttle * 4.0 * p.thrust_max;
     match s.stick_mode {
-        StickMode::Angle => Rotors::Angle {
+        StickMode::Angle => Setpoint::Angle {
             roll: s.roll * p.stick_angle,
             pitch: s.pitch * p.stick_angle,
             yaw_rate: s.yaw * p.stick_yaw_rate,
             thrust,
         },
-        StickMode::Rate => Rotors::Rate {
+        StickMode::Rate => Setpoint::Rate {
             rate: stick_rates(s, p),
             thrust,
         },
-        StickMode::Direct => Rotors::Direct {
+        StickMode::Direct => Setpoint::Direct {
             wrench: Wrench {
                 thrust,
                 roll: s.roll * p.stick_torque,
@@ -62,11 +62,11 @@ impl Collective {
     }
 
     /// The demand as it goes out: handed over, limited to what four rotors give, stopped if it is no number.
-    pub fn finish(&mut self, wish: Rotors, p: &Params, dt: f32) -> Rotors {
+    pub fn finish(&mut self, wish: Setpoint, p: &Params, dt: f32) -> Setpoint {
         let begins = core::mem::take(&mut self.pending);
-        if matches!(wish, Rotors::Stop | Rotors::Idle) || !wish.is_finite() {
+        if matches!(wish, Setpoint::Stop | Setpoint::Idle) || !wish.is_finite() {
             *self = Self::default();
-            return if wish.is_finite() { wish } else { Rotors::Stop };
+            return if wish.is_finite() { wish } else { Setpoint::Stop };
         }
         let full = 4.0 * p.thrust_max;
         let target = wish.thrust();
@@ -81,26 +81,26 @@ impl Collective {
     }
 }
 
-fn with_thrust(rotors: Rotors, thrust: f32) -> Rotors {
+fn with_thrust(rotors: Setpoint, thrust: f32) -> Setpoint {
     // Angles beyond a quarter turn are nobody's wish; the limit only catches what should not be there.
     let angle = |x| clamp_abs(x, 1.6);
     match rotors {
-        Rotors::Angle {
+        Setpoint::Angle {
             roll,
             pitch,
             yaw_rate,
             ..
-        } => Rotors::Angle {
+        } => Setpoint::Angle {
             roll: angle(roll),
             pitch: angle(pitch),
             yaw_rate,
             thrust,
         },
-        Rotors::Rate { rate, .. } => Rotors::Rate { rate, thrust },
-        Rotors::Direct { wrench } => Rotors::Direct {
+        Setpoint::Rate { rate, .. } => Setpoint::Rate { rate, thrust },
+        Setpoint::Direct { wrench } => Setpoint::Direct {
             wrench: Wrench { thrust, ..wrench },
         },
-        Rotors::Resting { roll, pitch, .. } => Rotors::Resting {
+        Setpoint::Resting { roll, pitch, .. } => Setpoint::Resting {
             roll: angle(roll),
             pitch: angle(pitch),
             thrust,

@@ -9,7 +9,7 @@
 //! | battery critical | - | sink, the pilot still steers | told; release refused |
 
 use super::logic::{ModeLogic, State};
-use super::{Inputs, Rotors, demand};
+use super::{Inputs, Setpoint, demand};
 use crate::math::{clamp, deg};
 use crate::params::Params;
 use crate::rc::{StickMode, Sticks};
@@ -147,7 +147,7 @@ impl ModeLogic {
     }
 
     /// Level and sinking; with an empty battery the pilot still steers.
-    pub(super) fn descent(&self, cause: Cause, sticks: Option<Sticks>) -> Rotors {
+    pub(super) fn descent(&self, cause: Cause, sticks: Option<Sticks>) -> Setpoint {
         let short = clamp(1.0 - self.support.sink() / SINK_RATE, 0.0, 1.0);
         let share = clamp(1.0 - SINK_SHARE * short - self.dangers.probe, 0.0, 1.0);
         let thrust = share * self.support.weight();
@@ -157,12 +157,12 @@ impl ModeLogic {
             ..steer.unwrap_or_default()
         };
         match demand::from_sticks(&steer, &self.params) {
-            Rotors::Angle {
+            Setpoint::Angle {
                 roll,
                 pitch,
                 yaw_rate,
                 ..
-            } => Rotors::Angle {
+            } => Setpoint::Angle {
                 roll,
                 pitch,
                 yaw_rate,

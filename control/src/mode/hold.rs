@@ -1,6 +1,6 @@
 //! What is held on the pipe: an attitude, a share of the collective, a grip.
 
-use super::{Grip, Inputs, Rotors};
+use super::{GripState, Inputs, Setpoint};
 use crate::grip::{ArmGrip, ArmState};
 use crate::math::clamp_abs;
 use crate::params::Params;
@@ -54,8 +54,8 @@ impl Hold {
     }
 
     /// Resting with a collective of `thrust` N.
-    pub fn rotors(self, thrust: f32) -> Rotors {
-        Rotors::Resting {
+    pub fn rotors(self, thrust: f32) -> Setpoint {
+        Setpoint::Resting {
             roll: self.roll,
             pitch: self.pitch,
             thrust,
@@ -87,12 +87,12 @@ impl Spool {
         }
     }
 
-    /// Rotors for this progress with a full collective of `thrust` N. Over the last part of the ramp they only
+    /// Setpoint for this progress with a full collective of `thrust` N. Over the last part of the ramp they only
     /// lift: at little thrust a moment would come from single rotors, and stop with a jolt on their arms.
-    pub fn rotors(self, hold: Hold, thrust: f32) -> Rotors {
+    pub fn rotors(self, hold: Hold, thrust: f32) -> Setpoint {
         let thrust = self.share * thrust;
         if self.down && self.share < LIFT_SHARE {
-            Rotors::Direct {
+            Setpoint::Direct {
                 wrench: Wrench {
                     thrust,
                     ..Wrench::default()
@@ -110,7 +110,7 @@ impl Spool {
 }
 
 /// Every chosen arm presses the pipe with a good part of the grip pressure.
-pub(super) fn held(grip: Option<Grip>, arms: ArmChoice, p: &Params) -> bool {
+pub(super) fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
     let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
     grip.is_some_and(|g| {
         g.arms
@@ -121,7 +121,7 @@ pub(super) fn held(grip: Option<Grip>, arms: ArmChoice, p: &Params) -> bool {
 }
 
 /// Why a chosen arm will never hold.
-pub(super) fn hopeless(grip: Option<Grip>, arms: ArmChoice) -> Option<&'static str> {
+pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<&'static str> {
     let grip = grip?;
     let any = |s| {
         grip.arms

@@ -1,6 +1,8 @@
 //! Random pilots, sensors and grips: what must hold whatever happens.
 
 extern crate std;
+use crate::grip::ArmGrip;
+use crate::rc::ArmChoice;
 use std::vec::Vec;
 
 use proptest::prelude::*;
@@ -54,7 +56,7 @@ fn sticks() -> impl Strategy<Value = Option<Sticks>> {
     prop_oneof![9 => some, 1 => Just(None)]
 }
 
-fn grip() -> impl Strategy<Value = Option<Grip>> {
+fn grip() -> impl Strategy<Value = Option<GripState>> {
     let state = prop_oneof![
         Just(ArmState::Free),
         Just(ArmState::Touching),
@@ -69,7 +71,7 @@ fn grip() -> impl Strategy<Value = Option<Grip>> {
                 pressure,
                 ..Default::default()
             };
-            Some(Grip {
+            Some(GripState {
                 proven,
                 released,
                 arms: [arm; 4],
@@ -80,7 +82,15 @@ fn grip() -> impl Strategy<Value = Option<Grip>> {
 }
 
 /// What the vehicle meets for a while: (steps, sticks, grip, roll, carried, battery, motion is there).
-type Spell = (u32, Option<Sticks>, Option<Grip>, f32, bool, Option<f32>, bool);
+type Spell = (
+    u32,
+    Option<Sticks>,
+    Option<GripState>,
+    f32,
+    bool,
+    Option<f32>,
+    bool,
+);
 
 fn spells() -> impl Strategy<Value = Vec<Spell>> {
     let roll = prop_oneof![9 => -0.3f32..0.3, 1 => -3.1f32..3.1, 1 => Just(f32::NAN)];
@@ -120,13 +130,13 @@ proptest! {
                 let Outputs { mode, rotors, tendons, reason, .. } = r.out;
                 let still = [Mode::Calibrating, Mode::Disarmed, Mode::Perched].contains(&mode);
                 prop_assert!(!(still && rotors.spin()), "{mode:?} {rotors:?}");
-                prop_assert!(mode != Mode::Perched || tendons != Tendons::Release);
-                prop_assert!(mode != Mode::Clamping || tendons != Tendons::Release);
+                prop_assert!(mode != Mode::Perched || tendons != ClampCommand::Release);
+                prop_assert!(mode != Mode::Clamping || tendons != ClampCommand::Release);
                 prop_assert!(rotors.is_finite());
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.len() <= 40);
-                // Rotors start from rest only where the pilot asked for it in that very step.
+                // Setpoint start from rest only where the pilot asked for it in that very step.
                 if [Mode::Disarmed, Mode::Perched].contains(&before) && rotors.spin() {
                     prop_assert!(sticks.is_some_and(|s| s.arm_switch));
                     prop_assert!([Mode::Armed, Mode::Releasing].contains(&mode), "{before:?} -> {mode:?}");

@@ -3,9 +3,11 @@
 use super::closing::{SPOOL_TIME, STOP_TIME};
 use super::logic::CONTACT_TIME;
 use super::*;
+use crate::grip::ArmGrip;
 use crate::grip::ArmState;
 use crate::math::GRAVITY;
 use crate::params::Params;
+use crate::rc::ArmChoice;
 
 pub(super) const DT: f32 = 0.01;
 
@@ -24,7 +26,7 @@ impl Rig {
         let inputs = Inputs {
             sticks: Some(Sticks::default()),
             motion: Some(Motion::default()),
-            grip: Some(Grip {
+            grip: Some(GripState {
                 released: true,
                 ..Default::default()
             }),
@@ -50,7 +52,7 @@ impl Rig {
             pressure,
             ..Default::default()
         };
-        self.inputs.grip = Some(Grip {
+        self.inputs.grip = Some(GripState {
             proven,
             released,
             arms: [arm; 4],
@@ -97,7 +99,7 @@ impl Rig {
         };
         r.expect(0.9, Mode::Disarmed);
         r.expect(0.2, Mode::Armed);
-        assert_eq!(r.out.rotors, Rotors::Idle);
+        assert_eq!(r.out.rotors, Setpoint::Idle);
         r.sticks().yaw = 0.0;
         r
     }
@@ -125,7 +127,7 @@ impl Rig {
         let mut r = Self::touched();
         r.grip(false, false, ArmState::Closing, 0.0);
         r.expect(CONTACT_TIME, Mode::Clamping);
-        assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
+        assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
         r
     }
 

@@ -6,7 +6,9 @@ use super::rig::{DT, Rig};
 use super::*;
 use crate::grip::ArmState;
 use crate::math::deg;
+use crate::rc::ArmChoice;
 use crate::rc::StickMode;
+use crate::wrench::Wrench;
 
 #[test]
 fn a_whole_mission_passes_every_state_in_order() {
@@ -14,11 +16,11 @@ fn a_whole_mission_passes_every_state_in_order() {
     r.expect(SPOOL_TIME - 0.2, Mode::Releasing);
     assert_eq!(
         r.out.tendons,
-        Tendons::Close(ArmChoice::All),
+        ClampCommand::Close { arms: ArmChoice::All },
         "not before the rotors carry"
     );
     r.run(0.2);
-    assert_eq!(r.out.tendons, Tendons::Release);
+    assert_eq!(r.out.tendons, ClampCommand::Release);
     assert!((r.out.rotors.thrust() - 0.3 * 33.2).abs() < 0.1);
     r.grip(false, true, ArmState::Free, 0.0);
     r.expect(FREE_TIME - 0.05, Mode::Releasing);
@@ -31,7 +33,7 @@ fn a_whole_mission_passes_every_state_in_order() {
     r.carried = true;
     r.expect(0.7, Mode::Landed);
     r.expect(LANDED_TIME + 0.1, Mode::Disarmed);
-    assert_eq!(r.out.rotors, Rotors::Stop);
+    assert_eq!(r.out.rotors, Setpoint::Stop);
 }
 
 #[test]
@@ -74,7 +76,7 @@ fn sticks_mean_what_the_stick_mode_says() {
     assert!((thrust - 16.6).abs() < 1e-3);
     assert_eq!(
         r.out.rotors,
-        Rotors::Angle {
+        Setpoint::Angle {
             roll: 0.305,
             pitch: -0.305,
             yaw_rate,
@@ -85,7 +87,7 @@ fn sticks_mean_what_the_stick_mode_says() {
     r.step();
     assert_eq!(
         r.out.rotors,
-        Rotors::Rate {
+        Setpoint::Rate {
             rate: Vec3::new(1.5, -1.5, yaw_rate),
             thrust
         }
@@ -98,7 +100,7 @@ fn sticks_mean_what_the_stick_mode_says() {
         pitch: -0.5,
         yaw: 0.1,
     };
-    assert_eq!(r.out.rotors, Rotors::Direct { wrench });
+    assert_eq!(r.out.rotors, Setpoint::Direct { wrench });
 }
 
 #[test]
@@ -166,7 +168,7 @@ fn the_pilot_calls_a_closing_off_or_a_release_back() {
 #[test]
 fn a_lean_is_taken_out_on_the_pipe_and_left_to_the_grip_when_it_holds() {
     let lean = |rotors| match rotors {
-        Rotors::Resting { roll, pitch, .. } => (roll, pitch),
+        Setpoint::Resting { roll, pitch, .. } => (roll, pitch),
         other => panic!("{other:?}"),
     };
     let mut r = Rig::flying();
@@ -199,5 +201,5 @@ fn a_lean_is_taken_out_on_the_pipe_and_left_to_the_grip_when_it_holds() {
     );
     r.expect(0.3 * SPOOL_TIME, Mode::Clamping);
     let lifting = |w: Wrench| w.thrust > 0.0 && w.roll.abs() + w.pitch.abs() + w.yaw.abs() <= 0.0;
-    assert!(matches!(r.out.rotors, Rotors::Direct { wrench } if lifting(wrench)));
+    assert!(matches!(r.out.rotors, Setpoint::Direct { wrench } if lifting(wrench)));
 }

@@ -8,6 +8,7 @@ use super::*;
 use crate::arming::Refusal;
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
+use crate::rc::ArmChoice;
 use crate::rc::StickMode;
 
 #[test]
@@ -23,8 +24,8 @@ fn the_arm_switch_stops_the_rotors_in_one_step_and_never_opens_a_grip() {
         let mut r = make();
         r.sticks().arm_switch = false;
         r.step();
-        assert_eq!((r.out.mode, r.out.rotors), (after, Rotors::Stop));
-        assert_eq!(r.out.tendons != Tendons::Release, closed, "{after:?}");
+        assert_eq!((r.out.mode, r.out.rotors), (after, Setpoint::Stop));
+        assert_eq!(r.out.tendons != ClampCommand::Release, closed, "{after:?}");
         r.expect(3.0, after);
     }
 }
@@ -75,7 +76,7 @@ fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
         assert_eq!(r.out.reason, why);
         assert!(r.out.rotors.spin());
         r.run(0.1);
-        assert_eq!(r.out.tendons, Tendons::Release);
+        assert_eq!(r.out.tendons, ClampCommand::Release);
         r.grip(false, true, ArmState::Free, 0.0);
         r.expect(3.0, Mode::Flight);
         r.sticks().perch_switch = false;
@@ -113,8 +114,8 @@ fn nothing_but_the_pilot_starts_the_rotors_of_a_perched_vehicle() {
         let mut r = Rig::perched();
         edit(&mut r);
         r.expect(10.0, Mode::Perched);
-        assert_eq!((r.out.reason, r.out.rotors), (why, Rotors::Stop));
-        assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
+        assert_eq!((r.out.reason, r.out.rotors), (why, Setpoint::Stop));
+        assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     }
     for throttle in [0.0, 0.19, 0.43, 1.0] {
         let mut r = Rig::perched();
@@ -130,11 +131,11 @@ fn a_person_opens_the_arms_of_a_disarmed_vehicle_on_purpose() {
     r.sticks().arm_switch = false;
     r.sticks().yaw = -1.0;
     r.expect(1.1, Mode::Disarmed);
-    assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
+    assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     assert!(r.out.refusals.contains(Refusal::ArmsClosed));
     r.sticks().perch_switch = false;
     r.run(0.1);
-    assert_eq!(r.out.tendons, Tendons::Release);
+    assert_eq!(r.out.tendons, ClampCommand::Release);
 }
 
 #[test]
@@ -148,7 +149,7 @@ fn a_lost_radio_in_flight_sinks_and_stops_on_what_carries() {
     assert!((0.84..1.0).contains(&share), "{share}");
     assert!(matches!(
         r.out.rotors,
-        Rotors::Angle {
+        Setpoint::Angle {
             roll: 0.0,
             pitch: 0.0,
             yaw_rate: 0.0,
@@ -182,7 +183,7 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
         let mut r = make();
         r.inputs.sticks = None;
         r.expect(CONTACT_TIME + 0.05, Mode::Clamping);
-        assert_eq!(r.out.tendons, Tendons::Close(ArmChoice::All));
+        assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
         r.grip(true, false, ArmState::Holding, 950.0);
         r.expect(3.0, Mode::Perched);
     }
@@ -198,7 +199,7 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
     r.expect(5.0, Mode::Disarmed);
     assert_eq!(
         r.out.tendons,
-        Tendons::Close(ArmChoice::All),
+        ClampCommand::Close { arms: ArmChoice::All },
         "no proof, no battery, no radio: hold on"
     );
 }
@@ -229,8 +230,8 @@ fn a_silent_sensor_or_a_crash_stops_the_rotors() {
             let mut r = make();
             r.inputs.motion = motion;
             r.run(after + 0.03);
-            assert_eq!((r.out.mode, r.out.rotors), (Mode::Disarmed, Rotors::Stop));
-            let clamped = matches!(r.out.tendons, Tendons::Close(_));
+            assert_eq!((r.out.mode, r.out.rotors), (Mode::Disarmed, Setpoint::Stop));
+            let clamped = matches!(r.out.tendons, ClampCommand::Close { arms: _ });
             assert_eq!(clamped, r.out.refusals.contains(Refusal::ArmsClosed));
         }
     }
@@ -246,7 +247,7 @@ fn an_empty_battery_lands_under_the_pilots_sticks() {
     r.sticks().roll = 0.5;
     r.sticks().stick_mode = StickMode::Direct;
     r.run(1.0);
-    assert!(matches!(r.out.rotors, Rotors::Angle { roll, .. } if roll > 0.3));
+    assert!(matches!(r.out.rotors, Setpoint::Angle { roll, .. } if roll > 0.3));
     r.carried = true;
     r.expect(6.0, Mode::Disarmed);
 }

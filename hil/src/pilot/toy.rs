@@ -3,10 +3,12 @@
 use glam::{DVec2, DVec3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use sophie_control::grip::GripState;
 use sophie_control::grip::{ArmGrip, ArmState};
 use sophie_control::math::GRAVITY;
-use sophie_control::mode::{Grip, Inputs, ModeLogic, Motion, Outputs, Rotors, Tendons};
+use sophie_control::mode::{Inputs, ModeLogic, Motion, Outputs};
 use sophie_control::rc::Sticks;
+use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::vector::{Quat, Vec3};
 use uf_crsf::packets::{FlightMode, PacketAddress};
 use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};
@@ -114,7 +116,7 @@ impl Toy {
 
     fn command(&mut self) {
         let dt = 5.0 * DT;
-        let close = self.out.tendons != Tendons::Release;
+        let close = self.out.tendons != ClampCommand::Release;
         self.closed = (self.closed + if close { dt } else { -3.0 * dt }).clamp(0.0, CLOSING + 1.0);
         let pressure = self.pressure * (self.closed / CLOSING).min(1.0) as f32;
         let state = if self.closed > 0.0 {
@@ -135,7 +137,7 @@ impl Toy {
                 ..Default::default()
             }),
             lift: self.out.rotors.thrust(),
-            grip: Some(Grip {
+            grip: Some(GripState {
                 proven,
                 released: self.closed <= 0.0,
                 arms: [ArmGrip {
@@ -152,18 +154,20 @@ impl Toy {
 
     fn move_on(&mut self) {
         let (roll, pitch, yaw_rate, thrust) = match self.out.rotors {
-            Rotors::Stop => (0.0, 0.0, 0.0, 0.0),
-            Rotors::Idle => (0.0, 0.0, 0.0, 1.0),
-            Rotors::Angle {
+            Setpoint::Stop => (0.0, 0.0, 0.0, 0.0),
+            Setpoint::Idle => (0.0, 0.0, 0.0, 1.0),
+            Setpoint::Angle {
                 roll,
                 pitch,
                 yaw_rate,
                 thrust,
             } => (roll, pitch, yaw_rate, thrust),
-            Rotors::Resting { roll, pitch, thrust } => (roll, pitch, 0.0, thrust),
+            Setpoint::Resting { roll, pitch, thrust } => (roll, pitch, 0.0, thrust),
             // Spooling down in a proven grip: no moments.
-            Rotors::Direct { wrench } => (self.seen.roll as f32, self.seen.pitch as f32, 0.0, wrench.thrust),
-            Rotors::Rate { .. } => panic!("the pilot flies angles"),
+            Setpoint::Direct { wrench } => {
+                (self.seen.roll as f32, self.seen.pitch as f32, 0.0, wrench.thrust)
+            }
+            Setpoint::Rate { .. } => panic!("the pilot flies angles"),
         };
         let s = &mut self.seen;
         self.setpoint += (DVec2::new(f64::from(roll), f64::from(pitch)) - self.setpoint) * (10.0 * DT);

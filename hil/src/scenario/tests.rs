@@ -93,7 +93,7 @@ fn the_stack_believes_the_vehicle_unless_told_otherwise() {
     let s = parse("[vehicle]\ninfill = 8\ngain_k = 5\nservo = 'mg996r'").unwrap();
     assert_eq!(
         (s.params.infill, s.params.gain_k, s.params.servo_stall),
-        (8.0, 5.0, 0.92)
+        (8.0, 5.0, 0.922)
     );
     let s = parse("[vehicle]\ninfill = 8\n[params]\ninfill = 6\nrate_p = 9").unwrap();
     assert_eq!(
