@@ -58,6 +58,14 @@ pub struct Telemetry {
 }
 
 impl Telemetry {
+    /// The transmitter is switched off: the display shows nothing.
+    pub fn darken(&mut self) {
+        self.mode = None;
+        self.reason.clear();
+        self.battery_voltage = None;
+        self.attitude = None;
+    }
+
     /// Takes bytes that the vehicle sent, however they are cut.
     pub fn take(&mut self, mut bytes: &[u8]) {
         while let Some(packet) = self.parser.next_packet(&mut bytes) {

@@ -6,6 +6,7 @@ use sophie_control::wrench::PerArm;
 
 use super::stack::Stack;
 use crate::plant::Plant;
+use crate::plant::contact::BELLY_Z;
 use crate::scenario::{Scenario, Step};
 
 /// Farthest that a gripped vehicle may slip while it is pushed, m.
@@ -54,7 +55,7 @@ impl Judge {
         if !pose.position.is_finite() || !pose.omega.is_finite() {
             return Some("the simulation diverged".to_owned());
         }
-        if pose.position.z > 0.0 && pose.velocity.z > CRASH_SPEED {
+        if pose.position.z > -BELLY_Z && pose.velocity.z > CRASH_SPEED {
             return Some(format!("crashed into the ground at {:.1} m/s", pose.velocity.z));
         }
         if let Some((arm, pressure)) = worst(plant.pressure()).filter(|(_, p)| *p > PRESSURE_MAX) {
@@ -68,9 +69,15 @@ impl Judge {
             self.last_step = index;
             self.hold_start = None;
         }
-        let Some((_, Step::Hold { .. })) = step else {
-            return None;
+        // Without the radio a perched vehicle must hold as well as with it.
+        let holds = match step {
+            Some((_, Step::Hold { .. })) => true,
+            Some((_, Step::RadioOff { .. })) => self.hold_start.is_some() || stack.mode() == Mode::Perched,
+            _ => false,
         };
+        if !holds {
+            return None;
+        }
         let (start, place) = *self.hold_start.get_or_insert((t, pose.position));
         if stack.mode() != Mode::Perched {
             return Some(format!(

@@ -78,6 +78,8 @@ pub enum Phase {
     Throttle,
     /// Up again, for another try.
     GoAround,
+    /// The transmitter is off.
+    Silent,
 }
 
 /// The mind.
@@ -128,6 +130,11 @@ impl Mind {
         }
     }
 
+    /// The transmitter is on.
+    pub fn transmits(&self) -> bool {
+        self.phase != Phase::Silent
+    }
+
     /// A step begins with this to see.
     pub fn begin(&mut self, seen: &Seen) {
         self.enter(Phase::Start);
@@ -149,11 +156,13 @@ impl Mind {
             Step::FlyTo { north, east, height } => self.fly_to(view, DVec2::new(north, east), height, dt),
             Step::FlyToPipe => self.fly_to_pipe(view, dt),
             Step::Touch => self.touch(view, sticks[3], dt),
+            Step::Clamp { throttle } => self.clamp(view, throttle, sticks[3], dt),
             Step::Perch { throttle } => self.perch(view, throttle, sticks[3], dt),
             Step::Hold { seconds, .. } => self.hold(view, seconds, dt),
             Step::Release => self.release(view, dt),
             Step::Land => self.land(view, dt),
             Step::Disarm => self.disarm(view),
+            Step::RadioOff { seconds } => self.radio_off(view, seconds, sticks[3]),
         };
         let limit = limits::of(step);
         match progress {
@@ -161,7 +170,7 @@ impl Mind {
                 "not done after {limit:.0} s: {}",
                 self.shortfall(step, view)
             )),
-            Progress::Going(wish) => Progress::Going(self.switches(wish)),
+            Progress::Going(wish) => Progress::Going(self.switches(Self::take_over(step, view, wish))),
             Progress::Done(wish) => Progress::Done(self.switches(wish)),
             failed @ Progress::Failed(_) => failed,
         }
@@ -224,7 +233,7 @@ impl Mind {
                     v.seen.velocity.length()
                 )
             }
-            Step::FlyToPipe | Step::Touch | Step::Perch { .. } => format!(
+            Step::FlyToPipe | Step::Touch | Step::Clamp { .. } | Step::Perch { .. } => format!(
                 "{:.2} m beside the spot, {:.2} m over the pipe, {} missed tries, {}",
                 off(self.pipe),
                 v.height() - self.pipe_top,

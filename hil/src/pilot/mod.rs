@@ -12,6 +12,7 @@ mod hands;
 mod limits;
 mod mind;
 mod perch;
+mod radio;
 mod referee;
 #[cfg(test)]
 mod tests;
@@ -66,7 +67,7 @@ pub enum StepEvent {
 /// What the pilot did in one step of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PilotOutput {
-    /// A channel frame for the receiver, [`FRAME_HZ`] a second.
+    /// A channel frame for the receiver, [`FRAME_HZ`] a second while the transmitter is on.
     pub rc_bytes: Option<Frame>,
     /// Index of the step being flown; the number of steps once all are done.
     pub step: usize,
@@ -124,7 +125,11 @@ impl Pilot {
             step: self.index,
             ..Default::default()
         };
-        self.telemetry.take(telemetry_bytes);
+        if self.mind.transmits() {
+            self.telemetry.take(telemetry_bytes);
+        } else {
+            self.telemetry.darken();
+        }
         if self.outcome.is_none()
             && self.index > 0
             && let Some(why) = self.referee.judge(&seen, mind::HEADING, dt)
@@ -138,7 +143,7 @@ impl Pilot {
                 self.think(seen, 1.0 / FRAME_HZ, &mut out);
             }
             let sticks = self.hands.move_to(&self.wish, 1.0 / FRAME_HZ);
-            out.rc_bytes = Some(rc_frame(&sticks));
+            out.rc_bytes = self.mind.transmits().then(|| rc_frame(&sticks));
         }
         out.step = self.index;
         out

@@ -155,6 +155,13 @@ impl Mind {
         }
     }
 
+    pub(super) fn clamp(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
+        match self.perch(v, throttle, stick, dt) {
+            Progress::Going(wish) if v.mode == Some(Mode::Clamping) => Progress::Done(wish),
+            other => other,
+        }
+    }
+
     pub(super) fn perch(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
         if matches!(
             self.phase,

@@ -136,6 +136,11 @@ pub enum Step {
     FlyToPipe,
     /// Descend onto the pipe until it is felt.
     Touch,
+    /// Set about 30 % throttle and start the closing; done once the arms close.
+    Clamp {
+        /// Throttle while closing, 0..1.
+        throttle: f64,
+    },
     /// Set about 30 % throttle, start the closing, wait for the proven grip and stopped motors.
     Perch {
         /// Throttle while closing, 0..1.
@@ -163,6 +168,11 @@ pub enum Step {
     Land,
     /// Disarm and wait for stopped motors.
     Disarm,
+    /// The transmitter is off: no frame goes out and the display is dark. Done once it shows the mode again.
+    RadioOff {
+        /// Duration, s.
+        seconds: f64,
+    },
 }
 
 /// What a test expects of the flight.

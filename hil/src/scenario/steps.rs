@@ -32,6 +32,14 @@ const fn number(key: &'static str, range: Range, default: f64) -> StepNumber {
 
 const HEIGHT: Range = Range::new(0.5, 30.0, "m");
 const PLACE: Range = Range::new(-50.0, 50.0, "m");
+const PERCH_THROTTLE: StepNumber = number(
+    "throttle_percent",
+    Range::new(5.0, 60.0, "%").times(0.01),
+    30.0,
+);
+/// Longest time without a transmitter after which the vehicle surely flies on by itself, s: the link turns stale
+/// after 0.5 s, and 1 s later only the sticks end the failsafe.
+const FLIES_ON: f64 = 1.4;
 
 /// Every kind of step.
 pub const STEPS: &[StepKind] = &[
@@ -69,12 +77,13 @@ pub const STEPS: &[StepKind] = &[
         build: |_| Step::Touch,
     },
     StepKind {
+        name: "clamp",
+        numbers: &[PERCH_THROTTLE],
+        build: |[throttle, ..]| Step::Clamp { throttle },
+    },
+    StepKind {
         name: "perch",
-        numbers: &[number(
-            "throttle_percent",
-            Range::new(5.0, 60.0, "%").times(0.01),
-            30.0,
-        )],
+        numbers: &[PERCH_THROTTLE],
         build: |[throttle, ..]| Step::Perch { throttle },
     },
     StepKind {
@@ -109,6 +118,11 @@ pub const STEPS: &[StepKind] = &[
         numbers: &[],
         build: |_| Step::Disarm,
     },
+    StepKind {
+        name: "radio-off",
+        numbers: &[number("seconds", Range::new(0.05, 600.0, "s"), 5.0)],
+        build: |[seconds, ..]| Step::RadioOff { seconds },
+    },
 ];
 
 impl Step {
@@ -121,12 +135,14 @@ impl Step {
             Self::Roll { .. } => "roll",
             Self::FlyToPipe => "fly-to-pipe",
             Self::Touch => "touch",
+            Self::Clamp { .. } => "clamp",
             Self::Perch { .. } => "perch",
             Self::Hold { .. } => "hold",
             Self::Release => "release",
             Self::FlyTo { .. } => "fly-to",
             Self::Land => "land",
             Self::Disarm => "disarm",
+            Self::RadioOff { .. } => "radio-off",
         }
     }
 }
@@ -139,7 +155,10 @@ pub(super) enum Whereabouts {
     InAir,
     OverPipe,
     OnPipe,
+    Closing,
     Clamped,
+    /// Out of the pilot's hands for so long that it sinks, or has landed.
+    Sinking,
 }
 
 impl Whereabouts {
@@ -149,16 +168,20 @@ impl Whereabouts {
         let (from, to): (&[Self], Self) = match step {
             Step::Arm => (&[OnGroundDisarmed], OnGroundArmed),
             Step::TakeOff { .. } => (&[OnGroundArmed], InAir),
-            Step::Hover { .. } => (&[InAir, OverPipe], self),
-            Step::Roll { .. } | Step::FlyTo { .. } => (&[InAir, OverPipe], InAir),
+            Step::Hover { .. } if self == OverPipe => (&[OverPipe], OverPipe),
+            Step::Hover { .. } | Step::FlyTo { .. } => (&[InAir, OverPipe, Sinking], InAir),
+            Step::Roll { .. } => (&[InAir, OverPipe], InAir),
             Step::FlyToPipe => (&[InAir], OverPipe),
             Step::Touch => (&[OverPipe], OnPipe),
-            Step::Perch { .. } => (&[OnPipe], Clamped),
+            Step::Clamp { .. } => (&[OnPipe], Closing),
+            Step::Perch { .. } => (&[OnPipe, Closing], Clamped),
             Step::Hold { .. } => (&[Clamped], Clamped),
             Step::Release => (&[Clamped], OverPipe),
             // Over the pipe there is no ground below: it must be flown away from first.
             Step::Land => (&[InAir], OnGroundArmed),
-            Step::Disarm => (&[OnGroundArmed], OnGroundDisarmed),
+            Step::Disarm => (&[OnGroundArmed, Sinking], OnGroundDisarmed),
+            Step::RadioOff { seconds } if self == InAir && *seconds > FLIES_ON => (&[InAir], Sinking),
+            Step::RadioOff { .. } => (&[InAir, Closing, Clamped], self),
         };
         if from.contains(&self) {
             return Ok(to);
@@ -178,7 +201,9 @@ impl Whereabouts {
             Self::InAir => "in free flight",
             Self::OverPipe => "over the pipe",
             Self::OnPipe => "touching the pipe",
+            Self::Closing => "closing its arms on the pipe",
             Self::Clamped => "clamped to the pipe",
+            Self::Sinking => "sinking without a radio",
         }
     }
 }

@@ -1,0 +1,46 @@
+//! Without a radio: the transmitter off for a while, and a vehicle taken back from its failsafe.
+
+use sophie_control::mode::Mode;
+
+use super::hands::Wish;
+use super::mind::{Mind, Phase, Progress, View};
+use crate::scenario::Step;
+
+/// Roll stick that says "I have you", share of its travel: beyond the 0.3 that ends the failsafe.
+const TAKE_OVER: f64 = 0.45;
+
+impl Mind {
+    /// Sticks let go, the throttle where it is: whatever comes back must find the vehicle as it was.
+    /// `throttle` is where that stick is.
+    pub(super) fn radio_off(&mut self, v: &View<'_>, seconds: f64, throttle: f64) -> Progress {
+        if self.phase == Phase::Start {
+            self.throttle = throttle;
+            self.enter(Phase::Silent);
+        }
+        if self.step_time >= seconds && self.phase == Phase::Silent {
+            self.enter(Phase::Wait);
+        }
+        let wish = Wish {
+            throttle: self.throttle,
+            ..Wish::default()
+        };
+        if self.phase == Phase::Wait && v.mode.is_some() {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    /// The sticks with which the pilot takes a vehicle back that sinks because it has not heard of him.
+    pub(super) fn take_over(step: &Step, v: &View<'_>, wish: Wish) -> Wish {
+        let flies = matches!(step, Step::Hover { .. } | Step::FlyTo { .. });
+        if flies && v.mode == Some(Mode::Failsafe) && v.reason == "radio lost" {
+            Wish {
+                roll: TAKE_OVER,
+                ..wish
+            }
+        } else {
+            wish
+        }
+    }
+}
