@@ -242,7 +242,7 @@ fn steps_must_make_a_mission() {
         ),
         (
             "steps = [\n  { do = 'arm' },\n  { do = 'perch' },\n]",
-            "perch.toml:3: steps[1] = perch: allowed only touching the pipe, \
+            "perch.toml:3: steps[1] = perch: allowed only touching the pipe or closing its arms on the pipe, \
              but here the vehicle is on the ground, armed",
         ),
         (
@@ -253,6 +253,16 @@ fn steps_must_make_a_mission() {
         (
             "steps = [{ do = 'arm' }, { do = 'take-off', height_m = 99 }]",
             "perch.toml:1: steps[1].height_m = 99: allowed 0.5 to 30 m",
+        ),
+        (
+            "steps = [{ do = 'radio-off' }]",
+            "perch.toml:1: steps[0] = radio-off: allowed only in free flight or closing its arms on the pipe \
+             or clamped to the pipe, but here the vehicle is on the ground, disarmed",
+        ),
+        (
+            "steps = [{ do = 'arm' }, { do = 'take-off' }, { do = 'radio-off', seconds = 2 }, { do = 'land' }]",
+            "perch.toml:1: steps[3] = land: allowed only in free flight, \
+             but here the vehicle is sinking without a radio",
         ),
     ] {
         assert_eq!(complaint(text), line);
