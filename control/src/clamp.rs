@@ -70,6 +70,19 @@ pub enum Fault {
     NotFinite,
 }
 
+impl Fault {
+    /// Text for the pilot.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Stale => "pressure reading lost",
+            Self::Sensor => "pressure sensor fault",
+            Self::Unfelt => "arm stopped, no pressure felt",
+            Self::Tilt => "arm tilt lost",
+            Self::NotFinite => "reading is no number",
+        }
+    }
+}
+
 /// The contact pressure of one arm, or why there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pressure {
@@ -283,6 +296,7 @@ impl ArmClamp {
             pressure: pressure.unwrap_or_else(|| self.pressure.map_or(0.0, |f| f.value())),
             force: self.force,
             closure: self.hold.closure(),
+            fault: self.fault,
         }
     }
 
@@ -480,11 +494,6 @@ impl Clamp {
             out.released &= arm.is_free(input.pressure);
         }
         out
-    }
-
-    /// Why each arm is faulty, if it is.
-    pub fn faults(&self) -> PerArm<Option<Fault>> {
-        self.arms.map(|a| a.fault())
     }
 }
 

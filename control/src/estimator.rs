@@ -78,6 +78,7 @@ impl Estimator {
         let weight = 1.0 - (if excess < 0.0 { -excess } else { excess }) * (1.0 / ACCEL_FADE);
         let weight = math::clamp(weight, 0.0, 1.0);
         let error = (accel * -inv).cross(self.q.down_in_body()) * weight;
+        let error = if error.is_finite() { error } else { Vec3::ZERO };
         self.bias = (self.bias - error * (self.ki * dt)).map(|b| math::clamp_abs(b, BIAS_MAX));
         self.integrate(rate + error * self.kp, dt);
         rate
@@ -207,6 +208,17 @@ mod tests {
             e.step(Vec3::new(drift, 0.0, 0.0), at_rest(0.0, 0.0), 1e-3);
         }
         assert!((e.bias().x - 0.01).abs() < 1e-3, "{:?}", e.bias());
+    }
+
+    #[test]
+    fn an_accelerometer_without_a_number_teaches_nothing() {
+        let mut e = calibrated(Vec3::ZERO, at_rest(0.1, 0.0));
+        let before = e;
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            e.step(Vec3::ZERO, Vec3::new(bad, 0.0, bad), 1e-3);
+        }
+        assert!(e.bias() == before.bias());
+        assert!((e.attitude().to_euler().0 - before.attitude().to_euler().0).abs() < 1e-6);
     }
 
     proptest! {

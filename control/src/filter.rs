@@ -15,10 +15,12 @@ impl LowPass {
     }
 
     /// One step of `dt` s with the cut-off `rate` (rad/s, 2π times Hz). Stable for any positive product:
-    /// the gain is rate·dt / (1 + rate·dt).
+    /// the gain is rate·dt / (1 + rate·dt). An input that is not finite changes nothing.
     pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
         let k = rate * dt;
-        self.value += (input - self.value) * (k / (1.0 + k));
+        if input.is_finite() {
+            self.value += (input - self.value) * (k / (1.0 + k));
+        }
         self.value
     }
 

@@ -1,5 +1,6 @@
 //! The judgement whether an arm holds the pipe, and whether it is free of it.
 
+use crate::clamp::Fault;
 use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
@@ -26,6 +27,8 @@ pub struct ArmGrip {
     pub force: f32,
     /// Time from the start of closing until the pressure was within its tolerance for good, s.
     pub closure: Option<f32>,
+    /// Why the arm is [`ArmState::Faulty`].
+    pub fault: Option<Fault>,
 }
 
 /// State of one arm.

@@ -31,6 +31,9 @@ pub enum Variant {
 /// Share of the stiff frame's yaw authority k_q below which yaw fades and entries are floored.
 const YAW_FLOOR: f32 = 0.35;
 
+/// Thrust above the yaw gate at which it opens again, N: a mean that hovers about the gate must not switch yaw.
+const GATE_HYSTERESIS: f32 = 0.2;
+
 /// What one step gives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mix {
@@ -97,6 +100,7 @@ pub struct Mixer {
     max: f32,
     yaw_limit: f32,
     gate: f32,
+    yaw_open: bool,
     motor_rate: f32,
 }
 
@@ -115,6 +119,7 @@ impl Mixer {
             max: p.thrust_max,
             yaw_limit: p.yaw_thrust_max,
             gate: p.yaw_gate_thrust,
+            yaw_open: false,
             motor_rate: 1.0 / p.motor_tau,
         }
     }
@@ -147,8 +152,14 @@ impl Mixer {
         let ratio = math::clamp(c.battery_ratio, 0.5, 1.0);
         let high = self.max * ratio * ratio;
         let mean = 0.25 * self.tilt.thrusts().iter().sum::<f32>();
-        let usable = c.yaw && mean >= self.gate;
-        let (patterns, fade) = match self.variant {
+        self.yaw_open = mean
+            >= if self.yaw_open {
+                self.gate
+            } else {
+                self.gate + GATE_HYSTERESIS
+            };
+        let usable = c.yaw && self.yaw_open;
+        let (mut patterns, fade) = match self.variant {
             Variant::Flexible => self.quasi_static(w, usable),
             Variant::Frozen => self.frozen(w),
             Variant::Rigid => self.stiff(w, [0.0; 4]),
@@ -157,21 +168,19 @@ impl Mixer {
                 self.stiff(w, tilt)
             }
         };
-        let yaw_gated = !usable || fade <= 0.0;
-        let patterns = if yaw_gated {
-            Patterns {
-                yaw: [0.0; 4],
-                ..patterns
-            }
+        let share = if usable {
+            fade * self.yaw_room(&patterns.yaw, fade)
         } else {
-            patterns
+            0.0
         };
-        let (thrusts, given) = desaturate(&patterns, self.idle, high);
+        patterns.yaw = patterns.yaw.map(|y| y * share);
+        let (thrusts, mut given) = desaturate(&patterns, self.idle, high);
+        given.yaw *= share;
         self.follow(thrusts, c.dt);
         Mix {
             thrusts,
             given,
-            yaw_gated,
+            yaw_gated: share <= 0.0,
         }
     }
 
@@ -210,7 +219,9 @@ impl Mixer {
             pitch: -now.pitch,
             yaw: -now.yaw * fade,
         };
-        let mut patterns = self.patterns(e, thrusts, rest, w, fade);
+        let Some(mut patterns) = self.patterns(e, thrusts, rest, w) else {
+            return self.without_yaw(w);
+        };
         // The collective goes on from the last thrusts. Where yaw is given up nothing corrects what they have
         // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
         let left = 0.25
@@ -230,50 +241,44 @@ impl Mixer {
     fn frozen(&self, w: Wrench) -> (Patterns, f32) {
         let tilt = self.dynamic.map(|arm| self.tilt.model().angle(arm.load));
         let e = Effectiveness::frozen(&self.geometry, &tilt);
-        (
-            self.patterns(
-                e,
-                [0.0; 4],
-                Wrench {
-                    thrust: w.thrust,
-                    ..Wrench::default()
-                },
-                w,
-                1.0,
-            ),
-            1.0,
-        )
+        let rest = Wrench {
+            thrust: w.thrust,
+            ..Wrench::default()
+        };
+        self.patterns(e, [0.0; 4], rest, w)
+            .map_or_else(|| self.without_yaw(w), |p| (p, 1.0))
     }
 
-    /// Splits base + E⁻¹(rest + moments of w) into patterns; `rest` is what the collective part must add.
-    fn patterns(&self, e: Effectiveness, base: PerArm<f32>, rest: Wrench, w: Wrench, fade: f32) -> Patterns {
-        let Some(inverse) = Inverse::new(self.geometry, e) else {
-            // No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
-            return Patterns {
-                yaw: [0.0; 4],
-                ..self.stiff(w, [0.0; 4]).0
-            };
-        };
+    /// No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
+    fn without_yaw(&self, w: Wrench) -> (Patterns, f32) {
+        (self.stiff(Wrench { yaw: 0.0, ..w }, [0.0; 4]).0, 0.0)
+    }
+
+    /// Splits base + E⁻¹(rest + moments of w) into patterns; `rest` is what the collective part must add. `None`
+    /// where the effectiveness has no inverse.
+    fn patterns(&self, e: Effectiveness, base: PerArm<f32>, rest: Wrench, w: Wrench) -> Option<Patterns> {
+        let inverse = Inverse::new(self.geometry, e)?;
         let mut collective = inverse.solve(rest);
         for (c, b) in collective.iter_mut().zip(&base) {
             *c += b;
         }
-        Patterns {
+        let of = |w: Wrench| inverse.solve(w);
+        Some(Patterns {
             collective,
-            shift: inverse.solve(Wrench {
+            shift: of(Wrench {
                 thrust: 1.0,
                 ..Wrench::default()
             }),
-            roll_pitch: inverse.solve(Wrench {
+            roll_pitch: of(Wrench {
                 thrust: 0.0,
                 yaw: 0.0,
                 ..w
             }),
-            yaw: self.limit_yaw(inverse.solve(Wrench {
-                yaw: w.yaw * fade,
+            yaw: of(Wrench {
+                yaw: w.yaw,
                 ..Wrench::default()
-            })),
-        }
+            }),
+        })
     }
 
     /// The printed matrix: stiff levers for roll, pitch and yaw, cos α in the thrust row alone.
@@ -297,26 +302,19 @@ impl Mixer {
         let inv_lift = 1.0 / lift.iter().sum::<f32>();
         p.collective = [(w.thrust - moments_lift) * inv_lift; 4];
         p.shift = [inv_lift; 4];
-        p.yaw = self.limit_yaw(p.yaw);
         (p, 1.0)
     }
 
-    /// Scales a yaw pattern so that no rotor gets more than the limit.
-    fn limit_yaw(&self, yaw: PerArm<f32>) -> PerArm<f32> {
-        let worst = yaw.iter().fold(0.0f32, |m, y| {
-            if *y > m {
-                *y
-            } else if -*y > m {
-                -*y
-            } else {
-                m
-            }
-        });
-        if worst > self.yaw_limit {
-            let k = self.yaw_limit / worst;
-            yaw.map(|y| y * k)
+    /// Share of a yaw pattern, already to be scaled by `fade`, that keeps within what one rotor may get.
+    fn yaw_room(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
+        let worst = yaw
+            .iter()
+            .map(|y| y.abs())
+            .fold(0.0f32, |m, y| if y > m { y } else { m });
+        if worst * fade > self.yaw_limit {
+            self.yaw_limit / (worst * fade)
         } else {
-            yaw
+            1.0
         }
     }
 }
@@ -451,11 +449,51 @@ mod tests {
                 conditions(),
             );
             let mean = 0.25 * m.tilt().thrusts().iter().sum::<f32>();
-            assert!(mix.yaw_gated == (mean < 1.95) || (mean - 1.95).abs() < 0.02);
+            assert!(mix.yaw_gated == (mean < 2.15) || (mean - 2.15).abs() < 0.02);
             for (a, b) in mix.thrusts.iter().zip(&last) {
                 assert!(i == 0 || (a - b).abs() < 1.6, "{i}: {b} -> {a}");
             }
             last = mix.thrusts;
+        }
+    }
+
+    #[test]
+    fn yaw_beyond_its_limit_is_reported_as_not_given() {
+        for variant in [Variant::Flexible, Variant::Rigid, Variant::Paper] {
+            let (_, mix) = settled(variant, Wrench { yaw: 1.0, ..HOVER });
+            assert!(
+                mix.given.yaw < 0.5 && mix.given.saturated(),
+                "{variant:?} {:?}",
+                mix.given
+            );
+            let spread = 0.5 * (mix.thrusts[0] - mix.thrusts[1]);
+            assert!(
+                spread < 1.55 || variant == Variant::Flexible,
+                "{variant:?} {:?}",
+                mix.thrusts
+            );
+        }
+        let (_, mix) = settled(Variant::Flexible, HOVER);
+        assert!(mix.given == Given::ALL);
+    }
+
+    #[test]
+    fn a_sagging_battery_lowers_the_limit() {
+        let mut m = Mixer::new(Variant::Flexible, Configuration::B, &Params::default());
+        let sagged = Conditions {
+            battery_ratio: 0.8,
+            ..conditions()
+        };
+        for _ in 0..3000 {
+            let mix = m.mix(
+                Wrench {
+                    thrust: 40.0,
+                    ..Wrench::default()
+                },
+                sagged,
+            );
+            // 8.3 N · 0.8².
+            assert!(mix.thrusts.iter().all(|t| *t <= 5.3121), "{:?}", mix.thrusts);
         }
     }
 

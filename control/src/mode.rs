@@ -42,17 +42,17 @@ pub enum Mode {
     Calibrating,
     /// Motors stopped, ready to be armed.
     Disarmed,
-    /// Setpoint idle on the ground, throttle low.
+    /// Rotors idle on the ground, throttle low.
     Armed,
     /// Free flight under the pilot's sticks.
     Flight,
     /// Resting on the pipe with the rotors still helping; attitude held, yaw given up.
     Contact,
-    /// ClampCommand closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
+    /// Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
     Clamping,
-    /// GripState proven, rotors stopped.
+    /// Grip proven, rotors stopped.
     Perched,
-    /// Setpoint spooled up again, tendons paying out until every arm is proven free.
+    /// Rotors spooled up again, tendons paying out until every arm is proven free.
     Releasing,
     /// On the ground again, rotors idle, about to disarm.
     Landed,

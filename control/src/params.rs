@@ -227,6 +227,8 @@ params! {
 
     /// Battery voltage of full thrust: the curve is normalised to it (4S nominal).
     battery_nominal = 14.8, "V", 6.0 ..= 52.0;
+    /// Usable charge of a fresh flight battery (paper, 1800 mAh).
+    battery_capacity = 6480.0, "A s", 360.0 ..= 200000.0;
     /// Battery voltage under load at which arming is refused and the pilot is warned.
     battery_warning = 13.6, "V", 5.0 ..= 52.0;
     /// Battery voltage under load at which the failsafe lands.

@@ -5,13 +5,16 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::math::cos;
-use sophie_control::mode::{Inputs, ModeLogic, Motion, Outputs};
+use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
+use sophie_control::tendon::ForceLimit;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Links, MixOutput, Status};
 
 /// Time between two steps.
 pub const PERIOD: Duration = Duration::from_millis(10);
+/// Infill below which the paper's authors did not fly, %.
+const INFILL_FLOWN: f32 = 6.0;
 /// Tasks whose missed deadlines forbid arming.
 const FLIGHT_LEVEL: [TaskId; 5] = [
     TaskId::Imu,
@@ -42,7 +45,28 @@ pub async fn run(links: &Links) -> ! {
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
-        links.status.send(tick.started, Status { mode, reason });
+        let warning = warning(links, mode);
+        links.status.send(
+            tick.started,
+            Status {
+                mode,
+                reason,
+                warning,
+            },
+        );
+    }
+}
+
+/// What the pilot must know without being stopped by it.
+fn warning(links: &Links, mode: Mode) -> &'static str {
+    if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
+        "arm tilt beyond its model"
+    } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
+        "servo weaker than the force limit"
+    } else if mode == Mode::Disarmed && links.params.infill < INFILL_FLOWN {
+        "infill below what was flown"
+    } else {
+        ""
     }
 }
 

@@ -25,7 +25,7 @@ pub async fn run(links: &Links) {
         attitude: AttitudeLoop::new(&links.params),
         rate: RateLoop::new(&links.params, CONTROL_RATE_HZ),
         levers: [links.params.arm_d, links.params.arm_b],
-        running: false,
+        kind: Kind::None,
     };
     loop {
         let estimate = attitude.changed().await;
@@ -52,22 +52,50 @@ const NOTHING_GIVEN: Feedback = Feedback {
     yaw_gated: true,
 };
 
+/// Which loops a setpoint runs.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    None,
+    Attitude,
+    Rate,
+    Direct,
+}
+
+impl Kind {
+    fn of(setpoint: Setpoint) -> Self {
+        match setpoint {
+            Setpoint::Stop | Setpoint::Idle => Self::None,
+            Setpoint::Angle { .. } | Setpoint::Resting { .. } => Self::Attitude,
+            Setpoint::Rate { .. } => Self::Rate,
+            Setpoint::Direct { .. } => Self::Direct,
+        }
+    }
+}
+
 struct Loops {
     attitude: AttitudeLoop,
     rate: RateLoop,
     /// Sideways and fore-aft lever of a rotor, m.
     levers: [f32; 2],
-    running: bool,
+    kind: Kind,
 }
 
 impl Loops {
     fn step(&mut self, a: &Attitude, setpoint: Setpoint, feedback: Feedback) -> Demand {
-        let running = !matches!(setpoint, Setpoint::Stop | Setpoint::Idle);
-        if !running || !self.running {
-            self.attitude.reset(a.q);
-            self.rate.reset();
+        // A loop that did not run has a past that is not this flight's: it starts afresh where the vehicle is.
+        let kind = Kind::of(setpoint);
+        if kind != self.kind {
+            if kind == Kind::Attitude {
+                self.attitude.reset(a.q);
+            }
+            if !matches!(
+                (self.kind, kind),
+                (Kind::Attitude, Kind::Rate) | (Kind::Rate, Kind::Attitude)
+            ) {
+                self.rate.reset();
+            }
+            self.kind = kind;
         }
-        self.running = running;
         if feedback.yaw_gated {
             self.attitude.capture_heading(a.q);
         }

@@ -2,7 +2,7 @@
 //!
 //! Flight level. Deadline: the filtered sample leaves within 200 µs of the last reading of its batch.
 
-use embassy_time::{Duration, Instant, with_timeout};
+use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::imu_filter::ImuFilter;
 use sophie_control::math;
 use sophie_control::vector::Vec3;
@@ -17,6 +17,8 @@ pub const CONTROL_RATE_HZ: f32 = 1000.0;
 pub const DEADLINE: Duration = Duration::from_micros(200);
 /// A sensor that says nothing for this long is tried again.
 pub const SILENCE: Duration = Duration::from_millis(3);
+/// Pause after a failed read.
+pub const RETRY: Duration = Duration::from_millis(1);
 
 /// Serves the inertial sensor for ever. A failed or silent read sends nothing: readers see the age.
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {
@@ -27,8 +29,14 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let mut last_sent: Option<Instant> = None;
     let mut newest = (Vec3::ZERO, Vec3::ZERO);
     loop {
-        let Ok(Ok(batch)) = with_timeout(SILENCE, port.read()).await else {
-            continue;
+        let batch = match with_timeout(SILENCE, port.read()).await {
+            Ok(Ok(batch)) if !batch.is_empty() => batch,
+            // A port that fails at once must not keep the flight level from everything below it.
+            Ok(_) => {
+                Timer::after(RETRY).await;
+                continue;
+            }
+            Err(_) => continue,
         };
         let released = Instant::now();
         for reading in &batch {

@@ -90,7 +90,7 @@ impl<T: Clone> Link<T> {
 pub struct ImuSample {
     /// Angular rate, rad/s, body, low-passed; the estimator takes its bias off.
     pub gyro: Vec3,
-    /// Specific force, m/s², body, mean over the decimated samples.
+    /// Specific force, m/s², body, the newest, low-passed.
     pub accel: Vec3,
     /// Time since the sample before, s, limited to a sane range.
     pub dt: f32,
@@ -180,7 +180,7 @@ pub struct ArmAngles {
     pub tilt: PerArm<Option<f32>>,
 }
 
-/// Tension asked of each tendon, N, and the arm tilt it is meant for.
+/// Tension asked of each tendon.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TendonForces {
     /// Tension, N; 0 is slack.
@@ -205,6 +205,8 @@ pub struct Status {
     pub mode: Mode,
     /// Why arming is refused or the failsafe acts; empty when nothing does.
     pub reason: &'static str,
+    /// What does not stop the flight but must be known; empty when there is nothing.
+    pub warning: &'static str,
 }
 
 /// Every link of one vehicle.

@@ -7,13 +7,16 @@ use embassy_time::{Duration, Instant, with_timeout};
 use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
 use crate::ports::Motors;
+use sophie_control::wrench::PerArm;
 
 /// Time from data-ready to the frame.
 pub const DEADLINE: Duration = Duration::from_micros(600);
+/// Time after which a frame is given up: ten times the slowest protocol's.
+pub const FRAME_LIMIT: Duration = Duration::from_millis(3);
 
 /// Serves the motors for ever; returns, motors stopped, only if the link has no receiver left.
 pub async fn run(links: &Links, mut port: impl Motors) {
-    port.write([0.0; 4]).await;
+    write(&mut port, [0.0; 4]).await;
     let Some(mut mix) = links.mix.receiver() else {
         return;
     };
@@ -25,11 +28,16 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                 let commands = message
                     .fresh(links.mix.stale_after)
                     .map_or([0.0; 4], |m| m.commands);
-                port.write(commands.map(|c| if c.is_finite() { c } else { 0.0 }))
-                    .await;
+                write(&mut port, commands.map(|c| if c.is_finite() { c } else { 0.0 })).await;
                 record_run(links, TaskId::Motors, message.at, started, DEADLINE);
             }
-            Err(_) => port.write([0.0; 4]).await,
+            Err(_) => write(&mut port, [0.0; 4]).await,
         }
     }
+}
+
+/// Sends one frame; one that hangs is given up, and the next is tried.
+async fn write(port: &mut impl Motors, commands: PerArm<f32>) {
+    // Giving up is all that can be done here: the next frame follows within a millisecond.
+    let _ = with_timeout(FRAME_LIMIT, port.write(commands)).await;
 }

@@ -29,10 +29,11 @@ pub struct ImuReading {
 
 /// The vehicle's inertial sensor.
 pub trait Imu {
-    /// Samples per second.
+    /// Samples per second: a whole multiple of 1 kHz within 2 %, for which the filters are designed.
     fn rate_hz(&self) -> f32;
 
-    /// Waits for data-ready and reads every sample since the last call, oldest first.
+    /// Waits for data-ready and reads every sample since the last call, oldest first. The future is dropped when
+    /// the part stays silent for [`crate::imu::SILENCE`], and the call made again: it must be safe to drop.
     ///
     /// # Errors
     /// A silent or garbled sensor.

@@ -28,8 +28,6 @@ const CYCLE: u8 = 10;
 const BATTERY_SLOT: u8 = 9;
 /// Longest text of a flight-mode frame.
 const TEXT: usize = 59;
-/// Usable charge of a fresh flight battery, A·s (1800 mAh).
-const CHARGE: f32 = 1.8 * 3600.0;
 
 /// A frame ready to be sent.
 type Frame = heapless::Vec<u8, 64>;
@@ -41,7 +39,10 @@ pub async fn run(links: &Links, mut port: impl TelemetryLink) -> ! {
     let mut shown = None;
     loop {
         rate.next().await;
-        let status = links.status.fresh().unwrap_or_default();
+        // A commander that has fallen silent shows as a display that no longer changes.
+        let Some(status) = links.status.fresh() else {
+            continue;
+        };
         let frame = if shown == Some(status.mode) {
             let frame = scheduled(links, status, slot);
             slot = (slot + 1) % CYCLE;
@@ -59,7 +60,12 @@ pub async fn run(links: &Links, mut port: impl TelemetryLink) -> ! {
 
 fn scheduled(links: &Links, status: Status, slot: u8) -> Option<Frame> {
     if slot == BATTERY_SLOT {
-        encode(links.battery.fresh().map(battery))
+        encode(
+            links
+                .battery
+                .fresh()
+                .map(|b| battery(b, links.params.battery_capacity)),
+        )
     } else if slot % 2 == 1 {
         encode(packets::FlightMode::new(&mode_text(status)).ok())
     } else {
@@ -71,7 +77,12 @@ fn scheduled(links: &Links, status: Status, slot: u8) -> Option<Frame> {
 
 /// The mode's name, with the reason behind a colon when there is one.
 fn mode_text(status: Status) -> String<TEXT> {
-    let Status { mode, reason } = status;
+    let Status {
+        mode,
+        reason,
+        warning,
+    } = status;
+    let reason = if reason.is_empty() { warning } else { reason };
     let mut text = String::new();
     let written = if reason.is_empty() {
         text.write_str(mode.name())
@@ -97,8 +108,8 @@ fn tenths_of_mrad(angle: f32) -> i16 {
     (angle * 1e4) as i16
 }
 
-fn battery(b: Battery) -> packets::Battery {
-    let remaining = 100.0 * (1.0 - b.used / CHARGE);
+fn battery(b: Battery, capacity: f32) -> packets::Battery {
+    let remaining = 100.0 * (1.0 - b.used / capacity);
     packets::Battery {
         voltage: (b.voltage * 10.0 + 0.5) as i16,
         current: (b.current * 10.0 + 0.5) as i16,
@@ -123,7 +134,11 @@ mod tests {
     fn the_text_of_every_mode_can_be_read_back() {
         for mode in Mode::ALL {
             for reason in ["", "battery low", "force limit reached without grip"] {
-                let text = mode_text(Status { mode, reason });
+                let text = mode_text(Status {
+                    mode,
+                    reason,
+                    warning: "",
+                });
                 assert_eq!(parse_mode_text(&text), Some((mode, reason)));
                 assert!(encode(packets::FlightMode::new(&text).ok()).is_some());
             }
@@ -132,7 +147,8 @@ mod tests {
         assert_eq!(
             mode_text(Status {
                 mode: Mode::Disarmed,
-                reason: long
+                reason: long,
+                warning: ""
             }),
             "DISARMED"
         );
@@ -141,21 +157,27 @@ mod tests {
 
     #[test]
     fn the_battery_comes_in_the_frames_units() {
-        let b = battery(Battery {
-            voltage: 15.26,
-            current: 21.3,
-            used: 1800.0,
-            ratio: 1.0,
-        });
+        let b = battery(
+            Battery {
+                voltage: 15.26,
+                current: 21.3,
+                used: 1800.0,
+                ratio: 1.0,
+            },
+            6480.0,
+        );
         assert_eq!(
             (b.voltage, b.current, b.capacity_used, b.remaining),
             (153, 213, 500, 72)
         );
         assert_eq!(
-            battery(Battery {
-                used: 1e9,
-                ..Default::default()
-            })
+            battery(
+                Battery {
+                    used: 1e9,
+                    ..Default::default()
+                },
+                6480.0
+            )
             .remaining,
             0
         );

@@ -113,7 +113,7 @@ impl ModeLogic {
             return State::Perched { arms };
         };
         if !s.arm_switch {
-            // Setpoint stay locked. The disarming gesture hands the closed vehicle over to a person.
+            // Rotors stay locked. The disarming gesture hands the closed vehicle over to a person.
             if self.gesture == Some(crate::arming::Gesture::Disarm) {
                 self.perch_seen_on = false;
                 return State::Disarmed { closed: Some(arms) };

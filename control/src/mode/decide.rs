@@ -56,7 +56,7 @@ impl ModeLogic {
         }
     }
 
-    /// Setpoint for the present state, before the collective is handed over and limited.
+    /// Setpoint of the present state, before the collective is handed over and limited.
     fn wish(&self, i: &Inputs) -> Setpoint {
         let full = 4.0 * self.params.thrust_max;
         let perch_throttle = clamp(self.throttle, 0.0, self.params.perch_throttle_max);

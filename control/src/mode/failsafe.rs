@@ -120,7 +120,9 @@ impl ModeLogic {
     }
 
     pub(super) fn failsafe(&mut self, cause: Cause, sticks: Option<Sticks>) -> State {
-        if self.support.resting() {
+        // Not `resting`: a vehicle lighter or stronger than its parameters would seem carried in free air. On real
+        // ground the probe takes thrust away until most of the weight is carried.
+        if self.support.grounded() {
             return self.stop(cause.text());
         }
         match (cause, sticks) {
@@ -142,7 +144,11 @@ impl ModeLogic {
     /// Takes thrust away while something seems to carry the vehicle, gives it back where nothing does.
     pub(super) fn probe(&mut self, dt: f32) {
         let hint = self.state.mode() == super::Mode::Failsafe && self.support.force() > HINT_FORCE;
-        let rate = if hint { PROBE_RATE } else { -4.0 * PROBE_RATE };
+        let rate = match (hint, self.support.resting()) {
+            (true, true) => 3.0 * PROBE_RATE,
+            (true, false) => PROBE_RATE,
+            (false, _) => -4.0 * PROBE_RATE,
+        };
         self.dangers.probe = clamp(self.dangers.probe + rate * dt, 0.0, 1.0);
     }
 

@@ -1,6 +1,7 @@
 //! What is held on the pipe: an attitude, a share of the collective, a grip.
 
 use super::{GripState, Inputs, Setpoint};
+use crate::clamp::Fault;
 use crate::grip::{ArmGrip, ArmState};
 use crate::math::clamp_abs;
 use crate::params::Params;
@@ -87,7 +88,7 @@ impl Spool {
         }
     }
 
-    /// Setpoint for this progress with a full collective of `thrust` N. Over the last part of the ramp they only
+    /// Setpoint of this progress with a full collective of `thrust` N. Over the last part of the ramp they only
     /// lift: at little thrust a moment would come from single rotors, and stop with a jolt on their arms.
     pub fn rotors(self, hold: Hold, thrust: f32) -> Setpoint {
         let thrust = self.share * thrust;
@@ -123,15 +124,16 @@ pub(super) fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool
 /// Why a chosen arm will never hold.
 pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<&'static str> {
     let grip = grip?;
-    let any = |s| {
+    let chosen = || {
         grip.arms
             .iter()
             .zip(arms.mask())
-            .any(|(a, chosen)| chosen && a.state == s)
+            .filter(|(_, chosen)| *chosen)
+            .map(|(a, _)| a)
     };
-    if any(ArmState::Faulty) {
-        Some("pressure sensor fault")
-    } else if any(ArmState::ForceLimited) {
+    if let Some(arm) = chosen().find(|a| a.state == ArmState::Faulty) {
+        Some(arm.fault.map_or("arm fault", Fault::text))
+    } else if chosen().any(|a| a.state == ArmState::ForceLimited) {
         Some("force limit reached without grip")
     } else {
         None

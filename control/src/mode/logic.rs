@@ -254,7 +254,7 @@ impl ModeLogic {
         }
     }
 
-    /// Setpoint off for good, from a state in which no arm is closed.
+    /// Rotors off for good, from a state in which no arm is closed.
     pub(super) fn stop(&mut self, why: &'static str) -> State {
         self.note(why);
         State::Disarmed { closed: None }

@@ -136,7 +136,7 @@ proptest! {
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.len() <= 40);
-                // Setpoint start from rest only where the pilot asked for it in that very step.
+                // Rotors start from rest only where the pilot asked for it in that very step.
                 if [Mode::Disarmed, Mode::Perched].contains(&before) && rotors.spin() {
                     prop_assert!(sticks.is_some_and(|s| s.arm_switch));
                     prop_assert!([Mode::Armed, Mode::Releasing].contains(&mode), "{before:?} -> {mode:?}");

@@ -68,7 +68,7 @@ fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
             HOPELESS_TIME,
             "force limit reached without grip",
         ),
-        (ArmState::Faulty, HOPELESS_TIME, "pressure sensor fault"),
+        (ArmState::Faulty, HOPELESS_TIME, "arm fault"),
     ] {
         let mut r = Rig::clamping();
         r.grip(false, false, state, 500.0);
@@ -158,7 +158,8 @@ fn a_lost_radio_in_flight_sinks_and_stops_on_what_carries() {
     ));
     r.expect(20.0, Mode::Failsafe);
     r.carried = true;
-    r.expect(6.0, Mode::Disarmed);
+    // The remembered sink rate has to fade before the support shows, and most of the weight must be carried.
+    r.expect(10.0, Mode::Disarmed);
     assert_eq!(r.out.reason, "radio lost");
 }
 

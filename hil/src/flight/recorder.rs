@@ -23,6 +23,7 @@ pub struct Recorder {
     current: Option<Current>,
     mode: Mode,
     reason: &'static str,
+    warning: &'static str,
     proven: bool,
     digest: Digest,
 }
@@ -50,6 +51,7 @@ impl Recorder {
             current: None,
             mode: Mode::Calibrating,
             reason: "",
+            warning: "",
             proven: false,
             digest: Digest::new(),
         }
@@ -166,6 +168,12 @@ impl Recorder {
                         },
                         observer,
                     );
+                }
+            }
+            if status.warning != self.warning {
+                self.warning = status.warning;
+                if !status.warning.is_empty() {
+                    self.note(Event { t, text: format!("warning: {}", status.warning) }, observer);
                 }
             }
         }
