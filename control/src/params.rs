@@ -108,6 +108,10 @@ params! {
     /// Share of the thrust that grows with the square of the command; the rest is linear (assumed).
     thrust_curve = 0.75, "1", 0.0 ..= 1.0;
 
+    /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses at 400 Hz, 125 for OneShot125. Read by the board at
+    /// start-up; the paper's controllers take 400.
+    motor_protocol = 300.0, "1", 125.0 ..= 600.0;
+
     /// Infill of the arms; Eq. 1 covers 4 to 10 %, below 6 % the paper's authors did not fly.
     infill = 6.9, "%", 4.0 ..= 10.0;
     /// Gain on the elastic term of Eq. 1 that the paper's Table III needs; 1 is the literal equation.

@@ -1,0 +1,67 @@
+//! The four arm sensors on two I2C buses.
+//!
+//! | arm | index | bus | address |
+//! |---|---|---|---|
+//! | 1 front-left | 0 | left | 0x28 |
+//! | 2 rear-left | 1 | left | 0x29 |
+//! | 3 front-right | 2 | right | 0x28 |
+//! | 4 rear-right | 3 | right | 0x29 |
+//!
+//! The front sensors have COM3 low, the rear ones high. A broken bus costs one side, never both.
+
+use embedded_hal_async::i2c::I2c;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
+use sophie_tasks::ports::{ArmImus, PortError};
+
+use crate::bno055::{Address, Bno055, Calibration, Config};
+use crate::fault::Fault;
+
+/// The four arm sensors, two on bus `I1` (left) and two on bus `I2` (right).
+///
+/// The buses should run at 400 kHz, and give up a stretched clock by themselves after 2 to 3 ms where their
+/// driver waits for it without yielding.
+pub struct ArmBuses<I1, I2> {
+    left: I1,
+    right: I2,
+    chips: PerArm<Bno055>,
+}
+
+impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
+    /// The sensors of the left arms on `left` and of the right arms on `right`; `configs` arm by arm.
+    pub const fn new(left: I1, right: I2, configs: PerArm<Config>) -> Self {
+        let [one, two, three, four] = configs;
+        let chips = [
+            Bno055::new(Address::Low, one),
+            Bno055::new(Address::High, two),
+            Bno055::new(Address::Low, three),
+            Bno055::new(Address::High, four),
+        ];
+        Self { left, right, chips }
+    }
+
+    /// Calibration of arm `arm` (0..=3) at its last reading; `None` while it gives none.
+    pub fn calibration(&self, arm: usize) -> Option<Calibration> {
+        self.chips
+            .get(arm)
+            .filter(|chip| chip.is_running())
+            .map(Bno055::calibration)
+    }
+
+    /// What went wrong last with arm `arm` (0..=3).
+    pub fn last_fault(&self, arm: usize) -> Option<Fault> {
+        self.chips.get(arm).and_then(Bno055::last_fault)
+    }
+}
+
+impl<I1: I2c, I2: I2c> ArmImus for ArmBuses<I1, I2> {
+    async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
+        let Some(chip) = self.chips.get_mut(arm) else {
+            return Err(PortError::Absent);
+        };
+        match arm {
+            0 | 1 => chip.gravity(&mut self.left).await,
+            _ => chip.gravity(&mut self.right).await,
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! DShot frames and the timer values that make them: 16 bits, first the throttle's highest bit, a long pulse
+//! for 1 and a short one for 0.
+//!
+//! | bits | what |
+//! |---|---|
+//! | 15..5 | 0 stop, 1 to 47 commands, 48 to 2047 throttle |
+//! | 4 | telemetry request |
+//! | 3..0 | exclusive or of the three nibbles above |
+
+use sophie_control::math;
+use sophie_control::wrench::PerArm;
+
+/// Lowest throttle value; the ones below are commands.
+pub const THROTTLE_MIN: u16 = 48;
+/// Highest throttle value.
+pub const THROTTLE_MAX: u16 = 2047;
+/// Bits of a frame.
+pub const BITS: usize = 16;
+/// Motors in one burst.
+pub const MOTORS: usize = 4;
+/// Compare values of a burst with one row of zeros after the bits.
+pub const BURST: usize = (BITS + 1) * MOTORS;
+
+/// One frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Frame(u16);
+
+impl Frame {
+    /// Motor stop (command 0, no telemetry).
+    pub const STOP: Self = Self(0);
+
+    /// The frame with an 11-bit `value` (limited to 2047): 0 stop, 48..=2047 throttle.
+    pub const fn new(value: u16, telemetry: bool) -> Self {
+        let value = if value > THROTTLE_MAX { THROTTLE_MAX } else { value };
+        let payload = value << 1 | telemetry as u16;
+        Self(payload << 4 | checksum(payload))
+    }
+
+    /// The frame for a motor command as the tasks give it: 0 (or anything that is not a positive number)
+    /// stops, 0 < c <= 1 is spread over 48..=2047.
+    pub fn from_command(command: f32) -> Self {
+        if command > 0.0 {
+            let span = f32::from(THROTTLE_MAX - THROTTLE_MIN);
+            Self::new(
+                THROTTLE_MIN + (math::clamp(command, 0.0, 1.0) * span + 0.5) as u16,
+                false,
+            )
+        } else {
+            Self::STOP
+        }
+    }
+
+    /// The 16 bits as they go out, highest first.
+    pub const fn bits(self) -> u16 {
+        self.0
+    }
+
+    /// The frame with these 16 bits; `None` if the checksum is wrong.
+    pub const fn from_bits(bits: u16) -> Option<Self> {
+        if checksum(bits >> 4) == bits & 0xF {
+            Some(Self(bits))
+        } else {
+            None
+        }
+    }
+
+    /// The 11-bit value: 0 stop, 1..=47 command, 48..=2047 throttle.
+    pub const fn value(self) -> u16 {
+        self.0 >> 5
+    }
+
+    /// Telemetry is requested.
+    pub const fn telemetry(self) -> bool {
+        self.0 & 0x10 != 0
+    }
+}
+
+/// Exclusive or of the three nibbles of the 12-bit payload.
+const fn checksum(payload: u16) -> u16 {
+    (payload ^ payload >> 4 ^ payload >> 8) & 0xF
+}
+
+/// Bit rate, kbit/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Speed {
+    /// 150 kbit/s: 106.7 µs a frame.
+    Dshot150,
+    /// 300 kbit/s: 53.3 µs a frame.
+    #[default]
+    Dshot300,
+    /// 600 kbit/s: 26.7 µs a frame.
+    Dshot600,
+}
+
+impl Speed {
+    /// Bits per second.
+    pub const fn bits_per_second(self) -> u32 {
+        match self {
+            Self::Dshot150 => 150_000,
+            Self::Dshot300 => 300_000,
+            Self::Dshot600 => 600_000,
+        }
+    }
+}
+
+/// Timer values of one bit, in counts of the timer's clock (prescaler 0).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BitTiming {
+    /// Counts of a bit; the reload register takes one less.
+    pub period: u16,
+    /// Counts high in a 1: 75 % of the bit.
+    pub one: u16,
+    /// Counts high in a 0: 37.5 % of the bit.
+    pub zero: u16,
+}
+
+impl BitTiming {
+    /// Fewest counts that a bit may have: the pulses would be off by more than 2 % of the bit.
+    pub const PERIOD_MIN: u32 = 24;
+
+    /// The values nearest to `speed` for a timer that counts at `timer_hz`; `None` where the bit has fewer
+    /// than [`Self::PERIOD_MIN`] counts or more than a 16-bit timer holds.
+    pub const fn new(timer_hz: u32, speed: Speed) -> Option<Self> {
+        let rate = speed.bits_per_second();
+        let period = (timer_hz + rate / 2) / rate;
+        if period < Self::PERIOD_MIN || period > u16::MAX as u32 {
+            return None;
+        }
+        Some(Self {
+            period: period as u16,
+            one: ((period * 6 + 4) / 8) as u16,
+            zero: ((period * 3 + 4) / 8) as u16,
+        })
+    }
+
+    /// Error of the bit rate against `speed`, as a fraction of it: positive when the bits are too fast.
+    /// Motor controllers take several percent.
+    pub fn rate_error(self, timer_hz: u32, speed: Speed) -> f32 {
+        timer_hz as f32 / (f32::from(self.period) * speed.bits_per_second() as f32) - 1.0
+    }
+
+    /// Length of a frame, s, without the rest after it.
+    pub fn frame_time(self, timer_hz: u32) -> f32 {
+        BITS as f32 * f32::from(self.period) / timer_hz as f32
+    }
+}
+
+/// Fills `buffer` with the compare values of one burst: a row for each bit, the four motors in each row in the
+/// order of the timer's channels, and zeros in every row after the bits, so that the lines rest low.
+///
+/// `N` is [`BURST`], or more by whole rows where the timer runs on for a moment after the last bit.
+pub fn fill_burst<const N: usize>(buffer: &mut [u16; N], frames: PerArm<Frame>, timing: BitTiming) {
+    const {
+        assert!(
+            N >= BURST && N.is_multiple_of(MOTORS),
+            "whole rows, the last of them zero"
+        )
+    };
+    let mut left = frames.map(Frame::bits);
+    let (rows, _) = buffer.as_chunks_mut::<MOTORS>();
+    for (index, row) in rows.iter_mut().enumerate() {
+        for (compare, bits) in row.iter_mut().zip(left.iter_mut()) {
+            *compare = match (index < BITS, *bits & 0x8000 != 0) {
+                (false, _) => 0,
+                (true, true) => timing.one,
+                (true, false) => timing.zero,
+            };
+            *bits <<= 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn known_frames() {
+        // The usual worked example: throttle 1046, no telemetry.
+        assert_eq!(Frame::new(1046, false).bits(), 0b1000_0010_1100_0110);
+        assert_eq!(Frame::STOP.bits(), 0);
+        assert_eq!(Frame::new(0, false), Frame::STOP);
+        assert_eq!(Frame::new(48, true).value(), 48);
+        assert!(Frame::new(48, true).telemetry());
+        assert_eq!(Frame::new(9999, false).value(), 2047);
+    }
+
+    #[test]
+    fn commands_spread_over_the_throttle_range() {
+        assert_eq!(Frame::from_command(0.0), Frame::STOP);
+        assert_eq!(Frame::from_command(-0.1), Frame::STOP);
+        assert_eq!(Frame::from_command(f32::NAN), Frame::STOP);
+        assert_eq!(Frame::from_command(1e-9).value(), 48);
+        assert_eq!(Frame::from_command(1.0).value(), 2047);
+        assert_eq!(Frame::from_command(f32::INFINITY).value(), 2047);
+        let mut last = 0;
+        for i in 0..=4000 {
+            let value = Frame::from_command(i as f32 / 4000.0).value();
+            assert!(value >= last && (value == 0 || value >= 48));
+            last = value;
+        }
+    }
+
+    #[test]
+    fn every_single_bit_error_is_caught_and_every_frame_comes_back() {
+        for value in 0..=THROTTLE_MAX {
+            for telemetry in [false, true] {
+                let frame = Frame::new(value, telemetry);
+                let back = Frame::from_bits(frame.bits()).unwrap();
+                assert_eq!((back.value(), back.telemetry()), (value, telemetry));
+                for bit in 0..16 {
+                    assert!(Frame::from_bits(frame.bits() ^ 1 << bit).is_none());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn timing_is_within_a_percent_on_every_board() {
+        // APB2 timers of the F405 (168 MHz) and F765 (216 MHz), the H743's at 200 and 240 MHz.
+        for hz in [
+            84_000_000,
+            108_000_000,
+            168_000_000,
+            200_000_000,
+            216_000_000,
+            240_000_000,
+        ] {
+            for speed in [Speed::Dshot150, Speed::Dshot300, Speed::Dshot600] {
+                let t = BitTiming::new(hz, speed).unwrap();
+                let error = t.rate_error(hz, speed);
+                assert!(error.abs() < 0.005, "{hz} {speed:?}: {error}");
+                let share = |counts: u16| f32::from(counts) / f32::from(t.period);
+                assert!(
+                    (share(t.one) - 0.75).abs() < 0.005 && (share(t.zero) - 0.375).abs() < 0.005,
+                    "{t:?}"
+                );
+            }
+        }
+        let t = BitTiming::new(200_000_000, Speed::Dshot600).unwrap();
+        assert_eq!(
+            t,
+            BitTiming {
+                period: 333,
+                one: 250,
+                zero: 125
+            }
+        );
+        assert!((t.rate_error(200_000_000, Speed::Dshot600) - 0.001).abs() < 1e-5);
+        assert!((t.frame_time(200_000_000) - 26.64e-6).abs() < 1e-9);
+        assert!(BitTiming::new(8_000_000, Speed::Dshot600).is_none());
+    }
+
+    #[test]
+    fn a_burst_is_laid_out_bit_by_bit() {
+        let timing = BitTiming {
+            period: 280,
+            one: 210,
+            zero: 105,
+        };
+        let frames = [
+            Frame::new(1046, false),
+            Frame::STOP,
+            Frame::new(2047, true),
+            Frame::new(48, false),
+        ];
+        let mut buffer = [0xAAAA; 72];
+        fill_burst(&mut buffer, frames, timing);
+        for (row, values) in buffer.chunks(4).enumerate() {
+            for (motor, &value) in values.iter().enumerate() {
+                let expected = if row >= 16 {
+                    0
+                } else if frames[motor].bits() >> (15 - row) & 1 == 1 {
+                    210
+                } else {
+                    105
+                };
+                assert_eq!(value, expected, "row {row} motor {motor}");
+            }
+        }
+        let mut shortest = [1; BURST];
+        fill_burst(&mut shortest, frames, timing);
+        assert_eq!(shortest[64..], [0; 4]);
+        assert_eq!(shortest[..64], buffer[..64]);
+    }
+
+    proptest! {
+        #[test]
+        fn an_error_in_one_nibble_is_caught(value in 0u16..2048, telemetry: bool, nibble in 0u16..4, error in 1u16..16) {
+            let bits = Frame::new(value, telemetry).bits();
+            prop_assert!(Frame::from_bits(bits ^ error << (4 * nibble)).is_none());
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! What went wrong with a chip, in words and numbers that a builder can act on.
+
+use core::fmt;
+
+use sophie_tasks::ports::PortError;
+
+/// What went wrong with a chip, at start-up or in flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Fault {
+    /// The bus peripheral reported an error: wiring, clock or DMA.
+    Bus,
+    /// The identity register holds something else. 0x00 and 0xFF mean that nothing drives the line.
+    Identity {
+        /// What this part answers.
+        expected: u8,
+        /// What was read.
+        found: u8,
+    },
+    /// A reset did not bring a register to its reset value.
+    Reset {
+        /// The register.
+        register: u8,
+        /// What was read.
+        found: u8,
+    },
+    /// A register does not hold what was written to it, or lost it later: a brown-out of the part.
+    Configuration {
+        /// Bank of the register.
+        bank: u8,
+        /// The register.
+        register: u8,
+        /// What it should hold, in the bits that matter.
+        expected: u8,
+        /// What it holds, in the bits that matter.
+        found: u8,
+    },
+    /// Data-ready stopped although the registers are well: the interrupt line, or a part that hangs.
+    Silent,
+    /// A sample of nothing but zeros or ones, or the mark of "no sample yet".
+    Garbled,
+    /// The same sample again and again: no real sensor is without noise.
+    Stuck,
+    /// The actuated sensor did not respond as the factory found it to.
+    SelfTest {
+        /// Which sensor.
+        sensor: Sensor,
+        /// Axis of the part: 0 x, 1 y, 2 z.
+        axis: u8,
+        /// Response in percent of the one expected (of the least allowed where the part has no factory value).
+        percent: u16,
+    },
+    /// The gyroscope's output at rest is too far from zero: a bad part, or one that was being moved.
+    Offset {
+        /// Axis of the part: 0 x, 1 y, 2 z.
+        axis: u8,
+    },
+}
+
+/// Half of an inertial part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Sensor {
+    /// Angular rate.
+    Gyro,
+    /// Specific force.
+    Accel,
+}
+
+impl Fault {
+    /// The fault in a few words, for an arming message.
+    pub const fn what(&self) -> &'static str {
+        match self {
+            Self::Bus => "bus error",
+            Self::Identity {
+                found: 0x00 | 0xFF, ..
+            } => "no answer",
+            Self::Identity { .. } => "wrong chip",
+            Self::Reset { .. } => "reset had no effect",
+            Self::Configuration { .. } => "lost its configuration",
+            Self::Silent => "no data-ready",
+            Self::Garbled => "garbled data",
+            Self::Stuck => "data stuck",
+            Self::SelfTest { .. } => "self-test failed",
+            Self::Offset { .. } => "offset too large",
+        }
+    }
+
+    /// What a task behind the port is told.
+    pub const fn port_error(&self) -> PortError {
+        match self {
+            Self::Identity {
+                found: 0x00 | 0xFF, ..
+            } => PortError::Absent,
+            Self::Silent | Self::Reset { .. } => PortError::Timeout,
+            _ => PortError::Corrupt,
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.what())?;
+        match *self {
+            Self::Identity { expected, found } => {
+                write!(f, ": identity 0x{found:02X}, expected 0x{expected:02X}")
+            }
+            Self::Reset { register, found } => write!(f, ": register 0x{register:02X} holds 0x{found:02X}"),
+            Self::Configuration {
+                bank,
+                register,
+                expected,
+                found,
+            } => write!(
+                f,
+                ": bank {bank} register 0x{register:02X} holds 0x{found:02X}, expected 0x{expected:02X}"
+            ),
+            Self::SelfTest {
+                sensor,
+                axis,
+                percent,
+            } => {
+                write!(
+                    f,
+                    ": {} {} responds with {percent} %",
+                    sensor.name(),
+                    axis_name(axis)
+                )
+            }
+            Self::Offset { axis } => write!(f, ": gyro {}", axis_name(axis)),
+            Self::Bus | Self::Silent | Self::Garbled | Self::Stuck => Ok(()),
+        }
+    }
+}
+
+impl Sensor {
+    /// Name for messages.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gyro => "gyro",
+            Self::Accel => "accel",
+        }
+    }
+}
+
+const fn axis_name(axis: u8) -> char {
+    match axis {
+        0 => 'x',
+        1 => 'y',
+        _ => 'z',
+    }
+}
+
+/// Logs that a chip was lost; says nothing without the `defmt` feature.
+pub(crate) fn report(chip: &'static str, fault: &Fault) {
+    #[cfg(feature = "defmt")]
+    defmt::warn!("{=str}: {=str} ({})", chip, fault.what(), fault);
+    #[cfg(not(feature = "defmt"))]
+    let _ = (chip, fault);
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn a_fault_names_itself_and_its_numbers() {
+        let wrong = Fault::Identity {
+            expected: 0x47,
+            found: 0x98,
+        };
+        assert_eq!(wrong.to_string(), "wrong chip: identity 0x98, expected 0x47");
+        assert_eq!(wrong.port_error(), PortError::Corrupt);
+        let nothing = Fault::Identity {
+            expected: 0x47,
+            found: 0xFF,
+        };
+        assert_eq!(nothing.what(), "no answer");
+        assert_eq!(nothing.port_error(), PortError::Absent);
+        let test = Fault::SelfTest {
+            sensor: Sensor::Gyro,
+            axis: 2,
+            percent: 12,
+        };
+        assert_eq!(test.to_string(), "self-test failed: gyro z responds with 12 %");
+    }
+}

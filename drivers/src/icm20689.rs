@@ -1,0 +1,242 @@
+//! TDK ICM-20689 on SPI, up to 8 MHz, mode 0 or 3. Register names and values are those of DS-000143.
+//!
+//! The gyroscope samples at 8 kHz behind the part's own 250 Hz filter (0.97 ms of delay), and every second
+//! sample is read: 4 kHz. The accelerometer is renewed at 1 kHz behind its filter, so its samples repeat.
+
+use embassy_time::Duration;
+
+use crate::registers::Setting;
+use crate::self_test::{Limits, Stage};
+use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
+
+/// The driver of an ICM-20689 behind SPI device `S` with its INT on `D`.
+pub type Icm20689<S, D> = SpiImu<Config, S, D>;
+
+mod reg {
+    //! Addresses.
+    pub const SELF_TEST_X_GYRO: u8 = 0x00;
+    pub const SELF_TEST_X_ACCEL: u8 = 0x0D;
+    pub const SMPLRT_DIV: u8 = 0x19;
+    pub const CONFIG: u8 = 0x1A;
+    pub const GYRO_CONFIG: u8 = 0x1B;
+    pub const ACCEL_CONFIG: u8 = 0x1C;
+    pub const ACCEL_CONFIG2: u8 = 0x1D;
+    pub const FIFO_EN: u8 = 0x23;
+    pub const INT_PIN_CFG: u8 = 0x37;
+    pub const INT_ENABLE: u8 = 0x38;
+    pub const ACCEL_XOUT_H: u8 = 0x3B;
+    pub const USER_CTRL: u8 = 0x6A;
+    pub const PWR_MGMT_1: u8 = 0x6B;
+    pub const PWR_MGMT_2: u8 = 0x6C;
+    pub const WHO_AM_I: u8 = 0x75;
+}
+
+/// Range of the gyroscope, GYRO_CONFIG bits 4:3.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum GyroRange {
+    /// 250 °/s.
+    Dps250 = 0,
+    /// 500 °/s.
+    Dps500 = 1,
+    /// 1000 °/s.
+    Dps1000 = 2,
+    /// 2000 °/s.
+    #[default]
+    Dps2000 = 3,
+}
+
+/// Range of the accelerometer, ACCEL_CONFIG bits 4:3.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum AccelRange {
+    /// 2 g.
+    G2 = 0,
+    /// 4 g.
+    G4 = 1,
+    /// 8 g.
+    G8 = 2,
+    /// 16 g.
+    #[default]
+    G16 = 3,
+}
+
+/// Filter of the gyroscope, which decides about its rate: DLPF_CFG, CONFIG bits 2:0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum GyroFilter {
+    /// 250 Hz, 0.97 ms of delay, 8 kHz.
+    #[default]
+    Hz250 = 0,
+    /// 176 Hz, 2.9 ms of delay, 1 kHz.
+    Hz176 = 1,
+    /// 3281 Hz, 0.17 ms of delay, 8 kHz.
+    Hz3281 = 7,
+}
+
+/// Filter of the accelerometer, ACCEL_CONFIG2 bits 3:0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum AccelFilter {
+    /// 218 Hz, 1 kHz.
+    #[default]
+    Hz218 = 0,
+    /// 99 Hz, 1 kHz.
+    Hz99 = 2,
+    /// 1046 Hz, 4 kHz: the filter is bypassed.
+    Hz1046 = 8,
+}
+
+/// What is configured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// Range of the gyroscope.
+    pub gyro_range: GyroRange,
+    /// Range of the accelerometer.
+    pub accel_range: AccelRange,
+    /// Filter and rate of the gyroscope.
+    pub gyro_filter: GyroFilter,
+    /// Filter of the accelerometer.
+    pub accel_filter: AccelFilter,
+    /// One sample in this many is read, 1 to 8.
+    pub read_every: u8,
+    /// How the part is watched in flight.
+    pub watch: Watch,
+}
+
+impl Default for Config {
+    /// 2000 °/s, 16 g, 250 Hz filter, read at 4 kHz.
+    fn default() -> Self {
+        Self {
+            gyro_range: GyroRange::default(),
+            accel_range: AccelRange::default(),
+            gyro_filter: GyroFilter::default(),
+            accel_filter: AccelFilter::default(),
+            read_every: 2,
+            watch: Watch::default(),
+        }
+    }
+}
+
+impl Chip for Config {
+    const NAME: &'static str = "ICM-20689";
+    const WHO_AM_I: u8 = reg::WHO_AM_I;
+    const IDENTITY: u8 = 0x98;
+    const BANK_SELECT: Option<u8> = None;
+    // Accelerometer, temperature, gyroscope lie together.
+    const DATA: u8 = reg::ACCEL_XOUT_H;
+    const WATCH_FROM: u8 = reg::SMPLRT_DIV;
+    const RESET: &'static [Setting] = &[Setting::all(reg::PWR_MGMT_1, 0x80)];
+    // Up to 100 ms from power to register access; PX4 gives a reset as much.
+    const RESET_TIME: Duration = Duration::from_millis(100);
+    // Asleep, reset bit gone.
+    const AFTER_RESET: Setting = Setting::bits(0, reg::PWR_MGMT_1, 0xC0, 0x40);
+    // Awake on the PLL; I2C off, signal paths reset.
+    const WAKE: &'static [Setting] = &[
+        Setting::all(reg::PWR_MGMT_1, 0x01),
+        Setting::all(reg::USER_CTRL, 0x11),
+    ];
+    // The gyroscope starts in 35 ms at most.
+    const WAKE_TIME: Duration = Duration::from_millis(40);
+    // All six axes on.
+    const POWER: Setting = Setting::all(reg::PWR_MGMT_2, 0x00);
+    // Ten time constants of the slowest filter.
+    const START_UP: Duration = Duration::from_millis(45);
+    const GYRO_CODES: (u8, u8) = (0, reg::SELF_TEST_X_GYRO);
+    const ACCEL_CODES: (u8, u8) = (0, reg::SELF_TEST_X_ACCEL);
+    // AN-000029: the gyroscope's ratio has no upper bound.
+    const SELF_TEST: Limits = Limits {
+        gyro_ratio_max: f32::INFINITY,
+        accel_ratio_max: 1.5,
+        gyro_min_dps: 60.0,
+        accel_g: [0.225, 0.675],
+        gyro_offset_dps: 20.0,
+    };
+
+    fn settings(&self) -> Settings {
+        Settings::from_array([
+            // Used at 1 kHz only: every sample.
+            Setting::all(reg::SMPLRT_DIV, 0x00),
+            Setting::bits(0, reg::CONFIG, 0x87, self.gyro_filter as u8),
+            // Self-test off, FCHOICE_B 0: the filter is in the path.
+            Setting::bits(0, reg::GYRO_CONFIG, 0xFB, (self.gyro_range as u8) << 3),
+            Setting::bits(0, reg::ACCEL_CONFIG, 0xF8, (self.accel_range as u8) << 3),
+            Setting::bits(0, reg::ACCEL_CONFIG2, 0x0F, self.accel_filter as u8),
+            Setting::all(reg::FIFO_EN, 0x00),
+            // Active high, push-pull, pulses of 50 µs.
+            Setting::bits(0, reg::INT_PIN_CFG, 0xF0, 0x00),
+            // Data-ready alone.
+            Setting::all(reg::INT_ENABLE, 0x01),
+            // I2C off.
+            Setting::bits(0, reg::USER_CTRL, 0x10, 0x10),
+            Setting::all(reg::PWR_MGMT_1, 0x01),
+        ])
+    }
+
+    fn self_test_settings(stage: Stage) -> Settings {
+        let all_axes = 0xE0;
+        let (gyro, accel) = match stage {
+            Stage::Rest => (0, 0),
+            Stage::Gyro => (all_axes, 0),
+            Stage::Accel => (0, all_axes),
+        };
+        Settings::from_array([
+            // 1 kHz, 92 Hz and 99 Hz filters, 250 °/s, 2 g (AN-000029).
+            Setting::bits(0, reg::CONFIG, 0x87, 2),
+            Setting::bits(0, reg::ACCEL_CONFIG2, 0x0F, 2),
+            Setting::bits(0, reg::GYRO_CONFIG, 0xFB, gyro),
+            Setting::bits(0, reg::ACCEL_CONFIG, 0xF8, accel),
+        ])
+    }
+
+    fn self_test_time(_stage: Stage) -> Duration {
+        // AN-000029: 20 ms, doubled.
+        Duration::from_millis(40)
+    }
+
+    fn arrange([ax, ay, az, temperature, gx, gy, gz]: [i16; 7]) -> Raw {
+        Raw {
+            accel: [ax, ay, az],
+            gyro: [gx, gy, gz],
+            temperature,
+        }
+    }
+
+    fn celsius(raw: i16) -> f32 {
+        f32::from(raw) * (1.0 / 326.8) + 25.0
+    }
+
+    fn pulses_per_sample(&self) -> u8 {
+        self.read_every.clamp(1, 8)
+    }
+
+    fn rate_hz(&self) -> f32 {
+        let sampled = match self.gyro_filter {
+            GyroFilter::Hz250 | GyroFilter::Hz3281 => 8000.0,
+            GyroFilter::Hz176 => 1000.0,
+        };
+        sampled / f32::from(self.pulses_per_sample())
+    }
+
+    fn gyro_range(&self) -> f32 {
+        match self.gyro_range {
+            GyroRange::Dps250 => 250.0,
+            GyroRange::Dps500 => 500.0,
+            GyroRange::Dps1000 => 1000.0,
+            GyroRange::Dps2000 => 2000.0,
+        }
+    }
+
+    fn accel_range(&self) -> f32 {
+        match self.accel_range {
+            AccelRange::G2 => 2.0,
+            AccelRange::G4 => 4.0,
+            AccelRange::G8 => 8.0,
+            AccelRange::G16 => 16.0,
+        }
+    }
+
+    fn watch(&self) -> Watch {
+        self.watch
+    }
+}

@@ -1,0 +1,41 @@
+//! Drivers of SOPHIE's sensors and the wire formats of its actuators and receivers.
+//!
+//! No HAL: chips are reached through the embedded-hal traits, timers through counts that a board writes into
+//! its compare registers. A board builds the drivers and hands them to the tasks as their ports.
+//!
+//! | module | part or protocol | port |
+//! |---|---|---|
+//! | [`icm42688p`], [`icm20689`] over [`spi_imu`] | inertial sensor of the vehicle, SPI | `Imu` |
+//! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
+//! | [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
+//! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
+//! | [`sbus`] | receiver | decodes what `RcReceiver` gives |
+
+#![no_std]
+#![deny(
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::float_cmp
+)]
+#![allow(
+    async_fn_in_trait,
+    reason = "drivers are awaited in place; no caller needs a Send bound"
+)]
+
+pub mod arm_buses;
+pub mod bno055;
+pub mod dshot;
+pub mod dshot_decoder;
+pub mod esc_pwm;
+pub mod fault;
+pub mod icm20689;
+pub mod icm42688p;
+pub mod mounting;
+pub mod pwm_timing;
+pub mod registers;
+pub mod sbus;
+pub mod self_test;
+pub mod servo_pulse;
+pub mod spi_imu;

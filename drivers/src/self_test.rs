@@ -1,0 +1,227 @@
+//! Verdict on the built-in self-test of an InvenSense part: the sensors are actuated electrically, and the
+//! change of their output is compared with what the factory found.
+//!
+//! Procedure and limits are those of the maker's own drivers (TDK's ICM-426xx driver; application note
+//! AN-000029 for the older register map): 200 samples averaged at rest and actuated, at 250 °/s and 2 g.
+
+use crate::fault::{Fault, Sensor};
+
+/// Samples averaged in each stage.
+pub const SAMPLES: u16 = 200;
+/// Counts per °/s at the range of the test, 250 °/s.
+pub const COUNTS_PER_DPS: f32 = 32768.0 / 250.0;
+/// Counts per g at the range of the test, 2 g.
+pub const COUNTS_PER_G: f32 = 32768.0 / 2.0;
+/// Response of factory code 1, counts at the range of the test; each code more is 1 % more.
+const CODE_BASE: f32 = 2620.0;
+/// Least ratio of the response to the factory's.
+const RATIO_MIN: f32 = 0.5;
+
+/// What is actuated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Nothing: the offsets.
+    Rest,
+    /// The gyroscope.
+    Gyro,
+    /// The accelerometer.
+    Accel,
+}
+
+/// What a part must do to pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Greatest ratio of the gyroscope's response to the factory's.
+    pub gyro_ratio_max: f32,
+    /// Greatest ratio of the accelerometer's response to the factory's.
+    pub accel_ratio_max: f32,
+    /// Least response of a gyroscope without a factory code, °/s.
+    pub gyro_min_dps: f32,
+    /// Least and greatest response of an accelerometer without a factory code, g.
+    pub accel_g: [f32; 2],
+    /// Greatest output of the gyroscope at rest, °/s.
+    pub gyro_offset_dps: f32,
+}
+
+/// Mean outputs and factory codes of one part, in counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// Gyroscope at rest.
+    pub gyro_rest: [f32; 3],
+    /// Gyroscope actuated.
+    pub gyro_actuated: [f32; 3],
+    /// Accelerometer at rest.
+    pub accel_rest: [f32; 3],
+    /// Accelerometer actuated.
+    pub accel_actuated: [f32; 3],
+    /// Factory codes of the gyroscope; 0 where there is none.
+    pub gyro_codes: [u8; 3],
+    /// Factory codes of the accelerometer.
+    pub accel_codes: [u8; 3],
+}
+
+/// Responses of a part that passed, in percent of the factory's (of the least allowed where there is none).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SelfTest {
+    /// Gyroscope x, y, z, %.
+    pub gyro: [u16; 3],
+    /// Accelerometer x, y, z, %.
+    pub accel: [u16; 3],
+}
+
+/// The verdict.
+///
+/// # Errors
+/// The first axis that does not respond as it should, or whose gyroscope is far from zero at rest.
+pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
+    for (axis, rest) in (0u8..).zip(m.gyro_rest) {
+        let limit = limits.gyro_offset_dps * COUNTS_PER_DPS;
+        // A NaN is in no range.
+        if !(-limit..=limit).contains(&rest) {
+            return Err(Fault::Offset { axis });
+        }
+    }
+    let gyro_absolute = [limits.gyro_min_dps * COUNTS_PER_DPS, f32::INFINITY];
+    let accel_absolute = limits.accel_g.map(|g| g * COUNTS_PER_G);
+    Ok(SelfTest {
+        gyro: sensor(
+            Sensor::Gyro,
+            m.gyro_rest,
+            m.gyro_actuated,
+            m.gyro_codes,
+            limits.gyro_ratio_max,
+            gyro_absolute,
+        )?,
+        accel: sensor(
+            Sensor::Accel,
+            m.accel_rest,
+            m.accel_actuated,
+            m.accel_codes,
+            limits.accel_ratio_max,
+            accel_absolute,
+        )?,
+    })
+}
+
+/// Judges one sensor; `absolute` are its limits, counts, for a part without factory codes.
+fn sensor(
+    sensor: Sensor,
+    rest: [f32; 3],
+    actuated: [f32; 3],
+    codes: [u8; 3],
+    ratio_max: f32,
+    absolute: [f32; 2],
+) -> Result<[u16; 3], Fault> {
+    // One axis without a code: the maker takes none of them for programmed.
+    let coded = codes.iter().all(|&c| c != 0);
+    let [least, greatest] = absolute;
+    let mut percents = [0; 3];
+    let axes = rest.into_iter().zip(actuated).zip(codes);
+    for ((axis, ((rest, actuated), code)), out) in (0u8..).zip(axes).zip(percents.iter_mut()) {
+        let response = (actuated - rest).abs();
+        let ratio = response / if coded { factory_response(code) } else { least };
+        let percent = (ratio * 100.0) as u16;
+        let passed = if coded {
+            ratio > RATIO_MIN && ratio < ratio_max
+        } else {
+            ratio >= 1.0 && response <= greatest
+        };
+        if !passed {
+            return Err(Fault::SelfTest {
+                sensor,
+                axis,
+                percent,
+            });
+        }
+        *out = percent;
+    }
+    Ok(percents)
+}
+
+/// What the factory found, counts at the range of the test.
+fn factory_response(code: u8) -> f32 {
+    (1..code).fold(CODE_BASE, |counts, _| counts * 1.01)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        gyro_ratio_max: 1.5,
+        accel_ratio_max: 1.5,
+        gyro_min_dps: 60.0,
+        accel_g: [0.05, 1.2],
+        gyro_offset_dps: 20.0,
+    };
+
+    fn good() -> Measured {
+        let gyro = factory_response(100);
+        let accel = factory_response(120);
+        Measured {
+            gyro_rest: [50.0, -30.0, 10.0],
+            gyro_actuated: [50.0 + gyro, -30.0 - gyro, 10.0 + 0.9 * gyro],
+            accel_rest: [0.0, 100.0, 16384.0],
+            accel_actuated: [accel, 100.0 + accel, 16384.0 + accel],
+            gyro_codes: [100; 3],
+            accel_codes: [120; 3],
+        }
+    }
+
+    #[test]
+    fn the_factory_response_grows_by_one_percent_a_code() {
+        assert!((factory_response(1) - 2620.0).abs() < 1e-3);
+        assert!((factory_response(2) - 2646.2).abs() < 1e-3);
+        // 1.01^254 is 12.5.
+        assert!((factory_response(255) / 2620.0 - 12.52).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_good_part_passes() {
+        let report = judge(&good(), &LIMITS).unwrap();
+        assert!(
+            report
+                .gyro
+                .into_iter()
+                .zip([100, 100, 90])
+                .all(|(a, b): (u16, u16)| a.abs_diff(b) <= 1),
+            "{report:?}"
+        );
+    }
+
+    #[test]
+    fn a_dead_axis_is_named() {
+        let mut m = good();
+        m.accel_actuated[1] = m.accel_rest[1] + 5.0;
+        let fault = judge(&m, &LIMITS).unwrap_err();
+        assert_eq!(
+            fault,
+            Fault::SelfTest {
+                sensor: Sensor::Accel,
+                axis: 1,
+                percent: 0
+            }
+        );
+        let mut m = good();
+        m.gyro_actuated[0] = f32::NAN;
+        assert!(judge(&m, &LIMITS).is_err());
+        let mut m = good();
+        m.gyro_rest[2] = 21.0 * COUNTS_PER_DPS;
+        assert_eq!(judge(&m, &LIMITS).unwrap_err(), Fault::Offset { axis: 2 });
+    }
+
+    #[test]
+    fn without_codes_absolute_limits_hold() {
+        let mut m = good();
+        m.gyro_codes[1] = 0;
+        m.accel_codes = [0; 3];
+        for axis in 0..3 {
+            m.gyro_actuated[axis] = m.gyro_rest[axis] + 61.0 * COUNTS_PER_DPS;
+            m.accel_actuated[axis] = m.accel_rest[axis] + 0.3 * COUNTS_PER_G;
+        }
+        assert!(judge(&m, &LIMITS).is_ok());
+        m.gyro_actuated[0] = m.gyro_rest[0] + 59.0 * COUNTS_PER_DPS;
+        assert!(judge(&m, &LIMITS).is_err());
+    }
+}

@@ -1,0 +1,55 @@
+//! Servo pulses: microseconds to counts, at the frame rate that the servo takes.
+
+use sophie_control::math;
+
+use crate::pwm_timing::PwmTiming;
+
+/// Shortest and longest pulse that a servo gets, µs. The drive's own range lies inside; these catch nonsense.
+pub const LIMITS_US: [f32; 2] = [400.0, 2600.0];
+/// Lowest and highest frame rate, Hz: analog servos take 50, digital ones up to 333.
+pub const FRAME_HZ: core::ops::RangeInclusive<u32> = 50..=333;
+
+/// Timer values for servos on a timer clocked at `clock_hz`; `None` for a rate outside [`FRAME_HZ`].
+pub fn timing(clock_hz: u32, frame_hz: u32) -> Option<PwmTiming> {
+    if FRAME_HZ.contains(&frame_hz) {
+        PwmTiming::new(clock_hz, frame_hz)
+    } else {
+        None
+    }
+}
+
+/// Counts of a pulse of `us` µs, for the compare register: 0 (no pulse, the servo is not driven) for 0 and for
+/// anything that is not a positive number, else limited to [`LIMITS_US`].
+pub fn compare(timing: &PwmTiming, us: f32) -> u32 {
+    let [shortest, longest] = LIMITS_US;
+    if us > 0.0 {
+        timing.compare(math::clamp(us, shortest, longest))
+    } else {
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pulses_are_limited_and_none_is_none() {
+        for hz in [50, 100, 333] {
+            let t = timing(108_000_000, hz).unwrap();
+            for (us, expected) in [
+                (1500.0, 1500.0),
+                (100.0, 400.0),
+                (9000.0, 2600.0),
+                (f32::INFINITY, 2600.0),
+            ] {
+                let counted = compare(&t, us) as f32 * t.count_us();
+                assert!((counted - expected).abs() < 0.2, "{hz} {us}: {counted}");
+            }
+            for us in [0.0, -1500.0, f32::NAN] {
+                assert_eq!(compare(&t, us), 0);
+            }
+        }
+        assert!(timing(108_000_000, 49).is_none() && timing(108_000_000, 400).is_none());
+    }
+}

@@ -1,0 +1,503 @@
+//! An inertial sensor on SPI with a data-ready line: what the InvenSense parts have in common.
+//!
+//! A [`Chip`] says which registers and bits; this driver resets, configures, reads back, reads samples, and
+//! notices a part that is silent, garbled, stuck, or has lost its configuration.
+//!
+//! The caller bounds the wait for a sample (the imu task gives up after 3 ms) by dropping the future of
+//! `read`. Every step may be dropped: the next call goes on where it makes sense, and takes a wait that was
+//! dropped for a silence, which is looked into. Failures are paced (1 ms, doubling to 128 ms), so a dead part
+//! costs its task no processor time.
+
+use embassy_time::{Duration, Instant, Timer};
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::SpiDevice;
+use heapless::Vec;
+use sophie_control::math;
+use sophie_control::vector::Vec3;
+use sophie_tasks::ports::{IMU_BATCH, Imu, ImuReading, PortError};
+
+use crate::fault::{Fault, report};
+use crate::mounting::Mounting;
+use crate::registers::{Registers, Setting};
+use crate::self_test::{Limits, Measured, SAMPLES, SelfTest, Stage, judge};
+
+/// Bytes of one sample: accelerometer, gyroscope and temperature, two bytes each.
+const SAMPLE: usize = 14;
+/// Registers that are compared in flight.
+const WATCHED: usize = 6;
+/// Garbled samples in a row after which the part is reset.
+const GARBLED_MAX: u8 = 4;
+/// Dropped waits in a row after which a part whose registers are well is reset.
+const SILENCES_MAX: u8 = 2;
+/// The accelerometer may repeat itself for longer than the gyroscope: on some parts it is slower.
+const ACCEL_PATIENCE: u16 = 4;
+/// First and longest pause after a failure.
+const PAUSE: [Duration; 2] = [Duration::from_millis(1), Duration::from_millis(128)];
+/// Quiet time from before power is switched on: no register may be written for 200 µs after it (DS-000347
+/// §14.36).
+const POWER_QUIET: Duration = Duration::from_micros(500);
+/// Time between two samples of a self-test, at 1 kHz.
+const SELF_TEST_PERIOD: Duration = Duration::from_millis(1);
+/// Attempts at a sample of a self-test.
+const SELF_TEST_ATTEMPTS: u16 = 2 * SAMPLES;
+/// Counts of an axis that has no sample yet.
+const NO_SAMPLE: i16 = i16::MIN;
+
+/// A list of registers and what they are to hold.
+pub type Settings = Vec<Setting, 32>;
+
+/// One sample as the part gives it, counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Raw {
+    /// Specific force.
+    pub accel: [i16; 3],
+    /// Angular rate.
+    pub gyro: [i16; 3],
+    /// Temperature.
+    pub temperature: i16,
+}
+
+/// How a part is watched in flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Watch {
+    /// Samples between two looks at identity and configuration; 0 never looks.
+    pub check_every: u16,
+    /// Gyroscope samples, all alike, that make it stuck; 0 for never (a plant without noise).
+    pub stuck_after: u16,
+}
+
+impl Default for Watch {
+    /// A look each 100 ms at 4 kHz; stuck after 4 ms.
+    fn default() -> Self {
+        Self {
+            check_every: 400,
+            stuck_after: 16,
+        }
+    }
+}
+
+/// What tells one part from another.
+pub trait Chip {
+    /// Name for messages.
+    const NAME: &'static str;
+    /// Identity register.
+    const WHO_AM_I: u8;
+    /// What the identity register holds.
+    const IDENTITY: u8;
+    /// Bank select register, on parts that have banks.
+    const BANK_SELECT: Option<u8>;
+    /// First of the 14 data registers.
+    const DATA: u8;
+    /// First of the six registers, in bank 0, that are compared with the configuration in flight.
+    const WATCH_FROM: u8;
+    /// Resets the part.
+    const RESET: &'static [Setting];
+    /// Time that a reset takes.
+    const RESET_TIME: Duration;
+    /// What a register holds after the reset and not before.
+    const AFTER_RESET: Setting;
+    /// Makes the registers writable.
+    const WAKE: &'static [Setting];
+    /// Time from waking to the configuration.
+    const WAKE_TIME: Duration;
+    /// Switches both sensors on, last of all.
+    const POWER: Setting;
+    /// Time from power to samples within their specification.
+    const START_UP: Duration;
+    /// Bank and first register of the gyroscope's factory codes.
+    const GYRO_CODES: (u8, u8);
+    /// Bank and first register of the accelerometer's factory codes.
+    const ACCEL_CODES: (u8, u8);
+    /// What the self-test must give.
+    const SELF_TEST: Limits;
+
+    /// Everything that is configured before power is switched on.
+    fn settings(&self) -> Settings;
+    /// The configuration of a stage of the self-test, to be written over [`Chip::settings`].
+    fn self_test_settings(stage: Stage) -> Settings;
+    /// Time for the outputs to settle in a stage.
+    fn self_test_time(stage: Stage) -> Duration;
+    /// The sample in the seven words of a burst.
+    fn arrange(words: [i16; 7]) -> Raw;
+    /// Temperature, °C.
+    fn celsius(raw: i16) -> f32;
+    /// Pulses of the data-ready line for each sample read, at least 1.
+    fn pulses_per_sample(&self) -> u8;
+    /// Samples read in a second.
+    fn rate_hz(&self) -> f32;
+    /// Range of the gyroscope, °/s.
+    fn gyro_range(&self) -> f32;
+    /// Range of the accelerometer, g.
+    fn accel_range(&self) -> f32;
+    /// How the part is watched.
+    fn watch(&self) -> Watch;
+}
+
+/// How far the part has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// To be reset at this time.
+    Down(Instant),
+    /// Reset commanded; over at this time.
+    Resetting(Instant),
+    /// Woken; to be configured at this time.
+    Waking(Instant),
+    /// Power is being switched on; the registers are left alone until this time.
+    Powering(Instant),
+    /// Configured; samples are good from this time on.
+    Settling(Instant),
+    /// Samples come.
+    Running,
+}
+
+/// Repetitions of a value.
+#[derive(Clone, Copy, Debug)]
+struct Repeats {
+    last: Option<[i16; 3]>,
+    count: u16,
+    /// The value has changed at least once.
+    alive: bool,
+}
+
+impl Repeats {
+    const NEW: Self = Self {
+        last: None,
+        count: 0,
+        alive: false,
+    };
+
+    /// Takes the next value; true when `limit` (0: none) values in a row were alike.
+    fn too_many(&mut self, value: [i16; 3], limit: u16) -> bool {
+        let same = self.last == Some(value);
+        self.count = if same { self.count.saturating_add(1) } else { 1 };
+        self.alive |= !same && self.last.is_some();
+        self.last = Some(value);
+        limit > 0 && self.count >= limit
+    }
+}
+
+/// The driver of chip `C` behind SPI device `S` with data-ready line `D`.
+pub struct SpiImu<C, S, D> {
+    chip: C,
+    registers: Registers<S>,
+    data_ready: D,
+    mounting: Mounting,
+    state: State,
+    pause: Duration,
+    /// A wait for data-ready has begun and not ended.
+    waiting: bool,
+    silences: u8,
+    garbled: u8,
+    since_check: u16,
+    gyro: Repeats,
+    accel: Repeats,
+    temperature: f32,
+    last_fault: Option<Fault>,
+}
+
+impl<C: Chip, S: SpiDevice, D: Wait> SpiImu<C, S, D> {
+    /// A driver; nothing happens on the bus before [`SpiImu::init`] or the first read.
+    ///
+    /// `data_ready` rises with each sample. `mounting` turns the part's axes into the body's.
+    pub const fn new(spi: S, data_ready: D, chip: C, mounting: Mounting) -> Self {
+        let [pause, _] = PAUSE;
+        Self {
+            chip,
+            registers: Registers::new(spi, C::BANK_SELECT),
+            data_ready,
+            mounting,
+            state: State::Down(Instant::from_ticks(0)),
+            pause,
+            waiting: false,
+            silences: 0,
+            garbled: 0,
+            since_check: 0,
+            gyro: Repeats::NEW,
+            accel: Repeats::NEW,
+            temperature: 0.0,
+            last_fault: None,
+        }
+    }
+
+    /// Resets the part, checks its identity, configures it, reads the configuration back and waits until
+    /// samples are good. Takes about 50 ms (ICM-42688-P) or 190 ms (ICM-20689).
+    ///
+    /// # Errors
+    /// What is wrong with the part. A driver that failed here may still serve as the port: it tries again.
+    pub async fn init(&mut self) -> Result<(), Fault> {
+        let result = self.bring_up().await;
+        self.note(result)
+    }
+
+    /// Actuates both sensors and compares their response with the factory's; takes about 1.5 s, with the
+    /// vehicle at rest. The part is reset and configured afterwards, whatever the outcome.
+    ///
+    /// # Errors
+    /// The first axis that fails, or a fault of the part.
+    pub async fn self_test(&mut self) -> Result<SelfTest, Fault> {
+        let verdict = match self.bring_up().await {
+            Ok(()) => self.actuate().await,
+            Err(fault) => Err(fault),
+        };
+        self.state = State::Down(Instant::now());
+        let restored = self.bring_up().await;
+        self.note(restored)?;
+        if let Err(fault) = &verdict {
+            self.last_fault = Some(*fault);
+            report(C::NAME, fault);
+        }
+        verdict
+    }
+
+    /// Die temperature at the last sample, °C.
+    pub const fn temperature(&self) -> f32 {
+        self.temperature
+    }
+
+    /// What went wrong last, if anything did since power-up.
+    pub const fn last_fault(&self) -> Option<Fault> {
+        self.last_fault
+    }
+
+    /// One sample in body axes.
+    async fn sample(&mut self) -> Result<ImuReading, Fault> {
+        self.bring_up().await?;
+        let raw = loop {
+            let raw = self.next_raw().await?;
+            // A part that hung may hang still after its reset: nothing is believed before the first change.
+            if self.gyro.alive || self.chip.watch().stuck_after == 0 {
+                break raw;
+            }
+        };
+        self.temperature = C::celsius(raw.temperature);
+        let gyro_scale = math::deg(self.chip.gyro_range() / 32768.0);
+        let accel_scale = self.chip.accel_range() * (math::GRAVITY / 32768.0);
+        Ok(ImuReading {
+            gyro: self.mounting.to_body(scaled(raw.gyro, gyro_scale)),
+            accel: self.mounting.to_body(scaled(raw.accel, accel_scale)),
+        })
+    }
+
+    /// Waits for data-ready, reads the sample, and looks at it and from time to time at the part.
+    async fn next_raw(&mut self) -> Result<Raw, Fault> {
+        if self.waiting {
+            self.look_into_silence().await?;
+        }
+        self.waiting = true;
+        for _ in 0..self.chip.pulses_per_sample().max(1) {
+            self.data_ready
+                .wait_for_rising_edge()
+                .await
+                .map_err(|_| Fault::Silent)?;
+        }
+        self.waiting = false;
+        let raw = self.read_raw().await?;
+        let watch = self.chip.watch();
+        let accel_limit = watch.stuck_after.saturating_mul(ACCEL_PATIENCE);
+        // Both, always: each keeps its own count.
+        let gyro_stuck = self.gyro.too_many(raw.gyro, watch.stuck_after);
+        if self.accel.too_many(raw.accel, accel_limit) || gyro_stuck {
+            return Err(Fault::Stuck);
+        }
+        self.since_check = self.since_check.saturating_add(1);
+        if watch.check_every > 0 && self.since_check >= watch.check_every {
+            self.since_check = 0;
+            self.check().await?;
+        }
+        Ok(raw)
+    }
+
+    /// Takes the part from wherever it is to running; returns at once when it runs.
+    async fn bring_up(&mut self) -> Result<(), Fault> {
+        loop {
+            match self.state {
+                State::Running => return Ok(()),
+                State::Down(at) => {
+                    until(at).await;
+                    // A dropped transfer may have left another bank selected.
+                    self.registers.select(0).await?;
+                    self.registers.apply(C::RESET).await?;
+                    self.state = State::Resetting(Instant::now() + C::RESET_TIME);
+                }
+                State::Resetting(at) => {
+                    until(at).await;
+                    self.identify().await?;
+                    let [found] = self.registers.read(C::AFTER_RESET.register).await?;
+                    if C::AFTER_RESET.compare(found).is_err() {
+                        return Err(Fault::Reset {
+                            register: C::AFTER_RESET.register,
+                            found,
+                        });
+                    }
+                    self.registers.apply(C::WAKE).await?;
+                    self.state = State::Waking(Instant::now() + C::WAKE_TIME);
+                }
+                State::Waking(at) => {
+                    until(at).await;
+                    let settings = self.chip.settings();
+                    self.registers.select(0).await?;
+                    self.registers.apply(&settings).await?;
+                    self.registers.verify(&settings).await?;
+                    // From here on nothing may be configured again: a dropped call goes on behind the switch.
+                    self.state = State::Powering(Instant::now() + POWER_QUIET);
+                    self.registers.apply(&[C::POWER]).await?;
+                }
+                State::Powering(at) => {
+                    until(at).await;
+                    self.registers.verify(&[C::POWER]).await?;
+                    self.state = State::Settling(Instant::now() + C::START_UP);
+                }
+                State::Settling(at) => {
+                    until(at).await;
+                    self.waiting = false;
+                    self.silences = 0;
+                    self.garbled = 0;
+                    self.since_check = 0;
+                    self.gyro = Repeats::NEW;
+                    self.accel = Repeats::NEW;
+                    self.state = State::Running;
+                }
+            }
+        }
+    }
+
+    /// The caller dropped the last wait: is the part well?
+    async fn look_into_silence(&mut self) -> Result<(), Fault> {
+        self.silences = self.silences.saturating_add(1);
+        self.check().await?;
+        if self.silences >= SILENCES_MAX {
+            Err(Fault::Silent)
+        } else {
+            Ok(())
+        }
+    }
+
+    async fn identify(&mut self) -> Result<(), Fault> {
+        let [found] = self.registers.read(C::WHO_AM_I).await?;
+        if found == C::IDENTITY {
+            Ok(())
+        } else {
+            Err(Fault::Identity {
+                expected: C::IDENTITY,
+                found,
+            })
+        }
+    }
+
+    /// Compares identity and the registers that decide about scale and rate with what they should hold.
+    async fn check(&mut self) -> Result<(), Fault> {
+        self.identify().await?;
+        let read: [u8; WATCHED] = self.registers.read(C::WATCH_FROM).await?;
+        let settings = self.chip.settings();
+        for (register, value) in (C::WATCH_FROM..).zip(read) {
+            let of_register = |s: &&Setting| s.bank == 0 && s.register == register;
+            for setting in settings.iter().chain([&C::POWER]).filter(of_register) {
+                setting.compare(value)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// One sample in counts.
+    async fn read_raw(&mut self) -> Result<Raw, Fault> {
+        let bytes: [u8; SAMPLE] = self.registers.read(C::DATA).await?;
+        let mut words = [0; SAMPLE / 2];
+        for (word, pair) in words.iter_mut().zip(bytes.as_chunks().0) {
+            *word = i16::from_be_bytes(*pair);
+        }
+        let raw = C::arrange(words);
+        let silent_line = bytes.iter().all(|&b| b == 0x00) || bytes.iter().all(|&b| b == 0xFF);
+        if silent_line || raw.gyro == [NO_SAMPLE; 3] || raw.accel == [NO_SAMPLE; 3] {
+            return Err(Fault::Garbled);
+        }
+        Ok(raw)
+    }
+
+    /// The stages of the self-test.
+    async fn actuate(&mut self) -> Result<SelfTest, Fault> {
+        let mut m = Measured::default();
+        (m.gyro_rest, m.accel_rest) = self.stage(Stage::Rest).await?;
+        (m.gyro_actuated, _) = self.stage(Stage::Gyro).await?;
+        (_, m.accel_actuated) = self.stage(Stage::Accel).await?;
+        m.gyro_codes = self.codes(C::GYRO_CODES).await?;
+        m.accel_codes = self.codes(C::ACCEL_CODES).await?;
+        judge(&m, &C::SELF_TEST)
+    }
+
+    /// Configures a stage, lets it settle and averages.
+    async fn stage(&mut self, stage: Stage) -> Result<([f32; 3], [f32; 3]), Fault> {
+        self.registers.apply(&C::self_test_settings(stage)).await?;
+        Timer::after(C::self_test_time(stage)).await;
+        let (mut gyro, mut accel, mut count) = ([0i32; 3], [0i32; 3], 0u16);
+        for _ in 0..SELF_TEST_ATTEMPTS {
+            Timer::after(SELF_TEST_PERIOD).await;
+            let Ok(raw) = self.read_raw().await else { continue };
+            add(&mut gyro, raw.gyro);
+            add(&mut accel, raw.accel);
+            count += 1;
+            if count == SAMPLES {
+                let mean = |sum: [i32; 3]| sum.map(|s| s as f32 / f32::from(SAMPLES));
+                return Ok((mean(gyro), mean(accel)));
+            }
+        }
+        Err(Fault::Garbled)
+    }
+
+    async fn codes(&mut self, (bank, register): (u8, u8)) -> Result<[u8; 3], Fault> {
+        self.registers.select(bank).await?;
+        let codes = self.registers.read(register).await?;
+        self.registers.select(0).await?;
+        Ok(codes)
+    }
+
+    /// Keeps account of a result: after a failure the part is reset, after a pause.
+    fn note<T>(&mut self, result: Result<T, Fault>) -> Result<T, Fault> {
+        let Err(fault) = &result else { return result };
+        let first = self.last_fault != Some(*fault);
+        self.last_fault = Some(*fault);
+        if *fault == Fault::Garbled && self.state == State::Running && self.garbled < GARBLED_MAX {
+            // Paced by data-ready, and mostly over with the next sample.
+            self.garbled += 1;
+            return result;
+        }
+        if first {
+            report(C::NAME, fault);
+        }
+        let [_, longest] = PAUSE;
+        self.state = State::Down(Instant::now() + self.pause);
+        self.pause = (self.pause * 2).min(longest);
+        result
+    }
+}
+
+impl<C: Chip, S: SpiDevice, D: Wait> Imu for SpiImu<C, S, D> {
+    fn rate_hz(&self) -> f32 {
+        self.chip.rate_hz()
+    }
+
+    async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {
+        let result = self.sample().await;
+        let reading = self.note(result).map_err(|fault| fault.port_error())?;
+        let [pause, _] = PAUSE;
+        self.pause = pause;
+        self.silences = 0;
+        self.garbled = 0;
+        Ok(Vec::from_array([reading]))
+    }
+}
+
+async fn until(at: Instant) {
+    if Instant::now() < at {
+        Timer::at(at).await;
+    }
+}
+
+fn scaled(counts: [i16; 3], scale: f32) -> Vec3 {
+    Vec3::from(counts.map(|c| f32::from(c) * scale))
+}
+
+fn add(sum: &mut [i32; 3], counts: [i16; 3]) {
+    for (sum, count) in sum.iter_mut().zip(counts) {
+        *sum += i32::from(count);
+    }
+}

@@ -1,0 +1,182 @@
+//! The ICM-20689 driver against a fake part; what it shares with the other part is tested there.
+
+#[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
+mod fake;
+
+use embassy_time::{Duration, Instant, with_timeout};
+use fake::run;
+use fake::spi::{Bus, DataReady, Failure, Kind, Part};
+use sophie_control::math::GRAVITY;
+use sophie_drivers::fault::{Fault, Sensor};
+use sophie_drivers::icm20689::{Config, GyroFilter, Icm20689};
+use sophie_drivers::mounting::Mounting;
+use sophie_tasks::ports::Imu;
+
+#[test]
+fn it_is_configured_and_read_at_4_khz() {
+    run(async {
+        let part = Part::new(Kind::Icm20689);
+        let mut driver = Icm20689::new(
+            Bus(part.clone()),
+            DataReady(part.clone()),
+            Config::default(),
+            Mounting::default(),
+        );
+        driver.init().await.unwrap();
+        let took = Instant::now().as_millis();
+        assert!((180..200).contains(&took), "{took} ms");
+        {
+            let part = part.borrow();
+            let b0 = part.banks[0];
+            assert_eq!(part.writes.first(), Some(&(0, 0x6B, 0x80)));
+            assert_eq!(b0[0x19..0x1E], [0x00, 0x00, 0x18, 0x18, 0x00]);
+            assert_eq!(
+                (b0[0x37], b0[0x38], b0[0x6A] & 0x10, b0[0x6B], b0[0x6C]),
+                (0, 1, 0x10, 1, 0)
+            );
+            assert_eq!(part.violations, Vec::<String>::new());
+        }
+        assert!((driver.rate_hz() - 4000.0).abs() < 0.1);
+        part.borrow_mut().gyro = [10.0, 20.0, 30.0];
+        part.borrow_mut().transactions.clear();
+        let start = Instant::now();
+        let mut last = None;
+        for _ in 0..4000 {
+            last = Some(driver.read().await.unwrap()[0]);
+        }
+        let took = (Instant::now() - start).as_millis();
+        assert!((995..=1005).contains(&took), "{took} ms for 4000 samples");
+        // The first sample only shows that there are others.
+        let bursts = part.borrow().transactions.iter().filter(|&&n| n == 15).count();
+        assert_eq!(bursts, 4001);
+        let reading = last.unwrap();
+        assert!(
+            (reading.gyro.x.to_degrees() - 10.0).abs() < 0.15,
+            "{:?}",
+            reading.gyro
+        );
+        assert!(
+            (reading.gyro.z.to_degrees() + 30.0).abs() < 0.15,
+            "{:?}",
+            reading.gyro
+        );
+        assert!((reading.accel.z + GRAVITY).abs() < 0.02, "{:?}", reading.accel);
+        assert!((driver.temperature() - 35.0).abs() < 0.01);
+    });
+}
+
+#[test]
+fn at_1_khz_every_pulse_is_read() {
+    run(async {
+        let part = Part::new(Kind::Icm20689);
+        let config = Config {
+            gyro_filter: GyroFilter::Hz176,
+            read_every: 1,
+            ..Config::default()
+        };
+        let mut driver = Icm20689::new(
+            Bus(part.clone()),
+            DataReady(part.clone()),
+            config,
+            Mounting::default(),
+        );
+        driver.init().await.unwrap();
+        assert!((driver.rate_hz() - 1000.0).abs() < 0.1);
+        let start = Instant::now();
+        for _ in 0..100 {
+            driver.read().await.unwrap();
+        }
+        let took = (Instant::now() - start).as_millis();
+        assert!((99..=101).contains(&took), "{took} ms");
+    });
+}
+
+#[test]
+fn another_part_in_its_place_is_named() {
+    run(async {
+        let part = Part::new(Kind::Icm42688p);
+        let mut driver = Icm20689::new(
+            Bus(part.clone()),
+            DataReady(part.clone()),
+            Config::default(),
+            Mounting::default(),
+        );
+        assert_eq!(
+            driver.init().await,
+            Err(Fault::Identity {
+                expected: 0x98,
+                found: 0x47
+            })
+        );
+    });
+}
+
+#[test]
+fn the_self_test_passes_and_fails_by_axis() {
+    run(async {
+        let part = Part::new(Kind::Icm20689);
+        let mut driver = Icm20689::new(
+            Bus(part.clone()),
+            DataReady(part.clone()),
+            Config::default(),
+            Mounting::default(),
+        );
+        let report = driver.self_test().await.unwrap();
+        assert!(
+            report
+                .gyro
+                .iter()
+                .chain(&report.accel)
+                .all(|p| (98..=102).contains(p)),
+            "{report:?}"
+        );
+        assert_eq!(
+            part.borrow().banks[0][0x1B..0x1D],
+            [0x18, 0x18],
+            "ranges restored, actuation off"
+        );
+        part.borrow_mut().health[0] = 0.4;
+        let fault = driver.self_test().await.unwrap_err();
+        assert!(
+            matches!(
+                fault,
+                Fault::SelfTest {
+                    sensor: Sensor::Gyro,
+                    axis: 0,
+                    ..
+                }
+            ),
+            "{fault:?}"
+        );
+    });
+}
+
+#[test]
+fn a_lost_part_comes_back_although_its_reset_is_longer_than_the_task_waits() {
+    run(async {
+        let part = Part::new(Kind::Icm20689);
+        let mut driver = Icm20689::new(
+            Bus(part.clone()),
+            DataReady(part.clone()),
+            Config::default(),
+            Mounting::default(),
+        );
+        driver.init().await.unwrap();
+        driver.read().await.unwrap();
+        part.borrow_mut().failure = Failure::Mute;
+        for _ in 0..10 {
+            assert!(!matches!(
+                with_timeout(Duration::from_millis(3), driver.read()).await,
+                Ok(Ok(_))
+            ));
+        }
+        part.borrow_mut().failure = Failure::None;
+        let start = Instant::now();
+        while !matches!(
+            with_timeout(Duration::from_millis(3), driver.read()).await,
+            Ok(Ok(_))
+        ) {}
+        let took = (Instant::now() - start).as_millis();
+        assert!(took < 400, "{took} ms");
+    });
+}

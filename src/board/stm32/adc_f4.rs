@@ -1,0 +1,111 @@
+//! A scan on the converter of the F4 and F7.
+//!
+//! embassy-stm32 0.6 has only a ring there, which converts without end and interrupts thousands of times a second for
+//! readings that are wanted 500 times. This starts one scan when one is wanted.
+
+use embassy_stm32::Peri;
+use embassy_stm32::adc::{Adc, AnyAdcChannel, DefaultInstance, RxDma, SampleTime};
+use embassy_stm32::dma::{self, InterruptHandler, TransferOptions};
+use embassy_stm32::interrupt::typelevel::Binding;
+use embassy_stm32::pac::adc::vals::{Dds, Eocs};
+use embassy_time::{Duration, with_timeout};
+use sophie_tasks::ports::PortError;
+
+use super::Aligned;
+use super::analog::{CHANNELS, Scan};
+
+/// A scan takes about 0.05 ms; one that takes this long never ends.
+const LONGEST: Duration = Duration::from_millis(1);
+
+/// The converter with its channels.
+pub struct Converter<T: DefaultInstance, D: RxDma<T>, I> {
+    registers: embassy_stm32::pac::adc::Adc,
+    /// Kept, so that converter and pins stay this driver's.
+    _kept: (Adc<'static, T>, [AnyAdcChannel<'static, T>; CHANNELS]),
+    dma: Peri<'static, D>,
+    irqs: I,
+    buffer: &'static mut Aligned<[u16; CHANNELS]>,
+}
+
+impl<T, D, I> Converter<T, D, I>
+where
+    T: DefaultInstance,
+    D: RxDma<T>,
+    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
+{
+    /// The converter `adc`, whose registers are `registers`, with pressure sensors 1 to 4, battery voltage and battery
+    /// current on `channels`.
+    pub fn new(
+        adc: Adc<'static, T>,
+        registers: embassy_stm32::pac::adc::Adc,
+        channels: [AnyAdcChannel<'static, T>; CHANNELS],
+        dma: Peri<'static, D>,
+        irqs: I,
+        buffer: &'static mut Aligned<[u16; CHANNELS]>,
+    ) -> Self {
+        registers.cr1().modify(|w| w.set_scan(true));
+        registers.cr2().modify(|w| {
+            w.set_cont(false);
+            w.set_dds(Dds::SINGLE);
+            w.set_eocs(Eocs::EACH_SEQUENCE);
+        });
+        registers.sqr1().modify(|w| w.set_l(CHANNELS as u8 - 1));
+        for (rank, channel) in channels.iter().enumerate() {
+            let number = channel.get_hw_channel();
+            // The third register holds ranks 1 to 6: all there are.
+            registers.sqr3().modify(|w| w.set_sq(rank, number));
+            // Long enough for the 10 kOhm of a pressure sensor's divider.
+            if number <= 9 {
+                registers
+                    .smpr2()
+                    .modify(|w| w.set_smp(number.into(), SampleTime::CYCLES144));
+            } else {
+                registers
+                    .smpr1()
+                    .modify(|w| w.set_smp(usize::from(number) - 10, SampleTime::CYCLES144));
+            }
+        }
+        Self {
+            registers,
+            _kept: (adc, channels),
+            dma,
+            irqs,
+            buffer,
+        }
+    }
+}
+
+impl<T, D, I> Scan for Converter<T, D, I>
+where
+    T: DefaultInstance,
+    D: RxDma<T>,
+    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
+{
+    async fn scan(&mut self) -> Result<[u16; CHANNELS], PortError> {
+        let r = self.registers;
+        // The request must fall before each scan: after the last transfer of the one before it stays masked.
+        r.cr2().modify(|w| w.set_dma(false));
+        r.sr().modify(|w| {
+            w.set_eoc(false);
+            w.set_ovr(false);
+        });
+        let request = self.dma.request();
+        let mut stream = dma::Channel::new(self.dma.reborrow(), self.irqs);
+        // SAFETY: the data register is as wide as the buffer's elements, and the transfer borrows the buffer and ends
+        // (or is stopped when dropped) before it is read.
+        let transfer = unsafe {
+            stream.read(
+                request,
+                r.dr().as_ptr().cast::<u16>(),
+                &mut self.buffer.0,
+                TransferOptions::default(),
+            )
+        };
+        r.cr2().modify(|w| w.set_dma(true));
+        r.cr2().modify(|w| w.set_swstart(true));
+        with_timeout(LONGEST, transfer)
+            .await
+            .map_err(|_| PortError::Timeout)?;
+        Ok(self.buffer.0)
+    }
+}

@@ -1,0 +1,41 @@
+//! The tendon servos: four channels of one timer.
+
+use embassy_stm32::timer::simple_pwm::SimplePwm;
+use embassy_stm32::timer::{Channel, GeneralInstance4Channel};
+use sophie_control::wrench::PerArm;
+use sophie_drivers::pwm_timing::PwmTiming;
+use sophie_drivers::servo_pulse;
+use sophie_tasks::ports::Servos;
+
+/// The channels in the order of the servos.
+const SERVOS: [Channel; 4] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
+
+/// Four servos on the channels 1 to 4 of a timer.
+pub struct ServoTimer<T: GeneralInstance4Channel> {
+    pwm: SimplePwm<'static, T>,
+    timing: PwmTiming,
+}
+
+impl<T: GeneralInstance4Channel> ServoTimer<T> {
+    /// Servos without pulses, on a timer that is set to the servos' frame.
+    pub fn new(mut pwm: SimplePwm<'static, T>) -> Self {
+        let timing = PwmTiming::given(pwm.max_duty_cycle(), pwm.get_frequency().0 as f32);
+        for channel in SERVOS {
+            let mut output = pwm.channel(channel);
+            output.set_duty_cycle(0);
+            output.enable();
+        }
+        Self { pwm, timing }
+    }
+}
+
+impl<T: GeneralInstance4Channel> Servos for ServoTimer<T> {
+    async fn write(&mut self, pulses_us: PerArm<f32>) {
+        for (channel, pulse) in SERVOS.into_iter().zip(pulses_us) {
+            // Preloaded: a new width takes effect with the next frame, never within a pulse.
+            self.pwm
+                .channel(channel)
+                .set_duty_cycle(servo_pulse::compare(&self.timing, pulse));
+        }
+    }
+}

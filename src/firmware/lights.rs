@@ -1,0 +1,48 @@
+//! Lights and buzzer: what the pilot sees and hears at the vehicle itself. Background, 10 Hz.
+//!
+//! | state light | meaning |
+//! |---|---|
+//! | fast blinking | calibrating: leave the vehicle alone |
+//! | short flash each second | disarmed |
+//! | on | rotors may turn |
+//! | double flash each second | on the pipe, rotors stopped |
+//!
+//! The fault light is on while arming is refused or the failsafe acts; the buzzer sounds with it in the failsafe.
+
+use embassy_time::{Duration, Ticker};
+use sophie_control::mode::Mode;
+use sophie_tasks::links::Links;
+
+use crate::board::stm32::Lights;
+
+/// Time between two looks; ten make a pattern.
+const PERIOD: Duration = Duration::from_millis(100);
+
+/// Ten looks, first one first.
+const FAST: [bool; 10] = [true, false, true, false, true, false, true, false, true, false];
+const FLASH: [bool; 10] = [
+    true, false, false, false, false, false, false, false, false, false,
+];
+const DOUBLE: [bool; 10] = [true, false, true, false, false, false, false, false, false, false];
+const ON: [bool; 10] = [true; 10];
+
+/// Shows the state for ever.
+pub async fn run(links: &Links, mut lights: Lights) -> ! {
+    let mut ticker = Ticker::every(PERIOD);
+    loop {
+        for step in 0..10 {
+            let status = links.status.fresh();
+            let pattern = match status.map(|s| s.mode) {
+                None | Some(Mode::Calibrating) => FAST,
+                Some(Mode::Disarmed) => FLASH,
+                Some(Mode::Perched) => DOUBLE,
+                Some(_) => ON,
+            };
+            // No commander at all is the worst of faults.
+            let fault = status.is_none_or(|s| !s.reason.is_empty());
+            let alarm = status.is_some_and(|s| s.mode == Mode::Failsafe) && DOUBLE[step];
+            lights.show(pattern[step], fault, alarm);
+            ticker.next().await;
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What the checks need to know of an ELF.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
+
+use crate::Error;
+
+/// A section that takes memory on the chip.
+pub struct Section {
+    /// Name.
+    pub name: String,
+    /// Where the program sees it.
+    pub address: u64,
+    /// Its length.
+    pub size: u64,
+    /// It has contents in the image; without, it is RAM that start-up clears or leaves alone.
+    pub in_image: bool,
+    /// The program may write to it.
+    pub writable: bool,
+}
+
+/// A static.
+pub struct Static {
+    /// Mangled name.
+    pub name: String,
+    /// Where it lies.
+    pub address: u64,
+    /// Its length.
+    pub size: u64,
+}
+
+/// An ELF, read.
+pub struct Image {
+    /// Address of the first instruction.
+    pub entry: u64,
+    /// Sections that take memory.
+    pub sections: Vec<Section>,
+    /// Statics.
+    pub statics: Vec<Static>,
+    /// Addresses of all named symbols.
+    pub symbols: HashMap<String, u64>,
+    /// Contents of the vector table, word by word.
+    pub vectors: Vec<u32>,
+}
+
+impl Image {
+    /// Reads the ELF at `path`.
+    ///
+    /// # Errors
+    /// Not an ELF, or one without vector table.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let bytes = std::fs::read(path)?;
+        let file = object::File::parse(&*bytes)?;
+        let table = file
+            .section_by_name(".vector_table")
+            .ok_or("the image has no vector table")?;
+        let words = table.data()?.as_chunks().0;
+        let mut sections = Vec::new();
+        for section in file.sections() {
+            let SectionFlags::Elf { sh_flags } = section.flags() else {
+                continue;
+            };
+            if sh_flags & u64::from(object::elf::SHF_ALLOC) == 0 || section.size() == 0 {
+                continue;
+            }
+            sections.push(Section {
+                name: section.name()?.to_string(),
+                address: section.address(),
+                size: section.size(),
+                in_image: section.kind() != object::SectionKind::UninitializedData,
+                writable: sh_flags & u64::from(object::elf::SHF_WRITE) != 0,
+            });
+        }
+        let mut statics = Vec::new();
+        let mut symbols = HashMap::new();
+        for symbol in file.symbols() {
+            let Ok(name) = symbol.name() else { continue };
+            // The log's texts are symbols too, in sections that never reach the chip.
+            let on_chip = |s: &Section| (s.address..s.address + s.size).contains(&symbol.address());
+            if symbol.kind() == SymbolKind::Data && sections.iter().any(on_chip) {
+                statics.push(Static {
+                    name: name.into(),
+                    address: symbol.address(),
+                    size: symbol.size(),
+                });
+            }
+            symbols.insert(name.to_string(), symbol.address());
+        }
+        Ok(Self {
+            entry: file.entry(),
+            sections,
+            statics,
+            symbols,
+            vectors: words.iter().map(|word| u32::from_le_bytes(*word)).collect(),
+        })
+    }
+
+    /// Address of the symbol `name`.
+    ///
+    /// # Errors
+    /// The image has none of this name.
+    pub fn symbol(&self, name: &str) -> Result<u64, Error> {
+        self.symbols
+            .get(name)
+            .copied()
+            .ok_or_else(|| format!("the image has no symbol `{name}`").into())
+    }
+}

@@ -1,0 +1,105 @@
+//! Finds something that compiles for the boards.
+//!
+//! Two ways: the target's library from rustup, or, where rustup has nothing to give (an offline machine), a compiler
+//! that comes with the library's source and builds it: Debian's packages `rustc-web` and `rust-web-src`.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::Error;
+
+/// The boards' target.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+/// Where Debian installs its compiler.
+const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
+
+/// A toolchain that compiles for [`TARGET`].
+pub struct Toolchain {
+    /// What it is, for the user.
+    pub name: String,
+    /// Arguments for cargo.
+    pub arguments: &'static [&'static str],
+    /// Variables for cargo.
+    pub variables: Vec<(&'static str, OsString)>,
+}
+
+/// The toolchain that serves here.
+///
+/// # Errors
+/// None does: what to install.
+pub fn find() -> Result<Toolchain, Error> {
+    let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
+    let libraries = ask(&rustc, &["--print", "target-libdir", "--target", TARGET]).map(PathBuf::from);
+    if libraries.is_some_and(|path| holds_core(&path)) {
+        return Ok(Toolchain {
+            name: format!(
+                "{} with rustup's {TARGET}",
+                ask(&rustc, &["--version"]).unwrap_or(rustc)
+            ),
+            arguments: &[],
+            variables: Vec::new(),
+        });
+    }
+    if let Some(toolchain) = debian(&rustc) {
+        return Ok(toolchain);
+    }
+    Err(format!(
+        "nothing here compiles for {TARGET}. Install one of\n  \
+         rustup target add {TARGET}\n  \
+         apt-get install rustc-web rust-web-src     (Debian, beside a rustup toolchain)"
+    )
+    .into())
+}
+
+fn debian(rustc: &str) -> Option<Toolchain> {
+    let version = ask(DEBIAN_RUSTC, &["--version"])?;
+    let sysroot = PathBuf::from(ask(DEBIAN_RUSTC, &["--print", "sysroot"])?);
+    if !sysroot.join("lib/rustlib/src/rust/library/core").is_dir() {
+        return None;
+    }
+    // Debian's compiler comes without the linker that the target asks for; every rustup toolchain has one.
+    let host = ask(rustc, &["-vV"])?
+        .lines()
+        .find_map(|l| l.strip_prefix("host: ").map(str::to_string))?;
+    let linkers = PathBuf::from(ask(rustc, &["--print", "sysroot"])?)
+        .join("lib/rustlib")
+        .join(host)
+        .join("bin");
+    if !linkers.join("rust-lld").is_file() {
+        return None;
+    }
+    let path = env::var_os("PATH").unwrap_or_default();
+    let path = env::join_paths(std::iter::once(linkers).chain(env::split_paths(&path))).ok()?;
+    Some(Toolchain {
+        name: format!("Debian's {version}, building `core` from its source"),
+        // On the command line and not in .cargo/config.toml: there it would also reach the host's builds of anyone
+        // who uses a nightly cargo.
+        arguments: &["-Zbuild-std=core"],
+        variables: vec![
+            ("RUSTC", DEBIAN_RUSTC.into()),
+            // Lets a released cargo build the library.
+            ("RUSTC_BOOTSTRAP", "1".into()),
+            ("PATH", path),
+        ],
+    })
+}
+
+/// First line, or all lines, that a program prints; `None` when it fails.
+fn ask(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_string())
+}
+
+/// The folder holds a compiled `core`.
+fn holds_core(folder: &Path) -> bool {
+    folder.read_dir().is_ok_and(|entries| {
+        entries.flatten().any(|entry| {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            name.starts_with("libcore-") && name.ends_with(".rlib")
+        })
+    })
+}
