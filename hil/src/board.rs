@@ -134,7 +134,13 @@ impl Board {
 
     /// Puts bytes on the receiver's line; what does not fit is lost, as on a line nobody reads.
     pub fn receive(&self, bytes: &[u8]) {
-        let _ = self.rc.try_write(bytes);
+        let mut rest = bytes;
+        // The ring takes bytes up to its end, then from its start.
+        while !rest.is_empty()
+            && let Ok(taken) = self.rc.try_write(rest)
+        {
+            rest = rest.get(taken..).unwrap_or_default();
+        }
     }
 
     /// Takes the telemetry bytes sent since the last call.

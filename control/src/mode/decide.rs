@@ -80,8 +80,9 @@ impl ModeLogic {
         match self.state {
             State::Calibrating if i.motion.is_none() => "inertial sensor silent",
             State::Calibrating => "keep still",
-            State::Disarmed { .. } if i.sticks.is_some_and(|s| s.arm_switch) => {
-                refusals.first().map_or(note, Refusal::text)
+            // What just happened comes before what keeps from arming again.
+            State::Disarmed { .. } if note.is_empty() && i.sticks.is_some_and(|s| s.arm_switch) => {
+                refusals.first().map_or("", Refusal::text)
             }
             State::Perched { arms } => self.perch_trouble(i, arms).unwrap_or(note),
             State::Failsafe(cause) => cause.text(),

@@ -22,6 +22,9 @@ const CONTACT_MARGIN: f32 = 0.03;
 /// Lean beyond which the arms are not closed, rad. Before the arms hold, a vehicle that leans by θ along a pipe's
 /// flank stays only while sin θ <= μ (cos θ - T/W): 14° at μ 0.6 and 30 % throttle.
 pub const PERCH_LEAN_MAX: f32 = crate::math::deg(11.0);
+/// Time over which gravity is learnt at rest, s, and what may come of it, m/s²: a part's bias of some 40 mg.
+const GRAVITY_TIME: f32 = 0.5;
+const GRAVITY_BOUNDS: (f32, f32) = (9.4, 10.2);
 /// Time for which a reason stays on the pilot's display, s.
 const NOTE_TIME: f32 = 10.0;
 
@@ -98,6 +101,8 @@ pub struct ModeLogic {
     pub(super) collective: demand::Collective,
     /// A reason and the time for which it is still shown, s.
     pub(super) note: (&'static str, f32),
+    /// Specific force at rest, m/s².
+    gravity: f32,
 }
 
 impl ModeLogic {
@@ -117,6 +122,7 @@ impl ModeLogic {
             perch_seen_on: false,
             collective: demand::Collective::default(),
             note: ("", 0.0),
+            gravity: crate::math::GRAVITY,
         }
     }
 
@@ -155,9 +161,15 @@ impl ModeLogic {
             self.perch_seen_off |= !s.perch_switch;
             self.perch_seen_on |= s.perch_switch;
         }
+        let down = i.motion.map_or(-self.gravity, |m| m.q.rotate(m.accel).z);
+        if matches!(self.state, State::Calibrating | State::Disarmed { closed: None }) && i.motion.is_some() {
+            // What the accelerometer calls gravity at rest: its bias would otherwise add up in the sink rate.
+            let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
+            self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
+        }
         let felt = i.motion.map(|m| Felt {
             specific_force_z: m.accel.z,
-            down: m.q.rotate(m.accel).z + crate::math::GRAVITY,
+            down: down + self.gravity,
             rate: m.rate.norm(),
             lift: i.lift,
         });

@@ -16,6 +16,8 @@ pub(super) struct Rig {
     pub(super) logic: ModeLogic,
     pub(super) inputs: Inputs,
     pub(super) carried: bool,
+    /// Sink rate at which it will touch down, m/s.
+    falling: f32,
     pub(super) out: Outputs,
     pub(super) params: Params,
 }
@@ -37,6 +39,7 @@ impl Rig {
             logic: ModeLogic::new(&params),
             inputs,
             carried: true,
+            falling: 0.0,
             out: Outputs::default(),
             params,
         }
@@ -62,12 +65,15 @@ impl Rig {
     pub(super) fn step(&mut self) {
         self.inputs.lift = self.out.rotors.thrust();
         if let Some(m) = &mut self.inputs.motion {
-            let carried = if self.carried {
-                GRAVITY
+            let felt = if self.carried {
+                // The first moment takes the speed away.
+                GRAVITY + core::mem::take(&mut self.falling) / DT
             } else {
-                self.inputs.lift / self.params.mass
+                let felt = self.inputs.lift / self.params.mass;
+                self.falling += (GRAVITY - felt) * DT;
+                felt
             };
-            m.accel = Vec3::new(0.0, 0.0, -carried);
+            m.accel = Vec3::new(0.0, 0.0, -felt);
         }
         self.out = self.logic.step(&self.inputs, DT);
     }
