@@ -2,6 +2,9 @@
 //!
 //! The tilt setpoint is built on the heading that the vehicle has, not the one it should have: otherwise
 //! a yaw error would leak roll into pitch.
+//!
+//! Setpoints are limited before they are filtered, so that no number can stay in the filters: one that is not
+//! finite leaves roll and pitch where they were aimed and stops the turn in yaw.
 
 use crate::filter::LowPass;
 use crate::math;
@@ -10,17 +13,19 @@ use crate::vector::{Quat, Vec3};
 
 /// Farthest that the heading setpoint may run ahead of the heading, rad.
 const HEADING_LEASH: f32 = 0.5;
+/// Largest roll or pitch aimed at, rad: a quarter turn, beyond what this vehicle flies.
+const ANGLE_MAX: f32 = 0.5 * math::PI;
 /// Time constant of the yaw stick's rate, s: torsion wants smooth commands.
 const YAW_RATE_TAU: f32 = 0.3;
 
 /// Wanted attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AttitudeSetpoint {
-    /// Roll, rad.
+    /// Roll, rad, right side down positive; limited to ±π/2.
     pub roll: f32,
-    /// Pitch, rad.
+    /// Pitch, rad, nose up positive; limited to ±π/2.
     pub pitch: f32,
-    /// Yaw rate, rad/s.
+    /// Yaw rate, rad/s, clockwise seen from above positive; limited to ± the parameter `yaw_slew`.
     pub yaw_rate: f32,
 }
 
@@ -54,7 +59,7 @@ impl AttitudeLoop {
         }
     }
 
-    /// Starts afresh from the attitude `q`: setpoints where the vehicle is, no jump on the first step.
+    /// Starts afresh from the attitude `q` (unit, body to world): setpoints where the vehicle is, no jump on the first step.
     pub fn reset(&mut self, q: Quat) {
         let (roll, pitch, yaw) = q.to_euler();
         self.roll = (LowPass::at(roll), LowPass::at(roll));
@@ -63,15 +68,22 @@ impl AttitudeLoop {
         self.heading = yaw;
     }
 
-    /// Takes the present heading as the wanted one, while yaw is given up.
+    /// Takes the heading of `q` (unit, body to world) as the wanted one, while yaw is given up.
     pub fn capture_heading(&mut self, q: Quat) {
         self.heading = heading(q);
         self.yaw_rate = LowPass::at(0.0);
     }
 
-    /// Body rates (rad/s) that lead from `q` to the setpoint; step time `dt` s.
+    /// Body rates (rad/s, roll and pitch within ± the parameter `rate_max`, yaw within twice `yaw_slew`) that
+    /// lead from `q` (unit, body to world) to the setpoint; step time `dt` s, > 0.
     pub fn step(&mut self, q: Quat, setpoint: AttitudeSetpoint, dt: f32) -> Vec3 {
         let smooth = |f: &mut (LowPass, LowPass), x: f32| {
+            // The filter ignores what is not finite: a limit would make an angle of it.
+            let x = if x.is_finite() {
+                math::clamp_abs(x, ANGLE_MAX)
+            } else {
+                x
+            };
             let first = f.0.step(x, self.cutoff, dt);
             f.1.step(first, self.cutoff, dt)
         };
@@ -87,11 +99,12 @@ impl AttitudeLoop {
             2.0 * self.p
         };
 
-        let yaw_rate = self.yaw_rate.step(
-            math::clamp_abs(setpoint.yaw_rate, self.yaw_rate_max),
-            1.0 / YAW_RATE_TAU,
-            dt,
-        );
+        let wanted = if setpoint.yaw_rate.is_finite() {
+            math::clamp_abs(setpoint.yaw_rate, self.yaw_rate_max)
+        } else {
+            0.0
+        };
+        let yaw_rate = self.yaw_rate.step(wanted, 1.0 / YAW_RATE_TAU, dt);
         let ahead = math::wrap_pi(self.heading + yaw_rate * dt - now);
         let ahead = math::clamp_abs(ahead, HEADING_LEASH);
         self.heading = math::wrap_pi(now + ahead);
@@ -106,7 +119,7 @@ impl AttitudeLoop {
         )
     }
 
-    /// Roll, pitch and heading aimed at, rad, after the prefilter.
+    /// Roll, pitch (±π/2) and heading (±π) aimed at, rad, after the prefilter.
     pub const fn target(&self) -> Vec3 {
         Vec3::new(self.roll.1.value(), self.pitch.1.value(), self.heading)
     }
@@ -186,7 +199,101 @@ mod tests {
         assert!((1.5..2.2).contains(&yaw), "{yaw}");
     }
 
+    #[test]
+    fn both_quaternions_of_an_attitude_turn_the_same_short_way() {
+        for (roll, pitch) in [(0.3, 0.0), (-0.2, 0.25), (0.0, -0.4)] {
+            let q = Quat::from_euler(0.1, -0.1, 1.0);
+            let twin = Quat {
+                w: -q.w,
+                x: -q.x,
+                y: -q.y,
+                z: -q.z,
+            };
+            let setpoint = AttitudeSetpoint {
+                roll,
+                pitch,
+                yaw_rate: 0.0,
+            };
+            let (a, b) = (settled(q, setpoint), settled(twin, setpoint));
+            assert!(a.norm() > 0.5 && (a - b).norm() < 0.02, "{a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn a_heading_rate_turns_about_the_vertical_of_the_world() {
+        for (roll, pitch) in [(0.5, 0.0), (-0.4, 0.0), (0.0, 0.5), (0.4, -0.3)] {
+            let q = Quat::from_euler(roll, pitch, 0.7);
+            let setpoint = AttitudeSetpoint {
+                roll,
+                pitch,
+                yaw_rate: 0.4,
+            };
+            let r = settled(q, setpoint);
+            // Seen from the world it is a turn about down, 0.4 rad/s and the leash's 1.2 1/s · 0.5 rad.
+            let turn = q.rotate(r);
+            assert!(
+                turn.x.abs() < 0.03 && turn.y.abs() < 0.03 && (turn.z - 1.0).abs() < 0.03,
+                "{roll} {pitch}: {turn:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_setpoint_that_is_no_number_holds_the_tilt_and_ends_the_turn() {
+        let mut a = AttitudeLoop::new(&Params::default());
+        let good = AttitudeSetpoint {
+            roll: 0.2,
+            pitch: -0.1,
+            yaw_rate: 0.4,
+        };
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for _ in 0..2000 {
+                a.step(Quat::IDENTITY, good, 1e-3);
+            }
+            let none = AttitudeSetpoint {
+                roll: bad,
+                pitch: bad,
+                yaw_rate: bad,
+            };
+            for _ in 0..3000 {
+                a.step(Quat::IDENTITY, none, 1e-3);
+            }
+            let target = a.target();
+            assert!((target.x - 0.2).abs() < 1e-3 && (target.y + 0.1).abs() < 1e-3);
+            assert!(a.yaw_rate.value().abs() < 1e-3, "{bad}: {}", a.yaw_rate.value());
+        }
+    }
+
     proptest! {
+        #[test]
+        fn no_nan_comes_out_and_the_loop_recovers(
+            bits in prop::collection::vec(any::<[u32; 3]>(), 1..40),
+            q in prop::collection::vec(prop::array::uniform4(-1.0f32..1.0), 40),
+        ) {
+            let p = Params::default();
+            let mut a = AttitudeLoop::new(&p);
+            let mut q_now = Quat::IDENTITY;
+            for ([roll, pitch, yaw_rate], [w, x, y, z]) in bits.into_iter().zip(q) {
+                q_now = Quat { w, x, y, z }.normalised();
+                let f = f32::from_bits;
+                let setpoint = AttitudeSetpoint { roll: f(roll), pitch: f(pitch), yaw_rate: f(yaw_rate) };
+                let r = a.step(q_now, setpoint, 1e-3);
+                prop_assert!(r.is_finite() && a.target().is_finite(), "{setpoint:?} {r:?}");
+                prop_assert!(r.x.abs() <= p.rate_max && r.y.abs() <= p.rate_max, "{r:?}");
+                prop_assert!(r.z.abs() <= 2.01 * p.yaw_slew, "{r:?}");
+            }
+            // A vehicle that does what it is told comes back to level and to rest, from wherever it was left.
+            const DT: f32 = 4e-3;
+            let mut r = Vec3::ZERO;
+            for _ in 0..2500 {
+                r = a.step(q_now, AttitudeSetpoint::default(), DT);
+                prop_assert!(r.is_finite());
+                let turn = r * (0.5 * DT);
+                q_now = (q_now * Quat { w: 1.0, x: turn.x, y: turn.y, z: turn.z }).normalised();
+            }
+            prop_assert!(q_now.down_in_body().z > 0.999 && r.norm() < 0.05, "{q_now:?} {r:?}");
+        }
+
         #[test]
         fn the_loop_turns_towards_the_setpoint(r in -1.0f32..1.0, p in -0.8f32..0.8, y in -3.0f32..3.0, r0 in -0.8f32..0.8) {
             let q = Quat::from_euler(r0, 0.1, y);

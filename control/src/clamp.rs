@@ -460,7 +460,7 @@ pub struct ClampOutput {
     pub force: PerArm<f32>,
     /// What is known of each grip.
     pub arms: PerArm<ArmGrip>,
-    /// Every chosen arm holds (there is at least one).
+    /// Every chosen arm holds (there is at least one), and all were within the tolerance at once for the dwell time.
     pub proven: bool,
     /// Every arm is free.
     pub released: bool,
@@ -470,6 +470,9 @@ pub struct ClampOutput {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clamp {
     arms: PerArm<ArmClamp>,
+    /// Time for which every chosen arm has been within the tolerance at once, s.
+    together: f32,
+    proven: bool,
 }
 
 impl Clamp {
@@ -482,17 +485,26 @@ impl Clamp {
         dt: f32,
     ) -> ClampOutput {
         let mut out = ClampOutput {
-            proven: close.contains(&true),
             released: true,
             ..ClampOutput::default()
         };
+        let (mut holding, mut within) = (close.contains(&true), true);
         let slots = out.force.iter_mut().zip(out.arms.iter_mut());
         for (((arm, close), input), (force, grip)) in self.arms.iter_mut().zip(close).zip(input).zip(slots) {
             *grip = arm.step(cfg, close, input, dt);
             *force = grip.force;
-            out.proven &= !close || grip.state == ArmState::Holding;
+            holding &= !close || grip.state == ArmState::Holding;
+            within &= !close || (grip.pressure - cfg.demand.pressure).abs() <= cfg.demand.tolerance;
             out.released &= arm.is_free(input.pressure);
         }
+        // Once proven a grip is only doubted arm by arm: a push moves the pressures without loosening it.
+        self.together = if within {
+            math::clamp(self.together + dt, 0.0, 10.0)
+        } else {
+            0.0
+        };
+        self.proven = holding && (self.proven || self.together >= cfg.demand.dwell);
+        out.proven = self.proven;
         out
     }
 }
@@ -803,6 +815,20 @@ mod tests {
                     ArmState::Free
                 ]
         );
+        out = drive(&mut clamp, [false; 4], [0.0, 0.0, 300.0, 0.0], 5.0);
+        assert!(!out.released && !out.proven);
+        // Not once one arm has left the tolerance again before the other came: only when both are in it.
+        let mut clamp = Clamp::default();
+        for (pressures, proven) in [
+            ([0.0; 4], false),
+            ([950.0, 0.0, 700.0, 0.0], false),
+            ([1020.0, 0.0, 950.0, 0.0], false),
+            ([960.0, 0.0, 950.0, 0.0], true),
+            ([1020.0, 0.0, 950.0, 0.0], true),
+        ] {
+            out = drive(&mut clamp, front, pressures, 1.5);
+            assert!(out.proven == proven, "{pressures:?} {out:?}");
+        }
         out = drive(&mut clamp, [false; 4], [0.0, 0.0, 300.0, 0.0], 5.0);
         assert!(!out.released && !out.proven);
         out = drive(&mut clamp, [false; 4], [0.0; 4], 1.0);

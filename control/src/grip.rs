@@ -8,7 +8,7 @@ use crate::wrench::PerArm;
 /// What the clamp loop knows of the grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GripState {
-    /// Every chosen arm held the pressure for the dwell time with a force below the limit.
+    /// Every chosen arm, all at once, held the pressure for the dwell time with a force below the limit.
     pub proven: bool,
     /// Every arm is free: no pressure, tendon slack, servo back at release.
     pub released: bool,

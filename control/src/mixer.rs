@@ -37,7 +37,7 @@ const GATE_HYSTERESIS: f32 = 0.2;
 /// What one step gives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mix {
-    /// Thrust of each rotor, N.
+    /// Thrust of each rotor, N, from the idle thrust to the largest that the battery allows.
     pub thrusts: PerArm<f32>,
     /// What was given up.
     pub given: Given,
@@ -50,9 +50,9 @@ pub struct Mix {
 pub struct Conditions {
     /// Yaw may be used.
     pub yaw: bool,
-    /// Battery voltage over nominal; less lowers the largest thrust.
+    /// Battery voltage over nominal, 0.5..1 (limited); less lowers the largest thrust by its square.
     pub battery_ratio: f32,
-    /// Step time, s.
+    /// Step time, s, > 0.
     pub dt: f32,
 }
 
@@ -134,7 +134,7 @@ impl Mixer {
         self.tilt.correct(measured);
     }
 
-    /// Rotors at idle for one step.
+    /// Rotors at idle for one step of `dt` s.
     pub fn idle(&mut self, dt: f32) -> Mix {
         self.follow([self.idle; 4], dt);
         Mix {
@@ -144,7 +144,7 @@ impl Mixer {
         }
     }
 
-    /// Thrusts for the wrench `w`. A wrench that is not finite counts as none: idle.
+    /// Thrusts (N) for the wrench `w` (N, N·m). A wrench that is not finite counts as none: idle.
     pub fn mix(&mut self, w: Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
             return self.idle(c.dt);
@@ -475,6 +475,32 @@ mod tests {
         }
         let (_, mix) = settled(Variant::Flexible, HOVER);
         assert!(mix.given == Given::ALL);
+    }
+
+    #[test]
+    fn yaw_moves_no_rotor_by_more_than_its_limit() {
+        // The rotors have room for 2.56 N (flexible) and 3.1 N (stiff) of yaw each: only the limit holds it back.
+        let limit = Params::default().yaw_thrust_max;
+        for (variant, yaw) in [
+            (Variant::Flexible, 0.8),
+            (Variant::Rigid, 0.2),
+            (Variant::Paper, 0.2),
+        ] {
+            let (m, _) = settled(variant, HOVER);
+            for yaw in [yaw, -yaw] {
+                let (mut a, mut b) = (m, m);
+                let still = a.mix(HOVER, conditions());
+                let turning = b.mix(Wrench { yaw, ..HOVER }, conditions());
+                let most = turning
+                    .thrusts
+                    .iter()
+                    .zip(&still.thrusts)
+                    .map(|(a, b)| (a - b).abs())
+                    .fold(0.0, f32::max);
+                assert!((most - limit).abs() < 0.02, "{variant:?} {most}");
+                assert!((0.3..0.7).contains(&turning.given.yaw), "{:?}", turning.given);
+            }
+        }
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub struct RateLoop {
 }
 
 impl RateLoop {
-    /// A loop at rest for steps at `rate_hz`.
+    /// A loop at rest for steps at `rate_hz` (Hz, > 0).
     pub fn new(p: &Params, rate_hz: f32) -> Self {
         Self {
             p: Vec3::new(p.rate_p, p.rate_p, p.rate_yaw_p),
@@ -69,7 +69,7 @@ impl RateLoop {
         self.notch.reset(0.0);
     }
 
-    /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s), step time `dt` s. `integrate` false
+    /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s), step time `dt` s, > 0. `integrate` false
     /// freezes the integrators, as while resting on something.
     pub fn step(&mut self, setpoint: Vec3, rate: Vec3, feedback: Feedback, integrate: bool, dt: f32) -> Vec3 {
         let error = setpoint - rate;
@@ -119,7 +119,7 @@ impl RateLoop {
         }
     }
 
-    /// Integrators, rad/s².
+    /// Integrators, rad/s², within ±15 for roll and pitch and ±3 for yaw.
     pub const fn integral(&self) -> Vec3 {
         self.integral
     }
@@ -199,6 +199,35 @@ mod tests {
             1e-3,
         );
         assert!(damped.x < 0.95 * 0.21);
+    }
+
+    #[test]
+    fn each_axis_has_a_derivative_of_its_own() {
+        let p = Params {
+            rate_d: 0.1,
+            ..Params::default()
+        };
+        for axis in 0..3 {
+            let mut l = RateLoop::new(&p, 1000.0);
+            let mut rate = [0.0; 3];
+            for _ in 0..200 {
+                rate[axis] += 0.01;
+                let rate = Vec3::from(rate);
+                // No error: what is left is the derivative.
+                let m = l.step(rate, rate, FREE, false, 1e-3).to_array();
+                for (other, m) in m.into_iter().enumerate() {
+                    assert!(other == axis || m == 0.0, "{axis} -> {other}: {m}");
+                }
+            }
+            for (other, d) in l.derivative.iter().enumerate() {
+                let slope = if other == axis { 10.0 } else { 0.0 };
+                assert!(
+                    (d.value() - slope).abs() < 0.01,
+                    "{axis} -> {other}: {}",
+                    d.value()
+                );
+            }
+        }
     }
 
     #[test]

@@ -57,9 +57,9 @@ pub struct Felt {
     pub specific_force_z: f32,
     /// Acceleration along world down, m/s².
     pub down: f32,
-    /// Size of the angular rate, rad/s.
+    /// Size of the angular rate, rad/s, >= 0.
     pub rate: f32,
-    /// Thrust asked of the rotors along -z, N.
+    /// Thrust asked of the rotors along -z, N, >= 0.
     pub lift: f32,
 }
 
@@ -134,7 +134,7 @@ impl Support {
         self.mass * GRAVITY
     }
 
-    /// Force that something other than the rotors carries, N, low-passed.
+    /// Force that something other than the rotors carries, N, low-passed; negative when something pulls down.
     pub fn force(&self) -> f32 {
         self.force
     }
@@ -144,12 +144,12 @@ impl Support {
         self.resting
     }
 
-    /// True when nearly all of the weight has been carried for [`GROUNDED_TIME`].
+    /// True when nearly all of the weight has been carried for [`GROUNDED_TIME`] without tumbling.
     pub fn grounded(&self) -> bool {
         self.full.time() >= GROUNDED_TIME
     }
 
-    /// Sink rate, m/s, downwards positive: the sum of what the accelerometer felt over the last seconds. Good
+    /// Sink rate, m/s, downwards positive, within ±10 m/s: the sum of what the accelerometer felt over the last seconds. Good
     /// for damping a descent, not for knowing its speed.
     pub fn sink(&self) -> f32 {
         self.sink
@@ -246,6 +246,30 @@ mod tests {
             0.01,
         );
         assert!(s.force().is_finite());
+    }
+
+    #[test]
+    fn a_tumble_under_full_weight_is_not_the_ground() {
+        let p = Params::default();
+        let mut s = Support::new(&p);
+        let mut turn = |rate, seconds: f32| {
+            for _ in 0..(seconds * 100.0) as u32 {
+                s.step(
+                    Some(Felt {
+                        specific_force_z: -GRAVITY,
+                        down: 0.0,
+                        rate,
+                        lift: 0.0,
+                    }),
+                    0.01,
+                );
+            }
+            (s.force() > 0.99 * s.weight(), s.grounded())
+        };
+        assert!(turn(2.0, 3.0) == (true, false), "all of the weight, but turning");
+        assert!(turn(0.0, 0.4) == (true, false), "the time starts over");
+        assert!(turn(0.0, 0.2) == (true, true));
+        assert!(turn(2.0, 0.02) == (true, false), "and is broken by a tumble");
     }
 
     #[test]

@@ -96,17 +96,17 @@ impl TiltModel {
         &self.model
     }
 
-    /// Low-passed thrust of each rotor, N.
+    /// Low-passed thrust of each rotor, N, >= 0.
     pub fn thrusts(&self) -> PerArm<f32> {
         self.arms.map(|a| a.thrust.value())
     }
 
-    /// Tilt of each arm, rad.
+    /// Tilt of each arm, rad, tip up positive, within ±[`VALID_TILT`].
     pub fn tilt(&self) -> PerArm<f32> {
         self.arms.map(|a| a.tilt)
     }
 
-    /// Bias of each arm against the model, rad.
+    /// Bias of each arm against the model, rad, tip up positive, within the parameters' limit.
     pub fn bias(&self) -> PerArm<f32> {
         self.arms.map(|a| a.bias)
     }
@@ -175,6 +175,28 @@ mod tests {
             soft.step(&[8.0; 4], 1e-3);
         }
         assert!(soft.fault());
+    }
+
+    #[test]
+    fn whether_it_learns_is_up_to_the_thrust_that_the_arm_has_felt() {
+        // Spooling up: the command is a flying one, the arm still hangs.
+        let mut t = settled(0.25);
+        while t.thrusts()[0] < LEARN_THRUST + 0.2 {
+            t.step(&[6.0; 4], 1e-3);
+        }
+        assert!(t.arms[0].lagged.value() < LEARN_THRUST);
+        t.correct(&[Some(0.1); 4]);
+        assert!(t.bias() == [0.0; 4], "{:?}", t.bias());
+        // Spooling down: the command is idle, the arm is still bent by a flying thrust.
+        let mut t = settled(6.0);
+        while t.thrusts()[0] > LEARN_THRUST - 0.2 {
+            t.step(&[0.25; 4], 1e-3);
+        }
+        let felt = t.arms[0].lagged.value();
+        assert!(felt > LEARN_THRUST);
+        let truth = t.model().angle(felt) + 0.05;
+        t.correct(&[Some(truth); 4]);
+        assert!(t.bias().iter().all(|b| *b > 0.0), "{:?}", t.bias());
     }
 
     #[test]
