@@ -44,6 +44,10 @@ const USUAL_CUTOFF: f32 = 3.0;
 const LIMITED_AFTER: f32 = 1.0;
 /// Time without a tilt after which the arm counts as faulty, s; its servo is held from the first moment.
 const TILT_MISSING: f32 = 0.5;
+/// Shares of the grip pressure between which no arm can fall within one step of 10 ms (its modes are below 30 Hz):
+/// the sensor's lead broke.
+const VANISHED_FROM: f32 = 0.3;
+const VANISHED_TO: f32 = 0.02;
 /// Rise of the tension (N) over which an arm that does not touch is expected to bend.
 const BEND_WINDOW: f32 = 8.0;
 /// Tension (N) from which that is watched: below it the tendon may still be slack, when it was knotted 1 mm too
@@ -241,6 +245,8 @@ pub struct ArmClamp {
     fault: Option<Fault>,
     tilt_missing: f32,
     at_limit: f32,
+    /// Pressure of the step before, unfiltered, Pa.
+    felt: Option<f32>,
     hold: HoldProof,
     free: FreeProof,
 }
@@ -354,9 +360,15 @@ impl ArmClamp {
             math::clamp(self.tilt_missing + dt, 0.0, 10.0)
         };
         let latched = matches!(self.fault, Some(Fault::Sensor | Fault::Unfelt));
+        let before = core::mem::replace(&mut self.felt, sensed.known());
+        let vanished = matches!(self.phase, Phase::Grip(_))
+            && before.is_some_and(|p| p > VANISHED_FROM * cfg.demand.pressure)
+            && sensed.known().is_some_and(|p| p < VANISHED_TO * cfg.demand.pressure);
         self.fault = match sensed {
             _ if latched => self.fault,
             Pressure::Faulty => Some(Fault::Sensor),
+            // An unloaded sensor looks like an open one, but no arm lets go within one step.
+            Pressure::Known(_) if vanished => Some(Fault::Sensor),
             Pressure::Stale => Some(Fault::Stale),
             Pressure::Known(_) if pressure.is_none() || thrust.is_none() => Some(Fault::NotFinite),
             Pressure::Known(_) if self.tilt_missing >= TILT_MISSING => Some(Fault::Tilt),
