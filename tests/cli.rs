@@ -76,7 +76,7 @@ fn options_out_of_range_are_refused_in_one_line() {
     let line = refused(&temp, &["--infill", "3.5"]);
     assert_eq!(
         line,
-        "sophie: invalid value '3.5' for '--infill <PERCENT>': allowed 4 to 10 %"
+        "sophie: invalid value '3.5' for '--rho <PERCENT>': allowed 4 to 10 %"
     );
     for args in [
         &["fly", "--rho", "11"][..],
@@ -86,7 +86,7 @@ fn options_out_of_range_are_refused_in_one_line() {
         &["--mixer", "soft"],
         &["--arms", "3"],
         &["--seed", "-1"],
-        &["--seed", "1e3"],
+        &["--seed", "1.5"],
         &["--nonsense"],
         &["--infill"],
         &["one.toml", "two.toml"],
@@ -148,6 +148,43 @@ fn an_unwritable_directory_is_told_before_the_flight() {
         );
     }
     assert_eq!(temp.names(), ["taken"]);
+}
+
+#[test]
+fn a_directory_in_a_file_s_place_is_told_before_the_flight() {
+    let temp = Temp::new("taken");
+    for name in ["report.html", "flight.mcap", "summary.json"] {
+        fs::create_dir_all(temp.0.join("kept").join(name)).unwrap();
+        let line = refused(&temp, &["--out", "kept"]);
+        assert_eq!(
+            line,
+            format!(
+                "sophie: --out kept/{name}: cannot be written: it is a directory: allowed is a file or nothing"
+            )
+        );
+        fs::remove_dir(temp.0.join("kept").join(name)).unwrap();
+    }
+    assert_eq!(fs::read_dir(temp.0.join("kept")).unwrap().count(), 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_stdout_is_an_error() {
+    let temp = Temp::new("full");
+    let hop = temp.file("hop.toml", HOP);
+    for args in [&[&*hop, "--json"][..], &[&hop], &["--help"]] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = command(&temp.0, args).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        let told = text(&output.stderr);
+        assert!(
+            told.lines()
+                .last()
+                .unwrap()
+                .starts_with("sophie: stdout: cannot be written: "),
+            "{args:?}: {told}"
+        );
+    }
 }
 
 #[test]

@@ -23,7 +23,31 @@ fn hop(seed: u64) -> Scenario {
 }
 
 fn digest(seed: u64) -> u64 {
-    let record = fly(&hop(seed), &mut Silent);
+    flown(&hop(seed))
+}
+
+/// Digest of a flight with all that a perch needs: contact, tendons, pressure, proof.
+fn perch_digest(seed: u64) -> u64 {
+    let steps = vec![
+        Step::Arm,
+        Step::TakeOff { height: 2.5 },
+        Step::FlyToPipe,
+        Step::Touch,
+        Step::Perch { throttle: 0.3 },
+        Step::Hold {
+            seconds: 3.0,
+            push: 1.5,
+        },
+    ];
+    flown(&Scenario {
+        seed,
+        steps,
+        ..Scenario::default_mission()
+    })
+}
+
+fn flown(scenario: &Scenario) -> u64 {
+    let record = fly(scenario, &mut Silent);
     assert!(record.outcome.accomplished, "{}", record.outcome.reason);
     record.digest
 }
@@ -40,6 +64,17 @@ fn flights_in_parallel_threads_do_not_disturb_each_other() {
     let together: Vec<_> = (1..=4).map(|seed| thread::spawn(move || digest(seed))).collect();
     let together: Vec<u64> = together.into_iter().map(|t| t.join().expect("flight")).collect();
     assert_eq!(alone, together);
+}
+
+#[test]
+fn perches_in_parallel_threads_are_equal_to_the_bit() {
+    let threads: Vec<_> = [1, 2, 1, 2]
+        .into_iter()
+        .map(|seed| thread::spawn(move || perch_digest(seed)))
+        .collect();
+    let together: Vec<u64> = threads.into_iter().map(|t| t.join().expect("flight")).collect();
+    let alone = [perch_digest(1), perch_digest(2)];
+    assert_eq!(together, [alone, alone].concat());
 }
 
 #[test]

@@ -363,7 +363,9 @@ impl ArmClamp {
         let before = core::mem::replace(&mut self.felt, sensed.known());
         let vanished = matches!(self.phase, Phase::Grip(_))
             && before.is_some_and(|p| p > VANISHED_FROM * cfg.demand.pressure)
-            && sensed.known().is_some_and(|p| p < VANISHED_TO * cfg.demand.pressure);
+            && sensed
+                .known()
+                .is_some_and(|p| p < VANISHED_TO * cfg.demand.pressure);
         self.fault = match sensed {
             _ if latched => self.fault,
             Pressure::Faulty => Some(Fault::Sensor),

@@ -125,6 +125,12 @@ params! {
     /// Largest tilt bias believed.
     tilt_bias_max = 0.2, "rad", 0.0 ..= 0.5;
 
+    /// Accelerometer bias along body x, measured on a level bench: what it reads beyond gravity.
+    accel_bias_x = 0.0, "m/s2", -0.6 ..= 0.6;
+    /// Accelerometer bias along body y.
+    accel_bias_y = 0.0, "m/s2", -0.6 ..= 0.6;
+    /// Accelerometer bias along body z.
+    accel_bias_z = 0.0, "m/s2", -0.6 ..= 0.6;
     /// Accelerometer gain of the attitude estimator.
     estimator_kp = 0.1, "1/s", 0.01 ..= 5.0;
     /// Gyro bias gain of the attitude estimator.

@@ -83,12 +83,6 @@ impl VirtualTime {
         }
     }
 
-    /// Time since the start, µs.
-    #[must_use]
-    pub fn now_us(&self) -> u64 {
-        NOW.get()
-    }
-
     /// Runs the tasks, jumping from alarm to alarm, until the clock shows `until_us`.
     pub fn run_until(&self, until_us: u64) {
         self.settle();

@@ -15,13 +15,13 @@ use sophie_control::fsr::{Fsr, FsrScale};
 use sophie_control::grip::{ArmGrip, ArmState};
 use sophie_control::params::Params;
 use sophie_control::tendon::{Drive, ForceLimit, Reel, TendonDrive};
+use sophie_hil::plant::STEP;
 use sophie_hil::plant::arm::{Arm, ArmSpec, TIP_MASS};
 use sophie_hil::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose, SkinLoad};
 use sophie_hil::plant::tendon::{Tendon, TendonSpec};
 use sophie_hil::scenario::ServoProfile;
 use sophie_hil::sensors::fsr::{FsrBreak, FsrSensor};
 
-const STEP: f64 = 0.25e-3;
 /// kgcm in a N·m.
 const KGCM: f64 = 10.197;
 
@@ -157,7 +157,7 @@ impl Bench {
         self.largest_force = self.largest_force.max(self.tendon.tension());
 
         self.steps += 1;
-        if self.steps.is_multiple_of(8) {
+        if self.steps.is_multiple_of(4) {
             let counts = self.sensor.sample(self.load.pressure, 0.002, &mut self.rng);
             if self.analog_alive {
                 self.sensed = match self.fsr.step(&self.scale, counts, 0.002) {
@@ -168,7 +168,7 @@ impl Bench {
                 self.sensed = Pressure::Stale;
             }
         }
-        if self.steps.is_multiple_of(40) {
+        if self.steps.is_multiple_of(20) {
             let noise: f64 = StandardNormal.sample(&mut self.rng);
             self.tilts.push_back(alpha + self.tilt_offset + 0.004 * noise);
             if self.tilts.len() > 2 {
@@ -185,7 +185,7 @@ impl Bench {
             self.grip = self.clamp.step(&self.config, self.close, &input, 0.01);
             assert!(self.grip.force >= 0.0 && self.grip.force <= self.config.limit());
         }
-        if self.steps.is_multiple_of(80) {
+        if self.steps.is_multiple_of(40) {
             self.driven = self
                 .drive
                 .step(&self.reel, self.grip.force, self.measured_tilt, 0.02);
@@ -429,15 +429,15 @@ fn a_lead_that_breaks_while_holding_does_not_run_away() {
             b.sensor.set_broken(Some(FsrBreak::Open));
             b.run(5.0);
             assert!(b.grip.state == ArmState::Faulty, "{infill} {seed}: {:?}", b.grip);
-            assert!(b.clamp.fault() == Some(Fault::Unfelt), "{infill} {seed}");
+            assert!(b.clamp.fault() == Some(Fault::Sensor), "{infill} {seed}");
             assert!(
-                b.largest_force < tension + 30.0 && b.peak < pressure + 2800.0,
+                b.largest_force < tension + 5.0 && b.peak < pressure + 250.0,
                 "{infill} {seed}: {}",
                 b.peak
             );
             // It ends near where it was.
             assert!(
-                b.tendon.tension() < tension + 15.0,
+                b.tendon.tension() < tension + 5.0,
                 "{infill} {seed}: {}",
                 b.tendon.tension() - tension
             );

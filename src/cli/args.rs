@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand};
 use sophie_control::mixer::Variant;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_hil::scenario::Overrides;
 use sophie_hil::scenario::keys::{self, Range};
+
+use super::console;
 
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
@@ -40,8 +42,8 @@ pub struct FlyArgs {
     /// Scenario file; without one the default mission is flown.
     pub scenario: Option<PathBuf>,
     /// Infill of the arms, 4 to 10 %.
-    #[arg(long, visible_alias = "rho", value_name = "PERCENT", value_parser = infill, allow_negative_numbers = true)]
-    infill: Option<f64>,
+    #[arg(long, visible_alias = "infill", value_name = "PERCENT", value_parser = infill, allow_negative_numbers = true)]
+    rho: Option<f64>,
     /// Sense of rotation: A or B.
     #[arg(long, value_name = "A|B", value_parser = configuration)]
     config: Option<Configuration>,
@@ -54,8 +56,8 @@ pub struct FlyArgs {
     /// Gain on the elastic term of the arm equation, 1 (literal) to 10.
     #[arg(long, value_name = "K", value_parser = gain_k, allow_negative_numbers = true)]
     gain_k: Option<f64>,
-    /// Seed of every random number.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    /// Seed of every random number: a whole number from 0 to 9e15.
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Directory for report.html, flight.mcap and summary.json.
     #[arg(long, value_name = "DIR", default_value = "out")]
@@ -69,7 +71,7 @@ impl FlyArgs {
     /// What they change in a scenario.
     pub fn overrides(&self) -> Overrides {
         Overrides {
-            infill: self.infill,
+            infill: self.rho,
             gain_k: self.gain_k,
             configuration: self.config,
             mixer: self.mixer,
@@ -86,17 +88,28 @@ impl Message {
     /// Shows it and gives the exit status.
     pub fn show(&self) -> ExitCode {
         match self.0.kind() {
-            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-                // A closed pipe is no failure: whoever reads has read enough.
-                let _ = self.0.print();
-                ExitCode::SUCCESS
-            }
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match console::told(self.0.print()) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(line) => super::refuse(&line),
+            },
             _ => super::refuse(&self.line()),
         }
     }
 
     /// clap's message without its usage and hints at help, as one line.
     fn line(&self) -> String {
+        // clap takes a second file for a subcommand where one could stand.
+        let extra = match self.0.kind() {
+            ErrorKind::UnknownArgument => self.0.get(ContextKind::InvalidArg),
+            ErrorKind::ArgumentConflict => self.0.get(ContextKind::InvalidSubcommand),
+            _ => None,
+        };
+        if let Some(ContextValue::String(extra)) = extra
+            && !extra.starts_with('-')
+            && extra != "fly"
+        {
+            return format!("unexpected argument '{extra}': allowed is one scenario file");
+        }
         let text = self.0.to_string();
         let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
         let told = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
@@ -131,6 +144,11 @@ fn infill(text: &str) -> Result<f64, String> {
 
 fn gain_k(text: &str) -> Result<f64, String> {
     number(text, keys::GAIN_K)
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    let seed = text.parse().ok().and_then(keys::seed);
+    seed.ok_or_else(|| format!("allowed {}", keys::SEED_ALLOWED))
 }
 
 fn configuration(text: &str) -> Result<Configuration, String> {
@@ -206,11 +224,27 @@ mod tests {
         for (line, told) in [
             (
                 "--infill 3.5",
-                "invalid value '3.5' for '--infill <PERCENT>': allowed 4 to 10 %",
+                "invalid value '3.5' for '--rho <PERCENT>': allowed 4 to 10 %",
             ),
             (
                 "--rho -1",
-                "invalid value '-1' for '--infill <PERCENT>': allowed 4 to 10 %",
+                "invalid value '-1' for '--rho <PERCENT>': allowed 4 to 10 %",
+            ),
+            (
+                "--seed -1",
+                "invalid value '-1' for '--seed <N>': allowed a whole number from 0 to 9e15",
+            ),
+            (
+                "--seed 18446744073709551615",
+                "invalid value '18446744073709551615' for '--seed <N>': allowed a whole number from 0 to 9e15",
+            ),
+            (
+                "a.toml b.toml",
+                "unexpected argument 'b.toml': allowed is one scenario file",
+            ),
+            (
+                "fly a.toml b.toml",
+                "unexpected argument 'b.toml': allowed is one scenario file",
             ),
             (
                 "--gain-k NaN",
@@ -232,11 +266,11 @@ mod tests {
             assert_eq!(args(line).unwrap_err(), told);
         }
         for line in [
-            "--seed -1",
             "--seed x",
+            "--seed 1.5",
+            "--seed nan",
             "--infil 6",
             "--out",
-            "a.toml b.toml",
             "--infill 6 --infill 7",
         ] {
             let told = args(line).unwrap_err();

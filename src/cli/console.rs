@@ -1,7 +1,7 @@
 //! What goes to the terminal: lines that survive a closed pipe, colour only where it is wanted.
 
-use std::cell::Cell;
-use std::io::{IsTerminal, Write};
+use std::cell::{Cell, RefCell};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 
 use sophie_hil::record::{FlightRecord, Observer};
 
@@ -12,6 +12,8 @@ pub struct Console {
     to_stderr: bool,
     terminal: bool,
     closed: Cell<bool>,
+    /// Why stdout cannot be written, when it is not that nobody reads any more.
+    failure: RefCell<Option<String>>,
 }
 
 impl Console {
@@ -26,10 +28,11 @@ impl Console {
             to_stderr: json,
             terminal,
             closed: Cell::new(false),
+            failure: RefCell::default(),
         }
     }
 
-    /// Shows one line. Once nobody reads any more, nothing is shown and the work goes on.
+    /// Shows one line. Once it cannot be shown any more, the work goes on; [`Console::end`] says why.
     pub fn say(&self, line: &str) {
         if self.closed.get() {
             return;
@@ -41,6 +44,18 @@ impl Console {
             writeln!(out, "{line}").and_then(|()| out.flush())
         };
         self.closed.set(told.is_err());
+        // A broken stderr could not be told of anyway.
+        if !self.to_stderr {
+            *self.failure.borrow_mut() = self::told(told).err();
+        }
+    }
+
+    /// Whether all could be shown that somebody wanted to read.
+    ///
+    /// # Errors
+    /// One line with the reason why stdout could not be written.
+    pub fn end(&self) -> Result<(), String> {
+        self.failure.borrow_mut().take().map_or(Ok(()), Err)
     }
 
     /// Runs `flight` with the observer that fits: a progress bar on a terminal, plain lines elsewhere.
@@ -87,10 +102,26 @@ fn colour_wanted() -> bool {
     !set("NO_COLOR") && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// One line on stdout, whoever reads.
-pub fn print(line: &str) {
+/// One line on stdout.
+///
+/// # Errors
+/// As [`told`].
+pub fn print(line: &str) -> Result<(), String> {
     let mut out = std::io::stdout().lock();
-    let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+    told(writeln!(out, "{line}").and_then(|()| out.flush()))
+}
+
+/// What became of text for stdout. A closed pipe is no failure: whoever reads has read enough.
+///
+/// # Errors
+/// One line with any other reason why it was not written.
+pub fn told(result: io::Result<()>) -> Result<(), String> {
+    match result {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(format!("stdout: cannot be written: {error}"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// `text` as one line.

@@ -23,6 +23,8 @@ use crate::report::{self, summary::Summary};
 
 /// The mission was not accomplished.
 const FAILED: u8 = 1;
+/// The files of a report.
+const FILES: [&str; 3] = ["report.html", "flight.mcap", "summary.json"];
 /// Bad input, or the results could not be written.
 const REFUSED: u8 = 2;
 
@@ -45,7 +47,7 @@ fn run(args: &FlyArgs) -> Result<bool, String> {
         None => Scenario::default_mission_with(&args.overrides()),
     };
     // Before the flight, so that a bad directory is told at once.
-    let out = OutDir::prepare(&args.out)?;
+    let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
     let record = console.watch(|observer| fly(&scenario, observer));
@@ -54,11 +56,12 @@ fn run(args: &FlyArgs) -> Result<bool, String> {
 
 fn finish(record: &FlightRecord, out: &OutDir, console: &Console, json: bool) -> Result<bool, String> {
     let summary = Summary::of(record).to_json();
-    let files = [
-        ("report.html", report::page::html(record).into_bytes()),
-        ("flight.mcap", report::log::mcap(record)?),
-        ("summary.json", summary.clone().into_bytes()),
+    let contents = [
+        report::page::html(record).into_bytes(),
+        report::log::mcap(record)?,
+        summary.clone().into_bytes(),
     ];
+    let files: Vec<_> = FILES.into_iter().zip(contents).collect();
     let written = out.write(&files)?;
     for line in result::tables(record) {
         console.say(&line);
@@ -67,8 +70,9 @@ fn finish(record: &FlightRecord, out: &OutDir, console: &Console, json: bool) ->
     console.say(&console.verdict(record));
     console.say(&format!("written: {}", written.join("  ")));
     if json {
-        console::print(summary.trim_end());
+        console::print(summary.trim_end())?;
     }
+    console.end()?;
     if !record.outcome.accomplished {
         eprintln_safely(&format!(
             "sophie: not accomplished: {}",

@@ -10,11 +10,11 @@ pub struct OutDir {
 }
 
 impl OutDir {
-    /// Makes the directory if needed and tries whether a file can be made in it.
+    /// Makes the directory if needed and tries whether files called `names` can be made in it.
     ///
     /// # Errors
     /// One line that names the directory, the reason and what is allowed.
-    pub fn prepare(path: &Path) -> Result<Self, String> {
+    pub fn prepare(path: &Path, names: &[&str]) -> Result<Self, String> {
         let out = Self {
             path: path.to_owned(),
         };
@@ -28,7 +28,13 @@ impl OutDir {
                     path.display()
                 )
             })?;
-        Ok(out)
+        match names.iter().map(|name| path.join(name)).find(|p| p.is_dir()) {
+            Some(taken) => Err(format!(
+                "--out {}: cannot be written: it is a directory: allowed is a file or nothing",
+                taken.display()
+            )),
+            None => Ok(out),
+        }
     }
 
     /// Writes all files under temporary names, then gives them their names. Gives their paths.
@@ -91,7 +97,7 @@ mod tests {
     #[test]
     fn files_appear_whole_and_nothing_else_stays() {
         let path = temp("good").join("deep");
-        let out = OutDir::prepare(&path).unwrap();
+        let out = OutDir::prepare(&path, &["a", "b"]).unwrap();
         assert!(names(&path).is_empty());
         out.write(&[("a", b"1".to_vec()), ("b", b"2".to_vec())]).unwrap();
         out.write(&[("a", b"3".to_vec())]).unwrap();
@@ -104,8 +110,13 @@ mod tests {
     fn a_failure_leaves_no_partial_file() {
         let path = temp("bad");
         fs::create_dir_all(path.join("b")).unwrap();
-        let out = OutDir::prepare(&path).unwrap();
-        // A directory stands where the second file should go.
+        // A directory stands where the second file should go: told at once, or when it came later.
+        let line = OutDir::prepare(&path, &["a", "b"]).map(|_| ()).unwrap_err();
+        assert!(
+            line.contains("/b: cannot be written: it is a directory"),
+            "{line}"
+        );
+        let out = OutDir::prepare(&path, &[]).unwrap();
         assert!(
             out.write(&[("a", vec![]), ("b", vec![])])
                 .unwrap_err()
@@ -120,7 +131,7 @@ mod tests {
         let path = temp("file");
         fs::write(&path, b"").unwrap();
         for bad in [path.clone(), path.join("below")] {
-            let line = OutDir::prepare(&bad).map(|_| ()).unwrap_err();
+            let line = OutDir::prepare(&bad, &["a"]).map(|_| ()).unwrap_err();
             assert!(
                 line.contains(&*bad.to_string_lossy()) && line.contains("allowed is a writable directory")
             );

@@ -1,10 +1,11 @@
 //! Tendon force and contact pressure, over the flight and while the arms close.
 
+use sophie_control::tendon::ForceLimit;
 use sophie_hil::record::FlightRecord;
 
 use super::figures::{ARM, Figure, arm_legend, arm_series};
 use super::plot::{Panel, Span, Trace, figure};
-use super::units::{kgcm, tension_kgcm};
+use super::units::tension_kgcm;
 
 /// Tendon force and contact pressure of the four arms.
 pub fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String) -> Figure {
@@ -16,7 +17,7 @@ pub fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String
             .map(|(class, values)| Trace { class, values })
     };
     let force = |v: f64| tension_kgcm(record, v);
-    let limit = kgcm(f64::from(p.servo_torque_max.min(p.servo_stall)));
+    let limit = tension_kgcm(record, f64::from(ForceLimit::from_params(p).force));
     let largest = record
         .samples
         .iter()

@@ -24,6 +24,8 @@ pub const RETRY: Duration = Duration::from_millis(1);
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let rate_hz = port.rate_hz();
     let mut filter = ImuFilter::new(links.params.gyro_cutoff, rate_hz);
+    let p = &links.params;
+    let bias = Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z);
     let per_output = math::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0);
     let mut collected = 0.0f32;
     let mut last_sent: Option<Instant> = None;
@@ -40,7 +42,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         };
         let released = Instant::now();
         for reading in &batch {
-            if let Some(filtered) = filter.step(reading.gyro, reading.accel) {
+            if let Some(filtered) = filter.step(reading.gyro, reading.accel - bias) {
                 newest = filtered;
                 collected += 1.0;
             }

@@ -2,20 +2,26 @@
 
 use glam::DVec3;
 use sophie_control::mode::Mode;
+use sophie_control::tendon::ForceLimit;
 use sophie_control::wrench::PerArm;
 
 use super::stack::Stack;
 use crate::plant::Plant;
 use crate::plant::contact::BELLY_Z;
+use crate::plant::tendon::TendonSpec;
 use crate::scenario::{Scenario, Step};
+use crate::sensors::fsr::LARGEST_ERROR;
 
 /// Farthest that a gripped vehicle may slip while it is pushed, m.
 const SLIP: f64 = 0.03;
 /// Largest true pressure on an arm, Pa: the tendons' and the skin's sake.
 const PRESSURE_MAX: f64 = 1500.0;
-/// Error of the pressure sensor beyond the grip's own tolerance that the truth is granted, Pa (paper).
-const SENSOR_ERROR: f64 = 75.0;
-/// Time after the rotors stopped in which the pressure may settle, s.
+/// Tolerances that a pressure may be off while the rotors stop and while the vehicle is pushed: the body moves on its
+/// pads and the loop follows slowly.
+const DISTURBED: f64 = 2.0;
+/// Share of the roll angle that the manoeuvre must truly reach on either side.
+const ROLL_SHARE: f64 = 0.9;
+/// Time in which the pressure may settle after the hold began or a push ended, s.
 const SETTLE: f64 = 3.0;
 /// Rotor thrust that counts as stopped, N.
 const STOPPED: f64 = 0.05;
@@ -27,18 +33,35 @@ pub struct Judge {
     chosen: PerArm<bool>,
     target: f64,
     tolerance: f64,
+    /// Largest error of the pressure sensor at the target, Pa: what the stack cannot know, the truth is granted.
+    sensor_error: f64,
+    torque_max: f64,
+    reel_radius: f64,
+    proven: bool,
+    /// Angle of the roll manoeuvre under way and the farthest true roll to either side, rad.
+    roll: Option<(f64, [f64; 2])>,
     hold_start: Option<(f64, DVec3)>,
+    /// When the vehicle was last pushed, s.
+    pushed: f64,
     last_step: Option<usize>,
 }
 
 impl Judge {
     /// A judge of `scenario`.
     pub fn new(scenario: &Scenario) -> Self {
+        let p = &scenario.params;
+        let target = f64::from(p.grip_pressure);
         Self {
             chosen: scenario.arms.mask(),
-            target: f64::from(scenario.params.grip_pressure),
-            tolerance: f64::from(scenario.params.grip_tolerance),
+            target,
+            tolerance: f64::from(p.grip_tolerance),
+            sensor_error: target * LARGEST_ERROR,
+            torque_max: f64::from(ForceLimit::from_params(p).force * p.reel_radius),
+            reel_radius: TendonSpec::default().reel_radius,
+            proven: false,
+            roll: None,
             hold_start: None,
+            pushed: f64::NEG_INFINITY,
             last_step: None,
         }
     }
@@ -63,11 +86,43 @@ impl Judge {
                 "pressure on arm {arm} reached {pressure:.0} N/m2, allowed {PRESSURE_MAX:.0}"
             ));
         }
+        if let Some((arm, tension)) = worst(plant.tension())
+            && tension * self.reel_radius > self.torque_max
+        {
+            return Some(format!(
+                "tendon {arm} pulled with {:.2} N m at the servo, allowed {:.2}",
+                tension * self.reel_radius,
+                self.torque_max
+            ));
+        }
 
         let index = step.map(|(i, _)| i);
         if index != self.last_step {
             self.last_step = index;
             self.hold_start = None;
+            if let Some((angle, [right, left])) = self.roll.take()
+                && right.min(left) < ROLL_SHARE * angle
+            {
+                return Some(format!(
+                    "rolled to {:+.1} and {:+.1} deg, wanted {:.1} on either side",
+                    right.to_degrees(),
+                    -left.to_degrees(),
+                    angle.to_degrees()
+                ));
+            }
+        }
+        if let Some((_, Step::Roll { angle, .. })) = step {
+            let [roll, ..] = plant.euler();
+            let (_, [right, left]) = self.roll.get_or_insert((*angle, [0.0; 2]));
+            *right = right.max(roll);
+            *left = left.max(-roll);
+        }
+
+        let grip = stack.links.grip.latest().is_some_and(|g| g.value.proven);
+        let just_proven = grip && !self.proven;
+        self.proven = grip;
+        if just_proven && let Some(why) = self.badly_held(plant, 1.0) {
+            return Some(format!("the grip was proven wrongly: {why}"));
         }
         // Without the radio a perched vehicle must hold as well as with it.
         let holds = match step {
@@ -96,20 +151,24 @@ impl Judge {
                 SLIP * 1e3
             ));
         }
-        if t - start > SETTLE && plant.push == DVec3::ZERO {
-            let allowed = self.tolerance + SENSOR_ERROR;
-            for (arm, (pressure, chosen)) in plant.pressure().iter().zip(self.chosen).enumerate() {
-                if chosen && (pressure - self.target).abs() > 2.0 * allowed {
-                    return Some(format!(
-                        "arm {} holds {pressure:.0} N/m2, wanted {:.0} within {:.0}",
-                        arm + 1,
-                        self.target,
-                        2.0 * allowed
-                    ));
-                }
-            }
+        if plant.push != DVec3::ZERO {
+            self.pushed = t;
         }
-        None
+        let quiet = t - start.max(self.pushed) > SETTLE;
+        self.badly_held(plant, if quiet { 1.0 } else { DISTURBED })
+    }
+
+    /// The chosen arm whose true pressure is off by more than `tolerances` tolerances and the sensor's error.
+    fn badly_held(&self, plant: &Plant, tolerances: f64) -> Option<String> {
+        let allowed = tolerances * self.tolerance + self.sensor_error;
+        let mut arms = plant.pressure().into_iter().zip(self.chosen).enumerate();
+        let (arm, (pressure, _)) =
+            arms.find(|(_, (pressure, chosen))| *chosen && (pressure - self.target).abs() > allowed)?;
+        Some(format!(
+            "arm {} holds {pressure:.0} N/m2, wanted {:.0} within {allowed:.0}",
+            arm + 1,
+            self.target
+        ))
     }
 }
 

@@ -173,7 +173,13 @@ impl Recorder {
             if status.warning != self.warning {
                 self.warning = status.warning;
                 if !status.warning.is_empty() {
-                    self.note(Event { t, text: format!("warning: {}", status.warning) }, observer);
+                    self.note(
+                        Event {
+                            t,
+                            text: format!("warning: {}", status.warning),
+                        },
+                        observer,
+                    );
                 }
             }
         }
@@ -287,8 +293,16 @@ impl Digest {
 
     fn add(&mut self, s: &Sample) {
         self.word(s.mode as u64);
+        self.word(u64::from(s.saturated));
         let scalars = [s.t, s.battery_voltage, s.throttle];
-        let vectors = [s.position, s.velocity, s.attitude, s.attitude_estimate, s.rate];
+        let vectors = [
+            s.position,
+            s.velocity,
+            s.attitude,
+            s.attitude_estimate,
+            s.attitude_setpoint,
+            s.rate,
+        ];
         let arms = [
             s.tilt,
             s.tilt_measured,

@@ -2,6 +2,7 @@
 
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
+use sophie_control::params::Params;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::Links;
 
@@ -25,7 +26,7 @@ impl Stack {
     pub fn new(scenario: &Scenario, rng: &mut Pcg64Mcg) -> Self {
         let time = VirtualTime::new();
         let board: &'static Board = Box::leak(Box::new(Board::new(rng)));
-        let links: &'static Links = Box::leak(Box::new(Links::new(scenario.params)));
+        let links: &'static Links = Box::leak(Box::new(Links::new(calibrated(scenario.params, board))));
         let (mixer, configuration) = (scenario.mixer, scenario.vehicle.configuration);
 
         // Flight level.
@@ -66,5 +67,16 @@ impl Stack {
             .iter()
             .map(|&task| self.links.timing(task).overruns)
             .sum()
+    }
+}
+
+/// The parameters of this very board: its accelerometer was calibrated on a bench.
+fn calibrated(params: Params, board: &Board) -> Params {
+    let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
+    Params {
+        accel_bias_x,
+        accel_bias_y,
+        accel_bias_z,
+        ..params
     }
 }

@@ -1,7 +1,5 @@
 //! Steps in free flight: hover, the roll manoeuvre, flying to a point.
 
-use core::f64::consts::FRAC_PI_2;
-
 use glam::DVec2;
 use sophie_control::mode::Mode;
 
@@ -9,6 +7,10 @@ use super::guidance::Vertical;
 use super::hands::Wish;
 use super::mind::{HEADING, Mind, Phase, Progress, View};
 
+/// Share of the roll angle at which a side counts as reached, and by which the stick goes beyond it: the last
+/// degree of the vehicle's lag would else never come.
+const ROLL_REACHED: f64 = 0.95;
+const ROLL_LEAD: f64 = 1.05;
 /// Distance from the spot, m, and speed, m/s, at which the roll manoeuvre has been recovered from.
 const RECOVERED: f64 = 0.3;
 const RECOVERED_SPEED: f64 = 0.3;
@@ -18,10 +20,12 @@ const REACHED_SPEED: f64 = 0.25;
 
 impl Mind {
     /// The vehicle has stopped in the air: nothing that a pilot could do.
-    fn stopped(v: &View<'_>) -> Option<Progress> {
+    fn stopped(&self, v: &View<'_>) -> Option<Progress> {
         (v.mode == Some(Mode::Disarmed)).then(|| {
+            let after = self.trouble.as_ref().map(|why| format!("failsafe, {why}: "));
             Progress::Failed(format!(
-                "rotors stopped at a height of {:.2} m, {}",
+                "{}rotors stopped at a height of {:.2} m, {}",
+                after.unwrap_or_default(),
                 v.height(),
                 v.shown()
             ))
@@ -29,7 +33,7 @@ impl Mind {
     }
 
     pub(super) fn hover(&mut self, v: &View<'_>, seconds: f64, dt: f64) -> Progress {
-        if let Some(failed) = Self::stopped(v) {
+        if let Some(failed) = self.stopped(v) {
             return failed;
         }
         if self.phase == Phase::Start {
@@ -45,27 +49,19 @@ impl Mind {
     }
 
     pub(super) fn roll(&mut self, v: &View<'_>, angle: f64, seconds: f64, dt: f64) -> Progress {
-        if let Some(failed) = Self::stopped(v) {
+        if let Some(failed) = self.stopped(v) {
             return failed;
         }
-        let side = match self.phase {
+        match self.phase {
             Phase::Start => {
                 self.spot = v.seen.position.truncate();
                 self.enter(Phase::Right);
-                1.0
             }
-            Phase::Right if self.phase_time < seconds => 1.0,
-            Phase::Right => {
-                self.enter(Phase::Left);
-                -1.0
-            }
-            Phase::Left if self.phase_time < seconds => -1.0,
-            Phase::Left => {
-                self.enter(Phase::Fly);
-                0.0
-            }
-            _ => 0.0,
-        };
+            Phase::Right if v.seen.roll >= ROLL_REACHED * angle => self.enter(Phase::Left),
+            Phase::Left if v.seen.roll <= -ROLL_REACHED * angle => self.enter(Phase::Fly),
+            _ => (),
+        }
+        let side = if self.phase == Phase::Right { 1.0 } else { -1.0 };
         if self.phase == Phase::Fly {
             let wish = self.go_to(v, self.spot, self.height, dt);
             let off = (v.seen.position.truncate() - self.spot).length();
@@ -76,11 +72,19 @@ impl Mind {
                 Progress::Going(wish)
             };
         }
-        let lean = angle.min(FRAC_PI_2 * 0.8);
-        let throttle = self.guidance.climb(Vertical::Height(self.height), lean.cos(), dt);
+        if self.phase_time >= seconds {
+            return Progress::Failed(format!(
+                "roll of {:+.0} deg not reached in {seconds:.1} s: {:+.1} deg",
+                (side * angle).to_degrees(),
+                v.seen.roll.to_degrees()
+            ));
+        }
+        let throttle = self
+            .guidance
+            .climb(Vertical::Height(self.height), angle.cos(), dt);
         let yaw = self.guidance.rudder(&v.seen, HEADING);
         Progress::Going(Wish {
-            roll: side * lean / self.stick_angle,
+            roll: side * ROLL_LEAD * angle / self.stick_angle,
             yaw,
             throttle,
             ..Default::default()
@@ -88,7 +92,7 @@ impl Mind {
     }
 
     pub(super) fn fly_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> Progress {
-        if let Some(failed) = Self::stopped(v) {
+        if let Some(failed) = self.stopped(v) {
             return failed;
         }
         let wish = self.go_to(v, target, height, dt);

@@ -125,6 +125,14 @@ impl Guidance {
         }
     }
 
+    /// Roll and pitch stick that hold the vehicle still in the air: against the wind, and against the error of what
+    /// it takes for level.
+    pub fn trim(&self, seen: &Seen) -> (f64, f64) {
+        let body = DVec2::from_angle(-seen.yaw).rotate(self.wind);
+        let (roll, pitch) = ((body.y / GRAVITY).atan(), -(body.x / GRAVITY).atan());
+        (roll / self.stick_angle, pitch / self.stick_angle)
+    }
+
     /// Throttle for `vertical` with a lean of cosine `upright`.
     pub fn climb(&mut self, vertical: Vertical, upright: f64, dt: f64) -> f64 {
         let (position, velocity) = self.ahead;

@@ -72,7 +72,7 @@ pub enum Phase {
     Descend,
     /// Going on from the gate onto the pipe.
     Commit,
-    /// Sticks let go, the weight put onto the pipe.
+    /// Sticks at their trim, the weight put onto the pipe.
     Plant,
     /// Moving the throttle to where it must be.
     Throttle,
@@ -105,6 +105,8 @@ pub struct Mind {
     pub(super) throttle: f64,
     /// Tries of the landing on the pipe that failed.
     pub(super) missed: u32,
+    /// The reason that the display gave for the failsafe that the flight ran into.
+    pub(super) trouble: Option<String>,
 }
 
 impl Mind {
@@ -127,6 +129,7 @@ impl Mind {
             height: 0.0,
             throttle: 0.0,
             missed: 0,
+            trouble: None,
         }
     }
 
@@ -148,6 +151,11 @@ impl Mind {
         self.step_time += dt;
         self.phase_time += dt;
         self.guidance.foresee(&view.seen, view.now, sticks, dt);
+        match view.mode {
+            Some(Mode::Failsafe) if self.trouble.is_none() => self.trouble = Some(view.reason.to_owned()),
+            Some(Mode::Flight) => self.trouble = None,
+            _ => (),
+        }
         let progress = match *step {
             Step::Arm => self.arm(view),
             Step::TakeOff { height } => self.take_off(view, height, dt),

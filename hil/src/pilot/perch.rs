@@ -127,7 +127,13 @@ impl Mind {
             }
             Phase::Plant => {
                 let stands = over < STANDS && v.seen.velocity.z.abs() < STOPPED;
-                let wish = self.throttle_to(FIRM_THROTTLE, FIRM_EASE, dt);
+                // Most of the weight is still on the rotors: without the trim it would slide.
+                let (roll, pitch) = self.guidance.trim(&v.seen);
+                let wish = Wish {
+                    roll,
+                    pitch,
+                    ..self.throttle_to(FIRM_THROTTLE, FIRM_EASE, dt)
+                };
                 let felt = self.held_for(stands && self.throttle <= FIRM_THROTTLE, STOPPED_TIME, dt);
                 if felt {
                     self.height = v.height();

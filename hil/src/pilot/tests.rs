@@ -114,7 +114,7 @@ fn the_whole_mission_passes_the_modes_in_order() {
         Step::Hover { seconds: 3.0 },
         Step::Roll {
             angle: 0.436,
-            seconds: 0.6,
+            seconds: 2.5,
         },
         Step::FlyToPipe,
         Step::Touch,
@@ -265,4 +265,30 @@ fn frames_come_150_times_a_second_and_one_seed_gives_one_flight() {
         bytes.len() / 26
     );
     assert!(bytes == fly());
+}
+
+#[test]
+fn a_transmitter_that_is_off_sends_nothing_and_shows_nothing() {
+    let s = scenario(
+        61,
+        &with(&[
+            Step::Hover { seconds: 1.0 },
+            Step::RadioOff { seconds: 2.0 },
+            Step::Hover { seconds: 1.0 },
+        ]),
+    );
+    let mut toy = Toy::new(&s);
+    let (mut began, mut frames, mut shown) = (f64::NAN, 0, 0);
+    toy.fly(60.0, |toy, out| {
+        if out.events.contains(&StepEvent::Began(3)) {
+            began = toy.seen.t;
+        }
+        if toy.seen.t > began + 0.01 && toy.seen.t < began + 1.99 {
+            frames += u32::from(out.rc_bytes.is_some());
+            shown += u32::from(toy.pilot.telemetry().mode.is_some());
+        }
+    });
+    let outcome = toy.pilot.outcome().unwrap();
+    assert!(began > 0.0 && outcome.accomplished, "{outcome:?}");
+    assert_eq!((frames, shown), (0, 0));
 }

@@ -13,7 +13,7 @@ use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
 
 /// Mass at the arm's tip: motor, propeller and the arm's share, kg (assumed, sets the mode to 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
-/// Thrust at which an arm is level, N: half of the largest.
+/// Thrust at which an arm is level, N: half of the largest of the paper's rotors.
 const LEVEL_THRUST: f64 = 4.15;
 /// Thrust at which the damping ratio is meant, N: hover.
 const HOVER_THRUST: f64 = 4.425;
@@ -25,6 +25,8 @@ const LEAST_COMPLIANCE: f64 = 0.15;
 pub struct ArmSpec {
     /// Tilt without thrust, rad.
     offset: f64,
+    /// Linear and quadratic coefficient of the nominal arm, rad/N and rad/N².
+    nominal: (f64, f64),
     /// Linear coefficient, rad/N.
     linear: f64,
     /// Quadratic coefficient, rad/N².
@@ -43,13 +45,13 @@ impl ArmSpec {
         // Table I of the paper.
         let nominal_linear = (gain_k * (2.4387 - 0.1997 * infill)).to_radians();
         let nominal_quadratic = (gain_k * (-0.162 + 0.0151 * infill)).to_radians();
-        let level = (nominal_linear + nominal_quadratic * LEVEL_THRUST) * LEVEL_THRUST;
         let (linear, quadratic) = (nominal_linear * gain, nominal_quadratic * gain);
         let slope = linear + 2.0 * quadratic * HOVER_THRUST;
         let stiffness = ARM_LENGTH / slope;
         let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
         Self {
-            offset: offset - level,
+            offset: offset - rise((nominal_linear, nominal_quadratic), LEVEL_THRUST),
+            nominal: (nominal_linear, nominal_quadratic),
             linear,
             quadratic,
             knee: if quadratic < 0.0 {
@@ -58,6 +60,15 @@ impl ArmSpec {
                 f64::INFINITY
             },
             damping: 2.0 * zeta * (stiffness * inertia).sqrt(),
+        }
+    }
+
+    /// The same arm, printed so that the nominal one is level at `thrust` N.
+    #[must_use]
+    pub fn level_at(self, thrust: f64) -> Self {
+        Self {
+            offset: self.offset + rise(self.nominal, LEVEL_THRUST) - rise(self.nominal, thrust),
+            ..self
         }
     }
 
@@ -84,6 +95,11 @@ impl ArmSpec {
         // The root of q T² + l T = e that vanishes with e, in the form that also holds for q = 0.
         2.0 * e / (self.linear + (self.linear * self.linear + 4.0 * self.quadratic * e).sqrt())
     }
+}
+
+/// Tilt (rad) that Eq. 1 with these coefficients adds at `thrust` N.
+fn rise((linear, quadratic): (f64, f64), thrust: f64) -> f64 {
+    (linear + quadratic * thrust) * thrust
 }
 
 /// One arm and its motion.
@@ -175,6 +191,7 @@ impl Arm {
 
 #[cfg(test)]
 mod tests {
+    use super::super::STEP;
     use super::*;
 
     fn spec() -> ArmSpec {
@@ -195,12 +212,13 @@ mod tests {
     #[test]
     fn the_flight_stack_and_the_plant_agree_on_the_nominal_arm() {
         let model = sophie_control::deflection::ArmModel::new(6.9, 7.75, 4.15);
+        let stronger = sophie_control::deflection::ArmModel::new(6.9, 7.75, 5.0);
         for i in 0..70 {
             let t = 0.1 * f64::from(i);
-            assert!(
-                (spec().static_tilt(t) - f64::from(model.angle(t as f32))).abs() < 1e-5,
-                "{t}"
-            );
+            for (spec, model) in [(spec(), model), (spec().level_at(5.0), stronger)] {
+                let (built, believed) = (spec.static_tilt(t), f64::from(model.angle(t as f32)));
+                assert!((built - believed).abs() < 1e-5, "{t}: {built} {believed}");
+            }
         }
     }
 
@@ -219,10 +237,10 @@ mod tests {
         arm.integrate(0.0, 0.0);
         let gravity = DVec3::new(0.0, 0.0, GRAVITY);
         let mut crossings = 0;
-        for _ in 0..40_000 {
+        for _ in 0..20_000 {
             let before = arm.tilt > rest;
             arm.load(4.425, 0.0, gravity, true);
-            arm.integrate(0.25e-3, arm.generalised / (TIP_MASS * ARM_LENGTH * ARM_LENGTH));
+            arm.integrate(STEP, arm.generalised / (TIP_MASS * ARM_LENGTH * ARM_LENGTH));
             crossings += i32::from(before != (arm.tilt > rest));
         }
         let hz = f64::from(crossings) / 2.0 / 10.0;

@@ -9,10 +9,25 @@ use glam::{DMat3, DVec3};
 use super::arm::{Arm, TIP_MASS};
 use super::contact::{ARM_LENGTH, ARM_X, HINGE_Z, Pose};
 
-/// Mass of the vehicle, kg (paper, Table II).
-pub const MASS: f64 = 1.805;
-/// Moments of inertia of the whole vehicle with level arms, kg·m² (assumed, 30 %).
-pub const INERTIA: DVec3 = DVec3::new(0.021, 0.044, 0.063);
+/// Mass and inertia as built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodySpec {
+    /// Mass of the whole vehicle, kg.
+    pub mass: f64,
+    /// Moments of inertia of the whole vehicle with level arms about roll, pitch and yaw, kg·m².
+    pub inertia: [f64; 3],
+}
+
+impl Default for BodySpec {
+    fn default() -> Self {
+        Self {
+            // Paper, Table II.
+            mass: 1.805,
+            // Assumed, 30 %.
+            inertia: [0.021, 0.044, 0.063],
+        }
+    }
+}
 
 /// State of the body.
 #[derive(Clone, Copy, Debug)]
@@ -43,22 +58,23 @@ pub struct Body {
 }
 
 impl Body {
-    /// The body; `coupled` gives the arms their tip masses, otherwise all mass is the body's.
+    /// The body of `spec`; `coupled` gives the arms their tip masses, otherwise all mass is the body's.
     ///
     /// Its centre of mass lies where the whole vehicle's comes to the origin with level arms.
     #[must_use]
-    pub fn new(coupled: bool) -> Self {
+    pub fn new(spec: &BodySpec, coupled: bool) -> Self {
+        let whole = DVec3::from_array(spec.inertia);
         let (mass, centre, inertia) = if coupled {
-            let mass = MASS - 4.0 * TIP_MASS;
+            let mass = spec.mass - 4.0 * TIP_MASS;
             let (x2, y2, z2) = (ARM_X * ARM_X, ARM_LENGTH * ARM_LENGTH, HINGE_Z * HINGE_Z);
             let tips = DVec3::new(y2 + z2, x2 + z2, x2 + y2) * (4.0 * TIP_MASS);
             (
                 mass,
                 DVec3::new(0.0, 0.0, -4.0 * TIP_MASS * HINGE_Z / mass),
-                INERTIA - tips,
+                whole - tips,
             )
         } else {
-            (MASS, DVec3::ZERO, INERTIA)
+            (spec.mass, DVec3::ZERO, whole)
         };
         let inertia = DMat3::from_diagonal(inertia);
         Self {
@@ -206,6 +222,9 @@ mod tests {
     use super::super::{GRAVITY, STEP};
     use super::*;
 
+    /// The paper's.
+    const MASS: f64 = 1.805;
+
     fn arms() -> [Arm; 4] {
         std::array::from_fn(|i| Arm::new(i, ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15)))
     }
@@ -219,18 +238,40 @@ mod tests {
         }
     }
 
-    /// Steps a free vehicle; returns the time series of momentum about the world origin.
+    /// Steps a free vehicle from drooping arms; returns its end with the angular momentum about the world origin.
     fn fly(thrust: f64, moment: DVec3, seconds: f64, omega: DVec3) -> (Pose, [Arm; 4], DVec3) {
-        let body = Body::new(true);
-        let (mut pose, mut arms) = (pose(), arms());
+        run(arms(), thrust, |_| moment, seconds, omega)
+    }
+
+    /// A vehicle hovering with its arms at rest feels `moment` for `on` s and is left alone until `seconds`.
+    fn pulse(moment: DVec3, on: f64, seconds: f64) -> (Pose, [Arm; 4], DVec3) {
+        let mut arms = arms();
+        let rest = ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15).static_tilt(4.425);
+        for arm in &mut arms {
+            arm.tilt = rest;
+            arm.integrate(0.0, 0.0);
+        }
+        let during = |t: f64| if t < on { moment } else { DVec3::ZERO };
+        run(arms, 4.425, during, seconds, DVec3::ZERO)
+    }
+
+    fn run(
+        mut arms: [Arm; 4],
+        thrust: f64,
+        moment: impl Fn(f64) -> DVec3,
+        seconds: f64,
+        omega: DVec3,
+    ) -> (Pose, [Arm; 4], DVec3) {
+        let body = Body::new(&BodySpec::default(), true);
+        let mut pose = pose();
         pose.omega = omega;
         let gravity = DVec3::new(0.0, 0.0, GRAVITY);
-        for _ in 0..(seconds / STEP) as usize {
+        for i in 0..(seconds / STEP) as usize {
             let g = pose.to_body(gravity);
             for arm in &mut arms {
                 arm.load(thrust, 0.0, g, true);
             }
-            let acc = body.accelerate(&pose, DVec3::ZERO, moment, g, arms.each_ref());
+            let acc = body.accelerate(&pose, DVec3::ZERO, moment(i as f64 * STEP), g, arms.each_ref());
             for (arm, a) in arms.iter_mut().zip(acc.arms) {
                 arm.integrate(STEP, a);
             }
@@ -269,7 +310,7 @@ mod tests {
     fn free_fall_turns_no_arm_and_keeps_angular_momentum() {
         // Spinning without thrust: gravity alone makes no angular momentum about the centre of mass.
         let (_, _, start) = fly(0.0, DVec3::ZERO, 0.0, DVec3::new(1.0, 0.5, -0.7));
-        let body = Body::new(true);
+        let body = Body::new(&BodySpec::default(), true);
         let omega = DVec3::new(1.0, 0.5, -0.7);
         let (pose, arms, end) = fly(0.0, DVec3::ZERO, 0.4, omega);
         // About the centre of mass: take off the centre's own momentum.
@@ -297,9 +338,26 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_roll_moment_meets_the_whole_inertia() {
-        // The arms' inertia is felt in full once they are carried along: steady acceleration M / I.
+    fn a_slow_yaw_moment_meets_the_whole_inertia() {
+        // Steady acceleration M / I: 0.0063 N·m on 0.063 kg·m² for 3 s.
         let (pose, _, _) = fly(4.425, DVec3::new(0.0, 0.0, 0.0063), 3.0, DVec3::ZERO);
         assert!((pose.omega.z / 0.3 - 1.0).abs() < 0.02, "{}", pose.omega.z);
+    }
+
+    #[test]
+    fn a_short_roll_or_pitch_moment_leaves_its_momentum_in_the_whole_inertia() {
+        // The moment is a pulse; the tips swing on their arms until their damping has them carried along, and
+        // what is left is one turn rate of everything: 0.1 s · M / I.
+        for (axis, inertia) in [(0, 0.021), (1, 0.044)] {
+            let mut moment = DVec3::ZERO;
+            moment[axis] = 0.01;
+            let (pose, arms, _) = pulse(moment, 0.1, 1.5);
+            let (rate, whole) = (pose.omega[axis], 0.001 / inertia);
+            assert!((rate / whole - 1.0).abs() < 0.05, "axis {axis}: {rate} {whole}");
+            assert!(
+                arms.iter().all(|arm| arm.rate.abs() < 0.05 * whole),
+                "axis {axis}: still swinging"
+            );
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! normal, which never pull, and a bristle along it that sticks until Coulomb's limit and slides beyond.
 //! Every load comes as generalised forces: on the body (force and moment about its centre of mass, body axes)
 //! and on the tilt α of the arm. Stiffnesses are those of soft printed parts (assumed); all are stable with
-//! semi-implicit steps of 0.25 ms.
+//! semi-implicit steps of 0.5 ms.
 
 use glam::{DQuat, DVec2, DVec3};
 use sophie_control::wrench::{FORE, SIDE};
@@ -373,9 +373,8 @@ impl ArmTip {
 
 #[cfg(test)]
 mod tests {
+    use super::super::STEP as DT;
     use super::*;
-
-    const DT: f64 = 0.25e-3;
 
     fn at(position: DVec3) -> Pose {
         Pose {
@@ -451,10 +450,10 @@ mod tests {
         let mut belly = Belly::default();
         let mut pose = at(DVec3::new(0.0, 0.0, -0.06));
         let mut load = BodyLoad::default();
-        for i in 0..12_000 {
+        for i in 0..6000 {
             load = belly.step(DT, &pose, &Surface::Ground(0.5));
             // Pushed with 4 N from 1.5 s on: below 0.5 · 17.65 N.
-            let side = if i > 6000 { push } else { 0.0 };
+            let side = if i > 3000 { push } else { 0.0 };
             let a = load.force_body / mass + DVec3::new(0.0, side / mass, 9.806_65);
             pose.velocity += a * DT;
             pose.position += pose.velocity * DT;
@@ -477,7 +476,7 @@ mod tests {
         let mut position = DVec3::new(0.0, 0.0, 0.001);
         let velocity = DVec3::new(0.0, 0.3, 0.0);
         let mut touch = Touch::default();
-        for _ in 0..2000 {
+        for _ in 0..1000 {
             position += velocity * DT;
             touch = p.force(DT, &BELLY, position, velocity, &Surface::Ground(0.5));
         }

@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 const FORCE_TIME: f64 = 1.0;
 /// Correlation time of the moment, s (assumed).
 const MOMENT_TIME: f64 = 0.3;
-/// Steps of the plant for one step of the gust: 250 Hz is fast against both times.
+/// Steps of the plant for one step of the gust: 125 Hz is fast against both times.
 const DIVIDER: u32 = 16;
 
 /// A gust with its own random numbers.
@@ -73,6 +73,7 @@ impl Gust {
 
 #[cfg(test)]
 mod tests {
+    use super::super::STEP;
     use super::*;
 
     #[test]
@@ -80,7 +81,7 @@ mod tests {
         let mut g = Gust::new(0.35, 0.015, Pcg64Mcg::new(7));
         let (mut force, mut moment, n) = (0.0, 0.0, 4_000_000);
         for _ in 0..n {
-            g.step(0.25e-3);
+            g.step(STEP);
             force += g.force().x.powi(2);
             moment += g.moment().y.powi(2);
         }

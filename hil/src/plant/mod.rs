@@ -1,8 +1,8 @@
 //! The vehicle and its world in `f64`: six degrees of freedom, four soft arms that carry their own tip mass,
 //! rotors, battery, tendons, contacts.
 //!
-//! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 30 Hz. Body axes FRD, world NED, as in the flight stack; nothing of the flight
-//! stack is used here but constants that describe the same hardware.
+//! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 30 Hz. Body axes FRD, world NED, as in
+//! the flight stack; nothing of the flight stack is used here but constants that describe the same hardware.
 
 pub mod arm;
 pub mod battery;
@@ -82,10 +82,11 @@ impl Plant {
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
         let limb = |i: usize| {
-            let spec = ArmSpec::new(v.infill, v.gain_k, v.arm_gain[i], v.arm_offset[i], v.arm_damping);
+            let spec = ArmSpec::new(v.infill, v.gain_k, v.arm_gain[i], v.arm_offset[i], v.arm_damping)
+                .level_at(0.5 * v.rotor.thrust_max);
             Limb {
                 arm: Arm::new(i, spec),
-                rotor: Rotor::new(i, chi),
+                rotor: Rotor::new(i, chi, v.rotor),
                 tendon: Tendon::new(v.servo.into(), TendonSpec::default()),
                 skin: ArmSkin::new(i),
                 tip: ArmTip::new(i),
@@ -93,7 +94,7 @@ impl Plant {
             }
         };
         Self {
-            body: Body::new(v.coupled_arms),
+            body: Body::new(&v.body, v.coupled_arms),
             state: BodyState {
                 pose: Pose {
                     position: DVec3::new(0.0, 0.0, -contact::BELLY_Z),

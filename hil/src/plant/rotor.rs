@@ -6,14 +6,8 @@ use glam::DVec3;
 
 /// Thrust over the square of the speed, N·s² (assumed).
 pub const THRUST_COEFFICIENT: f64 = 1.5e-5;
-/// Drag torque over thrust, m (assumed, 0.002).
-pub const TORQUE_RATIO: f64 = 0.016;
-/// Thrust of full command at the nominal voltage, N.
-pub const THRUST_MAX: f64 = 8.3;
 /// Voltage to which it belongs, V: 4S nominal.
 pub const NOMINAL_VOLTAGE: f64 = 14.8;
-/// Time constant of the speed, s (assumed).
-const TIME_CONSTANT: f64 = 0.05;
 /// Share of the voltage that the winding takes at full speed (assumed).
 const RESISTIVE_SHARE: f64 = 0.25;
 /// Shaft power of hover over electric power (assumed).
@@ -21,9 +15,36 @@ const EFFICIENCY: f64 = 0.55;
 /// 2 ρ A of a 10-inch propeller, kg/m: momentum theory's induced power is T^1.5 / √(2 ρ A).
 const DISC: f64 = 2.0 * 1.225 * 0.0507;
 
+/// Motor and propeller as built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RotorSpec {
+    /// Thrust of full command at the nominal voltage, N.
+    pub thrust_max: f64,
+    /// Drag torque over thrust, m.
+    pub torque_ratio: f64,
+    /// Time constant of the speed, s.
+    pub time_constant: f64,
+}
+
+impl Default for RotorSpec {
+    fn default() -> Self {
+        Self {
+            // Assumed from the paper's 450 g nominal and hover at half throttle.
+            thrust_max: 8.3,
+            // Assumed, 0.002.
+            torque_ratio: 0.016,
+            // Assumed.
+            time_constant: 0.05,
+        }
+    }
+}
+
 /// One rotor.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor {
+    spec: RotorSpec,
+    /// Speed of full command at the nominal voltage, rad/s.
+    full_speed: f64,
     /// Sense of the drag moment against the thrust direction: its sign about body z.
     spin: f64,
     speed: f64,
@@ -32,8 +53,10 @@ pub struct Rotor {
 impl Rotor {
     /// Rotor `index`, 0 to 3, of configuration B (`chi` +1) or A (-1), at a stop.
     #[must_use]
-    pub fn new(index: usize, chi: f64) -> Self {
+    pub fn new(index: usize, chi: f64, spec: RotorSpec) -> Self {
         Self {
+            spec,
+            full_speed: (spec.thrust_max / THRUST_COEFFICIENT).sqrt(),
             spin: chi * f64::from(YAW[index]),
             speed: 0.0,
         }
@@ -46,8 +69,8 @@ impl Rotor {
         let s = RESISTIVE_SHARE;
         let back = 1.0 - s;
         let steady = 2.0 * drive / (back + (back * back + 4.0 * s * drive).sqrt());
-        let target = steady * (THRUST_MAX / THRUST_COEFFICIENT).sqrt();
-        self.speed += (target - self.speed) * (dt / TIME_CONSTANT);
+        let target = steady * self.full_speed;
+        self.speed += (target - self.speed) * (dt / self.spec.time_constant);
         self.thrust()
     }
 
@@ -66,7 +89,7 @@ impl Rotor {
     /// Moment of the drag on the body, N·m, body, with the thrust along `normal`.
     #[must_use]
     pub fn drag_moment(&self, normal: DVec3) -> DVec3 {
-        normal * (-self.spin * TORQUE_RATIO * self.thrust())
+        normal * (-self.spin * self.spec.torque_ratio * self.thrust())
     }
 
     /// Current from the battery at `voltage` V, A.
@@ -79,28 +102,29 @@ impl Rotor {
 
 #[cfg(test)]
 mod tests {
+    use super::super::STEP;
     use super::*;
 
     #[test]
     fn full_command_gives_full_thrust_with_the_stated_lag() {
-        let mut r = Rotor::new(0, 1.0);
-        let full = (THRUST_MAX / THRUST_COEFFICIENT).sqrt();
-        for _ in 0..200 {
-            r.step(0.25e-3, 1.0, NOMINAL_VOLTAGE);
+        let mut r = Rotor::new(0, 1.0, RotorSpec::default());
+        let full = (8.3 / THRUST_COEFFICIENT).sqrt();
+        for _ in 0..100 {
+            r.step(STEP, 1.0, NOMINAL_VOLTAGE);
         }
         assert!((r.speed() / full - 0.632).abs() < 0.01);
-        for _ in 0..4000 {
-            r.step(0.25e-3, 1.0, NOMINAL_VOLTAGE);
+        for _ in 0..2000 {
+            r.step(STEP, 1.0, NOMINAL_VOLTAGE);
         }
-        assert!((r.thrust() - THRUST_MAX).abs() < 1e-3);
+        assert!((r.thrust() - 8.3).abs() < 1e-3);
     }
 
     #[test]
     fn rotor_1_of_b_turns_the_body_clockwise_from_above() {
         // Clockwise seen from above is positive about z down; the thrust points up.
-        let mut r = Rotor::new(0, 1.0);
-        for _ in 0..4000 {
-            r.step(0.25e-3, 0.5, NOMINAL_VOLTAGE);
+        let mut r = Rotor::new(0, 1.0, RotorSpec::default());
+        for _ in 0..2000 {
+            r.step(STEP, 0.5, NOMINAL_VOLTAGE);
         }
         assert!(r.drag_moment(DVec3::new(0.0, 0.0, -1.0)).z > 0.0);
         assert!(

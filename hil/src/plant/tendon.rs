@@ -184,9 +184,8 @@ impl Tendon {
 
 #[cfg(test)]
 mod tests {
+    use super::super::STEP as DT;
     use super::*;
-
-    const DT: f64 = 0.25e-3;
 
     fn run(t: &mut Tendon, pulse: f64, alpha: f64, seconds: f64) -> f64 {
         (0..(seconds / DT) as u64).fold(0.0, |_, _| t.step(DT, pulse, alpha))

@@ -8,6 +8,8 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 
 use super::{Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read_steps};
+use crate::plant::body::BodySpec;
+use crate::plant::rotor::RotorSpec;
 
 /// The default mission as a scenario file, with every key at its default.
 pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");
@@ -24,6 +26,8 @@ impl Default for Vehicle {
             arm_damping: 0.15,
             battery_charge: 1.0,
             servo: ServoProfile::Paper,
+            body: BodySpec::default(),
+            rotor: RotorSpec::default(),
         }
     }
 }

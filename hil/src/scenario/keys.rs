@@ -23,6 +23,8 @@ pub enum Kind {
     Number(Range, fn(&mut Scenario) -> &mut f64),
     /// Four numbers, one for each arm.
     PerArm(Range, fn(&mut Scenario) -> &mut PerArm<f64>),
+    /// Three numbers about roll, pitch and yaw, each with its range.
+    PerAxis([Range; 3], fn(&mut Scenario) -> &mut [f64; 3]),
     /// `true` or `false`.
     Flag(fn(&mut Scenario) -> &mut bool),
     /// One of a few words.
@@ -88,6 +90,17 @@ pub const SERVOS: &[&str] = &["paper", "mg996r"];
 pub const INFILL: Range = Range::new(4.0, 10.0, "%");
 /// Gain on the elastic term of Eq. 1: 1 is the literal equation, Table III needs 5.0 to 8.4.
 pub const GAIN_K: Range = Range::new(1.0, 10.0, "");
+
+/// Largest seed: a whole number that a TOML float or integer holds exactly.
+const SEED_MAX: f64 = 9e15;
+/// What a seed may be, for messages.
+pub const SEED_ALLOWED: &str = "a whole number from 0 to 9e15";
+
+/// The seed that a number stands for, in a file and on a command line.
+pub fn seed(number: f64) -> Option<u64> {
+    let whole = number.fract() == 0.0 && (0.0..=SEED_MAX).contains(&number);
+    whole.then_some(number as u64)
+}
 
 const DEGREE: f64 = PI / 180.0;
 const PERCENT: f64 = 0.01;
@@ -223,6 +236,34 @@ pub const KEYS: &[Key] = &[
         name: "vehicle.servo",
         kind: Kind::Choice(SERVOS, |s, v| s.vehicle.servo = servo(v)),
     },
+    number!("vehicle.mass_kg", Range::new(1.0, 3.0, "kg"), vehicle.body.mass),
+    Key {
+        name: "vehicle.inertia_kgm2",
+        // The arms' tip masses alone are 0.010, 0.010 and 0.020.
+        kind: Kind::PerAxis(
+            [
+                Range::new(0.012, 0.1, "kg m2"),
+                Range::new(0.012, 0.1, "kg m2"),
+                Range::new(0.024, 0.2, "kg m2"),
+            ],
+            |s| &mut s.vehicle.body.inertia,
+        ),
+    },
+    number!(
+        "vehicle.torque_ratio_m",
+        Range::new(0.005, 0.05, "m"),
+        vehicle.rotor.torque_ratio
+    ),
+    number!(
+        "vehicle.motor_tau_s",
+        Range::new(0.01, 0.2, "s"),
+        vehicle.rotor.time_constant
+    ),
+    number!(
+        "vehicle.thrust_max_n",
+        Range::new(5.0, 20.0, "N"),
+        vehicle.rotor.thrust_max
+    ),
     number!("world.gust_force_n", Range::new(0.0, 3.0, "N"), world.gust_force),
     number!(
         "world.gust_moment_nm",

@@ -23,6 +23,9 @@ use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
 
+use crate::plant::body::BodySpec;
+use crate::plant::rotor::RotorSpec;
+
 /// A flight to be flown.
 #[derive(Clone, Debug)]
 pub struct Scenario {
@@ -71,6 +74,10 @@ pub struct Vehicle {
     pub battery_charge: f64,
     /// The servo fitted.
     pub servo: ServoProfile,
+    /// Mass and inertia.
+    pub body: BodySpec,
+    /// Motors and propellers, all four alike.
+    pub rotor: RotorSpec,
 }
 
 /// The tendon servo fitted.
@@ -125,11 +132,11 @@ pub enum Step {
         /// Duration, s.
         seconds: f64,
     },
-    /// The paper's roll manoeuvre: to +angle, to -angle, level.
+    /// The paper's roll manoeuvre: to +angle, to -angle, level. Each side is left once it is reached.
     Roll {
         /// Roll angle, rad.
         angle: f64,
-        /// Time at each side, s.
+        /// Longest time that a side may take to be reached, s.
         seconds: f64,
     },
     /// Fly to a point 1 m over the pipe's top.

@@ -10,7 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Place, ScenarioError};
-use super::keys::{KEYS, Key, Kind, Range, TABLES};
+use super::keys::{self, KEYS, Key, Kind, Range, TABLES};
 use super::nearest::nearest;
 use super::{Overrides, Scenario, defaults};
 use crate::plant::tendon::ServoSpec;
@@ -121,6 +121,18 @@ impl Source<'_> {
                     *slot = self.number(name, item, range)?;
                 }
             }
+            Kind::PerAxis(ranges, field) => {
+                let allowed = || {
+                    let each = ranges.each_ref().map(Range::allowed);
+                    format!("three numbers for roll, pitch and yaw: {}", each.join(", "))
+                };
+                let items = value.get_ref().as_array().filter(|a| a.len() == 3);
+                let items = items.ok_or_else(|| self.bad(name, value, allowed()))?;
+                let slots = field(scenario).iter_mut();
+                for ((slot, range), item) in slots.zip(ranges).zip(items.iter()) {
+                    *slot = self.number(name, item, range)?;
+                }
+            }
             Kind::Flag(field) => {
                 let flag = value.get_ref().as_bool();
                 *field(scenario) = flag.ok_or_else(|| self.bad(name, value, "true or false"))?;
@@ -133,9 +145,8 @@ impl Source<'_> {
                 );
             }
             Kind::Seed(field) => {
-                let seed = as_number(value).filter(|v| v.fract() == 0.0 && (0.0..9.1e15).contains(v));
-                let seed = seed.ok_or_else(|| self.bad(name, value, "a whole number from 0 to 9e15"))?;
-                *field(scenario) = seed as u64;
+                let seed = as_number(value).and_then(keys::seed);
+                *field(scenario) = seed.ok_or_else(|| self.bad(name, value, keys::SEED_ALLOWED))?;
             }
             Kind::Text(set) => {
                 let text = value
@@ -198,12 +209,19 @@ impl Source<'_> {
 
 /// Builders tell the stack what they built: the parameters follow the vehicle unless the file says otherwise.
 fn believe_the_vehicle(scenario: &mut Scenario) {
-    scenario.params.infill = scenario.vehicle.infill as f32;
-    scenario.params.gain_k = scenario.vehicle.gain_k as f32;
-    let servo = ServoSpec::from(scenario.vehicle.servo);
-    scenario.params.servo_stall = servo.stall as f32;
-    scenario.params.servo_slew = servo.slew as f32;
-    scenario.params.servo_range = servo.range as f32;
+    let Scenario { params, vehicle, .. } = scenario;
+    params.infill = vehicle.infill as f32;
+    params.gain_k = vehicle.gain_k as f32;
+    params.mass = vehicle.body.mass as f32;
+    let [roll, pitch, yaw] = vehicle.body.inertia.map(|i| i as f32);
+    (params.inertia_roll, params.inertia_pitch, params.inertia_yaw) = (roll, pitch, yaw);
+    params.torque_ratio = vehicle.rotor.torque_ratio as f32;
+    params.motor_tau = vehicle.rotor.time_constant as f32;
+    params.thrust_max = vehicle.rotor.thrust_max as f32;
+    let servo = ServoSpec::from(vehicle.servo);
+    params.servo_stall = servo.stall as f32;
+    params.servo_slew = servo.slew as f32;
+    params.servo_range = servo.range as f32;
 }
 
 /// The entries as the file has them, so that the first mistake is the one reported.

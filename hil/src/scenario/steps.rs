@@ -32,11 +32,7 @@ const fn number(key: &'static str, range: Range, default: f64) -> StepNumber {
 
 const HEIGHT: Range = Range::new(0.5, 30.0, "m");
 const PLACE: Range = Range::new(-50.0, 50.0, "m");
-const PERCH_THROTTLE: StepNumber = number(
-    "throttle_percent",
-    Range::new(5.0, 60.0, "%").times(0.01),
-    30.0,
-);
+const PERCH_THROTTLE: StepNumber = number("throttle_percent", Range::new(5.0, 60.0, "%").times(0.01), 30.0);
 /// Longest time without a transmitter after which the vehicle surely flies on by itself, s: the link turns stale
 /// after 0.5 s, and 1 s later only the sticks end the failsafe.
 const FLIES_ON: f64 = 1.4;
@@ -62,7 +58,7 @@ pub const STEPS: &[StepKind] = &[
         name: "roll",
         numbers: &[
             number("angle_deg", Range::new(1.0, 35.0, "deg").times(PI / 180.0), 25.0),
-            number("seconds", Range::new(0.1, 5.0, "s"), 0.6),
+            number("seconds", Range::new(0.5, 5.0, "s"), 2.5),
         ],
         build: |[angle, seconds, _]| Step::Roll { angle, seconds },
     },

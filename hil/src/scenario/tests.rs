@@ -95,6 +95,21 @@ fn the_stack_believes_the_vehicle_unless_told_otherwise() {
         (s.params.infill, s.params.gain_k, s.params.servo_stall),
         (8.0, 5.0, 0.922)
     );
+    let s = parse(
+        "[vehicle]\nmass_kg = 2\ninertia_kgm2 = [0.03, 0.05, 0.07]\ntorque_ratio_m = 0.018\n\
+         motor_tau_s = 0.04\nthrust_max_n = 10\n[params]\nmotor_tau = 0.06",
+    )
+    .unwrap();
+    assert_eq!(
+        (s.vehicle.body.inertia, s.vehicle.rotor.time_constant),
+        ([0.03, 0.05, 0.07], 0.04)
+    );
+    let p = &s.params;
+    assert_eq!((p.mass, p.thrust_max, p.torque_ratio), (2.0, 10.0, 0.018));
+    assert_eq!(
+        (p.inertia_roll, p.inertia_pitch, p.inertia_yaw, p.motor_tau),
+        (0.03, 0.05, 0.07, 0.06)
+    );
     let s = parse("[vehicle]\ninfill = 8\n[params]\ninfill = 6\nrate_p = 9").unwrap();
     assert_eq!(
         (s.vehicle.infill, s.params.infill, s.params.rate_p),
@@ -151,6 +166,10 @@ fn bad_values_name_file_line_key_value_and_what_is_allowed() {
             "perch.toml:1: seed = -1: allowed a whole number from 0 to 9e15",
         ),
         (
+            "seed = 9000000000000001",
+            "perch.toml:1: seed = 9000000000000001: allowed a whole number from 0 to 9e15",
+        ),
+        (
             "seed = 1.5",
             "perch.toml:1: seed = 1.5: allowed a whole number from 0 to 9e15",
         ),
@@ -165,6 +184,15 @@ fn bad_values_name_file_line_key_value_and_what_is_allowed() {
         (
             "[vehicle]\narm_gain = [1, 1,\n 9, 1]",
             "perch.toml:3: vehicle.arm_gain = 9: allowed 0.5 to 1.5",
+        ),
+        (
+            "[vehicle]\ninertia_kgm2 = [0.02, 0.04]",
+            "perch.toml:2: vehicle.inertia_kgm2 = [0.02, 0.04]: allowed three numbers for roll, pitch and yaw: \
+             0.012 to 0.1 kg m2, 0.012 to 0.1 kg m2, 0.024 to 0.2 kg m2",
+        ),
+        (
+            "[vehicle]\ninertia_kgm2 = [0.02, 0.04, 0.02]",
+            "perch.toml:2: vehicle.inertia_kgm2 = 0.02: allowed 0.024 to 0.2 kg m2",
         ),
         (
             "[vehicle]\ncoupled_arms = 1",
@@ -247,8 +275,8 @@ fn steps_must_make_a_mission() {
         ),
         (
             "steps = [{ do = 'hover' }]",
-            "perch.toml:1: steps[0] = hover: allowed only in free flight or over the pipe, \
-             but here the vehicle is on the ground, disarmed",
+            "perch.toml:1: steps[0] = hover: allowed only in free flight or over the pipe \
+             or sinking without a radio, but here the vehicle is on the ground, disarmed",
         ),
         (
             "steps = [{ do = 'arm' }, { do = 'take-off', height_m = 99 }]",

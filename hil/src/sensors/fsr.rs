@@ -29,6 +29,12 @@ const DIVIDER: (f64, f64) = (10_000.0, 0.01);
 /// RMS noise of the converter, counts.
 const ADC_NOISE: f64 = 1.2;
 
+/// Largest error of the pressure read from a sensor in the vehicle, as a share of it: gain and divider at their
+/// limits, the play, three times the creep's RMS, and 1 % that the exponent makes at the grip pressure. Summed,
+/// not averaged: with the limits above 9.9 %, 94 Pa at 950 Pa, where the paper states about 50 Pa without saying
+/// whether that is typical or largest.
+pub const LARGEST_ERROR: f64 = PART_ERROR + DIVIDER.1 + HYSTERESIS + 3.0 * CREEP.0 + 0.01;
+
 /// What has gone wrong with a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FsrBreak {
@@ -124,7 +130,7 @@ mod tests {
         }
         let rms = (square / f64::from(n)).sqrt();
         assert!(
-            (20.0..40.0).contains(&rms) && (50.0..90.0).contains(&worst),
+            (20.0..40.0).contains(&rms) && (50.0..950.0 * LARGEST_ERROR).contains(&worst),
             "{rms} {worst}"
         );
     }

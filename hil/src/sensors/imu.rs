@@ -19,6 +19,8 @@ const ACCEL_NOISE: f64 = 70e-6 * 9.806_65 * 44.7;
 const GYRO_BIAS: f64 = 0.5 * (std::f64::consts::PI / 180.0);
 /// Largest accelerometer bias, m/s²: ±20 mg (datasheet).
 const ACCEL_BIAS: f64 = 0.020 * 9.806_65;
+/// Largest error of the bench calibration, m/s²: a bench that is level to a quarter of a degree (assumed).
+const BENCH_ERROR: f64 = 0.04;
 /// One count of the gyro at ±2000 dps, rad/s.
 const GYRO_LSB: f64 = 2000.0 * (std::f64::consts::PI / 180.0) / 32768.0;
 /// One count of the accelerometer at ±16 g, m/s².
@@ -50,6 +52,14 @@ impl Imu {
             pipeline: ImuReading::default(),
             phase: [0.0; 4],
         }
+    }
+
+    /// Bias of the accelerometer as a builder measures it on a level bench, m/s²: to within the bench's own error.
+    pub fn bench_bias(&mut self) -> DVec3 {
+        self.accel_bias
+            + DVec3::from_array(std::array::from_fn(|_| {
+                self.rng.random_range(-BENCH_ERROR..BENCH_ERROR)
+            }))
     }
 
     /// One sample of the body rate (rad/s) and specific force (m/s²) with the rotors at `rotors` rad/s. It comes
