@@ -97,3 +97,55 @@ fn mismatched_arms_are_learnt_by_their_sensors() {
         "{with} {without} {rigid}"
     );
 }
+
+#[test]
+fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
+    use sophie_control::vector::Vec3;
+    use sophie_control::wrench::Wrench;
+    use sophie_tasks::links::Setpoint;
+
+    const WEIGHT: f32 = 17.7;
+    let level = Setpoint::Angle {
+        roll: 0.0,
+        pitch: 0.0,
+        yaw_rate: 0.0,
+        thrust: WEIGHT,
+    };
+    let rate = Setpoint::Rate {
+        rate: Vec3::new(0.6, 0.0, 0.0),
+        thrust: WEIGHT,
+    };
+    let moment = Wrench {
+        thrust: WEIGHT,
+        roll: 0.02,
+        ..Wrench::default()
+    };
+    for (setpoint, seconds, least, most) in [
+        (rate, 0.5, 8.0, 22.0),
+        (Setpoint::Direct { wrench: moment }, 0.5, 3.0, 15.0),
+    ] {
+        let mut rig = Rig::new(&Scenario::default_mission());
+        rig.fly(10.0, |_| Wish {
+            roll: 0.0,
+            yaw_rate: 0.0,
+        });
+        for _ in 0..(seconds * 1000.0) as usize {
+            rig.step(setpoint);
+        }
+        let rolled = rig.plant.euler()[0].to_degrees();
+        assert!((least..most).contains(&rolled), "{setpoint:?}: {rolled}");
+        // Back to level: the vehicle turns round at once and never swings far to the other side.
+        let (mut farthest, mut swung) = (rolled, rolled);
+        for _ in 0..3000 {
+            rig.step(level);
+            let roll = rig.plant.euler()[0].to_degrees();
+            farthest = farthest.max(roll);
+            swung = swung.min(roll);
+        }
+        let end = rig.plant.euler()[0].to_degrees();
+        assert!(
+            farthest < rolled + 12.0 && swung > -8.0 && end.abs() < 3.0,
+            "{setpoint:?}: {farthest} {swung} {end}"
+        );
+    }
+}
