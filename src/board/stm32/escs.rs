@@ -36,7 +36,7 @@ pub enum Protocol {
 
 impl Protocol {
     /// The protocol that the parameter `motor_protocol` names: 150, 300 or 600 for DShot, 400 for pulses at 400 Hz,
-    /// 125 for OneShot125; DShot300 where the table has no such parameter.
+    /// 125 for OneShot125; DShot300 for any other number.
     pub fn from_params(params: &Params) -> Self {
         match params.get("motor_protocol").map(|number| number as u32) {
             Some(150) => Self::DShot(dshot::Speed::Dshot150),
