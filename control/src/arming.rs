@@ -36,11 +36,45 @@ pub enum Refusal {
     Overruns,
     /// The tendons are still closed.
     ArmsClosed,
+    /// The vehicle's inertial sensor does not answer.
+    ImuAbsent,
+    /// Another chip answers in place of the vehicle's inertial sensor.
+    ImuWrongPart,
+    /// The vehicle's inertial sensor gives what it cannot have measured.
+    ImuCorrupt,
+    /// The vehicle's inertial sensor has failed its self-test.
+    ImuSelfTest,
+    /// The sensor on arm 1 gives nothing.
+    ArmSensor1,
+    /// The sensor on arm 2 gives nothing.
+    ArmSensor2,
+    /// The sensor on arm 3 gives nothing.
+    ArmSensor3,
+    /// The sensor on arm 4 gives nothing.
+    ArmSensor4,
+    /// The analog inputs give nothing.
+    AnalogSilent,
+    /// The stored parameters cannot be read: the defaults are in force.
+    StorageUnreadable,
+    /// The parameters do not fit into their storage.
+    StorageFull,
+    /// Parameters are being stored.
+    Storing,
+    /// The supply broke down and the board restarted.
+    BrownOut,
 }
 
 impl Refusal {
     /// Every reason, the most basic first.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 24] = [
+        Self::BrownOut,
+        Self::Storing,
+        Self::StorageUnreadable,
+        Self::StorageFull,
+        Self::ImuAbsent,
+        Self::ImuWrongPart,
+        Self::ImuSelfTest,
+        Self::ImuCorrupt,
         Self::RcLost,
         Self::ImuStale,
         Self::NotCalibrated,
@@ -50,7 +84,12 @@ impl Refusal {
         Self::ArmsClosed,
         Self::TiltTooLarge,
         Self::BatteryLow,
+        Self::AnalogSilent,
         Self::FsrFault,
+        Self::ArmSensor1,
+        Self::ArmSensor2,
+        Self::ArmSensor3,
+        Self::ArmSensor4,
         Self::Overruns,
     ];
 
@@ -68,22 +107,53 @@ impl Refusal {
             Self::SwitchOnAtPowerUp => "arm switch on at power-up",
             Self::Overruns => "deadlines missed",
             Self::ArmsClosed => "arms closed",
+            Self::ImuAbsent => "inertial sensor absent",
+            Self::ImuWrongPart => "inertial sensor: wrong chip",
+            Self::ImuCorrupt => "inertial sensor garbled",
+            Self::ImuSelfTest => "inertial sensor: self-test failed",
+            Self::ArmSensor1 => "arm sensor 1 silent",
+            Self::ArmSensor2 => "arm sensor 2 silent",
+            Self::ArmSensor3 => "arm sensor 3 silent",
+            Self::ArmSensor4 => "arm sensor 4 silent",
+            Self::AnalogSilent => "analog inputs silent",
+            Self::StorageUnreadable => "stored parameters unreadable",
+            Self::StorageFull => "parameter storage full",
+            Self::Storing => "storing parameters",
+            Self::BrownOut => "supply broke down",
         }
     }
 
-    const fn bit(self) -> u16 {
+    const fn bit(self) -> u32 {
         1 << self as u8
     }
 }
 
 /// The reasons that hold now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Refusals(u16);
+pub struct Refusals(u32);
 
 impl Refusals {
+    /// No reason.
+    pub const NONE: Self = Self(0);
+
     /// No reason: arming is free.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
+    }
+
+    /// These and `reason`.
+    pub const fn with(self, reason: Refusal) -> Self {
+        Self(self.0 | reason.bit())
+    }
+
+    /// These without `reason`.
+    pub const fn without(self, reason: Refusal) -> Self {
+        Self(self.0 & !reason.bit())
+    }
+
+    /// These and `others`.
+    pub const fn and(self, others: Self) -> Self {
+        Self(self.0 | others.0)
     }
 
     /// True when `reason` holds.
@@ -127,6 +197,8 @@ pub struct Checks {
     pub late: bool,
     /// The tendons are closed.
     pub arms_closed: bool,
+    /// What the drivers, the storage and the start report.
+    pub hardware: Refusals,
 }
 
 impl Checks {
@@ -156,7 +228,8 @@ impl Checks {
             .into_iter()
             .filter(|&(_, holds)| holds)
             .map(|(r, _)| r)
-            .collect()
+            .collect::<Refusals>()
+            .and(self.hardware)
     }
 }
 

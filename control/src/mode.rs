@@ -127,6 +127,8 @@ pub struct Inputs {
     pub battery: Option<f32>,
     /// The flight level misses its deadlines.
     pub late: bool,
+    /// What the drivers, the storage and the start report against arming.
+    pub hardware: Refusals,
 }
 
 /// What the mode logic decides in one step.

@@ -1,5 +1,7 @@
 //! Every number that a pilot or builder may change, in one table: name, unit, range, default, source.
 
+use core::fmt;
+
 /// One row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParamInfo {
@@ -11,6 +13,8 @@ pub struct ParamInfo {
     pub min: f32,
     /// Largest value allowed.
     pub max: f32,
+    /// The only values allowed; empty where every value of the range is.
+    pub choices: &'static [f32],
     /// Value of a fresh board.
     pub default: f32,
     /// What it is and where the default comes from.
@@ -31,10 +35,43 @@ pub enum ParamError {
         /// Unit of the bounds.
         unit: &'static str,
     },
+    /// The value is none of those that exist.
+    NotAChoice {
+        /// The values allowed.
+        choices: &'static [f32],
+        /// Unit of the values.
+        unit: &'static str,
+    },
+}
+
+/// What would have been allowed: "4 to 10 %", "one of 0, 1".
+impl fmt::Display for ParamError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = match *self {
+            Self::Unknown => return f.write_str("a name of the parameter table"),
+            Self::OutOfRange { min, max, unit } => {
+                write!(f, "{min} to {max}")?;
+                unit
+            }
+            Self::NotAChoice { choices, unit } => {
+                f.write_str("one of ")?;
+                for (i, choice) in choices.iter().enumerate() {
+                    let comma = if i == 0 { "" } else { ", " };
+                    write!(f, "{comma}{choice}")?;
+                }
+                unit
+            }
+        };
+        // "1" is the unit of a pure number.
+        if unit == "1" { Ok(()) } else { write!(f, " {unit}") }
+    }
 }
 
 macro_rules! params {
-    ($( $(#[doc = $doc:literal])+ $name:ident = $default:literal, $unit:literal, $min:literal ..= $max:literal; )+) => {
+    (@choices) => { &[] };
+    (@choices $choices:expr) => { &$choices };
+    ($( $(#[doc = $doc:literal])+ $name:ident = $default:literal, $unit:literal, $min:literal ..= $max:literal
+        $(of $choices:expr)?; )+) => {
         /// The parameters of one vehicle; `Default` is the paper's vehicle.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Params {
@@ -51,7 +88,8 @@ macro_rules! params {
             /// The whole table, in the order of the fields.
             pub const TABLE: &'static [ParamInfo] = &[
                 $( ParamInfo {
-                    name: stringify!($name), unit: $unit, min: $min, max: $max, default: $default,
+                    name: stringify!($name), unit: $unit, min: $min, max: $max, choices: params!(@choices $($choices)?),
+                    default: $default,
                     doc: concat!($($doc),+),
                 }, )+
             ];
@@ -67,12 +105,17 @@ macro_rules! params {
             /// Sets the parameter called `name`.
             ///
             /// # Errors
-            /// An unknown name, or a value that is not finite or out of its range; nothing is changed then.
+            /// An unknown name, or a value that is not finite, out of its range or none of the choices; nothing is
+            /// changed then.
             pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
                 match name {
                     $( stringify!($name) => {
                         if !($min..=$max).contains(&value) {
                             return Err(ParamError::OutOfRange { min: $min, max: $max, unit: $unit });
+                        }
+                        let choices: &'static [f32] = params!(@choices $($choices)?);
+                        if !choices.is_empty() && !choices.contains(&value) {
+                            return Err(ParamError::NotAChoice { choices, unit: $unit });
                         }
                         self.$name = value;
                     } )+
@@ -110,7 +153,17 @@ params! {
 
     /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses at 400 Hz, 125 for OneShot125. Read by the board at
     /// start-up; the paper's controllers take 400.
-    motor_protocol = 300.0, "1", 125.0 ..= 600.0;
+    motor_protocol = 300.0, "1", 125.0 ..= 600.0 of [125.0, 150.0, 300.0, 400.0, 600.0];
+    /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.
+    receiver_protocol = 0.0, "1", 0.0 ..= 1.0 of [0.0, 1.0];
+    /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.
+    imu_rate = 4000.0, "Hz", 1000.0 ..= 8000.0 of [1000.0, 2000.0, 4000.0, 8000.0];
+    /// Full scale of the gyroscope.
+    imu_gyro_range = 2000.0, "deg/s", 250.0 ..= 2000.0 of [250.0, 500.0, 1000.0, 2000.0];
+    /// Full scale of the accelerometer.
+    imu_accel_range = 16.0, "g", 2.0 ..= 16.0 of [2.0, 4.0, 8.0, 16.0];
+    /// Frames per second of the tendon servos; analog servos want 50.
+    servo_frame_rate = 50.0, "Hz", 50.0 ..= 333.0;
 
     /// Infill of the arms; Eq. 1 covers 4 to 10 %, below 6 % the paper's authors did not fly.
     infill = 6.9, "%", 4.0 ..= 10.0;
@@ -278,6 +331,10 @@ mod tests {
             );
         }
         assert!(p.set("infil", 6.0) == Err(ParamError::Unknown));
+        for bad in [126.0, 200.0, 599.0] {
+            let refused = p.set("motor_protocol", bad);
+            assert!(matches!(refused, Err(ParamError::NotAChoice { .. })), "{bad}");
+        }
         assert!(p == Params::default());
     }
 }

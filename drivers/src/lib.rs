@@ -9,7 +9,7 @@
 //! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
 //! | [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
-//! | [`sbus`] | receiver | decodes what `RcReceiver` gives |
+//! | [`sbus`] | receiver | decodes what `SerialInput` gives |
 
 #![no_std]
 #![deny(

@@ -234,13 +234,13 @@ impl ports::Servos for Port {
     }
 }
 
-impl ports::RcReceiver for Port {
+impl ports::SerialInput for Port {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         Ok(self.0.rc.read(buffer).await)
     }
 }
 
-impl ports::TelemetryLink for Port {
+impl ports::SerialOutput for Port {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
         let mut rest = bytes;
         while !rest.is_empty() {

@@ -85,6 +85,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         fsr_fault: links.contact.fresh().map_or([true; 4], |c| c.fault),
         battery: links.battery.fresh().map(|b| b.voltage),
         late,
+        hardware: links.hardware(),
     }
 }
 

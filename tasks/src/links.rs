@@ -17,6 +17,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
+use sophie_control::arming::{Refusal, Refusals};
 pub use sophie_control::grip::GripState;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
@@ -244,6 +245,7 @@ pub struct Links {
     /// commander -> telemetry, log. 100 Hz, stale after 200 ms.
     pub status: Link<Status>,
     timing: [Mutex<Raw, Cell<Timing>>; TaskId::COUNT],
+    hardware: Mutex<Raw, Cell<Refusals>>,
 }
 
 impl Links {
@@ -270,7 +272,25 @@ impl Links {
             rc: Link::new(ms(500)),
             status: Link::new(ms(200)),
             timing: [const { Mutex::new(Cell::new(Timing::new())) }; TaskId::COUNT],
+            hardware: Mutex::new(Cell::new(Refusals::NONE)),
         }
+    }
+
+    /// What speaks against arming on the hardware's side. drivers' tasks, start-up, console -> commander.
+    pub fn hardware(&self) -> Refusals {
+        self.hardware.lock(Cell::get)
+    }
+
+    /// Reports that `reason` holds, or holds no longer.
+    pub fn report(&self, reason: Refusal, holds: bool) {
+        self.hardware.lock(|cell| {
+            let all = cell.get();
+            cell.set(if holds {
+                all.with(reason)
+            } else {
+                all.without(reason)
+            });
+        });
     }
 
     /// What is known of a task's timing.

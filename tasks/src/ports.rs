@@ -1,6 +1,7 @@
 //! What a board implements. Every unit is SI unless said otherwise.
 
 use heapless::Vec;
+use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 
@@ -13,6 +14,8 @@ pub enum PortError {
     Corrupt,
     /// The part is not there or was never set up.
     Absent,
+    /// Another part answers.
+    WrongPart,
 }
 
 /// Most samples that an inertial sensor hands over at once.
@@ -87,8 +90,8 @@ pub trait Servos {
     async fn write(&mut self, pulses_us: PerArm<f32>);
 }
 
-/// The receiver's serial line towards the vehicle.
-pub trait RcReceiver {
+/// A serial line towards the vehicle: the receiver's or the console's.
+pub trait SerialInput {
     /// Waits for bytes and puts them at the start of `buffer`; returns how many.
     ///
     /// # Errors
@@ -96,8 +99,8 @@ pub trait RcReceiver {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError>;
 }
 
-/// The serial line towards the receiver, which carries telemetry to the pilot.
-pub trait TelemetryLink {
+/// A serial line from the vehicle: to the receiver, which carries telemetry to the pilot, or to the console.
+pub trait SerialOutput {
     /// Sends all of `bytes`.
     ///
     /// # Errors
@@ -109,4 +112,43 @@ pub trait TelemetryLink {
 pub trait Watchdog {
     /// Puts off the reset by the watchdog's period.
     fn feed(&mut self);
+}
+
+/// What reading the stored parameters gave.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Loaded {
+    /// Parameters taken over.
+    pub taken: u16,
+    /// Stored values that were left out: unknown here, or no longer allowed.
+    pub refused: u16,
+    /// The storage is damaged, or does not answer: what could not be read keeps its default.
+    pub unreadable: bool,
+}
+
+/// Why parameters were not stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StorageError {
+    /// They do not fit.
+    Full,
+    /// The memory does not keep what is written to it, or does not answer.
+    Broken,
+}
+
+/// Where parameters outlive power.
+pub trait Storage {
+    /// Puts what is stored into `params`, which holds the defaults. Blank storage changes nothing and is no fault.
+    async fn load(&mut self, params: &mut Params) -> Loaded;
+
+    /// Stores every parameter that differs from its default, and nothing else; whatever was damaged before is gone then.
+    /// May stall the processor for a second: only while the motors stand still.
+    ///
+    /// # Errors
+    /// Storage that is full or broken. What was stored before may be lost.
+    async fn save(&mut self, params: &Params) -> Result<(), StorageError>;
+}
+
+/// Starts the board afresh.
+pub trait Restart {
+    /// Restarts, motors stopped first. Does not return on a board.
+    fn restart(&mut self);
 }

@@ -15,7 +15,7 @@ use uf_crsf::{CrsfParser, Packet};
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::{Links, RcState};
-use crate::ports::RcReceiver;
+use crate::ports::SerialInput;
 
 /// Bytes taken at once: two of the longest frames.
 const BUFFER: usize = 128;
@@ -27,7 +27,7 @@ const PAUSE: Duration = Duration::from_millis(1);
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
 
 /// Decodes frames for ever.
-pub async fn run(links: &Links, mut port: impl RcReceiver) -> ! {
+pub async fn run(links: &Links, mut port: impl SerialInput) -> ! {
     let mut decoder = Decoder::new();
     let mut buffer = [0; BUFFER];
     loop {

@@ -18,7 +18,7 @@ use uf_crsf::write_packet_to_buffer;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Battery, Links, Status};
-use crate::ports::TelemetryLink;
+use crate::ports::SerialOutput;
 
 /// Time between two frames.
 pub const PERIOD: Duration = Duration::from_millis(50);
@@ -33,7 +33,7 @@ const TEXT: usize = 59;
 type Frame = heapless::Vec<u8, 64>;
 
 /// Sends frames for ever.
-pub async fn run(links: &Links, mut port: impl TelemetryLink) -> ! {
+pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Telemetry, PERIOD, PERIOD);
     let mut slot = 0;
     let mut shown = None;

@@ -22,6 +22,7 @@ impl ModeLogic {
                 .zip(chosen)
                 .any(|(&fault, chosen)| fault && chosen),
             late: i.late,
+            hardware: i.hardware,
             arms_closed: !matches!(self.state, State::Disarmed { closed: None } | State::Calibrating),
         }
         .refusals(&self.params)

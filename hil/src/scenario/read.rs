@@ -178,11 +178,7 @@ impl Source<'_> {
                     let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
                     return Err(self.unknown(&key, &span, value, known));
                 }
-                Err(ParamError::OutOfRange { min, max, unit }) => {
-                    let unit = if unit == "1" { "" } else { unit };
-                    let allowed = format!("{min} to {max} {unit}");
-                    return Err(self.bad(&key, value, allowed.trim_end()));
-                }
+                Err(allowed) => return Err(self.bad(&key, value, allowed.to_string())),
             }
         }
         Ok(())

@@ -15,7 +15,8 @@ use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::ports::{
-    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, RcReceiver, Servos, Watchdog,
+    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, SerialInput, Servos,
+    Watchdog,
 };
 
 /// Links without messages, for as long as the process lives.
@@ -188,7 +189,7 @@ impl FakeLine {
     }
 }
 
-impl RcReceiver for FakeLine {
+impl SerialInput for FakeLine {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         while self.bytes.borrow().is_empty() {
             self.news.0.wait().await;
@@ -206,7 +207,7 @@ impl RcReceiver for FakeLine {
 #[derive(Clone, Default)]
 pub struct BrokenLine(pub Part);
 
-impl RcReceiver for BrokenLine {
+impl SerialInput for BrokenLine {
     async fn read(&mut self, _buffer: &mut [u8]) -> Result<usize, PortError> {
         self.0.work(100).await?;
         Ok(0)
