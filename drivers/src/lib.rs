@@ -7,7 +7,8 @@
 //! |---|---|---|
 //! | [`icm42688p`], [`icm20689`] over [`spi_imu`] | inertial sensor of the vehicle, SPI | `Imu` |
 //! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
-//! | [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
+//! | [`i2c_lines`] | a held I2C bus is freed | used by the board's buses |
+//! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
 //! | [`sbus`] | receiver | decodes what `SerialInput` gives |
 
@@ -28,8 +29,10 @@ pub mod arm_buses;
 pub mod bno055;
 pub mod dshot;
 pub mod dshot_decoder;
+pub mod esc_protocol;
 pub mod esc_pwm;
 pub mod fault;
+pub mod i2c_lines;
 pub mod icm20689;
 pub mod icm42688p;
 pub mod mounting;
