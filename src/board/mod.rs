@@ -25,11 +25,11 @@ pub mod stm32;
 mod chosen;
 
 pub use chosen::{
-    AnalogPort, ArmsPort, ImuPort, MotorsPort, NAME, ReceiverPort, ServosPort, TelemetryPort, WatchdogPort,
-    start_levels, stop_motors, take,
+    AnalogPort, ArmsPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, WatchdogPort, start_levels,
+    stop_motors, take,
 };
 pub use cortex_m::retained::ResetCause;
-pub use stm32::take_reset_cause;
+pub use stm32::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, take_reset_cause};
 
 /// What a board hands to the tasks.
 pub struct Board {
@@ -44,11 +44,15 @@ pub struct Board {
     /// The tendon servos.
     pub servos: ServosPort,
     /// From the receiver.
-    pub receiver: ReceiverPort,
+    pub receiver: ReceiverLine,
     /// To the receiver.
-    pub telemetry: TelemetryPort,
+    pub telemetry: TelemetryLine,
+    /// From the console.
+    pub console_input: ConsoleInput,
+    /// To the console.
+    pub console_output: ConsoleOutput,
     /// The watchdog, running.
     pub watchdog: WatchdogPort,
     /// Lights and buzzer.
-    pub lights: stm32::Lights,
+    pub lights: LightsPort,
 }

@@ -5,7 +5,6 @@ use sophie_control::wrench::Configuration;
 use sophie_tasks::links::Links;
 
 use crate::board;
-use crate::board::stm32::Lights;
 
 /// Flight level: inertial sensor.
 ///
@@ -65,7 +64,7 @@ pub async fn servos(links: &'static Links, port: board::ServosPort) -> ! {
 
 /// Steady level: receiver.
 #[embassy_executor::task]
-pub async fn rc(links: &'static Links, port: board::ReceiverPort) -> ! {
+pub async fn rc(links: &'static Links, port: board::ReceiverLine) -> ! {
     sophie_tasks::rc::run(links, port).await
 }
 
@@ -89,13 +88,13 @@ pub async fn arms(links: &'static Links, port: board::ArmsPort) -> ! {
 
 /// Background: telemetry to the pilot.
 #[embassy_executor::task]
-pub async fn telemetry(links: &'static Links, port: board::TelemetryPort) -> ! {
+pub async fn telemetry(links: &'static Links, port: board::TelemetryLine) -> ! {
     sophie_tasks::telemetry::run(links, port).await
 }
 
 /// Background: lights and buzzer.
 #[embassy_executor::task]
-pub async fn lights(links: &'static Links, lights: Lights) -> ! {
+pub async fn lights(links: &'static Links, lights: board::LightsPort) -> ! {
     super::lights::run(links, lights).await
 }
 

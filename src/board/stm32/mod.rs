@@ -5,6 +5,7 @@
 mod adc;
 mod analog;
 mod escs;
+mod i2c_bus;
 mod lights;
 mod reset;
 mod serial;
@@ -12,20 +13,26 @@ mod serial;
 mod servo_pairs;
 #[cfg(not(feature = "cuav-v5"))]
 mod servos;
+#[cfg(feature = "cuav-v5")]
+mod small_timer;
 mod spi;
+#[cfg(feature = "cuav-v5")]
+mod tone;
 mod watchdog;
 
-pub use adc::Converter;
-pub use analog::{AnalogInputs, AnalogScale};
-pub use escs::{EscBurst, EscTimer, Protocol, pull_low};
-pub use lights::Lights;
+pub use analog::{AnalogInputs, BatteryScale};
+pub use escs::{EscTimer, pull_low};
+pub use i2c_bus::{ArmBus, BusParts, i2c_config};
+pub use lights::{Lamp, Lights};
 pub use reset::take_reset_cause;
-pub use serial::{ReceiverLine, TelemetryLine};
+pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, console_lines, receiver_line};
 #[cfg(feature = "cuav-v5")]
 pub use servo_pairs::ServoPairs;
 #[cfg(not(feature = "cuav-v5"))]
 pub use servos::ServoTimer;
-pub use spi::Selected;
+pub use spi::{DmaChip, Selected, spi_config};
+#[cfg(feature = "cuav-v5")]
+pub use tone::Tone;
 pub use watchdog::Dog;
 
 /// A buffer that DMA moves in bursts of up to 16 bytes: a burst must not cross a 1 KiB boundary.
