@@ -9,6 +9,7 @@
 //! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
 //! | [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
+//! | [`param_store`], [`fram`] | parameters in flash, or in FRAM on SPI | `Storage` |
 //! | [`sbus`] | receiver | decodes what `SerialInput` gives |
 
 #![no_std]
@@ -30,9 +31,11 @@ pub mod dshot;
 pub mod dshot_decoder;
 pub mod esc_pwm;
 pub mod fault;
+pub mod fram;
 pub mod icm20689;
 pub mod icm42688p;
 pub mod mounting;
+pub mod param_store;
 pub mod pwm_timing;
 pub mod registers;
 pub mod sbus;
