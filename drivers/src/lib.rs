@@ -10,6 +10,7 @@
 //! | [`i2c_lines`] | a held I2C bus is freed | used by the board's buses |
 //! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
+//! | [`param_store`], [`fram`] | parameters in flash, or in FRAM on SPI | `Storage` |
 //! | [`sbus`] | receiver | decodes what `SerialInput` gives |
 
 #![no_std]
@@ -32,10 +33,12 @@ pub mod dshot_decoder;
 pub mod esc_protocol;
 pub mod esc_pwm;
 pub mod fault;
+pub mod fram;
 pub mod i2c_lines;
 pub mod icm20689;
 pub mod icm42688p;
 pub mod mounting;
+pub mod param_store;
 pub mod pwm_timing;
 pub mod registers;
 pub mod sbus;
