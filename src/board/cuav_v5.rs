@@ -9,6 +9,7 @@
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4, PA4), RSSI (PB0), POWER2 current (PA3); POWER1 |
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
 //! | console | USART2 | none | TELEM1 |
+//! | parameters, FRAM | SPI2 | none | on board |
 //! | lights, sounder | TIM9 | none | on board |
 //! | time | TIM5 | none | |
 //!
@@ -17,6 +18,7 @@
 //! and ArduPilot (`fmuv5`) name.
 
 use assign_resources::assign_resources;
+use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Pull, Speed};
@@ -28,14 +30,15 @@ use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
 use sophie_drivers::esc_protocol::Protocol;
+use sophie_drivers::fram::Fram;
 use sophie_drivers::icm20689::{self, Icm20689};
 use sophie_drivers::mounting::{Heading, Mounting};
 
 use super::Board;
 use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
-    AnalogInputs, ArmBus, BatteryScale, DmaChip, Dog, EscTimer, Lamp, Lights, Selected, ServoPairs, Tone,
-    console_lines, pull_low, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
+    Selected, ServoPairs, Tone, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -53,6 +56,8 @@ pub type MotorsPort = EscTimer<peripherals::TIM1, peripherals::DMA2_CH5, Irqs>;
 pub type ServosPort = ServoPairs<peripherals::TIM4, peripherals::TIM12>;
 /// The watchdog.
 pub type WatchdogPort = Dog<peripherals::IWDG>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<Fram<PlainChip>>;
 /// Lights and buzzer.
 pub type LightsPort = Lights<Tone<peripherals::TIM9>>;
 
@@ -155,6 +160,13 @@ assign_resources! {
         rx: PD6,
         tx: PD5,
     }
+    storage: StorageParts {
+        spi: SPI2,
+        clock: PI1,
+        data_in: PI2,
+        data_out: PI3,
+        select: PF5,
+    }
     lights: LightParts {
         green: PC6,
         red: PB1,
@@ -166,33 +178,38 @@ assign_resources! {
     }
 }
 
-/// Starts the clocks and builds every port. Called once.
-pub fn take(params: &Params) -> Board {
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
     let p = embassy_stm32::init(clocks());
     stop_motors();
     enable_instruction_cache();
     let parts = split_resources!(p);
     rails(parts.rails);
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = super::load(&mut storage).await;
     let r = parts.receiver;
-    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, params);
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, params),
-        imu: imu(parts.imu, params),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
         arms: ArmBuses::new(
             ArmBus::new(parts.left_arms),
             ArmBus::new(parts.right_arms),
             [bno055::Config::default(); 4],
         ),
         analog: analog(parts.analog),
-        servos: servos(parts.servos, params),
+        servos: servos(parts.servos, &params),
         receiver,
         telemetry,
         console_input,
         console_output,
         lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
     }
 }
 
@@ -287,6 +304,12 @@ fn analog(p: AnalogParts) -> AnalogPort {
         amps_per_volt: 36.37,
     };
     AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
+}
+
+fn storage(p: StorageParts) -> StoragePort {
+    // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
+    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, spi_config(20_000_000));
+    BoardStorage::new(Fram::new(Selected::new(BlockingAsync::new(bus), p.select)))
 }
 
 fn lights(p: LightParts) -> LightsPort {

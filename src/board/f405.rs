@@ -11,6 +11,7 @@
 //! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
 //! | console | USART2 | none | PA3 in, PA2 out |
 //! | lights, buzzer | | none | PC10 state, PC11 fault, PC12 |
+//! | parameters | flash | none | sectors 1 and 2 |
 //! | time | TIM5 | none | |
 //!
 //! Here a DMA stream serves few requests (RM0090 §10.3.3), and two peripherals must not share one: the compiler refuses a
@@ -37,8 +38,8 @@ use sophie_drivers::spi_imu::SpiImu;
 
 use super::Board;
 use super::stm32::{
-    AnalogInputs, ArmBus, BatteryScale, DmaChip, Dog, EscTimer, Lamp, Lights, Selected, ServoTimer,
-    console_lines, pull_low, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
+    Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -56,6 +57,8 @@ pub type MotorsPort = EscTimer<peripherals::TIM8, peripherals::DMA2_CH1, Irqs>;
 pub type ServosPort = ServoTimer<peripherals::TIM3>;
 /// The watchdog.
 pub type WatchdogPort = Dog<peripherals::IWDG>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<ParamFlash<0x4000>>;
 /// Lights and buzzer.
 pub type LightsPort = Lights<Lamp>;
 
@@ -149,6 +152,9 @@ assign_resources! {
         rx: PA3,
         tx: PA2,
     }
+    storage: StorageParts {
+        flash: FLASH,
+    }
     lights: LightParts {
         state: PC10,
         fault: PC11,
@@ -159,31 +165,36 @@ assign_resources! {
     }
 }
 
-/// Starts the clocks and builds every port. Called once.
-pub fn take(params: &Params) -> Board {
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
     let p = embassy_stm32::init(clocks());
     stop_motors();
     let parts = split_resources!(p);
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = super::load(&mut storage).await;
     let r = parts.receiver;
-    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, params);
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, params),
-        imu: imu(parts.imu, params),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
         arms: ArmBuses::new(
             ArmBus::new(parts.left_arms),
             ArmBus::new(parts.right_arms),
             [bno055::Config::default(); 4],
         ),
         analog: analog(parts.analog),
-        servos: servos(parts.servos, params),
+        servos: servos(parts.servos, &params),
         receiver,
         telemetry,
         console_input,
         console_output,
         lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
     }
 }
 
@@ -264,6 +275,10 @@ fn analog(p: AnalogParts) -> AnalogPort {
         amps_per_volt: 40.0,
     };
     AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
+}
+
+fn storage(p: StorageParts) -> StoragePort {
+    BoardStorage::new(ParamFlash::new(p.flash))
 }
 
 fn lights(p: LightParts) -> LightsPort {

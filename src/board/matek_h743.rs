@@ -9,6 +9,7 @@
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | AirS, RSSI, VB2, CU2; on board |
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
 //! | console | UART7 | none | RX7, TX7 |
+//! | parameters | flash | none | sectors 6 and 7 of bank 2 |
 //! | time | TIM2 | none | |
 //!
 //! Motors and servos each have a timer of their own: a motor frame stops its timer between frames, and a servo
@@ -32,8 +33,8 @@ use sophie_drivers::mounting::{Heading, Mounting};
 use super::Board;
 use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
-    AnalogInputs, ArmBus, BatteryScale, DmaChip, Dog, EscTimer, Lamp, Lights, Selected, ServoTimer,
-    console_lines, pull_low, receiver_line, spi_config,
+    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
+    Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -51,6 +52,8 @@ pub type MotorsPort = EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>;
 pub type ServosPort = ServoTimer<peripherals::TIM5>;
 /// The watchdog.
 pub type WatchdogPort = Dog<peripherals::IWDG1>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<ParamFlash<0x2_0000>>;
 /// Lights and buzzer.
 pub type LightsPort = Lights<Lamp>;
 
@@ -144,6 +147,9 @@ assign_resources! {
         rx: PE7,
         tx: PE8,
     }
+    storage: StorageParts {
+        flash: FLASH,
+    }
     lights: LightParts {
         blue: PE3,
         green: PE4,
@@ -154,32 +160,37 @@ assign_resources! {
     }
 }
 
-/// Starts the clocks and builds every port. Called once.
-pub fn take(params: &Params) -> Board {
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
     let p = embassy_stm32::init(clocks());
     stop_motors();
     enable_instruction_cache();
     let parts = split_resources!(p);
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = super::load(&mut storage).await;
     let r = parts.receiver;
-    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, params);
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, params),
-        imu: imu(parts.imu, params),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
         arms: ArmBuses::new(
             ArmBus::new(parts.left_arms),
             ArmBus::new(parts.right_arms),
             [bno055::Config::default(); 4],
         ),
         analog: analog(parts.analog),
-        servos: servos(parts.servos, params),
+        servos: servos(parts.servos, &params),
         receiver,
         telemetry,
         console_input,
         console_output,
         lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
     }
 }
 
@@ -273,6 +284,10 @@ fn analog(p: AnalogParts) -> AnalogPort {
         amps_per_volt: 40.0,
     };
     AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
+}
+
+fn storage(p: StorageParts) -> StoragePort {
+    BoardStorage::new(ParamFlash::new(p.flash))
 }
 
 fn lights(p: LightParts) -> LightsPort {

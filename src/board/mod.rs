@@ -25,10 +25,13 @@ pub mod stm32;
 mod chosen;
 
 pub use chosen::{
-    AnalogPort, ArmsPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, WatchdogPort, start_levels,
-    stop_motors, take,
+    AnalogPort, ArmsPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort, WatchdogPort,
+    start_levels, stop_motors, take,
 };
+pub use cortex_m::Restarter;
 pub use cortex_m::retained::ResetCause;
+use sophie_control::params::Params;
+use sophie_tasks::ports::{Loaded, Storage};
 pub use stm32::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, take_reset_cause};
 
 /// What a board hands to the tasks.
@@ -55,4 +58,18 @@ pub struct Board {
     pub watchdog: WatchdogPort,
     /// Lights and buzzer.
     pub lights: LightsPort,
+    /// Where parameters are stored.
+    pub storage: StoragePort,
+    /// The parameters as which the ports were built: what was stored, or the defaults.
+    pub params: Params,
+    /// What reading them gave.
+    pub loaded: Loaded,
+}
+
+/// The defaults with what is stored in their place. The first thing that a board does: the ports are built by it, and
+/// the motors' pins are held low until then.
+async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
+    let mut params = Params::default();
+    let loaded = storage.load(&mut params).await;
+    (params, loaded)
 }

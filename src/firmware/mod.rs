@@ -6,8 +6,10 @@ mod lights;
 mod report;
 pub mod tasks;
 
+use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_tasks::links::Links;
+use sophie_tasks::ports::Loaded;
 use static_cell::StaticCell;
 
 use crate::board;
@@ -17,8 +19,23 @@ use crate::board::cortex_m::retained::{self, ResetCause};
 static LINKS: StaticCell<Links> = StaticCell::new();
 
 /// The links, without messages. Called once.
-pub fn links() -> &'static Links {
-    LINKS.init_with(|| Links::new(Params::default()))
+pub fn links(params: Params) -> &'static Links {
+    LINKS.init_with(|| Links::new(params))
+}
+
+/// Tells what reading the parameters gave; storage that cannot be read speaks against arming.
+pub fn loaded(links: &Links, loaded: Loaded) {
+    defmt::info!("parameters: {=u16} from storage", loaded.taken);
+    if loaded.refused > 0 {
+        defmt::warn!(
+            "parameters: {=u16} left out, unknown or no longer allowed",
+            loaded.refused
+        );
+    }
+    if loaded.unreadable {
+        defmt::error!("parameters: storage unreadable");
+    }
+    links.report(Refusal::StorageUnreadable, loaded.unreadable);
 }
 
 /// Says who this is and why it starts, with what the run before left behind; returns why.

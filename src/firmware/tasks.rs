@@ -1,5 +1,6 @@
 //! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`.
 
+use sophie_control::arming::Refusal;
 use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::Links;
@@ -14,7 +15,10 @@ pub async fn imu(links: &'static Links, mut port: board::ImuPort, self_test: boo
     if self_test {
         match port.self_test().await {
             Ok(_) => defmt::info!("imu: self-test passed"),
-            Err(fault) => defmt::error!("imu: {=str} ({})", fault.what(), fault),
+            Err(fault) => {
+                defmt::error!("imu: {=str} ({})", fault.what(), fault);
+                links.report(Refusal::ImuSelfTest, true);
+            }
         }
     }
     sophie_tasks::imu::run(links, port).await
@@ -90,6 +94,17 @@ pub async fn arms(links: &'static Links, port: board::ArmsPort) -> ! {
 #[embassy_executor::task]
 pub async fn telemetry(links: &'static Links, port: board::TelemetryLine) -> ! {
     sophie_tasks::telemetry::run(links, port).await
+}
+
+/// Background: the builder's console.
+#[embassy_executor::task]
+pub async fn console(
+    links: &'static Links,
+    input: board::ConsoleInput,
+    output: board::ConsoleOutput,
+    storage: board::StoragePort,
+) -> ! {
+    sophie_tasks::console::run(links, input, output, storage, board::Restarter).await
 }
 
 /// Background: lights and buzzer.

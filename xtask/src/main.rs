@@ -96,7 +96,9 @@ fn firmware(board: &Board) -> Result<(PathBuf, image::Image), Error> {
     eprintln!("vector table: {vectors} handlers, levels and reset in place");
     let kept = params::check(&image)?;
     eprintln!("DMA: {buffers} buffers and task futures, all where their DMA reaches");
-    eprintln!("parameters: {kept} bytes of flash kept, nothing loaded there");
+    if kept > 0 {
+        eprintln!("parameters: {kept} bytes of flash kept, nothing loaded there");
+    }
     Ok((elf, image))
 }
 

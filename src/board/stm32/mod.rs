@@ -5,6 +5,10 @@
 mod adc;
 mod analog;
 mod escs;
+#[cfg(not(feature = "cuav-v5"))]
+mod flash;
+#[cfg(feature = "matek-h743")]
+mod flash_ecc;
 mod i2c_bus;
 mod lights;
 mod reset;
@@ -16,12 +20,15 @@ mod servos;
 #[cfg(feature = "cuav-v5")]
 mod small_timer;
 mod spi;
+mod storage;
 #[cfg(feature = "cuav-v5")]
 mod tone;
 mod watchdog;
 
 pub use analog::{AnalogInputs, BatteryScale};
 pub use escs::{EscTimer, pull_low};
+#[cfg(not(feature = "cuav-v5"))]
+pub use flash::ParamFlash;
 pub use i2c_bus::{ArmBus, BusParts, i2c_config};
 pub use lights::{Lamp, Lights};
 pub use reset::take_reset_cause;
@@ -30,7 +37,10 @@ pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, conso
 pub use servo_pairs::ServoPairs;
 #[cfg(not(feature = "cuav-v5"))]
 pub use servos::ServoTimer;
+#[cfg(feature = "cuav-v5")]
+pub use spi::PlainChip;
 pub use spi::{DmaChip, Selected, spi_config};
+pub use storage::BoardStorage;
 #[cfg(feature = "cuav-v5")]
 pub use tone::Tone;
 pub use watchdog::Dog;

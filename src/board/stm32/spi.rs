@@ -36,6 +36,12 @@ impl<B> Selected<B> {
 /// A chip whose bus is moved by DMA.
 pub type DmaChip = Selected<Spi<'static, embassy_stm32::mode::Async, Master>>;
 
+/// A chip whose bus is moved by the processor, which waits meanwhile.
+#[cfg(feature = "cuav-v5")]
+pub type PlainChip = Selected<
+    embassy_embedded_hal::adapter::BlockingAsync<Spi<'static, embassy_stm32::mode::Blocking, Master>>,
+>;
+
 /// Holds the select line low; a transfer that is given up half-way still lets go of the chip.
 struct Hold<'a>(&'a mut Output<'static>);
 
