@@ -106,7 +106,8 @@ impl<F: NorFlash> ParamStore<F> {
         map.store_item(buffer, &(), &Set::of(*params))
             .await
             .map_err(|e| match e {
-                Error::FullStorage | Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
+                // A log that is full makes room for one set by itself, or its flash does not hold the marks.
+                Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
                 _ => StorageError::Broken,
             })
     }
@@ -145,6 +146,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
                 Ok(()) | Err(StorageError::Broken) => (),
             }
         }
+        self.config::<&mut F>().ok_or(StorageError::Broken)?;
         self.flash
             .erase(self.range.start, self.range.end)
             .await

@@ -55,8 +55,9 @@ impl<'a, F: NorFlash> ReadOnly<'a, F> {
         }
     }
 
-    /// True when nothing at all is written in the range.
+    /// True when nothing at all is written in the range, not even in pages that count as erased.
     pub(super) async fn blank(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
+        self.erased = 0;
         self.all_ones(self.range.clone(), buffer).await
     }
 
