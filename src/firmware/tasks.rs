@@ -1,5 +1,6 @@
 //! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`.
 
+use sophie_control::arming::Refusal;
 use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::Links;
@@ -7,14 +8,23 @@ use sophie_tasks::links::Links;
 use crate::board;
 use crate::board::stm32::Lights;
 
+/// Most self-tests of the inertial sensor at one start.
+const SELF_TESTS: u8 = 3;
+
 /// Flight level: inertial sensor.
 ///
-/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight.
+/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. One
+/// that fails is repeated, since a vehicle that is being carried fails it too; the last verdict stands.
 #[embassy_executor::task]
 pub async fn imu(links: &'static Links, mut port: board::ImuPort, self_test: bool) -> ! {
-    if self_test {
-        match port.self_test().await {
-            Ok(_) => defmt::info!("imu: self-test passed"),
+    for _ in 0..if self_test { SELF_TESTS } else { 0 } {
+        let result = port.self_test().await;
+        links.report(Refusal::ImuSelfTest, result.is_err());
+        match result {
+            Ok(_) => {
+                defmt::info!("imu: self-test passed");
+                break;
+            }
             Err(fault) => defmt::error!("imu: {=str} ({})", fault.what(), fault),
         }
     }
