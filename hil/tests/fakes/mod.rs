@@ -53,6 +53,8 @@ const SPIN: u32 = 1000;
 pub struct Part {
     pub answer: Rc<Cell<Answer>>,
     pub spun: Rc<Cell<bool>>,
+    /// Errors given with [`Answer::Errs`], as long as the test does not set it back.
+    pub failed: Rc<Cell<u32>>,
     asked: Rc<Cell<(u64, u32)>>,
 }
 
@@ -78,6 +80,7 @@ impl Part {
             }
             Answer::Errs(error) => {
                 Timer::after_micros(us).await;
+                self.failed.set(self.failed.get() + 1);
                 Err(error)
             }
             Answer::Refuses => Err(PortError::Absent),
