@@ -5,6 +5,7 @@
 use embassy_time::Instant;
 use sophie_control::mixer::Variant;
 use sophie_control::mode::Mode;
+use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::Configuration;
 use sophie_hil::clock::VirtualTime;
@@ -12,7 +13,7 @@ use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::ports::AnalogFrame;
 
 use crate::fakes::{
-    FakeAnalog, FakeArms, FakeImu, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT, links,
+    FakeAnalog, FakeArms, FakeImu, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT, links_with,
 };
 
 /// Period of the channel frames, ms.
@@ -20,7 +21,7 @@ const FRAME_MS: u64 = 10;
 
 /// A vehicle whose parts do as the test tells them.
 pub struct Vehicle {
-    time: VirtualTime,
+    pub time: VirtualTime,
     pub links: &'static Links,
     pub imu: FakeImu,
     pub arms: FakeArms,
@@ -34,7 +35,11 @@ pub struct Vehicle {
 
 impl Vehicle {
     pub fn new() -> Self {
-        let (time, links) = (VirtualTime::new(), links());
+        Self::with(Params::default())
+    }
+
+    pub fn with(params: Params) -> Self {
+        let (time, links) = (VirtualTime::new(), links_with(params));
         let converter = FakeAnalog::default();
         converter.frame.set(AnalogFrame {
             battery_voltage: (16.0 / VOLTS_PER_COUNT) as u16,
