@@ -1,4 +1,4 @@
-//! Drivers of SOPHIE's sensors and the wire formats of its actuators and receivers.
+//! Drivers of SOPHIE's sensors and the wire formats of its actuators.
 //!
 //! No HAL: chips are reached through the embedded-hal traits, timers through counts that a board writes into
 //! its compare registers. A board builds the drivers and hands them to the tasks as their ports.
@@ -11,7 +11,6 @@
 //! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
 //! | [`param_store`], [`fram`] | parameters in flash, or in FRAM on SPI | `Storage` |
-//! | [`sbus`] | receiver | decodes what `SerialInput` gives |
 
 #![no_std]
 #![deny(
@@ -41,7 +40,6 @@ pub mod mounting;
 pub mod param_store;
 pub mod pwm_timing;
 pub mod registers;
-pub mod sbus;
 pub mod self_test;
 pub mod servo_pulse;
 pub mod spi_imu;

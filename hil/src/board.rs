@@ -11,6 +11,7 @@ use embassy_time::Timer;
 use heapless::Vec;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::Raw;
@@ -20,7 +21,7 @@ use crate::plant::{Actuators, Plant, STEP};
 use crate::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
-use crate::sensors::imu::{self, Imu};
+use crate::sensors::imu::Imu;
 
 /// Bytes that a serial line holds until they are read: half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
@@ -31,8 +32,6 @@ const ARM_READ_US: u64 = 400;
 
 /// Plant steps in a millisecond.
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
-/// Samples of the inertial sensor in a plant step.
-const SAMPLES_PER_STEP: u32 = (imu::RATE_HZ * STEP) as u32;
 
 /// The board's state, shared by its ports and the world.
 pub struct Board {
@@ -43,6 +42,8 @@ pub struct Board {
     sensors: RefCell<Sensors>,
     truth: Cell<AnalogTruth>,
     arm_gravity: Cell<PerArm<Vec3>>,
+    /// Samples of the inertial sensor in a second.
+    imu_rate: f64,
     /// Accelerometer bias that the builder measured on a level bench, m/s²: a parameter of this board.
     pub accel_bias: [f32; 3],
 }
@@ -67,10 +68,16 @@ struct Sensors {
 }
 
 impl Board {
-    /// A board whose parts have errors drawn from `rng`.
+    /// A board with the default parameters whose parts have errors drawn from `rng`.
     #[must_use]
     pub fn new(rng: &mut Pcg64Mcg) -> Self {
-        let mut imu = Imu::new(Pcg64Mcg::from_rng(rng));
+        Self::configured(&Params::default(), rng)
+    }
+
+    /// A board configured as `params` say, whose parts have errors drawn from `rng`.
+    #[must_use]
+    pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
+        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
         let accel_bias = imu.bench_bias().as_vec3().to_array();
         let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
         let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
@@ -91,6 +98,7 @@ impl Board {
             truth: Cell::default(),
             arm_gravity: Cell::default(),
             accel_bias,
+            imu_rate: f64::from(params.imu_rate),
         }
     }
 
@@ -99,13 +107,15 @@ impl Board {
         let actuators = self.actuators.get();
         let mut sensors = self.sensors.borrow_mut();
         let mut batch = Vec::new();
-        for _ in 0..STEPS_PER_MS {
+        for step in 0..STEPS_PER_MS {
             let (rate, force) = (plant.pose().omega, plant.specific_force());
             plant.step(&actuators);
             let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
-            for k in 1..=SAMPLES_PER_STEP {
-                // The part samples faster than the plant steps: on the line between two steps.
-                let share = f64::from(k) / f64::from(SAMPLES_PER_STEP);
+            // A part at 1 kHz samples at the end of every other step; a faster one on the line between two steps.
+            let samples = (self.imu_rate * STEP * f64::from(step + 1)) as u32
+                - (self.imu_rate * STEP * f64::from(step)) as u32;
+            for k in 1..=samples {
+                let share = f64::from(k) / f64::from(samples);
                 let rotors = plant.rotor_speed();
                 let reading =
                     sensors
@@ -163,7 +173,7 @@ pub struct Port(pub &'static Board);
 
 impl ports::Imu for Port {
     fn rate_hz(&self) -> f32 {
-        imu::RATE_HZ as f32
+        self.0.imu_rate as f32
     }
 
     async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {

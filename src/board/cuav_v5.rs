@@ -251,7 +251,7 @@ fn rails(p: RailParts) {
     hold(p.high_power_off.into(), Level::Low);
 }
 
-fn imu(p: ImuParts, _params: &Params) -> ImuPort {
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
     // The part takes 8 MHz; 6.75 MHz is the next divider below.
     let config = spi_config(8_000_000);
     let bus = Spi::new(
@@ -263,7 +263,7 @@ fn imu(p: ImuParts, _params: &Params) -> ImuPort {
     Icm20689::new(
         Selected::new(bus, p.select),
         ready,
-        icm20689::Config::default(),
+        icm20689::Config::from_params(params),
         mounting,
     )
 }

@@ -224,7 +224,7 @@ fn clocks() -> embassy_stm32::Config {
     config
 }
 
-fn imu(p: ImuParts, _params: &Params) -> ImuPort {
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
     // The ICM-20689 takes 8 MHz, the ICM-42688-P 24 MHz. Dividers of 84 MHz: 5.25 and 10.5 MHz.
     let hz = if cfg!(feature = "imu-icm20689") {
         8_000_000
@@ -241,7 +241,7 @@ fn imu(p: ImuParts, _params: &Params) -> ImuPort {
     SpiImu::new(
         Selected::new(bus, p.select),
         ready,
-        part::Config::default(),
+        part::Config::from_params(params),
         mounting,
     )
 }

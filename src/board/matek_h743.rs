@@ -238,7 +238,7 @@ fn clocks() -> embassy_stm32::Config {
     config
 }
 
-fn imu(p: ImuParts, _params: &Params) -> ImuPort {
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
     // The part takes 24 MHz; the next divider below.
     let config = spi_config(12_500_000);
     let bus = Spi::new(
@@ -250,7 +250,7 @@ fn imu(p: ImuParts, _params: &Params) -> ImuPort {
     Icm42688p::new(
         Selected::new(bus, p.select),
         ready,
-        icm42688p::Config::default(),
+        icm42688p::Config::from_params(params),
         mounting,
     )
 }

@@ -236,7 +236,7 @@ pub struct Links {
     pub clamp_command: Link<ClampCommand>,
     /// clamp -> servos. 100 Hz, stale after 200 ms: servos hold then.
     pub tendons: Link<TendonForces>,
-    /// servos -> clamp. 50 Hz, stale after 200 ms: tension that the servos can be giving now, N.
+    /// servos -> clamp. Each servo frame (50 to 333 Hz), stale after 200 ms: tension that the servos can be giving now, N.
     pub tension: Link<PerArm<f32>>,
     /// clamp -> commander. 100 Hz, stale after 100 ms.
     pub grip: Link<GripState>,

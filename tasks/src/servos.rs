@@ -1,6 +1,6 @@
 //! The tendon servos: forces asked for become pulses, and the tension that they can be giving is told.
 //!
-//! Steady level, at the servos' frame of 50 Hz. Until the first force there are no pulses: after a reset on
+//! Steady level, at the servos' frame (`servo_frame_rate`, 50 to 333 Hz). Until the first force there are no pulses: after a reset on
 //! the pipe the gears hold, and nothing moves before the clamp loop knows what it wants. Forces older than
 //! 200 ms hold the servos; so does a missing tilt (100 ms) for its arm, unless that arm is to be released.
 
@@ -11,15 +11,17 @@ use crate::deadline::{FixedRate, TaskId};
 use crate::links::Links;
 use crate::ports::Servos;
 
-/// Time between two frames.
-pub const PERIOD: Duration = Duration::from_millis(20);
+/// Time between two frames of servos that take `hz` frames a second.
+pub fn period(hz: f32) -> Duration {
+    Duration::from_micros((1e6 / hz + 0.5) as u64)
+}
 
 /// Serves the servos for ever.
 pub async fn run(links: &Links, mut port: impl Servos) -> ! {
-    let mut rate = FixedRate::new(links, TaskId::Servos, PERIOD, PERIOD);
-    let p = &links.params;
-    let reel = Reel::from_params(p);
-    let mut drives = [p.servo_trim_1, p.servo_trim_2, p.servo_trim_3, p.servo_trim_4].map(TendonDrive::new);
+    let period = period(links.params.servo_frame_rate);
+    let mut rate = FixedRate::new(links, TaskId::Servos, period, period);
+    let reels = Reel::all(&links.params);
+    let mut drives = [TendonDrive::new(); 4];
     loop {
         let tick = rate.next().await;
         if links.tendons.latest().is_none() {
@@ -32,13 +34,14 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
         match forces {
             Some(forces) => {
                 let asked = forces.force.into_iter().zip(tilts);
-                for ((drive, out), (force, tilt)) in drives.iter_mut().zip(output.iter_mut()).zip(asked) {
-                    *out = drive.step(&reel, force, tilt, tick.dt);
+                let arms = drives.iter_mut().zip(&reels).zip(output.iter_mut());
+                for (((drive, reel), out), (force, tilt)) in arms.zip(asked) {
+                    *out = drive.step(reel, force, tilt, tick.dt);
                 }
             }
             None => {
-                for (drive, out) in drives.iter().zip(output.iter_mut()) {
-                    *out = drive.hold(&reel);
+                for ((drive, reel), out) in drives.iter().zip(&reels).zip(output.iter_mut()) {
+                    *out = drive.hold(reel);
                 }
             }
         }

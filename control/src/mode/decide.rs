@@ -79,12 +79,15 @@ impl ModeLogic {
     fn reason(&self, i: &Inputs, refusals: Refusals) -> &'static str {
         let note = if self.note.1 > 0.0 { self.note.0 } else { "" };
         match self.state {
-            State::Calibrating if i.motion.is_none() => "inertial sensor silent",
-            State::Calibrating => "keep still",
+            State::Calibrating if i.motion.is_none() => first(i.hardware.with(Refusal::ImuStale)),
+            State::Calibrating if i.hardware.is_empty() => "keep still",
+            // A builder must see what is broken without trying to arm.
+            State::Calibrating => first(i.hardware),
             // What just happened comes before what keeps from arming again.
             State::Disarmed { .. } if note.is_empty() && i.sticks.is_some_and(|s| s.arm_switch) => {
-                refusals.first().map_or("", Refusal::text)
+                first(refusals)
             }
+            State::Disarmed { .. } if note.is_empty() && !i.hardware.is_empty() => first(i.hardware),
             State::Perched { arms } => self.perch_trouble(i, arms).unwrap_or(note),
             State::Failsafe(cause) => cause.text(),
             _ if self.dangers.battery_critical() => Cause::BatteryCritical.text(),
@@ -92,4 +95,8 @@ impl ModeLogic {
             _ => note,
         }
     }
+}
+
+fn first(refusals: Refusals) -> &'static str {
+    refusals.first().map_or("", Refusal::text)
 }

@@ -9,6 +9,7 @@ use std::time::Instant as WallInstant;
 use glam::DVec3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use sophie_tasks::rc::Protocol;
 
 use self::judge::Judge;
 use self::recorder::Recorder;
@@ -16,6 +17,7 @@ use self::stack::Stack;
 use crate::pilot::{Pilot, Seen};
 use crate::plant::Plant;
 use crate::record::{Event, FlightRecord, Observer, Outcome};
+use crate::sbus::Receiver;
 use crate::scenario::{Scenario, Step};
 
 /// Milliseconds between two calls of [`Observer::progress`].
@@ -36,6 +38,8 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
     let mut recorder = Recorder::new(scenario);
     let mut judge = Judge::new(scenario);
     let mut telemetry = [0u8; TELEMETRY_BYTES];
+    let protocol = Protocol::from_params(&scenario.params);
+    let mut sbus = Receiver::default();
 
     let limit_ms = (scenario.time_limit * 1e3) as u64;
     let mut outcome = Outcome {
@@ -49,9 +53,23 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
         let t = ms as f64 * 1e-3;
         stack.board.step_world(&mut plant);
         let received = stack.board.take_telemetry(&mut telemetry);
+        if protocol == Protocol::Sbus
+            && let Some(status) = stack.links.status.latest()
+        {
+            pilot.hear(status.value.mode, status.value.reason);
+        }
         let output = pilot.step(1e-3, seen(&plant, t), &telemetry[..received]);
-        if let Some(frame) = &output.rc_bytes {
-            stack.board.receive(frame);
+        match protocol {
+            Protocol::Crsf => {
+                if let Some(frame) = &output.rc_bytes {
+                    stack.board.receive(frame);
+                }
+            }
+            Protocol::Sbus => {
+                if let Some(frame) = sbus.step(1e-3, output.channels) {
+                    stack.board.receive(&frame);
+                }
+            }
         }
         stack.run_until(ms * 1000);
 

@@ -25,7 +25,7 @@ impl Stack {
     /// Board and links are leaked: tasks borrow them for ever, as they do statics on a real board.
     pub fn new(scenario: &Scenario, rng: &mut Pcg64Mcg) -> Self {
         let time = VirtualTime::new();
-        let board: &'static Board = Box::leak(Box::new(Board::new(rng)));
+        let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, rng)));
         let links: &'static Links = Box::leak(Box::new(Links::new(calibrated(scenario.params, board))));
         let (mixer, configuration) = (scenario.mixer, scenario.vehicle.configuration);
 

@@ -21,7 +21,12 @@ use sophie_tasks::ports::{
 
 /// Links without messages, for as long as the process lives.
 pub fn links() -> &'static Links {
-    Box::leak(Box::new(Links::new(Params::default())))
+    links_with(Params::default())
+}
+
+/// The same with these parameters.
+pub fn links_with(params: Params) -> &'static Links {
+    Box::leak(Box::new(Links::new(params)))
 }
 
 /// How a port answers.
@@ -34,6 +39,8 @@ pub enum Answer {
     Fails,
     /// With an error at once, as a part that was never set up.
     Refuses,
+    /// With this error, after the time that a reading takes.
+    Errs(PortError),
     /// Never.
     Hangs,
 }
@@ -46,6 +53,8 @@ const SPIN: u32 = 1000;
 pub struct Part {
     pub answer: Rc<Cell<Answer>>,
     pub spun: Rc<Cell<bool>>,
+    /// Errors given with [`Answer::Errs`], as long as the test does not set it back.
+    pub failed: Rc<Cell<u32>>,
     asked: Rc<Cell<(u64, u32)>>,
 }
 
@@ -68,6 +77,11 @@ impl Part {
             Answer::Fails => {
                 Timer::after_micros(us).await;
                 Err(PortError::Timeout)
+            }
+            Answer::Errs(error) => {
+                Timer::after_micros(us).await;
+                self.failed.set(self.failed.get() + 1);
+                Err(error)
             }
             Answer::Refuses => Err(PortError::Absent),
             Answer::Hangs => pending().await,
@@ -95,13 +109,14 @@ impl Imu for FakeImu {
     }
 }
 
-/// Arm sensors that see level arms.
+/// Arm sensors that see level arms: their bus, and each of them.
 #[derive(Clone, Default)]
-pub struct FakeArms(pub Part);
+pub struct FakeArms(pub Part, pub [Part; 4]);
 
 impl ArmImus for FakeArms {
-    async fn gravity(&mut self, _arm: usize) -> Result<Vec3, PortError> {
+    async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
         self.0.work(400).await?;
+        self.1[arm].work(10).await?;
         Ok(Vec3::new(0.0, 0.0, GRAVITY))
     }
 }

@@ -12,6 +12,7 @@ use embassy_time::{Duration, with_timeout};
 use embedded_io_async::{Read, Write};
 use sophie_control::params::Params;
 use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
+use sophie_tasks::rc::Protocol;
 use static_cell::ConstStaticCell;
 
 use super::Aligned;
@@ -25,50 +26,31 @@ static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(
 static CONSOLE_IN: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; 128]);
 static CONSOLE_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
-/// What the receiver speaks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Receiver {
-    /// CRSF: 420 kbaud, 8N1, both ways.
-    Crsf,
-    /// SBUS: 100 kbaud, 8E2, inverted, towards the vehicle only.
-    Sbus,
-}
-
-impl Receiver {
-    /// The protocol that the parameter `receiver_protocol` names.
-    fn from_params(params: &Params) -> Self {
-        if params.receiver_protocol == 1.0 {
-            Self::Sbus
-        } else {
-            Self::Crsf
+/// How the receiver's line is set up for a protocol.
+fn receiver_config(protocol: Protocol) -> Config {
+    let mut config = Config::default();
+    match protocol {
+        Protocol::Crsf => {
+            config.baudrate = 420_000;
+            config.rx_pull = Pull::Up;
         }
-    }
-
-    fn config(self) -> Config {
-        let mut config = Config::default();
-        match self {
-            Self::Crsf => {
-                config.baudrate = 420_000;
+        Protocol::Sbus => {
+            config.baudrate = 100_000;
+            config.parity = Parity::ParityEven;
+            config.stop_bits = StopBits::STOP2;
+            // The F4's ports cannot invert: an inverter on the board makes the line idle high there.
+            #[cfg(feature = "f405")]
+            {
                 config.rx_pull = Pull::Up;
             }
-            Self::Sbus => {
-                config.baudrate = 100_000;
-                config.parity = Parity::ParityEven;
-                config.stop_bits = StopBits::STOP2;
-                // The F4's ports cannot invert: an inverter on the board makes the line idle high there.
-                #[cfg(feature = "f405")]
-                {
-                    config.rx_pull = Pull::Up;
-                }
-                #[cfg(not(feature = "f405"))]
-                {
-                    config.invert_rx = true;
-                    config.rx_pull = Pull::Down;
-                }
+            #[cfg(not(feature = "f405"))]
+            {
+                config.invert_rx = true;
+                config.rx_pull = Pull::Down;
             }
         }
-        config
     }
+    config
 }
 
 /// The receiver's line, as the parameter `receiver_protocol` says.
@@ -85,16 +67,17 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     + 'static,
     params: &Params,
 ) -> (ReceiverLine, TelemetryLine) {
-    let receiver = Receiver::from_params(params);
-    let (rx, tx) = match receiver {
-        Receiver::Crsf => {
-            let both = Uart::new(uart, rx, tx, tx_dma, rx_dma, irqs, receiver.config());
+    let protocol = Protocol::from_params(params);
+    let config = receiver_config(protocol);
+    let (rx, tx) = match protocol {
+        Protocol::Crsf => {
+            let both = Uart::new(uart, rx, tx, tx_dma, rx_dma, irqs, config);
             let (tx, rx) = accepted(both).split();
             (rx, Some(tx))
         }
         // Nobody listens on the other pin: it stays an input.
-        Receiver::Sbus => {
-            let rx = UartRx::new(uart, rx, rx_dma, irqs, receiver.config());
+        Protocol::Sbus => {
+            let rx = UartRx::new(uart, rx, rx_dma, irqs, config);
             (accepted(rx), None)
         }
     };

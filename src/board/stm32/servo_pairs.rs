@@ -41,7 +41,7 @@ impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
         ),
         params: &Params,
     ) -> Self {
-        let frame_hz = params.servo_frame_rate as u32;
+        let frame_hz = (params.servo_frame_rate + 0.5) as u32;
         let mut first = SimplePwm::new(
             first,
             None,

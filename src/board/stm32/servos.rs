@@ -39,7 +39,7 @@ impl<T: GeneralInstance4Channel> ServoTimer<T> {
             Some(PwmPin::new(two, push_pull)),
             Some(PwmPin::new(three, push_pull)),
             Some(PwmPin::new(four, push_pull)),
-            Hertz(params.servo_frame_rate as u32),
+            Hertz((params.servo_frame_rate + 0.5) as u32),
             Default::default(),
         );
         let timing = PwmTiming::given(pwm.max_duty_cycle(), pwm.get_frequency().0 as f32);
