@@ -81,6 +81,7 @@ fn mode_text(status: Status) -> String<TEXT> {
         mode,
         reason,
         warning,
+        ..
     } = status;
     let reason = if reason.is_empty() { warning } else { reason };
     let mut text = String::new();
@@ -137,7 +138,7 @@ mod tests {
                 let text = mode_text(Status {
                     mode,
                     reason,
-                    warning: "",
+                    ..Status::default()
                 });
                 assert_eq!(parse_mode_text(&text), Some((mode, reason)));
                 assert!(encode(packets::FlightMode::new(&text).ok()).is_some());
@@ -148,7 +149,7 @@ mod tests {
             mode_text(Status {
                 mode: Mode::Disarmed,
                 reason: long,
-                warning: ""
+                ..Status::default()
             }),
             "DISARMED"
         );
