@@ -1,6 +1,7 @@
 //! How the vehicle is.
 
 use embassy_time::Instant;
+use sophie_control::mode::Mode;
 
 use super::Console;
 use crate::deadline::TaskId;
@@ -16,6 +17,9 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
                 self.out.line(format_args!("{mode}{colon}{reason}")).await;
                 if !status.warning.is_empty() {
                     self.out.line(format_args!("warning: {}", status.warning)).await;
+                }
+                if status.mode == Mode::Disarmed && status.refusals.is_empty() {
+                    self.out.line(format_args!("nothing forbids arming")).await;
                 }
                 for refusal in status.refusals.iter() {
                     self.out
