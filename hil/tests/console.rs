@@ -50,11 +50,14 @@ impl Restart for Restarts {
     }
 }
 
+/// What was to be stored, and what the commander said then.
+type Saves = Rc<RefCell<Vec<(Params, Option<Status>)>>>;
+
 /// A storage that answers as it is told, with the commander's view at the moment of the save.
 #[derive(Clone)]
 struct FakeStorage {
     answer: Result<(), StorageError>,
-    saves: Rc<RefCell<Vec<(Params, Option<Status>)>>>,
+    saves: Saves,
     links: &'static Links,
     hangs: bool,
 }

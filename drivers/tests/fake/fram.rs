@@ -50,26 +50,26 @@ impl Chip {
         let mut answer = vec![0; sent.len()];
         let latched = self.status & 0x02 != 0;
         // 15 bits of address: the top one is ignored.
-        let address = |i: usize| (usize::from(sent[1]) << 8 | usize::from(sent[2])) + i & 0x7FFF;
+        let address = |i: usize| (usize::from(u16::from_be_bytes([sent[1], sent[2]])) + i) & 0x7FFF;
         match sent[0] {
             0x06 => self.status |= 0x02,
             0x05 => answer[1..].fill(self.status),
             0x01 => {
                 if latched {
-                    self.status = 0x40 | sent[1] & 0x8C;
+                    self.status = 0x40 | (sent[1] & 0x8C);
                 }
                 self.status &= !0x02;
             }
             0x03 => {
-                for i in 3..sent.len() {
-                    answer[i] = self.cells[address(i - 3)];
+                for (i, slot) in answer[3..].iter_mut().enumerate() {
+                    *slot = self.cells[address(i)];
                 }
             }
             0x02 => {
                 // With both block bits the whole array is protected.
                 if latched && self.status & 0x0C == 0 && self.answer != Answer::Deaf {
-                    for i in 3..sent.len() {
-                        self.cells[address(i - 3)] = sent[i];
+                    for (i, byte) in sent[3..].iter().enumerate() {
+                        self.cells[address(i)] = *byte;
                     }
                 }
                 self.status &= !0x02;
