@@ -267,8 +267,8 @@ fn a_flash_that_is_too_small_or_broken_says_so() {
 
 #[test]
 fn a_range_that_does_not_suit_is_a_broken_storage() {
-    let ranges: [Range<u32>; 5] = [0..512, 0..2048, 100..1124, 1024..0, 512..512];
-    for range in ranges {
+    for (start, end) in [(0, 512), (0, 2048), (100, 1124), (1024, 0), (512, 512)] {
+        let range = Range { start, end };
         let flash = Flash::<4, SMALL>::blank(2);
         let watched = flash.clone();
         let what = format!("{range:?}");

@@ -41,6 +41,7 @@ pub async fn run(links: &Links) -> ! {
             rotors,
             tendons,
             reason,
+            refusals,
             ..
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
@@ -52,6 +53,7 @@ pub async fn run(links: &Links) -> ! {
                 mode,
                 reason,
                 warning,
+                refusals,
             },
         );
     }

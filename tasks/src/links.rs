@@ -208,6 +208,8 @@ pub struct Status {
     pub reason: &'static str,
     /// What does not stop the flight but must be known; empty when there is nothing.
     pub warning: &'static str,
+    /// Everything that forbids arming now.
+    pub refusals: Refusals,
 }
 
 /// Every link of one vehicle.

@@ -87,6 +87,7 @@ fn mode_text(status: Status) -> String<TEXT> {
         mode,
         reason,
         warning,
+        ..
     } = status;
     let reason = if reason.is_empty() { warning } else { reason };
     let mut text = String::new();
@@ -143,7 +144,7 @@ mod tests {
                 let text = mode_text(Status {
                     mode,
                     reason,
-                    warning: "",
+                    ..Status::default()
                 });
                 assert_eq!(parse_mode_text(&text), Some((mode, reason)));
                 assert!(encode(packets::FlightMode::new(&text).ok()).is_some());
@@ -154,7 +155,7 @@ mod tests {
             mode_text(Status {
                 mode: Mode::Disarmed,
                 reason: long,
-                warning: ""
+                ..Status::default()
             }),
             "DISARMED"
         );

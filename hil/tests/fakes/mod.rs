@@ -202,6 +202,11 @@ impl FakeLine {
         self.bytes.borrow_mut().extend_from_slice(bytes);
         self.news.0.signal(());
     }
+
+    /// Bytes that nobody has read yet.
+    pub fn waiting(&self) -> usize {
+        self.bytes.borrow().len()
+    }
 }
 
 impl SerialInput for FakeLine {
