@@ -84,15 +84,18 @@ macro_rules! params {
             }
         }
 
+        /// One place in the image, where a constant would be copied into every crate that looks at it.
+        static ROWS: [ParamInfo; [$( stringify!($name) ),+].len()] = [
+            $( ParamInfo {
+                name: stringify!($name), unit: $unit, min: $min, max: $max, choices: params!(@choices $($choices)?),
+                default: $default,
+                doc: concat!($($doc),+),
+            }, )+
+        ];
+
         impl Params {
             /// The whole table, in the order of the fields.
-            pub const TABLE: &'static [ParamInfo] = &[
-                $( ParamInfo {
-                    name: stringify!($name), unit: $unit, min: $min, max: $max, choices: params!(@choices $($choices)?),
-                    default: $default,
-                    doc: concat!($($doc),+),
-                }, )+
-            ];
+            pub const TABLE: &'static [ParamInfo] = &ROWS;
 
             /// The value of the parameter called `name`.
             pub fn get(&self, name: &str) -> Option<f32> {

@@ -98,8 +98,8 @@ impl<P: BusParts> ArmBus<P> {
         }
     }
 
-    /// A bus whose lines are free, as far as clocks can free them.
-    async fn rebuilt(&mut self) -> I2c<'static, Async, Master> {
+    /// A bus whose lines are free; none where clocks cannot free them.
+    async fn rebuilt(&mut self) -> Option<I2c<'static, Async, Master>> {
         let (mut clock, mut data) = self.parts.lines();
         let lines = free(&mut clock, &mut data).await;
         drop((clock, data));
@@ -114,7 +114,7 @@ impl<P: BusParts> ArmBus<P> {
             self.lines = lines;
         }
         // SAFETY: called only while there is no bus, and the lines are dropped.
-        unsafe { self.parts.build() }
+        (lines != Lines::Held).then(|| unsafe { self.parts.build() })
     }
 }
 
@@ -127,7 +127,7 @@ impl<P: BusParts> embedded_hal_async::i2c::I2c for ArmBus<P> {
         // Taken out, so that a transfer that is given up half-way leaves no bus behind: the next one rebuilds it.
         let mut bus = match self.bus.take() {
             Some(bus) => bus,
-            None => self.rebuilt().await,
+            None => self.rebuilt().await.ok_or(Error::Bus)?,
         };
         let result = bus.transaction(address, operations).await;
         // A chip that does not answer leaves the bus in order; anything else may not.
