@@ -75,6 +75,11 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// It stays until the arm is released.
+    pub const fn is_latched(self) -> bool {
+        matches!(self, Self::Sensor | Self::Unfelt)
+    }
+
     /// Text for the pilot.
     pub const fn text(self) -> &'static str {
         match self {
@@ -171,6 +176,8 @@ enum Phase {
     Free,
     /// Bending down, nothing felt yet.
     Approach,
+    /// After a restart: the force that the run before asked for is held until pressure and tilt are known again.
+    Resume,
     /// Felt: the pressure is controlled.
     Grip(Pid),
     Release,
@@ -252,6 +259,16 @@ pub struct ArmClamp {
 }
 
 impl ArmClamp {
+    /// A closed arm of which the run before asked `force` N, with the fault that stays until release.
+    pub fn resume(force: f32, fault: Option<Fault>) -> Self {
+        Self {
+            phase: Phase::Resume,
+            force: math::clamp(force, 0.0, 1e4),
+            fault: fault.filter(|f| f.is_latched()),
+            ..Self::default()
+        }
+    }
+
     /// One step of `dt` s: closes (`close`) or releases the arm; returns what is known of its grip.
     ///
     /// Whatever the input, the force stays within 0 and the limit.
@@ -291,7 +308,9 @@ impl ArmClamp {
             };
         }
         let holding = match self.phase {
-            Phase::Grip(_) | Phase::Approach => self.hold.step(&cfg.demand, known, self.force, dt),
+            Phase::Grip(_) | Phase::Approach | Phase::Resume => {
+                self.hold.step(&cfg.demand, known, self.force, dt)
+            }
             Phase::Free | Phase::Release => {
                 self.hold = HoldProof::default();
                 false
@@ -318,7 +337,7 @@ impl ArmClamp {
             _ if self.fault.is_some() => ArmState::Faulty,
             _ if holding => ArmState::Holding,
             _ if self.at_limit >= LIMITED_AFTER => ArmState::ForceLimited,
-            Phase::Approach => ArmState::Closing,
+            Phase::Approach | Phase::Resume => ArmState::Closing,
             Phase::Grip(_) => ArmState::Touching,
         }
     }
@@ -359,7 +378,7 @@ impl ArmClamp {
         } else {
             math::clamp(self.tilt_missing + dt, 0.0, 10.0)
         };
-        let latched = matches!(self.fault, Some(Fault::Sensor | Fault::Unfelt));
+        let latched = self.fault.is_some_and(Fault::is_latched);
         let before = core::mem::replace(&mut self.felt, sensed.known());
         let vanished = matches!(self.phase, Phase::Grip(_))
             && before.is_some_and(|p| p > VANISHED_FROM * cfg.demand.pressure)
@@ -396,6 +415,13 @@ impl ArmClamp {
                 }
                 self.phase = Phase::Grip(pid);
             }
+            Phase::Resume if pressure > TOUCH => {
+                // The arm stood still while the board started: what the tendon was asked for it has, and the tension
+                // that the drive reports is one without a tilt yet.
+                let forward = cfg.per_thrust * thrust;
+                self.phase = Phase::Grip(Pid::new(self.force - forward, forward, 0.0, pressure));
+            }
+            Phase::Resume => self.phase = Phase::Approach,
             _ if pressure > TOUCH => {
                 let surplus = math::clamp(self.force - has, 0.0, cfg.limit);
                 let forward = cfg.per_thrust * thrust;
@@ -490,6 +516,20 @@ pub struct Clamp {
 }
 
 impl Clamp {
+    /// The loops of closed arms after a restart; see [`ArmClamp::resume`]. Arms without a force were not closed.
+    pub fn resume(force: PerArm<f32>, fault: PerArm<Option<Fault>>) -> Self {
+        let mut arms = [ArmClamp::default(); 4];
+        for ((arm, force), fault) in arms.iter_mut().zip(force).zip(fault) {
+            if force > 0.0 {
+                *arm = ArmClamp::resume(force, fault);
+            }
+        }
+        Self {
+            arms,
+            ..Self::default()
+        }
+    }
+
     /// One step of `dt` s: closes the arms in `close`, releases the others.
     pub fn step(
         &mut self,
@@ -608,6 +648,72 @@ mod tests {
         // The surplus has gone (two filters at 25 rad/s, 0.5 s), the integral has added at most
         // 0.05·650·0.5 = 16 N, of which 40 % in the reference's first two time constants, and P 0.0035·560.
         assert!((-9.0..4.0).contains(&(last - asked)), "{}", last - asked);
+    }
+
+    #[test]
+    fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
+        let cfg = config();
+        let before = holding(&cfg).force;
+        let mut arm = ArmClamp::resume(before, None);
+        // While the sensors start nothing is known, then the tilt comes before the drive's tension.
+        for (pressure, tension, tilt, seconds) in [
+            (Pressure::Stale, None, None, 0.05),
+            (Pressure::Known(960.0), Some(0.5), None, 0.1),
+            (Pressure::Known(960.0), Some(0.5), Some(-1.2), 0.03),
+            (Pressure::Known(960.0), Some(before), Some(-1.2), 0.5),
+        ] {
+            for _ in 0..(seconds / DT + 0.5) as u32 {
+                let i = ArmInput {
+                    pressure,
+                    thrust: 0.0,
+                    tension,
+                    tilt,
+                };
+                let grip = arm.step(&cfg, true, &i, DT);
+                assert!((grip.force - before).abs() < 0.5, "{} {before}", grip.force);
+            }
+        }
+        assert!(run(&mut arm, &cfg, 950.0, 1.0).state == ArmState::Holding);
+    }
+
+    #[test]
+    fn a_resumed_arm_that_does_not_touch_goes_on_closing() {
+        let cfg = config();
+        let mut arm = ArmClamp::resume(30.0, None);
+        let grip = run(&mut arm, &cfg, 0.0, 0.5);
+        assert!(close(grip.force, 30.0 + 0.5 * 34.74, 1.0) && grip.state == ArmState::Closing);
+        // A person may open it as any other.
+        for _ in 0..100 {
+            arm.step(&cfg, false, &input(&cfg, &arm, 0.0), DT);
+        }
+        assert!(arm.force == 0.0);
+    }
+
+    #[test]
+    fn a_fault_that_stays_until_release_outlives_a_restart() {
+        let cfg = config();
+        for fault in [Fault::Sensor, Fault::Unfelt] {
+            let mut arm = ArmClamp::resume(50.0, Some(fault));
+            let grip = run(&mut arm, &cfg, 0.0, 3.0);
+            assert!(grip.force == 50.0 && grip.fault == Some(fault), "{grip:?}");
+        }
+        let mut arm = ArmClamp::resume(50.0, Some(Fault::Tilt));
+        assert!(run(&mut arm, &cfg, 950.0, 0.1).fault.is_none());
+    }
+
+    #[test]
+    fn restart_after_restart_leaves_the_force_where_it_is() {
+        let cfg = config();
+        let before = holding(&cfg).force;
+        let mut force = before;
+        for _ in 0..200 {
+            let mut arm = ArmClamp::resume(force, None);
+            // 70 ms each, the first two steps without pressure.
+            arm.step(&cfg, true, &ArmInput::default(), DT);
+            arm.step(&cfg, true, &ArmInput::default(), DT);
+            force = run(&mut arm, &cfg, 950.0, 0.05).force;
+        }
+        assert!((force - before).abs() < 0.5, "{before} {force}");
     }
 
     #[test]

@@ -36,6 +36,8 @@ const STILL_CUTOFF: f32 = 5.0;
 const MOVING: f32 = 0.04;
 /// Age of the tilt when it is used, s: sensor 20 ms, task periods half of 10 and 20 ms, output frame 10 ms.
 const TILT_AGE: f32 = 0.045;
+/// Angles beyond this are no servo's, rad.
+const ANGLE_MAX: f32 = 6.5;
 /// Tilts beyond this are not an arm's, rad.
 const TILT_MAX: f32 = 2.5;
 
@@ -148,6 +150,27 @@ impl TendonDrive {
             tilt: None,
             cutoff: TILT_CUTOFF,
         }
+    }
+
+    /// A drive whose servo stands at `angle` (rad from release), where the run before left it.
+    pub fn resume(trim: f32, angle: f32) -> Self {
+        Self {
+            angle: math::clamp(angle, 0.0, ANGLE_MAX),
+            ..Self::new(trim)
+        }
+    }
+
+    /// Takes the servo to stand where its tendon is just taut at the tilt `tilt` (rad; `None`: at release). For a
+    /// tendon that was found wound and is to be paid out: from there on it goes at the drive's speed, not the servo's.
+    pub fn find(&mut self, reel: &Reel, tilt: Option<f32>) {
+        self.angle = tilt
+            .filter(|t| t.abs() <= TILT_MAX)
+            .map_or(0.0, |tilt| reel.angle(0.0, tilt));
+    }
+
+    /// Angle to which the servo is sent, rad from release.
+    pub fn angle(&self) -> f32 {
+        self.angle
     }
 
     /// One step of `dt` s towards `force` N (0, or anything that is no number: pay out to the release
@@ -291,6 +314,36 @@ mod tests {
         }
         // Lag 2/25 s and age 0.045 s at 0.5 rad/s on 8000 N/m · 0.025 m hide 12.5 N.
         assert!(close(output.tension, 47.5, 0.5), "{}", output.tension);
+    }
+
+    #[test]
+    fn a_drive_resumes_where_it_was_and_a_wound_one_is_found_taut() {
+        let reel = Reel::from_params(&params());
+        let mut drive = TendonDrive::new(12.0);
+        for _ in 0..100 {
+            drive.step(&reel, 60.0, Some(-0.8), 0.02);
+        }
+        let before = drive.hold(&reel).pulse_us;
+        let mut again = TendonDrive::resume(12.0, drive.angle());
+        assert!(close(again.hold(&reel).pulse_us, before, 1e-3));
+        // First without a tilt, then with the one that it had: the pulse never moves.
+        for tilt in [None, None, Some(-0.8), Some(-0.8)] {
+            let pulse = again.step(&reel, 60.0, tilt, 0.02).pulse_us;
+            assert!(close(pulse, before, 0.1), "{pulse} {before}");
+        }
+        assert!(TendonDrive::resume(0.0, f32::NAN).angle() == 0.0);
+        assert!(TendonDrive::resume(0.0, 1e9).angle() <= ANGLE_MAX);
+
+        // 25 mm·1.2 on 15 mm: 2 rad; paid out in 0.67 s.
+        let mut found = TendonDrive::new(0.0);
+        found.find(&reel, Some(-0.8));
+        assert!(close(found.angle(), 2.0, 1e-3));
+        let frames = (1..100).find(|_| found.step(&reel, 0.0, Some(-0.8), 0.02).tension <= 0.0);
+        assert!(frames.is_some_and(|n| (32..36).contains(&n)), "{frames:?}");
+        for tilt in [None, Some(f32::NAN), Some(9.0)] {
+            found.find(&reel, tilt);
+            assert!(found.angle() == 0.0);
+        }
     }
 
     #[test]
