@@ -152,11 +152,11 @@ impl TendonDrive {
         }
     }
 
-    /// A drive whose servo stands at `angle` (rad from release), where the run before left it.
-    pub fn resume(trim: f32, angle: f32) -> Self {
+    /// The same drive, its servo at `angle` (rad from release), where the run before left it.
+    pub fn resume(self, angle: f32) -> Self {
         Self {
             angle: math::clamp(angle, 0.0, ANGLE_MAX),
-            ..Self::new(trim)
+            ..self
         }
     }
 
@@ -324,15 +324,15 @@ mod tests {
             drive.step(&reel, 60.0, Some(-0.8), 0.02);
         }
         let before = drive.hold(&reel).pulse_us;
-        let mut again = TendonDrive::resume(12.0, drive.angle());
+        let mut again = TendonDrive::new(12.0).resume(drive.angle());
         assert!(close(again.hold(&reel).pulse_us, before, 1e-3));
         // First without a tilt, then with the one that it had: the pulse never moves.
         for tilt in [None, None, Some(-0.8), Some(-0.8)] {
             let pulse = again.step(&reel, 60.0, tilt, 0.02).pulse_us;
             assert!(close(pulse, before, 0.1), "{pulse} {before}");
         }
-        assert!(TendonDrive::resume(0.0, f32::NAN).angle() == 0.0);
-        assert!(TendonDrive::resume(0.0, 1e9).angle() <= ANGLE_MAX);
+        assert!(TendonDrive::new(0.0).resume(f32::NAN).angle() == 0.0);
+        assert!(TendonDrive::new(0.0).resume(1e9).angle() <= ANGLE_MAX);
 
         // 25 mm·1.2 on 15 mm: 2 rad; paid out in 0.67 s.
         let mut found = TendonDrive::new(0.0);
