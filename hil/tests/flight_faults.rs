@@ -4,7 +4,8 @@ mod fakes;
 
 use embassy_time::Instant;
 use fakes::{
-    Answer, FakeAnalog, FakeArms, FakeImu, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT, links,
+    Answer, FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
+    links,
 };
 use sophie_control::mixer::Variant;
 use sophie_control::mode::Mode;
@@ -61,8 +62,11 @@ impl Vehicle {
         v.time.spawn(sophie_tasks::clamp::run(links));
         v.time.spawn(sophie_tasks::servos::run(links, v.servos.clone()));
         v.time.spawn(sophie_tasks::commander::run(links));
-        v.time
-            .spawn(sophie_tasks::supervisor::run(links, v.watchdog.clone()));
+        v.time.spawn(sophie_tasks::supervisor::run(
+            links,
+            v.watchdog.clone(),
+            FakeMemory::default(),
+        ));
         v.time.spawn(sophie_tasks::arms::run(links, v.arms.clone()));
         v
     }

@@ -25,6 +25,8 @@ const ROLL_SHARE: f64 = 0.9;
 const SETTLE: f64 = 3.0;
 /// Rotor thrust that counts as stopped, N.
 const STOPPED: f64 = 0.05;
+/// Time in which stopped rotors run out, s.
+const RUN_OUT: f64 = 1.0;
 /// Speed at which touching the ground is a crash, m/s.
 const CRASH_SPEED: f64 = 2.0;
 
@@ -38,6 +40,8 @@ pub struct Judge {
     torque_max: f64,
     reel_radius: f64,
     proven: bool,
+    /// Where a gripped vehicle hung when its board was reset, until it is let go.
+    hanging: Option<DVec3>,
     /// Angle of the roll manoeuvre under way and the farthest true roll to either side, rad.
     roll: Option<(f64, [f64; 2])>,
     hold_start: Option<(f64, DVec3)>,
@@ -59,6 +63,7 @@ impl Judge {
             torque_max: f64::from(ForceLimit::from_params(p).force * p.reel_radius),
             reel_radius: TendonSpec::default().reel_radius,
             proven: false,
+            hanging: None,
             roll: None,
             hold_start: None,
             pushed: f64::NEG_INFINITY,
@@ -118,6 +123,9 @@ impl Judge {
             *left = left.max(-roll);
         }
 
+        if let Some(why) = self.after_reset(t, step, plant, stack) {
+            return Some(why);
+        }
         let grip = stack.links.grip.latest().is_some_and(|g| g.value.proven);
         let just_proven = grip && !self.proven;
         self.proven = grip;
@@ -156,6 +164,41 @@ impl Judge {
         }
         let quiet = t - start.max(self.pushed) > SETTLE;
         self.badly_held(plant, if quiet { 1.0 } else { DISTURBED })
+    }
+
+    /// Over a reset no rotor turns before the pilot has armed, and a vehicle that was gripped stays so.
+    fn after_reset(
+        &mut self,
+        t: f64,
+        step: Option<(usize, &Step)>,
+        plant: &Plant,
+        stack: &Stack,
+    ) -> Option<String> {
+        match step {
+            Some((_, Step::Reset { .. })) => {
+                let reset = stack.reset().filter(|r| Some(r.step) == step.map(|(i, _)| i));
+                if let Some(reset) = reset {
+                    let asked = stack.board.actuators().motors;
+                    let turns = plant.thrust().iter().any(|thrust| *thrust > STOPPED);
+                    if asked != [0.0; 4] || turns && t - reset.at > RUN_OUT {
+                        return Some("a rotor turned after the reset".to_owned());
+                    }
+                } else if self.proven && stack.mode() == Mode::Perched {
+                    self.hanging = Some(plant.pose().position);
+                }
+            }
+            Some((_, Step::Arm | Step::Hold { .. })) => {}
+            _ => self.hanging = None,
+        }
+        let slip = (plant.pose().position - self.hanging?).length();
+        if slip > SLIP {
+            return Some(format!(
+                "slipped {:.0} mm on the pipe after the reset",
+                slip * 1e3
+            ));
+        }
+        self.badly_held(plant, DISTURBED)
+            .map(|why| format!("after the reset: {why}"))
     }
 
     /// The chosen arm whose true pressure is off by more than `tolerances` tolerances and the sensor's error.
