@@ -181,13 +181,7 @@ impl TendonDrive {
         let dt = math::clamp(dt, 0.0, 0.2);
         let force = math::clamp(force, 0.0, reel.limit.force);
         let tilt = tilt.filter(|t| t.abs() <= TILT_MAX);
-        if let Some(tilt) = tilt {
-            let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
-            let moving = math::clamp((tilt - second.value()).abs() / MOVING, 0.0, 1.0);
-            self.cutoff = STILL_CUTOFF + (TILT_CUTOFF - STILL_CUTOFF) * moving;
-            let once = first.step(tilt, self.cutoff, dt);
-            second.step(once, self.cutoff, dt);
-        }
+        self.see(tilt, dt);
         let pays_out = force <= 0.0;
         let held = !pays_out && tilt.is_none();
         if pays_out {
@@ -202,6 +196,23 @@ impl TendonDrive {
             self.angle = math::slew(self.angle, target, speed * dt);
         }
         self.output(reel, held)
+    }
+
+    /// One step of `dt` s that leaves the servo where it is and only looks at the tilt (rad).
+    pub fn stay(&mut self, reel: &Reel, tilt: Option<f32>, dt: f32) -> Drive {
+        self.see(tilt.filter(|t| t.abs() <= TILT_MAX), math::clamp(dt, 0.0, 0.2));
+        self.output(reel, true)
+    }
+
+    fn see(&mut self, tilt: Option<f32>, dt: f32) {
+        let Some(tilt) = tilt else {
+            return;
+        };
+        let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
+        let moving = math::clamp((tilt - second.value()).abs() / MOVING, 0.0, 1.0);
+        self.cutoff = STILL_CUTOFF + (TILT_CUTOFF - STILL_CUTOFF) * moving;
+        let once = first.step(tilt, self.cutoff, dt);
+        second.step(once, self.cutoff, dt);
     }
 
     /// The output without a step: for when there is no order at all.
@@ -326,9 +337,17 @@ mod tests {
         let before = drive.hold(&reel).pulse_us;
         let mut again = TendonDrive::new(12.0).resume(drive.angle());
         assert!(close(again.hold(&reel).pulse_us, before, 1e-3));
-        // First without a tilt, then with the one that it had: the pulse never moves.
-        for tilt in [None, None, Some(-0.8), Some(-0.8)] {
-            let pulse = again.step(&reel, 60.0, tilt, 0.02).pulse_us;
+        // Without a tilt, then with one that a new attitude shows off by 0.02 rad: the servo stays, and the tension that
+        // it then has keeps it there.
+        let mut has = 0.0;
+        for tilt in [None, None, Some(-0.78), Some(-0.78)] {
+            let output = again.stay(&reel, tilt, 0.02);
+            assert!(output.held && close(output.pulse_us, before, 1e-3));
+            has = output.tension;
+        }
+        assert!(close(has, 64.0, 0.1), "{has}");
+        for _ in 0..50 {
+            let pulse = again.step(&reel, has, Some(-0.78), 0.02).pulse_us;
             assert!(close(pulse, before, 0.1), "{pulse} {before}");
         }
         assert!(TendonDrive::new(0.0).resume(f32::NAN).angle() == 0.0);

@@ -55,7 +55,7 @@ pub struct Warm {
     pub grasp: Grasp,
     /// Angle to which each tendon's servo was sent, rad from release, 0 to 6.5.
     pub angle: PerArm<f32>,
-    /// Force asked of each tendon, N, 0 to 2000.
+    /// Force asked of each tendon, less what met the thrust of its rotor, N, 0 to 2000.
     pub force: PerArm<f32>,
     /// What is wrong with an arm for as long as it is closed.
     pub fault: PerArm<Option<Fault>>,

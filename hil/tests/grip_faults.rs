@@ -355,7 +355,7 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
                 now,
                 TendonForces {
                     force: [force; 4],
-                    found: false,
+                    ..TendonForces::default()
                 },
             );
         }

@@ -53,6 +53,7 @@ pub async fn run(links: &Links) -> ! {
                 forces = Some(TendonForces {
                     force: out.force,
                     found,
+                    stay: out.stay,
                 });
             }
         }
@@ -76,7 +77,11 @@ fn begin(warm: Option<Warm>) -> (Clamp, Option<TendonForces>) {
             ..
         }) => (
             Clamp::resume(force, fault),
-            Some(TendonForces { force, found: false }),
+            Some(TendonForces {
+                force,
+                found: false,
+                stay: [true; 4],
+            }),
         ),
         _ => (Clamp::default(), None),
     }

@@ -35,7 +35,17 @@ impl<R: Retain> Keeper<R> {
             self.warm.angle = angle;
         }
         if let Some(tendons) = links.tendons.fresh() {
-            self.warm.force = tendons.force;
+            // A rotor's thrust bends its arm away from the pipe. The reset stops it, and what the tendon pulled against
+            // it would press the pipe.
+            let thrusts = links
+                .mix
+                .fresh()
+                .filter(|m| m.running)
+                .map_or([0.0; 4], |m| m.thrusts);
+            let per_thrust = links.params.arm_d / links.params.tendon_lever;
+            for ((slot, force), thrust) in self.warm.force.iter_mut().zip(tendons.force).zip(thrusts) {
+                *slot = force - per_thrust * thrust;
+            }
         }
         if let Some(grip) = links.grip.fresh() {
             let mut fault: PerArm<_> = [None; 4];

@@ -190,6 +190,8 @@ pub struct TendonForces {
     pub force: PerArm<f32>,
     /// The tendons were found wound when the power came on: where their servos stand is to be taken from the tilt.
     pub found: bool,
+    /// Servos that are to stay where they are, whatever the force.
+    pub stay: PerArm<bool>,
 }
 
 /// State of the radio link.

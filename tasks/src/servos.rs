@@ -47,9 +47,15 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
                     }
                 }
                 told = true;
-                let asked = forces.force.into_iter().zip(tilts);
-                for ((drive, out), (force, tilt)) in drives.iter_mut().zip(output.iter_mut()).zip(asked) {
-                    *out = drive.step(&reel, force, tilt, tick.dt);
+                let asked = forces.force.into_iter().zip(forces.stay).zip(tilts);
+                for ((drive, out), ((force, stay), tilt)) in
+                    drives.iter_mut().zip(output.iter_mut()).zip(asked)
+                {
+                    *out = if stay {
+                        drive.stay(&reel, tilt, tick.dt)
+                    } else {
+                        drive.step(&reel, force, tilt, tick.dt)
+                    };
                 }
             }
             None => {

@@ -29,7 +29,7 @@ impl ModeLogic {
             arms_closed: grasp != Grasp::Open && !held,
         }
         .refusals(&self.params);
-        if held {
+        if grasp.arms().is_some() {
             // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms are
             // opened; and no one can reach the battery there to put a broken supply right.
             refusals
