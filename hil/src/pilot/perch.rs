@@ -252,6 +252,8 @@ impl Mind {
             Phase::Start | Phase::Throttle => {
                 if self.phase == Phase::Start {
                     self.throttle = 0.0;
+                    // Off already after a release that a reset has cut short: off counts only after on.
+                    self.perch_switch = true;
                     self.enter(Phase::Throttle);
                 }
                 let wish = self.throttle_to(RELEASE_THROTTLE, EASE, dt);
