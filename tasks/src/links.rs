@@ -9,6 +9,8 @@
 //!              │  ^                                            │
 //!              v  └─────── grip ──── clamp <───────────────────┘
 //!          clamp command ──────────> clamp ──> servos          steady level, 50 to 500 Hz
+//!
+//! grasp, reel angle, tendon forces, gyro bias ──> supervisor ──> memory that outlives a reset ──> start
 //! ```
 
 use core::cell::Cell;

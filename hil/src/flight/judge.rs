@@ -38,6 +38,8 @@ pub struct Judge {
     chosen: PerArm<bool>,
     target: f64,
     tolerance: f64,
+    /// Pressure below which an arm is free, Pa.
+    released: f64,
     /// Largest error of the pressure sensor at the target, Pa: what the stack cannot know, the truth is granted.
     sensor_error: f64,
     torque_max: f64,
@@ -62,6 +64,7 @@ impl Judge {
             chosen: scenario.arms.mask(),
             target,
             tolerance: f64::from(p.grip_tolerance),
+            released: f64::from(p.release_pressure),
             sensor_error: target * LARGEST_ERROR,
             torque_max: f64::from(ForceLimit::from_params(p).force * p.reel_radius),
             reel_radius: TendonSpec::default().reel_radius,
@@ -202,8 +205,13 @@ impl Judge {
                 slip * 1e3
             ));
         }
-        self.badly_held(plant, DISTURBED)
-            .map(|why| format!("after the reset: {why}"))
+        let mut arms = plant.pressure().into_iter().zip(self.chosen).enumerate();
+        // Without a pulse a weak servo's gears give way to what their friction carries; no arm may come off.
+        let (arm, (pressure, _)) = arms.find(|(_, (p, chosen))| *chosen && *p < self.released)?;
+        Some(format!(
+            "after the reset arm {} holds {pressure:.0} N/m2 only",
+            arm + 1
+        ))
     }
 
     /// The chosen arm whose true pressure is off by more than `tolerances` tolerances and the sensor's error.
