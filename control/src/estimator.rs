@@ -215,7 +215,7 @@ mod tests {
         assert!(!e.calibrated());
         let mut steps = 0;
         while !e.calibrated() && steps < 2000 {
-            let sway = 0.1 * math::sin(6.28 * 1e-3 * steps as f32);
+            let sway = 0.1 * math::sin(6e-3 * steps as f32);
             e.step(bias + Vec3::new(sway, 0.0, 0.0), at_rest(0.15, -0.1), 1e-3);
             steps += 1;
         }

@@ -62,7 +62,7 @@ impl<R: Retain> Keeper<R> {
         if let Some(words) = self.warm.to_words(sequence) {
             self.sequence = sequence;
             // By turns: a reset in the midst of the write leaves the copy before whole.
-            self.port.keep(sequence % 2 != 0, &words);
+            self.port.keep(sequence & 1 == 1, &words);
         }
     }
 }
