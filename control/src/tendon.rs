@@ -37,6 +37,8 @@ const STILL_CUTOFF: f32 = 5.0;
 const MOVING: f32 = 0.04;
 /// Age of the tilt when the servo's task takes it, s: sensor 20 ms, half of the arms' period of 10 ms.
 const TILT_AGE: f32 = 0.025;
+/// Angles beyond this are no servo's, rad.
+const ANGLE_MAX: f32 = 6.5;
 /// Tilts beyond this are not an arm's, rad.
 const TILT_MAX: f32 = 2.5;
 
@@ -204,6 +206,27 @@ impl TendonDrive {
         }
     }
 
+    /// The same drive, its servo at `angle` (rad from release), where the run before left it.
+    pub fn resume(self, angle: f32) -> Self {
+        Self {
+            angle: math::clamp(angle, 0.0, ANGLE_MAX),
+            ..self
+        }
+    }
+
+    /// Takes the servo to stand where its tendon is just taut at the tilt `tilt` (rad; `None`: at release). For a
+    /// tendon that was found wound and is to be paid out: from there on it goes at the drive's speed, not the servo's.
+    pub fn find(&mut self, reel: &Reel, tilt: Option<f32>) {
+        self.angle = tilt
+            .filter(|t| t.abs() <= TILT_MAX)
+            .map_or(0.0, |tilt| reel.angle(0.0, tilt));
+    }
+
+    /// Angle to which the servo is sent, rad from release.
+    pub fn angle(&self) -> f32 {
+        self.angle
+    }
+
     /// One step of `dt` s towards `force` N (0, or anything that is no number: pay out to the release
     /// position) with the arm's measured tilt (rad).
     ///
@@ -212,13 +235,7 @@ impl TendonDrive {
         let dt = math::clamp(dt, 0.0, 0.2);
         let force = math::clamp(force, 0.0, reel.limit.force);
         let tilt = tilt.filter(|t| t.abs() <= TILT_MAX);
-        if let Some(tilt) = tilt {
-            let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
-            let moving = math::clamp((tilt - second.value()).abs() / MOVING, 0.0, 1.0);
-            self.cutoff = STILL_CUTOFF + (TILT_CUTOFF - STILL_CUTOFF) * moving;
-            let once = first.step(tilt, self.cutoff, dt);
-            second.step(once, self.cutoff, dt);
-        }
+        self.see(tilt, dt);
         let pays_out = force <= 0.0;
         let held = !pays_out && tilt.is_none();
         if pays_out {
@@ -233,6 +250,23 @@ impl TendonDrive {
             self.angle = math::slew(self.angle, target, speed * dt);
         }
         self.output(reel, held)
+    }
+
+    /// One step of `dt` s that leaves the servo where it is and only looks at the tilt (rad).
+    pub fn stay(&mut self, reel: &Reel, tilt: Option<f32>, dt: f32) -> Drive {
+        self.see(tilt.filter(|t| t.abs() <= TILT_MAX), math::clamp(dt, 0.0, 0.2));
+        self.output(reel, true)
+    }
+
+    fn see(&mut self, tilt: Option<f32>, dt: f32) {
+        let Some(tilt) = tilt else {
+            return;
+        };
+        let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
+        let moving = math::clamp((tilt - second.value()).abs() / MOVING, 0.0, 1.0);
+        self.cutoff = STILL_CUTOFF + (TILT_CUTOFF - STILL_CUTOFF) * moving;
+        let once = first.step(tilt, self.cutoff, dt);
+        second.step(once, self.cutoff, dt);
     }
 
     /// The output without a step: for when there is no order at all.
@@ -417,6 +451,44 @@ mod tests {
                 "{rate} Hz: {}",
                 output.tension
             );
+        }
+    }
+
+    #[test]
+    fn a_drive_resumes_where_it_was_and_a_wound_one_is_found_taut() {
+        let reel = Reel::from_params(&params(), 0);
+        let mut drive = TendonDrive::new();
+        for _ in 0..100 {
+            drive.step(&reel, 60.0, Some(-0.8), 0.02);
+        }
+        let before = drive.hold(&reel).pulse_us;
+        let mut again = TendonDrive::new().resume(drive.angle());
+        assert!(close(again.hold(&reel).pulse_us, before, 1e-3));
+        // Without a tilt, then with one that a new attitude shows off by 0.02 rad: the servo stays, and the tension that
+        // it then has keeps it there.
+        let mut has = 0.0;
+        for tilt in [None, None, Some(-0.78), Some(-0.78)] {
+            let output = again.stay(&reel, tilt, 0.02);
+            assert!(output.held && close(output.pulse_us, before, 1e-3));
+            has = output.tension;
+        }
+        assert!(close(has, 64.0, 0.1), "{has}");
+        for _ in 0..50 {
+            let pulse = again.step(&reel, has, Some(-0.78), 0.02).pulse_us;
+            assert!(close(pulse, before, 0.1), "{pulse} {before}");
+        }
+        assert!(TendonDrive::new().resume(f32::NAN).angle() == 0.0);
+        assert!(TendonDrive::new().resume(1e9).angle() <= ANGLE_MAX);
+
+        // 25 mm·1.2 on 15 mm: 2 rad; paid out in 0.67 s.
+        let mut found = TendonDrive::new();
+        found.find(&reel, Some(-0.8));
+        assert!(close(found.angle(), 2.0, 1e-3));
+        let frames = (1..100).find(|_| found.step(&reel, 0.0, Some(-0.8), 0.02).tension <= 0.0);
+        assert!(frames.is_some_and(|n| (32..36).contains(&n)), "{frames:?}");
+        for tilt in [None, Some(f32::NAN), Some(9.0)] {
+            found.find(&reel, tilt);
+            assert!(found.angle() == 0.0);
         }
     }
 

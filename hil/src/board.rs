@@ -13,6 +13,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
+use sophie_control::warm::{WORDS, Words};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
@@ -44,6 +45,8 @@ pub struct Board {
     arm_gravity: Cell<PerArm<Vec3>>,
     /// Samples of the inertial sensor in a second.
     imu_rate: f64,
+    /// Memory that outlives a reset.
+    pub memory: Cell<[Words; 2]>,
     /// Accelerometer bias that the builder measured on a level bench, m/s²: a parameter of this board.
     pub accel_bias: [f32; 3],
 }
@@ -97,6 +100,7 @@ impl Board {
             }),
             truth: Cell::default(),
             arm_gravity: Cell::default(),
+            memory: Cell::new([[0; WORDS]; 2]),
             accel_bias,
             imu_rate: f64::from(params.imu_rate),
         }
@@ -142,6 +146,14 @@ impl Board {
             elapsed: self.truth.get().elapsed + 1e-3,
         });
         self.imu_ready.signal(batch);
+    }
+
+    /// A reset: no motor frame, no servo pulse, nothing in the lines' buffers. Sensors and memory stay as they are.
+    pub fn reset(&self) {
+        self.actuators.set(Actuators::default());
+        self.imu_ready.reset();
+        self.rc.clear();
+        self.telemetry.clear();
     }
 
     /// Puts bytes on the receiver's line; what does not fit is lost, as on a line nobody reads.
@@ -258,6 +270,17 @@ impl ports::SerialOutput for Port {
             rest = rest.get(written..).unwrap_or_default();
         }
         Ok(())
+    }
+}
+
+impl ports::Retain for Port {
+    fn keep(&mut self, second: bool, words: &Words) {
+        let [first_copy, second_copy] = self.0.memory.get();
+        self.0.memory.set(if second {
+            [first_copy, *words]
+        } else {
+            [*words, second_copy]
+        });
     }
 }
 

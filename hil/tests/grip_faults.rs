@@ -246,9 +246,17 @@ fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_i
         "nothing is known of servos without a pulse"
     );
 
-    // The clamp loop starts without a commander: at release, and proven free only by the servos' own word.
+    // The clamp loop without a commander is silent too: the arms may be closed on a pipe.
     time.spawn(sophie_tasks::clamp::run(links));
     time.run_until(2_000_000);
+    assert!(servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && links.tendons.latest().is_none());
+    links.clamp_command.send(Instant::now(), ClampCommand::Keep);
+    time.run_until(2_150_000);
+    assert!(servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && links.tendons.latest().is_none());
+
+    let silent = servos.pulses.borrow().len();
+    links.clamp_command.send(Instant::now(), ClampCommand::Release);
+    time.run_until(2_300_000);
     let pulses = servos.pulses.borrow();
     assert!(pulses.iter().skip(silent + 1).all(|p| *p == [RELEASE_US; 4]));
     assert_eq!(links.tendons.fresh(), Some(TendonForces::default()));
@@ -398,7 +406,13 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
         let (now, tilt) = (Instant::now(), [Some(-0.8); 4]);
         links.arms.send(now, ArmAngles { tilt });
         if let Some(force) = force {
-            links.tendons.send(now, TendonForces { force: [force; 4] });
+            links.tendons.send(
+                now,
+                TendonForces {
+                    force: [force; 4],
+                    ..TendonForces::default()
+                },
+            );
         }
     };
     (1..300).for_each(|i| step(10 * i, Some(60.0)));

@@ -6,6 +6,7 @@ use sophie_control::wrench::Configuration;
 use sophie_tasks::links::Links;
 
 use crate::board;
+use crate::board::cortex_m::retained::Memory;
 
 /// Most self-tests of the inertial sensor at one start.
 const SELF_TESTS: u8 = 3;
@@ -84,10 +85,10 @@ pub async fn commander(links: &'static Links) -> ! {
     sophie_tasks::commander::run(links).await
 }
 
-/// Steady level: supervision and watchdog.
+/// Steady level: supervision, watchdog, and what outlives it.
 #[embassy_executor::task]
-pub async fn supervisor(links: &'static Links, port: board::WatchdogPort) -> ! {
-    sophie_tasks::supervisor::run(links, port).await
+pub async fn supervisor(links: &'static Links, port: board::WatchdogPort, memory: Memory) -> ! {
+    sophie_tasks::supervisor::run(links, port, memory).await
 }
 
 /// Background: arm sensors.

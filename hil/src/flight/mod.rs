@@ -33,7 +33,7 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
     let wall = WallInstant::now();
     let mut seeds = Pcg64Mcg::seed_from_u64(scenario.seed);
     let mut plant = Plant::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
-    let stack = Stack::new(scenario, &mut seeds);
+    let mut stack = Stack::new(scenario, &mut seeds);
     let mut pilot = Pilot::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
     let mut recorder = Recorder::new(scenario);
     let mut judge = Judge::new(scenario);
@@ -79,6 +79,7 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
         }
         let judged = judge.step(t, step, &plant, &stack);
         plant.push = push(step, t - began.1);
+        reset(step, began, ms, &mut stack);
         recorder.step(ms, step, &plant, &stack, pilot.throttle(), observer);
         if ms.is_multiple_of(PROGRESS_MS) {
             observer.progress(t, stack.mode(), -plant.pose().position.z);
@@ -120,7 +121,7 @@ fn seen(plant: &Plant, t: f64) -> Seen {
     }
 }
 
-/// The disturbance of the inspection: a sideways push during the middle third of the hold.
+/// The disturbance of the inspection: a sideways push during the middle third of the hold, or over a reset.
 fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
     match step {
         Some((_, Step::Hold { seconds, push }))
@@ -128,6 +129,27 @@ fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
         {
             DVec3::new(0.0, *push, 0.0)
         }
+        Some((_, Step::Reset { push, .. })) => DVec3::new(0.0, *push, 0.0),
         _ => DVec3::ZERO,
+    }
+}
+
+/// The reset of a step that has one: the board goes dead once in it, and starts again.
+fn reset(step: Option<(usize, &Step)>, (index, begun): (usize, f64), ms: u64, stack: &mut Stack) {
+    let Some((
+        _,
+        Step::Reset {
+            cause, after, off, ..
+        },
+    )) = step
+    else {
+        return;
+    };
+    let t = ms as f64 * 1e-3;
+    let done = stack.reset().filter(|r| r.step == index);
+    match done {
+        None if t - begun >= *after => stack.cut(*cause, index, t),
+        Some(reset) if !stack.runs() && t - reset.at >= *off => stack.start(ms * 1000),
+        _ => {}
     }
 }

@@ -25,6 +25,7 @@ pub struct Recorder {
     reason: &'static str,
     warning: &'static str,
     proven: bool,
+    resets: u32,
     digest: Digest,
 }
 
@@ -53,6 +54,7 @@ impl Recorder {
             reason: "",
             warning: "",
             proven: false,
+            resets: 0,
             digest: Digest::new(),
         }
     }
@@ -147,6 +149,18 @@ impl Recorder {
 
     /// Takes changes of mode, reasons and proofs of grip from the stack.
     fn watch_stack(&mut self, t: f64, plant: &Plant, stack: &Stack, observer: &mut dyn Observer) {
+        if stack.resets() != self.resets
+            && let Some(reset) = stack.reset()
+        {
+            self.resets = stack.resets();
+            let text = if reset.cause.loses_memory() {
+                "power lost"
+            } else {
+                "board reset"
+            };
+            let text = text.to_owned();
+            self.note(Event { t, text }, observer);
+        }
         if let Some(status) = stack.links.status.latest().map(|s| s.value) {
             if status.mode != self.mode {
                 self.mode = status.mode;

@@ -12,10 +12,11 @@ use heapless::Vec as Few;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
+use sophie_control::warm::{WORDS, Words};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::ports::{
-    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, SerialInput, Servos,
+    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain, SerialInput, Servos,
     Watchdog,
 };
 
@@ -248,5 +249,31 @@ impl FakeWatchdog {
 impl Watchdog for FakeWatchdog {
     fn feed(&mut self) {
         self.0.borrow_mut().push(Instant::now().as_micros());
+    }
+}
+
+/// Memory that outlives a reset: both copies, and how often each was written.
+#[derive(Clone)]
+pub struct FakeMemory(pub Rc<Cell<([Words; 2], [u32; 2])>>);
+
+impl Default for FakeMemory {
+    fn default() -> Self {
+        Self(Rc::new(Cell::new(([[0; WORDS]; 2], [0; 2]))))
+    }
+}
+
+impl FakeMemory {
+    /// What is in it.
+    pub fn copies(&self) -> [Words; 2] {
+        self.0.get().0
+    }
+}
+
+impl Retain for FakeMemory {
+    fn keep(&mut self, second: bool, words: &Words) {
+        let (mut copies, mut writes) = self.0.get();
+        copies[usize::from(second)] = *words;
+        writes[usize::from(second)] += 1;
+        self.0.set((copies, writes));
     }
 }

@@ -69,7 +69,7 @@ impl Vehicle {
         v.time.spawn(sophie_tasks::servos::run(links, v.servos.clone()));
         v.time.spawn(sophie_tasks::commander::run(links));
         v.time
-            .spawn(sophie_tasks::supervisor::run(links, v.watchdog.clone()));
+            .spawn(sophie_tasks::supervisor::run(links, v.watchdog.clone(), FakeMemory::default()));
         v.time.spawn(sophie_tasks::arms::run(links, v.arms.clone()));
         v
     }
