@@ -15,7 +15,7 @@ use sophie_control::mixer::Variant;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::rc::{ArmChoice, Sticks};
-use sophie_control::tendon::{RELEASE_US, Reel};
+use sophie_control::tendon::Reel;
 use sophie_control::vector::Vec3;
 use sophie_control::warm::{Grasp, WORDS, Warm, Words};
 use sophie_control::wrench::Configuration;
@@ -151,7 +151,7 @@ impl Vehicle {
 }
 
 fn pulse(angle: f32) -> f32 {
-    Reel::from_params(&Params::default()).pulse(angle, 0.0)
+    Reel::from_params(&Params::default(), 0).pulse(angle)
 }
 
 #[test]
@@ -166,7 +166,11 @@ fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
         assert!(sent.clone().all(|p| (p - pulse(ANGLE)).abs() < 0.1), "{pulses:?}");
     }
     for arm in [1, 3] {
-        assert!(v.pulses(arm).iter().all(|p| [0.0, RELEASE_US].contains(p)));
+        assert!(
+            v.pulses(arm)
+                .iter()
+                .all(|p| [0.0, Params::default().servo_release_1].contains(p))
+        );
     }
     let attitude = v.links.attitude.latest().unwrap().value;
     assert!(attitude.calibrated && (attitude.gyro_bias - held().gyro_bias.unwrap()).norm() < 1e-3);
@@ -200,7 +204,7 @@ fn a_start_off_the_pipe_is_as_ever_after_half_a_second_of_looking() {
         v.run(480);
         assert!(v.servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]));
         v.run(200);
-        assert_eq!(v.servos.now(), [RELEASE_US; 4]);
+        assert_eq!(v.servos.now(), [Params::default().servo_release_1; 4]);
         assert_eq!(v.status().0, Mode::Calibrating);
         v.run(1900);
         assert_eq!(v.status().0, Mode::Disarmed);
@@ -222,7 +226,7 @@ fn a_start_off_the_pipe_is_as_ever_after_half_a_second_of_looking() {
         steps.clone().all(|w| (-0.1..30.0).contains(&(w[0] - w[1]))),
         "paid out gently"
     );
-    assert_eq!(v.servos.now(), [RELEASE_US; 4]);
+    assert_eq!(v.servos.now(), [Params::default().servo_release_1; 4]);
 }
 
 #[test]

@@ -13,7 +13,8 @@ use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::ports::AnalogFrame;
 
 use crate::fakes::{
-    FakeAnalog, FakeArms, FakeImu, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT, links_with,
+    FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
+    links_with,
 };
 
 /// Period of the channel frames, ms.
@@ -68,8 +69,11 @@ impl Vehicle {
         v.time.spawn(sophie_tasks::clamp::run(links));
         v.time.spawn(sophie_tasks::servos::run(links, v.servos.clone()));
         v.time.spawn(sophie_tasks::commander::run(links));
-        v.time
-            .spawn(sophie_tasks::supervisor::run(links, v.watchdog.clone(), FakeMemory::default()));
+        v.time.spawn(sophie_tasks::supervisor::run(
+            links,
+            v.watchdog.clone(),
+            FakeMemory::default(),
+        ));
         v.time.spawn(sophie_tasks::arms::run(links, v.arms.clone()));
         v
     }
