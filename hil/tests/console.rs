@@ -20,7 +20,7 @@ use sophie_hil::clock::VirtualTime;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 use sophie_tasks::ports::{AnalogFrame, Loaded, PortError, Restart, SerialOutput, Storage, StorageError};
-use sophie_tasks::{analog, commander, console, estimator, imu, parameters};
+use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters};
 
 /// A terminal's screen at 115,200 baud, or one that takes nothing.
 #[derive(Clone, Default)]
@@ -221,6 +221,7 @@ fn status_says_all_that_forbids_arming() {
     bench.time.spawn(imu::run(links, FakeImu::default()));
     bench.time.spawn(estimator::run(links));
     bench.time.spawn(analog::run(links, analog));
+    bench.time.spawn(clamp::run(links));
     bench.time.spawn(commander::run(links));
     let loaded = Loaded {
         unreadable: true,
@@ -262,7 +263,7 @@ fn status_says_all_that_forbids_arming() {
         let expected = match task {
             TaskId::Imu | TaskId::Estimator => 1000,
             TaskId::Analog => 500,
-            TaskId::Commander => 100,
+            TaskId::Clamp | TaskId::Commander => 100,
             _ => 0,
         };
         assert!(rate.abs_diff(expected) <= 1, "{} {rate}", task.name());
