@@ -24,6 +24,9 @@ const REST: u32 = 3000;
 const READINGS: u32 = 4;
 const DT: f32 = 1e-3;
 
+/// A function of one number.
+type Function = fn(f32) -> f32;
+
 /// Prints a line for each group.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     functions(print);
@@ -38,7 +41,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
 }
 
 fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
-    let one: [(&str, fn(f32) -> f32, f32); 6] = [
+    let one: [(&str, Function, f32); 6] = [
         ("sin", math::sin, 8.0),
         ("cos", math::cos, 8.0),
         ("asin", math::asin, 1.1),
