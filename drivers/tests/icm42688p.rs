@@ -4,17 +4,20 @@
 mod fake;
 
 use std::cell::RefCell;
+use std::pin::pin;
 use std::rc::Rc;
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use fake::run;
 use fake::spi::{Bus, DataReady, Failure, Kind, Part};
+use sophie_control::arming::Refusal;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_drivers::fault::{Fault, Sensor};
 use sophie_drivers::icm42688p::{AccelRange, AntiAlias, Config, FilterOrder, GyroRange, Icm42688p, Rate};
 use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_tasks::links::Links;
 use sophie_tasks::ports::{Imu, ImuReading, PortError};
 
 type Driver = Icm42688p<Bus, DataReady>;
@@ -188,7 +191,7 @@ fn what_is_wrong_at_start_up_is_named() {
                 expected: 0x47,
                 found: 0x98,
             },
-            PortError::Corrupt,
+            PortError::WrongPart,
         ),
         (
             |p| p.deaf.push((1, 0x0C)),
@@ -505,5 +508,50 @@ fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
             let looks = part.borrow().transactions.iter().filter(|&&n| n == 7).count();
             assert!((9..=10).contains(&looks), "{looks} at {rate} Hz");
         });
+    }
+}
+
+#[test]
+fn the_imu_task_reports_what_the_driver_finds_and_takes_it_back() {
+    let cases: [(Spoil, Refusal); 4] = [
+        (|p| p.failure = Failure::Ones, Refusal::ImuAbsent),
+        (|p| p.failure = Failure::Zeros, Refusal::ImuAbsent),
+        (|p| p.failure = Failure::Bus, Refusal::ImuCorrupt),
+        (
+            |p| {
+                p.kind = Kind::Icm20689;
+                p.reset();
+            },
+            Refusal::ImuWrongPart,
+        ),
+    ];
+    for (spoil, reason) in cases {
+        for at_start in [true, false] {
+            run(async move {
+                let (driver, part) = pair(Config::default());
+                let links = Links::new(Params::default());
+                let mut task = pin!(sophie_tasks::imu::run(&links, driver));
+                if !at_start {
+                    let _ = with_timeout(Duration::from_secs(1), task.as_mut()).await;
+                    assert!(links.hardware().is_empty() && links.imu.fresh().is_some());
+                }
+                spoil(&mut part.borrow_mut());
+                let _ = with_timeout(Duration::from_millis(300), task.as_mut()).await;
+                assert!(links.hardware().iter().eq([reason]), "{reason:?}, {at_start}");
+                let _ = with_timeout(Duration::from_secs(5), task.as_mut()).await;
+                assert!(
+                    links.hardware().iter().eq([reason]),
+                    "{reason:?}, {at_start}: flaps"
+                );
+                {
+                    let mut part = part.borrow_mut();
+                    (part.failure, part.kind) = (Failure::None, Kind::Icm42688p);
+                    part.reset();
+                }
+                let _ = with_timeout(Duration::from_millis(500), task.as_mut()).await;
+                assert!(links.hardware().is_empty(), "{reason:?}, {at_start}");
+                assert!(links.imu.fresh().is_some());
+            });
+        }
     }
 }

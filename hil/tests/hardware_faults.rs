@@ -307,3 +307,22 @@ fn what_breaks_in_flight_does_not_end_it() {
         assert!(!tries_to_arm(&mut v));
     }
 }
+
+#[test]
+fn whatever_start_up_and_storage_report_refuses_arming_while_it_holds() {
+    for reason in [
+        Refusal::ImuSelfTest,
+        Refusal::BrownOut,
+        Refusal::StorageUnreadable,
+        Refusal::StorageFull,
+        Refusal::Storing,
+    ] {
+        let mut v = ready();
+        v.links.report(reason, true);
+        v.run(20);
+        assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, reason.text()));
+        assert!(!tries_to_arm(&mut v), "{reason:?}");
+        v.links.report(reason, false);
+        assert!(tries_to_arm(&mut v), "{reason:?}: {}", v.reason());
+    }
+}
