@@ -5,7 +5,7 @@ use sophie_control::mode::Mode;
 use sophie_control::tendon::ForceLimit;
 use sophie_control::wrench::PerArm;
 
-use super::stack::Stack;
+use super::aircraft::Aircraft;
 use crate::plant::Plant;
 use crate::plant::contact::BELLY_Z;
 use crate::plant::tendon::TendonSpec;
@@ -72,7 +72,7 @@ impl Judge {
         t: f64,
         step: Option<(usize, &Step)>,
         plant: &Plant,
-        stack: &Stack,
+        stack: &impl Aircraft,
     ) -> Option<String> {
         let pose = plant.pose();
         if !pose.position.is_finite() || !pose.omega.is_finite() {
@@ -118,7 +118,7 @@ impl Judge {
             *left = left.max(-roll);
         }
 
-        let grip = stack.links.grip.latest().is_some_and(|g| g.value.proven);
+        let grip = stack.grip().is_some_and(|g| g.proven);
         let just_proven = grip && !self.proven;
         self.proven = grip;
         if just_proven && let Some(why) = self.badly_held(plant, 1.0) {

@@ -1,13 +1,15 @@
 //! The flight stack on the simulated board: every task spawned on the virtual executor.
 
 use rand_pcg::Pcg64Mcg;
-use sophie_control::mode::Mode;
 use sophie_control::params::Params;
+use sophie_control::wrench::PerArm;
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::Links;
+use sophie_tasks::links::{GripState, Links, Status};
 
+use super::aircraft::{Aircraft, Belief, Said};
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
+use crate::plant::Plant;
 use crate::scenario::Scenario;
 
 /// The running stack of one flight.
@@ -47,22 +49,69 @@ impl Stack {
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
         Self { time, board, links }
     }
+}
 
-    /// Lets the tasks run until `us` µs after power-up.
-    pub fn run_until(&self, us: u64) {
+impl Aircraft for Stack {
+    fn step_world(&mut self, plant: &mut Plant) {
+        self.board.step_world(plant);
+    }
+
+    fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize {
+        self.board.take_telemetry(buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.board.receive(bytes);
+    }
+
+    fn run_until(&mut self, us: u64) -> Result<(), String> {
         self.time.run_until(us);
+        Ok(())
     }
 
-    /// State of the vehicle.
-    pub fn mode(&self) -> Mode {
-        self.links
-            .status
+    fn status(&self) -> Option<Said<'_>> {
+        let Status {
+            mode,
+            reason,
+            warning,
+        } = self.links.status.latest()?.value;
+        Some(Said {
+            mode,
+            reason,
+            warning,
+        })
+    }
+
+    fn grip(&self) -> Option<GripState> {
+        self.links.grip.latest().map(|g| g.value)
+    }
+
+    fn belief(&self) -> Belief {
+        let links = self.links;
+        let wide = |v: PerArm<f32>| v.map(f64::from);
+        let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
+        let estimate = links
+            .attitude
             .latest()
-            .map_or(Mode::Calibrating, |s| s.value.mode)
+            .map(|a| a.value.q.to_euler())
+            .unwrap_or_default();
+        let target = links.target.latest().map(|v| v.value.to_array().map(f64::from));
+        let arms = links.arms.fresh().unwrap_or_default();
+        let contact = links.contact.latest().map(|c| c.value).unwrap_or_default();
+        let tendons = links.tendons.latest().map(|f| f.value).unwrap_or_default();
+        Belief {
+            attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
+            setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
+            tilt_measured: arms.tilt.map(|a| a.map_or(f64::NAN, f64::from)),
+            tilt_model: wide(mix.tilt),
+            thrust_asked: wide(mix.thrusts),
+            tension_asked: wide(tendons.force),
+            pressure: wide(contact.pressure),
+            saturated: mix.running && mix.given.saturated(),
+        }
     }
 
-    /// Missed deadlines of all tasks since power-up.
-    pub fn overruns(&self) -> u32 {
+    fn overruns(&self) -> u32 {
         TaskId::ALL
             .iter()
             .map(|&task| self.links.timing(task).overruns)
