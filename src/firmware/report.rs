@@ -1,12 +1,13 @@
 //! What the firmware tells over defmt while it runs. Background: logging never delays a flight.
 //!
-//! A line when the state or the reason changes; once a second, for every task whose count of overruns grew, its worst
+//! A line when the state or the reason changes, and for each arm of a proven grip; once a second, for every task whose count of overruns grew, its worst
 //! times; every ten seconds the depth of the stack.
 
 use embassy_time::{Duration, Ticker};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 
+use super::grip::GripReport;
 use crate::board::cortex_m::stack;
 
 /// Time between two looks.
@@ -21,6 +22,7 @@ pub async fn run(links: &Links) -> ! {
     let mut ticker = Ticker::every(PERIOD);
     let mut shown: Option<Status> = None;
     let mut overruns = [0; TaskId::COUNT];
+    let mut grip = GripReport::default();
     let mut looks = 0u32;
     loop {
         ticker.next().await;
@@ -34,6 +36,7 @@ pub async fn run(links: &Links) -> ! {
                 reason => defmt::warn!("{=str}: {=str}", status.mode.name(), reason),
             }
         }
+        grip.look(links);
         if looks.is_multiple_of(TIMING_EVERY) {
             timing(links, &mut overruns);
         }

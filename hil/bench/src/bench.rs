@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, VecDeque};
 
 use rand_pcg::Pcg64Mcg;
 use sophie_control::fsr::FsrScale;
-use sophie_control::grip::{ArmGrip, GripState};
+use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
+use sophie_control::rc::Sticks;
 use sophie_control::tendon::{FULL_US, RELEASE_US, Reel};
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::wrench::PerArm;
@@ -14,6 +15,7 @@ use sophie_hil::crsf::Telemetry;
 use sophie_hil::flight::aircraft::{Aircraft, Belief, Said};
 use sophie_hil::plant::{Actuators, Plant};
 use sophie_tasks::telemetry::parse_mode_text;
+use uf_crsf::{CrsfParser, Packet};
 
 use crate::emulator::Emulator;
 use crate::log::{Line, Log};
@@ -32,7 +34,10 @@ pub struct Bench<'a> {
     told: Box<dyn FnMut(&Line) + 'a>,
     telemetry: VecDeque<u8>,
     display: Telemetry,
-    status: Option<(Mode, String)>,
+    status: Option<Status>,
+    grip: PerArm<ArmGrip>,
+    proven: bool,
+    setpoint: [f64; 3],
     overruns: BTreeMap<String, u32>,
     log_digest: Digest,
     params: Params,
@@ -43,15 +48,18 @@ pub struct Bench<'a> {
     pub resets: Vec<(f64, String)>,
 }
 
+/// What the log says of the vehicle's state.
+struct Status {
+    mode: Mode,
+    reason: String,
+    warning: String,
+}
+
 /// What the bench sees of the plant besides the pins.
 #[derive(Default)]
 struct Watched {
     tilt: PerArm<f64>,
     voltage: f64,
-    /// When the arms began to close, ms.
-    closing: Option<u64>,
-    /// Since when each arm's pressure is within its tolerance, ms.
-    within: PerArm<Option<u64>>,
 }
 
 /// What is left of a bench after its run.
@@ -90,6 +98,9 @@ impl<'a> Bench<'a> {
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
             status: None,
+            grip: [ArmGrip::default(); 4],
+            proven: false,
+            setpoint: [f64::NAN; 3],
             overruns: BTreeMap::new(),
             log_digest: Digest::default(),
             params: Params::default(),
@@ -125,15 +136,22 @@ impl<'a> Bench<'a> {
         self.log_digest.word(line.ms);
         line.text.bytes().for_each(|byte| self.log_digest.byte(byte));
         if let Some((mode, reason)) = parse_mode_text(&line.text) {
-            if mode == Mode::Clamping && self.mode() != Mode::Clamping {
-                self.watched.closing = Some(line.ms);
-            }
-            self.status = Some((mode, reason.to_owned()));
-        }
-        if let Some((task, rest)) = line.text.split_once(": ")
-            && let Some((count, _)) = rest.split_once(" overruns in ")
-            && let Ok(count) = count.parse()
+            self.proven &= !matches!(mode, Mode::Releasing | Mode::Flight | Mode::Disarmed);
+            let warning = self.status.take().map_or(String::new(), |s| s.warning);
+            self.status = Some(Status {
+                mode,
+                reason: reason.to_owned(),
+                warning,
+            });
+        } else if let Some(warning) = line.text.strip_prefix("warning: ")
+            && let Some(status) = &mut self.status
         {
+            warning.clone_into(&mut status.warning);
+        } else if line.text == "grip proven" {
+            self.proven = true;
+        } else if let Some((arm, grip)) = told_grip(&line.text) {
+            self.grip[arm] = grip;
+        } else if let Some((task, count)) = told_overruns(&line.text) {
             self.overruns.insert(task.to_owned(), count);
         }
         self.lines.push(line);
@@ -144,19 +162,6 @@ impl<'a> Bench<'a> {
         self.sensors
             .pressure_counts
             .map(|counts| f64::from(scale.pressure(counts)))
-    }
-
-    /// Keeps since when each arm's pressure is where it should be.
-    fn watch_pressure(&mut self, ms: u64) {
-        let (target, tolerance) = (self.params.grip_pressure, self.params.grip_tolerance);
-        let pressures = self.pressure();
-        for (within, pressure) in self.watched.within.iter_mut().zip(pressures) {
-            if (pressure - f64::from(target)).abs() > f64::from(tolerance) {
-                *within = None;
-            } else if within.is_none() {
-                *within = Some(ms);
-            }
-        }
     }
 
     /// Force of each tendon (N) that its servo's pulse asks for.
@@ -195,6 +200,13 @@ impl Aircraft for Bench<'_> {
     }
 
     fn receive(&mut self, bytes: &[u8]) {
+        self.setpoint = [f64::NAN; 3];
+        if self.mode() == Mode::Flight
+            && let Some(sticks) = sticks(bytes)
+        {
+            let angle = self.params.stick_angle;
+            self.setpoint = [sticks.roll * angle, sticks.pitch * angle, f32::NAN].map(f64::from);
+        }
         self.plan.radio(self.pins.ms, bytes, &mut self.wires.receiver);
     }
 
@@ -212,42 +224,24 @@ impl Aircraft for Bench<'_> {
             for line in self.log.take(ms, &log) {
                 self.hear(line);
             }
-            self.watch_pressure(ms);
         }
         Ok(())
     }
 
     fn status(&self) -> Option<Said<'_>> {
-        self.status.as_ref().map(|(mode, reason)| Said {
-            mode: *mode,
-            reason,
-            warning: "",
+        self.status.as_ref().map(|s| Said {
+            mode: s.mode,
+            reason: &s.reason,
+            warning: &s.warning,
         })
     }
 
-    /// The log does not tell of the grip: it is proven when the vehicle says that it is perched. Pressure is that at the
-    /// pins, force that of the servos' pulses, closure the time from the log's CLAMPING to the pressure.
     fn grip(&self) -> Option<GripState> {
-        let (mode, _) = self.status.as_ref()?;
-        let mut grip = GripState {
-            proven: *mode == Mode::Perched,
+        Some(GripState {
+            proven: self.proven,
+            arms: self.grip,
             ..GripState::default()
-        };
-        let pins = self.pressure().into_iter().zip(self.tension());
-        for ((arm, (pressure, force)), within) in grip.arms.iter_mut().zip(pins).zip(self.watched.within) {
-            let closure = self
-                .watched
-                .closing
-                .zip(within)
-                .map(|(from, to)| to.saturating_sub(from) as f32 * 1e-3);
-            *arm = ArmGrip {
-                pressure: pressure as f32,
-                force: force as f32,
-                closure,
-                ..ArmGrip::default()
-            };
-        }
-        Some(grip)
+        })
     }
 
     fn belief(&self) -> Belief {
@@ -256,7 +250,7 @@ impl Aircraft for Bench<'_> {
         let ratio = self.watched.voltage as f32 / self.params.battery_nominal;
         Belief {
             attitude: self.display.attitude.unwrap_or([f64::NAN; 3]),
-            setpoint: [f64::NAN; 3],
+            setpoint: self.setpoint,
             tilt_measured: unknown,
             tilt_model: unknown,
             thrust_asked: self
@@ -271,5 +265,66 @@ impl Aircraft for Bench<'_> {
 
     fn overruns(&self) -> u32 {
         self.overruns.values().sum()
+    }
+}
+
+/// Where the sticks are by a frame of the radio; `None` for other frames.
+fn sticks(mut frame: &[u8]) -> Option<Sticks> {
+    match CrsfParser::default().next_packet(&mut frame) {
+        Some(Ok(Packet::RCChannels(channels))) => Sticks::from_channels(&channels.0).ok(),
+        _ => None,
+    }
+}
+
+/// What the log tells of one arm's grip: `grip: arm 1 holds 947 N/m2 with 34 N, closed in 5.6 s`.
+fn told_grip(text: &str) -> Option<(usize, ArmGrip)> {
+    let (arm, rest) = text.strip_prefix("grip: arm ")?.split_once(" holds ")?;
+    let (pressure, rest) = rest.split_once(" N/m2 with ")?;
+    let (force, rest) = rest.split_once(" N, closed in ")?;
+    let closure = rest.strip_suffix(" s")?;
+    let arm = arm.parse::<usize>().ok()?.checked_sub(1).filter(|arm| *arm < 4)?;
+    let grip = ArmGrip {
+        state: ArmState::Holding,
+        pressure: pressure.parse().ok()?,
+        force: force.parse().ok()?,
+        closure: Some(closure.parse().ok()?),
+        fault: None,
+    };
+    Some((arm, grip))
+}
+
+/// What the log tells of missed deadlines: `imu: 3 overruns in 12000 runs; worst: …`.
+fn told_overruns(text: &str) -> Option<(&str, u32)> {
+    let (task, rest) = text.split_once(": ")?;
+    let (count, _) = rest.split_once(" overruns in ")?;
+    Some((task, count.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_log_is_understood() {
+        let (arm, grip) = told_grip("grip: arm 3 holds 947.25 N/m2 with 33.5 N, closed in 3.65 s").unwrap();
+        assert_eq!((arm, grip.closure), (2, Some(3.65)));
+        assert!((grip.pressure - 947.25).abs() < 1e-3 && (grip.force - 33.5).abs() < 1e-3);
+        assert_eq!(told_grip("grip: arm 5 holds 1 N/m2 with 1 N, closed in 1 s"), None);
+        assert_eq!(
+            told_overruns("imu: 3 overruns in 12000 runs; worst: 1 us late, 2 us response, 3 us execution"),
+            Some(("imu", 3))
+        );
+        assert_eq!(told_overruns("imu: self-test passed"), None);
+    }
+
+    #[test]
+    fn the_sticks_of_a_frame_are_read() {
+        let sent = Sticks {
+            roll: 0.5,
+            ..Sticks::default()
+        };
+        let read = sticks(&sophie_hil::crsf::rc_frame(&sent)).unwrap();
+        assert!((read.roll - 0.5).abs() < 0.02);
+        assert!(sticks(&[1, 2, 3]).is_none());
     }
 }

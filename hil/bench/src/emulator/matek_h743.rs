@@ -53,6 +53,8 @@ const BUS_PINS: [(At, u8); 9] = [
     (At(2, 6), 7),
     (At(2, 7), 7),
 ];
+/// Lines that rest high: the I2C buses by their pull-ups, the receiver's line by the receiver.
+const RESTING_HIGH: [At; 5] = [At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7)];
 /// State light, fault light, buzzer.
 const SIGNAL_PINS: [At; 3] = [At(4, 4), At(4, 3), At(0, 15)];
 
@@ -99,6 +101,13 @@ impl MatekBoard {
             part: Part::new(chip).map_err(told)?,
             core,
         })
+    }
+
+    /// Power comes up: lines take the level at which they rest.
+    pub fn power_up(&mut self, now: VirtualNanos) {
+        for pin in RESTING_HIGH {
+            self.part.drive(now, pin, Level::High);
+        }
     }
 
     /// The inertial sensor.

@@ -218,6 +218,10 @@ impl World {
         let new = resets.get(self.resets..).unwrap_or_default();
         let resets: Vec<_> = new.iter().map(|r| (r.at.0, format!("{:?}", r.cause))).collect();
         self.resets += resets.len();
+        if !resets.is_empty() {
+            // A processor that stood still goes on after its reset.
+            host.hold(false);
+        }
 
         let board = session.board_mut();
         if let Some(imu) = board.imu() {
@@ -260,8 +264,10 @@ impl World {
             let Some(began) = self.escs[edge.channel].edge(edge.at, edge.high) else {
                 continue;
             };
+            // A stopped motor's frames come by themselves, not from a sample.
             let ready = self.pulses.iter().rev().find(|at| **at <= began);
             if edge.channel == 0
+                && self.escs[0].command(edge.at) > 0.0
                 && let Some(age) = ready.map(|at| began - at)
                 && age < SAMPLE
             {
@@ -326,6 +332,9 @@ impl Driver<MatekBoard> for World {
         stop: Stop,
         host: &mut dyn Host,
     ) -> Option<VirtualNanos> {
+        if self.ms == 0 {
+            session.board_mut().power_up(stop.at);
+        }
         let pins = self.read(session, stop.at, host);
         // Both ends close when the run is to end.
         self.pins.send(pins).ok()?;

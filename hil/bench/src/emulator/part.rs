@@ -91,6 +91,15 @@ impl Part {
             .drive_port(now, pin.0, |_, file, _| Gpio::function(number, file))
     }
 
+    /// Drives a pin from outside.
+    pub fn drive(&mut self, now: VirtualNanos, pin: At, level: Level) {
+        if let Some(number) = Pin::new(pin.1) {
+            self.inner.drive_port(now, pin.0, |port, file, c| {
+                port.drive(number, Some(level), file, c);
+            });
+        }
+    }
+
     /// The pin is high.
     pub fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool {
         Pin::new(pin.1).is_some_and(|number| {
