@@ -25,10 +25,14 @@ fn with(trouble: Trouble, seconds: f64) -> Flight {
 }
 
 #[test]
-fn an_unplugged_inertial_sensor_stops_the_motors() {
+fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board() {
     let flight = with(Trouble::Board(Fault::ImuUnplugged(true)), AIRBORNE + 2.0);
-    assert!(told(&flight, AIRBORNE, "FAILSAFE").is_some(), "{}", log(&flight));
-    assert!(stopped(&flight, AIRBORNE + 0.5, f64::INFINITY), "{}", log(&flight));
+    assert!(told(&flight, AIRBORNE, "ICM-42688-P: no answer").is_some(), "{}", log(&flight));
+    let t = told(&flight, AIRBORNE, "DISARMED: inertial sensor silent");
+    assert!(t.is_some_and(|t| t < AIRBORNE + 0.3), "{}", log(&flight));
+    assert!(stopped(&flight, AIRBORNE + 0.3, f64::INFINITY), "{}", log(&flight));
+    // The supervisor feeds no watchdog without a flight level.
+    assert!(told(&flight, AIRBORNE, "start after Watchdog").is_some(), "{}", log(&flight));
 }
 
 #[test]
