@@ -85,4 +85,50 @@ mod tests {
         assert!(f.step(Vec3::new(f32::NAN, 0.0, 0.0), a).is_none());
         assert!(f.step(g, a).expect("finite").0.is_finite());
     }
+
+    /// Gain and delay (s) of the gyro's filter for a sine of `hz`, as seen at its output of 1 kHz, with samples at
+    /// `rate_hz`.
+    fn response(hz: f64, rate_hz: f64) -> (f64, f64) {
+        let mut f = ImuFilter::new(90.0, rate_hz as f32);
+        let per_output = (rate_hz / 1000.0) as usize;
+        let turn = core::f64::consts::TAU * hz;
+        let (mut in_phase, mut quadrature, mut n) = (0.0, 0.0, 0);
+        // Two seconds, of which the second is measured: a whole number of turns.
+        for i in 1..=(2.0 * rate_hz) as usize {
+            let t = i as f64 / rate_hz;
+            let x = f64::sin(turn * t) as f32;
+            let (y, _) = f.step(Vec3::new(x, 0.0, 0.0), Vec3::ZERO).expect("finite");
+            if i.is_multiple_of(per_output) && t > 1.0 {
+                in_phase += f64::from(y.x) * f64::sin(turn * t);
+                quadrature += f64::from(y.x) * f64::cos(turn * t);
+                n += 1;
+            }
+        }
+        assert!(n == 1000, "{n}");
+        let (a, b) = (2.0 * in_phase / 1000.0, 2.0 * quadrature / 1000.0);
+        (f64::hypot(a, b), f64::atan2(-b, a) / turn)
+    }
+
+    #[test]
+    fn the_output_is_the_same_whatever_the_sensor_s_rate() {
+        for rate in [1000.0, 2000.0, 4000.0, 8000.0] {
+            for hz in [2.0, 10.0, 30.0, 90.0] {
+                // Butterworth's second order about 90 Hz.
+                let x: f64 = hz / 90.0;
+                let gain = 1.0 / f64::sqrt(1.0 + x.powi(4));
+                let delay =
+                    f64::atan2(core::f64::consts::SQRT_2 * x, 1.0 - x * x) / (core::f64::consts::TAU * hz);
+                let (g, d) = response(hz, rate);
+                assert!((g - gain).abs() < 0.01, "{hz} Hz at {rate} Hz: gain {g}, {gain}");
+                assert!(
+                    (d - delay).abs() < 0.1e-3,
+                    "{hz} Hz at {rate} Hz: delay {d} s, {delay} s"
+                );
+            }
+            // Beyond half of the output's rate nothing is left to fold back.
+            if rate > 1000.0 {
+                assert!(response(900.0, rate).0 < 0.02, "{rate} Hz");
+            }
+        }
+    }
 }

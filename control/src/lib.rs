@@ -41,4 +41,5 @@ pub mod tendon;
 pub mod thrust_curve;
 pub mod tilt;
 pub mod vector;
+pub mod warm;
 pub mod wrench;

@@ -12,7 +12,6 @@ use sophie_hil::scenario::Overrides;
 use sophie_hil::scenario::keys::{self, Range};
 use sophie_report::terminal::console;
 
-
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
 #[command(

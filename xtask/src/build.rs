@@ -22,7 +22,8 @@ pub fn firmware(board: &Board) -> Result<PathBuf, Error> {
     command.current_dir(root());
     command.args([
         "build",
-        "--release",
+        "--profile",
+        "firmware",
         "--locked",
         "--package",
         "sophie",

@@ -8,12 +8,13 @@ use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
-use sophie_control::tendon::{FULL_US, RELEASE_US, Reel};
+use sophie_control::tendon::Reel;
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::wrench::PerArm;
 use sophie_hil::crsf::Telemetry;
-use sophie_hil::flight::aircraft::{Aircraft, Belief, Said};
+use sophie_hil::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_hil::plant::{Actuators, Plant};
+use sophie_tasks::start::Cause;
 use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
@@ -21,7 +22,7 @@ use crate::emulator::Emulator;
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
-use crate::wires::{Digest, Pins, Run, Wires};
+use crate::wires::{Digest, Fault, Pins, Run, Wires};
 
 /// A vehicle with the emulated board in it.
 pub struct Bench<'a> {
@@ -38,6 +39,10 @@ pub struct Bench<'a> {
     grip: PerArm<ArmGrip>,
     proven: bool,
     setpoint: [f64; 3],
+    /// The last reset that the mission asked for, how many there were, and whether the board is still dead from it.
+    reset: Option<Reset>,
+    cuts: u32,
+    dead: bool,
     overruns: BTreeMap<String, u32>,
     log_digest: Digest,
     params: Params,
@@ -89,7 +94,7 @@ impl<'a> Bench<'a> {
     ) -> Self {
         Self {
             emulator,
-            sensors: Sensors::new(rng),
+            sensors: Sensors::new(&Params::default(), rng),
             plan,
             wires: Wires::default(),
             pins: Pins::default(),
@@ -101,6 +106,9 @@ impl<'a> Bench<'a> {
             grip: [ArmGrip::default(); 4],
             proven: false,
             setpoint: [f64::NAN; 3],
+            reset: None,
+            cuts: 0,
+            dead: false,
             overruns: BTreeMap::new(),
             log_digest: Digest::default(),
             params: Params::default(),
@@ -166,12 +174,11 @@ impl<'a> Bench<'a> {
 
     /// Force of each tendon (N) that its servo's pulse asks for.
     fn tension(&self) -> PerArm<f64> {
-        let reel = Reel::from_params(&self.params);
         let mut force = [0.0; 4];
-        for ((force, pulse), tilt) in force.iter_mut().zip(self.pins.servos).zip(self.watched.tilt) {
+        let pins = self.pins.servos.into_iter().zip(self.watched.tilt);
+        for ((force, (pulse, tilt)), reel) in force.iter_mut().zip(pins).zip(Reel::all(&self.params)) {
             if pulse > 0.0 {
-                let travel = (pulse as f32 - RELEASE_US) / (FULL_US - RELEASE_US);
-                *force = f64::from(reel.force(travel * self.params.servo_range, tilt as f32));
+                *force = f64::from(reel.force(reel.angle_of(pulse as f32), tilt as f32));
             }
         }
         force
@@ -219,6 +226,8 @@ impl Aircraft for Bench<'_> {
             self.telemetry.extend(bytes);
             for (at, why) in std::mem::take(&mut self.pins.resets) {
                 self.resets.push((at as f64 * 1e-6, why));
+                self.dead = false;
+                self.status = None;
             }
             let log = std::mem::take(&mut self.pins.log);
             for line in self.log.take(ms, &log) {
@@ -261,6 +270,32 @@ impl Aircraft for Bench<'_> {
             pressure: self.pressure(),
             saturated: false,
         }
+    }
+
+    fn motors(&self) -> PerArm<f64> {
+        self.pins.motors
+    }
+
+    // The processor stands still until its watchdog bites. Scenarios with another cause are refused beforehand.
+    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+        self.wires.faults.push(Fault::Hang(true));
+        self.reset = Some(Reset { cause, step, at });
+        self.cuts += 1;
+        self.dead = true;
+    }
+
+    fn start(&mut self, _: u64) {}
+
+    fn runs(&self) -> bool {
+        !self.dead
+    }
+
+    fn reset(&self) -> Option<Reset> {
+        self.reset
+    }
+
+    fn resets(&self) -> u32 {
+        self.cuts
     }
 
     fn overruns(&self) -> u32 {
@@ -309,7 +344,10 @@ mod tests {
         let (arm, grip) = told_grip("grip: arm 3 holds 947.25 N/m2 with 33.5 N, closed in 3.65 s").unwrap();
         assert_eq!((arm, grip.closure), (2, Some(3.65)));
         assert!((grip.pressure - 947.25).abs() < 1e-3 && (grip.force - 33.5).abs() < 1e-3);
-        assert_eq!(told_grip("grip: arm 5 holds 1 N/m2 with 1 N, closed in 1 s"), None);
+        assert_eq!(
+            told_grip("grip: arm 5 holds 1 N/m2 with 1 N, closed in 1 s"),
+            None
+        );
         assert_eq!(
             told_overruns("imu: 3 overruns in 12000 runs; worst: 1 us late, 2 us response, 3 us execution"),
             Some(("imu", 3))

@@ -34,10 +34,13 @@ impl Firmware {
         let file = object::File::parse(&*bytes).map_err(|_| wrong(format!("is no ELF file; {wanted}")))?;
         if file.architecture() != Architecture::Arm || file.is_64() {
             let found = file.architecture();
-            return Err(wrong(format!("is built for {found:?}, not for a 32-bit Arm; {wanted}")));
+            return Err(wrong(format!(
+                "is built for {found:?}, not for a 32-bit Arm; {wanted}"
+            )));
         }
         let section = |name| file.section_by_name(name);
-        let vectors = section(".vector_table").ok_or_else(|| wrong(format!("has no vector table; {wanted}")))?;
+        let vectors =
+            section(".vector_table").ok_or_else(|| wrong(format!("has no vector table; {wanted}")))?;
         if vectors.address() != FLASH.0 {
             let found = vectors.address();
             return Err(wrong(format!(

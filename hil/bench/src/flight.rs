@@ -60,9 +60,6 @@ pub fn fly(
     let make = |rng: &mut _| Bench::new(emulator, log, plan, rng, told);
     let (record, bench) = fly_with(scenario, make, observer);
     let board = bench.finish()?;
-    let gaps = gaps::not_allowed(&board.run.gaps)?
-        .into_iter()
-        .cloned()
-        .collect();
+    let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();
     Ok(Flight { record, board, gaps })
 }

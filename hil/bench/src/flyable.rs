@@ -3,7 +3,8 @@
 use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::wrench::Configuration;
-use sophie_hil::scenario::{Scenario, keys};
+use sophie_hil::scenario::{Scenario, Step, keys};
+use sophie_tasks::start::Cause;
 
 /// Refuses a scenario that needs another image.
 ///
@@ -24,6 +25,16 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
             keys::configuration_word(scenario.vehicle.configuration),
             keys::configuration_word(Configuration::default())
         ));
+    }
+    for step in &scenario.steps {
+        if let Step::Reset { cause, .. } = step
+            && *cause != Cause::Watchdog
+        {
+            return Err(format!(
+                "{name}: step {}: the bench cannot cut the power: allowed is a reset by the watchdog",
+                step.name()
+            ));
+        }
     }
     for row in Params::TABLE {
         let value = scenario.params.get(row.name).unwrap_or(row.default);

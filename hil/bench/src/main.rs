@@ -42,7 +42,12 @@ struct Args {
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Instructions for each cycle of the core's clock, 0.25 to 1: a real core manages fewer than one at times.
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
     speed: f64,
     /// Print the result as JSON on stdout, everything else on stderr.
     #[arg(long)]

@@ -3,13 +3,14 @@
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_hil::plant::{Plant, STEP};
 use sophie_hil::sensors::analog::{AMPS_PER_COUNT, BatteryInputs};
 use sophie_hil::sensors::arm_imu::{self, ArmImu};
 use sophie_hil::sensors::fsr::{FsrBreak, FsrSensor};
-use sophie_hil::sensors::imu::{self, Imu};
+use sophie_hil::sensors::imu::Imu;
 
 use crate::wires::Wires;
 
@@ -20,12 +21,12 @@ const FULL_SCALE: f64 = 4095.0;
 const AMPS_PER_VOLT: f64 = 40.0;
 /// Plant steps in a millisecond.
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
-/// Samples of the inertial sensor in a plant step.
-const SAMPLES_PER_STEP: u32 = (imu::RATE_HZ * STEP) as u32;
 
 /// The vehicle's sensors.
 pub struct Sensors {
     imu: Imu,
+    /// Samples of the inertial sensor in a plant step.
+    samples: u32,
     /// What the builder's calibration takes off the accelerometer, m/s².
     calibration: Vec3,
     arms: PerArm<ArmImu>,
@@ -41,16 +42,18 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Sensors with errors drawn from `rng`, in the order of [`sophie_hil::board::Board::new`]: one seed, one vehicle.
+    /// Sensors with errors drawn from `rng`, in the order of [`sophie_hil::board::Board::configured`]: one seed, one
+    /// vehicle.
     #[must_use]
-    pub fn new(rng: &mut Pcg64Mcg) -> Self {
-        let mut imu = Imu::new(Pcg64Mcg::from_rng(rng));
+    pub fn new(params: &Params, rng: &mut Pcg64Mcg) -> Self {
+        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
         let calibration = imu.bench_bias().as_vec3().to_array().into();
         let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
         let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
         let battery = BatteryInputs::new(rng);
         Self {
             imu,
+            samples: ((f64::from(params.imu_rate) * STEP) as u32).max(1),
             calibration,
             arms,
             fsr,
@@ -71,19 +74,14 @@ impl Sensors {
     }
 
     /// Steps the plant by a millisecond and puts what the sensors make of it on `wires`.
-    pub fn step(
-        &mut self,
-        plant: &mut Plant,
-        actuators: &sophie_hil::plant::Actuators,
-        wires: &mut Wires,
-    ) {
+    pub fn step(&mut self, plant: &mut Plant, actuators: &sophie_hil::plant::Actuators, wires: &mut Wires) {
         for _ in 0..STEPS_PER_MS {
             let (rate, force) = (plant.pose().omega, plant.specific_force());
             plant.step(actuators);
             let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
-            for k in 1..=SAMPLES_PER_STEP {
+            for k in 1..=self.samples {
                 // The part samples faster than the plant steps: on the line between two steps.
-                let share = f64::from(k) / f64::from(SAMPLES_PER_STEP);
+                let share = f64::from(k) / f64::from(self.samples);
                 let rotors = plant.rotor_speed();
                 let reading = self
                     .imu
@@ -106,8 +104,11 @@ impl Sensors {
         wires.arms = self.gravity.map(|g| g.to_array().map(f64::from));
         let volts = |counts: u16| f64::from(counts) * REFERENCE / FULL_SCALE;
         let pressures = self.fsr.iter_mut().zip(plant.pressure());
-        for ((counts, (sensor, pressure)), volt) in
-            self.pressure_counts.iter_mut().zip(pressures).zip(&mut wires.analog)
+        for ((counts, (sensor, pressure)), volt) in self
+            .pressure_counts
+            .iter_mut()
+            .zip(pressures)
+            .zip(&mut wires.analog)
         {
             *counts = sensor.sample(pressure, 1e-3, &mut self.rng);
             *volt = volts(*counts);

@@ -3,6 +3,7 @@
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::GripState;
+use sophie_tasks::start::Cause;
 
 use crate::plant::Plant;
 
@@ -34,6 +35,25 @@ pub trait Aircraft {
     /// What the stack believes and asks for now.
     fn belief(&self) -> Belief;
 
+    /// Command that each motor gets, 0..1.
+    fn motors(&self) -> PerArm<f64>;
+
+    /// The board goes dead for `cause` in the mission's step `step`, `at` s after power-up: no task runs, no pin moves,
+    /// until [`Self::start`].
+    fn cut(&mut self, cause: Cause, step: usize, at: f64);
+
+    /// The board starts again, `us` µs after power-up.
+    fn start(&mut self, us: u64);
+
+    /// The board is not dead.
+    fn runs(&self) -> bool;
+
+    /// The last reset.
+    fn reset(&self) -> Option<Reset>;
+
+    /// Resets so far.
+    fn resets(&self) -> u32;
+
     /// Missed deadlines of all tasks since power-up.
     fn overruns(&self) -> u32;
 
@@ -41,6 +61,17 @@ pub trait Aircraft {
     fn mode(&self) -> Mode {
         self.status().map_or(Mode::Calibrating, |s| s.mode)
     }
+}
+
+/// A reset of the board.
+#[derive(Clone, Copy, Debug)]
+pub struct Reset {
+    /// Why.
+    pub cause: Cause,
+    /// Step of the mission in which it happened.
+    pub step: usize,
+    /// When the board went dead, s after power-up.
+    pub at: f64,
 }
 
 /// What a stack says of its state.

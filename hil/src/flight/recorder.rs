@@ -25,6 +25,7 @@ pub struct Recorder {
     reason: String,
     warning: String,
     proven: bool,
+    resets: u32,
     digest: Digest,
 }
 
@@ -53,6 +54,7 @@ impl Recorder {
             reason: String::new(),
             warning: String::new(),
             proven: false,
+            resets: 0,
             digest: Digest::new(),
         }
     }
@@ -132,7 +134,14 @@ impl Recorder {
         });
     }
 
-    fn end_phase(&mut self, t: f64, done: bool, voltage: f64, stack: &impl Aircraft, observer: &mut dyn Observer) {
+    fn end_phase(
+        &mut self,
+        t: f64,
+        done: bool,
+        voltage: f64,
+        stack: &impl Aircraft,
+        observer: &mut dyn Observer,
+    ) {
         let Some(mut current) = self.current.take() else {
             return;
         };
@@ -147,6 +156,17 @@ impl Recorder {
 
     /// Takes changes of mode, reasons and proofs of grip from the stack.
     fn watch_stack(&mut self, t: f64, plant: &Plant, stack: &impl Aircraft, observer: &mut dyn Observer) {
+        if stack.resets() != self.resets
+            && let Some(reset) = stack.reset()
+        {
+            self.resets = stack.resets();
+            let text = if reset.cause.loses_memory() {
+                "power lost"
+            } else {
+                "board reset"
+            };
+            self.say(t, text.to_owned(), observer);
+        }
         if let Some(Said {
             mode,
             reason,

@@ -1,24 +1,37 @@
-//! The flight stack on the simulated board: every task spawned on the virtual executor.
+//! The flight stack on the simulated board: every task spawned on the virtual executor, and thrown away by a reset.
 
+use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
-use sophie_control::wrench::PerArm;
+use sophie_control::wrench::{Configuration, PerArm};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Status};
+use sophie_tasks::start::{Cause, Start};
 
-use super::aircraft::{Aircraft, Belief, Said};
+use super::aircraft::{Aircraft, Belief, Reset, Said};
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::plant::Plant;
 use crate::scenario::Scenario;
 
-/// The running stack of one flight.
+/// The stack of one flight.
 pub struct Stack {
-    time: VirtualTime,
+    /// Nothing runs while it is `None`; with it the time of the start, µs after power-up.
+    running: Option<(VirtualTime, u64)>,
     /// The board that it runs on.
     pub board: &'static Board,
     /// Its links.
     pub links: &'static Links,
+    params: Params,
+    mixer: Variant,
+    configuration: Configuration,
+    /// The last reset and how many there were.
+    reset: Option<Reset>,
+    resets: u32,
+    /// Missed deadlines of the runs before.
+    overruns: u32,
+    noise: Pcg64Mcg,
 }
 
 impl Stack {
@@ -26,11 +39,29 @@ impl Stack {
     ///
     /// Board and links are leaked: tasks borrow them for ever, as they do statics on a real board.
     pub fn new(scenario: &Scenario, rng: &mut Pcg64Mcg) -> Self {
-        let time = VirtualTime::new();
-        let board: &'static Board = Box::leak(Box::new(Board::new(rng)));
-        let links: &'static Links = Box::leak(Box::new(Links::new(calibrated(scenario.params, board))));
-        let (mixer, configuration) = (scenario.mixer, scenario.vehicle.configuration);
+        let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, rng)));
+        let params = calibrated(scenario.params, board);
+        let mut stack = Self {
+            running: None,
+            board,
+            links: Box::leak(Box::new(Links::new(params))),
+            params,
+            mixer: scenario.mixer,
+            configuration: scenario.vehicle.configuration,
+            reset: None,
+            resets: 0,
+            overruns: 0,
+            noise: Pcg64Mcg::seed_from_u64(!scenario.seed),
+        };
+        stack.spawn(0);
+        stack
+    }
 
+    /// The tasks begin, `us` µs after power-up.
+    fn spawn(&mut self, us: u64) {
+        let (links, board) = (self.links, self.board);
+        let (mixer, configuration) = (self.mixer, self.configuration);
+        let time = VirtualTime::new();
         // Flight level.
         time.spawn(sophie_tasks::imu::run(links, Port(board)));
         time.spawn(sophie_tasks::estimator::run(links));
@@ -43,11 +74,11 @@ impl Stack {
         time.spawn(sophie_tasks::servos::run(links, Port(board)));
         time.spawn(sophie_tasks::rc::run(links, Port(board)));
         time.spawn(sophie_tasks::commander::run(links));
-        time.spawn(sophie_tasks::supervisor::run(links, Port(board)));
+        time.spawn(sophie_tasks::supervisor::run(links, Port(board), Port(board)));
         // Background.
         time.spawn(sophie_tasks::arms::run(links, Port(board)));
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
-        Self { time, board, links }
+        self.running = Some((time, us));
     }
 }
 
@@ -65,7 +96,9 @@ impl Aircraft for Stack {
     }
 
     fn run_until(&mut self, us: u64) -> Result<(), String> {
-        self.time.run_until(us);
+        if let Some((time, start)) = &self.running {
+            time.run_until(us.saturating_sub(*start));
+        }
         Ok(())
     }
 
@@ -74,6 +107,7 @@ impl Aircraft for Stack {
             mode,
             reason,
             warning,
+            ..
         } = self.links.status.latest()?.value;
         Some(Said {
             mode,
@@ -111,11 +145,48 @@ impl Aircraft for Stack {
         }
     }
 
+    fn motors(&self) -> PerArm<f64> {
+        self.board.actuators().motors
+    }
+
+    // What outlives it is what was kept, unless power went too.
+    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+        self.overruns = self.overruns();
+        self.running = None;
+        self.board.reset();
+        if cause.loses_memory() {
+            let noise: [[u32; 16]; 2] =
+                core::array::from_fn(|_| core::array::from_fn(|_| self.noise.random()));
+            self.board.memory.set(noise);
+        }
+        let start = Start::new(cause, &self.board.memory.get());
+        self.links = Box::leak(Box::new(Links::starting(self.params, start)));
+        self.reset = Some(Reset { cause, step, at });
+        self.resets += 1;
+    }
+
+    fn start(&mut self, us: u64) {
+        self.spawn(us);
+    }
+
+    fn runs(&self) -> bool {
+        self.running.is_some()
+    }
+
+    fn reset(&self) -> Option<Reset> {
+        self.reset
+    }
+
+    fn resets(&self) -> u32 {
+        self.resets
+    }
+
     fn overruns(&self) -> u32 {
-        TaskId::ALL
+        let now: u32 = TaskId::ALL
             .iter()
             .map(|&task| self.links.timing(task).overruns)
-            .sum()
+            .sum();
+        self.overruns + now
     }
 }
 

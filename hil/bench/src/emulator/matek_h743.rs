@@ -187,7 +187,9 @@ impl MatekBoard {
             let found = self.part.function(now, pin);
             if found != Some(wanted) {
                 let found = found.map_or("none".to_owned(), |f| f.to_string());
-                lines.push(format!("{pin} carries alternate function {found}, wired for {wanted}"));
+                lines.push(format!(
+                    "{pin} carries alternate function {found}, wired for {wanted}"
+                ));
             }
         }
         lines

@@ -278,13 +278,7 @@ impl World {
     }
 
     /// Puts the world's side on the wires.
-    fn write(
-        &mut self,
-        session: &mut Session<MatekBoard>,
-        stop: Stop,
-        wires: Wires,
-        host: &mut dyn Host,
-    ) {
+    fn write(&mut self, session: &mut Session<MatekBoard>, stop: Stop, wires: Wires, host: &mut dyn Host) {
         for fault in wires.faults {
             let board = session.board_mut();
             match fault {

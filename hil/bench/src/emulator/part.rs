@@ -14,9 +14,9 @@ use super::watchdog::Watchdog;
 /// Instances that no firmware of ours uses. Asking their models costs half the speed; whoever reaches one all the same
 /// finds it listed as unimplemented, and the run failed.
 const UNUSED: [&str; 27] = [
-    "TIM1", "TIM6", "TIM7", "TIM8", "TIM12", "TIM13", "TIM14", "TIM16", "TIM17", "SPI2", "SPI3", "SPI4", "SPI5",
-    "SPI6", "I2C3", "I2C4", "UART4", "UART5", "UART8", "BDMA", "DMAMUX2", "ADC2", "ADC3", "SDMMC2", "GPIOI", "GPIOJ",
-    "GPIOK",
+    "TIM1", "TIM6", "TIM7", "TIM8", "TIM12", "TIM13", "TIM14", "TIM16", "TIM17", "SPI2", "SPI3", "SPI4",
+    "SPI5", "SPI6", "I2C3", "I2C4", "UART4", "UART5", "UART8", "BDMA", "DMAMUX2", "ADC2", "ADC3", "SDMMC2",
+    "GPIOI", "GPIOJ", "GPIOK",
 ];
 /// Serial ports in the order of [`Stm32h743::usart`].
 const SERIAL: [&str; 8] = [
@@ -68,7 +68,10 @@ impl Part {
         for name in UNUSED {
             unused[bus.slot(name)?] = true;
         }
-        let serial = SERIAL.iter().map(|name| bus.slot(name)).collect::<Result<_, _>>()?;
+        let serial = SERIAL
+            .iter()
+            .map(|name| bus.slot(name))
+            .collect::<Result<_, _>>()?;
         let slots = Slots {
             watchdog: bus.slot("IWDG")?,
             motors: bus.slot("TIM4")?,
@@ -103,8 +106,9 @@ impl Part {
     /// The pin is high.
     pub fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool {
         Pin::new(pin.1).is_some_and(|number| {
-            self.inner
-                .drive_port(now, pin.0, |port, file, _| port.level(number, file) == Level::High)
+            self.inner.drive_port(now, pin.0, |port, file, _| {
+                port.level(number, file) == Level::High
+            })
         })
     }
 

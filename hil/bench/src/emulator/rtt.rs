@@ -34,7 +34,9 @@ impl Rtt {
             return bytes;
         }
         while read != written {
-            let Ok(byte) = host.read(buffer + read, Width::W8) else { return bytes };
+            let Ok(byte) = host.read(buffer + read, Width::W8) else {
+                return bytes;
+            };
             bytes.push(byte as u8);
             read = (read + 1) % size;
         }

@@ -50,7 +50,9 @@ impl Tap {
 
     fn look(&mut self, file: &RegisterFile, now: VirtualNanos) {
         for channel in 0..4 {
-            let Some(number) = Channel::new(channel as u8 + 1) else { continue };
+            let Some(number) = Channel::new(channel as u8 + 1) else {
+                continue;
+            };
             let high = self.tim.output(number, file) == Some(Level::High);
             self.set(now, channel, high);
         }

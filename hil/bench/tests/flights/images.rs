@@ -16,7 +16,10 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
     let host = std::fs::read(std::env::current_exe().unwrap()).unwrap();
     assert!(refused("host", &host).contains("not for a 32-bit Arm"));
     let missing = Firmware::read(Path::new("/nowhere/image.elf")).err().unwrap();
-    assert!(missing.contains("/nowhere/image.elf: cannot be read"), "{missing}");
+    assert!(
+        missing.contains("/nowhere/image.elf: cannot be read"),
+        "{missing}"
+    );
 
     let good = std::fs::read(image()).unwrap();
     assert!(Firmware::read(image()).is_ok());

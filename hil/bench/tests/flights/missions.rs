@@ -3,7 +3,13 @@ use super::*;
 #[test]
 fn the_image_perches_at_half_an_instruction_a_cycle() {
     let flight = fly(&scenario("perch-short.toml"), 0.5, &[]);
-    assert!(flight.passed(), "{:?} {:?}\n{}", flight.record.outcome, flight.gaps, log(&flight));
+    assert!(
+        flight.passed(),
+        "{:?} {:?}\n{}",
+        flight.record.outcome,
+        flight.gaps,
+        log(&flight)
+    );
     for task in FLIGHT_LEVEL {
         assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(&flight));
     }

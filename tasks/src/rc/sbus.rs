@@ -10,11 +10,19 @@
 //! The counts are those of CRSF: 172 and 1811 at the ends of a stick's travel, 992 at its centre, so a frame's
 //! channels go into the same table of meanings.
 //!
-//! There is no checksum. A frame is believed only if it began where the line had been silent or where the
-//! frame before it ended; after garbage on an unbroken stream, the first frame found serves to find the
-//! second.
+//! There is no checksum. A frame is found only where it began after silence or where the frame before it ended;
+//! after garbage on an unbroken stream, the first frame found serves to find the second. And the pilot is believed
+//! only from the third frame on that comes without garbage between: bytes that are no SBUS look like one frame now
+//! and then (in 70,000 random ones after silence), hardly ever like three.
+//!
+//! A receiver that has lost its transmitter says so in the flags: such frames, and those that it repeats, publish no
+//! sticks, so that the link turns stale and the failsafe acts.
 
+use embassy_time::{Duration, Instant};
 use sophie_control::rc::{CHANNELS, ChannelError, Sticks};
+
+use super::Decode;
+use crate::links::RcState;
 
 /// Bytes of a frame.
 pub const FRAME: usize = 25;
@@ -22,6 +30,14 @@ pub const FRAME: usize = 25;
 const HEADER: u8 = 0x0F;
 /// Bits of a channel.
 const CHANNEL_BITS: u32 = 11;
+/// Flags that mean something; no receiver sets the others.
+const FLAGS: u8 = 0x0F;
+/// Time that a byte takes on the line: twelve bits.
+const BYTE: Duration = Duration::from_micros(120);
+/// Pause of the line that parts two frames. Receivers leave 4 ms and more; within a frame there is none.
+const SILENCE: Duration = Duration::from_millis(3);
+/// Frames in a row from which on the pilot is believed.
+const BELIEVED_FROM: u8 = 3;
 
 /// One frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,10 +68,10 @@ pub enum SbusError {
 }
 
 impl Frame {
-    /// The frame in these bytes; `None` unless header and end fit.
+    /// The frame in these bytes; `None` unless header, flags and end fit.
     pub fn decode(bytes: &[u8; FRAME]) -> Option<Self> {
         let [header, payload @ .., flags, end] = bytes;
-        if *header != HEADER || !is_end(*end) {
+        if *header != HEADER || flags & !FLAGS != 0 || !is_end(*end) {
             return None;
         }
         let mut channels = [0; CHANNELS];
@@ -124,7 +140,7 @@ const fn is_end(byte: u8) -> bool {
 
 /// Finds frames in a stream of bytes, however it is cut.
 ///
-/// Call [`Parser::silence`] wherever the line was idle (a receiver is, for 4 ms or more after each frame): data
+/// Call [`Parser::silence`] wherever the line was idle (a receiver's is, for 4 ms or more after each frame): data
 /// that stands still can look like frames at the wrong place, and only silence tells.
 #[derive(Clone, Copy, Debug)]
 pub struct Parser {
@@ -141,13 +157,18 @@ impl Default for Parser {
 }
 
 impl Parser {
-    /// A parser at the start of a stream, which it takes for the start of a frame.
+    /// A parser somewhere in a stream.
     pub const fn new() -> Self {
         Self {
             bytes: [0; FRAME],
             count: 0,
-            aligned: true,
+            aligned: false,
         }
+    }
+
+    /// Bytes are missing here: an unfinished frame is dropped, and the next byte may be any of a frame.
+    pub fn gap(&mut self) {
+        (self.count, self.aligned) = (0, false);
     }
 
     /// The line has been silent for longer than a byte: the next byte starts a frame. True if bytes of an
@@ -215,6 +236,73 @@ impl Parser {
     }
 }
 
+/// The pilot's wishes out of the bytes of a line.
+pub(super) struct Decoder {
+    parser: Parser,
+    state: RcState,
+    /// Frames in a row without garbage between.
+    in_a_row: u8,
+    /// When the line was last read, or failed.
+    last: Option<Instant>,
+}
+
+impl Decoder {
+    pub(super) fn new() -> Self {
+        Self {
+            parser: Parser::new(),
+            state: RcState::default(),
+            in_a_row: 0,
+            last: None,
+        }
+    }
+
+    fn garbage(&mut self) {
+        self.in_a_row = 0;
+        self.state.errors = self.state.errors.wrapping_add(1);
+    }
+}
+
+impl Decode for Decoder {
+    fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
+        // A read ends when its last byte is there, so these bytes began their own length earlier.
+        let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        let before = self.last.replace(at);
+        let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
+        if pause >= length + SILENCE && self.parser.silence() {
+            self.garbage();
+        }
+        let mut news = false;
+        while let Some(result) = self.parser.next_frame(&mut bytes) {
+            let Ok(frame) = result else {
+                self.garbage();
+                continue;
+            };
+            self.in_a_row = self.in_a_row.saturating_add(1).min(BELIEVED_FROM);
+            self.state.frames = self.state.frames.wrapping_add(1);
+            match frame.sticks() {
+                Ok(sticks) if self.in_a_row >= BELIEVED_FROM => {
+                    self.state.sticks = sticks;
+                    news = true;
+                }
+                Ok(_) => (),
+                // What came just before the report may be the last frame over again.
+                Err(SbusError::Failsafe | SbusError::FrameLost) => news = false,
+                Err(_) => {
+                    news = false;
+                    self.garbage();
+                }
+            }
+        }
+        news.then_some(self.state)
+    }
+
+    fn broken(&mut self, at: Instant) {
+        self.last = Some(at);
+        self.parser.gap();
+        self.garbage();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     extern crate std;
@@ -234,6 +322,13 @@ mod tests {
             }
         }
         (frames, errors)
+    }
+
+    /// A parser whose line has been silent.
+    fn fresh() -> Parser {
+        let mut parser = Parser::new();
+        parser.silence();
+        parser
     }
 
     fn pilot() -> Frame {
@@ -264,6 +359,8 @@ mod tests {
         bytes[24] = 0x24;
         assert!(Frame::decode(&bytes).is_some());
         bytes[24] = 0x05;
+        assert!(Frame::decode(&bytes).is_none());
+        (bytes[24], bytes[23]) = (0x00, 0x10);
         assert!(Frame::decode(&bytes).is_none());
     }
 
@@ -301,10 +398,10 @@ mod tests {
         for _ in 0..3 {
             bytes.extend(good);
         }
-        let (frames, errors) = stream(&mut Parser::new(), &bytes);
+        let (frames, errors) = stream(&mut fresh(), &bytes);
         assert_eq!((frames.len(), errors), (2, 1));
         // With silence before it, the very first is.
-        let mut parser = Parser::new();
+        let mut parser = fresh();
         assert!(stream(&mut parser, &[0x55; 11]).0.is_empty());
         parser.silence();
         assert_eq!(stream(&mut parser, &good).0, [pilot()]);
@@ -321,7 +418,7 @@ mod tests {
             for _ in 0..4 {
                 bytes.extend(good);
             }
-            let (frames, errors) = stream(&mut Parser::new(), &bytes);
+            let (frames, errors) = stream(&mut fresh(), &bytes);
             assert!(
                 frames.len() >= 3 && frames.iter().all(|f| *f == pilot()),
                 "{lost}: {}",
@@ -329,6 +426,102 @@ mod tests {
             );
             assert!(errors >= 1, "{lost}");
         }
+    }
+
+    /// Throttle published, in whole percent, and the decoder's counts.
+    fn published(decoder: &mut Decoder, bytes: &[u8], us: u64) -> Option<u32> {
+        decoder
+            .take(bytes, Instant::from_micros(us))
+            .map(|state| (state.sticks.throttle * 100.0 + 0.5) as u32)
+    }
+
+    /// A decoder that has heard three frames, 7 ms apart, the last at 21 ms.
+    fn believing() -> Decoder {
+        let mut d = Decoder::new();
+        assert_eq!(published(&mut d, &[0x00], 0), None);
+        assert_eq!(published(&mut d, &pilot().encode(), 7_000), None);
+        assert_eq!(published(&mut d, &pilot().encode(), 14_000), None);
+        assert_eq!(published(&mut d, &pilot().encode(), 21_000), Some(30));
+        d
+    }
+
+    #[test]
+    fn the_third_frame_in_a_row_is_believed() {
+        let mut d = believing();
+        assert_eq!((d.state.frames, d.state.errors), (3, 0));
+        // One frame in two reads.
+        let frame = pilot().encode();
+        assert_eq!(published(&mut d, &frame[..11], 27_000), None);
+        assert_eq!(published(&mut d, &frame[11..], 28_680), Some(30));
+        // Two at once: the task was held up.
+        assert_eq!(published(&mut d, &[frame, frame].concat(), 42_000), Some(30));
+        // Garbage between: three more.
+        assert_eq!(published(&mut d, &[0x55; 25], 49_000), None);
+        assert_eq!(published(&mut d, &frame, 56_000), None);
+        assert_eq!(published(&mut d, &frame, 63_000), None);
+        assert_eq!(published(&mut d, &frame, 70_000), Some(30));
+    }
+
+    #[test]
+    fn only_a_pause_beyond_the_bytes_own_time_is_silence() {
+        // Half a frame, then a frame's worth of bytes that took 3 ms: the line never rested.
+        let frame = pilot().encode();
+        let mut d = believing();
+        assert_eq!(published(&mut d, &frame[..12], 28_000), None);
+        assert_eq!(published(&mut d, &frame, 31_500), None, "still the same stream");
+        // The same with a rest of 4 ms: the half is dropped, the frame is found, and no longer believed alone.
+        let mut d = believing();
+        assert_eq!(published(&mut d, &frame[..12], 28_000), None);
+        assert_eq!(published(&mut d, &frame, 35_000), None);
+        assert_eq!((d.state.frames, d.state.errors), (4, 1));
+        assert_eq!(published(&mut d, &frame, 42_000), None);
+        assert_eq!(published(&mut d, &frame, 49_000), Some(30));
+    }
+
+    #[test]
+    fn a_receiver_without_its_transmitter_publishes_nothing_and_is_believed_again_at_once() {
+        for flags in [(true, false), (false, true), (true, true)] {
+            let mut d = believing();
+            let lost = Frame {
+                failsafe: flags.0,
+                frame_lost: flags.1,
+                ..pilot()
+            };
+            for i in 4..200 {
+                assert_eq!(published(&mut d, &lost.encode(), 7_000 * i), None);
+            }
+            // A report among the frames of one read counts for what came before it.
+            let read = [pilot().encode(), lost.encode()].concat();
+            assert_eq!(published(&mut d, &read, 1_400_000), None);
+            assert_eq!(published(&mut d, &pilot().encode(), 1_407_000), Some(30));
+            assert_eq!((d.state.frames, d.state.errors), (202, 0));
+        }
+    }
+
+    #[test]
+    fn a_line_error_costs_the_frame_in_progress_and_trust() {
+        let mut d = believing();
+        let frame = pilot().encode();
+        assert_eq!(published(&mut d, &frame[..12], 27_000), None);
+        d.broken(Instant::from_micros(27_500));
+        // What follows the error is the rest of that frame.
+        assert_eq!(published(&mut d, &frame[13..], 29_000), None);
+        assert_eq!(published(&mut d, &frame, 35_000), None);
+        assert_eq!(published(&mut d, &frame, 42_000), None);
+        assert_eq!(published(&mut d, &frame, 49_000), Some(30));
+        // The error, and what was left of that frame.
+        assert_eq!((d.state.frames, d.state.errors), (6, 2));
+    }
+
+    #[test]
+    fn channels_that_no_transmitter_sends_are_garbage() {
+        let mut d = believing();
+        let mut silly = pilot();
+        silly.channels[2] = 0;
+        for i in 4..20 {
+            assert_eq!(published(&mut d, &silly.encode(), 7_000 * i), None);
+        }
+        assert_eq!(d.state.errors, 16);
     }
 
     proptest! {
@@ -349,7 +542,7 @@ mod tests {
         #[test]
         fn frames_are_found_however_the_stream_is_cut(cut in 1usize..60, count in 1usize..20) {
             let bytes: Vec<u8> = (0..count).flat_map(|_| pilot().encode()).collect();
-            let mut parser = Parser::new();
+            let mut parser = fresh();
             let found: usize = bytes.chunks(cut).map(|chunk| stream(&mut parser, chunk).0.len()).sum();
             prop_assert_eq!(found, count);
         }
@@ -360,7 +553,7 @@ mod tests {
             for _ in 0..6 {
                 bytes.extend(pilot().encode());
             }
-            let (frames, _) = stream(&mut Parser::new(), &bytes);
+            let (frames, _) = stream(&mut fresh(), &bytes);
             // Garbage may end in the head of a frame that was never sent, which swallows one and unsettles one.
             prop_assert!(frames.iter().rev().take(3).all(|f| *f == pilot()) && frames.len() >= 3);
             // And after silence the next frame is believed at once.
@@ -368,6 +561,41 @@ mod tests {
             stream(&mut parser, &bytes);
             parser.silence();
             prop_assert_eq!(stream(&mut parser, &pilot().encode()).0, [pilot()]);
+        }
+
+        #[test]
+        fn no_bytes_but_sbus_give_sticks(
+            reads in proptest::collection::vec(
+                (proptest::collection::vec(any::<u8>(), 1..60), 0u64..20_000),
+                1..60,
+            ),
+        ) {
+            let mut decoder = Decoder::new();
+            let mut us = 0;
+            for (bytes, pause) in reads {
+                us += 120 * bytes.len() as u64 + pause;
+                prop_assert_eq!(decoder.take(&bytes, Instant::from_micros(us)), None);
+            }
+        }
+
+        #[test]
+        fn bytes_that_are_almost_sbus_give_no_sticks(
+            reads in proptest::collection::vec((proptest::array::uniform23(any::<u8>()), 0u8..4), 1..60),
+        ) {
+            // A right header after silence, and wrong in one place only: header, flags or end in turn.
+            let mut decoder = Decoder::new();
+            for (i, (inner, wrong)) in (1..).zip(reads) {
+                let mut bytes = [0; FRAME];
+                bytes[0] = if wrong == 0 { 0x0E } else { HEADER };
+                bytes[1..24].copy_from_slice(&inner);
+                bytes[23] = if wrong == 1 { inner[22] | 0x10 } else { 0x00 };
+                bytes[24] = if wrong == 2 { 0x01 } else { 0x00 };
+                if wrong == 3 {
+                    // Whole, but from a receiver that has no transmitter.
+                    bytes[23] = 0x08;
+                }
+                prop_assert_eq!(decoder.take(&bytes, Instant::from_micros(7_000 * i)), None);
+            }
         }
     }
 }
