@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows the chip; that is [`crate::board`]'s.
 
+mod grip;
 mod lights;
 mod report;
 pub mod tasks;

@@ -1,6 +1,6 @@
 //! What the firmware tells over defmt while it runs. Background: logging never delays a flight.
 //!
-//! A line when the state, its reason or the warning changes, and for each thing of the hardware that begins or ceases to
+//! A line when the state, its reason or the warning changes, for each arm of a proven grip, and for each thing of the hardware that begins or ceases to
 //! speak against arming; once a second, for every task whose count of overruns grew, its worst times; every ten seconds
 //! the depth of the stack. The first line says how long the start took.
 
@@ -9,6 +9,7 @@ use sophie_control::arming::{Refusal, Refusals};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 
+use super::grip::GripReport;
 use crate::board::cortex_m::stack;
 
 /// Time between two looks.
@@ -26,6 +27,7 @@ pub async fn run(links: &Links) -> ! {
     let mut shown: Option<Status> = None;
     let mut blocking = Refusals::NONE;
     let mut overruns = [0; TaskId::COUNT];
+    let mut grip = GripReport::default();
     let mut looks = 0u32;
     loop {
         ticker.next().await;
@@ -36,6 +38,7 @@ pub async fn run(links: &Links) -> ! {
             state(status, shown);
             shown = Some(status);
         }
+        grip.look(links);
         hardware(links, &mut blocking);
         if looks.is_multiple_of(TIMING_EVERY) {
             timing(links, &mut overruns);

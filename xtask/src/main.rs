@@ -1,5 +1,6 @@
 //! Developer verbs that need more than cargo. `cargo xtask` without a verb prints them.
 
+mod bench;
 mod boards;
 mod build;
 mod dma;
@@ -22,6 +23,8 @@ usage: cargo xtask VERB
 
   firmware BOARD     build the firmware and check its image; the last line is the path of the ELF
   flash BOARD        build, flash through probe-rs and show the log
+  bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--json]
+                     build and fly a mission on the emulated board (matek-h743); exit status 1 when it fails, 2 for bad input
   sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml and with
                      the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
 
@@ -62,6 +65,9 @@ impl Verb {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if let ["bench", rest @ ..] = words.as_slice() {
+        return bench(rest);
+    }
     let verb = match Verb::parse(&words) {
         Ok(verb) => verb,
         Err(complaint) => {
@@ -85,6 +91,20 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+fn bench(words: &[&str]) -> ExitCode {
+    let (board, status) = match bench::board(words) {
+        Ok(board) => (board, bench::fly(board, words.get(1..).unwrap_or_default())),
+        Err(complaint) => {
+            eprintln!("{complaint}");
+            return ExitCode::from(2);
+        }
+    };
+    status.unwrap_or_else(|error| {
+        eprintln!("{}: {error}", board.name);
+        ExitCode::FAILURE
+    })
 }
 
 /// Builds one board's firmware and checks its image.

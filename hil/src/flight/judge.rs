@@ -5,7 +5,7 @@ use sophie_control::mode::Mode;
 use sophie_control::tendon::ForceLimit;
 use sophie_control::wrench::PerArm;
 
-use super::stack::Stack;
+use super::aircraft::Aircraft;
 use crate::plant::Plant;
 use crate::plant::contact::BELLY_Z;
 use crate::plant::tendon::TendonSpec;
@@ -83,7 +83,7 @@ impl Judge {
         t: f64,
         step: Option<(usize, &Step)>,
         plant: &Plant,
-        stack: &Stack,
+        stack: &impl Aircraft,
     ) -> Option<String> {
         let pose = plant.pose();
         if !pose.position.is_finite() || !pose.omega.is_finite() {
@@ -134,7 +134,7 @@ impl Judge {
         if let Some(why) = self.after_reset(t, step, plant, stack) {
             return Some(why);
         }
-        let grip = stack.links.grip.latest().is_some_and(|g| g.value.proven);
+        let grip = stack.grip().is_some_and(|g| g.proven);
         let just_proven = grip && !self.proven;
         self.proven = grip;
         if just_proven && let Some(why) = self.badly_held(plant, 1.0) {
@@ -180,13 +180,13 @@ impl Judge {
         t: f64,
         step: Option<(usize, &Step)>,
         plant: &Plant,
-        stack: &Stack,
+        stack: &impl Aircraft,
     ) -> Option<String> {
         match step {
             Some((_, Step::Reset { .. })) => {
                 let reset = stack.reset().filter(|r| Some(r.step) == step.map(|(i, _)| i));
                 if let Some(reset) = reset {
-                    let asked = stack.board.actuators().motors;
+                    let asked = stack.motors();
                     let turns = plant.thrust().iter().any(|thrust| *thrust > STOPPED);
                     if asked != [0.0; 4] || turns && t - reset.at > RUN_OUT {
                         return Some("a rotor turned after the reset".to_owned());

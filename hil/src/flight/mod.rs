@@ -1,5 +1,6 @@
 //! Flies a scenario: world, board, tasks and pilot in lockstep under virtual time.
 
+pub mod aircraft;
 mod judge;
 mod recorder;
 mod stack;
@@ -11,6 +12,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use sophie_tasks::rc::Protocol;
 
+use self::aircraft::Aircraft;
 use self::judge::Judge;
 use self::recorder::Recorder;
 use self::stack::Stack;
@@ -25,15 +27,27 @@ const PROGRESS_MS: u64 = 250;
 /// Bytes of telemetry taken at once.
 const TELEMETRY_BYTES: usize = 256;
 
-/// Flies `scenario`, telling `observer` what happens.
+/// Flies `scenario` with the tasks in virtual time, telling `observer` what happens.
 ///
 /// The same scenario and seed give the same record to the bit, whatever other threads do; only
 /// [`FlightRecord::wall_seconds`] differs.
 pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
+    fly_with(scenario, |seeds| Stack::new(scenario, seeds), observer).0
+}
+
+/// Flies `scenario` with the aircraft that `make` gives; hands it back behind the record.
+///
+/// `make` gets the random numbers of the aircraft's parts: an aircraft that draws them as
+/// [`crate::board::Board::configured`] does has the same parts.
+pub fn fly_with<A: Aircraft>(
+    scenario: &Scenario,
+    make: impl FnOnce(&mut Pcg64Mcg) -> A,
+    observer: &mut dyn Observer,
+) -> (FlightRecord, A) {
     let wall = WallInstant::now();
     let mut seeds = Pcg64Mcg::seed_from_u64(scenario.seed);
     let mut plant = Plant::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
-    let mut stack = Stack::new(scenario, &mut seeds);
+    let mut stack = make(&mut seeds);
     let mut pilot = Pilot::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
     let mut recorder = Recorder::new(scenario);
     let mut judge = Judge::new(scenario);
@@ -51,27 +65,30 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
     while ms < limit_ms {
         ms += 1;
         let t = ms as f64 * 1e-3;
-        stack.board.step_world(&mut plant);
-        let received = stack.board.take_telemetry(&mut telemetry);
+        stack.step_world(&mut plant);
+        let received = stack.take_telemetry(&mut telemetry);
         if protocol == Protocol::Sbus
-            && let Some(status) = stack.links.status.latest()
+            && let Some(said) = stack.status()
         {
-            pilot.hear(status.value.mode, status.value.reason);
+            pilot.hear(said.mode, said.reason);
         }
         let output = pilot.step(1e-3, seen(&plant, t), &telemetry[..received]);
         match protocol {
             Protocol::Crsf => {
                 if let Some(frame) = &output.rc_bytes {
-                    stack.board.receive(frame);
+                    stack.receive(frame);
                 }
             }
             Protocol::Sbus => {
                 if let Some(frame) = sbus.step(1e-3, output.channels) {
-                    stack.board.receive(&frame);
+                    stack.receive(&frame);
                 }
             }
         }
-        stack.run_until(ms * 1000);
+        if let Err(why) = stack.run_until(ms * 1000) {
+            outcome.reason = format!("{why} (at {t:.1} s)");
+            break;
+        }
 
         let step = scenario.steps.get(output.step).map(|s| (output.step, s));
         if output.step != began.0 {
@@ -97,14 +114,15 @@ pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
         t: ms as f64 * 1e-3,
         text: outcome.reason.clone(),
     };
-    recorder.finish(
+    let record = recorder.finish(
         scenario,
         &stack,
         outcome,
         event,
         wall.elapsed().as_secs_f64(),
         observer,
-    )
+    );
+    (record, stack)
 }
 
 /// What the pilot can see of the vehicle.
@@ -135,7 +153,7 @@ fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
 }
 
 /// The reset of a step that has one: the board goes dead once in it, and starts again.
-fn reset(step: Option<(usize, &Step)>, (index, begun): (usize, f64), ms: u64, stack: &mut Stack) {
+fn reset(step: Option<(usize, &Step)>, (index, begun): (usize, f64), ms: u64, stack: &mut impl Aircraft) {
     let Some((
         _,
         Step::Reset {

@@ -3,27 +3,17 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mixer::Variant;
-use sophie_control::mode::Mode;
 use sophie_control::params::Params;
-use sophie_control::wrench::Configuration;
+use sophie_control::wrench::{Configuration, PerArm};
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::Links;
+use sophie_tasks::links::{GripState, Links, Status};
 use sophie_tasks::start::{Cause, Start};
 
+use super::aircraft::{Aircraft, Belief, Reset, Said};
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
+use crate::plant::Plant;
 use crate::scenario::Scenario;
-
-/// A reset of the board.
-#[derive(Clone, Copy, Debug)]
-pub struct Reset {
-    /// Why.
-    pub cause: Cause,
-    /// Step of the mission in which it happened.
-    pub step: usize,
-    /// When the board went dead, s after power-up.
-    pub at: f64,
-}
 
 /// The stack of one flight.
 pub struct Stack {
@@ -63,12 +53,12 @@ impl Stack {
             overruns: 0,
             noise: Pcg64Mcg::seed_from_u64(!scenario.seed),
         };
-        stack.start(0);
+        stack.spawn(0);
         stack
     }
 
     /// The tasks begin, `us` µs after power-up.
-    pub fn start(&mut self, us: u64) {
+    fn spawn(&mut self, us: u64) {
         let (links, board) = (self.links, self.board);
         let (mixer, configuration) = (self.mixer, self.configuration);
         let time = VirtualTime::new();
@@ -90,10 +80,77 @@ impl Stack {
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
         self.running = Some((time, us));
     }
+}
 
-    /// The board goes dead for `cause` in the mission's step `step`, `at` s after power-up: no task runs, no pin moves, until [`Self::start`]. What
-    /// outlives it is what was kept, unless power went too.
-    pub fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+impl Aircraft for Stack {
+    fn step_world(&mut self, plant: &mut Plant) {
+        self.board.step_world(plant);
+    }
+
+    fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize {
+        self.board.take_telemetry(buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.board.receive(bytes);
+    }
+
+    fn run_until(&mut self, us: u64) -> Result<(), String> {
+        if let Some((time, start)) = &self.running {
+            time.run_until(us.saturating_sub(*start));
+        }
+        Ok(())
+    }
+
+    fn status(&self) -> Option<Said<'_>> {
+        let Status {
+            mode,
+            reason,
+            warning,
+            ..
+        } = self.links.status.latest()?.value;
+        Some(Said {
+            mode,
+            reason,
+            warning,
+        })
+    }
+
+    fn grip(&self) -> Option<GripState> {
+        self.links.grip.latest().map(|g| g.value)
+    }
+
+    fn belief(&self) -> Belief {
+        let links = self.links;
+        let wide = |v: PerArm<f32>| v.map(f64::from);
+        let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
+        let estimate = links
+            .attitude
+            .latest()
+            .map(|a| a.value.q.to_euler())
+            .unwrap_or_default();
+        let target = links.target.latest().map(|v| v.value.to_array().map(f64::from));
+        let arms = links.arms.fresh().unwrap_or_default();
+        let contact = links.contact.latest().map(|c| c.value).unwrap_or_default();
+        let tendons = links.tendons.latest().map(|f| f.value).unwrap_or_default();
+        Belief {
+            attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
+            setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
+            tilt_measured: arms.tilt.map(|a| a.map_or(f64::NAN, f64::from)),
+            tilt_model: wide(mix.tilt),
+            thrust_asked: wide(mix.thrusts),
+            tension_asked: wide(tendons.force),
+            pressure: wide(contact.pressure),
+            saturated: mix.running && mix.given.saturated(),
+        }
+    }
+
+    fn motors(&self) -> PerArm<f64> {
+        self.board.actuators().motors
+    }
+
+    // What outlives it is what was kept, unless power went too.
+    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
         self.overruns = self.overruns();
         self.running = None;
         self.board.reset();
@@ -108,38 +165,23 @@ impl Stack {
         self.resets += 1;
     }
 
-    /// The tasks run.
-    pub fn runs(&self) -> bool {
+    fn start(&mut self, us: u64) {
+        self.spawn(us);
+    }
+
+    fn runs(&self) -> bool {
         self.running.is_some()
     }
 
-    /// The last reset.
-    pub fn reset(&self) -> Option<Reset> {
+    fn reset(&self) -> Option<Reset> {
         self.reset
     }
 
-    /// Resets so far.
-    pub fn resets(&self) -> u32 {
+    fn resets(&self) -> u32 {
         self.resets
     }
 
-    /// Lets the tasks run until `us` µs after power-up.
-    pub fn run_until(&self, us: u64) {
-        if let Some((time, start)) = &self.running {
-            time.run_until(us.saturating_sub(*start));
-        }
-    }
-
-    /// State of the vehicle.
-    pub fn mode(&self) -> Mode {
-        self.links
-            .status
-            .latest()
-            .map_or(Mode::Calibrating, |s| s.value.mode)
-    }
-
-    /// Missed deadlines of all tasks since power-up.
-    pub fn overruns(&self) -> u32 {
+    fn overruns(&self) -> u32 {
         let now: u32 = TaskId::ALL
             .iter()
             .map(|&task| self.links.timing(task).overruns)

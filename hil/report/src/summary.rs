@@ -207,7 +207,7 @@ mod tests {
     use super::super::synthetic;
     use super::*;
 
-    const DOCS: &str = include_str!("../../docs/summary.md");
+    const DOCS: &str = include_str!("../../../docs/summary.md");
 
     fn json(record: &FlightRecord) -> Value {
         serde_json::from_str(&Summary::of(record).to_json()).unwrap()

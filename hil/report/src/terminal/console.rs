@@ -78,8 +78,9 @@ impl Console {
             "NOT accomplished"
         };
         let speed = record.sim_seconds / record.wall_seconds.max(1e-6);
+        let decimals = if speed < 10.0 { 2 } else { 0 };
         format!(
-            "{}: {:.1} s flown in {:.2} s ({speed:.0} times real time), {} overruns",
+            "{}: {:.1} s flown in {:.2} s ({speed:.decimals$} times real time), {} overruns",
             self.paint(word, record.outcome.accomplished),
             record.sim_seconds,
             record.wall_seconds,

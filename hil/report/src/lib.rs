@@ -1,4 +1,5 @@
-//! What is kept of a flight on disk: a page to read, a log to plot, a summary for programs.
+//! What is kept of a flight on disk (a page to read, a log to plot, a summary for programs), and what is told of it on
+//! a terminal.
 
 mod bands;
 mod drawing;
@@ -16,4 +17,5 @@ mod svg;
 #[cfg(test)]
 mod synthetic;
 mod tables;
+pub mod terminal;
 pub mod units;

@@ -41,18 +41,18 @@ impl OutDir {
     ///
     /// # Errors
     /// One line that names the file and the reason; the temporary files are gone then.
-    pub fn write(&self, files: &[(&str, Vec<u8>)]) -> Result<Vec<String>, String> {
+    pub fn write(&self, files: &[(impl AsRef<str>, Vec<u8>)]) -> Result<Vec<String>, String> {
         let result = self.try_write(files);
         if result.is_err() {
             for (name, _) in files {
                 // Whatever is not there needs no removing.
-                let _ = fs::remove_file(self.partial(name));
+                let _ = fs::remove_file(self.partial(name.as_ref()));
             }
         }
         result
     }
 
-    fn try_write(&self, files: &[(&str, Vec<u8>)]) -> Result<Vec<String>, String> {
+    fn try_write(&self, files: &[(impl AsRef<str>, Vec<u8>)]) -> Result<Vec<String>, String> {
         let told = |name: &str, error: io::Error| {
             format!(
                 "--out {}: cannot be written: {error}",
@@ -60,10 +60,12 @@ impl OutDir {
             )
         };
         for (name, content) in files {
+            let name = name.as_ref();
             fs::write(self.partial(name), content).map_err(|error| told(name, error))?;
         }
         let mut written = Vec::new();
         for (name, _) in files {
+            let name = name.as_ref();
             let path = self.path.join(name);
             fs::rename(self.partial(name), &path).map_err(|error| told(name, error))?;
             written.push(path.display().to_string());

@@ -4,7 +4,7 @@ use sophie_hil::record::FlightRecord;
 use sophie_hil::scenario::{Scenario, keys};
 
 use super::table::{Align, Table};
-use crate::report::units::{deg, kgcm};
+use crate::units::{deg, kgcm};
 
 /// One line that says what is about to be flown.
 pub fn intro(scenario: &Scenario) -> String {
