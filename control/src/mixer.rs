@@ -136,9 +136,14 @@ impl Mixer {
 
     /// Rotors at idle for one step of `dt` s.
     pub fn idle(&mut self, dt: f32) -> Mix {
-        self.follow([self.idle; 4], dt);
+        let mix = self.at_idle();
+        self.follow(&mix.thrusts, dt);
+        mix
+    }
+
+    const fn at_idle(&self) -> Mix {
         Mix {
-            thrusts: self.last,
+            thrusts: [self.idle; 4],
             given: Given::ALL,
             yaw_gated: true,
         }
@@ -146,8 +151,15 @@ impl Mixer {
 
     /// Thrusts (N) for the wrench `w` (N, N·m). A wrench that is not finite counts as none: idle.
     pub fn mix(&mut self, w: Wrench, c: Conditions) -> Mix {
+        let mix = self.allocate(w, c);
+        self.follow(&mix.thrusts, c.dt);
+        mix
+    }
+
+    /// First half of [`Self::mix`]: the thrusts, with the arms where they are believed to be.
+    pub fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
-            return self.idle(c.dt);
+            return self.at_idle();
         }
         let ratio = math::clamp(c.battery_ratio, 0.5, 1.0);
         let high = self.max * ratio * ratio;
@@ -176,7 +188,6 @@ impl Mixer {
         patterns.yaw = patterns.yaw.map(|y| y * share);
         let (thrusts, mut given) = desaturate(&patterns, self.idle, high);
         given.yaw *= share;
-        self.follow(thrusts, c.dt);
         Mix {
             thrusts,
             given,
@@ -184,12 +195,12 @@ impl Mixer {
         }
     }
 
-    /// Steps the models of arms and motors with the thrusts sent.
-    fn follow(&mut self, thrusts: PerArm<f32>, dt: f32) {
-        self.last = thrusts;
-        self.tilt.step(&thrusts, dt);
+    /// Second half: steps the models of arms and motors by `dt` s with the thrusts (N) sent.
+    pub fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
+        self.last = *thrusts;
+        self.tilt.step(thrusts, dt);
         if self.variant == Variant::Frozen {
-            for (arm, t) in self.dynamic.iter_mut().zip(&thrusts) {
+            for (arm, t) in self.dynamic.iter_mut().zip(thrusts) {
                 arm.step(*t, self.motor_rate, dt);
             }
         }

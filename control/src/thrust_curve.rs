@@ -2,6 +2,7 @@
 
 use crate::math;
 use crate::params::Params;
+use crate::wrench::PerArm;
 
 /// T / T_max = (V/V0)² (q u² + (1 - q) u): thrust of the command u at the voltage V.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +37,11 @@ impl ThrustCurve {
         } else {
             0.0
         }
+    }
+
+    /// Commands 0..1 for the thrusts (N) of the four rotors at the voltage ratio `ratio` (V/V0).
+    pub fn commands(&self, thrusts: &PerArm<f32>, ratio: f32) -> PerArm<f32> {
+        thrusts.map(|t| self.command(t, ratio))
     }
 
     /// Thrust (N) of the command `command` at the voltage ratio `ratio`.
