@@ -14,13 +14,28 @@ impl LowPass {
         Self { value }
     }
 
-    /// One step of `dt` s with the cut-off `rate` (rad/s, 2π times Hz). Stable for any positive product:
-    /// the gain is rate·dt / (1 + rate·dt). An input that is not finite changes nothing.
+    /// One step of `dt` s with the cut-off `rate` (rad/s, 2π times Hz). Stable for any positive product.
+    /// An input that is not finite changes nothing.
+    #[inline]
     pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
-        let k = rate * dt;
         if input.is_finite() {
-            self.value += (input - self.value) * (k / (1.0 + k));
+            self.blend(input, Self::gain(rate, dt));
         }
+        self.value
+    }
+
+    /// Share of the way to the input that a step of `dt` s goes with the cut-off `rate` (rad/s), 0..1. It takes a
+    /// division, so filters of the same cut-off share it.
+    #[inline]
+    pub fn gain(rate: f32, dt: f32) -> f32 {
+        let k = rate * dt;
+        k / (1.0 + k)
+    }
+
+    /// One step with the [gain](Self::gain) `gain` towards an `input` that is known to be finite.
+    #[inline]
+    pub fn blend(&mut self, input: f32, gain: f32) -> f32 {
+        self.value += (input - self.value) * gain;
         self.value
     }
 
@@ -76,6 +91,11 @@ impl Coefficients {
             a1: b1,
             a2: (1.0 - 2.0 * zeta_pole * k + k * k) * norm,
         }
+    }
+
+    /// Gain, a1 and a2 of a low pass, whose numerator is the gain times 1, 2, 1.
+    pub(crate) const fn as_low_pass(self) -> (f32, f32, f32) {
+        (self.b0, self.a1, self.a2)
     }
 
     /// tan(π f / fs): the bilinear transform's warped frequency.

@@ -27,21 +27,23 @@ impl ThrustCurve {
 
     /// Command 0..1 for the thrust `thrust` (N) at the voltage ratio `ratio` (V/V0). 0 for no thrust.
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
-        let ratio = math::clamp(ratio, self.least_ratio, 1.5);
-        let share = math::clamp(thrust / (self.max * ratio * ratio), 0.0, 1.0);
-        // The root of q u² + (1 - q) u = share in the form that also holds for q = 0.
-        let root = math::sqrt(self.linear * self.linear + 4.0 * self.quadratic * share);
-        let sum = self.linear + root;
-        if sum > 0.0 {
-            math::clamp(2.0 * share / sum, 0.0, 1.0)
-        } else {
-            0.0
-        }
+        let [command, ..] = self.commands(&[thrust; 4], ratio);
+        command
     }
 
     /// Commands 0..1 for the thrusts (N) of the four rotors at the voltage ratio `ratio` (V/V0).
+    #[inline]
     pub fn commands(&self, thrusts: &PerArm<f32>, ratio: f32) -> PerArm<f32> {
-        thrusts.map(|t| self.command(t, ratio))
+        let ratio = math::clamp(ratio, self.least_ratio, 1.5);
+        let per_newton = 1.0 / (self.max * ratio * ratio);
+        thrusts.map(|thrust| {
+            let share = math::clamp(thrust * per_newton, 0.0, 1.0);
+            // The root of q u² + (1 - q) u = share in the form that also holds for q = 0.
+            let square = self.linear * self.linear + 4.0 * self.quadratic * share;
+            let root = square * math::inv_sqrt_normal(square);
+            let sum = self.linear + root;
+            math::clamp(2.0 * share / sum, 0.0, 1.0)
+        })
     }
 
     /// Thrust (N) of the command `command` at the voltage ratio `ratio`.

@@ -23,6 +23,8 @@ struct Arm {
     lagged: LowPass,
     bias: f32,
     tilt: f32,
+    /// T dα/dT: what a relative change of thrust tilts the arm by once it has followed, rad.
+    follow: f32,
 }
 
 /// Tilt of the four arms.
@@ -47,6 +49,7 @@ impl TiltModel {
             lagged: LowPass::at(thrust),
             bias: 0.0,
             tilt: model.angle(thrust),
+            follow: thrust * model.slope(thrust),
         };
         Self {
             model,
@@ -59,20 +62,27 @@ impl TiltModel {
         }
     }
 
-    /// One step of `dt` s with the thrusts (N) commanded last.
+    /// One step of `dt` s with the thrusts (N) commanded last; such as are no numbers change nothing.
+    #[inline]
     pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
-        let (model, cutoff, lag_rate) = (self.model, self.cutoff, self.lag_rate);
+        if !commanded.iter().sum::<f32>().is_finite() {
+            return;
+        }
+        let model = self.model;
+        let (gain, lag_gain) = (
+            LowPass::gain(self.cutoff, dt),
+            LowPass::gain(self.lag_rate, dt),
+        );
         let mut fault = false;
         for (arm, thrust) in self.arms.iter_mut().zip(commanded) {
-            let thrust = arm.thrust.step(*thrust, cutoff, dt);
-            arm.lagged.step(thrust, lag_rate, dt);
+            let thrust = arm.thrust.blend(*thrust, gain);
+            arm.lagged.blend(thrust, lag_gain);
             let tilt = model.angle(thrust) + arm.bias;
             // Outside the static model's range the last valid value is held: no jump, and a fault says so.
-            if (-VALID_TILT..=VALID_TILT).contains(&tilt) {
-                arm.tilt = tilt;
-            } else if thrust > LEARN_THRUST {
-                fault = true;
-            }
+            let valid = tilt.abs() <= VALID_TILT;
+            arm.tilt = if valid { tilt } else { arm.tilt };
+            arm.follow = thrust * model.slope(thrust);
+            fault |= !valid & (thrust > LEARN_THRUST);
         }
         self.fault = fault;
     }
@@ -97,13 +107,21 @@ impl TiltModel {
     }
 
     /// Low-passed thrust of each rotor, N, >= 0.
+    #[inline]
     pub fn thrusts(&self) -> PerArm<f32> {
         self.arms.map(|a| a.thrust.value())
     }
 
     /// Tilt of each arm, rad, tip up positive, within ±[`VALID_TILT`].
+    #[inline]
     pub fn tilt(&self) -> PerArm<f32> {
         self.arms.map(|a| a.tilt)
+    }
+
+    /// T dα/dT of each arm, rad: how far a relative change of its thrust tilts it.
+    #[inline]
+    pub fn follow(&self) -> PerArm<f32> {
+        self.arms.map(|a| a.follow)
     }
 
     /// Bias of each arm against the model, rad, tip up positive, within the parameters' limit.

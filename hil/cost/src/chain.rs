@@ -6,7 +6,6 @@ use core::hint::black_box;
 
 use sophie_control::attitude::AttitudeLoop;
 use sophie_control::estimator::Estimator;
-use sophie_control::filter::Coefficients;
 use sophie_control::imu_filter::{AxisFilter, ImuFilter};
 use sophie_control::mixer::{Conditions, Mix, Mixer, Variant};
 use sophie_control::params::Params;
@@ -52,7 +51,7 @@ impl Chain {
         let p = black_box(Params::default());
         let raw_rate = black_box(4000.0);
         Self {
-            axes: AxisFilter::new(Coefficients::low_pass(p.gyro_cutoff, raw_rate)),
+            axes: AxisFilter::low_pass(p.gyro_cutoff, raw_rate),
             filter: ImuFilter::new(p.gyro_cutoff, raw_rate),
             estimator: Estimator::new(&p),
             attitude: AttitudeLoop::new(&p),

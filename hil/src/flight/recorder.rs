@@ -1,6 +1,8 @@
 //! Keeps what the report needs: samples, phases, events, grips, and a digest of it all.
 
+use sophie_control::math;
 use sophie_control::mode::Mode;
+use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 
 use super::stack::Stack;
@@ -247,7 +249,11 @@ fn sample(t: f64, plant: &Plant, stack: &Stack, throttle: f64) -> Sample {
         .latest()
         .map(|a| a.value.q.to_euler())
         .unwrap_or_default();
-    let target = links.target.latest().map(|v| v.value.to_array().map(f64::from));
+    // The wanted heading comes as what it is ahead of the present one.
+    let target = links.target.latest().map(|v| {
+        let Vec3 { x, y, z } = v.value;
+        [x, y, math::wrap_pi(estimate.2 + z)].map(f64::from)
+    });
     let arms = links.arms.fresh().unwrap_or_default();
     Sample {
         t,
