@@ -81,7 +81,7 @@ impl AttitudeLoop {
 
     /// Body rates (rad/s, roll and pitch within ± the parameter `rate_max`, yaw within twice `yaw_slew`) that
     /// lead from `q` (unit, body to world) to the setpoint; step time `dt` s, > 0.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, q: Quat, setpoint: AttitudeSetpoint, dt: f32) -> Vec3 {
         let sound = (setpoint.roll + setpoint.pitch + setpoint.yaw_rate).is_finite();
         let gain = LowPass::gain(self.cutoff, dt);

@@ -65,7 +65,7 @@ impl Estimator {
 
     /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without
     /// its bias.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
         if !self.calibrated {
             self.calibrate(gyro, accel, dt);

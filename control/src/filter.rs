@@ -26,14 +26,14 @@ impl LowPass {
 
     /// Share of the way to the input that a step of `dt` s goes with the cut-off `rate` (rad/s), 0..1. It takes a
     /// division, so filters of the same cut-off share it.
-    #[inline]
+    #[inline(always)]
     pub fn gain(rate: f32, dt: f32) -> f32 {
         let k = rate * dt;
         k / (1.0 + k)
     }
 
     /// One step with the [gain](Self::gain) `gain` towards an `input` that is known to be finite.
-    #[inline]
+    #[inline(always)]
     pub fn blend(&mut self, input: f32, gain: f32) -> f32 {
         self.value += (input - self.value) * gain;
         self.value
@@ -119,7 +119,7 @@ impl Biquad {
     }
 
     /// One sample.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, x: f32) -> f32 {
         let y = self.c.b0 * x + self.s1;
         self.s1 = self.c.b1 * x - self.c.a1 * y + self.s2;

@@ -27,7 +27,7 @@ impl AxisFilter {
     }
 
     /// One sample.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, v: Vec3) -> Vec3 {
         // The numerator is 1, 2, 1: one product serves all three taps.
         let x = v * self.gain;
@@ -66,7 +66,7 @@ impl ImuFilter {
     }
 
     /// Takes one sample (rad/s, m/s²) and gives the filtered one; a sample that is not finite is left out.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3) -> Option<(Vec3, Vec3)> {
         if !(gyro + accel).is_finite() {
             return None;

@@ -48,7 +48,7 @@ pub fn tan(x: f32) -> f32 {
 
 /// Sine and cosine of `x` rad for |x| <= 0.7, the tilts for which the arm's model holds: absolute errors below 5e-7 and
 /// 7e-6. Minimax polynomials; the sine's slope at 0 is exact.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_small(x: f32) -> (f32, f32) {
     let x2 = x * x;
     (
@@ -59,7 +59,7 @@ pub fn sin_cos_small(x: f32) -> (f32, f32) {
 
 /// Sine and cosine of `x` rad for |x| <= π/2: absolute errors below 1.2e-4 and 9e-6, where a tenth of a degree is what a
 /// sensor can tell.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_quarter(x: f32) -> (f32, f32) {
     let x2 = x * x;
     (
@@ -85,7 +85,7 @@ pub fn inv_sqrt(x: f32) -> f32 {
 ///
 /// Bit-level first guess, a Newton step with constants that were fitted to that guess (Moroz et al., error 6.5e-4) and
 /// one plain Newton step.
-#[inline]
+#[inline(always)]
 pub fn inv_sqrt_normal(x: f32) -> f32 {
     let y = f32::from_bits(0x5f1f_fff9u32.wrapping_sub(x.to_bits() >> 1));
     let y = y * 0.703_952_25 * (2.389_244_6 - x * y * y);
@@ -98,20 +98,16 @@ pub fn sqrt(x: f32) -> f32 {
     if x < f32::MAX { x * inv_sqrt(x) } else { 0.0 }
 }
 
-/// `x` limited to [`low`, `high`]; `low` for a NaN. Compiles to two compares on a core without VMINNM.
-#[inline]
+/// `x` limited to [`low`, `high`]; `low` for a NaN. Two selects, which an M7 does in an instruction each where the limits
+/// are constants; `f32::clamp` and its kin call a library on a core without VMINNM.
+#[inline(always)]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
-    if x > high {
-        high
-    } else if x > low {
-        x
-    } else {
-        low
-    }
+    let x = if x > low { x } else { low };
+    if x < high { x } else { high }
 }
 
 /// `x` limited to [-`limit`, `limit`]; -`limit` for a NaN.
-#[inline]
+#[inline(always)]
 pub fn clamp_abs(x: f32, limit: f32) -> f32 {
     clamp(x, -limit, limit)
 }

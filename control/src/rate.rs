@@ -75,7 +75,7 @@ impl RateLoop {
 
     /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s), step time `dt` s, > 0. `integrate` false
     /// freezes the integrators, as while resting on something.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, setpoint: Vec3, rate: Vec3, feedback: Feedback, integrate: bool, dt: f32) -> Vec3 {
         let error = setpoint - rate;
         let per_second = if self.started { 1.0 / dt } else { 0.0 };

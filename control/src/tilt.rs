@@ -63,7 +63,7 @@ impl TiltModel {
     }
 
     /// One step of `dt` s with the thrusts (N) commanded last; such as are no numbers change nothing.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
         if !commanded.iter().sum::<f32>().is_finite() {
             return;
