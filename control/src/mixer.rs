@@ -7,7 +7,7 @@
 
 use crate::deflection::Algorithm1;
 use crate::desaturation::{Given, Patterns, desaturate};
-use crate::effectiveness::{Effectiveness, Geometry, Inverse};
+use crate::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
@@ -99,6 +99,8 @@ pub struct Mixer {
     idle: f32,
     max: f32,
     yaw_limit: f32,
+    /// Rise of yaw's share with the authority, 1/m: nothing at half the floor, all of it at the floor.
+    fade_slope: f32,
     gate: f32,
     yaw_open: bool,
     motor_rate: f32,
@@ -118,6 +120,7 @@ impl Mixer {
             idle: p.thrust_idle,
             max: p.thrust_max,
             yaw_limit: p.yaw_thrust_max,
+            fade_slope: 2.0 / (YAW_FLOOR * p.torque_ratio),
             gate: p.yaw_gate_thrust,
             yaw_open: false,
             motor_rate: 1.0 / p.motor_tau,
@@ -150,6 +153,7 @@ impl Mixer {
     }
 
     /// Thrusts (N) for the wrench `w` (N, N·m). A wrench that is not finite counts as none: idle.
+    #[inline(always)]
     pub fn mix(&mut self, w: Wrench, c: Conditions) -> Mix {
         let mix = self.allocate(w, c);
         self.follow(&mix.thrusts, c.dt);
@@ -157,6 +161,7 @@ impl Mixer {
     }
 
     /// First half of [`Self::mix`]: the thrusts, with the arms where they are believed to be.
+    #[inline(always)]
     pub fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
             return self.at_idle();
@@ -164,12 +169,8 @@ impl Mixer {
         let ratio = math::clamp(c.battery_ratio, 0.5, 1.0);
         let high = self.max * ratio * ratio;
         let mean = 0.25 * self.tilt.thrusts().iter().sum::<f32>();
-        self.yaw_open = mean
-            >= if self.yaw_open {
-                self.gate
-            } else {
-                self.gate + GATE_HYSTERESIS
-            };
+        let shut = if self.yaw_open { 0.0 } else { GATE_HYSTERESIS };
+        self.yaw_open = mean >= self.gate + shut;
         let usable = c.yaw && self.yaw_open;
         let (mut patterns, fade) = match self.variant {
             Variant::Flexible => self.quasi_static(w, usable),
@@ -180,11 +181,7 @@ impl Mixer {
                 self.stiff(w, tilt)
             }
         };
-        let share = if usable {
-            fade * self.yaw_room(&patterns.yaw, fade)
-        } else {
-            0.0
-        };
+        let share = self.yaw_share(&patterns.yaw, if usable { fade } else { 0.0 });
         patterns.yaw = patterns.yaw.map(|y| y * share);
         let (thrusts, mut given) = desaturate(&patterns, self.idle, high);
         given.yaw *= share;
@@ -196,6 +193,7 @@ impl Mixer {
     }
 
     /// Second half: steps the models of arms and motors by `dt` s with the thrusts (N) sent.
+    #[inline(always)]
     pub fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
         self.last = *thrusts;
         self.tilt.step(thrusts, dt);
@@ -207,44 +205,44 @@ impl Mixer {
     }
 
     /// The law that flies: T = Tt + J⁻¹ (w - w(Tt)), J the static Jacobian at the low-passed thrusts Tt.
+    #[inline(always)]
     fn quasi_static(&self, w: Wrench, yaw_usable: bool) -> (Patterns, f32) {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
-        let mut e = Effectiveness::quasi_static(&self.geometry, self.tilt.model(), &thrusts, &tilt);
+        // In A yaw works the other way round: it is allocated as in B, with the moment reversed.
+        let geometry = self.geometry.as_b();
+        let w = Wrench {
+            yaw: if self.geometry.drag < 0.0 { -w.yaw } else { w.yaw },
+            ..w
+        };
+        let mut e = Effectiveness::quasi_static(&geometry, &tilt, &self.tilt.follow());
         // The authority fades with its own quasi-static gain, and no entry may pass zero: the inverse of a
         // vanishing entry would be a kick, and a reversed authority is not to be trusted.
-        let authority = 0.25 * e.yaw.iter().sum::<f32>();
-        let sign = if self.geometry.drag < 0.0 { -1.0 } else { 1.0 };
-        let least = YAW_FLOOR * self.geometry.drag * sign;
-        let fade = if yaw_usable {
-            math::clamp((sign * authority - 0.5 * least) / (0.5 * least), 0.0, 1.0)
-        } else {
-            0.0
-        };
-        for y in &mut e.yaw {
-            *y = sign * math::clamp(sign * *y, least, 1.0);
-        }
-        let now = self.geometry.wrench(&thrusts, &tilt);
-        let rest = Wrench {
-            thrust: w.thrust - now.thrust,
-            roll: -now.roll,
-            pitch: -now.pitch,
-            yaw: -now.yaw * fade,
-        };
-        let Some(mut patterns) = self.patterns(e, thrusts, rest, w) else {
+        let [y1, y2, y3, y4] = e.yaw;
+        let authority = 0.25 * (y1 + y2 + y3 + y4);
+        let least = YAW_FLOOR * geometry.drag;
+        let fade = math::clamp(authority * self.fade_slope - 1.0, 0.0, 1.0);
+        let fade = if yaw_usable { fade } else { 0.0 };
+        e.yaw = e.yaw.map(|y| if y > least { y } else { least });
+        let Some(inverse) = Inverse::new(&e) else {
             return self.without_yaw(w);
         };
+        let now = Load::given(&geometry, &thrusts, &tilt);
+        let half = 0.5 * w.thrust;
+        let [c1, c2, c3, c4] = inverse.solve(Load {
+            front: half - now.front,
+            rear: half - now.rear,
+            roll: -now.roll,
+            yaw: -now.yaw * fade,
+        });
+        let [t1, t2, t3, t4] = thrusts;
+        let (c1, c2, c3, c4) = (t1 + c1, t2 + c2, t3 + c3, t4 + c4);
         // The collective goes on from the last thrusts. Where yaw is given up nothing corrects what they have
         // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
-        let left = 0.25
-            * patterns
-                .collective
-                .iter()
-                .zip(&YAW)
-                .map(|(t, y)| t * y)
-                .sum::<f32>();
-        for (t, y) in patterns.collective.iter_mut().zip(&YAW) {
-            *t -= (1.0 - fade) * left * y;
-        }
+        let left = (0.25 - 0.25 * fade) * (c1 - c2 - c3 + c4);
+        let patterns = Patterns {
+            collective: [c1 - left, c2 + left, c3 + left, c4 - left],
+            ..Self::patterns(&geometry, &inverse, w)
+        };
         (patterns, fade)
     }
 
@@ -252,44 +250,41 @@ impl Mixer {
     fn frozen(&self, w: Wrench) -> (Patterns, f32) {
         let tilt = self.dynamic.map(|arm| self.tilt.model().angle(arm.load));
         let e = Effectiveness::frozen(&self.geometry, &tilt);
-        let rest = Wrench {
-            thrust: w.thrust,
-            ..Wrench::default()
+        let Some(inverse) = Inverse::new(&e) else {
+            return self.without_yaw(w);
         };
-        self.patterns(e, [0.0; 4], rest, w)
-            .map_or_else(|| self.without_yaw(w), |p| (p, 1.0))
+        let half = 0.5 * w.thrust;
+        let patterns = Patterns {
+            collective: inverse.solve(Load {
+                front: half,
+                rear: half,
+                ..Load::default()
+            }),
+            ..Self::patterns(&self.geometry, &inverse, w)
+        };
+        (patterns, 1.0)
     }
 
     /// No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
+    #[cold]
     fn without_yaw(&self, w: Wrench) -> (Patterns, f32) {
         (self.stiff(Wrench { yaw: 0.0, ..w }, [0.0; 4]).0, 0.0)
     }
 
-    /// Splits base + E⁻¹(rest + moments of w) into patterns; `rest` is what the collective part must add. `None`
-    /// where the effectiveness has no inverse.
-    fn patterns(&self, e: Effectiveness, base: PerArm<f32>, rest: Wrench, w: Wrench) -> Option<Patterns> {
-        let inverse = Inverse::new(self.geometry, e)?;
-        let mut collective = inverse.solve(rest);
-        for (c, b) in collective.iter_mut().zip(&base) {
-            *c += b;
+    /// The moments of `w` split into patterns, and what a newton of thrust takes; without the collective.
+    #[inline(always)]
+    fn patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
+        let moments = Load::of(geometry, Wrench { thrust: 0.0, yaw: 0.0, ..w });
+        Patterns {
+            collective: [0.0; 4],
+            shift: inverse.solve(Load {
+                front: 0.5,
+                rear: 0.5,
+                ..Load::default()
+            }),
+            roll_pitch: inverse.solve(moments),
+            yaw: inverse.solve_yaw(w.yaw),
         }
-        let of = |w: Wrench| inverse.solve(w);
-        Some(Patterns {
-            collective,
-            shift: of(Wrench {
-                thrust: 1.0,
-                ..Wrench::default()
-            }),
-            roll_pitch: of(Wrench {
-                thrust: 0.0,
-                yaw: 0.0,
-                ..w
-            }),
-            yaw: of(Wrench {
-                yaw: w.yaw,
-                ..Wrench::default()
-            }),
-        })
     }
 
     /// The printed matrix: stiff levers for roll, pitch and yaw, cos α in the thrust row alone.
@@ -316,17 +311,15 @@ impl Mixer {
         (p, 1.0)
     }
 
-    /// Share of a yaw pattern, already to be scaled by `fade`, that keeps within what one rotor may get.
-    fn yaw_room(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
+    /// Share of a yaw pattern that keeps within what one rotor may get, at most `fade`.
+    #[inline(always)]
+    fn yaw_share(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
         let worst = yaw
             .iter()
             .map(|y| y.abs())
             .fold(0.0f32, |m, y| if y > m { y } else { m });
-        if worst * fade > self.yaw_limit {
-            self.yaw_limit / (worst * fade)
-        } else {
-            1.0
-        }
+        let limited = self.yaw_limit / worst;
+        if worst * fade > self.yaw_limit { limited } else { fade }
     }
 }
 
