@@ -133,8 +133,6 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let least = larger(larger(lower(b1), lower(b2)), larger(lower(b3), lower(b4)));
     let most = smaller(smaller(upper(b1), upper(b2)), smaller(upper(b3), upper(b4)));
     let shift = larger(least, smaller(most, 0.0));
-    // A rotor that has no number must not make one of the others'.
-    let shift = if shift.is_finite() { shift } else { 0.0 };
 
     // Yaw: whatever room is left.
     let (t1, t2) = (c1 + share * r1 + shift * s1, c2 + share * r2 + shift * s2);

@@ -32,13 +32,13 @@ impl Geometry {
         }
     }
 
-    /// The geometry that the parameters describe.
+    /// The geometry that the parameters describe; the rotor drag's sign is the configuration's.
     pub fn from_params(p: &Params, configuration: Configuration) -> Self {
         Self::new(p.arm_d, p.arm_b, configuration.chi() * p.torque_ratio)
     }
 
-    /// The same with the sign of configuration B: its yaw moments are those of this geometry times the sign of its drag.
-    #[inline(always)]
+    /// The same with the drag's sign of configuration B: its yaw moments are those of this geometry times the sign of its
+    /// drag.
     pub fn as_b(&self) -> Self {
         if self.drag < 0.0 {
             Self {
@@ -93,10 +93,9 @@ impl Effectiveness {
     pub fn quasi_static(geometry: &Geometry, tilt: &PerArm<f32>, follow: &PerArm<f32>) -> Self {
         let rows = |tilt: f32, follow: f32| {
             let (s, c) = math::sin_cos_small(tilt);
-            (
-                c - s * follow,
-                geometry.b * (s + c * follow) + geometry.drag,
-            )
+            // The frozen authority first: the rotors' present moment shares it.
+            let frozen = geometry.b * s + geometry.drag;
+            (c - s * follow, frozen + geometry.b * c * follow)
         };
         let ([a1, a2, a3, a4], [f1, f2, f3, f4]) = (*tilt, *follow);
         let (l1, y1) = rows(a1, f1);
@@ -152,7 +151,7 @@ impl Load {
         Self {
             front: l1 + l3,
             rear: l2 + l4,
-            roll: t1 + t2 - t3 - t4,
+            roll: (t1 + t2) - (t3 + t4),
             yaw: y1 - y2 - y3 + y4,
         }
     }

@@ -92,6 +92,9 @@ impl DynamicTilt {
 pub struct Mixer {
     variant: Variant,
     geometry: Geometry,
+    /// The same as configuration B would have it, and the sign that makes one of the other.
+    as_b: Geometry,
+    chi: f32,
     tilt: TiltModel,
     algorithm_1: Algorithm1,
     dynamic: PerArm<DynamicTilt>,
@@ -99,6 +102,8 @@ pub struct Mixer {
     idle: f32,
     max: f32,
     yaw_limit: f32,
+    /// Least entry of the yaw row, m.
+    yaw_floor: f32,
     /// Rise of yaw's share with the authority, 1/m: nothing at half the floor, all of it at the floor.
     fade_slope: f32,
     gate: f32,
@@ -110,9 +115,12 @@ impl Mixer {
     /// A mixer with idle rotors.
     pub fn new(variant: Variant, configuration: Configuration, p: &Params) -> Self {
         let tilt = TiltModel::new(p);
+        let geometry = Geometry::from_params(p, configuration);
         Self {
             variant,
-            geometry: Geometry::from_params(p, configuration),
+            geometry,
+            as_b: geometry.as_b(),
+            chi: configuration.chi(),
             algorithm_1: Algorithm1::new(*tilt.model(), p.power_exponent),
             tilt,
             dynamic: [DynamicTilt::at(p.thrust_idle, p.notch_hz); 4],
@@ -120,6 +128,7 @@ impl Mixer {
             idle: p.thrust_idle,
             max: p.thrust_max,
             yaw_limit: p.yaw_thrust_max,
+            yaw_floor: YAW_FLOOR * p.torque_ratio,
             fade_slope: 2.0 / (YAW_FLOOR * p.torque_ratio),
             gate: p.yaw_gate_thrust,
             yaw_open: false,
@@ -168,18 +177,15 @@ impl Mixer {
         }
         let ratio = math::clamp(c.battery_ratio, 0.5, 1.0);
         let high = self.max * ratio * ratio;
-        let mean = 0.25 * self.tilt.thrusts().iter().sum::<f32>();
+        let [t1, t2, t3, t4] = self.tilt.thrusts();
+        let mean = 0.25 * ((t1 + t2) + (t3 + t4));
         let shut = if self.yaw_open { 0.0 } else { GATE_HYSTERESIS };
         self.yaw_open = mean >= self.gate + shut;
         let usable = c.yaw && self.yaw_open;
-        let (mut patterns, fade) = match self.variant {
-            Variant::Flexible => self.quasi_static(w, usable),
-            Variant::Frozen => self.frozen(w),
-            Variant::Rigid => self.stiff(w, [0.0; 4]),
-            Variant::Paper => {
-                let tilt = self.last.map(|t| self.algorithm_1.angle(t, ratio * ratio));
-                self.stiff(w, tilt)
-            }
+        let (mut patterns, fade) = if self.variant == Variant::Flexible {
+            self.quasi_static(w, usable)
+        } else {
+            self.for_study(w, ratio)
         };
         let share = self.yaw_share(&patterns.yaw, if usable { fade } else { 0.0 });
         patterns.yaw = patterns.yaw.map(|y| y * share);
@@ -204,14 +210,27 @@ impl Mixer {
         }
     }
 
+    /// What does not fly, at the battery's voltage ratio `ratio`.
+    #[cold]
+    fn for_study(&self, w: Wrench, ratio: f32) -> (Patterns, f32) {
+        match self.variant {
+            Variant::Frozen => self.frozen(w),
+            Variant::Paper => {
+                let tilt = self.last.map(|t| self.algorithm_1.angle(t, ratio * ratio));
+                self.stiff(w, tilt)
+            }
+            Variant::Rigid | Variant::Flexible => self.stiff(w, [0.0; 4]),
+        }
+    }
+
     /// The law that flies: T = Tt + J⁻¹ (w - w(Tt)), J the static Jacobian at the low-passed thrusts Tt.
     #[inline(always)]
     fn quasi_static(&self, w: Wrench, yaw_usable: bool) -> (Patterns, f32) {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
         // In A yaw works the other way round: it is allocated as in B, with the moment reversed.
-        let geometry = self.geometry.as_b();
+        let geometry = self.as_b;
         let w = Wrench {
-            yaw: if self.geometry.drag < 0.0 { -w.yaw } else { w.yaw },
+            yaw: self.chi * w.yaw,
             ..w
         };
         let mut e = Effectiveness::quasi_static(&geometry, &tilt, &self.tilt.follow());
@@ -219,7 +238,7 @@ impl Mixer {
         // vanishing entry would be a kick, and a reversed authority is not to be trusted.
         let [y1, y2, y3, y4] = e.yaw;
         let authority = 0.25 * (y1 + y2 + y3 + y4);
-        let least = YAW_FLOOR * geometry.drag;
+        let least = self.yaw_floor;
         let fade = math::clamp(authority * self.fade_slope - 1.0, 0.0, 1.0);
         let fade = if yaw_usable { fade } else { 0.0 };
         e.yaw = e.yaw.map(|y| if y > least { y } else { least });
@@ -314,10 +333,9 @@ impl Mixer {
     /// Share of a yaw pattern that keeps within what one rotor may get, at most `fade`.
     #[inline(always)]
     fn yaw_share(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
-        let worst = yaw
-            .iter()
-            .map(|y| y.abs())
-            .fold(0.0f32, |m, y| if y > m { y } else { m });
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let [a, b, c, d] = yaw.map(f32::abs);
+        let worst = larger(larger(a, b), larger(c, d));
         let limited = self.yaw_limit / worst;
         if worst * fade > self.yaw_limit { limited } else { fade }
     }
@@ -378,6 +396,32 @@ mod tests {
         let g = Geometry::from_params(&p, Configuration::B);
         let model = *m.tilt().model();
         let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
+        assert!((got.thrust - w.thrust).abs() < 0.02, "{got:?}");
+        assert!((got.roll - w.roll).abs() < 2e-3 && (got.pitch - w.pitch).abs() < 5e-3);
+        assert!((got.yaw - w.yaw).abs() < 2e-3, "{got:?}");
+    }
+
+    #[test]
+    fn the_flexible_mixer_gives_the_wrench_in_a_as_well() {
+        // Stiff enough for A's authority not to have been turned round.
+        let p = Params {
+            gain_k: 1.0,
+            ..Params::default()
+        };
+        let w = Wrench {
+            thrust: 18.0,
+            roll: 0.3,
+            pitch: -0.2,
+            yaw: 0.02,
+        };
+        let mut m = Mixer::new(Variant::Flexible, Configuration::A, &p);
+        let mut mix = m.mix(w, conditions());
+        for _ in 0..3000 {
+            mix = m.mix(w, conditions());
+        }
+        let model = *m.tilt().model();
+        let got = Geometry::from_params(&p, Configuration::A)
+            .wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
         assert!((got.thrust - w.thrust).abs() < 0.02, "{got:?}");
         assert!((got.roll - w.roll).abs() < 2e-3 && (got.pitch - w.pitch).abs() < 5e-3);
         assert!((got.yaw - w.yaw).abs() < 2e-3, "{got:?}");

@@ -88,16 +88,17 @@ impl TiltModel {
     }
 
     /// Takes the tilts (rad) that the arms' sensors measured, at 100 Hz, while the arms hang free in the air.
+    #[inline(always)]
     pub fn correct(&mut self, measured: &PerArm<Option<f32>>) {
         let (model, gain, limit) = (self.model, self.bias_gain, self.bias_max);
         for (arm, measured) in self.arms.iter_mut().zip(measured) {
-            let Some(measured) = measured.filter(|m| m.is_finite()) else {
-                continue;
-            };
-            if arm.lagged.value() > LEARN_THRUST {
-                let expected = model.angle(arm.lagged.value()) + arm.bias;
-                arm.bias = math::clamp_abs(arm.bias + gain * (measured - expected), limit);
-            }
+            // A sensor that says nothing is one that says no number.
+            let measured = measured.unwrap_or(f32::NAN);
+            let felt = arm.lagged.value();
+            let learns = measured.is_finite() & (felt > LEARN_THRUST);
+            let off = measured - model.angle(felt) - arm.bias;
+            let bias = math::clamp_abs(arm.bias + gain * off, limit);
+            arm.bias = if learns { bias } else { arm.bias };
         }
     }
 
