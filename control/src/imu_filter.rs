@@ -44,6 +44,15 @@ impl AxisFilter {
     }
 }
 
+/// What a batch of samples came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Filtered {
+    /// Newest rates (rad/s) and specific forces (m/s²); `None` when no sample was finite.
+    pub newest: Option<(Vec3, Vec3)>,
+    /// Finite samples.
+    pub count: u8,
+}
+
 /// Filter of the vehicle's inertial sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImuFilter {
@@ -63,6 +72,22 @@ impl ImuFilter {
             accel: AxisFilter::low_pass(Self::ACCEL_CUTOFF, rate_hz),
             started: false,
         }
+    }
+
+    /// Takes the samples (rad/s, m/s²) of a batch, oldest first, as [`Self::step`] takes one.
+    #[inline(always)]
+    pub fn batch(&mut self, samples: impl IntoIterator<Item = (Vec3, Vec3)>) -> Filtered {
+        // A copy of its own stays in registers from sample to sample.
+        let mut filter = *self;
+        let mut filtered = Filtered::default();
+        for (gyro, accel) in samples {
+            if let Some(newest) = filter.step(gyro, accel) {
+                filtered.newest = Some(newest);
+                filtered.count += 1;
+            }
+        }
+        *self = filter;
+        filtered
     }
 
     /// Takes one sample (rad/s, m/s²) and gives the filtered one; a sample that is not finite is left out.

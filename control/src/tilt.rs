@@ -95,10 +95,10 @@ impl TiltModel {
             // A sensor that says nothing is one that says no number.
             let measured = measured.unwrap_or(f32::NAN);
             let felt = arm.lagged.value();
-            let learns = measured.is_finite() & (felt > LEARN_THRUST);
-            let off = measured - model.angle(felt) - arm.bias;
-            let bias = math::clamp_abs(arm.bias + gain * off, limit);
-            arm.bias = if learns { bias } else { arm.bias };
+            let gain = if felt > LEARN_THRUST { gain } else { 0.0 };
+            let bias = arm.bias + gain * (measured - model.angle(felt) - arm.bias);
+            // Neither a number beyond the limit nor none: a glitch moves nothing.
+            arm.bias = if bias.abs() <= limit { bias } else { arm.bias };
         }
     }
 
@@ -216,6 +216,18 @@ mod tests {
         let truth = t.model().angle(felt) + 0.05;
         t.correct(&[Some(truth); 4]);
         assert!(t.bias().iter().all(|b| *b > 0.0), "{:?}", t.bias());
+    }
+
+    #[test]
+    fn a_bias_stays_within_its_limit_and_a_glitch_moves_nothing() {
+        let limit = Params::default().tilt_bias_max;
+        let mut t = settled(4.4);
+        for _ in 0..3000 {
+            t.correct(&[Some(1.5), Some(-1.5), Some(f32::INFINITY), Some(1e30)]);
+        }
+        let [up, down, silent, glitch] = t.bias();
+        assert!(up <= limit && up > limit - 0.04 && down >= -limit && down < 0.04 - limit);
+        assert!(silent == 0.0 && glitch == 0.0);
     }
 
     #[test]

@@ -39,7 +39,6 @@ pub struct Flow {
     pub q: Quat,
     pub wanted: Vec3,
     pub target: Vec3,
-    pub feedback: Feedback,
     pub moment: Vec3,
     pub mix: Mix,
     pub commands: PerArm<f32>,
@@ -66,16 +65,24 @@ impl Chain {
                 q: Quat::IDENTITY,
                 wanted: Vec3::ZERO,
                 target: Vec3::ZERO,
-                feedback: Feedback {
-                    roll_pitch: 0.0,
-                    yaw: 0.0,
-                    yaw_gated: true,
-                },
                 moment: Vec3::ZERO,
-                mix: Mix::default(),
+                mix: Mix {
+                    yaw_gated: true,
+                    ..Mix::default()
+                },
                 commands: [0.0; 4],
             },
         }
+    }
+}
+
+/// What the mixer gave, as the rate loop wants to know it.
+#[inline(always)]
+fn feedback(mix: &Mix) -> Feedback {
+    Feedback {
+        roll_pitch: mix.given.roll_pitch,
+        yaw: mix.given.yaw,
+        yaw_gated: mix.yaw_gated,
     }
 }
 
@@ -93,11 +100,9 @@ pub fn axes(c: &mut Chain, i: &Inputs) {
 /// One batch through the filter of the inertial sensor.
 #[inline(never)]
 pub fn filter(c: &mut Chain, i: &Inputs) {
-    for (gyro, accel) in &i.batch {
-        if let Some(sample) = c.filter.step(*gyro, *accel - c.flow.accel_bias) {
-            c.flow.sample = sample;
-        }
-    }
+    let bias = c.flow.accel_bias;
+    let filtered = c.filter.batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
+    c.flow.sample = filtered.newest.unwrap_or(c.flow.sample);
 }
 
 /// Attitude and rate from the filtered sample.
@@ -111,7 +116,7 @@ pub fn estimator(c: &mut Chain, i: &Inputs) {
 /// Wanted rates from the attitude, and the target that is logged. A yaw that was given up takes the heading along.
 #[inline(never)]
 pub fn attitude(c: &mut Chain, i: &Inputs) {
-    if c.flow.feedback.yaw_gated {
+    if c.flow.mix.yaw_gated {
         c.attitude.capture_heading(c.flow.q);
     }
     c.flow.wanted = c.attitude.step(c.flow.q, i.setpoint, i.dt);
@@ -124,7 +129,7 @@ pub fn rate(c: &mut Chain, i: &Inputs) {
     let f = &mut c.flow;
     f.moment = c
         .rate
-        .step(f.wanted, f.body_rate, f.feedback, i.integrate, i.dt);
+        .step(f.wanted, f.body_rate, feedback(&f.mix), i.integrate, i.dt);
 }
 
 /// Thrusts from moments: Jacobian from the tilt, allocation, desaturation.
@@ -143,11 +148,6 @@ pub fn allocation(c: &mut Chain, i: &Inputs) {
         dt: i.dt,
     };
     f.mix = c.mixer.allocate(wrench, conditions);
-    f.feedback = Feedback {
-        roll_pitch: f.mix.given.roll_pitch,
-        yaw: f.mix.given.yaw,
-        yaw_gated: f.mix.yaw_gated,
-    };
 }
 
 /// Tilt and slope of the four arms from the thrusts sent.
@@ -178,23 +178,21 @@ pub fn commands(c: &mut Chain, i: &Inputs) {
 /// All of it at one go, as one call.
 #[inline(never)]
 pub fn whole(c: &mut Chain, i: &Inputs) {
-    for (gyro, accel) in &i.batch {
-        if let Some(sample) = c.filter.step(*gyro, *accel - c.flow.accel_bias) {
-            c.flow.sample = sample;
-        }
-    }
+    let bias = c.flow.accel_bias;
+    let filtered = c.filter.batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
+    c.flow.sample = filtered.newest.unwrap_or(c.flow.sample);
     let (gyro, accel) = c.flow.sample;
     let f = &mut c.flow;
     f.body_rate = c.estimator.step(gyro, accel, i.dt);
     f.q = c.estimator.attitude();
-    if f.feedback.yaw_gated {
+    if f.mix.yaw_gated {
         c.attitude.capture_heading(f.q);
     }
     f.wanted = c.attitude.step(f.q, i.setpoint, i.dt);
     f.target = c.attitude.target();
     f.moment = c
         .rate
-        .step(f.wanted, f.body_rate, f.feedback, i.integrate, i.dt);
+        .step(f.wanted, f.body_rate, feedback(&f.mix), i.integrate, i.dt);
     let wrench = Wrench {
         thrust: i.thrust,
         roll: f.moment.x,
@@ -207,11 +205,6 @@ pub fn whole(c: &mut Chain, i: &Inputs) {
         dt: i.dt,
     };
     f.mix = c.mixer.mix(wrench, conditions);
-    f.feedback = Feedback {
-        roll_pitch: f.mix.given.roll_pitch,
-        yaw: f.mix.given.yaw,
-        yaw_gated: f.mix.yaw_gated,
-    };
     f.commands = c.curve.commands(&f.mix.thrusts, i.battery_ratio);
     teach(&mut c.mixer, i);
 }
