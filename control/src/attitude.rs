@@ -108,9 +108,7 @@ impl AttitudeLoop {
 
         let wanted = math::clamp_abs(setpoint.yaw_rate, self.yaw_rate_max);
         let wanted = if sound { wanted } else { 0.0 };
-        let yaw_rate = self
-            .yaw_rate
-            .blend(wanted, LowPass::gain(1.0 / YAW_RATE_TAU, dt));
+        let yaw_rate = self.yaw_rate.blend(wanted, LowPass::gain(1.0 / YAW_RATE_TAU, dt));
         let now = Heading::of(q);
         let ahead = self.ahead + yaw_rate * dt - now.turned_since(self.heading);
         self.ahead = math::clamp_abs(ahead, HEADING_LEASH);

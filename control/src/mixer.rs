@@ -293,7 +293,14 @@ impl Mixer {
     /// The moments of `w` split into patterns, and what a newton of thrust takes; without the collective.
     #[inline(always)]
     fn patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
-        let moments = Load::of(geometry, Wrench { thrust: 0.0, yaw: 0.0, ..w });
+        let moments = Load::of(
+            geometry,
+            Wrench {
+                thrust: 0.0,
+                yaw: 0.0,
+                ..w
+            },
+        );
         Patterns {
             collective: [0.0; 4],
             shift: inverse.solve(Load {
@@ -337,7 +344,11 @@ impl Mixer {
         let [a, b, c, d] = yaw.map(f32::abs);
         let worst = larger(larger(a, b), larger(c, d));
         let limited = self.yaw_limit / worst;
-        if worst * fade > self.yaw_limit { limited } else { fade }
+        if worst * fade > self.yaw_limit {
+            limited
+        } else {
+            fade
+        }
     }
 }
 

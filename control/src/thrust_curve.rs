@@ -97,7 +97,11 @@ mod tests {
                 let thrust = 8.3 * share as f32 * 1e-3;
                 let (share, q) = (f64::from(thrust) / f64::from(8.3f32), f64::from(q));
                 let (linear, root) = (1.0 - q, ((1.0 - q).powi(2) + 4.0 * q * share).sqrt());
-                let exact = if share > 0.0 { 2.0 * share / (linear + root) } else { 0.0 };
+                let exact = if share > 0.0 {
+                    2.0 * share / (linear + root)
+                } else {
+                    0.0
+                };
                 let error = (f64::from(c.command(thrust, 1.0)) - exact).abs();
                 assert!(error < 2e-6, "{q} {share}: {error}");
             }

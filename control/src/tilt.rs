@@ -7,7 +7,6 @@ use core::f32::consts::TAU;
 
 use crate::deflection::{ArmModel, VALID_TILT};
 use crate::filter::LowPass;
-use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
@@ -69,10 +68,7 @@ impl TiltModel {
             return;
         }
         let model = self.model;
-        let (gain, lag_gain) = (
-            LowPass::gain(self.cutoff, dt),
-            LowPass::gain(self.lag_rate, dt),
-        );
+        let (gain, lag_gain) = (LowPass::gain(self.cutoff, dt), LowPass::gain(self.lag_rate, dt));
         let mut fault = false;
         for (arm, thrust) in self.arms.iter_mut().zip(commanded) {
             let thrust = arm.thrust.blend(*thrust, gain);
@@ -139,6 +135,7 @@ impl TiltModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
 
     fn settled(thrust: f32) -> TiltModel {
         let mut t = TiltModel::new(&Params::default());

@@ -2,6 +2,7 @@
 
 mod boards;
 mod build;
+mod cost;
 mod dma;
 mod image;
 mod sizes;
@@ -23,6 +24,10 @@ usage: cargo xtask VERB
   flash BOARD        build, flash through probe-rs and show the log
   sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml;
                      --tighten lowers the ceilings to what is taken now
+  cost [--tighten|--json]
+                     count the instructions of every control stage under QEMU, print them beside targets and peers,
+                     compare with hil/cost/baseline.toml; --tighten takes what is counted now as the baseline and
+                     writes the table of docs/cost.md
 
 boards: matek-h743 (reference), cuav-v5, f405
 variables: PROBE_RS_* as probe-rs knows them; RUSTFLAGS is kept and added to";
@@ -39,6 +44,9 @@ fn main() -> ExitCode {
         ["flash", board] => boards::find(board).and_then(flash),
         ["sizes"] => all_sizes(false),
         ["sizes", "--tighten"] => all_sizes(true),
+        ["cost"] => cost::cost(cost::Then::Compare),
+        ["cost", "--json"] => cost::cost(cost::Then::Json),
+        ["cost", "--tighten"] => cost::cost(cost::Then::Tighten),
         [] | ["help" | "-h" | "--help"] => {
             println!("{USAGE}");
             Ok(())

@@ -14,7 +14,6 @@ use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, Wrench};
 
-
 /// Inputs of each function of the maths module.
 const INPUTS: u32 = 4096;
 /// Control steps of each mixer: 3 s of flight, with the calibration at rest before them.

@@ -101,7 +101,9 @@ pub fn axes(c: &mut Chain, i: &Inputs) {
 #[inline(never)]
 pub fn filter(c: &mut Chain, i: &Inputs) {
     let bias = c.flow.accel_bias;
-    let filtered = c.filter.batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
+    let filtered = c
+        .filter
+        .batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
     c.flow.sample = filtered.newest.unwrap_or(c.flow.sample);
 }
 
@@ -179,7 +181,9 @@ pub fn commands(c: &mut Chain, i: &Inputs) {
 #[inline(never)]
 pub fn whole(c: &mut Chain, i: &Inputs) {
     let bias = c.flow.accel_bias;
-    let filtered = c.filter.batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
+    let filtered = c
+        .filter
+        .batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
     c.flow.sample = filtered.newest.unwrap_or(c.flow.sample);
     let (gyro, accel) = c.flow.sample;
     let f = &mut c.flow;

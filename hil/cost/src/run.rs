@@ -42,7 +42,10 @@ fn overhead() -> u32 {
     let nothing = gross(chain::nothing, &mut (), &0);
     for rounds in 1..1000 {
         let count = gross(counter::known_loop, &mut (), &rounds) - nothing;
-        assert!(count == counter::known(rounds), "{count} instructions counted for {rounds} rounds");
+        assert!(
+            count == counter::known(rounds),
+            "{count} instructions counted for {rounds} rounds"
+        );
     }
     nothing
 }
