@@ -62,7 +62,10 @@ impl Firmware {
         }
         // The name that the image greets with: boards of other chips also start at this flash address.
         let named = |name: &[u8]| {
-            let mut data = file.sections().filter(|s| s.address() != 0).filter_map(|s| s.data().ok());
+            let mut data = file
+                .sections()
+                .filter(|s| s.address() != 0)
+                .filter_map(|s| s.data().ok());
             data.any(|bytes| bytes.windows(name.len()).any(|window| window == name))
         };
         if !named(BOARD.as_bytes()) {

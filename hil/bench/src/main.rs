@@ -64,7 +64,11 @@ fn main() -> ExitCode {
         Err(error) => {
             let text = error.render().to_string();
             // What is wrong stands before the first empty line.
-            let lines: Vec<&str> = text.lines().map(str::trim).take_while(|l| !l.is_empty()).collect();
+            let lines: Vec<&str> = text
+                .lines()
+                .map(str::trim)
+                .take_while(|l| !l.is_empty())
+                .collect();
             complain(PROGRAM, lines.join(" ").trim_start_matches("error: "));
             return ExitCode::from(2);
         }
