@@ -82,6 +82,7 @@ impl Estimator {
 
     /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without
     /// its bias.
+    #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
         if !self.calibrated {
             self.calibrate(gyro, accel, dt);
@@ -90,9 +91,10 @@ impl Estimator {
         let rate = gyro - self.bias;
         // Down as measured (minus the specific force) against down as believed.
         let norm2 = accel.norm_squared();
-        let inv = math::inv_sqrt(norm2);
+        // No number of no force at all: the weight and the check below take care of both.
+        let inv = math::inv_sqrt_normal(norm2);
         let excess = norm2 * inv * (1.0 / GRAVITY) - 1.0;
-        let weight = 1.0 - (if excess < 0.0 { -excess } else { excess }) * (1.0 / ACCEL_FADE);
+        let weight = 1.0 - excess.abs() * (1.0 / ACCEL_FADE);
         let weight = math::clamp(weight, 0.0, 1.0);
         let error = (accel * -inv).cross(self.q.down_in_body()) * weight;
         let error = if error.is_finite() { error } else { Vec3::ZERO };
@@ -128,6 +130,8 @@ impl Estimator {
     }
 
     /// Collects rest; any motion starts it afresh. With a known bias it need only stay upright, or fall no more.
+    #[cold]
+    #[inline(never)]
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
         if let Some(bias) = self.known_bias {
             let g = accel.norm() * (1.0 / GRAVITY);

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::decimal::Decimal;
+
 /// One row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParamInfo {
@@ -50,14 +52,14 @@ impl fmt::Display for ParamError {
         let unit = match *self {
             Self::Unknown => return f.write_str("a name of the parameter table"),
             Self::OutOfRange { min, max, unit } => {
-                write!(f, "{min} to {max}")?;
+                write!(f, "{} to {}", Decimal(min), Decimal(max))?;
                 unit
             }
             Self::NotAChoice { choices, unit } => {
                 f.write_str("one of ")?;
                 for (i, choice) in choices.iter().enumerate() {
                     let comma = if i == 0 { "" } else { ", " };
-                    write!(f, "{comma}{choice}")?;
+                    write!(f, "{comma}{}", Decimal(*choice))?;
                 }
                 unit
             }
@@ -73,7 +75,7 @@ macro_rules! params {
     ($( $(#[doc = $doc:literal])+ $name:ident = $default:literal, $unit:literal, $min:literal ..= $max:literal
         $(of $choices:expr)?; )+) => {
         /// The parameters of one vehicle; `Default` is the paper's vehicle.
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Copy, Debug)]
         pub struct Params {
             $( $(#[doc = $doc])+ pub $name: f32, )+
         }
@@ -97,37 +99,61 @@ macro_rules! params {
             /// The whole table, in the order of the fields.
             pub const TABLE: &'static [ParamInfo] = &ROWS;
 
-            /// The value of the parameter called `name`.
-            pub fn get(&self, name: &str) -> Option<f32> {
-                match name {
-                    $( stringify!($name) => Some(self.$name), )+
-                    _ => None,
-                }
+            /// Every value, in the order of the table.
+            fn values(&self) -> [f32; ROWS.len()] {
+                [$( self.$name ),+]
             }
 
-            /// Sets the parameter called `name`.
-            ///
-            /// # Errors
-            /// An unknown name, or a value that is not finite, out of its range or none of the choices; nothing is
-            /// changed then.
-            pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
-                match name {
-                    $( stringify!($name) => {
-                        if !($min..=$max).contains(&value) {
-                            return Err(ParamError::OutOfRange { min: $min, max: $max, unit: $unit });
-                        }
-                        let choices: &'static [f32] = params!(@choices $($choices)?);
-                        if !choices.is_empty() && !choices.contains(&value) {
-                            return Err(ParamError::NotAChoice { choices, unit: $unit });
-                        }
-                        self.$name = value;
-                    } )+
-                    _ => return Err(ParamError::Unknown),
-                }
-                Ok(())
+            /// Every value's place, in the order of the table.
+            fn places(&mut self) -> [&mut f32; ROWS.len()] {
+                [$( &mut self.$name ),+]
             }
         }
     };
+}
+
+/// Where in the table the parameter called `name` stands.
+fn find(name: &str) -> Option<(usize, &'static ParamInfo)> {
+    ROWS.iter().enumerate().find(|(_, row)| row.name == name)
+}
+
+impl Params {
+    /// The value of the parameter called `name`.
+    pub fn get(&self, name: &str) -> Option<f32> {
+        let (at, _) = find(name)?;
+        self.values().get(at).copied()
+    }
+
+    /// Sets the parameter called `name`.
+    ///
+    /// # Errors
+    /// An unknown name, or a value that is not finite, out of its range or none of the choices; nothing is changed then.
+    pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
+        let (at, row) = find(name).ok_or(ParamError::Unknown)?;
+        let ParamInfo {
+            min,
+            max,
+            choices,
+            unit,
+            ..
+        } = *row;
+        if !(min..=max).contains(&value) {
+            return Err(ParamError::OutOfRange { min, max, unit });
+        }
+        if !choices.is_empty() && !choices.contains(&value) {
+            return Err(ParamError::NotAChoice { choices, unit });
+        }
+        if let Some(place) = self.places().into_iter().nth(at) {
+            *place = value;
+        }
+        Ok(())
+    }
+}
+
+impl PartialEq for Params {
+    fn eq(&self, other: &Self) -> bool {
+        self.values() == other.values()
+    }
 }
 
 params! {

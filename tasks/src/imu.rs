@@ -53,12 +53,9 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         };
         let released = Instant::now();
         faults.good(links, released);
-        for reading in &batch {
-            if let Some(filtered) = filter.step(reading.gyro, reading.accel - bias) {
-                newest = filtered;
-                collected += 1.0;
-            }
-        }
+        let filtered = filter.batch(batch.iter().map(|reading| (reading.gyro, reading.accel - bias)));
+        newest = filtered.newest.unwrap_or(newest);
+        collected += f32::from(filtered.count);
         if collected + 0.5 < per_output {
             continue;
         }

@@ -234,7 +234,8 @@ pub struct Links {
     pub setpoint: Link<Setpoint>,
     /// control -> mixer. 1 kHz, stale after 5 ms.
     pub demand: Link<Demand>,
-    /// control -> log. 1 kHz, stale after 50 ms: roll, pitch and heading aimed at, rad.
+    /// control -> log. 1 kHz, stale after 50 ms: roll and pitch aimed at, and the wanted heading
+    /// against the present one, rad.
     pub target: Link<Vec3>,
     /// mixer -> motors, control (what it could not give), commander. 1 kHz, stale after 10 ms: motors stop.
     pub mix: Link<MixOutput>,

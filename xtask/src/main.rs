@@ -3,6 +3,7 @@
 mod bench;
 mod boards;
 mod build;
+mod cost;
 mod dma;
 mod image;
 mod params;
@@ -27,6 +28,10 @@ usage: cargo xtask VERB
                      build and fly a mission on the emulated board (matek-h743); exit status 1 when it fails, 2 for bad input
   sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml and with
                      the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
+  cost [--tighten|--json]
+                     count the instructions of every control stage under QEMU, print them beside targets and peers,
+                     compare with hil/cost/baseline.toml; --tighten takes what is counted now as the baseline and
+                     writes the table of docs/cost.md
 
 boards: matek-h743 (reference), cuav-v5, f405
 variables: PROBE_RS_* as probe-rs knows them; RUSTFLAGS is kept and added to
@@ -37,6 +42,7 @@ enum Verb {
     Firmware(&'static Board),
     Flash(&'static Board),
     Sizes { tighten: bool },
+    Cost(cost::Then),
     Help,
 }
 
@@ -54,6 +60,9 @@ impl Verb {
             ["flash", names @ ..] => one_board(names).map(Self::Flash),
             ["sizes"] => Ok(Self::Sizes { tighten: false }),
             ["sizes", "--tighten"] => Ok(Self::Sizes { tighten: true }),
+            ["cost"] => Ok(Self::Cost(cost::Then::Compare)),
+            ["cost", "--json"] => Ok(Self::Cost(cost::Then::Json)),
+            ["cost", "--tighten"] => Ok(Self::Cost(cost::Then::Tighten)),
             _ => Err(format!(
                 "`{}` is not understood; `cargo xtask help` shows what is",
                 words.join(" ")
@@ -79,6 +88,7 @@ fn main() -> ExitCode {
         Verb::Firmware(board) => firmware(board).map(|(elf, _)| println!("{}", elf.display())),
         Verb::Flash(board) => flash(board),
         Verb::Sizes { tighten } => all_sizes(tighten),
+        Verb::Cost(then) => cost::cost(then),
         Verb::Help => {
             println!("{USAGE}");
             Ok(())

@@ -7,6 +7,12 @@ pub struct Fold {
     hash: u32,
 }
 
+impl Default for Fold {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Fold {
     /// Nothing folded yet.
     pub const fn new() -> Self {

@@ -2,6 +2,7 @@
 
 use core::fmt::Arguments;
 
+use sophie_conformance::fold::{Fold, Noise};
 use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
 use sophie_control::estimator::Estimator;
 use sophie_control::imu_filter::ImuFilter;
@@ -12,8 +13,6 @@ use sophie_control::rate::{Feedback, RateLoop};
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, Wrench};
-
-use crate::fold::{Fold, Noise};
 
 /// Inputs of each function of the maths module.
 const INPUTS: u32 = 4096;

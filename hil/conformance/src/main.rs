@@ -11,7 +11,6 @@
 
 #[cfg(target_os = "none")]
 mod core_under_test;
-mod fold;
 mod laws;
 
 #[cfg(not(target_os = "none"))]

@@ -2,8 +2,10 @@
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use sophie_control::math;
 use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
+use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Status};
@@ -129,7 +131,11 @@ impl Aircraft for Stack {
             .latest()
             .map(|a| a.value.q.to_euler())
             .unwrap_or_default();
-        let target = links.target.latest().map(|v| v.value.to_array().map(f64::from));
+        // The wanted heading comes as what it is ahead of the present one.
+        let target = links.target.latest().map(|v| {
+            let Vec3 { x, y, z } = v.value;
+            [x, y, math::wrap_pi(estimate.2 + z)].map(f64::from)
+        });
         let arms = links.arms.fresh().unwrap_or_default();
         let contact = links.contact.latest().map(|c| c.value).unwrap_or_default();
         let tendons = links.tendons.latest().map(|f| f.value).unwrap_or_default();

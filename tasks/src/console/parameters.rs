@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use sophie_control::decimal::{self, Decimal};
 use sophie_control::params::{ParamError, ParamInfo, Params};
 
 use super::Console;
@@ -26,7 +27,7 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
     async fn row(&mut self, row: &ParamInfo) {
         let value = self.value(row);
         let mark = if same(value, row.default) { ' ' } else { '*' };
-        let (name, allowed) = (row.name, Allowed(row));
+        let (name, value, allowed) = (row.name, Decimal(value), Allowed(row));
         self.out
             .line(format_args!("{mark} {name:19} {value:<9} {allowed}"))
             .await;
@@ -35,7 +36,7 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
     pub(super) async fn get(&mut self, name: &str) {
         let Some(row) = self.find(name).await else { return };
         self.row(row).await;
-        let default = row.default;
+        let default = Decimal(row.default);
         self.out.line(format_args!("  default {default}")).await;
         self.out.bytes(b"  ").await;
         self.out.bytes(row.doc.trim().as_bytes()).await;
@@ -45,7 +46,7 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
     pub(super) async fn set(&mut self, name: &str, text: &str) {
         let Some(row) = self.find(name).await else { return };
         let allowed = Allowed(row);
-        let Ok(value) = text.parse::<f32>() else {
+        let Some(value) = decimal::parse(text) else {
             return self
                 .out
                 .line(format_args!("'{text}' is not a number; {name} takes {allowed}"))
@@ -62,6 +63,7 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
     async fn put(&mut self, row: &ParamInfo, value: f32) {
         let old = self.value(row);
         let (name, unit) = (row.name, Unit(row.unit));
+        let (old, shown) = (Decimal(old), Decimal(value));
         match self.params.set(name, value) {
             Ok(()) => {
                 let force = if same(value, self.links.params.get(name).unwrap_or(value)) {
@@ -70,12 +72,12 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
                     "in force after save"
                 };
                 self.out
-                    .line(format_args!("{name} {old} -> {value}{unit}, {force}"))
+                    .line(format_args!("{name} {old} -> {shown}{unit}, {force}"))
                     .await;
             }
             Err(allowed) => {
                 self.out
-                    .line(format_args!("{name} cannot be {value}; it takes {allowed}"))
+                    .line(format_args!("{name} cannot be {shown}; it takes {allowed}"))
                     .await;
             }
         }
@@ -92,6 +94,7 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
             }
             count += 1;
             let (name, unit) = (row.name, Unit(row.unit));
+            let (old, new) = (Decimal(old), Decimal(new));
             self.out.line(format_args!("{name} {old} -> {new}{unit}")).await;
         }
         match count {

@@ -1,6 +1,7 @@
 //! How the vehicle is.
 
 use embassy_time::Instant;
+use sophie_control::decimal::Decimal;
 use sophie_control::mode::Mode;
 
 use super::Console;
@@ -31,7 +32,7 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
         match self.links.battery.fresh() {
             Some(b) => {
                 // A·s to mAh.
-                let (volts, amps, used) = (b.voltage, b.current, b.used / 3.6);
+                let [volts, amps, used] = [b.voltage, b.current, b.used / 3.6].map(Decimal);
                 self.out
                     .line(format_args!(
                         "battery {volts:.2} V, {amps:.1} A, {used:.0} mAh used"

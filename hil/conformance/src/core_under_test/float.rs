@@ -4,7 +4,7 @@ use core::fmt::Arguments;
 
 use cortex_m::register::fpscr::{self, Fpscr};
 
-use crate::fold::{Fold, Noise};
+use sophie_conformance::fold::{Fold, Noise};
 
 /// Numbers at which something changes: zeros, subnormals, the ends of the range, infinities, NaNs quiet and signalling,
 /// halves that round, and the ends of the integers.
