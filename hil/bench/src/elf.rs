@@ -7,6 +7,8 @@ use object::{Architecture, Object, ObjectSection, ObjectSymbol};
 
 /// Flash of the STM32H743: first address, and first one beyond.
 const FLASH: (u64, u64) = (0x0800_0000, 0x0820_0000);
+/// Name of the board in its image.
+const BOARD: &str = "matek-h743";
 /// RAM that the stack may lie in: DTCM, AXI SRAM.
 const RAM: [(u64, u64); 2] = [(0x2000_0000, 0x2002_0000), (0x2400_0000, 0x2408_0000)];
 
@@ -57,6 +59,17 @@ impl Firmware {
             return Err(wrong(format!(
                 "starts its stack at {stack:#010x}, where an STM32H743 has no RAM; {wanted}"
             )));
+        }
+        // The name that the image greets with: boards of other chips also start at this flash address.
+        let named = |name: &[u8]| {
+            let mut data = file
+                .sections()
+                .filter(|s| s.address() != 0)
+                .filter_map(|s| s.data().ok());
+            data.any(|bytes| bytes.windows(name.len()).any(|window| window == name))
+        };
+        if !named(BOARD.as_bytes()) {
+            return Err(wrong(format!("does not call itself {BOARD}; {wanted}")));
         }
         for section in file.sections() {
             let end = section.address() + section.size();

@@ -63,8 +63,13 @@ fn main() -> ExitCode {
         }
         Err(error) => {
             let text = error.render().to_string();
-            let first = text.lines().next().unwrap_or_default();
-            complain(PROGRAM, first.trim_start_matches("error: "));
+            // What is wrong stands before the first empty line.
+            let lines: Vec<&str> = text
+                .lines()
+                .map(str::trim)
+                .take_while(|l| !l.is_empty())
+                .collect();
+            complain(PROGRAM, lines.join(" ").trim_start_matches("error: "));
             return ExitCode::from(2);
         }
     };

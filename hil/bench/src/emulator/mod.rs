@@ -27,6 +27,8 @@ use crate::esc::{Esc, Line};
 use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
+/// From a start of the processor until every pin must be what it is wired to, ns: the arms' buses wait for their chips.
+const START_UP: u64 = 1000 * MS;
 /// Longest time from data-ready to motor frame that can be told from a lost sample: the time between two samples, ns.
 const SAMPLE: u64 = 250_000;
 
@@ -130,7 +132,12 @@ fn run(board: MatekBoard, image: Image, driver: World) -> Result<Run, String> {
         .stop
         .map_or((VirtualNanos(0), 0), |s| (s.at, s.instruction_count));
     let mut gaps = gaps(&finished.session);
-    let miswired = finished.session.board_mut().miswired(at);
+    let started = finished.session.resets().last().map_or(0, |reset| reset.at.0);
+    let miswired = if at.0 - started.min(at.0) > START_UP {
+        finished.session.board_mut().miswired(at)
+    } else {
+        Vec::new()
+    };
     gaps.extend(miswired.into_iter().map(|line| {
         let (at, what) = line.split_once(' ').unwrap_or((&line, ""));
         Gap {

@@ -24,7 +24,7 @@ fn with(trouble: Trouble, seconds: f64) -> Flight {
         log(&flight)
     );
     assert!(running(&flight, AIRBORNE - 1.0, AIRBORNE));
-    assert_eq!(flight.gaps, []);
+    assert_eq!(flight.gaps, [], "{}", log(&flight));
     flight
 }
 
@@ -113,7 +113,7 @@ fn a_processor_that_stands_still_is_reset_by_its_watchdog_with_the_motors_stoppe
         log(&flight)
     );
     assert!(
-        stopped(&flight, AIRBORNE + 1.0, f64::INFINITY),
+        stopped(&flight, AIRBORNE + 0.4, f64::INFINITY),
         "{}",
         log(&flight)
     );
@@ -128,7 +128,7 @@ fn a_pulled_reset_pin_is_told_as_such() {
         log(&flight)
     );
     assert!(
-        stopped(&flight, AIRBORNE + 0.5, f64::INFINITY),
+        stopped(&flight, AIRBORNE + 0.3, f64::INFINITY),
         "{}",
         log(&flight)
     );

@@ -28,6 +28,7 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
     for (name, wanted) in [
         ("_SEGGER_RTT", "has no log"),
         (".vector_table", "has no vector table"),
+        ("matek-h743", "does not call itself matek-h743"),
     ] {
         let mut bad = good.clone();
         let name = name.as_bytes();

@@ -79,9 +79,9 @@ fn samples(flight: &Flight, from: f64, to: f64) -> impl Iterator<Item = &Sample>
     all.filter(move |s| (from..to).contains(&s.t))
 }
 
-/// Every motor's pin says stop, throughout.
+/// Every motor's pin says stop, throughout; a flight that ended before tells nothing.
 fn stopped(flight: &Flight, from: f64, to: f64) -> bool {
-    samples(flight, from, to).all(|s| s.thrust_asked == [0.0; 4])
+    samples(flight, from, to).count() > 5 && samples(flight, from, to).all(|s| s.thrust_asked == [0.0; 4])
 }
 
 /// Every motor's pin asks for thrust, throughout.
