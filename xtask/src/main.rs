@@ -3,6 +3,7 @@
 mod bench;
 mod boards;
 mod build;
+mod conformance;
 mod cost;
 mod dma;
 mod image;
@@ -32,6 +33,8 @@ usage: cargo xtask VERB
                      count the instructions of every control stage under QEMU, print them beside targets and peers,
                      compare with hil/cost/baseline.toml; --tighten takes what is counted now as the baseline and
                      writes the table of docs/cost.md
+  conformance        run one image of exceptions, floats and control laws on QEMU and on the emulated core of the bench;
+                     their logs must be equal
 
 boards: matek-h743 (reference), cuav-v5, f405
 variables: PROBE_RS_* as probe-rs knows them; RUSTFLAGS is kept and added to
@@ -43,6 +46,7 @@ enum Verb {
     Flash(&'static Board),
     Sizes { tighten: bool },
     Cost(cost::Then),
+    Conformance,
     Help,
 }
 
@@ -60,6 +64,7 @@ impl Verb {
             ["flash", names @ ..] => one_board(names).map(Self::Flash),
             ["sizes"] => Ok(Self::Sizes { tighten: false }),
             ["sizes", "--tighten"] => Ok(Self::Sizes { tighten: true }),
+            ["conformance"] => Ok(Self::Conformance),
             ["cost"] => Ok(Self::Cost(cost::Then::Compare)),
             ["cost", "--json"] => Ok(Self::Cost(cost::Then::Json)),
             ["cost", "--tighten"] => Ok(Self::Cost(cost::Then::Tighten)),
@@ -89,6 +94,7 @@ fn main() -> ExitCode {
         Verb::Flash(board) => flash(board),
         Verb::Sizes { tighten } => all_sizes(tighten),
         Verb::Cost(then) => cost::cost(then),
+        Verb::Conformance => conformance::conformance(),
         Verb::Help => {
             println!("{USAGE}");
             Ok(())

@@ -4,6 +4,7 @@
 //! next millisecond's [`Wires`]. So the two threads take turns, and a run is as deterministic as one thread.
 
 mod chips;
+pub mod conformance;
 mod matek_h743;
 mod part;
 mod rtt;
