@@ -3,13 +3,15 @@
 //! The emulator keeps its core to itself on a thread of its own and calls back at each stop; here the call waits for the
 //! next millisecond's [`Wires`]. So the two threads take turns, and a run is as deterministic as one thread.
 
+mod board;
+mod chip;
 mod chips;
 pub mod conformance;
-mod matek_h743;
-mod part;
+mod f405;
+mod h743;
+mod pads;
 mod rtt;
 mod tap;
-mod watchdog;
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
@@ -20,9 +22,14 @@ use rigless::session::Session;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
 use sophie_control::wrench::PerArm;
 
+use self::board::Wired;
+use self::chip::Chip;
 use self::chips::icm42688p::Sample;
-use self::matek_h743::MatekBoard;
+use self::f405::F405;
+use self::h743::H743;
+use self::pads::Pads;
 use self::rtt::Rtt;
+use crate::boards::Kind;
 use crate::elf::Firmware;
 use crate::esc::{Esc, Line};
 use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
@@ -57,7 +64,7 @@ impl Emulator {
     pub fn power_on(firmware: &Firmware, settings: Settings) -> Result<Self, String> {
         let image = Image::new(&firmware.path, firmware.bytes.clone(), None)
             .map_err(|e| format!("{}: {e}", firmware.path.display()))?;
-        let board = MatekBoard::new(settings.speed)?;
+        let kind = firmware.board.kind;
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);
         let driver = World {
@@ -74,7 +81,10 @@ impl Emulator {
         };
         let thread = std::thread::Builder::new()
             .name("emulator".to_owned())
-            .spawn(move || run(board, image, driver))
+            .spawn(move || match kind {
+                Kind::MatekH743 => run(H743::new()?, &h743::MATEK, settings.speed, image, driver),
+                Kind::F405 => run(F405::new()?, &f405::PADS, settings.speed, image, driver),
+            })
             .map_err(|e| format!("emulator: {e}"))?;
         let mut emulator = Self {
             wires: Some(wires),
@@ -122,8 +132,15 @@ impl Emulator {
 }
 
 /// The emulator's thread.
-fn run(board: MatekBoard, image: Image, driver: World) -> Result<Run, String> {
+fn run<C: Chip>(
+    chip: C,
+    pads: &'static Pads,
+    speed: f64,
+    image: Image,
+    driver: World,
+) -> Result<Run, String> {
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
+    let board = Wired::new(chip, pads, speed)?;
     let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
     // The first stop is at power-on, to get the wires of the first millisecond.
     session.run_until(VirtualNanos(1));
@@ -139,13 +156,10 @@ fn run(board: MatekBoard, image: Image, driver: World) -> Result<Run, String> {
     } else {
         Vec::new()
     };
-    gaps.extend(miswired.into_iter().map(|line| {
-        let (at, what) = line.split_once(' ').unwrap_or((&line, ""));
-        Gap {
-            kind: "miswired",
-            at: at.to_owned(),
-            what: what.to_owned(),
-        }
+    gaps.extend(miswired.into_iter().map(|(at, what)| Gap {
+        kind: "miswired",
+        at,
+        what,
     }));
     let world = finished.driver;
     Ok(Run {
@@ -158,7 +172,7 @@ fn run(board: MatekBoard, image: Image, driver: World) -> Result<Run, String> {
 }
 
 /// Everything that the emulator says it could not do.
-fn gaps(session: &Session<MatekBoard>) -> Vec<Gap> {
+fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
     let mut gaps = Vec::new();
     let mut add = |kind, at: String, what: String| gaps.push(Gap { kind, at, what });
     for entry in session.unmapped() {
@@ -221,7 +235,12 @@ struct World {
 
 impl World {
     /// Reads the pins at `now`.
-    fn read(&mut self, session: &mut Session<MatekBoard>, now: VirtualNanos, host: &mut dyn Host) -> Pins {
+    fn read<C: Chip>(
+        &mut self,
+        session: &mut Session<Wired<C>>,
+        now: VirtualNanos,
+        host: &mut dyn Host,
+    ) -> Pins {
         let resets = session.resets();
         let new = resets.get(self.resets..).unwrap_or_default();
         let resets: Vec<_> = new.iter().map(|r| (r.at.0, format!("{:?}", r.cause))).collect();
@@ -260,9 +279,9 @@ impl World {
         }
     }
 
-    fn motors(&mut self, board: &mut MatekBoard, now: VirtualNanos) {
+    fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos) {
         let driven = board.motors_driven(now);
-        for edge in std::mem::take(&mut board.part.motors.edges) {
+        for edge in board.motor_edges() {
             self.digest
                 .word(edge.at << 3 | (edge.channel as u64) << 1 | u64::from(edge.high));
             // A pin that is not the timer's does not show what the timer does.
@@ -286,7 +305,13 @@ impl World {
     }
 
     /// Puts the world's side on the wires.
-    fn write(&mut self, session: &mut Session<MatekBoard>, stop: Stop, wires: Wires, host: &mut dyn Host) {
+    fn write<C: Chip>(
+        &mut self,
+        session: &mut Session<Wired<C>>,
+        stop: Stop,
+        wires: Wires,
+        host: &mut dyn Host,
+    ) {
         for fault in wires.faults {
             let board = session.board_mut();
             match fault {
@@ -299,13 +324,15 @@ impl World {
         }
         let board = session.board_mut();
         let count = wires.imu.len().max(1) as u64;
-        if let Some(imu) = board.imu() {
-            for (nth, (rate, force)) in (1..).zip(wires.imu) {
-                imu.feed(Sample {
-                    at: self.ms * MS + nth * MS / count,
-                    rate: on_underside(rate).map(|v| (v.to_degrees() * 1e3).round() as i32),
-                    force: on_underside(force).map(|v| (v / 9.806_65 * 1e6).round() as i32),
-                });
+        for (nth, (rate, force)) in (1..).zip(wires.imu) {
+            let [rate, force] = [rate, force].map(|vector| board.on_imu(vector));
+            let sample = Sample {
+                at: self.ms * MS + nth * MS / count,
+                rate: rate.map(|v| (v.to_degrees() * 1e3).round() as i32),
+                force: force.map(|v| (v / 9.806_65 * 1e6).round() as i32),
+            };
+            if let Some(imu) = board.imu() {
+                imu.feed(sample);
             }
         }
         for (arm, [x, y, z]) in wires.arms.into_iter().enumerate() {
@@ -321,16 +348,10 @@ impl World {
     }
 }
 
-/// A vector of body axes on the axes of the inertial sensor, which the board carries on its underside, turned by half a
-/// turn about the vertical (ArduPilot's `hwdef.dat`: ROTATION_YAW_180).
-fn on_underside([x, y, z]: [f64; 3]) -> [f64; 3] {
-    [-x, -y, z]
-}
-
-impl Driver<MatekBoard> for World {
+impl<C: Chip> Driver<Wired<C>> for World {
     fn on_stop(
         &mut self,
-        session: &mut Session<MatekBoard>,
+        session: &mut Session<Wired<C>>,
         stop: Stop,
         host: &mut dyn Host,
     ) -> Option<VirtualNanos> {
