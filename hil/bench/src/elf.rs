@@ -15,6 +15,8 @@ pub struct Firmware {
     pub bytes: Vec<u8>,
     /// Address of the log's control block.
     pub rtt: u64,
+    /// The flash that is kept for parameters: first address, and first one beyond.
+    pub params: (u64, u64),
     /// How the log is written.
     pub table: Table,
     /// The board that it is for.
@@ -81,17 +83,27 @@ impl Firmware {
                 return Err(wrong(format!("has {name} beyond the end of the flash; {wanted}")));
             }
         }
-        let rtt = file
-            .symbols()
-            .find(|s| s.name() == Ok("_SEGGER_RTT"))
-            .map(|s| s.address())
+        let symbol = |name: &str| {
+            let mut symbols = file.symbols();
+            symbols.find(|s| s.name() == Ok(name)).map(|s| s.address())
+        };
+        let rtt = symbol("_SEGGER_RTT")
             .ok_or_else(|| wrong(format!("has no log (symbol _SEGGER_RTT); {wanted}")))?;
+        let params = symbol("_params_start")
+            .zip(symbol("_params_end"))
+            .filter(|(start, end)| board.flash.0 <= *start && start < end && *end <= board.flash.1)
+            .ok_or_else(|| {
+                wrong(format!(
+                    "keeps no flash for parameters (symbols _params_start, _params_end); {wanted}"
+                ))
+            })?;
         let table = Table::parse(&bytes)
             .map_err(|e| wrong(format!("has a log that cannot be decoded: {e}")))?
             .ok_or_else(|| wrong(format!("has no table of log messages (.defmt); {wanted}")))?;
         Ok(Self {
             path: path.to_owned(),
             rtt,
+            params,
             table,
             bytes,
             board,

@@ -20,4 +20,5 @@ pub mod gaps;
 pub mod log;
 pub mod plan;
 pub mod sensors;
+pub mod stored;
 pub mod wires;

@@ -2,6 +2,7 @@
 //!
 //! Exit status: 0 when the mission was accomplished and the emulator vouches for it, 1 when not, 2 for bad input.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -155,6 +156,7 @@ fn told(args: &Args, flight: &Flight) -> serde_json::Value {
         "latency_mean_us": run.latency_us.mean(),
         "latency_max_us": run.latency_us.worst,
         "overruns": board.overruns,
+        "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
         "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
         "log_lines": board.lines.len(),
         "log_malformed": board.malformed,

@@ -11,6 +11,7 @@ use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::pads::Pads;
+use super::serial::Setup;
 use super::tap::Edge;
 
 /// The board.
@@ -114,10 +115,20 @@ impl<C: Chip> Wired<C> {
         self.pads.signals.map(|pin| self.chip.is_high(now, pin))
     }
 
-    /// Pins that do not carry what is wired to them, with what they carry.
-    pub fn miswired(&mut self, now: VirtualNanos) -> Vec<(String, String)> {
+    /// First address of the flash sector that a write of `value` to `address` begins to erase.
+    pub fn erased(&self, address: u64, value: u64) -> Option<u64> {
+        self.chip.erased(address, value)
+    }
+
+    /// Pins that do not carry what is wired to them, with what they carry, and a receiver's port that is not set up as
+    /// `receiver` says.
+    pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
         let mut found = Vec::new();
-        for (pin, wanted) in self.pads.functions() {
+        let port = self.chip.serial_setup(self.pads.receiver);
+        if !receiver.fits(&port) {
+            found.push(("receiver".to_owned(), format!("is {port}, wired for {receiver}")));
+        }
+        for (pin, wanted) in self.pads.functions(!receiver.parity) {
             let function = self.chip.function(now, pin);
             if function != Some(wanted) {
                 let carried = function.map_or("none".to_owned(), |f| f.to_string());

@@ -13,6 +13,7 @@ use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::pads::{At, Pads};
+use super::serial::Setup;
 use super::tap::Edge;
 
 /// A processor with the bench's parts on its interfaces.
@@ -43,6 +44,10 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn motor_edges(&mut self) -> Vec<Edge>;
     /// High time and period of the pulse at a channel (0 to 3) of the servos' timer, ns; `None` without pulses.
     fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)>;
+    /// How a serial port is set up.
+    fn serial_setup(&self, port: usize) -> Setup;
+    /// First address of the flash sector that a write of `value` to `address` begins to erase.
+    fn erased(&self, address: u64, value: u64) -> Option<u64>;
     /// Core, ready to run `speed` instructions for each cycle of its clock.
     ///
     /// # Errors

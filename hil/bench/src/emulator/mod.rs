@@ -11,16 +11,22 @@ mod f405;
 mod h743;
 mod pads;
 mod rtt;
+mod serial;
 mod tap;
 
+use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-use rigless::emulator::{self, Driver, Host, Start, Stop};
+use rigless::emulator::{self, AccessKind, Driver, Host, Settled, Start, Stop};
 use rigless::image::Image;
 use rigless::session::Session;
+use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
+use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
+use sophie_tasks::rc::Protocol;
 
 use self::board::Wired;
 use self::chip::Chip;
@@ -32,6 +38,7 @@ use self::rtt::Rtt;
 use crate::boards::Kind;
 use crate::elf::Firmware;
 use crate::esc::{Esc, Line};
+use crate::stored;
 use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
@@ -40,13 +47,16 @@ const START_UP: u64 = 1000 * MS;
 /// Longest time from data-ready to motor frame that can be told from a lost sample: the time between two samples, ns.
 const SAMPLE: u64 = 250_000;
 
+/// What a corrupted flash holds: each word its address with these bits flipped.
+const NOISE: u64 = 0x5A5A_5A5A;
+
 /// How the board is emulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// Instructions for each cycle of the core's clock.
     pub speed: f64,
-    /// What the motor controllers understand.
-    pub line: Line,
+    /// What is stored in its flash.
+    pub params: Params,
 }
 
 /// A board under emulation.
@@ -65,6 +75,13 @@ impl Emulator {
         let image = Image::new(&firmware.path, firmware.bytes.clone(), None)
             .map_err(|e| format!("{}: {e}", firmware.path.display()))?;
         let kind = firmware.board.kind;
+        let (first, end) = firmware.params;
+        let stored = stored::sectors(kind, (end - first) as usize, &settings.params)?;
+        let stored =
+            Image::new(Path::new("parameters"), stored, Some(first)).map_err(|e| format!("emulator: {e}"))?;
+        let images = [image, stored];
+        let line = Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
+        let receiver = serial::Setup::of(Protocol::from_params(&settings.params), kind);
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);
         let driver = World {
@@ -72,7 +89,11 @@ impl Emulator {
             pins: pins_out,
             ms: 0,
             rtt: Rtt::new(firmware.rtt),
-            escs: std::array::from_fn(|_| Esc::new(settings.line)),
+            params: firmware.params,
+            receiver,
+            erases: BTreeMap::new(),
+            unwritable: false,
+            escs: std::array::from_fn(|_| Esc::new(line)),
             servos: [0.0; 4],
             resets: 0,
             latency: Latency::default(),
@@ -82,8 +103,8 @@ impl Emulator {
         let thread = std::thread::Builder::new()
             .name("emulator".to_owned())
             .spawn(move || match kind {
-                Kind::MatekH743 => run(H743::new()?, &h743::MATEK, settings.speed, image, driver),
-                Kind::F405 => run(F405::new()?, &f405::PADS, settings.speed, image, driver),
+                Kind::MatekH743 => run(H743::new()?, &h743::MATEK, settings.speed, &images, driver),
+                Kind::F405 => run(F405::new()?, &f405::PADS, settings.speed, &images, driver),
             })
             .map_err(|e| format!("emulator: {e}"))?;
         let mut emulator = Self {
@@ -136,7 +157,7 @@ fn run<C: Chip>(
     chip: C,
     pads: &'static Pads,
     speed: f64,
-    image: Image,
+    images: &[Image; 2],
     driver: World,
 ) -> Result<Run, String> {
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
@@ -144,15 +165,15 @@ fn run<C: Chip>(
     let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
     // The first stop is at power-on, to get the wires of the first millisecond.
     session.run_until(VirtualNanos(1));
-    let images = [image];
-    let mut finished = emulator::run(session, &Start::new(&images), driver).map_err(|e| told(&e))?;
+    let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| told(&e))?;
     let (at, instructions) = finished
         .stop
         .map_or((VirtualNanos(0), 0), |s| (s.at, s.instruction_count));
     let mut gaps = gaps(&finished.session);
     let started = finished.session.resets().last().map_or(0, |reset| reset.at.0);
     let miswired = if at.0 - started.min(at.0) > START_UP {
-        finished.session.board_mut().miswired(at)
+        let receiver = finished.driver.receiver;
+        finished.session.board_mut().miswired(at, receiver)
     } else {
         Vec::new()
     };
@@ -162,11 +183,19 @@ fn run<C: Chip>(
         what,
     }));
     let world = finished.driver;
+    if world.unwritable {
+        gaps.push(Gap {
+            kind: "refused",
+            at: "flash".to_owned(),
+            what: "this part's flash cannot be overwritten".to_owned(),
+        });
+    }
     Ok(Run {
         gaps,
         instructions,
         escs: world.escs.map(|esc| esc.stats),
         latency_us: world.latency,
+        erases: world.erases,
         pins_digest: world.digest.0,
     })
 }
@@ -224,6 +253,13 @@ struct World {
     pins: SyncSender<Pins>,
     ms: u64,
     rtt: Rtt,
+    /// The flash that is kept for parameters: first address, and first one beyond.
+    params: (u64, u64),
+    /// How the receiver's port must be set up.
+    receiver: serial::Setup,
+    erases: BTreeMap<u64, u32>,
+    /// The flash was to be overwritten from outside, and could not be.
+    unwritable: bool,
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
@@ -318,6 +354,11 @@ impl World {
                 Fault::ImuUnplugged(out) => board.silence_imu(out),
                 Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
                 Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
+                Fault::CorruptParameters => {
+                    let (first, end) = self.params;
+                    let mut words = (first..end).step_by(4);
+                    self.unwritable |= words.any(|at| host.program(at, Width::W32, at ^ NOISE).is_err());
+                }
                 Fault::Hang(still) => host.hold(still),
                 Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
             }
@@ -343,12 +384,21 @@ impl World {
         }
         board.set_analog(wires.analog);
         if let Some(line) = board.receiver() {
-            line.outgoing.extend(wires.receiver.into_iter().map(u16::from));
+            line.outgoing.extend(wires.receiver);
         }
     }
 }
 
 impl<C: Chip> Driver<Wired<C>> for World {
+    fn on_settled(&mut self, session: &mut Session<Wired<C>>, _: &mut dyn Host, settled: Settled) {
+        if let Settled::Access { access, .. } = settled
+            && access.kind == AccessKind::Write
+            && let Some(sector) = session.board().erased(access.address, access.value)
+        {
+            *self.erases.entry(sector).or_default() += 1;
+        }
+    }
+
     fn on_stop(
         &mut self,
         session: &mut Session<Wired<C>>,

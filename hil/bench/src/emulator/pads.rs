@@ -44,6 +44,8 @@ pub struct Pads {
     pub analog: [u8; 6],
     /// Serial port of the receiver.
     pub receiver: usize,
+    /// Where the port sends to the receiver, with its alternate function; SBUS leaves it alone.
+    pub receiver_out: (At, u8),
     /// The motors.
     pub motors: TimerPins,
     /// The servos.
@@ -58,12 +60,13 @@ pub struct Pads {
 }
 
 impl Pads {
-    /// Every pin that must carry an alternate function, with its number.
-    pub fn functions(&self) -> impl Iterator<Item = (At, u8)> {
+    /// Every pin that must carry an alternate function, with its number; `answers` the receiver both ways.
+    pub fn functions(&self, answers: bool) -> impl Iterator<Item = (At, u8)> {
         let timers = [self.motors, self.servos];
         timers
             .into_iter()
             .flat_map(|timer| timer.pins.map(|pin| (pin, timer.function)))
             .chain(self.buses.iter().copied())
+            .chain(answers.then_some(self.receiver_out))
     }
 }

@@ -8,6 +8,7 @@ mod determinism;
 mod faults;
 mod images;
 mod missions;
+mod parameters;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

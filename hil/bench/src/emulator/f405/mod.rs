@@ -17,11 +17,12 @@ use rigless::emulator::CoreSpec;
 use rigless::machine::armv7m;
 use rigless::mcu::{Mcu, Operate};
 use rigless::soc::stm32f427::generated::dma2::Register as DmaRegister;
-use rigless::soc::stm32f427::peripherals::CONTROLLERS;
+use rigless::soc::stm32f427::generated::usart6::Register as Serial;
 use rigless::soc::stm32f427::peripherals::dma::{Dma, Wire};
 use rigless::soc::stm32f427::peripherals::i2c::I2c;
 use rigless::soc::stm32f427::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32f427::peripherals::tim::{Advanced, Counter, Tim, UPDATE_REQUEST};
+use rigless::soc::stm32f427::peripherals::{CONTROLLERS, SERIAL_PORTS};
 use rigless::soc::stm32f427::{Stm32f427, generated};
 use rigless::soc::{Bus, Layout};
 use rigless::time::VirtualNanos;
@@ -33,12 +34,15 @@ use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::pads::{At, Pads, TimerPins};
+use super::serial::Setup;
 use super::tap::{Edge, Tap};
 
 /// Supply and converter reference, mV.
 const SUPPLY: u32 = 3300;
 /// Core clock, Hz.
 const CLOCK: f64 = 168e6;
+/// Clock of the receiver's port, Hz.
+const SERIAL_CLOCK: f64 = 84e6;
 /// General-purpose timer of the servos: TIM3.
 const SERVO_TIMER: usize = 1;
 /// The motors' timer, and the one whose DMA request moves their frames (RM0090 table 43).
@@ -59,6 +63,7 @@ pub static PADS: Pads = Pads {
     arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
     analog: [10, 11, 12, 13, 0, 1],
     receiver: 0,
+    receiver_out: (At(0, 9), 7),
     motors: TimerPins {
         pins: [At(2, 6), At(2, 7), At(2, 8), At(2, 9)],
         function: 3,
@@ -75,7 +80,6 @@ pub static PADS: Pads = Pads {
         (At(1, 9), 4),
         (At(1, 10), 4),
         (At(1, 11), 4),
-        (At(0, 9), 7),
         (At(0, 10), 7),
     ],
     resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10)],
@@ -232,6 +236,18 @@ impl F405 {
 
 impl Chip for F405 {
     same_on_this_part!(stm32f427);
+
+    fn serial_setup(&self, port: usize) -> Setup {
+        let file = self.inner.bus().registers(SERIAL_PORTS[port].instance);
+        let values = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.map_or(0, |file| file.get(r)));
+        let [brr, cr1, cr2] = values;
+        Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+    }
+
+    // The emulator does not let this part erase.
+    fn erased(&self, _: u64, _: u64) -> Option<u64> {
+        None
+    }
 
     fn core(&self, speed: f64) -> Result<CoreSpec, String> {
         let rate = NonZeroU64::new((CLOCK * speed) as u64).ok_or("the speed must be more than 0")?;

@@ -11,6 +11,7 @@ use rigless::machine::matekh743::MatekH743;
 use rigless::mcu::Mcu;
 use rigless::soc::Bus;
 use rigless::soc::stm32h743::Stm32h743;
+use rigless::soc::stm32h743::generated::usart1::Register as Serial;
 use rigless::soc::stm32h743::peripherals::i2c::I2c;
 use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32h743::peripherals::tim::{General, TIMERS, Tim};
@@ -23,12 +24,22 @@ use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::pads::{At, Pads, TimerPins};
+use super::serial::Setup;
 use super::tap::{Edge, Tap};
 
 /// Supply and converter reference, mV.
 const SUPPLY: u32 = 3300;
 /// Core clock, Hz.
 const CLOCK: f64 = 400e6;
+/// Clock of the receiver's port, Hz.
+const SERIAL_CLOCK: f64 = 100e6;
+/// Control registers of the flash's banks, and in them the bits that erase a sector.
+const BANK_CONTROLS: [u64; 2] = [0x5200_200C, 0x5200_210C];
+const ERASE: u64 = 1 << 2 | 1 << 7;
+/// First address of the flash; bytes of a bank and of a sector.
+const FLASH: u64 = 0x0800_0000;
+const BANK: u64 = 0x10_0000;
+const SECTOR: u64 = 0x2_0000;
 /// General-purpose timers of the motors and the servos: TIM4, TIM5.
 const MOTOR_TIMER: usize = 2;
 const SERVO_TIMER: usize = 3;
@@ -46,6 +57,7 @@ pub static MATEK: Pads = Pads {
     arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
     analog: [4, 8, 18, 7, 10, 11],
     receiver: 5,
+    receiver_out: (At(2, 6), 7),
     motors: TimerPins {
         pins: [At(3, 12), At(3, 13), At(3, 14), At(3, 15)],
         function: 2,
@@ -62,7 +74,6 @@ pub static MATEK: Pads = Pads {
         (At(1, 7), 4),
         (At(1, 10), 4),
         (At(1, 11), 4),
-        (At(2, 6), 7),
         (At(2, 7), 7),
     ],
     resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7)],
@@ -157,6 +168,18 @@ impl H743 {
 
 impl Chip for H743 {
     same_on_this_part!(stm32h743);
+
+    fn serial_setup(&self, port: usize) -> Setup {
+        let file = self.inner.bus().slots()[self.slots.serial[port]].registers();
+        let [brr, cr1, cr2] = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.get(r));
+        Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+    }
+
+    fn erased(&self, address: u64, value: u64) -> Option<u64> {
+        let bank = BANK_CONTROLS.iter().position(|control| *control == address)?;
+        // A sector's erase, and its start (RM0433 §4.9.4).
+        (value & ERASE == ERASE).then(|| FLASH + BANK * bank as u64 + SECTOR * (value >> 8 & 7))
+    }
 
     fn core(&self, speed: f64) -> Result<CoreSpec, String> {
         let machine = MatekH743::new().map_err(|e| format!("emulator: {e}"))?;
