@@ -6,7 +6,7 @@ use crate::boards::{self, Board};
 use crate::{Error, build};
 
 /// Boards that can be emulated.
-const EMULATED: [&str; 1] = ["matek-h743"];
+const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
 /// The board that `words`, the arguments behind the verb, begin with, if it can be emulated.
 ///

@@ -14,11 +14,14 @@ use sophie_control::wrench::PerArm;
 use sophie_hil::crsf::Telemetry;
 use sophie_hil::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_hil::plant::{Actuators, Plant};
+use sophie_hil::scenario::Scenario;
+use sophie_tasks::rc::{Protocol, sbus};
 use sophie_tasks::start::Cause;
 use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
-use crate::emulator::Emulator;
+use crate::elf::Firmware;
+use crate::emulator::{Emulator, Settings};
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
@@ -26,7 +29,10 @@ use crate::wires::{Digest, Fault, Pins, Run, Wires};
 
 /// A vehicle with the emulated board in it.
 pub struct Bench<'a> {
-    emulator: Emulator,
+    /// `None` before power-on.
+    emulator: Option<Emulator>,
+    firmware: &'a Firmware,
+    settings: Settings,
     sensors: Sensors,
     plan: Plan,
     wires: Wires,
@@ -46,6 +52,7 @@ pub struct Bench<'a> {
     overruns: BTreeMap<String, u32>,
     log_digest: Digest,
     params: Params,
+    protocol: Protocol,
     watched: Watched,
     /// Every line of the log.
     pub lines: Vec<Line>,
@@ -84,21 +91,34 @@ pub struct Finished {
 }
 
 impl<'a> Bench<'a> {
-    /// A vehicle around `emulator`, with sensors out of the bag that `rng` holds; each line of the log goes to `told`.
+    /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
+    /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
+    /// `told`.
     pub fn new(
-        emulator: Emulator,
-        log: Log<'a>,
+        firmware: &'a Firmware,
+        scenario: &Scenario,
+        speed: f64,
         plan: Plan,
         rng: &mut Pcg64Mcg,
         told: impl FnMut(&Line) + 'a,
     ) -> Self {
+        let sensors = Sensors::new(&scenario.params, rng);
+        let [accel_bias_x, accel_bias_y, accel_bias_z] = sensors.calibration;
+        let params = Params {
+            accel_bias_x,
+            accel_bias_y,
+            accel_bias_z,
+            ..scenario.params
+        };
         Self {
-            emulator,
-            sensors: Sensors::new(&Params::default(), rng),
+            emulator: None,
+            firmware,
+            settings: Settings { speed, params },
+            sensors,
             plan,
             wires: Wires::default(),
             pins: Pins::default(),
-            log,
+            log: Log::new(&firmware.table),
             told: Box::new(told),
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
@@ -111,7 +131,8 @@ impl<'a> Bench<'a> {
             dead: false,
             overruns: BTreeMap::new(),
             log_digest: Digest::default(),
-            params: Params::default(),
+            params,
+            protocol: Protocol::from_params(&params),
             watched: Watched::default(),
             lines: Vec::new(),
             resets: Vec::new(),
@@ -123,8 +144,9 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// One line: why the emulator failed.
     pub fn finish(mut self) -> Result<Finished, String> {
+        let emulator = self.emulator.as_mut().ok_or("the board was never powered")?;
         Ok(Finished {
-            run: self.emulator.finish()?,
+            run: emulator.finish()?,
             overruns: self.overruns,
             log_digest: self.log_digest.0,
             lines: self.lines,
@@ -209,17 +231,22 @@ impl Aircraft for Bench<'_> {
     fn receive(&mut self, bytes: &[u8]) {
         self.setpoint = [f64::NAN; 3];
         if self.mode() == Mode::Flight
-            && let Some(sticks) = sticks(bytes)
+            && let Some(sticks) = sticks(self.protocol, bytes)
         {
             let angle = self.params.stick_angle;
             self.setpoint = [sticks.roll * angle, sticks.pitch * angle, f32::NAN].map(f64::from);
         }
-        self.plan.radio(self.pins.ms, bytes, &mut self.wires.receiver);
+        let words = bytes.iter().map(|byte| on_line(self.protocol, *byte));
+        self.plan.radio(words, &mut self.wires.receiver);
     }
 
     fn run_until(&mut self, us: u64) -> Result<(), String> {
         while self.pins.ms * 1000 < us {
-            self.pins = self.emulator.advance(std::mem::take(&mut self.wires))?;
+            let emulator = match &mut self.emulator {
+                Some(emulator) => emulator,
+                off => off.insert(Emulator::power_on(self.firmware, self.settings)?),
+            };
+            self.pins = emulator.advance(std::mem::take(&mut self.wires))?;
             let ms = self.pins.ms;
             let bytes = std::mem::take(&mut self.pins.telemetry);
             self.display.take(&bytes);
@@ -304,11 +331,23 @@ impl Aircraft for Bench<'_> {
 }
 
 /// Where the sticks are by a frame of the radio; `None` for other frames.
-fn sticks(mut frame: &[u8]) -> Option<Sticks> {
-    match CrsfParser::default().next_packet(&mut frame) {
-        Some(Ok(Packet::RCChannels(channels))) => Sticks::from_channels(&channels.0).ok(),
-        _ => None,
+fn sticks(protocol: Protocol, mut frame: &[u8]) -> Option<Sticks> {
+    match protocol {
+        Protocol::Crsf => match CrsfParser::default().next_packet(&mut frame) {
+            Some(Ok(Packet::RCChannels(channels))) => Sticks::from_channels(&channels.0).ok(),
+            _ => None,
+        },
+        Protocol::Sbus => sbus::Frame::decode(frame.try_into().ok()?)?.sticks().ok(),
     }
+}
+
+/// A byte as it goes over the receiver's line: SBUS puts an even parity on top.
+fn on_line(protocol: Protocol, byte: u8) -> u16 {
+    let parity = match protocol {
+        Protocol::Crsf => 0,
+        Protocol::Sbus => byte.count_ones() as u16 & 1,
+    };
+    u16::from(byte) | parity << 8
 }
 
 /// What the log tells of one arm's grip: `grip: arm 1 holds 947 N/m2 with 34 N, closed in 5.6 s`.
@@ -356,13 +395,27 @@ mod tests {
     }
 
     #[test]
+    fn an_sbus_word_has_an_even_number_of_ones() {
+        assert_eq!(on_line(Protocol::Sbus, 0x0F), 0x0F);
+        assert_eq!(on_line(Protocol::Sbus, 0x07), 0x107);
+        assert_eq!(on_line(Protocol::Crsf, 0x07), 0x07);
+    }
+
+    #[test]
     fn the_sticks_of_a_frame_are_read() {
         let sent = Sticks {
             roll: 0.5,
             ..Sticks::default()
         };
-        let read = sticks(&sophie_hil::crsf::rc_frame(&sent)).unwrap();
+        let read = sticks(Protocol::Crsf, &sophie_hil::crsf::rc_frame(&sent)).unwrap();
         assert!((read.roll - 0.5).abs() < 0.02);
-        assert!(sticks(&[1, 2, 3]).is_none());
+        assert!(sticks(Protocol::Crsf, &[1, 2, 3]).is_none());
+        let frame = sbus::Frame {
+            channels: [1500; 16],
+            ..sbus::Frame::default()
+        };
+        let read = sticks(Protocol::Sbus, &frame.encode()).unwrap();
+        assert!((read.roll - 0.62).abs() < 0.02);
+        assert!(sticks(Protocol::Sbus, &[1, 2, 3]).is_none());
     }
 }

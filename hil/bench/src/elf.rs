@@ -5,12 +5,7 @@ use std::path::{Path, PathBuf};
 use defmt_decoder::Table;
 use object::{Architecture, Object, ObjectSection, ObjectSymbol};
 
-/// Flash of the STM32H743: first address, and first one beyond.
-const FLASH: (u64, u64) = (0x0800_0000, 0x0820_0000);
-/// Name of the board in its image.
-const BOARD: &str = "matek-h743";
-/// RAM that the stack may lie in: DTCM, AXI SRAM.
-const RAM: [(u64, u64); 2] = [(0x2000_0000, 0x2002_0000), (0x2400_0000, 0x2408_0000)];
+use crate::boards::EmulatedBoard;
 
 /// A firmware image.
 pub struct Firmware {
@@ -20,19 +15,23 @@ pub struct Firmware {
     pub bytes: Vec<u8>,
     /// Address of the log's control block.
     pub rtt: u64,
+    /// The flash that is kept for parameters: first address, and first one beyond.
+    pub params: (u64, u64),
     /// How the log is written.
     pub table: Table,
+    /// The board that it is for.
+    pub board: &'static EmulatedBoard,
 }
 
 impl Firmware {
-    /// Reads an image for the STM32H743.
+    /// Reads an image for `board`.
     ///
     /// # Errors
     /// One line: the file, what is wrong with it and what is wanted.
-    pub fn read(path: &Path) -> Result<Self, String> {
+    pub fn read(path: &Path, board: &'static EmulatedBoard) -> Result<Self, String> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
         let wrong = |what: String| format!("{}: {what}", path.display());
-        let wanted = "wanted is what `cargo xtask firmware matek-h743` builds";
+        let wanted = format!("wanted is what `cargo xtask firmware {}` builds", board.name);
         let file = object::File::parse(&*bytes).map_err(|_| wrong(format!("is no ELF file; {wanted}")))?;
         if file.architecture() != Architecture::Arm || file.is_64() {
             let found = file.architecture();
@@ -43,11 +42,11 @@ impl Firmware {
         let section = |name| file.section_by_name(name);
         let vectors =
             section(".vector_table").ok_or_else(|| wrong(format!("has no vector table; {wanted}")))?;
-        if vectors.address() != FLASH.0 {
+        if vectors.address() != board.flash.0 {
             let found = vectors.address();
             return Err(wrong(format!(
                 "has its vector table at {found:#010x}, not at {:#010x}; {wanted}",
-                FLASH.0
+                board.flash.0
             )));
         }
         let stack = vectors
@@ -55,9 +54,14 @@ impl Firmware {
             .ok()
             .and_then(|data| Some(u64::from(u32::from_le_bytes(data.get(..4)?.try_into().ok()?))))
             .unwrap_or(0);
-        if !RAM.iter().any(|(first, end)| (first + 4..=*end).contains(&stack)) {
+        if !board
+            .ram
+            .iter()
+            .any(|(first, end)| (first + 4..=*end).contains(&stack))
+        {
             return Err(wrong(format!(
-                "starts its stack at {stack:#010x}, where an STM32H743 has no RAM; {wanted}"
+                "starts its stack at {stack:#010x}, where an {} has no RAM; {wanted}",
+                board.chip
             )));
         }
         // The name that the image greets with: boards of other chips also start at this flash address.
@@ -68,29 +72,41 @@ impl Firmware {
                 .filter_map(|s| s.data().ok());
             data.any(|bytes| bytes.windows(name.len()).any(|window| window == name))
         };
-        if !named(BOARD.as_bytes()) {
-            return Err(wrong(format!("does not call itself {BOARD}; {wanted}")));
+        if !named(board.name.as_bytes()) {
+            return Err(wrong(format!("does not call itself {}; {wanted}", board.name)));
         }
         for section in file.sections() {
             let end = section.address() + section.size();
-            if section.address() >= FLASH.0 && section.address() < FLASH.1 && end > FLASH.1 {
+            if section.address() >= board.flash.0 && section.address() < board.flash.1 && end > board.flash.1
+            {
                 let name = section.name().unwrap_or("?").to_owned();
                 return Err(wrong(format!("has {name} beyond the end of the flash; {wanted}")));
             }
         }
-        let rtt = file
-            .symbols()
-            .find(|s| s.name() == Ok("_SEGGER_RTT"))
-            .map(|s| s.address())
+        let symbol = |name: &str| {
+            let mut symbols = file.symbols();
+            symbols.find(|s| s.name() == Ok(name)).map(|s| s.address())
+        };
+        let rtt = symbol("_SEGGER_RTT")
             .ok_or_else(|| wrong(format!("has no log (symbol _SEGGER_RTT); {wanted}")))?;
+        let params = symbol("_params_start")
+            .zip(symbol("_params_end"))
+            .filter(|(start, end)| board.flash.0 <= *start && start < end && *end <= board.flash.1)
+            .ok_or_else(|| {
+                wrong(format!(
+                    "keeps no flash for parameters (symbols _params_start, _params_end); {wanted}"
+                ))
+            })?;
         let table = Table::parse(&bytes)
             .map_err(|e| wrong(format!("has a log that cannot be decoded: {e}")))?
             .ok_or_else(|| wrong(format!("has no table of log messages (.defmt); {wanted}")))?;
         Ok(Self {
             path: path.to_owned(),
             rtt,
+            params,
             table,
             bytes,
+            board,
         })
     }
 }

@@ -6,9 +6,7 @@ use sophie_hil::scenario::Scenario;
 
 use crate::bench::{Bench, Finished};
 use crate::elf::Firmware;
-use crate::emulator::{Emulator, Settings};
-use crate::esc::Line;
-use crate::log::{self, Log};
+use crate::log;
 use crate::plan::Plan;
 use crate::wires::Gap;
 use crate::{flyable, gaps};
@@ -54,10 +52,7 @@ pub fn fly(
     observer: &mut dyn Observer,
 ) -> Result<Flight, String> {
     flyable::check(scenario)?;
-    let line = Line::from_number(scenario.params.get("motor_protocol").unwrap_or_default());
-    let emulator = Emulator::power_on(firmware, Settings { speed, line })?;
-    let log = Log::new(&firmware.table);
-    let make = |rng: &mut _| Bench::new(emulator, log, plan, rng, told);
+    let make = |rng: &mut _| Bench::new(firmware, scenario, speed, plan, rng, told);
     let (record, bench) = fly_with(scenario, make, observer);
     let board = bench.finish()?;
     let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();

@@ -10,6 +10,7 @@
 //! but by its pins, its telemetry and its log.
 
 pub mod bench;
+pub mod boards;
 pub mod elf;
 pub mod emulator;
 pub mod esc;
@@ -19,4 +20,5 @@ pub mod gaps;
 pub mod log;
 pub mod plan;
 pub mod sensors;
+pub mod stored;
 pub mod wires;

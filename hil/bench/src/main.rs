@@ -2,11 +2,13 @@
 //!
 //! Exit status: 0 when the mission was accomplished and the emulator vouches for it, 1 when not, 2 for bad input.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
+use sophie_bench::boards;
 use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::flyable;
@@ -19,8 +21,6 @@ use sophie_report::terminal::{Besides, FILES, complain, finish, result};
 
 /// Name before every complaint.
 const PROGRAM: &str = "bench";
-/// Boards that can be emulated.
-const BOARDS: [&str; 1] = ["matek-h743"];
 /// Instructions for each cycle of the clock that can be asked for.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
 
@@ -28,7 +28,7 @@ const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
 #[derive(Parser)]
 #[command(name = "bench", version)]
 struct Args {
-    /// Board: matek-h743.
+    /// Board: matek-h743 or f405.
     board: String,
     /// Scenario file; without one the default mission is flown.
     scenario: Option<PathBuf>,
@@ -84,13 +84,7 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<bool, String> {
-    if !BOARDS.contains(&args.board.as_str()) {
-        return Err(format!(
-            "no board called `{}` is emulated: allowed is {}",
-            args.board,
-            BOARDS.join(", ")
-        ));
-    }
+    let board = boards::find(&args.board)?;
     if !SPEEDS.contains(&args.speed) {
         let (low, high) = (SPEEDS.start(), SPEEDS.end());
         return Err(format!("--speed {}: allowed is {low} to {high}", args.speed));
@@ -104,7 +98,7 @@ fn run(args: &Args) -> Result<bool, String> {
         None => Scenario::default_mission_with(&overrides),
     };
     flyable::check(&scenario)?;
-    let firmware = Firmware::read(&args.elf)?;
+    let firmware = Firmware::read(&args.elf, board)?;
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
@@ -162,6 +156,7 @@ fn told(args: &Args, flight: &Flight) -> serde_json::Value {
         "latency_mean_us": run.latency_us.mean(),
         "latency_max_us": run.latency_us.worst,
         "overruns": board.overruns,
+        "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
         "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
         "log_lines": board.lines.len(),
         "log_malformed": board.malformed,

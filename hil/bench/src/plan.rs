@@ -58,15 +58,15 @@ impl Plan {
         }
     }
 
-    /// What of `bytes` comes out of the receiver's line.
-    pub fn radio(&mut self, _ms: u64, bytes: &[u8], line: &mut Vec<u8>) {
+    /// What of `words` comes out of the receiver's line.
+    pub fn radio(&mut self, words: impl Iterator<Item = u16>, line: &mut Vec<u16>) {
         if self.silent {
             return;
         }
-        for byte in bytes {
+        for word in words {
             self.bytes = self.bytes.wrapping_add(1);
             let hit = self.every > 0 && self.bytes.is_multiple_of(self.every);
-            line.push(byte ^ if hit { 0x10 } else { 0 });
+            line.push(word ^ if hit { 0x10 } else { 0 });
         }
     }
 }

@@ -27,8 +27,8 @@ pub struct Sensors {
     imu: Imu,
     /// Samples of the inertial sensor in a plant step.
     samples: u32,
-    /// What the builder's calibration takes off the accelerometer, m/s².
-    calibration: Vec3,
+    /// What the builder's calibration finds of the accelerometer's bias, m/s².
+    pub calibration: [f32; 3],
     arms: PerArm<ArmImu>,
     fsr: PerArm<FsrSensor>,
     battery: BatteryInputs,
@@ -47,7 +47,7 @@ impl Sensors {
     #[must_use]
     pub fn new(params: &Params, rng: &mut Pcg64Mcg) -> Self {
         let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
-        let calibration = imu.bench_bias().as_vec3().to_array().into();
+        let calibration = imu.bench_bias().as_vec3().to_array();
         let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
         let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
         let battery = BatteryInputs::new(rng);
@@ -86,11 +86,8 @@ impl Sensors {
                 let reading = self
                     .imu
                     .sample(rate + rate_step * share, force + force_step * share, &rotors);
-                // The image flies the default parameters, which hold no calibration: it is taken off here.
                 let wide = |v: Vec3| v.to_array().map(f64::from);
-                wires
-                    .imu
-                    .push((wide(reading.gyro), wide(reading.accel - self.calibration)));
+                wires.imu.push((wide(reading.gyro), wide(reading.accel)));
             }
         }
         self.arm_clock += 1e-3 * arm_imu::RATE_HZ;

@@ -1,5 +1,7 @@
 //! What crosses between the emulated board and the world: plain data, whatever emulates the board.
 
+use std::collections::BTreeMap;
+
 use sophie_control::wrench::PerArm;
 
 use crate::esc::EscStats;
@@ -14,8 +16,8 @@ pub struct Wires {
     pub arms: PerArm<[f64; 3]>,
     /// Volts at the pins of pressure 1 to 4, battery voltage, battery current.
     pub analog: [f64; 6],
-    /// Bytes from the radio's receiver.
-    pub receiver: Vec<u8>,
+    /// Words from the radio's receiver, the parity on top where its line has one.
+    pub receiver: Vec<u16>,
     /// What breaks or is mended now.
     pub faults: Vec<Fault>,
 }
@@ -29,6 +31,8 @@ pub enum Fault {
     ImuWord(u8),
     /// The sensor of this arm, 0 to 3, is unplugged (true) or plugged in again.
     ArmUnplugged(usize, bool),
+    /// The flash that is kept for parameters is overwritten, as a program of another maker would.
+    CorruptParameters,
     /// The processor stands still (true) or goes on: only the watchdog is left.
     Hang(bool),
     /// The reset pin is pulled, once.
@@ -65,6 +69,8 @@ pub struct Run {
     pub escs: PerArm<EscStats>,
     /// From data-ready to the first edge of the motor frame: count, mean and largest, µs.
     pub latency_us: Latency,
+    /// Erases of each flash sector, by its first address.
+    pub erases: BTreeMap<u64, u32>,
     /// Digest of every edge at the motors' pins, every servo pulse and every telemetry byte.
     pub pins_digest: u64,
 }

@@ -3,28 +3,42 @@
 //! The emulator keeps its core to itself on a thread of its own and calls back at each stop; here the call waits for the
 //! next millisecond's [`Wires`]. So the two threads take turns, and a run is as deterministic as one thread.
 
+mod board;
+mod chip;
 mod chips;
 pub mod conformance;
-mod matek_h743;
-mod part;
+mod f405;
+mod h743;
+mod pads;
 mod rtt;
+mod serial;
 mod tap;
-mod watchdog;
 
+use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-use rigless::emulator::{self, Driver, Host, Start, Stop};
+use rigless::emulator::{self, AccessKind, Driver, Host, Settled, Start, Stop};
 use rigless::image::Image;
 use rigless::session::Session;
+use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
+use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
+use sophie_tasks::rc::Protocol;
 
+use self::board::Wired;
+use self::chip::Chip;
 use self::chips::icm42688p::Sample;
-use self::matek_h743::MatekBoard;
+use self::f405::F405;
+use self::h743::H743;
+use self::pads::Pads;
 use self::rtt::Rtt;
+use crate::boards::Kind;
 use crate::elf::Firmware;
 use crate::esc::{Esc, Line};
+use crate::stored;
 use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
@@ -33,13 +47,16 @@ const START_UP: u64 = 1000 * MS;
 /// Longest time from data-ready to motor frame that can be told from a lost sample: the time between two samples, ns.
 const SAMPLE: u64 = 250_000;
 
+/// What a corrupted flash holds: each word its address with these bits flipped.
+const NOISE: u64 = 0x5A5A_5A5A;
+
 /// How the board is emulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// Instructions for each cycle of the core's clock.
     pub speed: f64,
-    /// What the motor controllers understand.
-    pub line: Line,
+    /// What is stored in its flash.
+    pub params: Params,
 }
 
 /// A board under emulation.
@@ -57,7 +74,14 @@ impl Emulator {
     pub fn power_on(firmware: &Firmware, settings: Settings) -> Result<Self, String> {
         let image = Image::new(&firmware.path, firmware.bytes.clone(), None)
             .map_err(|e| format!("{}: {e}", firmware.path.display()))?;
-        let board = MatekBoard::new(settings.speed)?;
+        let kind = firmware.board.kind;
+        let (first, end) = firmware.params;
+        let stored = stored::sectors(kind, (end - first) as usize, &settings.params)?;
+        let stored =
+            Image::new(Path::new("parameters"), stored, Some(first)).map_err(|e| format!("emulator: {e}"))?;
+        let images = [image, stored];
+        let line = Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
+        let receiver = serial::Setup::of(Protocol::from_params(&settings.params), kind);
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);
         let driver = World {
@@ -65,7 +89,11 @@ impl Emulator {
             pins: pins_out,
             ms: 0,
             rtt: Rtt::new(firmware.rtt),
-            escs: std::array::from_fn(|_| Esc::new(settings.line)),
+            params: firmware.params,
+            receiver,
+            erases: BTreeMap::new(),
+            unwritable: false,
+            escs: std::array::from_fn(|_| Esc::new(line)),
             servos: [0.0; 4],
             resets: 0,
             latency: Latency::default(),
@@ -74,7 +102,10 @@ impl Emulator {
         };
         let thread = std::thread::Builder::new()
             .name("emulator".to_owned())
-            .spawn(move || run(board, image, driver))
+            .spawn(move || match kind {
+                Kind::MatekH743 => run(H743::new()?, &h743::MATEK, settings.speed, &images, driver),
+                Kind::F405 => run(F405::new()?, &f405::PADS, settings.speed, &images, driver),
+            })
             .map_err(|e| format!("emulator: {e}"))?;
         let mut emulator = Self {
             wires: Some(wires),
@@ -122,43 +153,55 @@ impl Emulator {
 }
 
 /// The emulator's thread.
-fn run(board: MatekBoard, image: Image, driver: World) -> Result<Run, String> {
+fn run<C: Chip>(
+    chip: C,
+    pads: &'static Pads,
+    speed: f64,
+    images: &[Image; 2],
+    driver: World,
+) -> Result<Run, String> {
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
+    let board = Wired::new(chip, pads, speed)?;
     let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
     // The first stop is at power-on, to get the wires of the first millisecond.
     session.run_until(VirtualNanos(1));
-    let images = [image];
-    let mut finished = emulator::run(session, &Start::new(&images), driver).map_err(|e| told(&e))?;
+    let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| told(&e))?;
     let (at, instructions) = finished
         .stop
         .map_or((VirtualNanos(0), 0), |s| (s.at, s.instruction_count));
     let mut gaps = gaps(&finished.session);
     let started = finished.session.resets().last().map_or(0, |reset| reset.at.0);
     let miswired = if at.0 - started.min(at.0) > START_UP {
-        finished.session.board_mut().miswired(at)
+        let receiver = finished.driver.receiver;
+        finished.session.board_mut().miswired(at, receiver)
     } else {
         Vec::new()
     };
-    gaps.extend(miswired.into_iter().map(|line| {
-        let (at, what) = line.split_once(' ').unwrap_or((&line, ""));
-        Gap {
-            kind: "miswired",
-            at: at.to_owned(),
-            what: what.to_owned(),
-        }
+    gaps.extend(miswired.into_iter().map(|(at, what)| Gap {
+        kind: "miswired",
+        at,
+        what,
     }));
     let world = finished.driver;
+    if world.unwritable {
+        gaps.push(Gap {
+            kind: "refused",
+            at: "flash".to_owned(),
+            what: "this part's flash cannot be overwritten".to_owned(),
+        });
+    }
     Ok(Run {
         gaps,
         instructions,
         escs: world.escs.map(|esc| esc.stats),
         latency_us: world.latency,
+        erases: world.erases,
         pins_digest: world.digest.0,
     })
 }
 
 /// Everything that the emulator says it could not do.
-fn gaps(session: &Session<MatekBoard>) -> Vec<Gap> {
+fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
     let mut gaps = Vec::new();
     let mut add = |kind, at: String, what: String| gaps.push(Gap { kind, at, what });
     for entry in session.unmapped() {
@@ -210,6 +253,13 @@ struct World {
     pins: SyncSender<Pins>,
     ms: u64,
     rtt: Rtt,
+    /// The flash that is kept for parameters: first address, and first one beyond.
+    params: (u64, u64),
+    /// How the receiver's port must be set up.
+    receiver: serial::Setup,
+    erases: BTreeMap<u64, u32>,
+    /// The flash was to be overwritten from outside, and could not be.
+    unwritable: bool,
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
@@ -221,7 +271,12 @@ struct World {
 
 impl World {
     /// Reads the pins at `now`.
-    fn read(&mut self, session: &mut Session<MatekBoard>, now: VirtualNanos, host: &mut dyn Host) -> Pins {
+    fn read<C: Chip>(
+        &mut self,
+        session: &mut Session<Wired<C>>,
+        now: VirtualNanos,
+        host: &mut dyn Host,
+    ) -> Pins {
         let resets = session.resets();
         let new = resets.get(self.resets..).unwrap_or_default();
         let resets: Vec<_> = new.iter().map(|r| (r.at.0, format!("{:?}", r.cause))).collect();
@@ -260,9 +315,9 @@ impl World {
         }
     }
 
-    fn motors(&mut self, board: &mut MatekBoard, now: VirtualNanos) {
+    fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos) {
         let driven = board.motors_driven(now);
-        for edge in std::mem::take(&mut board.part.motors.edges) {
+        for edge in board.motor_edges() {
             self.digest
                 .word(edge.at << 3 | (edge.channel as u64) << 1 | u64::from(edge.high));
             // A pin that is not the timer's does not show what the timer does.
@@ -286,26 +341,39 @@ impl World {
     }
 
     /// Puts the world's side on the wires.
-    fn write(&mut self, session: &mut Session<MatekBoard>, stop: Stop, wires: Wires, host: &mut dyn Host) {
+    fn write<C: Chip>(
+        &mut self,
+        session: &mut Session<Wired<C>>,
+        stop: Stop,
+        wires: Wires,
+        host: &mut dyn Host,
+    ) {
         for fault in wires.faults {
             let board = session.board_mut();
             match fault {
                 Fault::ImuUnplugged(out) => board.silence_imu(out),
                 Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
                 Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
+                Fault::CorruptParameters => {
+                    let (first, end) = self.params;
+                    let mut words = (first..end).step_by(4);
+                    self.unwritable |= words.any(|at| host.program(at, Width::W32, at ^ NOISE).is_err());
+                }
                 Fault::Hang(still) => host.hold(still),
                 Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
             }
         }
         let board = session.board_mut();
         let count = wires.imu.len().max(1) as u64;
-        if let Some(imu) = board.imu() {
-            for (nth, (rate, force)) in (1..).zip(wires.imu) {
-                imu.feed(Sample {
-                    at: self.ms * MS + nth * MS / count,
-                    rate: on_underside(rate).map(|v| (v.to_degrees() * 1e3).round() as i32),
-                    force: on_underside(force).map(|v| (v / 9.806_65 * 1e6).round() as i32),
-                });
+        for (nth, (rate, force)) in (1..).zip(wires.imu) {
+            let [rate, force] = [rate, force].map(|vector| board.on_imu(vector));
+            let sample = Sample {
+                at: self.ms * MS + nth * MS / count,
+                rate: rate.map(|v| (v.to_degrees() * 1e3).round() as i32),
+                force: force.map(|v| (v / 9.806_65 * 1e6).round() as i32),
+            };
+            if let Some(imu) = board.imu() {
+                imu.feed(sample);
             }
         }
         for (arm, [x, y, z]) in wires.arms.into_iter().enumerate() {
@@ -316,21 +384,24 @@ impl World {
         }
         board.set_analog(wires.analog);
         if let Some(line) = board.receiver() {
-            line.outgoing.extend(wires.receiver.into_iter().map(u16::from));
+            line.outgoing.extend(wires.receiver);
         }
     }
 }
 
-/// A vector of body axes on the axes of the inertial sensor, which the board carries on its underside, turned by half a
-/// turn about the vertical (ArduPilot's `hwdef.dat`: ROTATION_YAW_180).
-fn on_underside([x, y, z]: [f64; 3]) -> [f64; 3] {
-    [-x, -y, z]
-}
+impl<C: Chip> Driver<Wired<C>> for World {
+    fn on_settled(&mut self, session: &mut Session<Wired<C>>, _: &mut dyn Host, settled: Settled) {
+        if let Settled::Access { access, .. } = settled
+            && access.kind == AccessKind::Write
+            && let Some(sector) = session.board().erased(access.address, access.value)
+        {
+            *self.erases.entry(sector).or_default() += 1;
+        }
+    }
 
-impl Driver<MatekBoard> for World {
     fn on_stop(
         &mut self,
-        session: &mut Session<MatekBoard>,
+        session: &mut Session<Wired<C>>,
         stop: Stop,
         host: &mut dyn Host,
     ) -> Option<VirtualNanos> {

@@ -2,10 +2,8 @@
 
 use rigless::device::{Device, DeviceContext, Level, RegisterFile, RequestChange};
 use rigless::soc::RegisterSpec;
-use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
+use rigless::soc::stm32h743::peripherals::tim::{Channel, Family, Tim};
 use rigless::time::{EventId, VirtualNanos};
-
-type Register = <Tim<General> as Device>::Register;
 
 /// A change of level at one of a timer's four outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,23 +16,22 @@ pub struct Edge {
     pub high: bool,
 }
 
-/// A general-purpose timer and the edges at its outputs that have not been taken yet.
+/// A timer and the edges at its outputs that have not been taken yet.
 #[derive(Debug)]
-pub struct Tap {
-    /// The timer.
-    pub tim: Tim<General>,
-    nth: usize,
+pub struct Tap<F: Family> {
+    tim: Tim<F>,
+    make: fn() -> Tim<F>,
     high: [bool; 4],
     /// Edges, oldest first.
     pub edges: Vec<Edge>,
 }
 
-impl Tap {
-    /// The `nth` of the part's general-purpose timers: 0 is TIM2.
-    pub fn new(nth: usize) -> Self {
+impl<F: Family> Tap<F> {
+    /// The timer that `make` gives, now and after each reset.
+    pub fn new(make: fn() -> Tim<F>) -> Self {
         Self {
-            tim: Tim::new(TIMERS[nth]),
-            nth,
+            tim: make(),
+            make,
             high: [false; 4],
             edges: Vec::new(),
         }
@@ -42,7 +39,7 @@ impl Tap {
 
     /// The timer after a reset of the part; its outputs fall.
     pub fn restart(&mut self, at: VirtualNanos) {
-        self.tim = Tim::new(TIMERS[self.nth]);
+        self.tim = (self.make)();
         for channel in 0..4 {
             self.set(at, channel, false);
         }
@@ -69,22 +66,25 @@ impl Tap {
     }
 }
 
-impl Device for Tap {
-    type Register = Register;
+impl<F: Family> Device for Tap<F>
+where
+    Tim<F>: Device,
+{
+    type Register = <Tim<F> as Device>::Register;
 
     fn layout(&self) -> &'static [RegisterSpec] {
         Device::layout(&self.tim)
     }
 
-    fn read(&mut self, r: Register, file: &mut RegisterFile, c: &mut DeviceContext<'_>) -> Option<u64> {
+    fn read(&mut self, r: Self::Register, file: &mut RegisterFile, c: &mut DeviceContext<'_>) -> Option<u64> {
         self.tim.read(r, file, c)
     }
 
-    fn peek(&self, r: Register, file: &RegisterFile, now: VirtualNanos) -> Option<u64> {
+    fn peek(&self, r: Self::Register, file: &RegisterFile, now: VirtualNanos) -> Option<u64> {
         self.tim.peek(r, file, now)
     }
 
-    fn write(&mut self, r: Register, value: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
+    fn write(&mut self, r: Self::Register, value: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         self.tim.write(r, value, file, c);
         self.look(file, c.now());
     }

@@ -4,7 +4,8 @@ use super::*;
 fn refused(name: &str, bytes: &[u8]) -> String {
     let path = std::env::temp_dir().join(format!("sophie-image-{}-{name}", std::process::id()));
     std::fs::write(&path, bytes).unwrap();
-    let told = Firmware::read(&path).err().unwrap_or_default();
+    let board = boards::find("matek-h743").unwrap();
+    let told = Firmware::read(&path, board).err().unwrap_or_default();
     std::fs::remove_file(&path).unwrap();
     assert!(!told.contains('\n') && told.contains(name), "{told}");
     told
@@ -15,14 +16,17 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
     assert!(refused("text", b"no program").contains("is no ELF file"));
     let host = std::fs::read(std::env::current_exe().unwrap()).unwrap();
     assert!(refused("host", &host).contains("not for a 32-bit Arm"));
-    let missing = Firmware::read(Path::new("/nowhere/image.elf")).err().unwrap();
+    let board = boards::find("matek-h743").unwrap();
+    let missing = Firmware::read(Path::new("/nowhere/image.elf"), board)
+        .err()
+        .unwrap();
     assert!(
         missing.contains("/nowhere/image.elf: cannot be read"),
         "{missing}"
     );
 
     let good = std::fs::read(image()).unwrap();
-    assert!(Firmware::read(image()).is_ok());
+    assert!(Firmware::read(image(), board).is_ok());
     assert!(!refused("half", &good[..good.len() / 2]).is_empty());
     // The names of symbols and sections, made unreadable one at a time.
     for (name, wanted) in [
@@ -39,4 +43,19 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
         }
         assert!(refused("nameless", &bad).contains(wanted));
     }
+}
+
+#[test]
+fn an_image_of_another_board_is_refused() {
+    let told = Firmware::read(small_image(), boards::find("matek-h743").unwrap())
+        .err()
+        .unwrap();
+    assert!(told.contains("where an STM32H743 has no RAM"), "{told}");
+    let told = Firmware::read(image(), boards::find("f405").unwrap())
+        .err()
+        .unwrap();
+    assert!(
+        told.contains("wanted is what `cargo xtask firmware f405` builds"),
+        "{told}"
+    );
 }

@@ -1,6 +1,6 @@
-//! Flights of the image that `cargo xtask firmware matek-h743` builds, on the emulated board.
+//! Flights of the images that `cargo xtask firmware BOARD` builds, on the emulated boards.
 //!
-//! The image is taken from the variable `SOPHIE_ELF`, or built.
+//! The images are taken from the variables `SOPHIE_ELF` (matek-h743) and `SOPHIE_ELF_F405`, or built.
 
 #![allow(missing_docs)]
 
@@ -8,11 +8,13 @@ mod determinism;
 mod faults;
 mod images;
 mod missions;
+mod parameters;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use sophie_bench::boards;
 use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::plan::{Plan, Trouble};
@@ -26,25 +28,35 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap()
 }
 
+/// The image of a board: what `variable` names, or built.
+fn image_of(board: &str, variable: &str) -> PathBuf {
+    if let Some(path) = std::env::var_os(variable) {
+        return path.into();
+    }
+    let built = Command::new(env!("CARGO"))
+        .args(["xtask", "firmware", board])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(
+        built.status.success(),
+        "{}",
+        String::from_utf8_lossy(&built.stderr)
+    );
+    let text = String::from_utf8(built.stdout).unwrap();
+    text.lines().last().unwrap().into()
+}
+
+/// The image of the reference board.
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
-    IMAGE.get_or_init(|| {
-        if let Some(path) = std::env::var_os("SOPHIE_ELF") {
-            return path.into();
-        }
-        let built = Command::new(env!("CARGO"))
-            .args(["xtask", "firmware", "matek-h743"])
-            .current_dir(root())
-            .output()
-            .unwrap();
-        assert!(
-            built.status.success(),
-            "{}",
-            String::from_utf8_lossy(&built.stderr)
-        );
-        let text = String::from_utf8(built.stdout).unwrap();
-        text.lines().last().unwrap().into()
-    })
+    IMAGE.get_or_init(|| image_of("matek-h743", "SOPHIE_ELF"))
+}
+
+/// The image of the small board.
+fn small_image() -> &'static Path {
+    static IMAGE: OnceLock<PathBuf> = OnceLock::new();
+    IMAGE.get_or_init(|| image_of("f405", "SOPHIE_ELF_F405"))
 }
 
 fn scenario(name: &str) -> Scenario {
@@ -52,11 +64,21 @@ fn scenario(name: &str) -> Scenario {
     Scenario::load(&path, &Overrides::default()).unwrap()
 }
 
-/// Flies `scenario` while `troubles` happen, each at its time in s.
+/// Flies `scenario` on the reference board while `troubles` happen, each at its time in s.
 fn fly(scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
-    let firmware = Firmware::read(image()).unwrap();
+    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    fly_image(&firmware, scenario, speed, troubles)
+}
+
+/// Flies `scenario` on the small board.
+fn fly_small(scenario: &Scenario, speed: f64) -> Flight {
+    let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();
+    fly_image(&firmware, scenario, speed, &[])
+}
+
+fn fly_image(firmware: &Firmware, scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
     let plan = Plan::new(troubles.iter().map(|(t, trouble)| ((t * 1e3) as u64, *trouble)));
-    flight::fly(&firmware, scenario, speed, plan, |_| (), &mut Silent).unwrap()
+    flight::fly(firmware, scenario, speed, plan, |_| (), &mut Silent).unwrap()
 }
 
 /// The log, for the message of a failed assertion.

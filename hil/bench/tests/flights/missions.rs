@@ -21,3 +21,22 @@ fn the_image_perches_at_half_an_instruction_a_cycle() {
     assert_eq!(flight.record.grip.len(), 4);
     assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
 }
+
+#[test]
+fn the_small_board_flies_in_time() {
+    let flight = fly_small(&scenario("hover.toml"), 1.0);
+    assert!(
+        flight.passed(),
+        "{:?} {:?}\n{}",
+        flight.record.outcome,
+        flight.gaps,
+        log(&flight)
+    );
+    assert!(flight.board.overruns.is_empty(), "{:?}", flight.board.overruns);
+    for esc in flight.board.run.escs {
+        assert!(esc.frames > 20_000 && esc.bad == 0, "{esc:?}");
+    }
+    let latency = flight.board.run.latency_us;
+    assert!(latency.count > 10_000 && latency.worst <= 150.0, "{latency:?}");
+    assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
+}

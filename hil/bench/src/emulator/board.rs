@@ -1,0 +1,172 @@
+//! A board: a processor with SOPHIE's parts on its pads.
+
+use rigless::device::Level;
+use rigless::machine::{Board, Target};
+use rigless::mcu::Mcu;
+use rigless::snapshot::{Error, Reader, Store, Writer};
+use rigless::time::VirtualNanos;
+
+use super::chip::Chip;
+use super::chips::bno055::Bno055;
+use super::chips::icm42688p::Imu;
+use super::chips::line::Line;
+use super::pads::Pads;
+use super::serial::Setup;
+use super::tap::Edge;
+
+/// The board.
+#[derive(Debug)]
+pub struct Wired<C> {
+    chip: C,
+    pads: &'static Pads,
+    core: rigless::emulator::CoreSpec,
+}
+
+impl<C: Chip> Wired<C> {
+    /// A board with `chip` wired as `pads` says, running `speed` instructions for each cycle of its clock.
+    ///
+    /// # Errors
+    /// The emulator cannot make it.
+    pub fn new(mut chip: C, pads: &'static Pads, speed: f64) -> Result<Self, String> {
+        chip.attach(pads);
+        let core = chip.core(speed)?;
+        Ok(Self { chip, pads, core })
+    }
+
+    /// Power comes up: lines take the level at which they rest.
+    pub fn power_up(&mut self, now: VirtualNanos) {
+        for pin in self.pads.resting_high {
+            self.chip.drive(now, *pin, Level::High);
+        }
+    }
+
+    /// The inertial sensor.
+    pub fn imu(&mut self) -> Option<&mut Imu> {
+        self.chip.imu(self.pads.imu)
+    }
+
+    /// A vector of body axes on the axes of the inertial sensor.
+    pub fn on_imu(&self, vector: [f64; 3]) -> [f64; 3] {
+        (self.pads.imu_axes)(vector)
+    }
+
+    /// Cuts the inertial sensor off, or connects it.
+    pub fn silence_imu(&mut self, silent: bool) {
+        self.chip.silence_imu(self.pads.imu, silent);
+    }
+
+    /// Flips `mask` in the next word that the inertial sensor answers.
+    pub fn flip_imu_word(&mut self, mask: u64) {
+        self.chip.flip_imu_word(self.pads.imu, mask);
+    }
+
+    /// The sensor of arm `arm`, 0 to 3.
+    pub fn arm(&mut self, arm: usize) -> Option<&mut Bno055> {
+        let (bus, _) = *self.pads.arms.get(arm)?;
+        self.chip.arm(bus, arm % 2)
+    }
+
+    /// Cuts the sensor of arm `arm` off, or connects it.
+    pub fn silence_arm(&mut self, arm: usize, silent: bool) {
+        if let Some((bus, _)) = self.pads.arms.get(arm) {
+            self.chip.silence_arm(*bus, arm % 2, silent);
+        }
+    }
+
+    /// Puts volts on the analog inputs: pressure 1 to 4, battery voltage, battery current.
+    pub fn set_analog(&mut self, volts: [f64; 6]) {
+        for (channel, volts) in self.pads.analog.into_iter().zip(volts) {
+            // The emulator takes whole millivolts: 1.2 counts of 12 bits.
+            self.chip
+                .set_input(channel, (volts * 1e3).round().max(0.0) as u32);
+        }
+    }
+
+    /// The receiver's line.
+    pub fn receiver(&mut self) -> Option<&mut Line> {
+        self.chip.line(self.pads.receiver)
+    }
+
+    /// Takes the edges at the motor timer's outputs, oldest first.
+    pub fn motor_edges(&mut self) -> Vec<Edge> {
+        self.chip.motor_edges()
+    }
+
+    /// The motors' pins are their timer's.
+    pub fn motors_driven(&mut self, now: VirtualNanos) -> [bool; 4] {
+        let motors = self.pads.motors;
+        motors
+            .pins
+            .map(|pin| self.chip.function(now, pin) == Some(motors.function))
+    }
+
+    /// High time and period of each servo's pulse, ns; `None` without pulses.
+    pub fn servo_pulses(&mut self, now: VirtualNanos) -> [Option<(u64, u64)>; 4] {
+        let servos = self.pads.servos;
+        std::array::from_fn(|nth| {
+            let driven = self.chip.function(now, servos.pins[nth]) == Some(servos.function);
+            let pulse = self.chip.servo_pulse(nth)?;
+            (driven && pulse.0 > 0).then_some(pulse)
+        })
+    }
+
+    /// Levels of state light, fault light and buzzer.
+    pub fn signals(&mut self, now: VirtualNanos) -> [bool; 3] {
+        self.pads.signals.map(|pin| self.chip.is_high(now, pin))
+    }
+
+    /// First address of the flash sector that a write of `value` to `address` begins to erase.
+    pub fn erased(&self, address: u64, value: u64) -> Option<u64> {
+        self.chip.erased(address, value)
+    }
+
+    /// Pins that do not carry what is wired to them, with what they carry, and a receiver's port that is not set up as
+    /// `receiver` says.
+    pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
+        let mut found = Vec::new();
+        let port = self.chip.serial_setup(self.pads.receiver);
+        if !receiver.fits(&port) {
+            found.push(("receiver".to_owned(), format!("is {port}, wired for {receiver}")));
+        }
+        for (pin, wanted) in self.pads.functions(!receiver.parity) {
+            let function = self.chip.function(now, pin);
+            if function != Some(wanted) {
+                let carried = function.map_or("none".to_owned(), |f| f.to_string());
+                found.push((
+                    pin.to_string(),
+                    format!("carries alternate function {carried}, wired for {wanted}"),
+                ));
+            }
+        }
+        found
+    }
+}
+
+impl<C: Chip> Board for Wired<C> {
+    fn name(&self) -> &'static str {
+        self.pads.name
+    }
+
+    fn target_names(&self) -> Vec<&'static str> {
+        vec![self.pads.part]
+    }
+
+    fn mcu(&mut self, target: usize) -> Option<&mut dyn Mcu> {
+        (target == 0).then_some(&mut self.chip)
+    }
+
+    fn targets(&mut self) -> Vec<Target<'_>> {
+        vec![Target::new(self.pads.part, &mut self.chip, self.core.clone())]
+    }
+}
+
+// No snapshot is ever taken of a run.
+impl<C> Store for Wired<C> {
+    fn store(&self, _: &mut Writer) -> Result<(), Error> {
+        Err(Error::Failed)
+    }
+
+    fn load(&mut self, _: &mut Reader) -> Result<(), Error> {
+        Err(Error::Failed)
+    }
+}

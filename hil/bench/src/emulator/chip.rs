@@ -1,0 +1,154 @@
+//! What the bench does with a processor, whichever it is.
+//!
+//! The emulator has the same interfaces under a type of its own for every part; [`same_on_this_part!`] is written once
+//! and means each part's.
+
+use std::fmt::Debug;
+
+use rigless::device::Level;
+use rigless::mcu::Mcu;
+use rigless::time::VirtualNanos;
+
+use super::chips::bno055::Bno055;
+use super::chips::icm42688p::Imu;
+use super::chips::line::Line;
+use super::pads::{At, Pads};
+use super::serial::Setup;
+use super::tap::Edge;
+
+/// A processor with the bench's parts on its interfaces.
+pub trait Chip: Mcu + Debug + Send + 'static {
+    /// Puts the parts where `pads` says.
+    fn attach(&mut self, pads: &Pads);
+    /// The inertial sensor on a serial interface.
+    fn imu(&mut self, interface: usize) -> Option<&mut Imu>;
+    /// Cuts it off, or connects it.
+    fn silence_imu(&mut self, interface: usize, silent: bool);
+    /// Flips `mask` in the next word that it answers.
+    fn flip_imu_word(&mut self, interface: usize, mask: u64);
+    /// The `nth` arm sensor on a bus.
+    fn arm(&mut self, bus: usize, nth: usize) -> Option<&mut Bno055>;
+    /// Cuts it off, or connects it.
+    fn silence_arm(&mut self, bus: usize, nth: usize, silent: bool);
+    /// Puts millivolts on a channel of the converter.
+    fn set_input(&mut self, channel: u8, millivolts: u32);
+    /// The far end of a serial port.
+    fn line(&mut self, port: usize) -> Option<&mut Line>;
+    /// The alternate function that a pin carries; `None` when it carries none.
+    fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8>;
+    /// Drives a pin from outside.
+    fn drive(&mut self, now: VirtualNanos, pin: At, level: Level);
+    /// The pin is high.
+    fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool;
+    /// Takes the edges at the motor timer's outputs, oldest first.
+    fn motor_edges(&mut self) -> Vec<Edge>;
+    /// High time and period of the pulse at a channel (0 to 3) of the servos' timer, ns; `None` without pulses.
+    fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)>;
+    /// How a serial port is set up.
+    fn serial_setup(&self, port: usize) -> Setup;
+    /// First address of the flash sector that a write of `value` to `address` begins to erase.
+    fn erased(&self, address: u64, value: u64) -> Option<u64>;
+    /// Core, ready to run `speed` instructions for each cycle of its clock.
+    ///
+    /// # Errors
+    /// One line: the emulator cannot make it.
+    fn core(&self, speed: f64) -> Result<rigless::emulator::CoreSpec, String>;
+}
+
+/// The methods of [`Chip`] that read alike for every part; `$soc` is its module.
+macro_rules! same_on_this_part {
+    ($soc:ident) => {
+        fn attach(&mut self, pads: &Pads) {
+            self.inner.rcc.attach_crystals(pads.crystal, 0);
+            self.inner.set_supply(SUPPLY);
+            for converter in &mut self.inner.adc {
+                converter.set_reference(SUPPLY);
+            }
+            let (port, pin) = pads.imu_select;
+            if let Some(pin) = rigless::soc::$soc::peripherals::gpio::Pin::new(pin) {
+                self.inner.spi[pads.imu].attach_selected(
+                    Imu::default(),
+                    rigless::soc::$soc::peripherals::spi::Select {
+                        port,
+                        pin,
+                        active: Level::Low,
+                    },
+                );
+            }
+            for (bus, address) in pads.arms {
+                self.i2c(bus).attach(Bno055::new(address));
+            }
+            self.inner.usart[pads.receiver].attach(Line::default());
+        }
+
+        fn imu(&mut self, interface: usize) -> Option<&mut Imu> {
+            self.inner.spi[interface].chip_mut(0)
+        }
+
+        fn silence_imu(&mut self, interface: usize, silent: bool) {
+            // False only without a chip there.
+            let _ = self.inner.spi[interface].silence(0, silent);
+        }
+
+        fn flip_imu_word(&mut self, interface: usize, mask: u64) {
+            if let Some(place) = self.inner.spi[interface].place_mut(0) {
+                place.flip(mask);
+            }
+        }
+
+        fn arm(&mut self, bus: usize, nth: usize) -> Option<&mut Bno055> {
+            self.i2c(bus).chip_mut(nth)
+        }
+
+        fn silence_arm(&mut self, bus: usize, nth: usize, silent: bool) {
+            let _ = self.i2c(bus).silence(nth, silent);
+        }
+
+        fn set_input(&mut self, channel: u8, millivolts: u32) {
+            if let Some(channel) = rigless::soc::$soc::peripherals::adc::Channel::new(channel) {
+                self.inner.adc[0].set_input(channel, millivolts);
+            }
+        }
+
+        fn line(&mut self, port: usize) -> Option<&mut Line> {
+            self.inner.usart[port].chip_mut()
+        }
+
+        fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8> {
+            use rigless::soc::$soc::peripherals::gpio::{Gpio, Pin};
+
+            let number = Pin::new(pin.1)?;
+            self.inner
+                .drive_port(now, pin.0, |_, file, _| Gpio::function(number, file))
+        }
+
+        fn drive(&mut self, now: VirtualNanos, pin: At, level: Level) {
+            if let Some(number) = rigless::soc::$soc::peripherals::gpio::Pin::new(pin.1) {
+                self.inner.drive_port(now, pin.0, |port, file, c| {
+                    port.drive(number, Some(level), file, c);
+                });
+            }
+        }
+
+        fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool {
+            rigless::soc::$soc::peripherals::gpio::Pin::new(pin.1).is_some_and(|number| {
+                self.inner.drive_port(now, pin.0, |port, file, _| {
+                    port.level(number, file) == Level::High
+                })
+            })
+        }
+
+        fn motor_edges(&mut self) -> Vec<Edge> {
+            std::mem::take(&mut self.motors.edges)
+        }
+
+        fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)> {
+            let number = rigless::soc::$soc::peripherals::tim::Channel::new(channel as u8 + 1)?;
+            let (timer, file) = self.inner.timer(SERVO_TIMER);
+            let pulse = timer.pulse(number, file)?;
+            Some((pulse.width.0, pulse.period.0))
+        }
+    };
+}
+
+pub(super) use same_on_this_part;

@@ -1,0 +1,245 @@
+//! The STM32H743 with what the emulator's own part lacks, and without what the board does not use.
+
+mod stretch;
+mod watchdog;
+
+use std::num::NonZeroU64;
+
+use rigless::device::{Device, ErasedDevice, Level, ResetCause};
+use rigless::emulator::CoreSpec;
+use rigless::machine::matekh743::MatekH743;
+use rigless::mcu::Mcu;
+use rigless::soc::Bus;
+use rigless::soc::stm32h743::Stm32h743;
+use rigless::soc::stm32h743::generated::usart1::Register as Serial;
+use rigless::soc::stm32h743::peripherals::i2c::I2c;
+use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
+use rigless::soc::stm32h743::peripherals::tim::{General, TIMERS, Tim};
+use rigless::time::VirtualNanos;
+
+use self::stretch::StretchedI2c;
+use self::watchdog::Watchdog;
+use super::chip::{Chip, same_on_this_part};
+use super::chips::bno055::Bno055;
+use super::chips::icm42688p::Imu;
+use super::chips::line::Line;
+use super::pads::{At, Pads, TimerPins};
+use super::serial::Setup;
+use super::tap::{Edge, Tap};
+
+/// Supply and converter reference, mV.
+const SUPPLY: u32 = 3300;
+/// Core clock, Hz.
+const CLOCK: f64 = 400e6;
+/// Clock of the receiver's port, Hz.
+const SERIAL_CLOCK: f64 = 100e6;
+/// Control registers of the flash's banks, and in them the bits that erase a sector.
+const BANK_CONTROLS: [u64; 2] = [0x5200_200C, 0x5200_210C];
+const ERASE: u64 = 1 << 2 | 1 << 7;
+/// First address of the flash; bytes of a bank and of a sector.
+const FLASH: u64 = 0x0800_0000;
+const BANK: u64 = 0x10_0000;
+const SECTOR: u64 = 0x2_0000;
+/// General-purpose timers of the motors and the servos: TIM4, TIM5.
+const MOTOR_TIMER: usize = 2;
+const SERVO_TIMER: usize = 3;
+
+/// The pads of the Matek H743, as `docs/boards.md` wires them.
+pub static MATEK: Pads = Pads {
+    name: "matek-h743",
+    part: "stm32h743",
+    crystal: 8_000_000,
+    imu: 0,
+    imu_select: ("GPIOC", 15),
+    imu_ready: At(1, 2),
+    // On the underside, turned by half a turn about the vertical (ArduPilot's `hwdef.dat`: ROTATION_YAW_180).
+    imu_axes: |[x, y, z]| [-x, -y, z],
+    arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
+    analog: [4, 8, 18, 7, 10, 11],
+    receiver: 5,
+    receiver_out: (At(2, 6), 7),
+    motors: TimerPins {
+        pins: [At(3, 12), At(3, 13), At(3, 14), At(3, 15)],
+        function: 2,
+    },
+    servos: TimerPins {
+        pins: [At(0, 0), At(0, 1), At(0, 2), At(0, 3)],
+        function: 2,
+    },
+    buses: &[
+        (At(0, 5), 5),
+        (At(0, 6), 5),
+        (At(3, 7), 5),
+        (At(1, 6), 4),
+        (At(1, 7), 4),
+        (At(1, 10), 4),
+        (At(1, 11), 4),
+        (At(2, 7), 7),
+    ],
+    resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7)],
+    signals: [At(4, 4), At(4, 3), At(0, 15)],
+};
+
+/// Instances that no firmware of ours uses. Asking their models costs half the speed; whoever reaches one all the same
+/// finds it listed as unimplemented, and the run failed.
+const UNUSED: [&str; 27] = [
+    "TIM1", "TIM6", "TIM7", "TIM8", "TIM12", "TIM13", "TIM14", "TIM16", "TIM17", "SPI2", "SPI3", "SPI4",
+    "SPI5", "SPI6", "I2C3", "I2C4", "UART4", "UART5", "UART8", "BDMA", "DMAMUX2", "ADC2", "ADC3", "SDMMC2",
+    "GPIOI", "GPIOJ", "GPIOK",
+];
+/// Serial ports in the order of [`Stm32h743::usart`].
+const SERIAL: [&str; 8] = [
+    "USART1", "USART2", "USART3", "UART4", "UART5", "USART6", "UART7", "UART8",
+];
+
+fn motor_timer() -> Tim<General> {
+    Tim::new(TIMERS[MOTOR_TIMER])
+}
+
+/// The part.
+#[derive(Debug)]
+pub struct H743 {
+    inner: Stm32h743,
+    motors: Tap<General>,
+    watchdog: Watchdog,
+    buses: [StretchedI2c; 2],
+    slots: Slots,
+    pulses: u64,
+}
+
+#[derive(Debug)]
+struct Slots {
+    watchdog: usize,
+    motors: usize,
+    buses: [usize; 2],
+    serial: Vec<usize>,
+    unused: Vec<bool>,
+}
+
+impl H743 {
+    /// The part, out of reset.
+    ///
+    /// # Errors
+    /// The emulator cannot make it.
+    pub fn new() -> Result<Self, String> {
+        let told = |e: rigless::soc::Error| format!("emulator: {e}");
+        let mut inner = Stm32h743::new().map_err(told)?;
+        inner.set_analog_supply(SUPPLY);
+        let slot = |name| inner.bus().slot(name).map_err(told);
+        let mut unused = vec![false; inner.bus().slots().len()];
+        for name in UNUSED {
+            unused[slot(name)?] = true;
+        }
+        let slots = Slots {
+            watchdog: slot("IWDG")?,
+            motors: slot("TIM4")?,
+            buses: [slot("I2C1")?, slot("I2C2")?],
+            serial: SERIAL.into_iter().map(slot).collect::<Result<_, _>>()?,
+            unused,
+        };
+        Ok(Self {
+            inner,
+            motors: Tap::new(motor_timer),
+            watchdog: Watchdog::default(),
+            // Their places are taken by `Mcu::split`.
+            buses: [(); 2].map(|()| StretchedI2c::new(I2c::with_kernel_clock(HSI_HZ))),
+            slots,
+            pulses: 0,
+        })
+    }
+
+    /// The interface of a bus.
+    fn i2c(&mut self, bus: usize) -> &mut I2c {
+        &mut self.buses[bus].inner
+    }
+
+    /// Gives the data-ready pulses that the sensor has sent to the pin that it is wired to.
+    fn carry_data_ready(&mut self, now: VirtualNanos) {
+        let pulses = self.imu(MATEK.imu).map_or(0, |imu| imu.pulses);
+        if pulses == self.pulses {
+            return;
+        }
+        self.pulses = pulses;
+        // 8 µs on the real part; the interrupt takes the edge.
+        self.drive(now, MATEK.imu_ready, Level::High);
+        self.drive(now, MATEK.imu_ready, Level::Low);
+    }
+}
+
+impl Chip for H743 {
+    same_on_this_part!(stm32h743);
+
+    fn serial_setup(&self, port: usize) -> Setup {
+        let file = self.inner.bus().slots()[self.slots.serial[port]].registers();
+        let [brr, cr1, cr2] = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.get(r));
+        Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+    }
+
+    fn erased(&self, address: u64, value: u64) -> Option<u64> {
+        let bank = BANK_CONTROLS.iter().position(|control| *control == address)?;
+        // A sector's erase, and its start (RM0433 §4.9.4).
+        (value & ERASE == ERASE).then(|| FLASH + BANK * bank as u64 + SECTOR * (value >> 8 & 7))
+    }
+
+    fn core(&self, speed: f64) -> Result<CoreSpec, String> {
+        let machine = MatekH743::new().map_err(|e| format!("emulator: {e}"))?;
+        let mut core = machine.config();
+        core.core.instructions_per_second =
+            NonZeroU64::new((CLOCK * speed) as u64).ok_or("the speed must be more than 0")?;
+        Ok(core.spec())
+    }
+}
+
+impl Mcu for H743 {
+    fn bus(&self) -> &Bus {
+        self.inner.bus()
+    }
+
+    fn bus_mut(&mut self) -> &mut Bus {
+        self.inner.bus_mut()
+    }
+
+    fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
+        // It builds its models anew, keeping what hangs on them; ours go the same way.
+        for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
+            stock.inherit(&mut own.inner);
+        }
+        self.inner.reset(at, cause);
+        for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
+            own.inner = I2c::with_kernel_clock(HSI_HZ);
+            own.inner.inherit(stock);
+            Device::reset(own);
+        }
+        self.watchdog = Watchdog::default();
+        self.motors.restart(at);
+    }
+
+    fn poll(&mut self, now: VirtualNanos) {
+        // Only serial ports with something at the far end look outside; the stock part asks every model at every stop.
+        for (nth, slot) in self.slots.serial.iter().enumerate() {
+            if self.inner.usart[nth].attached() {
+                let mut port = std::mem::take(&mut self.inner.usart[nth]);
+                let (file, mut c) = self.inner.bus_mut().drive(now, *slot);
+                Device::poll(&mut port, file, &mut c);
+                self.inner.usart[nth] = port;
+            }
+        }
+        self.carry_data_ready(now);
+    }
+
+    fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        if slot == self.slots.watchdog {
+            return (self.inner.bus_mut(), Some(&mut self.watchdog));
+        }
+        if slot == self.slots.motors {
+            return (self.inner.bus_mut(), Some(&mut self.motors));
+        }
+        if let Some(nth) = self.slots.buses.iter().position(|bus| *bus == slot) {
+            return (self.inner.bus_mut(), Some(&mut self.buses[nth]));
+        }
+        if self.slots.unused.get(slot) == Some(&true) {
+            return (self.inner.bus_mut(), None);
+        }
+        self.inner.split(slot)
+    }
+}

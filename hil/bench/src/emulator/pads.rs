@@ -1,0 +1,72 @@
+//! Pads of a board: which pin of the processor is wired to what.
+
+use std::fmt::{self, Display, Formatter};
+
+/// A pin of the processor: port (0 is A) and number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct At(pub usize, pub u8);
+
+impl Display for At {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "P{}{}", char::from(b'A' + self.0 as u8), self.1)
+    }
+}
+
+/// Four pins and the alternate function that makes them their timer's.
+#[derive(Clone, Copy, Debug)]
+pub struct TimerPins {
+    /// Pins of the channels 1 to 4.
+    pub pins: [At; 4],
+    /// Number of the alternate function.
+    pub function: u8,
+}
+
+/// What hangs on a board's pads, as `docs/boards.md` wires them. Interfaces are counted as the emulator counts them.
+#[derive(Debug)]
+pub struct Pads {
+    /// Name of the board.
+    pub name: &'static str,
+    /// Name of the emulator's part.
+    pub part: &'static str,
+    /// Crystal, Hz.
+    pub crystal: u64,
+    /// Inertial sensor: serial interface, port and pin of its select, data-ready.
+    pub imu: usize,
+    /// Port, as the emulator names it, and pin of its select.
+    pub imu_select: (&'static str, u8),
+    /// Data-ready.
+    pub imu_ready: At,
+    /// Body axes (forward, right, down) on the axes of the inertial sensor.
+    pub imu_axes: fn([f64; 3]) -> [f64; 3],
+    /// Bus and address of the arms' sensors 1 to 4.
+    pub arms: [(usize, u8); 4],
+    /// Converter channels of pressure 1 to 4, battery voltage, battery current.
+    pub analog: [u8; 6],
+    /// Serial port of the receiver.
+    pub receiver: usize,
+    /// Where the port sends to the receiver, with its alternate function; SBUS leaves it alone.
+    pub receiver_out: (At, u8),
+    /// The motors.
+    pub motors: TimerPins,
+    /// The servos.
+    pub servos: TimerPins,
+    /// Pins of the buses with their alternate functions. The emulator's interfaces are not wired to pins: a firmware
+    /// that forgot one would still talk.
+    pub buses: &'static [(At, u8)],
+    /// Lines that rest high: the I2C buses by their pull-ups, the receiver's line by the receiver.
+    pub resting_high: &'static [At],
+    /// State light, fault light, buzzer.
+    pub signals: [At; 3],
+}
+
+impl Pads {
+    /// Every pin that must carry an alternate function, with its number; `answers` the receiver both ways.
+    pub fn functions(&self, answers: bool) -> impl Iterator<Item = (At, u8)> {
+        let timers = [self.motors, self.servos];
+        timers
+            .into_iter()
+            .flat_map(|timer| timer.pins.map(|pin| (pin, timer.function)))
+            .chain(self.buses.iter().copied())
+            .chain(answers.then_some(self.receiver_out))
+    }
+}

@@ -1,0 +1,99 @@
+//! How a serial port is set up: the emulator carries words at whatever rate a port has, and neither levels nor polarity,
+//! so what the receiver's line needs is looked up in the port's registers.
+
+use std::fmt::{self, Display, Formatter};
+
+use sophie_tasks::rc::Protocol;
+
+use crate::boards::Kind;
+
+/// Largest error of a rate, share: what an asynchronous line bears.
+const RATE_ERROR: f64 = 0.02;
+
+/// The set-up of a port.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setup {
+    /// Rate, baud.
+    pub rate: f64,
+    /// Even parity.
+    pub parity: bool,
+    /// Two stop bits.
+    pub two_stops: bool,
+    /// Idle is low.
+    pub inverted: bool,
+}
+
+impl Setup {
+    /// What the receiver's line of a board needs for `protocol`.
+    pub fn of(protocol: Protocol, board: Kind) -> Self {
+        match protocol {
+            Protocol::Crsf => Self {
+                rate: 420e3,
+                parity: false,
+                two_stops: false,
+                inverted: false,
+            },
+            Protocol::Sbus => Self {
+                rate: 100e3,
+                parity: true,
+                two_stops: true,
+                // The F4's ports cannot invert: the board does.
+                inverted: board == Kind::MatekH743,
+            },
+        }
+    }
+
+    /// The set-up in the registers `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz, whose fields are those of both
+    /// parts (RM0090 §30.6, RM0433 §48.8); the F4 has no bit 16 in its `CR2`.
+    pub fn in_registers(clock: f64, brr: u64, cr1: u64, cr2: u64) -> Self {
+        let oversampled_by_8 = cr1 >> 15 & 1 == 1;
+        Self {
+            rate: clock * if oversampled_by_8 { 2.0 } else { 1.0 } / (brr.max(1) as f64),
+            // Enabled, and not odd.
+            parity: cr1 >> 9 & 3 == 2,
+            two_stops: cr2 >> 12 & 3 == 2,
+            inverted: cr2 >> 16 & 1 == 1,
+        }
+    }
+
+    /// A line of this set-up and a port of `other` understand each other.
+    pub fn fits(&self, other: &Self) -> bool {
+        (other.rate / self.rate - 1.0).abs() < RATE_ERROR
+            && Self {
+                rate: self.rate,
+                ..*other
+            } == *self
+    }
+}
+
+impl Display for Setup {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let parity = if self.parity { 'E' } else { 'N' };
+        let stops = 1 + u8::from(self.two_stops);
+        let inverted = if self.inverted { " inverted" } else { "" };
+        write!(f, "{:.0} baud 8{parity}{stops}{inverted}", self.rate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_registers_tell_the_set_up() {
+        let sbus = Setup::of(Protocol::Sbus, Kind::MatekH743);
+        let found = Setup::in_registers(100e6, 1000, 1 << 12 | 1 << 10, 2 << 12 | 1 << 16);
+        assert!(sbus.fits(&found), "{found}");
+        assert_eq!(found.to_string(), "100000 baud 8E2 inverted");
+        assert!(!sbus.fits(&Setup::in_registers(100e6, 1000, 1 << 12 | 1 << 10, 2 << 12)));
+        assert!(!sbus.fits(&Setup::in_registers(
+            100e6,
+            1050,
+            1 << 12 | 1 << 10,
+            2 << 12 | 1 << 16
+        )));
+        let crsf = Setup::of(Protocol::Crsf, Kind::F405);
+        assert!(crsf.fits(&Setup::in_registers(84e6, 200, 0, 0)));
+        assert!(!crsf.fits(&found));
+    }
+}
