@@ -19,4 +19,5 @@ pub mod gaps;
 pub mod log;
 pub mod plan;
 pub mod sensors;
+pub mod suite;
 pub mod wires;

@@ -35,11 +35,11 @@ const ARMS: [(usize, u8); 4] = [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)];
 /// Serial port of the receiver: USART6.
 const RECEIVER: usize = 5;
 /// General-purpose timer of the servos: TIM5.
-const SERVOS: usize = 3;
+pub const SERVOS: usize = 3;
 /// Pins of motors and servos with the alternate function that their timers are.
-const MOTOR_PINS: [At; 4] = [At(3, 12), At(3, 13), At(3, 14), At(3, 15)];
-const SERVO_PINS: [At; 4] = [At(0, 0), At(0, 1), At(0, 2), At(0, 3)];
-const TIMER_FUNCTION: u8 = 2;
+pub const MOTOR_PINS: [At; 4] = [At(3, 12), At(3, 13), At(3, 14), At(3, 15)];
+pub const SERVO_PINS: [At; 4] = [At(0, 0), At(0, 1), At(0, 2), At(0, 3)];
+pub const TIMER_FUNCTION: u8 = 2;
 /// Pins of the buses with their alternate functions. The emulator's interfaces are not wired to pins: a firmware that
 /// forgot one would still talk.
 const BUS_PINS: [(At, u8); 9] = [
@@ -108,6 +108,11 @@ impl MatekBoard {
         for pin in RESTING_HIGH {
             self.part.drive(now, pin, Level::High);
         }
+    }
+
+    /// Puts another crystal in, Hz.
+    pub fn fit_crystal(&mut self, hz: u64) {
+        self.part.inner.rcc.attach_crystals(hz, 0);
     }
 
     /// The inertial sensor.

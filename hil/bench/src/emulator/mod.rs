@@ -7,6 +7,7 @@ mod chips;
 pub mod conformance;
 mod matek_h743;
 mod part;
+pub mod rig;
 mod rtt;
 mod tap;
 mod watchdog;

@@ -94,6 +94,11 @@ impl Part {
             .drive_port(now, pin.0, |_, file, _| Gpio::function(number, file))
     }
 
+    /// Puts the watchdog back to where nothing has started it.
+    pub fn still_watchdog(&mut self) {
+        self.watchdog = Watchdog::default();
+    }
+
     /// Drives a pin from outside.
     pub fn drive(&mut self, now: VirtualNanos, pin: At, level: Level) {
         if let Some(number) = Pin::new(pin.1) {
