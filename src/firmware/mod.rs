@@ -2,11 +2,13 @@
 //!
 //! Nothing here knows the chip; that is [`crate::board`]'s.
 
+mod end;
 mod grip;
 mod lights;
 mod report;
 pub mod tasks;
 
+pub use end::end_of_run;
 use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_control::warm::Grasp;

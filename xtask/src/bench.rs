@@ -1,12 +1,13 @@
 //! Flies the firmware of a board on the emulated board.
 
+use std::ffi::OsStr;
 use std::process::{Command, ExitCode};
 
 use crate::boards::{self, Board};
 use crate::{Error, build};
 
 /// Boards that can be emulated.
-const EMULATED: [&str; 2] = ["matek-h743", "f405"];
+pub const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
 /// The board that `words`, the arguments behind the verb, begin with, if it can be emulated.
 ///
@@ -31,6 +32,22 @@ pub fn board(words: &[&str]) -> Result<&'static Board, String> {
 /// The firmware does not build.
 pub fn fly(board: &Board, rest: &[&str]) -> Result<ExitCode, Error> {
     let (elf, _) = crate::firmware(board)?;
+    emulator(
+        "sophie-bench",
+        [OsStr::new(board.name), "--elf".as_ref(), elf.as_os_str()],
+        rest,
+    )
+}
+
+/// Builds the emulator and runs its binary `name` with `arguments` and what the caller adds; the exit status is its own.
+///
+/// # Errors
+/// Cargo does not start.
+pub fn emulator<'a>(
+    name: &str,
+    arguments: impl IntoIterator<Item = &'a OsStr>,
+    rest: &[&str],
+) -> Result<ExitCode, Error> {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // The emulator declares a newer Rust than it needs.
     command.args([
@@ -45,8 +62,8 @@ pub fn fly(board: &Board, rest: &[&str]) -> Result<ExitCode, Error> {
     command
         .arg("--manifest-path")
         .arg(build::root().join("Cargo.toml"));
-    command.args(["--package", "sophie-bench", "--", board.name, "--elf"]);
-    command.arg(&elf).args(rest);
+    command.args(["--package", "sophie-bench", "--bin", name, "--"]);
+    command.args(arguments).args(rest);
     eprintln!("{}", build::shown(&command));
     let status = command.status()?;
     Ok(ExitCode::from(

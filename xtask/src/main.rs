@@ -8,11 +8,12 @@ mod cost;
 mod dma;
 mod image;
 mod params;
+mod rig;
 mod sizes;
 mod toolchain;
 mod vectors;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use boards::{BOARDS, Board};
@@ -27,6 +28,9 @@ usage: cargo xtask VERB
   flash BOARD        build, flash through probe-rs and show the log
   bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--json]
                      build and fly a mission on the emulated board (matek-h743); exit status 1 when it fails, 2 for bad input
+  rig BOARD [--build|--emulated] [--wired] [NAME...]
+                     build the tests of a board and run them on it through probe-rs, or on the emulated board (matek-h743);
+                     --wired fails what the wiring of hil/README.md lacks; names, or parts of them, choose tests
   sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml and with
                      the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
   cost [--tighten|--json]
@@ -79,8 +83,10 @@ impl Verb {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    if let ["bench", rest @ ..] = words.as_slice() {
-        return bench(rest);
+    match words.as_slice() {
+        ["bench", rest @ ..] => return bench(rest),
+        ["rig", rest @ ..] => return rig(rest),
+        _ => {}
     }
     let verb = match Verb::parse(&words) {
         Ok(verb) => verb,
@@ -123,10 +129,30 @@ fn bench(words: &[&str]) -> ExitCode {
     })
 }
 
+fn rig(words: &[&str]) -> ExitCode {
+    let rig = match rig::Rig::parse(words) {
+        Ok(rig) => rig,
+        Err(complaint) => {
+            eprintln!("{complaint}");
+            return ExitCode::from(2);
+        }
+    };
+    rig.run().unwrap_or_else(|error| {
+        eprintln!("{}: {error}", rig.board.name);
+        ExitCode::FAILURE
+    })
+}
+
 /// Builds one board's firmware and checks its image.
 fn firmware(board: &Board) -> Result<(PathBuf, image::Image), Error> {
     let elf = build::firmware(board)?;
-    let image = image::Image::read(&elf)?;
+    let image = check(board, &elf)?;
+    Ok((elf, image))
+}
+
+/// Checks an image for a board: its vectors, what DMA reaches, what is loaded where.
+fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
+    let image = image::Image::read(elf)?;
     let vectors = vectors::check(board, &image)?;
     let buffers = dma::check(board, &image)?;
     eprintln!("vector table: {vectors} handlers, levels and reset in place");
@@ -135,7 +161,7 @@ fn firmware(board: &Board) -> Result<(PathBuf, image::Image), Error> {
     if kept > 0 {
         eprintln!("parameters: {kept} bytes of flash kept, nothing loaded there");
     }
-    Ok((elf, image))
+    Ok(image)
 }
 
 fn flash(board: &Board) -> Result<(), Error> {

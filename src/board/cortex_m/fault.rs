@@ -1,27 +1,15 @@
-//! The end of a run: whatever happens, the motors stop first, then the message is kept, then the chip is reset.
-//!
-//! A reset, because nothing after a fault can be trusted, and because it is the fastest way to motors that are *told*
-//! to stop: the motor task's first act is a frame of zeros. The message is logged at the next start.
+//! What ends a run: a panic, a fault of the processor, an interrupt that nobody serves. How it ends is up to the image
+//! (`crate::end_of_run`): the firmware restarts, a test reports.
 
-use core::fmt;
 use core::panic::PanicInfo;
 
-use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 
-use super::retained;
-use crate::board;
+use crate::end_of_run;
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    end(format_args!("{info}"))
-}
-
-fn end(message: fmt::Arguments<'_>) -> ! {
-    cortex_m::interrupt::disable();
-    board::stop_motors();
-    retained::leave(message);
-    SCB::sys_reset()
+    end_of_run(format_args!("{info}"))
 }
 
 #[exception]
@@ -32,7 +20,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
         // SAFETY: registers of the core, always there and readable without side effects.
         unsafe { (address as *const u32).read_volatile() }
     });
-    end(format_args!(
+    end_of_run(format_args!(
         "hard fault at {:#010x}, called from {:#010x}: CFSR {cfsr:#010x} HFSR {hfsr:#010x} BFAR {bfar:#010x}",
         frame.pc(),
         frame.lr()
@@ -42,5 +30,5 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 #[exception]
 // SAFETY: only the processor calls it.
 unsafe fn DefaultHandler(number: i16) -> ! {
-    end(format_args!("interrupt {number} has no handler"))
+    end_of_run(format_args!("interrupt {number} has no handler"))
 }

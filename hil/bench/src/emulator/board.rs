@@ -17,7 +17,8 @@ use super::tap::Edge;
 /// The board.
 #[derive(Debug)]
 pub struct Wired<C> {
-    chip: C,
+    /// The processor.
+    pub(super) chip: C,
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
 }

@@ -10,6 +10,7 @@ pub mod conformance;
 mod f405;
 mod h743;
 mod pads;
+pub mod rig;
 mod rtt;
 mod serial;
 mod tap;

@@ -25,6 +25,11 @@ impl Rtt {
         Self { up: address + UP }
     }
 
+    /// Address of the word that says how far the firmware has written.
+    pub fn written(&self) -> u64 {
+        self.up + WRITTEN
+    }
+
     /// Takes what has been written since the last call.
     pub fn drain(&mut self, host: &mut dyn Host) -> Vec<u8> {
         let mut field = |offset| host.read(self.up + offset, Width::W32).unwrap_or(0);

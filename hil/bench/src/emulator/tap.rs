@@ -45,6 +45,11 @@ impl<F: Family> Tap<F> {
         }
     }
 
+    /// The output of `channel`, 0 to 3, is high.
+    pub fn is_high(&self, channel: usize) -> bool {
+        self.high[channel]
+    }
+
     fn look(&mut self, file: &RegisterFile, now: VirtualNanos) {
         for channel in 0..4 {
             let Some(number) = Channel::new(channel as u8 + 1) else {

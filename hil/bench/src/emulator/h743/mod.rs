@@ -14,7 +14,7 @@ use rigless::soc::stm32h743::Stm32h743;
 use rigless::soc::stm32h743::generated::usart1::Register as Serial;
 use rigless::soc::stm32h743::peripherals::i2c::I2c;
 use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
-use rigless::soc::stm32h743::peripherals::tim::{General, TIMERS, Tim};
+use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
 use rigless::time::VirtualNanos;
 
 use self::stretch::StretchedI2c;
@@ -146,6 +146,27 @@ impl H743 {
             slots,
             pulses: 0,
         })
+    }
+
+    /// Puts another crystal in, Hz.
+    pub fn fit_crystal(&mut self, hz: u64) {
+        self.inner.rcc.attach_crystals(hz, 0);
+    }
+
+    /// Puts the watchdog back to where nothing has started it.
+    pub fn still_watchdog(&mut self) {
+        self.watchdog = Watchdog::default();
+    }
+
+    /// Level of motor 1's output.
+    pub fn first_motor_is_high(&self) -> bool {
+        self.motors.is_high(0)
+    }
+
+    /// Level of servo 1's output.
+    pub fn first_servo_is_high(&mut self) -> bool {
+        let (timer, file) = self.inner.timer(SERVO_TIMER);
+        Channel::new(1).and_then(|c| timer.output(c, file)) == Some(Level::High)
     }
 
     /// The interface of a bus.

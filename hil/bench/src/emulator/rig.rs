@@ -1,0 +1,258 @@
+//! The emulated board on a test rig: it lies still, and every jumper and part of `hil/README.md` is in place.
+
+use rigless::device::Level;
+use rigless::emulator::{self, AccessKind, Driver, Host, Settled, Start, Stop, Watch};
+use rigless::image::Image;
+use rigless::session::Session;
+use rigless::soc::Width;
+use rigless::time::{NO_DEADLINE, VirtualNanos};
+
+use super::board::Wired;
+use super::chip::Chip;
+use super::chips::icm42688p::Sample;
+use super::h743::{H743, MATEK};
+use super::pads::At;
+use super::rtt::Rtt;
+use super::{MS, gaps};
+use crate::elf::Firmware;
+use crate::log::{Line, Log};
+use crate::suite::{self, Test};
+use crate::wires::Gap;
+
+/// Virtual time after which a test is given up.
+const LONGEST: u64 = 30_000 * MS;
+/// Instructions for each cycle of the core's clock.
+const SPEED: f64 = 1.0;
+/// Registers of all ports: first address, and first one beyond.
+const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
+/// Time for which a processor that stalls stands still, ns.
+const STALL: u64 = 600_000;
+/// Crystal of twice the frequency, Hz.
+const CRYSTAL: u64 = 16_000_000;
+/// Flash of the parameters: first address, and first one beyond.
+const PARAMETERS: std::ops::Range<u64> = 0x081C_0000..0x0820_0000;
+/// Half the supply, V, from a divider at every analog input.
+const HALF: f64 = 1.65;
+/// The same from resistors that differ by 20 %.
+const UNEQUAL: f64 = 1.5;
+/// Samples of the inertial sensor in a millisecond, and 1 g in its thousands of thousandths.
+const SAMPLES: u64 = 4;
+const G: i32 = 1_000_000;
+/// What an arm's sensor feels at rest, marking up, m/s².
+const UP: [f64; 3] = [0.0, 0.0, 9.806_65];
+
+/// What the jumpers join: motor 1 with servo 3, servo 1 with servo 4, the receiver's output with its input.
+static MOTOR: [At; 2] = [MATEK.motors.pins[0], MATEK.servos.pins[2]];
+static SERVO: [At; 2] = [MATEK.servos.pins[0], MATEK.servos.pins[3]];
+const RECEIVER: [At; 2] = [At(2, 6), At(2, 7)];
+/// Alternate function of the receiver's output.
+const PORT_FUNCTION: u8 = 7;
+
+/// What may be wrong with a rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Defect {
+    /// Nothing.
+    None,
+    /// The crystal has twice the frequency that the board expects.
+    Crystal,
+    /// The inertial sensor is unplugged.
+    NoImu,
+    /// The sensor of arm 3 is unplugged.
+    NoArm,
+    /// No jumper is in place.
+    NoJumpers,
+    /// The divider is not of equal resistors.
+    Divider,
+    /// The processor stands still for [`STALL`] in each millisecond.
+    Stalls,
+    /// The watchdog's clock stands still.
+    Watchdog,
+    /// What is stored is gone with a reset.
+    Forgets,
+}
+
+/// How a test ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// Status that the image ended with; `None` when it did not within 30 s.
+    pub status: Option<u32>,
+    /// Its log.
+    pub lines: Vec<Line>,
+    /// What the emulator could not do.
+    pub gaps: Vec<Gap>,
+}
+
+/// Runs `test` of `image` on a rig with a defect, from power-on.
+///
+/// # Errors
+/// One line: what the emulator refuses.
+pub fn run(image: &Firmware, test: &Test, defect: Defect) -> Result<Ended, String> {
+    let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
+    let bytes = suite::entering(image, test)?;
+    let images = [Image::new(&image.path, bytes, None).map_err(|e| told(&e))?];
+    let mut session = Session::new(Box::new(Wired::new(H743::new()?, &MATEK, SPEED)?), 0, NO_DEADLINE)
+        .map_err(|e| told(&e))?;
+    session.run_until(VirtualNanos(1));
+    let mut start = Start::new(&images);
+    start.semihosting = true;
+    let rig = Rig {
+        defect,
+        next: 0,
+        rtt: Rtt::new(image.rtt),
+        log: Vec::new(),
+        resets: 0,
+        samples: 0,
+    };
+    let finished = emulator::run(session, &start, rig).map_err(|e| told(&e))?;
+    let mut log = Log::new(&image.table);
+    let mut lines = Vec::new();
+    for (at, bytes) in &finished.driver.log {
+        lines.extend(log.take(at / MS, bytes));
+    }
+    Ok(Ended {
+        status: finished.exit_status,
+        lines,
+        gaps: gaps(&finished.session),
+    })
+}
+
+/// What hangs on the board's pads, called by the emulator.
+struct Rig {
+    defect: Defect,
+    /// When the next look at it is due, ns.
+    next: u64,
+    rtt: Rtt,
+    /// What was read of the log, with the instant.
+    log: Vec<(u64, Vec<u8>)>,
+    resets: usize,
+    /// Counts samples of the inertial sensor, over and over.
+    samples: u8,
+}
+
+impl Rig {
+    /// The rig as power comes up.
+    fn set_up(&self, board: &mut Wired<H743>, now: VirtualNanos) {
+        board.power_up(now);
+        let half = if self.defect == Defect::Divider {
+            UNEQUAL
+        } else {
+            HALF
+        };
+        board.set_analog([half; 6]);
+        for arm in 0..4 {
+            if let Some(sensor) = board.arm(arm) {
+                sensor.up = UP;
+            }
+        }
+        match self.defect {
+            Defect::Crystal => board.chip.fit_crystal(CRYSTAL),
+            Defect::NoImu => board.silence_imu(true),
+            Defect::NoArm => board.silence_arm(2, true),
+            _ => {}
+        }
+    }
+
+    /// Gives the inertial sensor a millisecond of samples at rest: never two alike, as a real one's.
+    fn shake(&mut self, board: &mut Wired<H743>, now: u64) {
+        let Some(imu) = board.imu() else { return };
+        for nth in 0..SAMPLES {
+            self.samples = (self.samples + 1) % 7;
+            let noise = self.samples as i32 * 100;
+            imu.feed(Sample {
+                at: now + nth * MS / SAMPLES,
+                rate: [noise, -noise, noise],
+                force: [noise, -noise, noise - G],
+            });
+        }
+    }
+
+    /// Takes every jumper's level from one end to the other.
+    fn carry(&self, board: &mut Wired<H743>, now: VirtualNanos) {
+        if self.defect == Defect::NoJumpers {
+            return;
+        }
+        let (motor, servo) = (board.chip.first_motor_is_high(), board.chip.first_servo_is_high());
+        // A serial line rests high; its bytes go their own way.
+        for ([from, to], function, peripheral) in [
+            (MOTOR, MATEK.motors.function, motor),
+            (SERVO, MATEK.servos.function, servo),
+            (RECEIVER, PORT_FUNCTION, true),
+        ] {
+            let high = match board.chip.function(now, from) {
+                Some(carried) => carried == function && peripheral,
+                None => board.chip.is_high(now, from),
+            };
+            if board.chip.is_high(now, to) != high {
+                board
+                    .chip
+                    .drive(now, to, if high { Level::High } else { Level::Low });
+            }
+        }
+    }
+}
+
+/// Erases the parameters behind the chip's back.
+fn erase(host: &mut dyn Host) {
+    for address in PARAMETERS.step_by(8) {
+        // Refused only where there is no flash.
+        let _ = host.program(address, Width::W64, u64::MAX);
+    }
+}
+
+impl Driver<Wired<H743>> for Rig {
+    fn on_settled(&mut self, session: &mut Session<Wired<H743>>, host: &mut dyn Host, settled: Settled) {
+        match settled {
+            Settled::Access { access, .. } => {
+                if PORTS.contains(&access.address) && access.kind == AccessKind::Write {
+                    self.carry(session.board_mut(), access.virtual_time);
+                }
+            }
+            Settled::Stop(stop) => {
+                let resets = session.resets().len();
+                if std::mem::replace(&mut self.resets, resets) != resets && self.defect == Defect::Forgets {
+                    erase(host);
+                }
+                self.carry(session.board_mut(), stop.at);
+            }
+            Settled::Hit(hit) => {
+                let bytes = self.rtt.drain(host);
+                self.log.push((hit.at.0, bytes));
+            }
+            _ => {}
+        }
+    }
+
+    fn on_stop(
+        &mut self,
+        session: &mut Session<Wired<H743>>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        let board = session.board_mut();
+        if self.next == 0 {
+            self.set_up(board, stop.at);
+            // The last words come right before the end, at no stop.
+            host.watch(Watch::Writes {
+                address: self.rtt.written(),
+                length: 4,
+            });
+        }
+        self.shake(board, stop.at.0);
+        if self.defect != Defect::NoJumpers
+            && let Some(line) = board.receiver()
+        {
+            line.outgoing.extend(line.incoming.drain(..));
+        }
+        if self.defect == Defect::Watchdog {
+            board.chip.still_watchdog();
+        }
+        if self.defect == Defect::Stalls {
+            let stalled = self.next % MS < STALL;
+            host.hold(stalled);
+            self.next += if stalled { STALL } else { MS - STALL };
+        } else {
+            self.next += MS;
+        }
+        (self.next < LONGEST).then_some(VirtualNanos(self.next))
+    }
+}

@@ -1,0 +1,98 @@
+//! What a test has still to do when a reset cuts it in two, kept in the memory that outlives one.
+//!
+//! The probe names the test to run once, before the first half. The second half therefore starts by itself, from the
+//! tests' own setup, and says by itself how it ended.
+
+use core::cell::RefCell;
+
+use critical_section::Mutex;
+use embassy_stm32::pac::DBGMCU;
+use sophie_control::warm::{WORDS, Words};
+use sophie_tasks::ports::Retain;
+
+use crate::board::cortex_m::retained::{self, Memory};
+use crate::board::{ResetCause, take_reset_cause};
+use crate::cycles;
+
+/// What a reset interrupts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Errand {
+    /// Nothing.
+    None,
+    /// A test that no reset may interrupt.
+    Test,
+    /// The watchdog starves; for how long so far, µs.
+    Starving(u32),
+    /// A parameter was stored changed; what it was before.
+    Stored(f32),
+}
+
+/// Marks words that are an errand ("RIG" and the version of their layout).
+const MAGIC: u32 = 0x5249_4701;
+
+static MEMORY: Mutex<RefCell<Option<Memory>>> = Mutex::new(RefCell::new(None));
+
+impl Errand {
+    fn words(self) -> Words {
+        let (kind, value) = match self {
+            Self::None => (0, 0),
+            Self::Test => (1, 0),
+            Self::Starving(us) => (2, us),
+            Self::Stored(value) => (3, value.to_bits()),
+        };
+        let mut words = [0; WORDS];
+        for (word, part) in words.iter_mut().zip([MAGIC, kind, value, !value]) {
+            *word = part;
+        }
+        words
+    }
+
+    fn of(words: &Words) -> Self {
+        match *words {
+            [MAGIC, kind, value, check, ..] if check == !value => match kind {
+                1 => Self::Test,
+                2 => Self::Starving(value),
+                3 => Self::Stored(f32::from_bits(value)),
+                _ => Self::None,
+            },
+            _ => Self::None,
+        }
+    }
+}
+
+/// Says what the reset that just happened has interrupted, and why it happened. Called once, first of all.
+///
+/// # Panics
+/// If the watchdog interrupted a test that feeds it.
+pub fn begin() -> (Errand, ResetCause) {
+    cycles::start();
+    stop_watchdog_with_core();
+    let cause = take_reset_cause();
+    let (kept, memory) = retained::start(cause);
+    critical_section::with(|cs| MEMORY.borrow(cs).replace(Some(memory)));
+    let [words, _] = &kept.copies;
+    let errand = Errand::of(words);
+    leave(Errand::None);
+    assert!(
+        errand != Errand::Test || cause != ResetCause::Watchdog,
+        "the watchdog bit in the midst of a test"
+    );
+    (errand, cause)
+}
+
+/// Leaves an errand for after the next reset.
+pub fn leave(errand: Errand) {
+    critical_section::with(|cs| {
+        if let Some(memory) = MEMORY.borrow(cs).borrow_mut().as_mut() {
+            memory.keep(false, &errand.words());
+        }
+    });
+}
+
+/// The watchdog stands still while the probe has halted the core: the probe reads a test's verdict then.
+fn stop_watchdog_with_core() {
+    #[cfg(feature = "matek-h743")]
+    DBGMCU.apb4fzr1().modify(|w| w.set_iwdg1(true));
+    #[cfg(not(feature = "matek-h743"))]
+    DBGMCU.apb1fzr().modify(|w| w.set_iwdg(true));
+}

@@ -1,0 +1,52 @@
+//! Tests that run on a real board, through a probe: what they share. The tests are in `tests/rig/`, the wiring in
+//! `hil/README.md`.
+//!
+//! The board's own files are in here, so what is tested are the very drivers, pins and timers that fly. Each test starts
+//! from a reset and takes the board as the firmware does.
+//!
+//! What a test finds missing, a jumper or a part outside the board, it tells in a line that begins with `ignored:` and
+//! passes; with the feature `wired` it fails. Empty on the host.
+
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg(target_os = "none")]
+
+#[path = "../../../src/board/mod.rs"]
+pub mod board;
+pub mod cycles;
+pub mod errand;
+pub mod pads;
+pub mod pulses;
+mod verdict;
+
+use board::{WatchdogPort, start_levels};
+use defmt_rtt as _;
+use embassy_executor::SendSpawner;
+use embassy_time::{Duration, Ticker};
+use sophie_tasks::ports::Watchdog;
+use verdict::end_of_run;
+pub use verdict::{absent, passed};
+
+/// Time between two meals of the watchdog, which bites after 200 ms at the soonest.
+const MEAL: Duration = Duration::from_millis(50);
+
+/// Starts the urgent levels and feeds the watchdog from one of them, for as long as the test runs; returns the flight
+/// level, for what the test itself wants there. Called once.
+pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
+    defmt::info!("{=str}", board::NAME);
+    errand::leave(errand::Errand::Test);
+    let (flight, steady) = start_levels();
+    // Only a second call could fail, and `start_levels` panics at one.
+    if let Ok(feeder) = feed(watchdog) {
+        steady.spawn(feeder);
+    }
+    flight
+}
+
+#[embassy_executor::task]
+async fn feed(mut watchdog: WatchdogPort) {
+    let mut ticker = Ticker::every(MEAL);
+    loop {
+        watchdog.feed();
+        ticker.next().await;
+    }
+}

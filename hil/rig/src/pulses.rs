@@ -1,0 +1,47 @@
+//! Pulses on a pad, timed by the core's cycle counter.
+
+use heapless::Vec;
+
+use crate::cycles;
+use crate::pads::{Pad, WIRING};
+
+/// Most pulses of one recording: two DShot frames.
+pub const MOST: usize = 32;
+
+/// A pulse on a pad, in cycles of the core.
+#[derive(Clone, Copy, defmt::Format)]
+pub struct Pulse {
+    /// When it rose, from the beginning of the recording.
+    pub rise: u32,
+    /// How long it was high.
+    pub high: u32,
+}
+
+/// Whole pulses on `pad` during the next `us` µs, at most [`MOST`]. Does not yield; the error of an edge is a turn of the
+/// loop, some ten cycles, where no interrupt comes between.
+pub fn record(pad: Pad, us: u32) -> Vec<Pulse, MOST> {
+    let length = us * (WIRING.core_hz / 1_000_000);
+    let mut pulses = Vec::new();
+    let start = cycles::now();
+    let mut was_high = pad.is_high();
+    // A pulse under way at the beginning has no rise.
+    let mut rise = None;
+    loop {
+        let high = pad.is_high();
+        let now = cycles::now().wrapping_sub(start);
+        if high != was_high {
+            was_high = high;
+            if high {
+                rise = Some(now);
+            } else if let Some(rise) = rise.take() {
+                let high = now - rise;
+                if pulses.push(Pulse { rise, high }).is_err() {
+                    return pulses;
+                }
+            }
+        }
+        if now >= length {
+            return pulses;
+        }
+    }
+}

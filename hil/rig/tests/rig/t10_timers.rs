@@ -1,0 +1,62 @@
+//! The time base's alarms, and the levels of urgency on top of it.
+
+#[embedded_test::tests]
+mod tests {
+    use core::sync::atomic::{AtomicU32, Ordering};
+
+    use embassy_time::{Duration, Instant, Ticker, Timer};
+    use sophie_rig::{board, keep_alive};
+
+    const PERIOD: Duration = Duration::from_millis(1);
+    /// Latest that an alarm may come in an idle processor, µs. A period of the fastest task is 1000.
+    const LATE_MAX: u32 = 20;
+
+    static BEATS: AtomicU32 = AtomicU32::new(0);
+    static WORST: AtomicU32 = AtomicU32::new(0);
+
+    #[test]
+    async fn a_millisecond_lasts_a_millisecond() {
+        let board = board::take().await;
+        keep_alive(board.watchdog);
+        let worst = worst_lateness(1000).await;
+        defmt::info!("alarms: {=u32} us late at worst", worst);
+        assert!(worst <= LATE_MAX, "an alarm came {worst} us late");
+    }
+
+    /// A background that never yields must not delay the flight level.
+    #[test]
+    async fn the_flight_level_preempts_the_background() {
+        let board = board::take().await;
+        let flight = keep_alive(board.watchdog);
+        flight.spawn(defmt::unwrap!(beat().ok()));
+        Timer::after(PERIOD).await;
+        let (start, before) = (Instant::now(), BEATS.load(Ordering::Relaxed));
+        while start.elapsed() < PERIOD * 100 {}
+        let beats = BEATS.load(Ordering::Relaxed) - before;
+        let worst = WORST.load(Ordering::Relaxed);
+        defmt::info!("flight level: {=u32} us late at worst", worst);
+        assert!((99..=101).contains(&beats), "{beats} beats in 100 ms");
+        assert!(worst <= LATE_MAX, "a beat came {worst} us late");
+    }
+
+    #[embassy_executor::task]
+    async fn beat() {
+        loop {
+            let late = worst_lateness(1).await;
+            BEATS.fetch_add(1, Ordering::Relaxed);
+            WORST.fetch_max(late, Ordering::Relaxed);
+        }
+    }
+
+    /// Largest lateness of so many periods, µs.
+    async fn worst_lateness(periods: u32) -> u32 {
+        let mut ticker = Ticker::every(PERIOD);
+        let start = Instant::now();
+        let mut worst = 0;
+        for nth in 1..=periods {
+            ticker.next().await;
+            worst = worst.max((Instant::now() - (start + PERIOD * nth)).as_micros() as u32);
+        }
+        worst
+    }
+}

@@ -1,0 +1,65 @@
+//! The vehicle's inertial sensor. It has an oscillator of its own, good to 1 or 2 %: a crystal other than the board
+//! expects shows in its sample rate. The board lies still, whichever way up.
+
+#[embedded_test::tests]
+mod tests {
+    use embassy_time::{Duration, Instant, with_timeout};
+    use sophie_rig::{board, keep_alive};
+    use sophie_tasks::ports::Imu;
+
+    /// From the first call until samples must come.
+    const START_UP: Duration = Duration::from_secs(2);
+    const SPAN: Duration = Duration::from_secs(1);
+
+    /// Waits for the first sample.
+    async fn first(imu: &mut board::ImuPort) -> sophie_tasks::ports::ImuReading {
+        let mut last = Err(sophie_tasks::ports::PortError::Timeout);
+        let start = Instant::now();
+        while start.elapsed() < START_UP {
+            if let Ok(read) = with_timeout(START_UP, imu.read()).await {
+                last = read;
+            }
+            if let Ok(samples) = &last
+                && let Some(&sample) = samples.first()
+            {
+                return sample;
+            }
+        }
+        panic!("no sample: {:?}", last.err())
+    }
+
+    /// The driver compares WHO_AM_I and reads every register that it writes: a sample means that all were right.
+    #[test]
+    async fn it_answers_by_its_name_and_feels_gravity() {
+        let mut board = board::take().await;
+        keep_alive(board.watchdog);
+        let sample = first(&mut board.imu).await;
+        let (force, rate) = (sample.accel.norm_squared(), sample.gyro.norm_squared());
+        defmt::info!(
+            "specific force squared: {=f32}, rate squared: {=f32}",
+            force,
+            rate
+        );
+        // 9.8 m/s² within 10 %, and less than 20 °/s.
+        assert!((78.0..116.0).contains(&force), "{force} (m/s2)^2 at rest");
+        assert!(rate < 0.12, "{rate} (rad/s)^2 at rest");
+    }
+
+    #[test]
+    async fn samples_come_at_their_rate() {
+        let mut board = board::take().await;
+        keep_alive(board.watchdog);
+        first(&mut board.imu).await;
+        let (start, mut count) = (Instant::now(), 0u32);
+        while start.elapsed() < SPAN {
+            match board.imu.read().await {
+                Ok(samples) => count += samples.len() as u32,
+                Err(error) => panic!("{error:?} after {count} samples"),
+            }
+        }
+        let hz = f64::from(count) * 1e6 / start.elapsed().as_micros() as f64;
+        let nominal = f64::from(board.imu.rate_hz());
+        defmt::info!("inertial sensor: {=f64} Hz of {=f64}", hz, nominal);
+        assert!((hz / nominal - 1.0).abs() < 0.02, "{hz} Hz instead of {nominal}");
+    }
+}

@@ -1,0 +1,62 @@
+//! The receiver's line, looped back: what telemetry sends comes in as from a receiver, at 420 kbaud. The receiver is
+//! unplugged.
+
+#[embedded_test::tests]
+mod tests {
+    use embassy_futures::join::join;
+    use embassy_time::{Duration, with_timeout};
+    use sophie_rig::pads::{WIRING, joined};
+    use sophie_rig::{absent, board, keep_alive};
+    use sophie_tasks::ports::{SerialInput, SerialOutput};
+    use sophie_tasks::rc::Protocol;
+
+    /// Length of the receiver's frames with sixteen channels.
+    const LENGTH: usize = 26;
+    const FRAMES: u8 = 100;
+    /// A frame takes 0.6 ms.
+    const LONGEST: Duration = Duration::from_millis(10);
+
+    /// Bytes that differ from frame to frame and from place to place.
+    fn frame(number: u8) -> [u8; LENGTH] {
+        core::array::from_fn(|place| (place as u8).wrapping_mul(37) ^ number)
+    }
+
+    async fn take(line: &mut board::ReceiverLine) -> [u8; LENGTH] {
+        let mut bytes = [0; LENGTH];
+        let mut filled = 0;
+        while let Some(room @ [_, ..]) = bytes.get_mut(filled..) {
+            match line.read(room).await {
+                Ok(count) => filled += count,
+                Err(error) => panic!("{error:?} after {filled} bytes"),
+            }
+        }
+        bytes
+    }
+
+    #[test]
+    async fn what_is_sent_is_received() {
+        let mut board = board::take().await;
+        keep_alive(board.watchdog);
+        if Protocol::from_params(&board.params) != Protocol::Crsf {
+            return absent(format_args!("CRSF: set receiver_protocol to 0"));
+        }
+        let [out, into] = WIRING.receiver;
+        for pad in [out, into] {
+            assert!(pad.serves_a_peripheral(), "{} is no port's", pad.name);
+        }
+        if !joined(WIRING.receiver) {
+            return absent(format_args!("jumper from {} to {}", out.name, into.name));
+        }
+        // The ring starts here, and what the search for the jumper left on the line goes.
+        let _ = with_timeout(LONGEST, board.receiver.read(&mut [0; LENGTH])).await;
+        for number in 0..FRAMES {
+            let sent = frame(number);
+            let both = join(board.telemetry.write(&sent), take(&mut board.receiver));
+            match with_timeout(LONGEST, both).await {
+                Ok((Ok(()), received)) => assert!(received == sent, "frame {number}: {received:?}"),
+                Ok((Err(error), _)) => panic!("frame {number}: {error:?}"),
+                Err(_) => panic!("frame {number}: not received in time"),
+            }
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! The tests of a board: built, and run on it through a probe, or on the emulated board.
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+use crate::bench::EMULATED;
+use crate::boards::{self, Board};
+use crate::{Error, build};
+
+/// Where the tests are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Where {
+    /// Nowhere: they are only built.
+    Built,
+    /// On the emulated board.
+    Emulated,
+    /// On the board at the probe.
+    Probe,
+}
+
+/// What is asked for.
+pub struct Rig<'a> {
+    /// The board.
+    pub board: &'static Board,
+    on: Where,
+    wired: bool,
+    /// Goes to the runner: parts of the names of the tests to run.
+    names: Vec<&'a str>,
+}
+
+impl<'a> Rig<'a> {
+    /// What `words`, the arguments behind the verb, ask for.
+    ///
+    /// # Errors
+    /// One line: what is wrong and what is allowed.
+    pub fn parse(words: &[&'a str]) -> Result<Self, String> {
+        let [name, rest @ ..] = words else {
+            return Err(format!("rig: name the board first: {}", boards::names()));
+        };
+        let board = boards::find(name)
+            .ok_or_else(|| format!("rig: no board is called `{name}`; there are {}", boards::names()))?;
+        let mut rig = Self {
+            board,
+            on: Where::Probe,
+            wired: false,
+            names: Vec::new(),
+        };
+        for &word in rest {
+            match (word, rig.on) {
+                ("--build", Where::Probe) => rig.on = Where::Built,
+                ("--emulated", Where::Probe) => rig.on = Where::Emulated,
+                ("--wired", _) => rig.wired = true,
+                (name, _) if !name.starts_with('-') => rig.names.push(name),
+                _ => {
+                    return Err(format!(
+                        "rig: `{word}` is not understood: allowed are --build or --emulated, --wired, and parts of names of tests"
+                    ));
+                }
+            }
+        }
+        if rig.on == Where::Emulated && !EMULATED.contains(name) {
+            return Err(format!(
+                "rig: {name} is not emulated: allowed is {}",
+                EMULATED.join(", ")
+            ));
+        }
+        Ok(rig)
+    }
+
+    /// Builds the tests and runs them; the exit status is the runner's own.
+    ///
+    /// # Errors
+    /// The tests do not build, their image is wrong, or there is no probe.
+    pub fn run(&self) -> Result<ExitCode, Error> {
+        // On the emulated board every jumper is in place.
+        let wired = self.wired || self.on == Where::Emulated;
+        let features = format!("{}{}", self.board.name, if wired { ",wired" } else { "" });
+        let elf = build::image(
+            "sophie-rig",
+            &["--test", "rig", "--features", &features],
+            self.board.core,
+            self.board.name,
+        )?;
+        crate::check(self.board, &elf)?;
+        match self.on {
+            Where::Built => {
+                println!("{}", elf.display());
+                Ok(ExitCode::SUCCESS)
+            }
+            Where::Emulated => crate::bench::emulator("rig", [elf.as_os_str()], &self.names),
+            Where::Probe => self.probe(&elf),
+        }
+    }
+
+    fn probe(&self, elf: &Path) -> Result<ExitCode, Error> {
+        let listed = Command::new("probe-rs")
+            .arg("list")
+            .output()
+            .map_err(no_probe_rs)?;
+        if !names_a_probe(&String::from_utf8_lossy(&listed.stdout)) {
+            return Err(format!(
+                "`probe-rs list` shows no probe. Connect an ST-Link or a CMSIS-DAP probe to SWDIO, SWCLK, ground and the \
+                 3.3 V reference of the {}, and power the board; on Linux install probe-rs's udev rules. Jumpers: hil/README.md",
+                self.board.name
+            )
+            .into());
+        }
+        let mut command = Command::new("probe-rs");
+        command.args(["run", "--chip", self.board.probe_rs_chip]);
+        command.arg(elf).args(&self.names);
+        eprintln!("{}", build::shown(&command));
+        let status = command.status().map_err(no_probe_rs)?;
+        Ok(if status.success() {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
+        })
+    }
+}
+
+/// Why probe-rs does not start.
+fn no_probe_rs(error: std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            "probe-rs is not installed; see https://probe.rs/docs/getting-started/installation".to_string()
+        }
+        _ => format!("probe-rs: {error}"),
+    }
+}
+
+/// `probe-rs list` numbers the probes: `[0]: STLink V3 -- …`.
+fn names_a_probe(listed: &str) -> bool {
+    listed.lines().any(|line| line.trim_start().starts_with('['))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_asked_for_is_understood() {
+        let rig = Rig::parse(&["matek-h743", "--emulated", "clock", "imu"])
+            .ok()
+            .unwrap();
+        assert!((rig.on, rig.wired) == (Where::Emulated, false) && rig.names == ["clock", "imu"]);
+        let rig = Rig::parse(&["f405", "--wired"]).ok().unwrap();
+        assert!((rig.on, rig.wired) == (Where::Probe, true) && rig.board.name == "f405");
+        for words in [
+            &[] as &[&str],
+            &["matek"],
+            &["cuav-v5", "--emulated"],
+            &["f405", "--build", "--emulated"],
+            &["f405", "--chip"],
+        ] {
+            let complaint = Rig::parse(words).err().unwrap_or_default();
+            assert!(
+                complaint.starts_with("rig: ") && !complaint.contains('\n'),
+                "{words:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_probe_is_told_from_none() {
+        assert!(names_a_probe(
+            "The following debug probes were found:\n[0]: STLink V3 -- 0483:374e:0030 (ST-LINK)\n"
+        ));
+        assert!(!names_a_probe("No debug probes were found.\n"));
+    }
+}
