@@ -9,3 +9,4 @@ pub mod plant;
 pub mod record;
 pub mod scenario;
 pub mod sensors;
+pub mod study;

@@ -34,6 +34,30 @@ enum Command {
     ///
     /// Exit status: 0 mission accomplished, 1 not accomplished, 2 bad input or unwritable output.
     Fly(FlyArgs),
+    /// Compute and fly every table and figure of the paper, and set them beside the printed numbers.
+    ///
+    /// Exit status: 0 done, 2 bad input or unwritable output.
+    Paper(PaperArgs),
+}
+
+/// What this process is to do.
+#[derive(Debug)]
+pub enum Task {
+    /// Fly a mission.
+    Fly(FlyArgs),
+    /// Reproduce the paper.
+    Paper(PaperArgs),
+}
+
+/// Where the paper's results go.
+#[derive(Args, Debug)]
+pub struct PaperArgs {
+    /// Directory for paper.html and paper.json.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the results as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What to fly and where to report it. Options win over the file.
@@ -119,17 +143,18 @@ impl Message {
 }
 
 /// The options of this process.
-pub fn parse() -> Result<FlyArgs, Message> {
+pub fn parse() -> Result<Task, Message> {
     parse_from(std::env::args_os())
 }
 
 fn parse_from(
     args: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>,
-) -> Result<FlyArgs, Message> {
+) -> Result<Task, Message> {
     let cli = Cli::try_parse_from(args).map_err(Message)?;
     Ok(match cli.command {
-        Some(Command::Fly(fly)) => fly,
-        None => cli.fly,
+        Some(Command::Fly(fly)) => Task::Fly(fly),
+        Some(Command::Paper(paper)) => Task::Paper(paper),
+        None => Task::Fly(cli.fly),
     })
 }
 
@@ -182,7 +207,10 @@ mod tests {
     use super::*;
 
     fn args(line: &str) -> Result<FlyArgs, String> {
-        parse_from(["sophie"].into_iter().chain(line.split_whitespace())).map_err(|m| m.line())
+        match parse_from(["sophie"].into_iter().chain(line.split_whitespace())).map_err(|m| m.line())? {
+            Task::Fly(fly) => Ok(fly),
+            other => Err(format!("{other:?}")),
+        }
     }
 
     #[test]

@@ -8,7 +8,8 @@ mod console;
 mod live;
 mod output;
 mod result;
-mod table;
+mod study;
+pub mod table;
 
 use std::process::ExitCode;
 
@@ -16,7 +17,7 @@ use sophie_hil::flight::fly;
 use sophie_hil::record::FlightRecord;
 use sophie_hil::scenario::Scenario;
 
-use self::args::FlyArgs;
+use self::args::{FlyArgs, Task};
 use self::console::Console;
 use self::output::OutDir;
 use crate::report::{self, summary::Summary};
@@ -30,11 +31,15 @@ const REFUSED: u8 = 2;
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let args = match args::parse() {
-        Ok(args) => args,
+    let task = match args::parse() {
+        Ok(task) => task,
         Err(message) => return message.show(),
     };
-    match run(&args) {
+    let done = match task {
+        Task::Fly(args) => run(&args),
+        Task::Paper(args) => study::paper(&args),
+    };
+    match done {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(FAILED),
         Err(line) => refuse(&line),

@@ -71,6 +71,8 @@ pub struct Plant {
     coupled: bool,
     /// Push at the centre of mass, N, NED, from outside.
     pub push: DVec3,
+    /// Moment from outside, N·m, body.
+    pub moment: DVec3,
     specific_force: DVec3,
 }
 
@@ -118,6 +120,7 @@ impl Plant {
             },
             coupled: v.coupled_arms,
             push: DVec3::ZERO,
+            moment: DVec3::ZERO,
             specific_force: DVec3::new(0.0, 0.0, -GRAVITY),
         }
     }
@@ -130,7 +133,7 @@ impl Plant {
 
         // Everything from outside on the body: gravity is added by the solver.
         let mut force = pose.to_body(self.push - pose.velocity * DRAG + self.gust.force());
-        let mut moment = self.gust.moment();
+        let mut moment = self.gust.moment() + self.moment;
         self.gust.step(STEP);
         let near_ground = pose.position.z > -NEAR;
         if near_ground {
