@@ -4,12 +4,16 @@
 
 pub mod arm;
 pub mod chart;
+pub mod flights;
 pub mod json;
 pub mod mass;
+pub mod mixer;
 pub mod model;
 pub mod page;
 pub mod parallel;
 pub mod printed;
+pub mod stability;
+pub mod statics;
 pub mod text;
 
 use self::model::Section;
@@ -19,7 +23,7 @@ use self::printed::Printed;
 type Work = fn(&Printed) -> Section;
 
 /// The sections, in the order of the paper.
-pub const SECTIONS: &[Work] = &[arm::section, mass::section];
+pub const SECTIONS: &[Work] = &[arm::section, mass::section, mixer::section, stability::section];
 
 /// Title of the page.
 pub const TITLE: &str = "SOPHIE: the paper's results, reproduced and corrected";
