@@ -65,10 +65,15 @@ pub fn section(p: &Printed) -> Section {
             .fold(0.0, f64::max);
     s.finding = format!(
         "Taken literally (K = 1) Eq. 1 bends an arm of 6 % by at most {literal_top:.1}°; Table III prints differences of \
-         16.8 to 26.6° between arms. A gain K on the elastic term mends it: all three rows follow from K (T1 - T3) = \
+         up to {:.1}° between arms. A gain K on the elastic term mends it: all three rows follow from K (T1 - T3) = \
          {:.1} N and T1 + T3 = {:.2} N, so K lies between {k_least:.1} (T3 = 0) and {k_most:.1} (ΔT/(T1+T3) = 3/5). The \
          stack flies K = {k}.",
-        id.product, id.sum
+        p.table_3
+            .iter()
+            .map(|r| r.delta_alpha_max_deg)
+            .fold(0.0, f64::max),
+        id.product,
+        id.sum
     );
     s.text(format!(
         "What K rests on: three numbers of Table III, fitted by two (X = K (T1 - T3) and T1 + T3), so one check is left. \
@@ -225,11 +230,12 @@ pub fn section(p: &Printed) -> Section {
         ]);
     }
     s.table(t);
-    s.text(
-        "The parabola of Eq. 1 turns down within the rotor's range at ρ 4 % and just above it at 6 %: more thrust would \
+    s.text(format!(
+        "The parabola of Eq. 1 turns down within the rotor's range at ρ 4 % and little above it at 6 %: more thrust would \
          then bend the arm less. Nothing measured stands behind that; the plant goes on straight from where the compliance \
-         has fallen to 15 %. At ρ 12.2 % the linear coefficient vanishes: Table I does not extrapolate.",
-    );
+         has fallen to 15 %. At ρ {:.1} % the linear coefficient vanishes: Table I does not extrapolate.",
+        -p.table_1.a1 / p.table_1.a2
+    ));
     s
 }
 

@@ -51,6 +51,15 @@ pub fn or_lost(value: Option<f64>, digits: usize) -> Cell {
     value.map_or_else(|| Cell::from("lost"), |v| num(v, digits))
 }
 
+/// When the vehicle was lost, in words; a dash when it was not.
+pub fn lost_when(flown: &Flown) -> Cell {
+    match flown.lost {
+        None => Cell::from("–"),
+        Some(t) if t < 0.0 => Cell::from("at take-off"),
+        Some(t) => Cell::from(format!("after {t:.1} s")),
+    }
+}
+
 /// A curve over time, every `every` ms.
 pub fn curve(flown: &Flown, every: usize, value: impl Fn(&Moment) -> f64) -> Vec<(f64, f64)> {
     flown

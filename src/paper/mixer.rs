@@ -11,7 +11,7 @@ use sophie_hil::plant::GRAVITY;
 use sophie_hil::study::allocation::Studied;
 use sophie_hil::study::rig::{Flown, Wish, fly};
 
-use super::flights::{curve, error, in_gusts, or_lost, swing, vehicle};
+use super::flights::{curve, error, in_gusts, lost_when, or_lost, swing, vehicle};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::parallel;
 use super::printed::Printed;
@@ -32,11 +32,12 @@ fn matrix(tilt: f64, yaw: [f64; 4]) -> Matrix {
     ]
 }
 
-/// Rank and determinant of the matrix with its rows scaled to length 1, by elimination with full row pivoting.
+/// Rank and size of the determinant, the rows over those of the stiff, level frame's length, by elimination with row
+/// pivoting.
 fn rank(mut m: Matrix) -> (usize, f64) {
-    for row in &mut m {
-        let length = row.iter().map(|x| x * x).sum::<f64>().sqrt();
-        row.iter_mut().for_each(|x| *x /= length.max(1e-300));
+    let p = Params::default();
+    for (row, unit) in m.iter_mut().zip([1.0, p.arm_d, p.arm_b, p.torque_ratio]) {
+        row.iter_mut().for_each(|x| *x /= 2.0 * f64::from(unit));
     }
     let (mut rank, mut determinant) = (0, 1.0);
     for column in 0..4 {
@@ -206,6 +207,8 @@ pub fn section(p: &Printed) -> Section {
             mixer_swing(Variant::Flexible, *k),
         )
     });
+    // The onset in the mixer itself, by halving.
+    let k_found = root(1.0, 3.0, |k| mixer_swing(Variant::Frozen, k) - 0.1).unwrap_or(f64::NAN);
     let of = |f: fn(&(f64, f64)) -> f64| gains.iter().zip(&swings).map(|(k, s)| (*k, f(s))).collect();
     s.text(format!(
         "Algorithm 1 takes α from the thrust of the step before. With the sideways thrust in the yaw row, as the physics \
@@ -219,14 +222,15 @@ pub fn section(p: &Printed) -> Section {
     s.text(format!(
         "Inverting at the angle that the arm really has (motor lag and bending mode known exactly) is no cure: a changed \
          thrust bends its arm a moment later and yaws m times more. The loop (τs + 1)(s² + 2ζωs + ω²) + |m| ω² = 0 has a \
-         right root from |m| = {bound:.3} on (τ {} s, {} Hz, ζ 0.15), for ρ {infill} % from K {k_cycles:.2}. What flies \
+         right root from |m| = {bound:.3} on (τ {} s, {} Hz, ζ 0.15), for ρ {infill} % from K {k_cycles:.2}; the mixer itself \
+         begins to swing at K {k_found:.2}. What flies \
          inverts the static Jacobian about the low-passed thrust and has no such loop.",
         d.motor_tau, d.notch_hz
     ));
     s.figure(
-        "Left: the multiplier of one step of Algorithm 1 with a whole yaw row, closed form and loop. Middle: the yaw \
-         pattern over the steps; within the rotor's limits divergence becomes a full-scale oscillation every millisecond. \
-         Right: the frozen inverse's limit cycle appears where the closed form says; the flexible mixer has none.",
+        "In order: the multiplier of one step of Algorithm 1 with a whole yaw row, closed form and loop; the yaw pattern \
+         over the steps, which within the rotor's limits ends in a full-scale oscillation or stuck at a limit; the frozen \
+         inverse's limit cycle, which appears where the closed form says. The flexible mixer has none.",
         vec![
             Chart {
                 title: "One-step loop in hover".to_owned(),
@@ -271,7 +275,7 @@ pub fn section(p: &Printed) -> Section {
             "pitch RMS °",
             "yaw RMS °",
             "swing of rotor 1 N",
-            "lost at s",
+            "lost",
         ],
     );
     for ((i, k), flown) in jobs.iter().zip(&flights) {
@@ -282,7 +286,7 @@ pub fn section(p: &Printed) -> Section {
             or_lost(error(flown, 1), 2),
             or_lost(error(flown, 2), 2),
             or_lost(swing(flown), 2),
-            num(flown.lost.unwrap_or(f64::NAN), 1),
+            lost_when(flown),
         ]);
     }
     s.table(t);
@@ -349,7 +353,7 @@ fn matrices(s: &mut Section, hover: &AtThrust) {
             "yaw row",
             "signs of rotors 1 to 4",
             "rank",
-            "determinant of the rows scaled to 1",
+            "determinant over the stiff frame's",
         ],
     );
     let at = |thrust: f64| AtThrust::new(6.9, f64::from(Params::default().gain_k), thrust);

@@ -4,6 +4,7 @@
 
 pub mod arm;
 pub mod chart;
+pub mod clamp;
 pub mod flights;
 pub mod json;
 pub mod mass;
@@ -12,9 +13,11 @@ pub mod model;
 pub mod page;
 pub mod parallel;
 pub mod printed;
+pub mod roll;
 pub mod stability;
 pub mod statics;
 pub mod text;
+pub mod translation;
 
 use self::model::Section;
 use self::printed::Printed;
@@ -23,7 +26,15 @@ use self::printed::Printed;
 type Work = fn(&Printed) -> Section;
 
 /// The sections, in the order of the paper.
-pub const SECTIONS: &[Work] = &[arm::section, mass::section, mixer::section, stability::section];
+pub const SECTIONS: &[Work] = &[
+    arm::section,
+    mass::section,
+    mixer::section,
+    stability::section,
+    roll::section,
+    clamp::section,
+    translation::section,
+];
 
 /// Title of the page.
 pub const TITLE: &str = "SOPHIE: the paper's results, reproduced and corrected";

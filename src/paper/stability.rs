@@ -70,8 +70,8 @@ pub fn section(p: &Printed) -> Section {
         worst = worst.max((closed - yaw).abs() / closed.abs());
         let verdict = match closed {
             c if c < 0.0 => "stable",
-            c if c < 1.0 => "unstable by the paper's sign, weakened only",
-            _ => "turned round: diverges",
+            c if c < 1.0 => "weakened",
+            _ => "turned round",
         };
         t.row([
             format!("{c:?}").into(),
@@ -79,7 +79,7 @@ pub fn section(p: &Printed) -> Section {
             num(*infill, 1),
             num(closed, 3),
             num(*yaw, 3),
-            num(at.pitch_derivative(), 4),
+            num(at.pitch_derivative(f64::from(c.chi())), 4),
             num(*pitch, 4),
             num(at.roll_derivative(), 4),
             num(*roll, 4),
@@ -88,15 +88,16 @@ pub fn section(p: &Printed) -> Section {
     }
     s.text(
         "The paper's Eqs. 2 to 4 let a commanded moment τ act as (1 - C) τ. For four tilted rotors on arms that follow \
-         their thrust, C_ψ = -χ (b/k_q) d(T sin α)/dT, C_θ = 1 - d(T cos α)/dT, and C_φ = (z_h/d) d(T sin α)/dT with the \
-         hinges z_h below the centre of mass. Beside the closed form stands the plant itself: its arms are let come to \
-         rest, its moments taken, with no formula of the stack in between. Eq. 4 needs I_x where it prints I_z.",
+         their thrust, C_ψ = -χ (b/k_q) d(T sin α)/dT + [1 - d(T cos α)/dT], C_θ = [1 - d(T cos α)/dT] + χ (k_q/b) d(T sin \
+         α)/dT, and C_φ = (z_h/d) d(T sin α)/dT with the hinges z_h below the centre of mass. Beside the closed form stands \
+         the plant itself: its arms are let come to rest, its moments taken, with no formula of the stack in between. \
+         Eq. 4 needs I_x where it prints I_z.",
     );
     s.table(t);
     s.text(
-        "\"Naturally fulfilled\" for pitch and roll is not borne out: C_φ is positive and small (nil with hinges at the \
-         height of the centre of mass, for the thrust stays perpendicular to its arm), C_θ changes sign where the arms \
-         are level. Both are a few hundredths and harmless.",
+        "\"Naturally fulfilled\" for pitch and roll is not borne out: C_φ is positive (nil with hinges at the height of \
+         the centre of mass, for the thrust stays perpendicular to its arm) and C_θ has the sign of χ. Both are a few \
+         hundredths and harmless.",
     );
 
     let thrusts: Vec<f64> = (4..=80).map(|i| 0.1 * f64::from(i)).collect();
@@ -135,7 +136,8 @@ pub fn section(p: &Printed) -> Section {
     };
     s.figure(
         "Lines: closed form; dots: the plant. Below 0 the bending arms help a yaw command (the paper's \"stable\"), between \
-         0 and 1 they weaken it, above 1 they turn it round. The paper's sign holds in hover: B negative, A positive.",
+         0 and 1 they weaken it, above 1 they turn it round. At ρ 4 % the plant leaves Eq. 1 at 7 N, where the parabola is \
+         about to turn down. The paper's sign holds in hover: B negative, A positive.",
         BOTH.map(chart).to_vec(),
     );
     reversal_map(&mut s, hover, k);
@@ -145,7 +147,7 @@ pub fn section(p: &Printed) -> Section {
     let k_one = root(0.2, 9.0, |k| at(k).yaw_derivative(-1.0) - 1.0).unwrap_or(f64::NAN);
     s.finding = format!(
         "The paper's result stands: in hover B is stable (C_ψ {:.2} at ρ {} %) and A is not ({:+.2}). Closed form and \
-         perturbed plant agree within {:.1} %. What the paper does not say: A only diverges where C_ψ > 1, that is from K \
+         perturbed plant agree within {:.2} %. What the paper does not say: A only diverges where C_ψ > 1, that is from K \
          {k_one:.2} on, and B's own authority turns round at low throttle.",
         at(k).yaw_derivative(1.0),
         p.text.infill_percent,

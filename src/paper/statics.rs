@@ -41,14 +41,19 @@ impl AtThrust {
         self.sin + self.cos * self.follow
     }
 
-    /// C_ψ = -χ (b/k_q) d(T sin α)/dT.
-    pub fn yaw_derivative(&self, chi: f64) -> f64 {
-        -chi * self.b / self.k_q * self.lean()
+    /// 1 - d(T cos α)/dT: what the lean takes of a thrust's change.
+    fn lift_lost(&self) -> f64 {
+        1.0 - (self.cos - self.sin * self.follow)
     }
 
-    /// C_θ = 1 - d(T cos α)/dT.
-    pub fn pitch_derivative(&self) -> f64 {
-        1.0 - (self.cos - self.sin * self.follow)
+    /// C_ψ = -χ (b/k_q) d(T sin α)/dT + 1 - d(T cos α)/dT; the second part is the drag's lean.
+    pub fn yaw_derivative(&self, chi: f64) -> f64 {
+        -chi * self.b / self.k_q * self.lean() + self.lift_lost()
+    }
+
+    /// C_θ = 1 - d(T cos α)/dT + χ (k_q/b) d(T sin α)/dT: the lift lost, and the leaning drag's part about pitch.
+    pub fn pitch_derivative(&self, chi: f64) -> f64 {
+        self.lift_lost() + chi * self.k_q / self.b * self.lean()
     }
 
     /// C_φ = (z_h/d) d(T sin α)/dT: the sideways thrust acts at the hinge's height z_h below the centre of mass.
