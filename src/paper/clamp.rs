@@ -16,20 +16,28 @@ use crate::report::units::kgcm;
 /// Infills (%) and diameters (m) that are tried.
 const INFILLS: [f64; 4] = [6.0, 6.9, 8.0, 10.0];
 const DIAMETERS: [f64; 5] = [0.20, 0.25, 0.30, 0.35, 0.40];
-/// Seed of the bench's noise.
-const SEED: u64 = 1;
+/// Seeds of the bench's noise; closure times are their mean.
+const SEEDS: u64 = 5;
 /// Thrust of the arm's rotor at the paper's 30 % throttle, N.
 const THRUST: f64 = 2.5;
 
-/// A closing with a servo.
+/// A closing with a servo: the first seed's, with the mean closure time of all seeds.
 pub fn bench(infill: f64, diameter: f64, servo: ServoSpec) -> Closed {
+    let mut first = once(infill, diameter, servo, 1);
+    let others = (2..=SEEDS).map(|seed| once(infill, diameter, servo, seed).closure);
+    let all: Option<Vec<f64>> = [first.closure].into_iter().chain(others).collect();
+    first.closure = all.map(|times| times.iter().sum::<f64>() / times.len() as f64);
+    first
+}
+
+fn once(infill: f64, diameter: f64, servo: ServoSpec, seed: u64) -> Closed {
     close(&Closing {
         infill,
         diameter,
         servo,
         thrust: THRUST,
         seconds: 12.0,
-        seed: SEED,
+        seed,
     })
 }
 
@@ -104,12 +112,14 @@ pub fn section(p: &Printed) -> Section {
         });
     }
     s.compare("Table IV", rows);
-    let rise = correlation(
-        &all.iter()
-            .filter(|(.., c)| holds(c))
-            .filter_map(|(.., c)| Some((c.closure?, c.steady)))
-            .collect::<Vec<_>>(),
-    );
+    let held = |f: &dyn Fn(f64, f64) -> bool| {
+        all.iter()
+            .filter(|(i, d, c)| holds(c) && f(*i, *d))
+            .filter_map(|(i, d, c)| Some((*i, *d, c.closure?, c.steady)))
+            .collect::<Vec<_>>()
+    };
+    let (soft, wide) = (held(&|i, _| i == INFILLS[0]), held(&|_, d| d == DIAMETERS[3]));
+    let over_pipes = correlation(&soft.iter().map(|(_, _, t, u)| (*t, *u)).collect::<Vec<_>>());
     let as_printed: Vec<(f64, f64)> = p
         .table_4
         .closure_s
@@ -120,25 +130,34 @@ pub fn section(p: &Printed) -> Section {
     s.compare(
         "Do times and forces rise together, as the text says?",
         vec![Comparison {
-            what: "correlation of t and U".to_owned(),
+            what: format!("correlation of t and U, here over pipes at ρ {} %", INFILLS[0]),
             unit: "",
             printed: correlation(&as_printed),
-            here: rise,
+            here: over_pipes,
             class: Class::Inconsistent,
             why: "the text says that closure times and forces are both bigger for small pipes and dense arms, the table's U \
                   falls while its t rises: its second row stands in reverse"
                 .to_owned(),
         }],
     );
+    let over_infill = correlation(&wide.iter().map(|(i, _, t, _)| (*i, *t)).collect::<Vec<_>>());
+    s.text(format!(
+        "Small pipes take longer here as in the paper. Dense arms do not: over infill at {:.0} mm the correlation of ρ and t \
+         is {over_infill:+.2}, where the text says that it is positive. This loop feeds the arm's stiffness forward, so that \
+         a dense arm is pulled harder from the start, and it hangs higher to begin with; a plain PID as the paper's has to \
+         integrate its way up. The force follows pipe and infill as the text says.",
+        1e3 * DIAMETERS[3]
+    ));
     figures(&mut s, p, &all, &pairs);
     in_flight(&mut s);
     servos(&mut s, p, &all);
     let count = all.iter().filter(|(.., c)| holds(c)).count();
     s.finding = format!(
-        "Times and forces rise together, as the text says and Table IV does not: its U row stands in reverse. Re-paired, all \
-         four pairs lie in the range that comes out here ({count} of {} closings hold). An MG996R cannot do most of it: its \
-         stall torque is a third of what the paper prints for it.",
-        all.len()
+        "Re-paired (the U row of Table IV stands in reverse), all four pairs lie within what comes out here, where {count} of \
+         {} closings hold; over pipes times and forces rise together (correlation {over_pipes:+.2}). The MG996R that the \
+         paper names has {:.1} times less torque than it prints, and holds only the softest arms on the widest pipes.",
+        all.len(),
+        p.text.servo_stall_kgcm / kgcm(ServoSpec::from(ServoProfile::Mg996r).stall)
     );
     s
 }
@@ -342,7 +361,7 @@ fn servos(s: &mut Section, p: &Printed, all: &[(f64, f64, &Closed)]) {
     let jobs: Vec<(usize, f64, f64)> = (0..list.len())
         .flat_map(|k| all.iter().map(move |(i, d, _)| (k, *i, *d)))
         .collect();
-    let done = parallel::each(&jobs, |(k, i, d)| holds(&bench(*i, *d, list[*k].1)));
+    let done = parallel::each(&jobs, |(k, i, d)| holds(&once(*i, *d, list[*k].1, 1)));
     let mut t = Table::new(
         "Which servo can do it: closings of the grid that hold",
         &[

@@ -3,8 +3,11 @@
 //! A section a file. Numbers come from running code; the paper's own stand in `printed.toml`, with table and row.
 
 pub mod arm;
+pub mod beyond;
 pub mod chart;
 pub mod clamp;
+pub mod endurance;
+pub mod fatigue;
 pub mod flights;
 pub mod json;
 pub mod mass;
@@ -34,6 +37,9 @@ pub const SECTIONS: &[Work] = &[
     roll::section,
     clamp::section,
     translation::section,
+    endurance::section,
+    fatigue::section,
+    beyond::section,
 ];
 
 /// Title of the page.

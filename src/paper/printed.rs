@@ -120,7 +120,6 @@ pub struct Robot {
 /// Numbers in the text; units in the names.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "printed.toml says of each where it stands")]
 pub struct Text {
     pub total_mass_kg: f64,
     pub motor_thrust_g: f64,

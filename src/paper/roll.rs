@@ -24,13 +24,36 @@ enum Command {
     Soft,
 }
 
+/// What the arms do besides following their thrust.
+#[derive(Clone, Copy, PartialEq)]
+enum Arms {
+    /// Nothing: damping ratio 0.7, no mass of their own. The paper's statics.
+    Static,
+    /// They swing at a damping ratio of 0.15.
+    Swinging,
+    /// They carry their tip mass, as in every other flight.
+    Heavy,
+}
+
+impl Arms {
+    const ALL: [Self; 3] = [Self::Static, Self::Swinging, Self::Heavy];
+
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Static => "static, ζ 0.7",
+            Self::Swinging => "swinging, ζ 0.15",
+            Self::Heavy => "with tip mass, ζ 0.15",
+        }
+    }
+}
+
 /// A manoeuvre.
 #[derive(Clone, Copy)]
 struct Job {
     infill: f64,
     mixer: Variant,
     command: Command,
-    coupled: bool,
+    arms: Arms,
 }
 
 fn scenario(job: Job) -> Scenario {
@@ -40,7 +63,8 @@ fn scenario(job: Job) -> Scenario {
         job.infill,
         job.mixer,
     );
-    s.vehicle.coupled_arms = job.coupled;
+    s.vehicle.coupled_arms = job.arms == Arms::Heavy;
+    s.vehicle.arm_damping = if job.arms == Arms::Static { 0.7 } else { 0.15 };
     if let Command::Hard(rate_p) = job.command {
         (s.params.attitude_p, s.params.rate_p) = (12.0, rate_p as f32);
         (s.params.setpoint_cutoff, s.params.rate_max) = (100.0, 12.0);
@@ -116,7 +140,7 @@ pub fn section(p: &Printed) -> Section {
         ("flexible, prefiltered", Variant::Flexible, Command::Soft),
     ];
     let mut jobs: Vec<(usize, Job)> = vec![];
-    for coupled in [false, true] {
+    for arms in Arms::ALL {
         for infill in &infills {
             for (i, (_, mixer, command)) in cases.iter().enumerate() {
                 jobs.push((
@@ -125,17 +149,17 @@ pub fn section(p: &Printed) -> Section {
                         infill: *infill,
                         mixer: *mixer,
                         command: *command,
-                        coupled,
+                        arms,
                     },
                 ));
             }
         }
     }
     let flights = parallel::each(&jobs, |(_, job)| manoeuvre(*job, angle));
-    let of = |case: usize, infill: f64, coupled: bool| {
+    let of = |case: usize, infill: f64, arms: Arms| {
         let at = jobs
             .iter()
-            .position(|(i, j)| *i == case && j.infill == infill && j.coupled == coupled);
+            .position(|(i, j)| *i == case && j.infill == infill && j.arms == arms);
         at.and_then(|i| flights.get(i))
     };
 
@@ -154,21 +178,16 @@ pub fn section(p: &Printed) -> Section {
             "ratio to the first",
         ],
     );
-    for coupled in [false, true] {
+    for arms in Arms::ALL {
         for infill in &infills {
-            let first = of(0, *infill, coupled).and_then(found);
+            let first = of(0, *infill, arms).and_then(found);
             for (i, (name, ..)) in cases.iter().enumerate() {
-                let arms = if coupled {
-                    "carry their tip mass"
-                } else {
-                    "follow thrust alone"
-                };
-                let Some(f) = of(i, *infill, coupled).and_then(found) else {
-                    t.row([arms.into(), num(*infill, 0), (*name).into(), num(f64::NAN, 0)]);
+                let Some(f) = of(i, *infill, arms).and_then(found) else {
+                    t.row([arms.words().into(), num(*infill, 0), (*name).into(), num(f64::NAN, 0)]);
                     continue;
                 };
                 t.row([
-                    arms.into(),
+                    arms.words().into(),
                     num(*infill, 0),
                     (*name).into(),
                     num(f.roll.to_degrees(), 1),
@@ -184,8 +203,7 @@ pub fn section(p: &Printed) -> Section {
     }
     s.text(format!(
         "Flown, with a step to 25° held for {HELD} s. \"Hard\" is what the paper's ΔT/T = 3/5 takes: an attitude gain of 12 \
-         1/s and a rate gain of {gain:.1} 1/s, found by halving so that arms which follow their thrust alone reach 3/5 at ρ 8 \
-         %; the stack flies 4.5 and 10 behind a prefilter. ΔT/T is of one left and one right rotor: of all four, 3/5 would \
+         1/s and a rate gain of {gain:.1} 1/s, found by halving so that static arms reach 3/5 at ρ 8 %; the stack flies 4.5 and 10 behind a prefilter. ΔT/T is of one left and one right rotor: of all four, 3/5 would \
          be {:.1} N a side, beyond the rotor.",
         share * 2.0 * p.mass() * 9.806_65 / 4.0
     ));
@@ -198,22 +216,25 @@ pub fn section(p: &Printed) -> Section {
     s.compare("Table III against the flights", rows);
     figures(&mut s, &of, &cases.map(|c| c.0));
 
-    let middle = |coupled| {
-        of(0, 8.0, coupled)
+    let middle = |arms| {
+        of(0, 8.0, arms)
             .and_then(found)
             .map_or(f64::NAN, |f| f.delta_alpha.to_degrees())
     };
-    let (free, carried) = (middle(false), middle(true));
+    let (rest, swung, heavy) = (middle(Arms::Static), middle(Arms::Swinging), middle(Arms::Heavy));
     s.text(format!(
-        "What that says about K: with arms that carry {} kg at their tips the same command bends them by {carried:.1}° at ρ 8 \
-         % where the paper's statics give {free:.1}°, because the arm that is pushed up also has to push its motor up. A \
-         table of Δα in a fast roll therefore does not identify the static gain K; a bench does (sophie fit-arm).",
-        sophie_hil::plant::arm::TIP_MASS
+        "What that says about K: the same command at ρ 8 % bends the arms by {rest:.1}° by the paper's statics, by \
+         {swung:.1}° if they swing with a damping ratio of 0.15, and by {heavy:.1}° if they also carry {} kg at their tips, \
+         because the arm that is pushed up has to push its motor up. The paper prints {:.1}°. A table of Δα in a fast roll \
+         does not identify the static gain K: mass and damping of the arm are in it too. A bench identifies it (sophie \
+         fit-arm).",
+        sophie_hil::plant::arm::TIP_MASS,
+        p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg)
     ));
     s.finding = format!(
-        "With the paper's statics a step hard enough for ΔT/T = 3/5 bends the arms by {free:.1}° at ρ 8 % (printed {:.1}°). \
+        "With the paper's statics a step hard enough for ΔT/T = 3/5 bends the arms by {rest:.1}° at ρ 8 % (printed {:.1}°). \
          The mixer has no part in the ratio column: the roll lever of a hinged arm does not depend on α, so only a softer \
-         command lowers φ + Δα. Two of the printed ratios are larger than any command that still reaches 25° allows.",
+         command lowers φ + Δα. Two of the printed ratios are larger than the printed Δα_max allows.",
         p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg)
     );
     s
@@ -267,7 +288,7 @@ fn hard_gain(angle: f64, share: f64) -> f64 {
             infill: 8.0,
             mixer: Variant::Rigid,
             command: Command::Hard(gain),
-            coupled: false,
+            arms: Arms::Static,
         };
         found(&manoeuvre(job, angle)).map_or(f64::NAN, |f| f.thrust_share)
     };
@@ -285,57 +306,81 @@ fn hard_gain(angle: f64, share: f64) -> f64 {
 
 fn compare<'a>(
     row: &Roll,
-    of: &impl Fn(usize, f64, bool) -> Option<&'a Flown>,
+    of: &impl Fn(usize, f64, Arms) -> Option<&'a Flown>,
     share: f64,
 ) -> Vec<Comparison> {
-    let get = |case, coupled| of(case, row.infill_percent, coupled).and_then(found);
-    let (Some(free), Some(soft)) = (get(0, false), get(2, false)) else {
-        return vec![];
-    };
-    let carried = get(0, true);
+    let get = |case, arms| of(case, row.infill_percent, arms).and_then(found);
     let of_rho = |what: &str| format!("{what}, ρ {} %", row.infill_percent);
+    let deg = |f: Option<Found>| f.map_or(f64::NAN, |f| f.delta_alpha.to_degrees());
+    let ratio = |arms| match (get(0, arms), get(2, arms)) {
+        (Some(hard), Some(soft)) => hard.effective / soft.effective,
+        _ => f64::NAN,
+    };
+    let line = |what: &str, unit, printed, here, why: String| Comparison {
+        what: of_rho(what),
+        unit,
+        printed,
+        here,
+        class: Class::Prediction,
+        why,
+    };
+    let alpha = row.delta_alpha_max_deg;
+    let command = format!("hardness of the step from ΔT/T = {share} at ρ 8 %, K from this column's statics");
     vec![
-        Comparison {
-            what: of_rho("Δα_max, arms follow thrust alone"),
-            unit: "°",
-            printed: row.delta_alpha_max_deg,
-            here: free.delta_alpha.to_degrees(),
-            class: Class::Calibrated,
-            why: format!(
-                "K from this very column, the command's hardness from ΔT/T = {share} at ρ 8 %; what is left is the arm's \
-                 swing (ζ 0.15) and the rotor's lag"
-            ),
-        },
-        Comparison {
-            what: of_rho("Δα_max, arms carry their tip mass"),
-            unit: "°",
-            printed: row.delta_alpha_max_deg,
-            here: carried.map_or(f64::NAN, |f| f.delta_alpha.to_degrees()),
-            class: Class::Prediction,
-            why: "the same command on the vehicle that the rest of this stack flies".to_owned(),
-        },
-        Comparison {
-            what: of_rho("κ, exact, arms follow thrust alone"),
-            unit: "",
-            printed: row.kappa,
-            here: free.kappa,
-            class: Class::Prediction,
-            why: "largest sideways force of the leaning arms over the largest of the rolled thrust"
-                .to_owned(),
-        },
-        Comparison {
-            what: of_rho("(φ+Δα)_max over (φ+Δα)*_max"),
-            unit: "",
-            printed: row.ratio,
-            here: free.effective / soft.effective,
-            class: Class::Prediction,
-            why: "hard step with the rigid mixer over the stack's own prefiltered command".to_owned(),
-        },
+        line(
+            "Δα_max, static arms",
+            "°",
+            alpha,
+            deg(get(0, Arms::Static)),
+            command.clone(),
+        ),
+        line(
+            "Δα_max, swinging arms",
+            "°",
+            alpha,
+            deg(get(0, Arms::Swinging)),
+            command,
+        ),
+        line(
+            "Δα_max, arms with tip mass",
+            "°",
+            alpha,
+            deg(get(0, Arms::Heavy)),
+            "the same command on the vehicle that the rest of this stack flies".to_owned(),
+        ),
+        line(
+            "κ, exact, static arms",
+            "",
+            row.kappa,
+            get(0, Arms::Static).map_or(f64::NAN, |f| f.kappa),
+            "largest sideways force of the leaning arms over the largest of the rolled thrust".to_owned(),
+        ),
+        line(
+            "(φ+Δα)_max ratio, static arms",
+            "",
+            row.ratio,
+            ratio(Arms::Static),
+            "hard step with the rigid mixer over the stack's own prefiltered command".to_owned(),
+        ),
+        line(
+            "(φ+Δα)_max ratio, swinging arms",
+            "",
+            row.ratio,
+            ratio(Arms::Swinging),
+            "the same; near the printed values, but with a Δα well above the printed one".to_owned(),
+        ),
+        line(
+            "(φ+Δα)_max ratio, arms with tip mass",
+            "",
+            row.ratio,
+            ratio(Arms::Heavy),
+            "the same".to_owned(),
+        ),
     ]
 }
 
-fn figures<'a>(s: &mut Section, of: &impl Fn(usize, f64, bool) -> Option<&'a Flown>, names: &[&str; 3]) {
-    let chart = |title: &str, coupled: bool, y: &str, value: &dyn Fn(&Moment) -> f64| Chart {
+fn figures<'a>(s: &mut Section, of: &impl Fn(usize, f64, Arms) -> Option<&'a Flown>, names: &[&str; 3]) {
+    let chart = |title: &str, arms: Arms, y: &str, value: &dyn Fn(&Moment) -> f64| Chart {
         title: title.to_owned(),
         x: Axis::between("time (s)", 0.0, SECONDS),
         y: Axis::new(y),
@@ -347,16 +392,16 @@ fn figures<'a>(s: &mut Section, of: &impl Fn(usize, f64, bool) -> Option<&'a Flo
                     *name,
                     i,
                     Look::Line,
-                    curve(of(i, 8.0, coupled)?, 5, value),
+                    curve(of(i, 8.0, arms)?, 5, value),
                 ))
             })
             .collect(),
         ..Chart::default()
     };
-    let arms = |title: &str, coupled: bool| {
+    let tilts = |title: &str, arms: Arms| {
         let mut series = vec![];
         for (case, look, word) in [(0, Look::Line, "hard"), (2, Look::Dashed, "prefiltered")] {
-            let Some(flown) = of(case, 8.0, coupled) else {
+            let Some(flown) = of(case, 8.0, arms) else {
                 continue;
             };
             let mean = |i: usize, j: usize| move |m: &Moment| (0.5 * (m.tilt[i] + m.tilt[j])).to_degrees();
@@ -384,16 +429,16 @@ fn figures<'a>(s: &mut Section, of: &impl Fn(usize, f64, bool) -> Option<&'a Flo
     let roll = |m: &Moment| m.attitude[0].to_degrees();
     let effective = |m: &Moment| (m.attitude[0] + delta_alpha(m)).to_degrees();
     s.figure(
-        "The manoeuvre of Fig. 8 at ρ 8 %. Upper row: arms that follow their thrust alone, as in the paper's statics. Lower \
-         row: arms that carry their own tip mass. The arms bend only while the vehicle is being turned: Δα and 25° never \
+        "The manoeuvre of Fig. 8 at ρ 8 %. First three: static arms, as in the paper; last \
+         three: arms that carry their own tip mass. The arms bend only while the vehicle is being turned: Δα and 25° never \
          stand together.",
         vec![
-            chart("Roll φ, statics", false, "φ (°)", &roll),
-            arms("Arms, statics", false),
-            chart("Effective angle φ + Δα, statics", false, "φ + Δα (°)", &effective),
-            chart("Roll φ, tip mass", true, "φ (°)", &roll),
-            arms("Arms, tip mass", true),
-            chart("Effective angle φ + Δα, tip mass", true, "φ + Δα (°)", &effective),
+            chart("Roll φ, statics", Arms::Static, "φ (°)", &roll),
+            tilts("Arms, statics", Arms::Static),
+            chart("Effective angle φ + Δα, statics", Arms::Static, "φ + Δα (°)", &effective),
+            chart("Roll φ, tip mass", Arms::Heavy, "φ (°)", &roll),
+            tilts("Arms, tip mass", Arms::Heavy),
+            chart("Effective angle φ + Δα, tip mass", Arms::Heavy, "φ + Δα (°)", &effective),
         ],
     );
 }

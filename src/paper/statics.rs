@@ -7,8 +7,6 @@ use sophie_hil::plant::contact::HINGE_Z;
 /// One arm at work.
 #[derive(Clone, Copy, Debug)]
 pub struct AtThrust {
-    /// Thrust, N.
-    pub thrust: f64,
     /// sin α.
     pub sin: f64,
     /// cos α.
@@ -27,7 +25,6 @@ impl AtThrust {
         let (sin, cos) = f64::from(m.angle(thrust as f32)).sin_cos();
         let follow = thrust * f64::from(m.slope(thrust as f32));
         Self {
-            thrust,
             sin,
             cos,
             follow,

@@ -219,7 +219,7 @@ pub fn section(p: &Printed) -> Section {
         ],
     );
     s.finding = format!(
-        "As derived, the equations give the flown force within {worst_derived:.2} N RMS. As printed, Eqs. 5 and 6 have the \
+        "As derived, the equations give the flown force within {worst_derived:.3} N RMS. As printed, Eqs. 5 and 6 have the \
          flexible force along the nose, Eq. 7 lacks gravity, and Eq. 8 keeps the smaller of two terms."
     );
     s
