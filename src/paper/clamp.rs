@@ -1,6 +1,7 @@
 //! Fig. 10 and Table IV: an arm closes on pipes of several diameters, on the bench and in flight.
 
 use sophie_control::grip::ArmState;
+use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_hil::flight;
 use sophie_hil::plant::tendon::ServoSpec;
@@ -18,27 +19,30 @@ const INFILLS: [f64; 4] = [6.0, 6.9, 8.0, 10.0];
 const DIAMETERS: [f64; 5] = [0.20, 0.25, 0.30, 0.35, 0.40];
 /// Seeds of the bench's noise; closure times are their mean.
 const SEEDS: u64 = 5;
-/// Thrust of the arm's rotor at the paper's 30 % throttle, N.
-const THRUST: f64 = 2.5;
 
 /// A closing with a servo: the first seed's, with the mean closure time of all seeds.
-pub fn bench(infill: f64, diameter: f64, servo: ServoSpec) -> Closed {
-    let mut first = once(infill, diameter, servo, 1);
-    let others = (2..=SEEDS).map(|seed| once(infill, diameter, servo, seed).closure);
+pub fn bench(infill: f64, diameter: f64, servo: ServoSpec, thrust: f64) -> Closed {
+    let mut first = once(infill, diameter, servo, thrust, 1);
+    let others = (2..=SEEDS).map(|seed| once(infill, diameter, servo, thrust, seed).closure);
     let all: Option<Vec<f64>> = [first.closure].into_iter().chain(others).collect();
     first.closure = all.map(|times| times.iter().sum::<f64>() / times.len() as f64);
     first
 }
 
-fn once(infill: f64, diameter: f64, servo: ServoSpec, seed: u64) -> Closed {
+fn once(infill: f64, diameter: f64, servo: ServoSpec, thrust: f64, seed: u64) -> Closed {
     close(&Closing {
         infill,
         diameter,
         servo,
-        thrust: THRUST,
+        thrust,
         seconds: 12.0,
         seed,
     })
+}
+
+/// Thrust of the arm's rotor while it closes, N: the paper's throttle.
+pub fn closing_thrust(p: &Printed) -> f64 {
+    0.01 * p.text.clamp_throttle_percent * f64::from(Params::default().thrust_max)
 }
 
 fn holds(c: &Closed) -> bool {
@@ -53,7 +57,7 @@ pub fn section(p: &Printed) -> Section {
         .iter()
         .flat_map(|i| DIAMETERS.iter().map(move |d| (*i, *d)))
         .collect();
-    let closings = parallel::each(&jobs, |(i, d)| bench(*i, *d, servo));
+    let closings = parallel::each(&jobs, |(i, d)| bench(*i, *d, servo, closing_thrust(p)));
     let all: Vec<(f64, f64, &Closed)> = jobs
         .iter()
         .zip(&closings)
@@ -76,6 +80,11 @@ pub fn section(p: &Printed) -> Section {
         ]);
     }
     s.table(t);
+    s.text(format!(
+        "The loop holds {:.0} N/m² within {:.0}, the paper's target and sensor error, and the simulated sensor has errors of \
+         that size; closure times are means over {SEEDS} seeds of its noise.",
+        p.text.pressure_pa, p.text.fsr_error_pa
+    ));
 
     // Table IV re-paired: the longest closure with the largest force.
     let mut forces = p.table_4.force_kgcm;
@@ -361,7 +370,9 @@ fn servos(s: &mut Section, p: &Printed, all: &[(f64, f64, &Closed)]) {
     let jobs: Vec<(usize, f64, f64)> = (0..list.len())
         .flat_map(|k| all.iter().map(move |(i, d, _)| (k, *i, *d)))
         .collect();
-    let done = parallel::each(&jobs, |(k, i, d)| holds(&once(*i, *d, list[*k].1, 1)));
+    let done = parallel::each(&jobs, |(k, i, d)| {
+        holds(&once(*i, *d, list[*k].1, closing_thrust(p), 1))
+    });
     let mut t = Table::new(
         "Which servo can do it: closings of the grid that hold",
         &[

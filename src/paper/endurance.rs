@@ -7,7 +7,7 @@ use sophie_hil::plant::GRAVITY;
 use sophie_hil::plant::tendon::ServoSpec;
 use sophie_hil::scenario::ServoProfile;
 
-use super::clamp::bench;
+use super::clamp::{bench, closing_thrust};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::parallel;
 use super::printed::Printed;
@@ -222,7 +222,7 @@ fn inspection(s: &mut Section, p: &Printed) -> Chart {
     let infills: Vec<f64> = p.table_5.iter().map(|r| r.infill_percent).collect();
     let servo = ServoSpec::from(ServoProfile::Paper);
     let forces = parallel::each(&infills, |i| {
-        let closed = bench(*i, PIPE, servo);
+        let closed = bench(*i, PIPE, servo, closing_thrust(p));
         closed
             .closure
             .map_or(f64::NAN, |_| crate::report::units::kgcm(closed.steady))
@@ -263,7 +263,8 @@ fn inspection(s: &mut Section, p: &Printed) -> Chart {
             here: minutes(*force, 4.0),
             class: if meant > at_stall { Class::Inconsistent } else { Class::Prediction },
             why: if meant > at_stall {
-                "the printed time draws more than the stall current of the servo that the paper names".to_owned()
+                let beyond = if *force > stall { "; the steady force itself is beyond its stall torque" } else { "" };
+                format!("the printed time draws more than the stall current of the servo that the paper names{beyond}")
             } else {
                 "a line from no-load to stall current over torque; the diameter behind the printed times is not given".to_owned()
             },

@@ -29,21 +29,28 @@ enum Command {
 enum Arms {
     /// Nothing: damping ratio 0.7, no mass of their own. The paper's statics.
     Static,
-    /// They swing at a damping ratio of 0.15.
-    Swinging,
+    /// They swing, at the damping ratio that meets the printed Δα at ρ 8 %.
+    Fitted(f64),
     /// They carry their tip mass, as in every other flight.
     Heavy,
 }
 
 impl Arms {
-    const ALL: [Self; 3] = [Self::Static, Self::Swinging, Self::Heavy];
-
-    const fn words(self) -> &'static str {
+    const fn damping(self) -> f64 {
         match self {
-            Self::Static => "static, ζ 0.7",
-            Self::Swinging => "swinging, ζ 0.15",
-            Self::Heavy => "with tip mass, ζ 0.15",
+            Self::Static => 0.7,
+            Self::Fitted(zeta) => zeta,
+            Self::Heavy => 0.15,
         }
+    }
+
+    fn words(self) -> String {
+        let what = match self {
+            Self::Static => "static",
+            Self::Fitted(_) => "fitted",
+            Self::Heavy => "with tip mass",
+        };
+        format!("{what}, ζ {:.2}", self.damping())
     }
 }
 
@@ -64,7 +71,7 @@ fn scenario(job: Job) -> Scenario {
         job.mixer,
     );
     s.vehicle.coupled_arms = job.arms == Arms::Heavy;
-    s.vehicle.arm_damping = if job.arms == Arms::Static { 0.7 } else { 0.15 };
+    s.vehicle.arm_damping = job.arms.damping();
     if let Command::Hard(rate_p) = job.command {
         (s.params.attitude_p, s.params.rate_p) = (12.0, rate_p as f32);
         (s.params.setpoint_cutoff, s.params.rate_max) = (100.0, 12.0);
@@ -139,8 +146,10 @@ pub fn section(p: &Printed) -> Section {
         ("flexible, hard step", Variant::Flexible, hard),
         ("flexible, prefiltered", Variant::Flexible, Command::Soft),
     ];
+    let fitted = Arms::Fitted(fitted_damping(p, angle, hard));
+    let kinds = [Arms::Static, fitted, Arms::Heavy];
     let mut jobs: Vec<(usize, Job)> = vec![];
-    for arms in Arms::ALL {
+    for arms in kinds {
         for infill in &infills {
             for (i, (_, mixer, command)) in cases.iter().enumerate() {
                 jobs.push((
@@ -178,12 +187,17 @@ pub fn section(p: &Printed) -> Section {
             "ratio to the first",
         ],
     );
-    for arms in Arms::ALL {
+    for arms in kinds {
         for infill in &infills {
             let first = of(0, *infill, arms).and_then(found);
             for (i, (name, ..)) in cases.iter().enumerate() {
                 let Some(f) = of(i, *infill, arms).and_then(found) else {
-                    t.row([arms.words().into(), num(*infill, 0), (*name).into(), num(f64::NAN, 0)]);
+                    t.row([
+                        arms.words().into(),
+                        num(*infill, 0),
+                        (*name).into(),
+                        num(f64::NAN, 0),
+                    ]);
                     continue;
                 };
                 t.row([
@@ -211,30 +225,32 @@ pub fn section(p: &Printed) -> Section {
     let rows: Vec<Comparison> = p
         .table_3
         .iter()
-        .flat_map(|row| compare(row, &of, share))
+        .flat_map(|row| compare(row, &of, share, fitted))
         .collect();
     s.compare("Table III against the flights", rows);
-    figures(&mut s, &of, &cases.map(|c| c.0));
+    figures(&mut s, &of, &cases.map(|c| c.0), fitted);
 
     let middle = |arms| {
         of(0, 8.0, arms)
             .and_then(found)
             .map_or(f64::NAN, |f| f.delta_alpha.to_degrees())
     };
-    let (rest, swung, heavy) = (middle(Arms::Static), middle(Arms::Swinging), middle(Arms::Heavy));
+    let (rest, _, heavy) = (middle(Arms::Static), middle(fitted), middle(Arms::Heavy));
     s.text(format!(
-        "What that says about K: the same command at ρ 8 % bends the arms by {rest:.1}° by the paper's statics, by \
-         {swung:.1}° if they swing with a damping ratio of 0.15, and by {heavy:.1}° if they also carry {} kg at their tips, \
-         because the arm that is pushed up has to push its motor up. The paper prints {:.1}°. A table of Δα in a fast roll \
-         does not identify the static gain K: mass and damping of the arm are in it too. A bench identifies it (sophie \
-         fit-arm).",
+        "What that says about K: the same command at ρ 8 % bends the arms by {rest:.1}° if they hardly swing (ζ 0.7: the \
+         rotor's lag takes the rest of Eq. 1's static difference), by {heavy:.1}° if they carry {} kg at their tips, because \
+         the arm that is pushed up has to push its motor up; the printed {:.1}° take massless arms of ζ {:.2}. A table of Δα \
+         in a fast roll does not identify the static gain K: mass and damping of the arm are in it too. A bench identifies \
+         it (sophie fit-arm).",
         sophie_hil::plant::arm::TIP_MASS,
-        p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg)
+        p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg),
+        fitted.damping()
     ));
     s.finding = format!(
-        "With the paper's statics a step hard enough for ΔT/T = 3/5 bends the arms by {rest:.1}° at ρ 8 % (printed {:.1}°). \
-         The mixer has no part in the ratio column: the roll lever of a hinged arm does not depend on α, so only a softer \
-         command lowers φ + Δα. Two of the printed ratios are larger than the printed Δα_max allows.",
+        "A step hard enough for ΔT/T = 3/5 bends massless, well damped arms by {rest:.1}° at ρ 8 % and arms that carry their \
+         motors by {heavy:.1}° (printed {:.1}°). The mixer has no part in the ratio column: the roll lever of a hinged arm \
+         does not depend on α, so only a softer command lowers φ + Δα. Two of the printed ratios are larger than the printed \
+         Δα_max allows.",
         p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg)
     );
     s
@@ -304,10 +320,33 @@ fn hard_gain(angle: f64, share: f64) -> f64 {
     0.5 * (low + high)
 }
 
+/// The damping ratio of massless arms at which the hard step gives the printed Δα_max at ρ 8 %.
+fn fitted_damping(p: &Printed, angle: f64, command: Command) -> f64 {
+    let printed = p
+        .table_3
+        .iter()
+        .find(|r| r.infill_percent == 8.0)
+        .map_or(f64::NAN, |r| r.delta_alpha_max_deg);
+    let (mut low, mut high) = (0.1, 0.7);
+    for _ in 0..10 {
+        let zeta = 0.5 * (low + high);
+        let job = Job {
+            infill: 8.0,
+            mixer: Variant::Rigid,
+            command,
+            arms: Arms::Fitted(zeta),
+        };
+        let bent = found(&manoeuvre(job, angle)).map_or(f64::NAN, |f| f.delta_alpha.to_degrees());
+        if bent > printed { low = zeta } else { high = zeta }
+    }
+    0.5 * (low + high)
+}
+
 fn compare<'a>(
     row: &Roll,
     of: &impl Fn(usize, f64, Arms) -> Option<&'a Flown>,
     share: f64,
+    fitted: Arms,
 ) -> Vec<Comparison> {
     let get = |case, arms| of(case, row.infill_percent, arms).and_then(found);
     let of_rho = |what: &str| format!("{what}, ρ {} %", row.infill_percent);
@@ -316,70 +355,99 @@ fn compare<'a>(
         (Some(hard), Some(soft)) => hard.effective / soft.effective,
         _ => f64::NAN,
     };
-    let line = |what: &str, unit, printed, here, why: String| Comparison {
+    let line = |what: &str, unit, printed, here, class, why: &str| Comparison {
         what: of_rho(what),
         unit,
         printed,
         here,
-        class: Class::Prediction,
-        why,
+        class,
+        why: why.to_owned(),
     };
     let alpha = row.delta_alpha_max_deg;
-    let command = format!("hardness of the step from ΔT/T = {share} at ρ 8 %, K from this column's statics");
+    let command = format!("hardness of the step from ΔT/T = {share} at ρ 8 %, K from this column");
+    let (class, why) = if row.infill_percent == 8.0 {
+        (
+            Class::Calibrated,
+            format!("damping ratio {:.2} from this very number", fitted.damping()),
+        )
+    } else {
+        (
+            Class::Prediction,
+            format!(
+                "damping ratio {:.2} from the row of 8 %; {command}",
+                fitted.damping()
+            ),
+        )
+    };
+    let kappa = |arms| get(0, arms).map_or(f64::NAN, |f| f.kappa);
+    let force = "largest sideways force of the leaning arms over the largest of the rolled thrust";
+    let soft = "hard step with the rigid mixer over the stack's own prefiltered command";
     vec![
         line(
             "Δα_max, static arms",
             "°",
             alpha,
             deg(get(0, Arms::Static)),
-            command.clone(),
+            Class::Prediction,
+            &command,
         ),
         line(
-            "Δα_max, swinging arms",
+            "Δα_max, fitted arms",
             "°",
             alpha,
-            deg(get(0, Arms::Swinging)),
-            command,
+            deg(get(0, fitted)),
+            class,
+            &why,
         ),
         line(
             "Δα_max, arms with tip mass",
             "°",
             alpha,
             deg(get(0, Arms::Heavy)),
-            "the same command on the vehicle that the rest of this stack flies".to_owned(),
+            Class::Prediction,
+            "the same command on the vehicle that the rest of this stack flies",
         ),
         line(
-            "κ, exact, static arms",
+            "κ, exact, fitted arms",
             "",
             row.kappa,
-            get(0, Arms::Static).map_or(f64::NAN, |f| f.kappa),
-            "largest sideways force of the leaning arms over the largest of the rolled thrust".to_owned(),
+            kappa(fitted),
+            Class::Prediction,
+            force,
         ),
         line(
-            "(φ+Δα)_max ratio, static arms",
+            "κ, exact, arms with tip mass",
             "",
-            row.ratio,
-            ratio(Arms::Static),
-            "hard step with the rigid mixer over the stack's own prefiltered command".to_owned(),
+            row.kappa,
+            kappa(Arms::Heavy),
+            Class::Prediction,
+            force,
         ),
         line(
-            "(φ+Δα)_max ratio, swinging arms",
+            "(φ+Δα)_max ratio, fitted arms",
             "",
             row.ratio,
-            ratio(Arms::Swinging),
-            "the same; near the printed values, but with a Δα well above the printed one".to_owned(),
+            ratio(fitted),
+            Class::Prediction,
+            soft,
         ),
         line(
             "(φ+Δα)_max ratio, arms with tip mass",
             "",
             row.ratio,
             ratio(Arms::Heavy),
-            "the same".to_owned(),
+            Class::Prediction,
+            soft,
         ),
     ]
 }
 
-fn figures<'a>(s: &mut Section, of: &impl Fn(usize, f64, Arms) -> Option<&'a Flown>, names: &[&str; 3]) {
+fn figures<'a>(
+    s: &mut Section,
+    of: &impl Fn(usize, f64, Arms) -> Option<&'a Flown>,
+    names: &[&str; 3],
+    fitted: Arms,
+) {
     let chart = |title: &str, arms: Arms, y: &str, value: &dyn Fn(&Moment) -> f64| Chart {
         title: title.to_owned(),
         x: Axis::between("time (s)", 0.0, SECONDS),
@@ -429,13 +497,13 @@ fn figures<'a>(s: &mut Section, of: &impl Fn(usize, f64, Arms) -> Option<&'a Flo
     let roll = |m: &Moment| m.attitude[0].to_degrees();
     let effective = |m: &Moment| (m.attitude[0] + delta_alpha(m)).to_degrees();
     s.figure(
-        "The manoeuvre of Fig. 8 at ρ 8 %. First three: static arms, as in the paper; last \
+        "The manoeuvre of Fig. 8 at ρ 8 %. First three: massless arms with the fitted damping; last \
          three: arms that carry their own tip mass. The arms bend only while the vehicle is being turned: Δα and 25° never \
          stand together.",
         vec![
-            chart("Roll φ, statics", Arms::Static, "φ (°)", &roll),
-            tilts("Arms, statics", Arms::Static),
-            chart("Effective angle φ + Δα, statics", Arms::Static, "φ + Δα (°)", &effective),
+            chart("Roll φ, fitted arms", fitted, "φ (°)", &roll),
+            tilts("Arms, fitted", fitted),
+            chart("Effective angle φ + Δα, fitted arms", fitted, "φ + Δα (°)", &effective),
             chart("Roll φ, tip mass", Arms::Heavy, "φ (°)", &roll),
             tilts("Arms, tip mass", Arms::Heavy),
             chart("Effective angle φ + Δα, tip mass", Arms::Heavy, "φ + Δα (°)", &effective),

@@ -23,6 +23,8 @@ const HEIGHT: f64 = 3.0;
 const UPSET: f64 = 1.4;
 /// Heading error from which the vehicle counts as lost, rad.
 const SPUN: f64 = 1.05;
+/// Yaw rate from which it does, rad/s.
+const SPIN: f64 = 4.0;
 
 /// What is asked of the vehicle and done to it, at a time (s) of the experiment.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,7 +46,8 @@ pub struct Moment {
     pub t: f64,
     /// True roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Roll, pitch and yaw aimed at, rad.
+    /// Roll and pitch aimed at, and the heading that was asked for, rad: the one at the start and every turn since,
+    /// whatever the controller made of it.
     pub target: [f64; 3],
     /// True velocity, m/s, NED.
     pub velocity: DVec3,
@@ -124,15 +127,16 @@ impl Rig {
         self.time.run_until(self.ms * 1000);
     }
 
-    fn lost(&self) -> bool {
+    /// Upset, spinning, or, once the heading is to be kept, far off it.
+    fn lost(&self, heading: Option<f64>) -> bool {
         let [roll, pitch, yaw] = self.plant.euler();
-        let aimed = self.links.target.latest().map_or(0.0, |v| f64::from(v.value.z));
-        let error = (yaw - aimed).sin().atan2((yaw - aimed).cos());
-        let upset = roll.abs() > UPSET || pitch.abs() > UPSET || error.abs() > SPUN;
-        upset || !self.plant.pose().omega.is_finite() || self.plant.pose().omega.z.abs() > 4.0
+        let off = heading.map_or(0.0, |wanted| (yaw - wanted).sin().atan2((yaw - wanted).cos()));
+        let upset = roll.abs() > UPSET || pitch.abs() > UPSET || off.abs() > SPUN;
+        let omega = self.plant.pose().omega;
+        upset || !omega.is_finite() || omega.z.abs() > SPIN
     }
 
-    fn moment(&self, t: f64) -> Moment {
+    fn moment(&self, t: f64, heading: f64) -> Moment {
         let wide = |v: PerArm<f32>| v.map(f64::from);
         let mix = self.links.mix.latest().map(|m| m.value).unwrap_or_default();
         let target = self
@@ -144,7 +148,7 @@ impl Rig {
         Moment {
             t,
             attitude: self.plant.euler(),
-            target: target.unwrap_or([f64::NAN; 3]),
+            target: target.map_or([f64::NAN; 3], |[roll, pitch, _]| [roll, pitch, heading]),
             velocity: self.plant.pose().velocity,
             rate: self.plant.pose().omega,
             tilt: self.plant.tilt(),
@@ -170,7 +174,7 @@ pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: im
         moments: Vec::with_capacity((seconds * 1e3) as usize),
         lost: None,
     };
-    let mut sum = 0.0;
+    let (mut sum, mut heading) = (0.0, None);
     for i in 0..((SETTLE + seconds) * 1e3) as usize {
         let since_take_off = i as f64 * 1e-3;
         let t = since_take_off - SETTLE;
@@ -192,10 +196,12 @@ pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: im
             thrust: thrust.clamp(0.0, 40.0) as f32,
         });
         if t >= 0.0 {
-            flown.moments.push(rig.moment(t));
+            let wanted = heading.get_or_insert_with(|| rig.plant.euler()[2]);
+            *wanted += yaw_rate * 1e-3;
+            flown.moments.push(rig.moment(t, *wanted));
         }
         // Spinning up, the heading may slip while yaw is gated.
-        if since_take_off > 2.0 && rig.lost() {
+        if since_take_off > 2.0 && rig.lost(heading) {
             flown.lost = Some(t);
             break;
         }
