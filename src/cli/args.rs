@@ -38,6 +38,11 @@ enum Command {
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
     Paper(PaperArgs),
+    /// Fit the arm equation to thrust-bench data and write the arm for the simulator and the flight stack.
+    ///
+    /// BENCH.csv has a header line with the columns infill_percent (%), thrust_n (N), tilt_deg (degrees, tip up
+    /// positive) and, if wanted, power_ratio (P/P0, 1 without it). Exit status: 0 done, 2 bad input or unwritable output.
+    FitArm(FitArgs),
 }
 
 /// What this process is to do.
@@ -47,6 +52,22 @@ pub enum Task {
     Fly(FlyArgs),
     /// Reproduce the paper.
     Paper(PaperArgs),
+    /// Fit an arm.
+    FitArm(FitArgs),
+}
+
+/// Which data, and where the fit goes.
+#[derive(Args, Debug)]
+pub struct FitArgs {
+    /// Bench data.
+    #[arg(value_name = "BENCH.csv")]
+    pub bench: PathBuf,
+    /// Directory for fit.html, fit.json and arm.toml.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the fit as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Where the paper's results go.
@@ -130,9 +151,14 @@ impl Message {
         };
         if let Some(ContextValue::String(extra)) = extra
             && !extra.starts_with('-')
-            && extra != "fly"
+            && !["fly", "paper", "fit-arm"].contains(&extra.as_str())
         {
-            return format!("unexpected argument '{extra}': allowed is one scenario file");
+            let allowed = match std::env::args().nth(1).as_deref() {
+                Some("paper") => "no file",
+                Some("fit-arm") => "one CSV file",
+                _ => "one scenario file",
+            };
+            return format!("unexpected argument '{extra}': allowed is {allowed}");
         }
         let text = self.0.to_string();
         let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
@@ -154,6 +180,7 @@ fn parse_from(
     Ok(match cli.command {
         Some(Command::Fly(fly)) => Task::Fly(fly),
         Some(Command::Paper(paper)) => Task::Paper(paper),
+        Some(Command::FitArm(fit)) => Task::FitArm(fit),
         None => Task::Fly(cli.fly),
     })
 }

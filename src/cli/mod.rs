@@ -38,6 +38,7 @@ pub fn main() -> ExitCode {
     let done = match task {
         Task::Fly(args) => run(&args),
         Task::Paper(args) => study::paper(&args),
+        Task::FitArm(args) => study::fit_arm(&args),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,

@@ -201,16 +201,8 @@ pub fn section(p: &Printed) -> Section {
         }
         Chart {
             title: format!("{configuration:?}, {}", MIXERS[mixer].0),
-            x: Axis::between(
-                &format!("infill ρ (%), columns: {}", list(&INFILLS)),
-                -0.5,
-                INFILLS.len() as f64 - 0.5,
-            ),
-            y: Axis::between(
-                &format!("K, rows: {}", list(&GAINS)),
-                -0.5,
-                GAINS.len() as f64 - 0.5,
-            ),
+            x: Axis::of_cells("infill ρ (%)", list(&INFILLS)),
+            y: Axis::of_cells("gain K", list(&GAINS)),
             tiles,
             ..Chart::default()
         }
@@ -266,8 +258,8 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-fn list(values: &[f64]) -> String {
-    values.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+fn list(values: &[f64]) -> Vec<String> {
+    values.iter().map(f64::to_string).collect()
 }
 
 /// What arm sensors add.

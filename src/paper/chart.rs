@@ -72,6 +72,21 @@ fn limits(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64) -> (f64, 
     (low - margin * span, high + margin * span)
 }
 
+/// Where an axis has its ticks, and what stands there.
+fn marks(axis: &Axis, (low, high): (f64, f64), count: usize, digits: usize) -> Vec<(f64, String)> {
+    if axis.names.is_empty() {
+        return ticks(low, high, count)
+            .into_iter()
+            .map(|v| (v, short(v, digits)))
+            .collect();
+    }
+    axis.names
+        .iter()
+        .enumerate()
+        .map(|(i, name)| (i as f64, name.clone()))
+        .collect()
+}
+
 /// The chart as SVG with its legend as a list before it.
 pub fn draw(chart: &Chart) -> String {
     let f = Frame::of(chart);
@@ -87,19 +102,19 @@ pub fn draw(chart: &Chart) -> String {
     for tile in &chart.tiles {
         svg += &tile_svg(&f, tile);
     }
-    for x in ticks(f.x.0, f.x.1, 8) {
+    for (x, name) in marks(&chart.x, f.x, 8, 3) {
         let class = if x == 0.0 { "grid zero" } else { "grid" };
         if chart.tiles.is_empty() {
             svg += &line(f.px(x), TOP, f.px(x), bottom, class);
         }
-        svg += &text(f.px(x), bottom + 16.0, "tick mid", &short(x, 3));
+        svg += &text(f.px(x), bottom + 16.0, "tick mid", &name);
     }
-    for y in ticks(f.y.0, f.y.1, 6) {
+    for (y, name) in marks(&chart.y, f.y, 6, 4) {
         let class = if y == 0.0 { "grid zero" } else { "grid" };
         if chart.tiles.is_empty() {
             svg += &line(left, f.py(y), right, f.py(y), class);
         }
-        svg += &text(left - 7.0, f.py(y) + 4.0, "tick end", &short(y, 4));
+        svg += &text(left - 7.0, f.py(y) + 4.0, "tick end", &name);
     }
     for (level, word) in &chart.levels {
         svg += &line(left, f.py(*level), right, f.py(*level), "level");

@@ -3,11 +3,14 @@
 //! A section a file. Numbers come from running code; the paper's own stand in `printed.toml`, with table and row.
 
 pub mod arm;
+pub mod bench_data;
 pub mod beyond;
 pub mod chart;
 pub mod clamp;
 pub mod endurance;
 pub mod fatigue;
+pub mod fit;
+pub mod fit_report;
 pub mod flights;
 pub mod json;
 pub mod mass;

@@ -182,6 +182,8 @@ pub struct Axis {
     pub include: Vec<f64>,
     /// Limits that hold whatever the data.
     pub limits: Option<(f64, f64)>,
+    /// Names at 0, 1, 2 and so on, in the place of numbers.
+    pub names: Vec<String>,
 }
 
 impl Axis {
@@ -199,6 +201,14 @@ impl Axis {
             title: title.to_owned(),
             limits: Some((low, high)),
             ..Self::default()
+        }
+    }
+
+    /// An axis of cells with a name each.
+    pub fn of_cells(title: &str, names: Vec<String>) -> Self {
+        Self {
+            names: names.clone(),
+            ..Self::between(title, -0.5, names.len() as f64 - 0.5)
         }
     }
 

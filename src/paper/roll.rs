@@ -5,7 +5,7 @@ use sophie_control::wrench::Configuration;
 use sophie_hil::scenario::Scenario;
 use sophie_hil::study::rig::{Flown, Moment, Wish, fly};
 
-use super::flights::{curve, delta_alpha, delta_thrust, vehicle};
+use super::flights::{curve, delta_alpha, delta_thrust, lost_when, vehicle};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::parallel;
 use super::printed::{Printed, Roll};
@@ -106,7 +106,7 @@ fn found(flown: &Flown) -> Option<Found> {
     let rolled: Vec<&Moment> = flown.moments.iter().filter(|m| m.t < HELD).collect();
     let most = |f: &dyn Fn(&Moment) -> f64| rolled.iter().map(|m| f(m)).fold(f64::NEG_INFINITY, f64::max);
     let lift = |m: &Moment| m.thrust.iter().zip(m.tilt).map(|(t, a)| t * a.cos()).sum::<f64>();
-    flown.lost.is_none().then(|| Found {
+    flown.lost.is_none_or(|t| t > HELD).then(|| Found {
         delta_alpha: most(&delta_alpha),
         thrust_share: most(&|m| delta_thrust(m) / (0.5 * m.thrust.iter().sum::<f64>())),
         effective: most(&|m| m.attitude[0] + delta_alpha(m)),
@@ -185,6 +185,7 @@ pub fn section(p: &Printed) -> Section {
             "κ flown",
             "(φ+Δα)_max °",
             "ratio to the first",
+            "lost",
         ],
     );
     for arms in kinds {
@@ -211,6 +212,7 @@ pub fn section(p: &Printed) -> Section {
                     num(f.kappa, 3),
                     num(f.effective.to_degrees(), 1),
                     num(first.map_or(f64::NAN, |x| x.effective / f.effective), 2),
+                    of(i, *infill, arms).map_or("–".into(), lost_when),
                 ]);
             }
         }
@@ -219,7 +221,7 @@ pub fn section(p: &Printed) -> Section {
         "Flown, with a step to 25° held for {HELD} s. \"Hard\" is what the paper's ΔT/T = 3/5 takes: an attitude gain of 12 \
          1/s and a rate gain of {gain:.1} 1/s, found by halving so that static arms reach 3/5 at ρ 8 %; the stack flies 4.5 and 10 behind a prefilter. ΔT/T is of one left and one right rotor: of all four, 3/5 would \
          be {:.1} N a side, beyond the rotor.",
-        share * 2.0 * p.mass() * 9.806_65 / 4.0
+        share * p.mass() * 9.806_65
     ));
     s.table(t);
     let rows: Vec<Comparison> = p
@@ -246,12 +248,21 @@ pub fn section(p: &Printed) -> Section {
         p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg),
         fitted.damping()
     ));
+    let worst = p.table_3.iter().filter_map(|row| {
+        let bent = of(0, row.infill_percent, fitted)
+            .and_then(found)?
+            .delta_alpha
+            .to_degrees();
+        Some(100.0 * (bent / row.delta_alpha_max_deg - 1.0).abs())
+    });
+    let worst = worst.fold(0.0, f64::max);
     s.finding = format!(
         "A step hard enough for ΔT/T = 3/5 bends massless, well damped arms by {rest:.1}° at ρ 8 % and arms that carry their \
-         motors by {heavy:.1}° (printed {:.1}°). The mixer has no part in the ratio column: the roll lever of a hinged arm \
+         motors by {heavy:.1}° (printed {:.1}°); massless arms of ζ {:.2} meet the whole column within {worst:.0} %. The mixer has no part in the ratio column: the roll lever of a hinged arm \
          does not depend on α, so only a softer command lowers φ + Δα. Two of the printed ratios are larger than the printed \
          Δα_max allows.",
-        p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg)
+        p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg),
+        fitted.damping()
     );
     s
 }

@@ -84,8 +84,15 @@ impl Plant {
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
         let limb = |i: usize| {
-            let spec = ArmSpec::new(v.infill, v.gain_k, v.arm_gain[i], v.arm_offset[i], v.arm_damping)
-                .level_at(0.5 * v.rotor.thrust_max);
+            let spec = ArmSpec::with(
+                v.arm_coefficients,
+                v.infill,
+                v.gain_k,
+                v.arm_gain[i],
+                v.arm_offset[i],
+                v.arm_damping,
+            )
+            .level_at(v.arm_level_share * v.rotor.thrust_max);
             Limb {
                 arm: Arm::new(i, spec),
                 rotor: Rotor::new(i, chi, v.rotor),

@@ -46,7 +46,7 @@ pub struct Moment {
     pub t: f64,
     /// True roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Roll and pitch aimed at, and the heading that was asked for, rad: the one at the start and every turn since,
+    /// Roll and pitch aimed at, and the heading that was asked for, rad: the one aimed at at the start and every turn since,
     /// whatever the controller made of it.
     pub target: [f64; 3],
     /// True velocity, m/s, NED.
@@ -196,7 +196,8 @@ pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: im
             thrust: thrust.clamp(0.0, 40.0) as f32,
         });
         if t >= 0.0 {
-            let wanted = heading.get_or_insert_with(|| rig.plant.euler()[2]);
+            let wanted = heading
+                .get_or_insert_with(|| rig.links.target.latest().map_or(0.0, |v| f64::from(v.value.z)));
             *wanted += yaw_rate * 1e-3;
             flown.moments.push(rig.moment(t, *wanted));
         }
