@@ -163,7 +163,7 @@ impl Message {
         let text = self.0.to_string();
         let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
         let told = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
-        let line = told.collect::<Vec<_>>().join("; ");
+        let line = told.collect::<Vec<_>>().join("; ").replace(":; ", ": ");
         line.strip_prefix("error: ").unwrap_or(&line).to_owned()
     }
 }

@@ -39,13 +39,15 @@ const COLUMNS: [Column; 4] = [
 pub fn load(path: &Path) -> Result<Vec<Point>, String> {
     let file = path.display();
     let told = |why: String| format!("{file}: {why}");
-    let size = std::fs::metadata(path).map_err(|e| told(format!("cannot be read: {e}")))?;
+    let size =
+        std::fs::metadata(path).map_err(|e| told(format!("cannot be read: {e}: allowed is a CSV file")))?;
     if size.is_dir() || size.len() > MAX_BYTES {
         return Err(told(
             "cannot be read: allowed is a CSV file of at most 16 MiB".to_owned(),
         ));
     }
-    let bytes = std::fs::read(path).map_err(|e| told(format!("cannot be read: {e}")))?;
+    let bytes =
+        std::fs::read(path).map_err(|e| told(format!("cannot be read: {e}: allowed is a CSV file")))?;
     let text = String::from_utf8(bytes)
         .map_err(|_| told("is not text: allowed is a CSV file in UTF-8".to_owned()))?;
     parse(&text, &file.to_string())

@@ -223,7 +223,6 @@ fn range(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
 }
 
 /// Least squares of `design` x = tilts by the normal equations with scaled columns; the solution and (XᵀX)⁻¹.
-#[expect(clippy::type_complexity, reason = "a vector and a matrix")]
 fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let n = design.first()?.len();
     let scale: Vec<f64> = (0..n)
@@ -253,9 +252,8 @@ fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64
         let lead = m[column][column];
         m[column].iter_mut().for_each(|v| *v /= lead);
         let top = m[column].clone();
-        for (i, row) in m.iter_mut().enumerate().filter(|(i, _)| *i != column) {
+        for (_, row) in m.iter_mut().enumerate().filter(|(i, _)| *i != column) {
             let factor = row[column];
-            let _ = i;
             row.iter_mut().zip(&top).for_each(|(v, t)| *v -= factor * t);
         }
     }

@@ -9,7 +9,8 @@ use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
 /// Infill that the vehicle is to have, %: the only one measured, or the stack's within those measured.
 pub fn infill(points: &[Point]) -> f64 {
-    let default = f64::from(Params::default().infill);
+    // A float's 6.9 has seven digits.
+    let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
     let (low, high) = points
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {

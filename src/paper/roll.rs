@@ -12,6 +12,8 @@ use super::printed::{Printed, Roll};
 
 /// How long the roll is held, s.
 const HELD: f64 = 1.2;
+/// Time in which the vehicle is being turned, s: one that is lost later has shown its Δα.
+const TURN: f64 = 0.5;
 /// The whole manoeuvre, s.
 const SECONDS: f64 = 3.0;
 
@@ -106,7 +108,7 @@ fn found(flown: &Flown) -> Option<Found> {
     let rolled: Vec<&Moment> = flown.moments.iter().filter(|m| m.t < HELD).collect();
     let most = |f: &dyn Fn(&Moment) -> f64| rolled.iter().map(|m| f(m)).fold(f64::NEG_INFINITY, f64::max);
     let lift = |m: &Moment| m.thrust.iter().zip(m.tilt).map(|(t, a)| t * a.cos()).sum::<f64>();
-    flown.lost.is_none_or(|t| t > HELD).then(|| Found {
+    flown.lost.is_none_or(|t| t > TURN).then(|| Found {
         delta_alpha: most(&delta_alpha),
         thrust_share: most(&|m| delta_thrust(m) / (0.5 * m.thrust.iter().sum::<f64>())),
         effective: most(&|m| m.attitude[0] + delta_alpha(m)),
