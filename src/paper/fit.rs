@@ -289,7 +289,7 @@ mod tests {
                     let elastic =
                         (2.4387 - 0.1997 * infill) * thrust + (-0.162 + 0.0151 * infill) * thrust * thrust;
                     // A pattern without trend: it leaves the estimates near the truth and sets the intervals.
-                    let error = noise * (12.9898 * (points.len() as f64 + 1.0)).sin();
+                    let error = noise * (1.7 * (points.len() as f64 + 1.0).powi(2)).sin();
                     let tilt = -20.0 + gain * elastic * power.powf(1.7) + error;
                     points.push(Point {
                         infill: *infill,

@@ -200,6 +200,13 @@ pub fn section(p: &Printed) -> Section {
                         num(*infill, 0),
                         (*name).into(),
                         num(f64::NAN, 0),
+                        num(f64::NAN, 0),
+                        num(f64::NAN, 0),
+                        num(f64::NAN, 0),
+                        num(f64::NAN, 0),
+                        num(f64::NAN, 0),
+                        num(f64::NAN, 0),
+                        of(i, *infill, arms).map_or("–".into(), lost_when),
                     ]);
                     continue;
                 };
@@ -232,6 +239,7 @@ pub fn section(p: &Printed) -> Section {
         .flat_map(|row| compare(row, &of, share, fitted))
         .collect();
     s.compare("Table III against the flights", rows);
+    columns(&mut s, p, &of, fitted);
     figures(&mut s, &of, &cases.map(|c| c.0), fitted);
 
     let middle = |arms| {
@@ -395,7 +403,7 @@ fn compare<'a>(
     let kappa = |arms| get(0, arms).map_or(f64::NAN, |f| f.kappa);
     let force = "largest sideways force of the leaning arms over the largest of the rolled thrust";
     let soft = "hard step with the rigid mixer over the stack's own prefiltered command";
-    vec![
+    let rows = vec![
         line(
             "Δα_max, static arms",
             "°",
@@ -452,7 +460,68 @@ fn compare<'a>(
             Class::Prediction,
             soft,
         ),
-    ]
+    ];
+    // A vehicle that was lost before the turn has nothing to compare.
+    rows.into_iter().filter(|r| r.here.is_finite()).collect()
+}
+
+/// Table III's columns over infill: printed and flown.
+fn columns<'a>(
+    s: &mut Section,
+    p: &Printed,
+    of: &impl Fn(usize, f64, Arms) -> Option<&'a Flown>,
+    fitted: Arms,
+) {
+    let kinds = [
+        ("massless, ζ 0.7", Arms::Static),
+        ("massless, fitted ζ", fitted),
+        ("with tip mass", Arms::Heavy),
+    ];
+    let chart =
+        |title: &str, y: &str, printed: &dyn Fn(&Roll) -> f64, here: &dyn Fn(f64, Arms) -> Option<f64>| {
+            let points = p.table_3.iter().map(|r| (r.infill_percent, printed(r))).collect();
+            let mut series = vec![Series::new("Table III", 0, Look::Printed, points)];
+            for (i, (name, arms)) in kinds.iter().enumerate() {
+                let flown = |r: &Roll| {
+                    (
+                        r.infill_percent,
+                        here(r.infill_percent, *arms).unwrap_or(f64::NAN),
+                    )
+                };
+                series.push(Series::new(
+                    *name,
+                    i,
+                    Look::Line,
+                    p.table_3.iter().map(flown).collect(),
+                ));
+                series.push(Series::new(
+                    "",
+                    i,
+                    Look::Dots,
+                    p.table_3.iter().map(flown).collect(),
+                ));
+            }
+            Chart {
+                title: title.to_owned(),
+                x: Axis::new("infill ρ (%)"),
+                y: Axis::new(y).with(&[0.0]),
+                series,
+                ..Chart::default()
+            }
+        };
+    let hard = |infill, arms| of(0, infill, arms).and_then(found);
+    s.figure(
+        "Table III against the hard step with the rigid mixer; the ratio is over the stack's own prefiltered command.",
+        vec![
+            chart("Largest difference of tilt", "Δα_max (°)", &|r| r.delta_alpha_max_deg, &|infill, arms| {
+                Some(hard(infill, arms)?.delta_alpha.to_degrees())
+            }),
+            chart("κ", "κ, flown by the exact force", &|r| r.kappa, &|infill, arms| Some(hard(infill, arms)?.kappa)),
+            chart("What a softer command saves", "(φ+Δα)_max over (φ+Δα)*_max", &|r| r.ratio, &|infill, arms| {
+                Some(hard(infill, arms)?.effective / of(2, infill, arms).and_then(found)?.effective)
+            }),
+        ],
+    );
 }
 
 fn figures<'a>(
@@ -507,6 +576,10 @@ fn figures<'a>(
             ..Chart::default()
         }
     };
+    let commanded = |chart: Chart| Chart {
+        levels: vec![(25.0, "commanded, and the paper's φ_max".to_owned())],
+        ..chart
+    };
     let roll = |m: &Moment| m.attitude[0].to_degrees();
     let effective = |m: &Moment| (m.attitude[0] + delta_alpha(m)).to_degrees();
     s.figure(
@@ -514,10 +587,10 @@ fn figures<'a>(
          three: arms that carry their own tip mass. The arms bend only while the vehicle is being turned: Δα and 25° never \
          stand together.",
         vec![
-            chart("Roll φ, fitted arms", fitted, "φ (°)", &roll),
+            commanded(chart("Roll φ, fitted arms", fitted, "φ (°)", &roll)),
             tilts("Arms, fitted", fitted),
             chart("Effective angle φ + Δα, fitted arms", fitted, "φ + Δα (°)", &effective),
-            chart("Roll φ, tip mass", Arms::Heavy, "φ (°)", &roll),
+            commanded(chart("Roll φ, tip mass", Arms::Heavy, "φ (°)", &roll)),
             tilts("Arms, tip mass", Arms::Heavy),
             chart("Effective angle φ + Δα, tip mass", Arms::Heavy, "φ + Δα (°)", &effective),
         ],
