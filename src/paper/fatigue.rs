@@ -39,6 +39,11 @@ fn mean(moments: &[Moment], f: impl Fn(&Moment) -> f64) -> f64 {
     moments.iter().map(f).sum::<f64>() / moments.len().max(1) as f64
 }
 
+/// Mean heading error, degrees.
+fn heading(flown: &Flown) -> f64 {
+    mean(&flown.moments, |m| m.attitude[2] - m.target[2]).to_degrees()
+}
+
 /// Learnt bias of arm 1 (°): its mean over the windows, and the spread of the windows' means.
 fn seen(flown: &Flown) -> (f64, f64) {
     let settled: Vec<Moment> = flown.moments.iter().filter(|m| m.t > 5.0).copied().collect();
@@ -92,7 +97,7 @@ pub fn section(p: &Printed) -> Section {
             "mixer",
             "compliance of arm 1",
             "yaw RMS °",
-            "mean yaw °",
+            "mean of it °",
             "roll RMS °",
             "spread of mean thrusts N",
             "lost",
@@ -106,7 +111,7 @@ pub fn section(p: &Printed) -> Section {
             kinds[*kind].0.into(),
             num(job.worn, 1),
             or_lost(error(f, 2), 2),
-            num(mean(&f.moments, |m| m.attitude[2]).to_degrees(), 2),
+            num(heading(f), 2),
             or_lost(error(f, 0), 2),
             num(spread, 2),
             lost_when(f),
@@ -229,24 +234,20 @@ fn soft_airframes(s: &mut Section, p: &Printed) -> [f64; 2] {
     let flights = parallel::each(&jobs, |job| hover(*job));
     let mut t = Table::new(
         "The same with arm 1 half as soft again, over infill",
-        &["ρ %", "mixer", "yaw RMS °", "mean yaw °", "lost"],
+        &["ρ %", "mixer", "yaw RMS °", "mean of it °", "lost"],
     );
     for (job, f) in jobs.iter().zip(&flights) {
         t.row([
             num(job.infill, 0),
             format!("{:?}", job.mixer).to_lowercase().into(),
             or_lost(error(f, 2), 2),
-            num(mean(&f.moments, |m| m.attitude[2]).to_degrees(), 2),
+            num(heading(f), 2),
             lost_when(f),
         ]);
     }
     s.table(t);
     let lost = flights.iter().filter(|f| f.lost.is_some()).count();
-    let off = |i: usize| {
-        flights
-            .get(i)
-            .map_or(f64::NAN, |f| mean(&f.moments, |m| m.attitude[2]).to_degrees())
-    };
+    let off = |i: usize| flights.get(i).map_or(f64::NAN, |f| heading(f));
     s.text(format!(
         "\"For ρ < {:.0} % the autopilot is not able to correct these perturbations in real time\": of these {} flights {lost} \
          are lost, but the tendency is there for an autopilot that takes the arms as stiff, which stands {:.1}° off its \
