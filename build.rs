@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         env::var_os(format!("CARGO_FEATURE_{feature}")).is_some()
     };
     let chosen: Vec<&str> = BOARDS.into_iter().filter(chosen).collect();
-    // None or several. Said here as well as by the compiler (src/board/mod.rs), which two chips keep from being reached.
+    // None; or several that cargo does not know to tell apart (src/board/choice): those it refuses before it builds anything.
     let [board] = chosen.as_slice() else {
         println!(
             "cargo::error=choose exactly one board with --features: {}",

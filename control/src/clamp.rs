@@ -42,6 +42,8 @@ const STUCK: f32 = 8.0;
 const USUAL_CUTOFF: f32 = 3.0;
 /// Time at the force limit after which the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
+/// Time for which pressure and tilt must be known after a restart, s: ten frames of the servos' drives.
+const RESUME_TIME: f32 = 0.2;
 /// Time without a tilt after which the arm counts as faulty, s; its servo is held from the first moment.
 const TILT_MISSING: f32 = 0.5;
 /// Shares of the grip pressure between which no arm can fall within one step of 10 ms (its modes are below 30 Hz):
@@ -56,6 +58,8 @@ const BEND_SETTLE: f32 = 20.0;
 /// Share of the expected bending below which something unfelt holds the arm: a free arm bends by 1 within its
 /// model, the stiffest on the skin of a pipe by 0.4, a soft one by 0.2.
 const BEND_SHARE: f32 = 0.6;
+/// Time after the start of an arm that is under tension already, s, from which on that is watched.
+const START_TIME: f32 = 0.4;
 /// Cut-off of the tilt in that comparison, rad/s.
 const BEND_CUTOFF: f32 = 20.0;
 
@@ -75,6 +79,11 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// It stays until the arm is released.
+    pub const fn is_latched(self) -> bool {
+        matches!(self, Self::Sensor | Self::Unfelt)
+    }
+
     /// Text for the pilot.
     pub const fn text(self) -> &'static str {
         match self {
@@ -171,6 +180,8 @@ enum Phase {
     Free,
     /// Bending down, nothing felt yet.
     Approach,
+    /// After a restart, with the time for which all is known again, s: the servo stays where it is.
+    Resume(f32),
     /// Felt: the pressure is controlled.
     Grip(Pid),
     Release,
@@ -195,6 +206,8 @@ struct BendWatch {
     tilt: LowPass,
     tension: LowPass,
     from: Option<BendStart>,
+    /// Time for which nothing is judged yet, s.
+    wait: f32,
 }
 
 /// Where a window of the watch began.
@@ -212,6 +225,15 @@ impl BendWatch {
             tilt: LowPass::at(tilt),
             tension: LowPass::at(tension),
             from: None,
+            wait: 0.0,
+        }
+    }
+
+    /// A watch of an arm that starts to move under tension: at first its tilt is late and the tension seems to rise.
+    fn of_a_start(tilt: f32, tension: f32) -> Self {
+        Self {
+            wait: START_TIME,
+            ..Self::new(tilt, tension)
         }
     }
 
@@ -221,6 +243,10 @@ impl BendWatch {
         let tilt = self.tilt.step(tilt, BEND_CUTOFF, dt);
         let tension = self.tension.step(tension, BEND_CUTOFF, dt);
         let now = BendStart { tilt, tension, force };
+        if self.wait > 0.0 {
+            self.wait -= dt;
+            return None;
+        }
         let Some(from) = self.from else {
             self.from = (tension > BEND_SETTLE).then_some(now);
             return None;
@@ -252,6 +278,16 @@ pub struct ArmClamp {
 }
 
 impl ArmClamp {
+    /// A closed arm of which the run before asked `force` N, with the fault that stays until release.
+    pub fn resume(force: f32, fault: Option<Fault>) -> Self {
+        Self {
+            phase: Phase::Resume(0.0),
+            force: math::clamp(force, 0.0, 1e4),
+            fault: fault.filter(|f| f.is_latched()),
+            ..Self::default()
+        }
+    }
+
     /// One step of `dt` s: closes (`close`) or releases the arm; returns what is known of its grip.
     ///
     /// Whatever the input, the force stays within 0 and the limit.
@@ -291,7 +327,9 @@ impl ArmClamp {
             };
         }
         let holding = match self.phase {
-            Phase::Grip(_) | Phase::Approach => self.hold.step(&cfg.demand, known, self.force, dt),
+            Phase::Grip(_) | Phase::Approach | Phase::Resume(_) => {
+                self.hold.step(&cfg.demand, known, self.force, dt)
+            }
             Phase::Free | Phase::Release => {
                 self.hold = HoldProof::default();
                 false
@@ -318,7 +356,7 @@ impl ArmClamp {
             _ if self.fault.is_some() => ArmState::Faulty,
             _ if holding => ArmState::Holding,
             _ if self.at_limit >= LIMITED_AFTER => ArmState::ForceLimited,
-            Phase::Approach => ArmState::Closing,
+            Phase::Approach | Phase::Resume(_) => ArmState::Closing,
             Phase::Grip(_) => ArmState::Touching,
         }
     }
@@ -333,6 +371,23 @@ impl ArmClamp {
         self.at_limit = 0.0;
         self.tilt_missing = 0.0;
         self.force = math::slew(self.force, 0.0, cfg.release * dt);
+    }
+
+    /// After a restart: once the tension is known that the servo's angle means by the new attitude (which may show every
+    /// tilt 0.02 rad off the old one), the loop takes it over. Asked for the old force, the servo would jump.
+    fn go_on(&mut self, cfg: &Config, seen: f32, (pressure, thrust, tilt, has): (f32, f32, f32, f32)) {
+        if seen < RESUME_TIME {
+            self.phase = Phase::Resume(seen);
+            return;
+        }
+        self.force = math::clamp(has, LEAST, cfg.limit);
+        self.phase = if pressure > TOUCH {
+            let forward = cfg.per_thrust * thrust;
+            Phase::Grip(Pid::new(self.force - forward, forward, 0.0, pressure))
+        } else {
+            self.watch = Some(BendWatch::of_a_start(tilt, has));
+            Phase::Approach
+        };
     }
 
     #[allow(
@@ -359,7 +414,7 @@ impl ArmClamp {
         } else {
             math::clamp(self.tilt_missing + dt, 0.0, 10.0)
         };
-        let latched = matches!(self.fault, Some(Fault::Sensor | Fault::Unfelt));
+        let latched = self.fault.is_some_and(Fault::is_latched);
         let before = core::mem::replace(&mut self.felt, sensed.known());
         let vanished = matches!(self.phase, Phase::Grip(_))
             && before.is_some_and(|p| p > VANISHED_FROM * cfg.demand.pressure)
@@ -378,13 +433,19 @@ impl ArmClamp {
         };
         let (Some(pressure), Some(thrust), Some(tilt), None) = (pressure, thrust, tilt, self.fault) else {
             // The force is held, and the loop starts afresh from it: no wind-up, no kick.
-            if let Phase::Grip(_) = self.phase {
-                self.phase = Phase::Approach;
+            match self.phase {
+                Phase::Grip(_) => self.phase = Phase::Approach,
+                Phase::Resume(_) => self.phase = Phase::Resume(0.0),
+                _ => {}
             }
             self.watch = None;
             return;
         };
         let has = tension.unwrap_or(self.force);
+        if let Phase::Resume(seen) = self.phase {
+            self.go_on(cfg, seen + dt, (pressure, thrust, tilt, has));
+            return;
+        }
         match self.phase {
             Phase::Grip(mut pid) => {
                 let rise = if pressure < TOUCH { REGAIN } else { SLEW };
@@ -472,6 +533,8 @@ impl Pid {
 pub struct ClampOutput {
     /// Force asked of each tendon, N.
     pub force: PerArm<f32>,
+    /// Arms whose servos are to stay where they are: a restart left them there.
+    pub stay: PerArm<bool>,
     /// What is known of each grip.
     pub arms: PerArm<ArmGrip>,
     /// Every chosen arm holds (there is at least one), and all were within the tolerance at once for the dwell time.
@@ -490,6 +553,20 @@ pub struct Clamp {
 }
 
 impl Clamp {
+    /// The loops of closed arms after a restart; see [`ArmClamp::resume`]. Arms without a force were not closed.
+    pub fn resume(force: PerArm<f32>, fault: PerArm<Option<Fault>>) -> Self {
+        let mut arms = [ArmClamp::default(); 4];
+        for ((arm, force), fault) in arms.iter_mut().zip(force).zip(fault) {
+            if force > 0.0 {
+                *arm = ArmClamp::resume(force, fault);
+            }
+        }
+        Self {
+            arms,
+            ..Self::default()
+        }
+    }
+
     /// One step of `dt` s: closes the arms in `close`, releases the others.
     pub fn step(
         &mut self,
@@ -503,10 +580,13 @@ impl Clamp {
             ..ClampOutput::default()
         };
         let (mut holding, mut within) = (close.contains(&true), true);
-        let slots = out.force.iter_mut().zip(out.arms.iter_mut());
-        for (((arm, close), input), (force, grip)) in self.arms.iter_mut().zip(close).zip(input).zip(slots) {
+        let slots = out.force.iter_mut().zip(&mut out.stay).zip(&mut out.arms);
+        for (((arm, close), input), ((force, stay), grip)) in
+            self.arms.iter_mut().zip(close).zip(input).zip(slots)
+        {
             *grip = arm.step(cfg, close, input, dt);
             *force = grip.force;
+            *stay = matches!(arm.phase, Phase::Resume(_));
             holding &= !close || grip.state == ArmState::Holding;
             within &= !close || (grip.pressure - cfg.demand.pressure).abs() <= cfg.demand.tolerance;
             out.released &= arm.is_free(input.pressure);
@@ -608,6 +688,78 @@ mod tests {
         // The surplus has gone (two filters at 25 rad/s, 0.5 s), the integral has added at most
         // 0.05·650·0.5 = 16 N, of which 40 % in the reference's first two time constants, and P 0.0035·560.
         assert!((-9.0..4.0).contains(&(last - asked)), "{}", last - asked);
+    }
+
+    #[test]
+    fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
+        let cfg = config();
+        let before = holding(&cfg).force;
+        let mut arm = ArmClamp::resume(before, None);
+        // While the sensors start nothing is known, then the tilt comes before the drive's tension, which by the new
+        // attitude is 4 N more.
+        let has = before + 4.0;
+        for (pressure, tension, tilt, seconds, force, stays) in [
+            (Pressure::Stale, None, None, 0.05, before, true),
+            (Pressure::Known(960.0), Some(0.5), None, 0.1, before, true),
+            (Pressure::Known(960.0), Some(0.5), Some(-1.2), 0.03, before, true),
+            (Pressure::Known(960.0), Some(has), Some(-1.2), 0.15, before, true),
+            (Pressure::Known(960.0), Some(has), Some(-1.2), 0.5, has, false),
+        ] {
+            for step in 0..(seconds / DT + 0.5) as u32 {
+                let i = ArmInput {
+                    pressure,
+                    thrust: 0.0,
+                    tension,
+                    tilt,
+                };
+                let grip = arm.step(&cfg, true, &i, DT);
+                if stays || step > 2 {
+                    assert!((grip.force - force).abs() < 0.5, "{} {force}", grip.force);
+                    assert!(matches!(arm.phase, Phase::Resume(_)) == stays);
+                }
+            }
+        }
+        assert!(run(&mut arm, &cfg, 950.0, 1.0).state == ArmState::Holding);
+    }
+
+    #[test]
+    fn a_resumed_arm_that_does_not_touch_goes_on_closing() {
+        let cfg = config();
+        let mut arm = ArmClamp::resume(30.0, None);
+        let grip = run(&mut arm, &cfg, 0.0, 0.5);
+        assert!(close(grip.force, 30.0 + 0.3 * 34.74, 1.0) && grip.state == ArmState::Closing);
+        // A person may open it as any other.
+        for _ in 0..100 {
+            arm.step(&cfg, false, &input(&cfg, &arm, 0.0), DT);
+        }
+        assert!(arm.force == 0.0);
+    }
+
+    #[test]
+    fn a_fault_that_stays_until_release_outlives_a_restart() {
+        let cfg = config();
+        for fault in [Fault::Sensor, Fault::Unfelt] {
+            let mut arm = ArmClamp::resume(50.0, Some(fault));
+            let grip = run(&mut arm, &cfg, 0.0, 3.0);
+            assert!(grip.force == 50.0 && grip.fault == Some(fault), "{grip:?}");
+        }
+        let mut arm = ArmClamp::resume(50.0, Some(Fault::Tilt));
+        assert!(run(&mut arm, &cfg, 950.0, 0.1).fault.is_none());
+    }
+
+    #[test]
+    fn restart_after_restart_leaves_the_force_where_it_is() {
+        let cfg = config();
+        let before = holding(&cfg).force;
+        let mut force = before;
+        for _ in 0..200 {
+            let mut arm = ArmClamp::resume(force, None);
+            // 70 ms each, the first two steps without pressure.
+            arm.step(&cfg, true, &ArmInput::default(), DT);
+            arm.step(&cfg, true, &ArmInput::default(), DT);
+            force = run(&mut arm, &cfg, 950.0, 0.05).force;
+        }
+        assert!((force - before).abs() < 0.5, "{before} {force}");
     }
 
     #[test]

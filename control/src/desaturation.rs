@@ -47,61 +47,106 @@ pub struct Patterns {
     pub yaw: PerArm<f32>,
 }
 
+/// Least newtons that a rotor gives of one more of collective: one that thrust does not reach cannot bound the shift, and
+/// divisions stay finite.
+const LEAST_SHIFT: f32 = 0.02;
+
+/// A share that shrinks to what has room, as a fraction: one division at the end serves all bounds.
+#[derive(Clone, Copy)]
+struct Share {
+    room: f32,
+    need: f32,
+}
+
+impl Share {
+    const ALL: Self = Self { room: 1.0, need: 1.0 };
+
+    /// Not more than `room` / `need`, need >= 0.
+    #[inline(always)]
+    fn within(self, room: f32, need: f32) -> Self {
+        let tighter = room * self.need < self.room * need;
+        Self {
+            room: if tighter { room } else { self.room },
+            need: if tighter { need } else { self.need },
+        }
+    }
+
+    #[inline(always)]
+    fn value(self) -> f32 {
+        math::clamp(self.room / self.need, 0.0, 1.0)
+    }
+}
+
+/// Bounds of one rotor on the collective shift: between `lower` and `upper` for no roll and pitch, and each
+/// `slope` lower with all of them.
+#[derive(Clone, Copy)]
+struct Bounds {
+    lower: f32,
+    upper: f32,
+    slope: f32,
+}
+
+impl Share {
+    /// Keeps either rotor's lower bound under the other's upper one.
+    #[inline(always)]
+    fn agreed(self, i: &Bounds, j: &Bounds) -> Self {
+        let need = j.slope - i.slope;
+        let (forth, back) = (j.upper - i.lower, i.upper - j.lower);
+        self.within(if need > 0.0 { forth } else { back }, need.abs())
+    }
+}
+
 /// Thrusts within [`low`, `high`] N that come nearest to the demand, and what was given up for it.
+///
+/// Without a branch that depends on the demand: it takes the same time for every one.
+#[inline(always)]
 pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
-    // A rotor that thrust does not reach cannot bound the shift; the least entry keeps divisions finite.
-    const LEAST_SHIFT: f32 = 0.02;
-    let inv_shift = p.shift.map(|s| 1.0 / math::clamp(s, LEAST_SHIFT, 10.0));
+    let bounds = |collective: f32, shift: f32, roll_pitch: f32| {
+        let per_shift = 1.0 / if shift > LEAST_SHIFT { shift } else { LEAST_SHIFT };
+        Bounds {
+            lower: (low - collective) * per_shift,
+            upper: (high - collective) * per_shift,
+            slope: roll_pitch * per_shift,
+        }
+    };
+    let ([c1, c2, c3, c4], [s1, s2, s3, s4]) = (p.collective, p.shift);
+    let ([r1, r2, r3, r4], [y1, y2, y3, y4]) = (p.roll_pitch, p.yaw);
+    let (b1, b2) = (bounds(c1, s1, r1), bounds(c2, s2, r2));
+    let (b3, b4) = (bounds(c3, s3, r3), bounds(c4, s4, r4));
 
     // Roll and pitch: the largest share for which some collective fits all four rotors, that is, for which
     // every rotor's lower bound on the collective shift stays under every other's upper bound.
-    let mut share = 1.0f32;
-    for ((c_i, r_i), k_i) in p.collective.iter().zip(&p.roll_pitch).zip(&inv_shift) {
-        for ((c_j, r_j), k_j) in p.collective.iter().zip(&p.roll_pitch).zip(&inv_shift) {
-            let room = (high - c_j) * k_j - (low - c_i) * k_i;
-            let need = r_j * k_j - r_i * k_i;
-            if need > 0.0 && need * share > room {
-                share = math::clamp(room / need, 0.0, share);
-            }
-        }
-    }
+    let share = Share::ALL
+        .agreed(&b1, &b2)
+        .agreed(&b1, &b3)
+        .agreed(&b1, &b4)
+        .agreed(&b2, &b3)
+        .agreed(&b2, &b4)
+        .agreed(&b3, &b4)
+        .value();
 
     // Thrust: the smallest shift that makes them fit.
-    let (mut least, mut most) = (f32::MIN, f32::MAX);
-    for ((c, r), k) in p.collective.iter().zip(&p.roll_pitch).zip(&inv_shift) {
-        let x = c + share * r;
-        let (lower, upper) = ((low - x) * k, (high - x) * k);
-        least = if lower > least { lower } else { least };
-        most = if upper < most { upper } else { most };
-    }
-    let shift = if least > 0.0 {
-        least
-    } else if most < 0.0 {
-        most
-    } else {
-        0.0
-    };
+    let larger = |a: f32, b: f32| if a > b { a } else { b };
+    let smaller = |a: f32, b: f32| if a < b { a } else { b };
+    let lower = |b: Bounds| b.lower - share * b.slope;
+    let upper = |b: Bounds| b.upper - share * b.slope;
+    let least = larger(larger(lower(b1), lower(b2)), larger(lower(b3), lower(b4)));
+    let most = smaller(smaller(upper(b1), upper(b2)), smaller(upper(b3), upper(b4)));
+    let shift = larger(least, smaller(most, 0.0));
 
     // Yaw: whatever room is left.
-    let mut yaw = 1.0f32;
-    let mut thrusts = p.collective;
-    for ((t, r), (s, y)) in thrusts
-        .iter_mut()
-        .zip(&p.roll_pitch)
-        .zip(p.shift.iter().zip(&p.yaw))
-    {
-        *t += share * r + shift * s;
-        let room = if *y > 0.0 { high - *t } else { *t - low };
-        let need = if *y > 0.0 { *y } else { -*y };
-        if need * yaw > room {
-            yaw = math::clamp(room / need, 0.0, yaw);
-        }
-    }
-    for (t, y) in thrusts.iter_mut().zip(&p.yaw) {
-        *t = math::clamp(*t + yaw * y, low, high);
-    }
+    let (t1, t2) = (c1 + share * r1 + shift * s1, c2 + share * r2 + shift * s2);
+    let (t3, t4) = (c3 + share * r3 + shift * s3, c4 + share * r4 + shift * s4);
+    let room = |t: f32, y: f32| if y > 0.0 { high - t } else { t - low };
+    let yaw = Share::ALL
+        .within(room(t1, y1), y1.abs())
+        .within(room(t2, y2), y2.abs())
+        .within(room(t3, y3), y3.abs())
+        .within(room(t4, y4), y4.abs())
+        .value();
+    let thrust = |t: f32, y: f32| math::clamp(t + yaw * y, low, high);
     (
-        thrusts,
+        [thrust(t1, y1), thrust(t2, y2), thrust(t3, y3), thrust(t4, y4)],
         Given {
             roll_pitch: share,
             thrust_shift: shift,

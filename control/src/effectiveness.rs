@@ -4,7 +4,6 @@
 //! the thrust stays perpendicular to the arm, so its roll lever is d whatever the tilt; its pitch lever
 //! acts on T cos α; its yaw moment is the sideways part T sin α at ±b and the rotor's drag ±k_q T.
 
-use crate::deflection::ArmModel;
 use crate::math;
 use crate::params::Params;
 use crate::wrench::{Configuration, FORE, PerArm, SIDE, Wrench, YAW};
@@ -18,15 +17,37 @@ pub struct Geometry {
     pub b: f32,
     /// Signed drag ratio χ k_q, m: positive for configuration B.
     pub drag: f32,
+    /// 1/d and 1/b, 1/m.
+    per_lever: (f32, f32),
 }
 
 impl Geometry {
-    /// The geometry that the parameters describe.
-    pub fn from_params(p: &Params, configuration: Configuration) -> Self {
+    /// The geometry of the levers `d` and `b` (m, > 0) and the signed drag ratio `drag` (m).
+    pub fn new(d: f32, b: f32, drag: f32) -> Self {
         Self {
-            d: p.arm_d,
-            b: p.arm_b,
-            drag: configuration.chi() * p.torque_ratio,
+            d,
+            b,
+            drag,
+            per_lever: (1.0 / d, 1.0 / b),
+        }
+    }
+
+    /// The geometry that the parameters describe; the rotor drag's sign is the configuration's.
+    pub fn from_params(p: &Params, configuration: Configuration) -> Self {
+        Self::new(p.arm_d, p.arm_b, configuration.chi() * p.torque_ratio)
+    }
+
+    /// The same with the drag's sign of configuration B: its yaw moments are those of this geometry times the sign of its
+    /// drag.
+    pub fn as_b(&self) -> Self {
+        if self.drag < 0.0 {
+            Self {
+                b: -self.b,
+                drag: -self.drag,
+                ..*self
+            }
+        } else {
+            *self
         }
     }
 
@@ -66,24 +87,73 @@ impl Effectiveness {
         }
     }
 
-    /// Quasi-static: what a change of thrust does once the arm has followed, with T dα/dT in it.
-    pub fn quasi_static(
-        geometry: &Geometry,
-        model: &ArmModel,
-        thrusts: &PerArm<f32>,
-        tilt: &PerArm<f32>,
-    ) -> Self {
-        let mut e = Self {
-            lift: [1.0; 4],
-            yaw: [geometry.drag; 4],
+    /// Quasi-static: what a change of thrust does once the arm has followed. `tilt` and `follow` (T dα/dT) in rad,
+    /// |tilt| <= 0.7.
+    #[inline(always)]
+    pub fn quasi_static(geometry: &Geometry, tilt: &PerArm<f32>, follow: &PerArm<f32>) -> Self {
+        let rows = |tilt: f32, follow: f32| {
+            let (s, c) = math::sin_cos_small(tilt);
+            // The frozen authority first: the rotors' present moment shares it.
+            let frozen = geometry.b * s + geometry.drag;
+            (c - s * follow, frozen + geometry.b * c * follow)
         };
-        for ((lift, yaw), (t, a)) in e.lift.iter_mut().zip(&mut e.yaw).zip(thrusts.iter().zip(tilt)) {
-            let (s, c) = (math::sin(*a), math::cos(*a));
-            let follow = t * model.slope(*t);
-            *lift = c - s * follow;
-            *yaw = geometry.b * (s + c * follow) + geometry.drag;
+        let ([a1, a2, a3, a4], [f1, f2, f3, f4]) = (*tilt, *follow);
+        let (l1, y1) = rows(a1, f1);
+        let (l2, y2) = rows(a2, f2);
+        let (l3, y3) = rows(a3, f3);
+        let (l4, y4) = rows(a4, f4);
+        Self {
+            lift: [l1, l2, l3, l4],
+            yaw: [y1, y2, y3, y4],
         }
-        e
+    }
+}
+
+/// A wrench as the pairs and sides of rotors see it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// Lift of the front pair, N.
+    pub front: f32,
+    /// Lift of the rear pair, N.
+    pub rear: f32,
+    /// Thrust of the left side minus that of the right one, N.
+    pub roll: f32,
+    /// Yaw moment, N·m.
+    pub yaw: f32,
+}
+
+impl Load {
+    /// The wrench `w` on the levers of `geometry`.
+    #[inline(always)]
+    pub fn of(geometry: &Geometry, w: Wrench) -> Self {
+        let (per_d, per_b) = geometry.per_lever;
+        let pitch = w.pitch * per_b;
+        Self {
+            front: 0.5 * (w.thrust + pitch),
+            rear: 0.5 * (w.thrust - pitch),
+            roll: w.roll * per_d,
+            yaw: w.yaw,
+        }
+    }
+
+    /// What the thrusts (N) of rotors tilted by `tilt` (rad, within ±0.7) give now.
+    #[inline(always)]
+    pub fn given(geometry: &Geometry, thrusts: &PerArm<f32>, tilt: &PerArm<f32>) -> Self {
+        let rotor = |thrust: f32, tilt: f32| {
+            let (s, c) = math::sin_cos_small(tilt);
+            (thrust * c, thrust * (geometry.b * s + geometry.drag))
+        };
+        let ([t1, t2, t3, t4], [a1, a2, a3, a4]) = (*thrusts, *tilt);
+        let (l1, y1) = rotor(t1, a1);
+        let (l2, y2) = rotor(t2, a2);
+        let (l3, y3) = rotor(t3, a3);
+        let (l4, y4) = rotor(t4, a4);
+        Self {
+            front: l1 + l3,
+            rear: l2 + l4,
+            roll: (t1 + t2) - (t3 + t4),
+            yaw: y1 - y2 - y3 + y4,
+        }
     }
 }
 
@@ -93,20 +163,22 @@ impl Effectiveness {
 /// known at once; what is left is a 2×2 system for how each pair splits it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inverse {
-    geometry: Geometry,
-    e: Effectiveness,
     inv_lift_3: f32,
     inv_lift_4: f32,
     ratio_front: f32,
     ratio_rear: f32,
-    yaw_front: f32,
-    yaw_rear: f32,
-    inv_determinant: f32,
+    yaw_3: f32,
+    yaw_4: f32,
+    /// Rotor 1 for roll (N/N) and for yaw (N/(N·m)).
+    first: (f32, f32),
+    /// Rotor 2 for roll and against yaw.
+    second: (f32, f32),
 }
 
 impl Inverse {
     /// The inverse, or `None` where the effectiveness has none.
-    pub fn new(geometry: Geometry, e: Effectiveness) -> Option<Self> {
+    #[inline(always)]
+    pub fn new(e: &Effectiveness) -> Option<Self> {
         /// Least determinant, m: a hundredth of the stiff frame's yaw authority.
         const LEAST: f32 = 1.6e-4;
         let [l1, l2, l3, l4] = e.lift;
@@ -114,40 +186,40 @@ impl Inverse {
         let (inv_lift_3, inv_lift_4) = (1.0 / l3, 1.0 / l4);
         let (ratio_front, ratio_rear) = (l1 * inv_lift_3, l2 * inv_lift_4);
         let (yaw_front, yaw_rear) = (y1 + y3 * ratio_front, y2 + y4 * ratio_rear);
-        let determinant = (1.0 + ratio_front) * yaw_rear + (1.0 + ratio_rear) * yaw_front;
-        let usable = !(-LEAST..=LEAST).contains(&determinant);
-        (usable && inv_lift_3.is_finite() && inv_lift_4.is_finite()).then(|| Self {
-            geometry,
-            e,
+        let (both_front, both_rear) = (1.0 + ratio_front, 1.0 + ratio_rear);
+        let determinant = both_front * yaw_rear + both_rear * yaw_front;
+        let per = 1.0 / determinant;
+        // A lift of zero makes the determinant infinite or no number.
+        (determinant.abs() > LEAST && determinant.abs() < f32::MAX).then_some(Self {
             inv_lift_3,
             inv_lift_4,
             ratio_front,
             ratio_rear,
-            yaw_front,
-            yaw_rear,
-            inv_determinant: 1.0 / determinant,
+            yaw_3: y3,
+            yaw_4: y4,
+            first: (yaw_rear * per, both_rear * per),
+            second: (yaw_front * per, both_front * per),
         })
     }
 
-    /// The thrusts (N) whose effect is the wrench `w`.
-    pub fn solve(&self, w: Wrench) -> PerArm<f32> {
-        let [l1, l2, _, _] = self.e.lift;
-        let [_, _, y3, y4] = self.e.yaw;
-        let pitch = w.pitch / self.geometry.b;
+    /// The thrusts (N) whose effect is `load`.
+    #[inline(always)]
+    pub fn solve(&self, load: Load) -> PerArm<f32> {
         // Lift of the front pair and of the rear pair, carried by rotors 3 and 4 to begin with.
-        let (front, rear) = (0.5 * (w.thrust + pitch), 0.5 * (w.thrust - pitch));
-        let (f3, r4) = (front * self.inv_lift_3, rear * self.inv_lift_4);
+        let (f3, r4) = (load.front * self.inv_lift_3, load.rear * self.inv_lift_4);
         // Roll and yaw that rotors 1 and 2 must add by taking over from 3 and 4.
-        let roll = w.roll / self.geometry.d + f3 + r4;
-        let yaw = w.yaw + y3 * f3 - y4 * r4;
-        let t1 = (roll * self.yaw_rear + yaw * (1.0 + self.ratio_rear)) * self.inv_determinant;
-        let t2 = (roll * self.yaw_front - yaw * (1.0 + self.ratio_front)) * self.inv_determinant;
-        [
-            t1,
-            t2,
-            (front - l1 * t1) * self.inv_lift_3,
-            (rear - l2 * t2) * self.inv_lift_4,
-        ]
+        let roll = load.roll + f3 + r4;
+        let yaw = load.yaw + self.yaw_3 * f3 - self.yaw_4 * r4;
+        let t1 = roll * self.first.0 + yaw * self.first.1;
+        let t2 = roll * self.second.0 - yaw * self.second.1;
+        [t1, t2, f3 - self.ratio_front * t1, r4 - self.ratio_rear * t2]
+    }
+
+    /// The thrusts (N) whose effect is the yaw moment `yaw` (N·m) alone.
+    #[inline(always)]
+    pub fn solve_yaw(&self, yaw: f32) -> PerArm<f32> {
+        let (t1, t2) = (yaw * self.first.1, yaw * self.second.1);
+        [t1, -t2, -self.ratio_front * t1, self.ratio_rear * t2]
     }
 }
 
@@ -156,13 +228,14 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::deflection::ArmModel;
 
     fn geometry() -> Geometry {
-        Geometry {
-            d: 0.178,
-            b: 0.178,
-            drag: 0.016,
-        }
+        Geometry::new(0.178, 0.178, 0.016)
+    }
+
+    fn quasi_static(g: &Geometry, m: &ArmModel, thrust: f32) -> Effectiveness {
+        Effectiveness::quasi_static(g, &[m.angle(thrust); 4], &[thrust * m.slope(thrust); 4])
     }
 
     #[test]
@@ -204,7 +277,7 @@ mod tests {
         // asin(k_q/b) = 5.157° of droop: 3.1 N at the default; quasi-static only at 1.5 N.
         let (g, m) = (geometry(), ArmModel::new(6.9, 7.75, 4.15));
         let frozen = |t: f32| Effectiveness::frozen(&g, &[m.angle(t); 4]).yaw[0];
-        let quasi = |t: f32| Effectiveness::quasi_static(&g, &m, &[t; 4], &[m.angle(t); 4]).yaw[0];
+        let quasi = |t: f32| quasi_static(&g, &m, t).yaw[0];
         assert!(frozen(3.0) < 0.0 && frozen(3.25) > 0.0);
         assert!(quasi(1.35) < 0.0 && quasi(1.6) > 0.0);
         // At 30 % throttle about +2.2 k_q.
@@ -216,7 +289,7 @@ mod tests {
         let (g, m) = (geometry(), ArmModel::new(6.9, 7.75, 4.15));
         let at = |t: f32| g.wrench(&[t; 4], &[m.angle(t); 4]);
         let t = 5.0f32;
-        let e = Effectiveness::quasi_static(&g, &m, &[t; 4], &[m.angle(t); 4]);
+        let e = quasi_static(&g, &m, t);
         let slope = (at(t + 0.2).thrust - at(t - 0.2).thrust) / 0.4 / 4.0;
         assert!((slope - e.lift[0]).abs() < 0.01, "{slope} {}", e.lift[0]);
         let one = |t: f32| {
@@ -238,7 +311,8 @@ mod tests {
             let sign = if side { 1.0 } else { -1.0 };
             let e = Effectiveness { lift, yaw: yaw.map(|y| y * sign) };
             let g = geometry();
-            let t = Inverse::new(g, e).expect("regular").solve(Wrench { thrust, roll, pitch, yaw: turn });
+            let inverse = Inverse::new(&e).expect("regular");
+            let t = inverse.solve(Load::of(&g, Wrench { thrust, roll, pitch, yaw: turn }));
             let mut w = Wrench::default();
             for i in 0..4 {
                 w.thrust += e.lift[i] * t[i];
@@ -249,6 +323,24 @@ mod tests {
             prop_assert!((w.thrust - thrust).abs() < 2e-3);
             prop_assert!((w.roll - roll).abs() < 1e-3 && (w.pitch - pitch).abs() < 1e-3);
             prop_assert!((w.yaw - turn).abs() < 1e-3);
+            let (only, yaw) = (Load { yaw: turn, ..Load::default() }, inverse.solve_yaw(turn));
+            for (a, b) in inverse.solve(only).into_iter().zip(yaw) {
+                prop_assert!((a - b).abs() < 1e-5);
+            }
+        }
+
+        #[test]
+        fn the_load_is_the_wrench_on_its_levers(
+            thrusts in prop::array::uniform4(0.2f32..8.3), tilt in prop::array::uniform4(-0.7f32..0.7), side in prop::bool::ANY,
+        ) {
+            let sign = if side { 1.0 } else { -1.0 };
+            let g = Geometry::new(0.2, 0.15, sign * 0.016);
+            let (want, got) = (Load::of(&g, g.wrench(&thrusts, &tilt)), Load::given(&g, &thrusts, &tilt));
+            // The wrench has micromath's sines.
+            prop_assert!((want.front - got.front).abs() < 0.04 && (want.rear - got.rear).abs() < 0.04);
+            prop_assert!((want.roll - got.roll).abs() < 1e-4 && (want.yaw - got.yaw).abs() < 0.01);
+            let b = Load::given(&g.as_b(), &thrusts, &tilt);
+            prop_assert!((b.yaw - sign * got.yaw).abs() < 1e-6);
         }
     }
 }

@@ -19,6 +19,10 @@ const REST_DEVIATION: f32 = 0.08;
 const ACCEL_FADE: f32 = 0.15;
 /// Largest gyro bias believed, rad/s.
 const BIAS_MAX: f32 = 0.1;
+/// Time over which the accelerometer gives the attitude where the gyro's bias is known, s: a pipe sways.
+pub const RESUME_TIME: f32 = 0.5;
+/// Specific force error up to which it is gravity that is felt then, as a share of gravity.
+const RESUME_ERROR: f32 = 0.3;
 
 /// Attitude estimator.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +34,7 @@ pub struct Estimator {
     rest_time: f32,
     rest_gyro: Vec3,
     rest_accel: Vec3,
+    known_bias: Option<Vec3>,
     calibrated: bool,
 }
 
@@ -44,7 +49,19 @@ impl Estimator {
             rest_time: 0.0,
             rest_gyro: Vec3::ZERO,
             rest_accel: Vec3::ZERO,
+            known_bias: None,
             calibrated: false,
+        }
+    }
+
+    /// An estimator that a restart has interrupted: `bias` (rad/s) is what the gyro had. The attitude is taken from the
+    /// accelerometer over [`RESUME_TIME`], whatever the vehicle does; heading starts at 0 again.
+    pub fn resume(p: &Params, bias: Vec3) -> Self {
+        Self {
+            known_bias: bias
+                .is_finite()
+                .then(|| bias.map(|b| math::clamp_abs(b, BIAS_MAX))),
+            ..Self::new(p)
         }
     }
 
@@ -65,6 +82,7 @@ impl Estimator {
 
     /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without
     /// its bias.
+    #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
         if !self.calibrated {
             self.calibrate(gyro, accel, dt);
@@ -73,9 +91,10 @@ impl Estimator {
         let rate = gyro - self.bias;
         // Down as measured (minus the specific force) against down as believed.
         let norm2 = accel.norm_squared();
-        let inv = math::inv_sqrt(norm2);
+        // No number of no force at all: the weight and the check below take care of both.
+        let inv = math::inv_sqrt_normal(norm2);
         let excess = norm2 * inv * (1.0 / GRAVITY) - 1.0;
-        let weight = 1.0 - (if excess < 0.0 { -excess } else { excess }) * (1.0 / ACCEL_FADE);
+        let weight = 1.0 - excess.abs() * (1.0 / ACCEL_FADE);
         let weight = math::clamp(weight, 0.0, 1.0);
         let error = (accel * -inv).cross(self.q.down_in_body()) * weight;
         let error = if error.is_finite() { error } else { Vec3::ZERO };
@@ -110,8 +129,24 @@ impl Estimator {
         self.q = if q.is_finite() { q } else { self.q };
     }
 
-    /// Collects rest; any motion starts it afresh.
+    /// Collects rest; any motion starts it afresh. With a known bias it need only stay upright, or fall no more.
+    #[cold]
+    #[inline(never)]
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
+        if let Some(bias) = self.known_bias {
+            let g = accel.norm() * (1.0 / GRAVITY);
+            if !((1.0 - RESUME_ERROR)..=(1.0 + RESUME_ERROR)).contains(&g) {
+                self.rest_time = 0.0;
+                return;
+            }
+            self.rest_time += dt;
+            let k = dt / self.rest_time;
+            self.rest_accel += (accel - self.rest_accel) * k;
+            if self.rest_time >= RESUME_TIME {
+                self.start(bias);
+            }
+            return;
+        }
         let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
         let still =
             limit(gyro, REST_RATE) && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
@@ -126,13 +161,18 @@ impl Estimator {
         self.rest_gyro += (gyro - self.rest_gyro) * k;
         self.rest_accel += (accel - self.rest_accel) * k;
         if self.rest_time >= CALIBRATION_TIME && self.rest_accel.norm() > 0.5 * GRAVITY {
-            self.bias = self.rest_gyro;
-            let up = self.rest_accel;
-            let roll = math::atan2(-up.y, -up.z);
-            let pitch = math::atan2(up.x, math::sqrt(up.y * up.y + up.z * up.z));
-            self.q = Quat::from_euler(roll, pitch, 0.0);
-            self.calibrated = true;
+            self.start(self.rest_gyro);
         }
+    }
+
+    /// Starts with this gyro bias and the attitude that the collected specific force shows.
+    fn start(&mut self, bias: Vec3) {
+        self.bias = bias;
+        let up = self.rest_accel;
+        let roll = math::atan2(-up.y, -up.z);
+        let pitch = math::atan2(up.x, math::sqrt(up.y * up.y + up.z * up.z));
+        self.q = Quat::from_euler(roll, pitch, 0.0);
+        self.calibrated = true;
     }
 }
 
@@ -162,6 +202,37 @@ mod tests {
         let (roll, pitch, yaw) = e.attitude().to_euler();
         assert!((e.bias() - bias).norm() < 1e-4);
         assert!((roll - 0.1).abs() < 0.01 && (pitch + 0.2).abs() < 0.01 && yaw.abs() < 0.01);
+    }
+
+    #[test]
+    fn a_known_bias_needs_no_rest_but_gravity() {
+        let bias = Vec3::new(0.02, -0.05, 0.01);
+        let mut e = Estimator::resume(&Params::default(), bias);
+        // Falling, then shaken by a landing, then swaying on a pipe at 1 Hz by 0.1 rad/s.
+        for _ in 0..1000 {
+            e.step(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -0.5), 1e-3);
+        }
+        for _ in 0..100 {
+            e.step(Vec3::ZERO, Vec3::new(0.0, 0.0, -30.0), 1e-3);
+        }
+        e.step(Vec3::ZERO, Vec3::new(f32::NAN, 0.0, 0.0), 1e-3);
+        assert!(!e.calibrated());
+        let mut steps = 0;
+        while !e.calibrated() && steps < 2000 {
+            let sway = 0.1 * math::sin(6e-3 * steps as f32);
+            e.step(bias + Vec3::new(sway, 0.0, 0.0), at_rest(0.15, -0.1), 1e-3);
+            steps += 1;
+        }
+        assert!((499..=502).contains(&steps), "{steps}");
+        let (roll, pitch, _) = e.attitude().to_euler();
+        assert!(e.bias() == bias && (roll - 0.15).abs() < 0.01 && (pitch + 0.1).abs() < 0.01);
+        let nan = Vec3::new(f32::NAN, 0.0, 0.0);
+        assert!(Estimator::resume(&Params::default(), nan) == Estimator::new(&Params::default()));
+        assert!(
+            Estimator::resume(&Params::default(), Vec3::new(5.0, 0.0, 0.0))
+                .known_bias
+                .is_some_and(|b| b.x <= BIAS_MAX)
+        );
     }
 
     #[test]

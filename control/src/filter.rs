@@ -14,13 +14,28 @@ impl LowPass {
         Self { value }
     }
 
-    /// One step of `dt` s with the cut-off `rate` (rad/s, 2π times Hz). Stable for any positive product:
-    /// the gain is rate·dt / (1 + rate·dt). An input that is not finite changes nothing.
+    /// One step of `dt` s with the cut-off `rate` (rad/s, 2π times Hz). Stable for any positive product.
+    /// An input that is not finite changes nothing.
+    #[inline]
     pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
-        let k = rate * dt;
         if input.is_finite() {
-            self.value += (input - self.value) * (k / (1.0 + k));
+            self.blend(input, Self::gain(rate, dt));
         }
+        self.value
+    }
+
+    /// Share of the way to the input that a step of `dt` s goes with the cut-off `rate` (rad/s), 0..1. It takes a
+    /// division, so filters of the same cut-off share it.
+    #[inline(always)]
+    pub fn gain(rate: f32, dt: f32) -> f32 {
+        let k = rate * dt;
+        k / (1.0 + k)
+    }
+
+    /// One step with the [gain](Self::gain) `gain` towards an `input` that is known to be finite.
+    #[inline(always)]
+    pub fn blend(&mut self, input: f32, gain: f32) -> f32 {
+        self.value += (input - self.value) * gain;
         self.value
     }
 
@@ -78,6 +93,11 @@ impl Coefficients {
         }
     }
 
+    /// Gain, a1 and a2 of a low pass, whose numerator is the gain times 1, 2, 1.
+    pub(crate) const fn as_low_pass(self) -> (f32, f32, f32) {
+        (self.b0, self.a1, self.a2)
+    }
+
     /// tan(π f / fs): the bilinear transform's warped frequency.
     fn warped(hz: f32, rate_hz: f32) -> f32 {
         math::tan(math::PI * math::clamp(hz / rate_hz, 1e-5, 0.35))
@@ -99,7 +119,7 @@ impl Biquad {
     }
 
     /// One sample.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, x: f32) -> f32 {
         let y = self.c.b0 * x + self.s1;
         self.s1 = self.c.b1 * x - self.c.a1 * y + self.s2;

@@ -7,7 +7,7 @@
 
 use crate::deflection::Algorithm1;
 use crate::desaturation::{Given, Patterns, desaturate};
-use crate::effectiveness::{Effectiveness, Geometry, Inverse};
+use crate::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
@@ -92,6 +92,9 @@ impl DynamicTilt {
 pub struct Mixer {
     variant: Variant,
     geometry: Geometry,
+    /// The same as configuration B would have it, and the sign that makes one of the other.
+    as_b: Geometry,
+    chi: f32,
     tilt: TiltModel,
     algorithm_1: Algorithm1,
     dynamic: PerArm<DynamicTilt>,
@@ -99,6 +102,10 @@ pub struct Mixer {
     idle: f32,
     max: f32,
     yaw_limit: f32,
+    /// Least entry of the yaw row, m.
+    yaw_floor: f32,
+    /// Rise of yaw's share with the authority, 1/m: nothing at half the floor, all of it at the floor.
+    fade_slope: f32,
     gate: f32,
     yaw_open: bool,
     motor_rate: f32,
@@ -108,9 +115,12 @@ impl Mixer {
     /// A mixer with idle rotors.
     pub fn new(variant: Variant, configuration: Configuration, p: &Params) -> Self {
         let tilt = TiltModel::new(p);
+        let geometry = Geometry::from_params(p, configuration);
         Self {
             variant,
-            geometry: Geometry::from_params(p, configuration),
+            geometry,
+            as_b: geometry.as_b(),
+            chi: configuration.chi(),
             algorithm_1: Algorithm1::new(*tilt.model(), p.power_exponent),
             tilt,
             dynamic: [DynamicTilt::at(p.thrust_idle, p.notch_hz); 4],
@@ -118,6 +128,8 @@ impl Mixer {
             idle: p.thrust_idle,
             max: p.thrust_max,
             yaw_limit: p.yaw_thrust_max,
+            yaw_floor: YAW_FLOOR * p.torque_ratio,
+            fade_slope: 2.0 / (YAW_FLOOR * p.torque_ratio),
             gate: p.yaw_gate_thrust,
             yaw_open: false,
             motor_rate: 1.0 / p.motor_tau,
@@ -136,47 +148,49 @@ impl Mixer {
 
     /// Rotors at idle for one step of `dt` s.
     pub fn idle(&mut self, dt: f32) -> Mix {
-        self.follow([self.idle; 4], dt);
+        let mix = self.at_idle();
+        self.follow(&mix.thrusts, dt);
+        mix
+    }
+
+    const fn at_idle(&self) -> Mix {
         Mix {
-            thrusts: self.last,
+            thrusts: [self.idle; 4],
             given: Given::ALL,
             yaw_gated: true,
         }
     }
 
     /// Thrusts (N) for the wrench `w` (N, N·m). A wrench that is not finite counts as none: idle.
+    #[inline(always)]
     pub fn mix(&mut self, w: Wrench, c: Conditions) -> Mix {
+        let mix = self.allocate(w, c);
+        self.follow(&mix.thrusts, c.dt);
+        mix
+    }
+
+    /// First half of [`Self::mix`]: the thrusts, with the arms where they are believed to be.
+    #[inline(always)]
+    pub fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
-            return self.idle(c.dt);
+            return self.at_idle();
         }
         let ratio = math::clamp(c.battery_ratio, 0.5, 1.0);
         let high = self.max * ratio * ratio;
-        let mean = 0.25 * self.tilt.thrusts().iter().sum::<f32>();
-        self.yaw_open = mean
-            >= if self.yaw_open {
-                self.gate
-            } else {
-                self.gate + GATE_HYSTERESIS
-            };
+        let [t1, t2, t3, t4] = self.tilt.thrusts();
+        let mean = 0.25 * ((t1 + t2) + (t3 + t4));
+        let shut = if self.yaw_open { 0.0 } else { GATE_HYSTERESIS };
+        self.yaw_open = mean >= self.gate + shut;
         let usable = c.yaw && self.yaw_open;
-        let (mut patterns, fade) = match self.variant {
-            Variant::Flexible => self.quasi_static(w, usable),
-            Variant::Frozen => self.frozen(w),
-            Variant::Rigid => self.stiff(w, [0.0; 4]),
-            Variant::Paper => {
-                let tilt = self.last.map(|t| self.algorithm_1.angle(t, ratio * ratio));
-                self.stiff(w, tilt)
-            }
-        };
-        let share = if usable {
-            fade * self.yaw_room(&patterns.yaw, fade)
+        let (mut patterns, fade) = if self.variant == Variant::Flexible {
+            self.quasi_static(w, usable)
         } else {
-            0.0
+            self.for_study(w, ratio)
         };
+        let share = self.yaw_share(&patterns.yaw, if usable { fade } else { 0.0 });
         patterns.yaw = patterns.yaw.map(|y| y * share);
         let (thrusts, mut given) = desaturate(&patterns, self.idle, high);
         given.yaw *= share;
-        self.follow(thrusts, c.dt);
         Mix {
             thrusts,
             given,
@@ -184,56 +198,70 @@ impl Mixer {
         }
     }
 
-    /// Steps the models of arms and motors with the thrusts sent.
-    fn follow(&mut self, thrusts: PerArm<f32>, dt: f32) {
-        self.last = thrusts;
-        self.tilt.step(&thrusts, dt);
+    /// Second half: steps the models of arms and motors by `dt` s with the thrusts (N) sent.
+    #[inline(always)]
+    pub fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
+        self.last = *thrusts;
+        self.tilt.step(thrusts, dt);
         if self.variant == Variant::Frozen {
-            for (arm, t) in self.dynamic.iter_mut().zip(&thrusts) {
+            for (arm, t) in self.dynamic.iter_mut().zip(thrusts) {
                 arm.step(*t, self.motor_rate, dt);
             }
         }
     }
 
+    /// What does not fly, at the battery's voltage ratio `ratio`.
+    #[cold]
+    fn for_study(&self, w: Wrench, ratio: f32) -> (Patterns, f32) {
+        match self.variant {
+            Variant::Frozen => self.frozen(w),
+            Variant::Paper => {
+                let tilt = self.last.map(|t| self.algorithm_1.angle(t, ratio * ratio));
+                self.stiff(w, tilt)
+            }
+            Variant::Rigid | Variant::Flexible => self.stiff(w, [0.0; 4]),
+        }
+    }
+
     /// The law that flies: T = Tt + J⁻¹ (w - w(Tt)), J the static Jacobian at the low-passed thrusts Tt.
+    #[inline(always)]
     fn quasi_static(&self, w: Wrench, yaw_usable: bool) -> (Patterns, f32) {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
-        let mut e = Effectiveness::quasi_static(&self.geometry, self.tilt.model(), &thrusts, &tilt);
+        // In A yaw works the other way round: it is allocated as in B, with the moment reversed.
+        let geometry = self.as_b;
+        let w = Wrench {
+            yaw: self.chi * w.yaw,
+            ..w
+        };
+        let mut e = Effectiveness::quasi_static(&geometry, &tilt, &self.tilt.follow());
         // The authority fades with its own quasi-static gain, and no entry may pass zero: the inverse of a
         // vanishing entry would be a kick, and a reversed authority is not to be trusted.
-        let authority = 0.25 * e.yaw.iter().sum::<f32>();
-        let sign = if self.geometry.drag < 0.0 { -1.0 } else { 1.0 };
-        let least = YAW_FLOOR * self.geometry.drag * sign;
-        let fade = if yaw_usable {
-            math::clamp((sign * authority - 0.5 * least) / (0.5 * least), 0.0, 1.0)
-        } else {
-            0.0
-        };
-        for y in &mut e.yaw {
-            *y = sign * math::clamp(sign * *y, least, 1.0);
-        }
-        let now = self.geometry.wrench(&thrusts, &tilt);
-        let rest = Wrench {
-            thrust: w.thrust - now.thrust,
-            roll: -now.roll,
-            pitch: -now.pitch,
-            yaw: -now.yaw * fade,
-        };
-        let Some(mut patterns) = self.patterns(e, thrusts, rest, w) else {
+        let [y1, y2, y3, y4] = e.yaw;
+        let authority = 0.25 * (y1 + y2 + y3 + y4);
+        let least = self.yaw_floor;
+        let fade = math::clamp(authority * self.fade_slope - 1.0, 0.0, 1.0);
+        let fade = if yaw_usable { fade } else { 0.0 };
+        e.yaw = e.yaw.map(|y| if y > least { y } else { least });
+        let Some(inverse) = Inverse::new(&e) else {
             return self.without_yaw(w);
         };
+        let now = Load::given(&geometry, &thrusts, &tilt);
+        let half = 0.5 * w.thrust;
+        let [c1, c2, c3, c4] = inverse.solve(Load {
+            front: half - now.front,
+            rear: half - now.rear,
+            roll: -now.roll,
+            yaw: -now.yaw * fade,
+        });
+        let [t1, t2, t3, t4] = thrusts;
+        let (c1, c2, c3, c4) = (t1 + c1, t2 + c2, t3 + c3, t4 + c4);
         // The collective goes on from the last thrusts. Where yaw is given up nothing corrects what they have
         // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
-        let left = 0.25
-            * patterns
-                .collective
-                .iter()
-                .zip(&YAW)
-                .map(|(t, y)| t * y)
-                .sum::<f32>();
-        for (t, y) in patterns.collective.iter_mut().zip(&YAW) {
-            *t -= (1.0 - fade) * left * y;
-        }
+        let left = (0.25 - 0.25 * fade) * (c1 - c2 - c3 + c4);
+        let patterns = Patterns {
+            collective: [c1 - left, c2 + left, c3 + left, c4 - left],
+            ..Self::patterns(&geometry, &inverse, w)
+        };
         (patterns, fade)
     }
 
@@ -241,44 +269,48 @@ impl Mixer {
     fn frozen(&self, w: Wrench) -> (Patterns, f32) {
         let tilt = self.dynamic.map(|arm| self.tilt.model().angle(arm.load));
         let e = Effectiveness::frozen(&self.geometry, &tilt);
-        let rest = Wrench {
-            thrust: w.thrust,
-            ..Wrench::default()
+        let Some(inverse) = Inverse::new(&e) else {
+            return self.without_yaw(w);
         };
-        self.patterns(e, [0.0; 4], rest, w)
-            .map_or_else(|| self.without_yaw(w), |p| (p, 1.0))
+        let half = 0.5 * w.thrust;
+        let patterns = Patterns {
+            collective: inverse.solve(Load {
+                front: half,
+                rear: half,
+                ..Load::default()
+            }),
+            ..Self::patterns(&self.geometry, &inverse, w)
+        };
+        (patterns, 1.0)
     }
 
     /// No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
+    #[cold]
     fn without_yaw(&self, w: Wrench) -> (Patterns, f32) {
         (self.stiff(Wrench { yaw: 0.0, ..w }, [0.0; 4]).0, 0.0)
     }
 
-    /// Splits base + E⁻¹(rest + moments of w) into patterns; `rest` is what the collective part must add. `None`
-    /// where the effectiveness has no inverse.
-    fn patterns(&self, e: Effectiveness, base: PerArm<f32>, rest: Wrench, w: Wrench) -> Option<Patterns> {
-        let inverse = Inverse::new(self.geometry, e)?;
-        let mut collective = inverse.solve(rest);
-        for (c, b) in collective.iter_mut().zip(&base) {
-            *c += b;
-        }
-        let of = |w: Wrench| inverse.solve(w);
-        Some(Patterns {
-            collective,
-            shift: of(Wrench {
-                thrust: 1.0,
-                ..Wrench::default()
-            }),
-            roll_pitch: of(Wrench {
+    /// The moments of `w` split into patterns, and what a newton of thrust takes; without the collective.
+    #[inline(always)]
+    fn patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
+        let moments = Load::of(
+            geometry,
+            Wrench {
                 thrust: 0.0,
                 yaw: 0.0,
                 ..w
+            },
+        );
+        Patterns {
+            collective: [0.0; 4],
+            shift: inverse.solve(Load {
+                front: 0.5,
+                rear: 0.5,
+                ..Load::default()
             }),
-            yaw: of(Wrench {
-                yaw: w.yaw,
-                ..Wrench::default()
-            }),
-        })
+            roll_pitch: inverse.solve(moments),
+            yaw: inverse.solve_yaw(w.yaw),
+        }
     }
 
     /// The printed matrix: stiff levers for roll, pitch and yaw, cos α in the thrust row alone.
@@ -305,16 +337,17 @@ impl Mixer {
         (p, 1.0)
     }
 
-    /// Share of a yaw pattern, already to be scaled by `fade`, that keeps within what one rotor may get.
-    fn yaw_room(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
-        let worst = yaw
-            .iter()
-            .map(|y| y.abs())
-            .fold(0.0f32, |m, y| if y > m { y } else { m });
+    /// Share of a yaw pattern that keeps within what one rotor may get, at most `fade`.
+    #[inline(always)]
+    fn yaw_share(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let [a, b, c, d] = yaw.map(f32::abs);
+        let worst = larger(larger(a, b), larger(c, d));
+        let limited = self.yaw_limit / worst;
         if worst * fade > self.yaw_limit {
-            self.yaw_limit / (worst * fade)
+            limited
         } else {
-            1.0
+            fade
         }
     }
 }
@@ -374,6 +407,32 @@ mod tests {
         let g = Geometry::from_params(&p, Configuration::B);
         let model = *m.tilt().model();
         let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
+        assert!((got.thrust - w.thrust).abs() < 0.02, "{got:?}");
+        assert!((got.roll - w.roll).abs() < 2e-3 && (got.pitch - w.pitch).abs() < 5e-3);
+        assert!((got.yaw - w.yaw).abs() < 2e-3, "{got:?}");
+    }
+
+    #[test]
+    fn the_flexible_mixer_gives_the_wrench_in_a_as_well() {
+        // Stiff enough for A's authority not to have been turned round.
+        let p = Params {
+            gain_k: 1.0,
+            ..Params::default()
+        };
+        let w = Wrench {
+            thrust: 18.0,
+            roll: 0.3,
+            pitch: -0.2,
+            yaw: 0.02,
+        };
+        let mut m = Mixer::new(Variant::Flexible, Configuration::A, &p);
+        let mut mix = m.mix(w, conditions());
+        for _ in 0..3000 {
+            mix = m.mix(w, conditions());
+        }
+        let model = *m.tilt().model();
+        let got = Geometry::from_params(&p, Configuration::A)
+            .wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
         assert!((got.thrust - w.thrust).abs() < 0.02, "{got:?}");
         assert!((got.roll - w.roll).abs() < 2e-3 && (got.pitch - w.pitch).abs() < 5e-3);
         assert!((got.yaw - w.yaw).abs() < 2e-3, "{got:?}");

@@ -10,6 +10,9 @@
 //!                        grip proven,   v        ^
 //!                        rotors stopped Perched ─┘ perch off, throttle up
 //! ```
+//!
+//! A vehicle that is disarmed with its arms closed (by a person, by a danger, or because the board restarted on the
+//! pipe) becomes Perched by the arming gesture.
 
 mod closing;
 mod decide;
@@ -17,8 +20,11 @@ mod demand;
 mod failsafe;
 mod hold;
 mod logic;
+mod look;
 #[cfg(test)]
 mod random;
+#[cfg(test)]
+mod restart;
 #[cfg(test)]
 mod rig;
 #[cfg(test)]
@@ -32,6 +38,7 @@ use crate::grip::GripState;
 use crate::rc::Sticks;
 use crate::setpoint::{ClampCommand, Setpoint};
 use crate::vector::{Quat, Vec3};
+use crate::warm::Grasp;
 use crate::wrench::PerArm;
 
 /// What the vehicle is doing; the commander alone changes it.
@@ -140,6 +147,8 @@ pub struct Outputs {
     pub rotors: Setpoint,
     /// What the tendons are to do.
     pub tendons: ClampCommand,
+    /// The grip that must outlive a reset.
+    pub grasp: Grasp,
     /// Why arming is refused, the failsafe acts or the last state was left; empty when nothing is wrong.
     pub reason: &'static str,
     /// Everything against arming; empty while armed.

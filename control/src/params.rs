@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::decimal::Decimal;
+
 /// One row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParamInfo {
@@ -50,14 +52,14 @@ impl fmt::Display for ParamError {
         let unit = match *self {
             Self::Unknown => return f.write_str("a name of the parameter table"),
             Self::OutOfRange { min, max, unit } => {
-                write!(f, "{min} to {max}")?;
+                write!(f, "{} to {}", Decimal(min), Decimal(max))?;
                 unit
             }
             Self::NotAChoice { choices, unit } => {
                 f.write_str("one of ")?;
                 for (i, choice) in choices.iter().enumerate() {
                     let comma = if i == 0 { "" } else { ", " };
-                    write!(f, "{comma}{choice}")?;
+                    write!(f, "{comma}{}", Decimal(*choice))?;
                 }
                 unit
             }
@@ -73,7 +75,7 @@ macro_rules! params {
     ($( $(#[doc = $doc:literal])+ $name:ident = $default:literal, $unit:literal, $min:literal ..= $max:literal
         $(of $choices:expr)?; )+) => {
         /// The parameters of one vehicle; `Default` is the paper's vehicle.
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Copy, Debug)]
         pub struct Params {
             $( $(#[doc = $doc])+ pub $name: f32, )+
         }
@@ -84,47 +86,74 @@ macro_rules! params {
             }
         }
 
+        /// One place in the image, where a constant would be copied into every crate that looks at it.
+        static ROWS: [ParamInfo; [$( stringify!($name) ),+].len()] = [
+            $( ParamInfo {
+                name: stringify!($name), unit: $unit, min: $min, max: $max, choices: params!(@choices $($choices)?),
+                default: $default,
+                doc: concat!($($doc),+),
+            }, )+
+        ];
+
         impl Params {
             /// The whole table, in the order of the fields.
-            pub const TABLE: &'static [ParamInfo] = &[
-                $( ParamInfo {
-                    name: stringify!($name), unit: $unit, min: $min, max: $max, choices: params!(@choices $($choices)?),
-                    default: $default,
-                    doc: concat!($($doc),+),
-                }, )+
-            ];
+            pub const TABLE: &'static [ParamInfo] = &ROWS;
 
-            /// The value of the parameter called `name`.
-            pub fn get(&self, name: &str) -> Option<f32> {
-                match name {
-                    $( stringify!($name) => Some(self.$name), )+
-                    _ => None,
-                }
+            /// Every value, in the order of the table.
+            fn values(&self) -> [f32; ROWS.len()] {
+                [$( self.$name ),+]
             }
 
-            /// Sets the parameter called `name`.
-            ///
-            /// # Errors
-            /// An unknown name, or a value that is not finite, out of its range or none of the choices; nothing is
-            /// changed then.
-            pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
-                match name {
-                    $( stringify!($name) => {
-                        if !($min..=$max).contains(&value) {
-                            return Err(ParamError::OutOfRange { min: $min, max: $max, unit: $unit });
-                        }
-                        let choices: &'static [f32] = params!(@choices $($choices)?);
-                        if !choices.is_empty() && !choices.contains(&value) {
-                            return Err(ParamError::NotAChoice { choices, unit: $unit });
-                        }
-                        self.$name = value;
-                    } )+
-                    _ => return Err(ParamError::Unknown),
-                }
-                Ok(())
+            /// Every value's place, in the order of the table.
+            fn places(&mut self) -> [&mut f32; ROWS.len()] {
+                [$( &mut self.$name ),+]
             }
         }
     };
+}
+
+/// Where in the table the parameter called `name` stands.
+fn find(name: &str) -> Option<(usize, &'static ParamInfo)> {
+    ROWS.iter().enumerate().find(|(_, row)| row.name == name)
+}
+
+impl Params {
+    /// The value of the parameter called `name`.
+    pub fn get(&self, name: &str) -> Option<f32> {
+        let (at, _) = find(name)?;
+        self.values().get(at).copied()
+    }
+
+    /// Sets the parameter called `name`.
+    ///
+    /// # Errors
+    /// An unknown name, or a value that is not finite, out of its range or none of the choices; nothing is changed then.
+    pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
+        let (at, row) = find(name).ok_or(ParamError::Unknown)?;
+        let ParamInfo {
+            min,
+            max,
+            choices,
+            unit,
+            ..
+        } = *row;
+        if !(min..=max).contains(&value) {
+            return Err(ParamError::OutOfRange { min, max, unit });
+        }
+        if !choices.is_empty() && !choices.contains(&value) {
+            return Err(ParamError::NotAChoice { choices, unit });
+        }
+        if let Some(place) = self.places().into_iter().nth(at) {
+            *place = value;
+        }
+        Ok(())
+    }
+}
+
+impl PartialEq for Params {
+    fn eq(&self, other: &Self) -> bool {
+        self.values() == other.values()
+    }
 }
 
 params! {
@@ -263,9 +292,8 @@ params! {
     servo_torque_max = 2.452, "N m", 0.1 ..= 4.0;
     /// Stall torque of the servo in use, 35 kgcm as the paper says; 0.92 for an MG996R at 4.8 V (datasheet).
     servo_stall = 3.432, "N m", 0.1 ..= 5.0;
-    /// Slew of the servo (MG996R datasheet, 0.17 s for 60 degrees at 4.8 V).
-    servo_slew = 6.16, "rad/s", 0.5 ..= 20.0;
-    /// Travel of the servo from the release position (assumed, the 270 degree version of 35 kgcm servos).
+    /// Travel of every servo from its release to its full pulse (assumed, the 270 degree version of 35 kgcm servos).
+    /// Common: what differs from servo to servo is the pulses at which it stands at the two ends of this travel.
     servo_range = 4.71, "rad", 0.5 ..= 6.3;
     /// Radius of the reel on the servo (assumed).
     reel_radius = 0.015, "m", 0.002 ..= 0.05;
@@ -283,7 +311,7 @@ params! {
     clamp_approach = 0.7, "rad/s", 0.05 ..= 3.0;
     /// Fastest fall of the tendon force on release.
     clamp_release = 80.0, "N/s", 5.0 ..= 500.0;
-    /// Trim of servo 1 against its reel's release mark.
+    /// Trim of servo 1 against its reel's release mark; moves both ends of its travel.
     servo_trim_1 = 0.0, "us", -50.0 ..= 50.0;
     /// Trim of servo 2.
     servo_trim_2 = 0.0, "us", -50.0 ..= 50.0;
@@ -291,6 +319,30 @@ params! {
     servo_trim_3 = 0.0, "us", -50.0 ..= 50.0;
     /// Trim of servo 4.
     servo_trim_4 = 0.0, "us", -50.0 ..= 50.0;
+    /// Pulse at which servo 1 stands at its release position; 50 us within the usual 500 to 2500, for the trim.
+    servo_release_1 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 2 at its release position.
+    servo_release_2 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 3 at its release position.
+    servo_release_3 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 4 at its release position.
+    servo_release_4 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse at which servo 1 has travelled `servo_range`; below the release pulse for a mirrored servo.
+    servo_full_1 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 2 at `servo_range`.
+    servo_full_2 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 3 at `servo_range`.
+    servo_full_3 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 4 at `servo_range`.
+    servo_full_4 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Slew of servo 1 (MG996R datasheet, 0.17 s for 60 degrees at 4.8 V).
+    servo_slew_1 = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Slew of servo 2.
+    servo_slew_2 = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Slew of servo 3.
+    servo_slew_3 = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Slew of servo 4.
+    servo_slew_4 = 6.16, "rad/s", 0.5 ..= 20.0;
     /// Active area of the FSR (Interlink 406 datasheet, 38 mm square).
     fsr_area = 0.001444, "m2", 0.00005 ..= 0.01;
     /// Conductance of the FSR per force (Interlink 406 guide: about 10 kOhm at 1 N, assumed linear).

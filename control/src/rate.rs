@@ -36,7 +36,9 @@ pub struct RateLoop {
     inertia: Vec3,
     integral: Vec3,
     derivative: [LowPass; 3],
-    last: Option<Vec3>,
+    /// Rate of the step before; without one there is no slope yet.
+    last: Vec3,
+    started: bool,
     notch: Biquad,
 }
 
@@ -51,7 +53,8 @@ impl RateLoop {
             inertia: Vec3::new(p.inertia_roll, p.inertia_pitch, p.inertia_yaw),
             integral: Vec3::ZERO,
             derivative: [LowPass::default(); 3],
-            last: None,
+            last: Vec3::ZERO,
+            started: false,
             notch: Biquad::new(Coefficients::notch(
                 p.notch_hz,
                 p.notch_zeta_zero,
@@ -65,58 +68,54 @@ impl RateLoop {
     pub fn reset(&mut self) {
         self.integral = Vec3::ZERO;
         self.derivative = [LowPass::default(); 3];
-        self.last = None;
+        self.last = Vec3::ZERO;
+        self.started = false;
         self.notch.reset(0.0);
     }
 
     /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s), step time `dt` s, > 0. `integrate` false
     /// freezes the integrators, as while resting on something.
+    #[inline(always)]
     pub fn step(&mut self, setpoint: Vec3, rate: Vec3, feedback: Feedback, integrate: bool, dt: f32) -> Vec3 {
         let error = setpoint - rate;
-        let slope = self.last.map_or(Vec3::ZERO, |last| (rate - last) * (1.0 / dt));
-        self.last = Some(rate);
+        let per_second = if self.started { 1.0 / dt } else { 0.0 };
+        let slope = (rate - self.last) * per_second;
+        self.last = rate;
+        self.started = true;
+        // A slope that is no number comes with a moment that is none, and that forgets everything.
+        let gain = LowPass::gain(self.d_rate, dt);
         let [dx, dy, dz] = &mut self.derivative;
         let slope = Vec3::new(
-            dx.step(slope.x, self.d_rate, dt),
-            dy.step(slope.y, self.d_rate, dt),
-            dz.step(slope.z, self.d_rate, dt),
+            dx.blend(slope.x, gain),
+            dy.blend(slope.y, gain),
+            dz.blend(slope.z, gain),
         );
-        if feedback.yaw_gated {
-            self.integral.z = 0.0;
-            self.notch.reset(0.0);
-        }
-        if integrate {
-            let step = error.scale_by(self.i) * dt;
-            let add = |sum: f32, step: f32, limit: f32, given: bool| {
-                // What was not given must not wind up; what unwinds always may.
-                if given || sum * step < 0.0 {
-                    math::clamp_abs(sum + step, limit)
-                } else {
-                    sum
-                }
-            };
-            let tilt_given = feedback.roll_pitch > GIVEN;
-            let yaw_given = feedback.yaw > GIVEN && !feedback.yaw_gated;
-            self.integral = Vec3::new(
-                add(self.integral.x, step.x, INTEGRAL_MAX.x, tilt_given),
-                add(self.integral.y, step.y, INTEGRAL_MAX.y, tilt_given),
-                add(self.integral.z, step.z, INTEGRAL_MAX.z, yaw_given),
-            );
-        }
+        let free = !feedback.yaw_gated;
+        let (tilt_given, yaw_given) = (feedback.roll_pitch > GIVEN, feedback.yaw > GIVEN && free);
+        let step = error.scale_by(self.i) * if integrate { dt } else { 0.0 };
+        let add = |sum: f32, step: f32, limit: f32, given: bool| {
+            // What was not given must not wind up; what unwinds always may.
+            let step = if given | (sum * step < 0.0) { step } else { 0.0 };
+            math::clamp_abs(sum + step, limit)
+        };
+        let yaw_integral = if free { self.integral.z } else { 0.0 };
+        self.integral = Vec3::new(
+            add(self.integral.x, step.x, INTEGRAL_MAX.x, tilt_given),
+            add(self.integral.y, step.y, INTEGRAL_MAX.y, tilt_given),
+            add(yaw_integral, step.z, INTEGRAL_MAX.z, yaw_given),
+        );
         let acceleration = error.scale_by(self.p) + self.integral - slope.scale_by(self.d);
         let moment = acceleration.scale_by(self.inertia);
-        let yaw = if feedback.yaw_gated {
-            0.0
-        } else {
-            self.notch.step(moment.z)
-        };
-        let moment = Vec3::new(moment.x, moment.y, yaw);
-        if moment.is_finite() {
-            moment
-        } else {
-            self.reset();
-            Vec3::ZERO
+        let yaw = self.notch.step(moment.z);
+        let moment = Vec3::new(moment.x, moment.y, if free { yaw } else { 0.0 });
+        if !free {
+            self.notch.reset(0.0);
         }
+        if !moment.is_finite() {
+            self.reset();
+            return Vec3::ZERO;
+        }
+        moment
     }
 
     /// Integrators, rad/s², within ±15 for roll and pitch and ±3 for yaw.

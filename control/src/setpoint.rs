@@ -90,4 +90,6 @@ pub enum ClampCommand {
         /// Which arms.
         arms: ArmChoice,
     },
+    /// Nothing yet: no pulse to the servos, whose gears hold what they held when the power came on.
+    Keep,
 }

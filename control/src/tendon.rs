@@ -8,11 +8,12 @@
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
+use crate::wrench::PerArm;
 
-/// Pulse width at the release position, µs; 50 µs above the usual 500 so that a trim can reach below.
-pub const RELEASE_US: f32 = 550.0;
-/// Pulse width at full travel (`servo_range` from release), µs.
-pub const FULL_US: f32 = 2450.0;
+/// Release and full pulse of a servo lie between these, µs: the usual 500 to 2500 with room for a trim.
+pub const PULSES_US: (f32, f32) = (550.0, 2450.0);
+/// Least distance of the full pulse from the release pulse, µs: less is no servo's travel.
+pub const SPAN_MIN_US: f32 = 200.0;
 /// Tilt at which the tendon of a servo at release is just taut, rad: 23°, beyond what flight reaches, so that
 /// a flying arm never pulls on it (built so; assumed).
 pub const REFERENCE_TILT: f32 = 0.4;
@@ -34,8 +35,10 @@ pub const TILT_CUTOFF: f32 = 25.0;
 const STILL_CUTOFF: f32 = 5.0;
 /// Distance of the tilt from its filter from which the arm counts as moving, rad.
 const MOVING: f32 = 0.04;
-/// Age of the tilt when it is used, s: sensor 20 ms, task periods half of 10 and 20 ms, output frame 10 ms.
-const TILT_AGE: f32 = 0.045;
+/// Age of the tilt when the servo's task takes it, s: sensor 20 ms, half of the arms' period of 10 ms.
+const TILT_AGE: f32 = 0.025;
+/// Angles beyond this are no servo's, rad.
+const ANGLE_MAX: f32 = 6.5;
 /// Tilts beyond this are not an arm's, rad.
 const TILT_MAX: f32 = 2.5;
 
@@ -66,7 +69,7 @@ impl ForceLimit {
     }
 }
 
-/// Reel, tendon and servo as the parameters describe them.
+/// Reel, tendon and servo of one arm as the parameters describe them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reel {
     radius: f32,
@@ -75,21 +78,47 @@ pub struct Reel {
     stall: f32,
     slew: f32,
     range: f32,
+    release_us: f32,
+    /// From the release to the full pulse, µs; negative for a mirrored servo.
+    span_us: f32,
+    /// Age of the tilt by the time that the pulse acts, s.
+    tilt_age: f32,
     limit: ForceLimit,
 }
 
 impl Reel {
-    /// The parts that the parameters describe.
-    pub fn from_params(p: &Params) -> Self {
+    /// The parts of arm `servo` (0..=3) that the parameters describe.
+    ///
+    /// A full pulse nearer to the release pulse than [`SPAN_MIN_US`] is taken to be that far from it, on the side
+    /// that it is on, or on that of the greater room: no parameters make a travel of nothing.
+    pub fn from_params(p: &Params, servo: usize) -> Self {
+        let [trim, release, full, slew] = match servo {
+            0 => [p.servo_trim_1, p.servo_release_1, p.servo_full_1, p.servo_slew_1],
+            1 => [p.servo_trim_2, p.servo_release_2, p.servo_full_2, p.servo_slew_2],
+            2 => [p.servo_trim_3, p.servo_release_3, p.servo_full_3, p.servo_slew_3],
+            _ => [p.servo_trim_4, p.servo_release_4, p.servo_full_4, p.servo_slew_4],
+        };
+        let (low, high) = PULSES_US;
+        let release = math::clamp(release, low, high);
+        let full = apart(release, math::clamp(full, low, high));
         Self {
             radius: p.reel_radius,
             lever: p.tendon_lever,
             stiffness: p.tendon_stiffness,
             stall: p.servo_stall,
-            slew: p.servo_slew,
+            slew,
             range: p.servo_range,
+            release_us: release + math::clamp(trim, -TRIM_MAX_US, TRIM_MAX_US),
+            span_us: full - release,
+            // Half of a frame until the task runs, half of one until the servo has moved.
+            tilt_age: TILT_AGE + 1.0 / p.servo_frame_rate,
             limit: ForceLimit::from_params(p),
         }
+    }
+
+    /// Those of all four arms.
+    pub fn all(p: &Params) -> PerArm<Self> {
+        [0, 1, 2, 3].map(|servo| Self::from_params(p, servo))
     }
 
     /// Angle of the servo (rad from release) that gives the force `force` (N) at the tilt `tilt` (rad),
@@ -105,10 +134,15 @@ impl Reel {
         math::clamp(self.stiffness * stretch, 0.0, f32::MAX)
     }
 
-    /// Pulse width (µs) for the servo at `angle` (rad) with a trim of `trim` µs.
-    pub fn pulse(&self, angle: f32, trim: f32) -> f32 {
-        let travel = math::clamp(angle / self.range, 0.0, 1.0);
-        RELEASE_US + (FULL_US - RELEASE_US) * travel + math::clamp(trim, -TRIM_MAX_US, TRIM_MAX_US)
+    /// Pulse width (µs, trim included) for the servo at `angle` (rad from release).
+    pub fn pulse(&self, angle: f32) -> f32 {
+        self.release_us + self.span_us * math::clamp(angle / self.range, 0.0, 1.0)
+    }
+
+    /// Angle (rad from release) that the pulse `pulse_us` (µs) asks for: what the servo makes of it, and
+    /// [`Reel::pulse`] undone.
+    pub fn angle_of(&self, pulse_us: f32) -> f32 {
+        (pulse_us - self.release_us) / self.span_us * self.range
     }
 
     /// Speed (rad/s) that the servo has against the force `force` (N).
@@ -116,6 +150,24 @@ impl Reel {
         let load = math::clamp(force * self.radius / self.stall, 0.0, 1.0);
         SLEW_SHARE * self.slew * (1.0 - load)
     }
+}
+
+/// The full pulse, at least [`SPAN_MIN_US`] from the release pulse, µs.
+fn apart(release: f32, full: f32) -> f32 {
+    let (low, high) = PULSES_US;
+    let span = full - release;
+    if span.abs() >= SPAN_MIN_US {
+        return full;
+    }
+    let (room_above, room_below) = (high - release, release - low);
+    let above = if span > 0.0 {
+        room_above >= SPAN_MIN_US
+    } else if span < 0.0 {
+        room_below < SPAN_MIN_US
+    } else {
+        room_above >= room_below
+    };
+    release + if above { SPAN_MIN_US } else { -SPAN_MIN_US }
 }
 
 /// What the drive of one tendon puts out.
@@ -132,22 +184,47 @@ pub struct Drive {
 /// The drive of one tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonDrive {
-    trim: f32,
     angle: f32,
     tilt: Option<(LowPass, LowPass)>,
     /// Cut-off of both at the last step, rad/s.
     cutoff: f32,
 }
 
+impl Default for TendonDrive {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl TendonDrive {
-    /// A drive at its release position; `trim` in µs.
-    pub const fn new(trim: f32) -> Self {
+    /// A drive at its release position.
+    pub const fn new() -> Self {
         Self {
-            trim,
             angle: 0.0,
             tilt: None,
             cutoff: TILT_CUTOFF,
         }
+    }
+
+    /// The same drive, its servo at `angle` (rad from release), where the run before left it.
+    pub fn resume(self, angle: f32) -> Self {
+        Self {
+            angle: math::clamp(angle, 0.0, ANGLE_MAX),
+            ..self
+        }
+    }
+
+    /// Takes the servo to stand where its tendon is just taut at the tilt `tilt` (rad; `None`: at release). For a
+    /// tendon that was found wound and is to be paid out: from there on it goes at the drive's speed, not the servo's.
+    pub fn find(&mut self, reel: &Reel, tilt: Option<f32>) {
+        self.angle = tilt
+            .filter(|t| t.abs() <= TILT_MAX)
+            .map_or(0.0, |tilt| reel.angle(0.0, tilt));
+    }
+
+    /// Angle to which the servo is sent, rad from release.
+    pub fn angle(&self) -> f32 {
+        self.angle
     }
 
     /// One step of `dt` s towards `force` N (0, or anything that is no number: pay out to the release
@@ -158,13 +235,7 @@ impl TendonDrive {
         let dt = math::clamp(dt, 0.0, 0.2);
         let force = math::clamp(force, 0.0, reel.limit.force);
         let tilt = tilt.filter(|t| t.abs() <= TILT_MAX);
-        if let Some(tilt) = tilt {
-            let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
-            let moving = math::clamp((tilt - second.value()).abs() / MOVING, 0.0, 1.0);
-            self.cutoff = STILL_CUTOFF + (TILT_CUTOFF - STILL_CUTOFF) * moving;
-            let once = first.step(tilt, self.cutoff, dt);
-            second.step(once, self.cutoff, dt);
-        }
+        self.see(tilt, dt);
         let pays_out = force <= 0.0;
         let held = !pays_out && tilt.is_none();
         if pays_out {
@@ -181,6 +252,23 @@ impl TendonDrive {
         self.output(reel, held)
     }
 
+    /// One step of `dt` s that leaves the servo where it is and only looks at the tilt (rad).
+    pub fn stay(&mut self, reel: &Reel, tilt: Option<f32>, dt: f32) -> Drive {
+        self.see(tilt.filter(|t| t.abs() <= TILT_MAX), math::clamp(dt, 0.0, 0.2));
+        self.output(reel, true)
+    }
+
+    fn see(&mut self, tilt: Option<f32>, dt: f32) {
+        let Some(tilt) = tilt else {
+            return;
+        };
+        let (first, second) = self.tilt.get_or_insert((LowPass::at(tilt), LowPass::at(tilt)));
+        let moving = math::clamp((tilt - second.value()).abs() / MOVING, 0.0, 1.0);
+        self.cutoff = STILL_CUTOFF + (TILT_CUTOFF - STILL_CUTOFF) * moving;
+        let once = first.step(tilt, self.cutoff, dt);
+        second.step(once, self.cutoff, dt);
+    }
+
     /// The output without a step: for when there is no order at all.
     pub fn hold(&self, reel: &Reel) -> Drive {
         self.output(reel, true)
@@ -190,7 +278,7 @@ impl TendonDrive {
         let wound = self.angle > 1e-3;
         let tension = self.tension(reel);
         Drive {
-            pulse_us: reel.pulse(self.angle, self.trim),
+            pulse_us: reel.pulse(self.angle),
             tension: if wound {
                 math::clamp(tension, RESIDUE, f32::MAX)
             } else {
@@ -205,7 +293,7 @@ impl TendonDrive {
     fn tension(&self, reel: &Reel) -> f32 {
         self.tilt.map_or(0.0, |(first, second)| {
             let per_lag = first.value() - second.value();
-            let now = second.value() + per_lag * (2.0 + TILT_AGE * self.cutoff);
+            let now = second.value() + per_lag * (2.0 + reel.tilt_age * self.cutoff);
             reel.force(self.angle, math::clamp_abs(now, TILT_MAX))
         })
     }
@@ -223,7 +311,7 @@ mod tests {
             tendon_lever: 0.025,
             tendon_stiffness: 8000.0,
             servo_range: 4.71,
-            servo_slew: 6.16,
+            servo_slew_1: 6.16,
             servo_stall: 3.432,
             servo_torque_max: 2.452,
             ..Params::default()
@@ -236,18 +324,63 @@ mod tests {
 
     #[test]
     fn the_reel_by_hand() {
-        let reel = Reel::from_params(&params());
+        let reel = Reel::from_params(&params(), 0);
         // 0.025·(0.4 + 1.0) = 35 mm, 80 N stretch 10 mm: 45 mm on 15 mm are 3 rad.
         assert!(close(reel.angle(80.0, -1.0), 3.0, 1e-4));
         assert!(close(reel.force(3.0, -1.0), 80.0, 0.01));
         // 3/4.71 of 1900 µs above 550 µs.
-        assert!(close(reel.pulse(3.0, 0.0), 1760.2, 0.1));
-        assert!(close(reel.pulse(0.0, -20.0), 530.0, 1e-3));
+        assert!(close(reel.pulse(3.0), 1760.2, 0.1));
         // A drooping arm is slack, and so is one in flight up to the reference.
         assert!(reel.force(0.0, -0.46) == 0.0 && reel.force(0.0, 0.39) == 0.0);
         assert!(reel.force(0.0, 0.41) > 0.0);
         // Never beyond the travel.
         assert!(close(reel.angle(160.0, -2.5), 4.71, 1e-6));
+    }
+
+    #[test]
+    fn each_servo_has_its_own_pulses_trim_and_slew() {
+        let p = Params {
+            servo_trim_2: -20.0,
+            servo_release_3: 2300.0,
+            servo_full_3: 700.0,
+            servo_trim_3: 10.0,
+            servo_slew_4: 3.0,
+            ..params()
+        };
+        let [one, two, mirrored, slow] = Reel::all(&p);
+        assert!(close(one.pulse(0.0), 550.0, 1e-3) && close(one.pulse(4.71), 2450.0, 1e-3));
+        assert!(close(two.pulse(0.0), 530.0, 1e-3) && close(two.pulse(4.71), 2430.0, 1e-3));
+        assert!(close(mirrored.pulse(0.0), 2310.0, 1e-3) && close(mirrored.pulse(4.71), 710.0, 1e-3));
+        // Half the travel is half the span, whichever way round.
+        assert!(close(mirrored.pulse(2.355), 1510.0, 1e-3));
+        assert!(close(slow.speed(0.0), 2.7, 1e-5) && close(one.speed(0.0), 5.544, 1e-5));
+    }
+
+    #[test]
+    fn a_travel_of_nothing_cannot_be_configured() {
+        for (release, full, taken) in [
+            (550.0, 550.0, 750.0),
+            (2450.0, 2450.0, 2250.0),
+            (1600.0, 1600.0, 1400.0),
+            (1500.0, 1510.0, 1700.0),
+            (1500.0, 1490.0, 1300.0),
+            // No room on the side that it is on.
+            (2440.0, 2450.0, 2240.0),
+            (560.0, 550.0, 760.0),
+        ] {
+            let p = Params {
+                servo_release_1: release,
+                servo_full_1: full,
+                ..params()
+            };
+            let reel = Reel::from_params(&p, 0);
+            assert!(close(reel.pulse(0.0), release, 1e-3), "{release} {full}");
+            assert!(
+                close(reel.pulse(4.71), taken, 1e-3),
+                "{release} {full}: {}",
+                reel.pulse(4.71)
+            );
+        }
     }
 
     #[test]
@@ -264,10 +397,10 @@ mod tests {
 
     #[test]
     fn the_drive_settles_on_the_force_within_the_servo_s_speed() {
-        let reel = Reel::from_params(&params());
-        let mut drive = TendonDrive::new(0.0);
+        let reel = Reel::from_params(&params(), 0);
+        let mut drive = TendonDrive::new();
         let mut last = drive.hold(&reel).pulse_us;
-        let per_rad = (FULL_US - RELEASE_US) / 4.71;
+        let per_rad = (2450.0 - 550.0) / 4.71;
         let mut output = Drive::default();
         for _ in 0..100 {
             output = drive.step(&reel, 60.0, Some(-0.8), 0.02);
@@ -281,22 +414,88 @@ mod tests {
 
     #[test]
     fn the_observer_sees_through_the_lag_of_a_moving_arm() {
-        let reel = Reel::from_params(&params());
-        let mut drive = TendonDrive::new(0.0);
+        let reel = Reel::from_params(&params(), 0);
+        let mut drive = TendonDrive::new();
         let mut output = Drive::default();
         for i in 0..100 {
             // The arm falls at 0.5 rad/s; the sensor shows where it was 45 ms before.
             let now = -0.2 - 0.5 * 0.02 * i as f32;
-            output = drive.step(&reel, 60.0, Some(now + 0.5 * TILT_AGE), 0.02);
+            output = drive.step(&reel, 60.0, Some(now + 0.5 * 0.045), 0.02);
         }
         // Lag 2/25 s and age 0.045 s at 0.5 rad/s on 8000 N/m · 0.025 m hide 12.5 N.
         assert!(close(output.tension, 47.5, 0.5), "{}", output.tension);
     }
 
     #[test]
+    fn the_observer_sees_through_the_lag_at_every_frame_rate() {
+        for rate in [50.0, 100.0, 333.0] {
+            let reel = Reel::from_params(
+                &Params {
+                    servo_frame_rate: rate,
+                    ..params()
+                },
+                0,
+            );
+            let mut drive = TendonDrive::new();
+            let (dt, mut output) = (1.0 / rate, Drive::default());
+            // 25 ms in the sensor and on its way, and a whole frame: half until it is read, half until it acts.
+            let age = 0.025 + dt;
+            for i in 0..(2.0 * rate) as usize {
+                let now = -0.2 - 0.5 * dt * i as f32;
+                output = drive.step(&reel, 60.0, Some(now + 0.5 * age), dt);
+            }
+            // What the filter's lag and the age hide of the arm's fall, 0.5 rad/s on 8000 N/m · 0.025 m.
+            let hidden = 100.0 * (2.0 / TILT_CUTOFF + age);
+            assert!(
+                close(output.tension, 60.0 - hidden, 0.5),
+                "{rate} Hz: {}",
+                output.tension
+            );
+        }
+    }
+
+    #[test]
+    fn a_drive_resumes_where_it_was_and_a_wound_one_is_found_taut() {
+        let reel = Reel::from_params(&params(), 0);
+        let mut drive = TendonDrive::new();
+        for _ in 0..100 {
+            drive.step(&reel, 60.0, Some(-0.8), 0.02);
+        }
+        let before = drive.hold(&reel).pulse_us;
+        let mut again = TendonDrive::new().resume(drive.angle());
+        assert!(close(again.hold(&reel).pulse_us, before, 1e-3));
+        // Without a tilt, then with one that a new attitude shows off by 0.02 rad: the servo stays, and the tension that
+        // it then has keeps it there.
+        let mut has = 0.0;
+        for tilt in [None, None, Some(-0.78), Some(-0.78)] {
+            let output = again.stay(&reel, tilt, 0.02);
+            assert!(output.held && close(output.pulse_us, before, 1e-3));
+            has = output.tension;
+        }
+        assert!(close(has, 64.0, 0.1), "{has}");
+        for _ in 0..50 {
+            let pulse = again.step(&reel, has, Some(-0.78), 0.02).pulse_us;
+            assert!(close(pulse, before, 0.1), "{pulse} {before}");
+        }
+        assert!(TendonDrive::new().resume(f32::NAN).angle() == 0.0);
+        assert!(TendonDrive::new().resume(1e9).angle() <= ANGLE_MAX);
+
+        // 25 mm·1.2 on 15 mm: 2 rad; paid out in 0.67 s.
+        let mut found = TendonDrive::new();
+        found.find(&reel, Some(-0.8));
+        assert!(close(found.angle(), 2.0, 1e-3));
+        let frames = (1..100).find(|_| found.step(&reel, 0.0, Some(-0.8), 0.02).tension <= 0.0);
+        assert!(frames.is_some_and(|n| (32..36).contains(&n)), "{frames:?}");
+        for tilt in [None, Some(f32::NAN), Some(9.0)] {
+            found.find(&reel, tilt);
+            assert!(found.angle() == 0.0);
+        }
+    }
+
+    #[test]
     fn a_missing_tilt_holds_and_paying_out_needs_none() {
-        let reel = Reel::from_params(&params());
-        let mut drive = TendonDrive::new(0.0);
+        let reel = Reel::from_params(&params(), 0);
+        let mut drive = TendonDrive::new();
         for _ in 0..100 {
             drive.step(&reel, 60.0, Some(-0.8), 0.02);
         }
@@ -311,13 +510,13 @@ mod tests {
             output = drive.step(&reel, 0.0, None, 0.02);
         }
         // 2.5 rad at 3 rad/s.
-        assert!(close(time, 0.83, 0.04) && close(output.pulse_us, RELEASE_US, 1.0) && !output.held);
+        assert!(close(time, 0.83, 0.04) && close(output.pulse_us, 550.0, 1.0) && !output.held);
     }
 
     proptest! {
         #[test]
         fn angle_and_force_undo_each_other(force in 0.0f32..160.0, tilt in -1.5f32..0.3) {
-            let reel = Reel::from_params(&params());
+            let reel = Reel::from_params(&params(), 0);
             prop_assert!(close(reel.force(reel.angle(force, tilt), tilt), force, 0.05));
         }
 
@@ -328,13 +527,25 @@ mod tests {
                 1..40,
             ),
         ) {
-            let reel = Reel::from_params(&params());
-            let mut drive = TendonDrive::new(0.0);
+            let reel = Reel::from_params(&params(), 0);
+            let mut drive = TendonDrive::new();
             for (force, tilt, dt) in inputs {
                 let output = drive.step(&reel, force, tilt, dt);
-                prop_assert!(output.pulse_us >= RELEASE_US && output.pulse_us <= FULL_US);
+                prop_assert!(output.pulse_us >= 550.0 && output.pulse_us <= 2450.0);
                 prop_assert!(output.tension >= 0.0 && output.tension.is_finite());
             }
+        }
+
+        #[test]
+        fn no_pulses_in_the_table_s_ranges_make_a_bad_reel(
+            release in 550.0f32..=2450.0, full in 550.0f32..=2450.0, trim in -50.0f32..=50.0, angle in 0.0f32..=4.71,
+        ) {
+            let p = Params { servo_release_1: release, servo_full_1: full, servo_trim_1: trim, ..params() };
+            let reel = Reel::from_params(&p, 0);
+            let pulse = reel.pulse(angle);
+            prop_assert!((500.0..=2500.0).contains(&pulse));
+            prop_assert!(close(reel.angle_of(pulse), angle, 0.01));
+            prop_assert!((reel.pulse(4.71) - reel.pulse(0.0)).abs() >= SPAN_MIN_US - 1e-3);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::math;
 use crate::params::Params;
+use crate::wrench::PerArm;
 
 /// T / T_max = (V/V0)² (q u² + (1 - q) u): thrust of the command u at the voltage V.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,33 +10,57 @@ pub struct ThrustCurve {
     max: f32,
     quadratic: f32,
     linear: f32,
-    least_ratio: f32,
+    half_linear: f32,
+    half_linear_squared: f32,
 }
+
+/// Least voltage ratio that is compensated for.
+const LEAST_RATIO: f32 = 0.5;
+/// Keeps the root of a purely quadratic curve from 0, where its division would have none: 1e-6 of the command.
+const LEAST_SQUARE: f32 = 1e-12;
 
 impl ThrustCurve {
     /// The curve that the parameters describe.
     pub fn from_params(p: &Params) -> Self {
         let quadratic = math::clamp(p.thrust_curve, 0.0, 1.0);
+        let half_linear = 0.5 * (1.0 - quadratic);
         Self {
             max: p.thrust_max,
             quadratic,
             linear: 1.0 - quadratic,
-            least_ratio: 0.5,
+            half_linear,
+            half_linear_squared: half_linear * half_linear + LEAST_SQUARE,
         }
     }
 
     /// Command 0..1 for the thrust `thrust` (N) at the voltage ratio `ratio` (V/V0). 0 for no thrust.
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
-        let ratio = math::clamp(ratio, self.least_ratio, 1.5);
-        let share = math::clamp(thrust / (self.max * ratio * ratio), 0.0, 1.0);
-        // The root of q u² + (1 - q) u = share in the form that also holds for q = 0.
-        let root = math::sqrt(self.linear * self.linear + 4.0 * self.quadratic * share);
-        let sum = self.linear + root;
-        if sum > 0.0 {
-            math::clamp(2.0 * share / sum, 0.0, 1.0)
-        } else {
-            0.0
-        }
+        let [command, ..] = self.commands(&[thrust; 4], ratio);
+        command
+    }
+
+    /// Commands 0..1 for the thrusts (N) of the four rotors at the voltage ratio `ratio` (V/V0).
+    #[inline(always)]
+    pub fn commands(&self, thrusts: &PerArm<f32>, ratio: f32) -> PerArm<f32> {
+        let ratio = math::clamp(ratio, LEAST_RATIO, 1.5);
+        let per_newton = 1.0 / (self.max * ratio * ratio);
+        let [a, b, c, d] = *thrusts;
+        [
+            self.share_to_command(a * per_newton),
+            self.share_to_command(b * per_newton),
+            self.share_to_command(c * per_newton),
+            self.share_to_command(d * per_newton),
+        ]
+    }
+
+    /// The root of q u² + (1 - q) u = share in the form that also holds for q = 0.
+    #[inline(always)]
+    fn share_to_command(&self, share: f32) -> f32 {
+        let share = if share > 0.0 { share } else { 0.0 };
+        let square = self.half_linear_squared + self.quadratic * share;
+        let sum = self.half_linear + square * math::inv_sqrt_normal(square);
+        let command = share / sum;
+        if command < 1.0 { command } else { 1.0 }
     }
 
     /// Thrust (N) of the command `command` at the voltage ratio `ratio`.
@@ -58,6 +83,29 @@ mod tests {
         // By hand: q 0.75, share 0.5: 0.75 u² + 0.25 u = 0.5 gives u = 0.66667.
         assert!((c.command(4.15, 1.0) - 2.0 / 3.0).abs() < 1e-5);
         assert!(c.command(f32::NAN, 1.0) == 0.0 && c.command(4.0, f32::NAN).is_finite());
+    }
+
+    #[test]
+    fn the_root_keeps_its_error_over_all_curves_and_thrusts() {
+        for q in 0..=100 {
+            let q = q as f32 * 0.01;
+            let c = ThrustCurve::from_params(&Params {
+                thrust_curve: q,
+                ..Params::default()
+            });
+            for share in 0..=1000 {
+                let thrust = 8.3 * share as f32 * 1e-3;
+                let (share, q) = (f64::from(thrust) / f64::from(8.3f32), f64::from(q));
+                let (linear, root) = (1.0 - q, ((1.0 - q).powi(2) + 4.0 * q * share).sqrt());
+                let exact = if share > 0.0 {
+                    2.0 * share / (linear + root)
+                } else {
+                    0.0
+                };
+                let error = (f64::from(c.command(thrust, 1.0)) - exact).abs();
+                assert!(error < 2e-6, "{q} {share}: {error}");
+            }
+        }
     }
 
     proptest! {

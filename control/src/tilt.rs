@@ -7,7 +7,6 @@ use core::f32::consts::TAU;
 
 use crate::deflection::{ArmModel, VALID_TILT};
 use crate::filter::LowPass;
-use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
@@ -23,6 +22,8 @@ struct Arm {
     lagged: LowPass,
     bias: f32,
     tilt: f32,
+    /// T dα/dT: what a relative change of thrust tilts the arm by once it has followed, rad.
+    follow: f32,
 }
 
 /// Tilt of the four arms.
@@ -47,6 +48,7 @@ impl TiltModel {
             lagged: LowPass::at(thrust),
             bias: 0.0,
             tilt: model.angle(thrust),
+            follow: thrust * model.slope(thrust),
         };
         Self {
             model,
@@ -59,35 +61,40 @@ impl TiltModel {
         }
     }
 
-    /// One step of `dt` s with the thrusts (N) commanded last.
+    /// One step of `dt` s with the thrusts (N) commanded last; such as are no numbers change nothing.
+    #[inline(always)]
     pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
-        let (model, cutoff, lag_rate) = (self.model, self.cutoff, self.lag_rate);
+        if !commanded.iter().sum::<f32>().is_finite() {
+            return;
+        }
+        let model = self.model;
+        let (gain, lag_gain) = (LowPass::gain(self.cutoff, dt), LowPass::gain(self.lag_rate, dt));
         let mut fault = false;
         for (arm, thrust) in self.arms.iter_mut().zip(commanded) {
-            let thrust = arm.thrust.step(*thrust, cutoff, dt);
-            arm.lagged.step(thrust, lag_rate, dt);
+            let thrust = arm.thrust.blend(*thrust, gain);
+            arm.lagged.blend(thrust, lag_gain);
             let tilt = model.angle(thrust) + arm.bias;
             // Outside the static model's range the last valid value is held: no jump, and a fault says so.
-            if (-VALID_TILT..=VALID_TILT).contains(&tilt) {
-                arm.tilt = tilt;
-            } else if thrust > LEARN_THRUST {
-                fault = true;
-            }
+            let valid = tilt.abs() <= VALID_TILT;
+            arm.tilt = if valid { tilt } else { arm.tilt };
+            arm.follow = thrust * model.slope(thrust);
+            fault |= !valid & (thrust > LEARN_THRUST);
         }
         self.fault = fault;
     }
 
     /// Takes the tilts (rad) that the arms' sensors measured, at 100 Hz, while the arms hang free in the air.
+    #[inline(always)]
     pub fn correct(&mut self, measured: &PerArm<Option<f32>>) {
         let (model, gain, limit) = (self.model, self.bias_gain, self.bias_max);
         for (arm, measured) in self.arms.iter_mut().zip(measured) {
-            let Some(measured) = measured.filter(|m| m.is_finite()) else {
-                continue;
-            };
-            if arm.lagged.value() > LEARN_THRUST {
-                let expected = model.angle(arm.lagged.value()) + arm.bias;
-                arm.bias = math::clamp_abs(arm.bias + gain * (measured - expected), limit);
-            }
+            // A sensor that says nothing is one that says no number.
+            let measured = measured.unwrap_or(f32::NAN);
+            let felt = arm.lagged.value();
+            let gain = if felt > LEARN_THRUST { gain } else { 0.0 };
+            let bias = arm.bias + gain * (measured - model.angle(felt) - arm.bias);
+            // Neither a number beyond the limit nor none: a glitch moves nothing.
+            arm.bias = if bias.abs() <= limit { bias } else { arm.bias };
         }
     }
 
@@ -97,13 +104,21 @@ impl TiltModel {
     }
 
     /// Low-passed thrust of each rotor, N, >= 0.
+    #[inline]
     pub fn thrusts(&self) -> PerArm<f32> {
         self.arms.map(|a| a.thrust.value())
     }
 
     /// Tilt of each arm, rad, tip up positive, within ±[`VALID_TILT`].
+    #[inline]
     pub fn tilt(&self) -> PerArm<f32> {
         self.arms.map(|a| a.tilt)
+    }
+
+    /// T dα/dT of each arm, rad: how far a relative change of its thrust tilts it.
+    #[inline]
+    pub fn follow(&self) -> PerArm<f32> {
+        self.arms.map(|a| a.follow)
     }
 
     /// Bias of each arm against the model, rad, tip up positive, within the parameters' limit.
@@ -120,6 +135,7 @@ impl TiltModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
 
     fn settled(thrust: f32) -> TiltModel {
         let mut t = TiltModel::new(&Params::default());
@@ -197,6 +213,18 @@ mod tests {
         let truth = t.model().angle(felt) + 0.05;
         t.correct(&[Some(truth); 4]);
         assert!(t.bias().iter().all(|b| *b > 0.0), "{:?}", t.bias());
+    }
+
+    #[test]
+    fn a_bias_stays_within_its_limit_and_a_glitch_moves_nothing() {
+        let limit = Params::default().tilt_bias_max;
+        let mut t = settled(4.4);
+        for _ in 0..3000 {
+            t.correct(&[Some(1.5), Some(-1.5), Some(f32::INFINITY), Some(1e30)]);
+        }
+        let [up, down, silent, glitch] = t.bias();
+        assert!(up <= limit && up > limit - 0.04 && down >= -limit && down < 0.04 - limit);
+        assert!(silent == 0.0 && glitch == 0.0);
     }
 
     #[test]

@@ -63,9 +63,10 @@ impl Vec3 {
         Self::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// True when every component is finite.
+    /// True when every component is finite. Their sum tells: false as well where that overflows.
+    #[inline]
     pub fn is_finite(self) -> bool {
-        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+        (self.x + self.y + self.z).is_finite()
     }
 }
 
@@ -208,9 +209,10 @@ impl Quat {
         )
     }
 
-    /// True when every component is finite.
+    /// True when every component is finite. Their sum tells: false as well where that overflows.
+    #[inline]
     pub fn is_finite(self) -> bool {
-        self.w.is_finite() && self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+        (self.w + self.x + self.y + self.z).is_finite()
     }
 }
 

@@ -25,9 +25,10 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// True when every component is finite.
+    /// True when every component is finite. Their sum tells: false as well where that overflows.
+    #[inline]
     pub fn is_finite(self) -> bool {
-        self.thrust.is_finite() && self.roll.is_finite() && self.pitch.is_finite() && self.yaw.is_finite()
+        (self.thrust + self.roll + self.pitch + self.yaw).is_finite()
     }
 }
 

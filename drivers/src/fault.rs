@@ -92,6 +92,7 @@ impl Fault {
             Self::Identity {
                 found: 0x00 | 0xFF, ..
             } => PortError::Absent,
+            Self::Identity { .. } => PortError::WrongPart,
             Self::Silent | Self::Reset { .. } => PortError::Timeout,
             _ => PortError::Corrupt,
         }
@@ -173,7 +174,7 @@ mod tests {
             found: 0x98,
         };
         assert_eq!(wrong.to_string(), "wrong chip: identity 0x98, expected 0x47");
-        assert_eq!(wrong.port_error(), PortError::Corrupt);
+        assert_eq!(wrong.port_error(), PortError::WrongPart);
         let nothing = Fault::Identity {
             expected: 0x47,
             found: 0xFF,

@@ -1,9 +1,11 @@
 //! TDK ICM-20689 on SPI, up to 8 MHz, mode 0 or 3. Register names and values are those of DS-000143.
 //!
 //! The gyroscope samples at 8 kHz behind the part's own 250 Hz filter (0.97 ms of delay), and every second
-//! sample is read: 4 kHz. The accelerometer is renewed at 1 kHz behind its filter, so its samples repeat.
+//! sample is read: 4 kHz. Other rates read more or fewer of them: the part's own 1 kHz would delay by 2.9 ms.
+//! The accelerometer is renewed at 1 kHz behind its filter, so its samples repeat.
 
 use embassy_time::Duration;
+use sophie_control::params::Params;
 
 use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
@@ -102,6 +104,41 @@ pub struct Config {
     pub read_every: u8,
     /// How the part is watched in flight.
     pub watch: Watch,
+}
+
+impl Config {
+    /// The rate and the ranges that the parameters ask for; the rest as by default.
+    pub fn from_params(p: &Params) -> Self {
+        // Halfway between two choices on the logarithmic scale that they lie on.
+        let read_every = match p.imu_rate {
+            hz if hz < 1414.0 => 8,
+            hz if hz < 2828.0 => 4,
+            hz if hz < 5657.0 => 2,
+            _ => 1,
+        };
+        let gyro_range = match p.imu_gyro_range {
+            dps if dps < 354.0 => GyroRange::Dps250,
+            dps if dps < 707.0 => GyroRange::Dps500,
+            dps if dps < 1414.0 => GyroRange::Dps1000,
+            _ => GyroRange::Dps2000,
+        };
+        let accel_range = match p.imu_accel_range {
+            g if g < 2.83 => AccelRange::G2,
+            g if g < 5.66 => AccelRange::G4,
+            g if g < 11.3 => AccelRange::G8,
+            _ => AccelRange::G16,
+        };
+        let config = Self {
+            gyro_range,
+            accel_range,
+            read_every,
+            ..Self::default()
+        };
+        Self {
+            watch: Watch::at(config.rate_hz()),
+            ..config
+        }
+    }
 }
 
 impl Default for Config {

@@ -1,10 +1,11 @@
 //! TDK ICM-42688-P on SPI, up to 24 MHz, mode 0 or 3. Section numbers are those of DS-000347 rev. 1.8.
 //!
-//! Sampling at 4 kHz, one burst for each data-ready pulse. The part's filters stay wide: the imu task filters.
+//! Sampling at 1, 2, 4 (default) or 8 kHz, one burst for each data-ready pulse. The part's filters stay wide: the imu task filters.
 //! At 2 kHz and more the UI filter's bandwidth is fixed by the rate alone (§5.5: 1048 Hz at 4 kHz); only its
 //! order, and below that rate its bandwidth, can be chosen.
 
 use embassy_time::Duration;
+use sophie_control::params::Params;
 
 use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
@@ -183,6 +184,38 @@ pub struct Config {
     pub accel_anti_alias: AntiAlias,
     /// How the part is watched in flight.
     pub watch: Watch,
+}
+
+impl Config {
+    /// The rate and the ranges that the parameters ask for, all of which the part has; the rest as by default.
+    pub fn from_params(p: &Params) -> Self {
+        // Halfway between two choices on the logarithmic scale that they lie on.
+        let rate = match p.imu_rate {
+            hz if hz < 1414.0 => Rate::Khz1,
+            hz if hz < 2828.0 => Rate::Khz2,
+            hz if hz < 5657.0 => Rate::Khz4,
+            _ => Rate::Khz8,
+        };
+        let gyro_range = match p.imu_gyro_range {
+            dps if dps < 354.0 => GyroRange::Dps250,
+            dps if dps < 707.0 => GyroRange::Dps500,
+            dps if dps < 1414.0 => GyroRange::Dps1000,
+            _ => GyroRange::Dps2000,
+        };
+        let accel_range = match p.imu_accel_range {
+            g if g < 2.83 => AccelRange::G2,
+            g if g < 5.66 => AccelRange::G4,
+            g if g < 11.3 => AccelRange::G8,
+            _ => AccelRange::G16,
+        };
+        Self {
+            rate,
+            gyro_range,
+            accel_range,
+            watch: Watch::at(rate.hz()),
+            ..Self::default()
+        }
+    }
 }
 
 impl Chip for Config {

@@ -1,4 +1,4 @@
-//! Drivers of SOPHIE's sensors and the wire formats of its actuators and receivers.
+//! Drivers of SOPHIE's sensors and the wire formats of its actuators.
 //!
 //! No HAL: chips are reached through the embedded-hal traits, timers through counts that a board writes into
 //! its compare registers. A board builds the drivers and hands them to the tasks as their ports.
@@ -7,9 +7,10 @@
 //! |---|---|---|
 //! | [`icm42688p`], [`icm20689`] over [`spi_imu`] | inertial sensor of the vehicle, SPI | `Imu` |
 //! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
-//! | [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
+//! | [`i2c_lines`] | a held I2C bus is freed | used by the board's buses |
+//! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
-//! | [`sbus`] | receiver | decodes what `SerialInput` gives |
+//! | [`param_store`], [`fram`] | parameters in flash, or in FRAM on SPI | `Storage` |
 
 #![no_std]
 #![deny(
@@ -28,14 +29,17 @@ pub mod arm_buses;
 pub mod bno055;
 pub mod dshot;
 pub mod dshot_decoder;
+pub mod esc_protocol;
 pub mod esc_pwm;
 pub mod fault;
+pub mod fram;
+pub mod i2c_lines;
 pub mod icm20689;
 pub mod icm42688p;
 pub mod mounting;
+pub mod param_store;
 pub mod pwm_timing;
 pub mod registers;
-pub mod sbus;
 pub mod self_test;
 pub mod servo_pulse;
 pub mod spi_imu;

@@ -66,13 +66,21 @@ pub struct Watch {
     pub stuck_after: u16,
 }
 
-impl Default for Watch {
-    /// A look each 100 ms at 4 kHz; stuck after 4 ms.
-    fn default() -> Self {
+impl Watch {
+    /// A look each 100 ms of samples at `rate_hz`; stuck after 16 samples alike, which noise does not bring about
+    /// at any rate (two alike are not rare at 1 kHz, where the noise is less than a count).
+    pub const fn at(rate_hz: f32) -> Self {
         Self {
-            check_every: 400,
+            check_every: (rate_hz * 0.1) as u16,
             stuck_after: 16,
         }
+    }
+}
+
+impl Default for Watch {
+    /// At 4 kHz.
+    fn default() -> Self {
+        Self::at(4000.0)
     }
 }
 

@@ -4,16 +4,20 @@
 mod fake;
 
 use std::cell::RefCell;
+use std::pin::pin;
 use std::rc::Rc;
 
-use embassy_time::{Duration, Instant, Timer};
+use embassy_time::{Duration, Instant, Timer, with_timeout};
 use fake::i2c::{Bus, Chip, Failure};
 use fake::run;
+use sophie_control::arming::Refusal;
+use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055::{Config, Fusion};
 use sophie_drivers::fault::Fault;
 use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_tasks::links::Links;
 use sophie_tasks::ports::{ArmImus, PortError};
 
 type Chips = [Rc<RefCell<Chip>>; 4];
@@ -297,4 +301,40 @@ fn an_arm_that_does_not_exist_is_absent() {
         let (mut arms, _) = arms([Config::default(); 4]);
         assert_eq!(arms.gravity(4).await, Err(PortError::Absent));
     });
+}
+
+#[test]
+fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
+    // Power-up of the chips before, with and after that of the processor: each misses the driver's attempts by more.
+    for late_ms in [0, 100, 300, 600] {
+        run(async move {
+            let (port, chips) = arms([Config::default(); 4]);
+            let links = Links::new(Params::default());
+            let mut task = pin!(sophie_tasks::arms::run(&links, port));
+            let _ = with_timeout(Duration::from_millis(late_ms), task.as_mut()).await;
+            chips.iter().for_each(|chip| chip.borrow_mut().reset());
+            for _ in 0..600 {
+                let _ = with_timeout(Duration::from_millis(10), task.as_mut()).await;
+                assert!(
+                    links.hardware().is_empty(),
+                    "{late_ms} ms late: {} ms",
+                    Instant::now().as_millis()
+                );
+            }
+            // A wire falls off, a bus hangs: one chip, then both of the other side.
+            chips[1].borrow_mut().failure = Failure::Missing;
+            let _ = with_timeout(Duration::from_millis(1100), task.as_mut()).await;
+            assert!(links.hardware().iter().eq([Refusal::ArmSensor2]));
+            chips[2].borrow_mut().failure = Failure::Stretched;
+            chips[3].borrow_mut().failure = Failure::Stretched;
+            let _ = with_timeout(Duration::from_millis(1200), task.as_mut()).await;
+            let all = [Refusal::ArmSensor2, Refusal::ArmSensor3, Refusal::ArmSensor4];
+            assert!(links.hardware().iter().eq(all));
+            for chip in &chips {
+                chip.borrow_mut().failure = Failure::None;
+            }
+            let _ = with_timeout(Duration::from_secs(3), task.as_mut()).await;
+            assert!(links.hardware().is_empty());
+        });
+    }
 }

@@ -7,6 +7,7 @@ use embassy_time::{Duration, Instant, with_timeout};
 use fake::run;
 use fake::spi::{Bus, DataReady, Failure, Kind, Part};
 use sophie_control::math::GRAVITY;
+use sophie_control::params::Params;
 use sophie_drivers::fault::{Fault, Sensor};
 use sophie_drivers::icm20689::{Config, GyroFilter, Icm20689};
 use sophie_drivers::mounting::Mounting;
@@ -179,4 +180,54 @@ fn a_lost_part_comes_back_although_its_reset_is_longer_than_the_task_waits() {
         let took = (Instant::now() - start).as_millis();
         assert!(took < 400, "{took} ms");
     });
+}
+
+#[test]
+fn the_parameters_set_rate_and_ranges_and_the_scales_follow() {
+    for rate in [1000.0, 2000.0, 4000.0, 8000.0] {
+        for (dps, gyro) in [(250.0, 0u8), (500.0, 1), (1000.0, 2), (2000.0, 3)] {
+            for (g, accel) in [(2.0, 0u8), (4.0, 1), (8.0, 2), (16.0, 3)] {
+                let mut params = Params::default();
+                params.set("imu_rate", rate).unwrap();
+                params.set("imu_gyro_range", dps).unwrap();
+                params.set("imu_accel_range", g).unwrap();
+                run(async move {
+                    let part = Part::new(Kind::Icm20689);
+                    let mut driver = Icm20689::new(
+                        Bus(part.clone()),
+                        DataReady(part.clone()),
+                        Config::from_params(&params),
+                        Mounting::default(),
+                    );
+                    driver.init().await.unwrap();
+                    // The filter of 250 Hz at 8 kHz at every rate: no divider, no slower filter.
+                    let b0 = part.borrow().banks[0];
+                    assert_eq!(b0[0x19..0x1E], [0x00, 0x00, gyro << 3, accel << 3, 0x00]);
+                    assert!((driver.rate_hz() - rate).abs() < 0.1);
+                    {
+                        let mut part = part.borrow_mut();
+                        part.gyro = [0.5 * dps, 0.0, 0.0];
+                        part.accel = [0.5 * g, 0.0, 1.0];
+                    }
+                    driver.read().await.unwrap();
+                    let start = Instant::now();
+                    let mut last = None;
+                    for _ in 0..100 {
+                        last = Some(driver.read().await.unwrap()[0]);
+                    }
+                    let took = (Instant::now() - start).as_micros() as f32;
+                    assert!((took * rate * 1e-8 - 1.0).abs() < 0.02, "{took} us at {rate} Hz");
+                    let last = last.unwrap();
+                    assert!(
+                        (last.gyro.x.to_degrees() - 0.5 * dps).abs() < 3.0 * dps / 32768.0,
+                        "{last:?}"
+                    );
+                    assert!(
+                        (last.accel.x - 0.5 * g * GRAVITY).abs() < 3.0 * g * GRAVITY / 32768.0,
+                        "{last:?}"
+                    );
+                });
+            }
+        }
+    }
 }

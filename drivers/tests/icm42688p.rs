@@ -4,16 +4,20 @@
 mod fake;
 
 use std::cell::RefCell;
+use std::pin::pin;
 use std::rc::Rc;
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use fake::run;
 use fake::spi::{Bus, DataReady, Failure, Kind, Part};
+use sophie_control::arming::Refusal;
 use sophie_control::math::GRAVITY;
+use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_drivers::fault::{Fault, Sensor};
 use sophie_drivers::icm42688p::{AccelRange, AntiAlias, Config, FilterOrder, GyroRange, Icm42688p, Rate};
 use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_tasks::links::Links;
 use sophie_tasks::ports::{Imu, ImuReading, PortError};
 
 type Driver = Icm42688p<Bus, DataReady>;
@@ -187,7 +191,7 @@ fn what_is_wrong_at_start_up_is_named() {
                 expected: 0x47,
                 found: 0x98,
             },
-            PortError::Corrupt,
+            PortError::WrongPart,
         ),
         (
             |p| p.deaf.push((1, 0x0C)),
@@ -442,4 +446,112 @@ fn nothing_is_believed_before_the_part_has_settled() {
         assert!(took >= Duration::from_millis(45), "{took:?}");
         Timer::after_millis(1).await;
     });
+}
+
+#[test]
+fn the_parameters_set_rate_and_ranges_and_the_scales_follow() {
+    // Parameter, the register's bits, and what the fake part makes of them: a data-ready each period.
+    for (rate, odr) in [(1000.0, 6), (2000.0, 5), (4000.0, 4), (8000.0, 3)] {
+        for (dps, gyro) in [(250.0, 3), (500.0, 2), (1000.0, 1), (2000.0, 0)] {
+            for (g, accel) in [(2.0, 3), (4.0, 2), (8.0, 1), (16.0, 0)] {
+                let mut params = Params::default();
+                params.set("imu_rate", rate).unwrap();
+                params.set("imu_gyro_range", dps).unwrap();
+                params.set("imu_accel_range", g).unwrap();
+                run(async move {
+                    let (mut driver, part) = pair(Config::from_params(&params));
+                    driver.init().await.unwrap();
+                    {
+                        let part = part.borrow();
+                        let b0 = part.banks[0];
+                        assert_eq!((b0[0x4F], b0[0x50]), (gyro << 5 | odr, accel << 5 | odr));
+                        assert_eq!(part.violations, Vec::<String>::new());
+                    }
+                    assert!((driver.rate_hz() - rate).abs() < 0.1);
+                    {
+                        let mut part = part.borrow_mut();
+                        part.gyro = [0.5 * dps, 20.0, 30.0];
+                        part.accel = [0.5 * g, 0.0, 1.0];
+                    }
+                    let _ = read(&mut driver).await;
+                    let start = Instant::now();
+                    let mut last = ImuReading::default();
+                    for _ in 0..100 {
+                        last = read(&mut driver).await.unwrap().unwrap();
+                    }
+                    let took = (Instant::now() - start).as_micros() as f32;
+                    assert!((took * rate * 1e-8 - 1.0).abs() < 0.02, "{took} us at {rate} Hz");
+                    // Two counts of noise at most.
+                    let (gyro_error, accel_error) = (3.0 * dps / 32768.0, 3.0 * g * GRAVITY / 32768.0);
+                    assert!(
+                        (last.gyro.x.to_degrees() - 0.5 * dps).abs() < gyro_error,
+                        "{last:?}"
+                    );
+                    assert!((last.accel.x - 0.5 * g * GRAVITY).abs() < accel_error, "{last:?}");
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
+    for rate in [1000.0, 2000.0, 4000.0, 8000.0] {
+        let mut params = Params::default();
+        params.set("imu_rate", rate).unwrap();
+        run(async move {
+            let (mut driver, part) = pair(Config::from_params(&params));
+            driver.init().await.unwrap();
+            part.borrow_mut().transactions.clear();
+            read_for(&mut driver, Duration::from_secs(1)).await;
+            // A look is the identity, 2 bytes, and six registers.
+            let looks = part.borrow().transactions.iter().filter(|&&n| n == 7).count();
+            assert!((9..=10).contains(&looks), "{looks} at {rate} Hz");
+        });
+    }
+}
+
+#[test]
+fn the_imu_task_reports_what_the_driver_finds_and_takes_it_back() {
+    let cases: [(Spoil, Refusal); 4] = [
+        (|p| p.failure = Failure::Ones, Refusal::ImuAbsent),
+        (|p| p.failure = Failure::Zeros, Refusal::ImuAbsent),
+        (|p| p.failure = Failure::Bus, Refusal::ImuCorrupt),
+        (
+            |p| {
+                p.kind = Kind::Icm20689;
+                p.reset();
+            },
+            Refusal::ImuWrongPart,
+        ),
+    ];
+    for (spoil, reason) in cases {
+        for at_start in [true, false] {
+            run(async move {
+                let (driver, part) = pair(Config::default());
+                let links = Links::new(Params::default());
+                let mut task = pin!(sophie_tasks::imu::run(&links, driver));
+                if !at_start {
+                    let _ = with_timeout(Duration::from_secs(1), task.as_mut()).await;
+                    assert!(links.hardware().is_empty() && links.imu.fresh().is_some());
+                }
+                spoil(&mut part.borrow_mut());
+                let _ = with_timeout(Duration::from_millis(300), task.as_mut()).await;
+                assert!(links.hardware().iter().eq([reason]), "{reason:?}, {at_start}");
+                let _ = with_timeout(Duration::from_secs(5), task.as_mut()).await;
+                assert!(
+                    links.hardware().iter().eq([reason]),
+                    "{reason:?}, {at_start}: flaps"
+                );
+                {
+                    let mut part = part.borrow_mut();
+                    (part.failure, part.kind) = (Failure::None, Kind::Icm42688p);
+                    part.reset();
+                }
+                let _ = with_timeout(Duration::from_millis(500), task.as_mut()).await;
+                assert!(links.hardware().is_empty(), "{reason:?}, {at_start}");
+                assert!(links.imu.fresh().is_some());
+            });
+        }
+    }
 }

@@ -11,7 +11,9 @@ use embassy_time::Timer;
 use heapless::Vec;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
+use sophie_control::warm::{WORDS, Words};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
@@ -20,7 +22,7 @@ use crate::plant::{Actuators, Plant, STEP};
 use crate::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
-use crate::sensors::imu::{self, Imu};
+use crate::sensors::imu::Imu;
 
 /// Bytes that a serial line holds until they are read: half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
@@ -31,8 +33,6 @@ const ARM_READ_US: u64 = 400;
 
 /// Plant steps in a millisecond.
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
-/// Samples of the inertial sensor in a plant step.
-const SAMPLES_PER_STEP: u32 = (imu::RATE_HZ * STEP) as u32;
 
 /// The board's state, shared by its ports and the world.
 pub struct Board {
@@ -43,6 +43,10 @@ pub struct Board {
     sensors: RefCell<Sensors>,
     truth: Cell<AnalogTruth>,
     arm_gravity: Cell<PerArm<Vec3>>,
+    /// Samples of the inertial sensor in a second.
+    imu_rate: f64,
+    /// Memory that outlives a reset.
+    pub memory: Cell<[Words; 2]>,
     /// Accelerometer bias that the builder measured on a level bench, m/s²: a parameter of this board.
     pub accel_bias: [f32; 3],
 }
@@ -67,10 +71,16 @@ struct Sensors {
 }
 
 impl Board {
-    /// A board whose parts have errors drawn from `rng`.
+    /// A board with the default parameters whose parts have errors drawn from `rng`.
     #[must_use]
     pub fn new(rng: &mut Pcg64Mcg) -> Self {
-        let mut imu = Imu::new(Pcg64Mcg::from_rng(rng));
+        Self::configured(&Params::default(), rng)
+    }
+
+    /// A board configured as `params` say, whose parts have errors drawn from `rng`.
+    #[must_use]
+    pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
+        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
         let accel_bias = imu.bench_bias().as_vec3().to_array();
         let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
         let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
@@ -90,7 +100,9 @@ impl Board {
             }),
             truth: Cell::default(),
             arm_gravity: Cell::default(),
+            memory: Cell::new([[0; WORDS]; 2]),
             accel_bias,
+            imu_rate: f64::from(params.imu_rate),
         }
     }
 
@@ -99,13 +111,15 @@ impl Board {
         let actuators = self.actuators.get();
         let mut sensors = self.sensors.borrow_mut();
         let mut batch = Vec::new();
-        for _ in 0..STEPS_PER_MS {
+        for step in 0..STEPS_PER_MS {
             let (rate, force) = (plant.pose().omega, plant.specific_force());
             plant.step(&actuators);
             let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
-            for k in 1..=SAMPLES_PER_STEP {
-                // The part samples faster than the plant steps: on the line between two steps.
-                let share = f64::from(k) / f64::from(SAMPLES_PER_STEP);
+            // A part at 1 kHz samples at the end of every other step; a faster one on the line between two steps.
+            let samples = (self.imu_rate * STEP * f64::from(step + 1)) as u32
+                - (self.imu_rate * STEP * f64::from(step)) as u32;
+            for k in 1..=samples {
+                let share = f64::from(k) / f64::from(samples);
                 let rotors = plant.rotor_speed();
                 let reading =
                     sensors
@@ -132,6 +146,14 @@ impl Board {
             elapsed: self.truth.get().elapsed + 1e-3,
         });
         self.imu_ready.signal(batch);
+    }
+
+    /// A reset: no motor frame, no servo pulse, nothing in the lines' buffers. Sensors and memory stay as they are.
+    pub fn reset(&self) {
+        self.actuators.set(Actuators::default());
+        self.imu_ready.reset();
+        self.rc.clear();
+        self.telemetry.clear();
     }
 
     /// Puts bytes on the receiver's line; what does not fit is lost, as on a line nobody reads.
@@ -163,7 +185,7 @@ pub struct Port(pub &'static Board);
 
 impl ports::Imu for Port {
     fn rate_hz(&self) -> f32 {
-        imu::RATE_HZ as f32
+        self.0.imu_rate as f32
     }
 
     async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {
@@ -248,6 +270,17 @@ impl ports::SerialOutput for Port {
             rest = rest.get(written..).unwrap_or_default();
         }
         Ok(())
+    }
+}
+
+impl ports::Retain for Port {
+    fn keep(&mut self, second: bool, words: &Words) {
+        let [first_copy, second_copy] = self.0.memory.get();
+        self.0.memory.set(if second {
+            [first_copy, *words]
+        } else {
+            [*words, second_copy]
+        });
     }
 }
 

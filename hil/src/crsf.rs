@@ -66,6 +66,14 @@ impl Telemetry {
         self.attitude = None;
     }
 
+    /// The vehicle is in this state, for this reason.
+    pub fn tell(&mut self, mode: Mode, reason: &str) {
+        self.mode = Some(mode);
+        if self.reason != reason {
+            self.reason = reason.to_owned();
+        }
+    }
+
     /// Takes bytes that the vehicle sent, however they are cut.
     pub fn take(&mut self, mut bytes: &[u8]) {
         while let Some(packet) = self.parser.next_packet(&mut bytes) {
@@ -83,10 +91,7 @@ impl Telemetry {
         match packet {
             Packet::FlightMode(text) => {
                 if let Some((mode, reason)) = parse_mode_text(text.flight_mode()) {
-                    self.mode = Some(mode);
-                    if self.reason != reason {
-                        self.reason = reason.to_owned();
-                    }
+                    self.tell(mode, reason);
                 }
             }
             Packet::Battery(b) => self.battery_voltage = Some(0.1 * f64::from(b.voltage)),

@@ -7,6 +7,7 @@ pub mod flight;
 pub mod pilot;
 pub mod plant;
 pub mod record;
+pub mod sbus;
 pub mod scenario;
 pub mod sensors;
 pub mod study;

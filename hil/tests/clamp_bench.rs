@@ -18,7 +18,7 @@ use sophie_control::tendon::{Drive, ForceLimit, Reel, TendonDrive};
 use sophie_hil::plant::STEP;
 use sophie_hil::plant::arm::{Arm, ArmSpec, TIP_MASS};
 use sophie_hil::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose, SkinLoad};
-use sophie_hil::plant::tendon::{Tendon, TendonSpec};
+use sophie_hil::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use sophie_hil::scenario::ServoProfile;
 use sophie_hil::sensors::fsr::{FsrBreak, FsrSensor};
 
@@ -37,6 +37,9 @@ struct Bench {
     tilts: VecDeque<f64>,
     tilt_offset: f64,
     steps: u64,
+    /// Time between two frames of the servo and to the next, s.
+    frame: f64,
+    to_frame: f64,
     /// Thrust that the mixer asks for and that the rotor has, N.
     asked: f64,
     thrust: f64,
@@ -67,10 +70,12 @@ struct Bench {
 
 impl Bench {
     fn new(infill: f64, diameter: f64, seed: u64, servo: ServoProfile) -> Self {
-        let mut params = Params {
-            infill: infill as f32,
-            ..Params::default()
-        };
+        Self::with(Params::default(), infill, diameter, seed, servo)
+    }
+
+    /// With the servo's frames and pulses of `params`.
+    fn with(mut params: Params, infill: f64, diameter: f64, seed: u64, servo: ServoProfile) -> Self {
+        params.infill = infill as f32;
         if servo == ServoProfile::Mg996r {
             (params.servo_stall, params.servo_range) = (0.922, std::f32::consts::PI);
         }
@@ -86,13 +91,13 @@ impl Bench {
         // The belly pads 0.6 mm deep: a quarter of 10 N on each.
         let down = BELLY_Z + (radius * radius - 0.03 * 0.03).sqrt() - 0.6e-3;
         let sensor = FsrSensor::new(&mut rng);
-        let reel = Reel::from_params(&params);
-        let drive = TendonDrive::new(0.0);
+        let reel = Reel::from_params(&params, 0);
+        let drive = TendonDrive::new();
         Self {
             rng,
             arm: Arm::new(0, ArmSpec::new(infill, 7.75, gain, offset, 0.15)),
             tendon: Tendon::new(
-                servo.into(),
+                ServoSpec::from(servo).measured(&params, 0),
                 TendonSpec {
                     slack_error,
                     ..TendonSpec::default()
@@ -117,6 +122,8 @@ impl Bench {
             tilts: VecDeque::new(),
             tilt_offset,
             steps: 0,
+            frame: 1.0 / f64::from(params.servo_frame_rate),
+            to_frame: 1.0 / f64::from(params.servo_frame_rate),
             asked: 2.5,
             thrust: 2.5,
             thrust_error: 1.0 + thrust_error,
@@ -185,10 +192,13 @@ impl Bench {
             self.grip = self.clamp.step(&self.config, self.close, &input, 0.01);
             assert!(self.grip.force >= 0.0 && self.grip.force <= self.config.limit());
         }
-        if self.steps.is_multiple_of(40) {
+        self.to_frame -= STEP;
+        // To the nearest step of the plant.
+        if self.to_frame <= 0.5 * STEP {
+            self.to_frame += self.frame;
             self.driven = self
                 .drive
-                .step(&self.reel, self.grip.force, self.measured_tilt, 0.02);
+                .step(&self.reel, self.grip.force, self.measured_tilt, self.frame as f32);
         }
     }
 
@@ -241,8 +251,13 @@ struct Outcome {
 /// Closes, stops the rotor, holds, disturbs, spools up and releases; panics where a demand is not met.
 /// `None` when the arm reported that its force does not suffice.
 fn whole_run(infill: f64, diameter: f64, seed: u64) -> Option<Outcome> {
-    let what = format!("infill {infill}, diameter {diameter}, seed {seed}");
-    let mut b = Bench::new(infill, diameter, seed, ServoProfile::Paper);
+    whole_run_with(Params::default(), infill, diameter, seed)
+}
+
+fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Option<Outcome> {
+    let rate = params.servo_frame_rate;
+    let what = format!("infill {infill}, diameter {diameter}, seed {seed}, {rate} Hz");
+    let mut b = Bench::with(params, infill, diameter, seed, ServoProfile::Paper);
     b.run(1.0);
     assert!(
         b.grip.state == ArmState::Free && b.tendon.tension() == 0.0,
@@ -362,6 +377,34 @@ fn every_arm_closes_holds_and_lets_go() {
             assert!(o.spool_down < 150.0, "{what}");
             // 5 % of the arm's stiffness, 1.1° of its offset, 7 % of the pressure.
             assert!((o.torque / torque - 1.0).abs() < 0.12, "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_fast_or_mirrored_servo_closes_holds_and_lets_go_as_any_other() {
+    for rate in [50.0, 100.0, 333.0] {
+        for (release, full) in [(550.0, 2450.0), (2400.0, 800.0)] {
+            for (infill, diameter, torque) in CASES.into_iter().filter(|c| (0.25..0.35).contains(&c.1)) {
+                let params = Params {
+                    servo_frame_rate: rate,
+                    servo_release_1: release,
+                    servo_full_1: full,
+                    ..Params::default()
+                };
+                let what = format!("infill {infill}, diameter {diameter}, {rate} Hz, {release} to {full} us");
+                let Some(o) = whole_run_with(params, infill, diameter, 1) else {
+                    assert!(torque > 20.0, "{what}: force limited");
+                    continue;
+                };
+                println!(
+                    "{what}: closure {:.2} s, {:.2} kgcm, peak {:.0} Pa, spool-down {:.0} Pa, released in {:.2} s",
+                    o.closure, o.torque, o.closing_peak, o.spool_down, o.released_in
+                );
+                assert!(o.closing_peak < 1150.0 && o.spool_down < 150.0, "{what}: {o:?}");
+                assert!((2.0..5.0).contains(&o.closure), "{what}: {o:?}");
+                assert!((o.torque / torque - 1.0).abs() < 0.12, "{what}: {o:?}");
+            }
         }
     }
 }

@@ -4,12 +4,12 @@
 mod fakes;
 
 use embassy_time::Instant;
-use fakes::{Answer, FakeAnalog, FakeServos, links};
+use fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
 use sophie_control::deflection::ArmModel;
 use sophie_control::grip::{ArmState, GripState};
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
-use sophie_control::tendon::{FULL_US, ForceLimit, REFERENCE_TILT, RELEASE_US};
+use sophie_control::tendon::{ForceLimit, REFERENCE_TILT, Reel};
 use sophie_control::wrench::PerArm;
 use sophie_hil::clock::VirtualTime;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForces};
@@ -23,6 +23,8 @@ const PRESSED: f32 = 0.2;
 const ARM_TIME: f32 = 0.03;
 /// Counts of a converter whose pin is pulled to the supply.
 const SHORTED: u16 = 4095;
+/// Pulse of a servo at release, µs.
+const RELEASE_US: f32 = 550.0;
 /// Close all arms.
 const CLOSE: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
@@ -42,8 +44,13 @@ struct Arm {
 }
 
 impl Arm {
-    fn step(&mut self, pulse: f32, p: &Params, dt: f32) {
-        let angle = ((pulse - RELEASE_US) / (FULL_US - RELEASE_US)).max(0.0) * p.servo_range;
+    fn step(&mut self, pulse: f32, reel: &Reel, p: &Params, dt: f32) {
+        // No pulse, no pull.
+        let angle = if pulse > 0.0 {
+            reel.angle_of(pulse).max(0.0)
+        } else {
+            0.0
+        };
         let bend = ArmModel::from_params(p).slope(0.0) * p.tendon_lever / p.arm_d;
         let force = |tilt: f32| {
             let stretch = p.reel_radius * angle - p.tendon_lever * (REFERENCE_TILT - tilt);
@@ -91,7 +98,11 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let (time, links) = (VirtualTime::new(), links());
+        Self::with(Params::default())
+    }
+
+    fn with(params: Params) -> Self {
+        let (time, links) = (VirtualTime::new(), links_with(params));
         let (converter, servos) = (FakeAnalog::default(), FakeServos::default());
         time.spawn(sophie_tasks::analog::run(links, converter.clone()));
         time.spawn(sophie_tasks::clamp::run(links));
@@ -118,7 +129,11 @@ impl Bench {
 
     /// Closed and proven.
     fn holding() -> Self {
-        let mut bench = Self::new();
+        Self::holding_with(Params::default())
+    }
+
+    fn holding_with(params: Params) -> Self {
+        let mut bench = Self::with(params);
         bench.command = Some(CLOSE);
         bench.run(6.0);
         assert!(bench.grip().proven, "{:?}", bench.grip());
@@ -127,11 +142,13 @@ impl Bench {
 
     fn run(&mut self, seconds: f32) {
         let p = &self.links.params;
+        let reels = Reel::all(p);
         for _ in 0..(seconds * 1e3) as u32 {
             self.ms += 1;
             let mut frame = self.converter.frame.get();
-            for ((arm, pulse), counts) in self.arms.iter_mut().zip(self.servos.now()).zip(&mut frame.fsr) {
-                arm.step(pulse, p, 1e-3);
+            let pulses = self.servos.now().into_iter().zip(&reels);
+            for ((arm, (pulse, reel)), counts) in self.arms.iter_mut().zip(pulses).zip(&mut frame.fsr) {
+                arm.step(pulse, reel, p, 1e-3);
                 *counts = arm.counts(p);
             }
             self.converter.frame.set(frame);
@@ -179,6 +196,44 @@ fn four_sound_arms_close_hold_and_let_go() {
     assert_eq!((b.forces(), b.servos.now()), ([0.0; 4], [RELEASE_US; 4]));
 }
 
+/// The servo as it comes, mirrored, trimmed, with little travel, and slow.
+fn mixed_servos() -> Params {
+    Params {
+        servo_release_2: 2450.0,
+        servo_full_2: 550.0,
+        servo_trim_3: -40.0,
+        servo_release_3: 900.0,
+        servo_full_3: 2100.0,
+        servo_slew_4: 3.0,
+        ..Params::default()
+    }
+}
+
+#[test]
+fn four_different_servos_close_hold_and_let_go_at_every_frame_rate() {
+    for rate in [50.0, 100.0, 333.0] {
+        let params = Params {
+            servo_frame_rate: rate,
+            ..mixed_servos()
+        };
+        let mut b = Bench::holding_with(params);
+        for (arm, force) in b.arms.iter().zip(b.forces()) {
+            assert!((arm.pressure - 950.0).abs() < 50.0, "{rate} Hz: {}", arm.pressure);
+            assert!((20.0..100.0).contains(&force), "{rate} Hz: {force}");
+        }
+        let frames = b.servos.pulses.borrow().len() as f32;
+        let expected = rate * b.ms as f32 * 1e-3;
+        assert!(
+            (frames / expected - 1.0).abs() < 0.01,
+            "{rate} Hz: {frames} frames, {expected}"
+        );
+        b.command = Some(ClampCommand::Release);
+        b.run(3.0);
+        assert!(b.grip().released && !b.grip().proven, "{rate} Hz");
+        assert_eq!(b.servos.now(), [550.0, 2450.0, 860.0, 550.0]);
+    }
+}
+
 #[test]
 fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_is_told_to() {
     let (time, links, servos) = (VirtualTime::new(), links(), FakeServos::default());
@@ -191,9 +246,17 @@ fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_i
         "nothing is known of servos without a pulse"
     );
 
-    // The clamp loop starts without a commander: at release, and proven free only by the servos' own word.
+    // The clamp loop without a commander is silent too: the arms may be closed on a pipe.
     time.spawn(sophie_tasks::clamp::run(links));
     time.run_until(2_000_000);
+    assert!(servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && links.tendons.latest().is_none());
+    links.clamp_command.send(Instant::now(), ClampCommand::Keep);
+    time.run_until(2_150_000);
+    assert!(servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && links.tendons.latest().is_none());
+
+    let silent = servos.pulses.borrow().len();
+    links.clamp_command.send(Instant::now(), ClampCommand::Release);
+    time.run_until(2_300_000);
     let pulses = servos.pulses.borrow();
     assert!(pulses.iter().skip(silent + 1).all(|p| *p == [RELEASE_US; 4]));
     assert_eq!(links.tendons.fresh(), Some(TendonForces::default()));
@@ -343,7 +406,13 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
         let (now, tilt) = (Instant::now(), [Some(-0.8); 4]);
         links.arms.send(now, ArmAngles { tilt });
         if let Some(force) = force {
-            links.tendons.send(now, TendonForces { force: [force; 4] });
+            links.tendons.send(
+                now,
+                TendonForces {
+                    force: [force; 4],
+                    ..TendonForces::default()
+                },
+            );
         }
     };
     (1..300).for_each(|i| step(10 * i, Some(60.0)));

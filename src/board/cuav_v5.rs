@@ -8,7 +8,9 @@
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | GPS, I2C2 |
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4, PA4), RSSI (PB0), POWER2 current (PA3); POWER1 |
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
-//! | lights | | none | on board |
+//! | console | USART2 | none | TELEM1 |
+//! | parameters, FRAM | SPI2 | none | on board |
+//! | lights, sounder | TIM9 | none | on board |
 //! | time | TIM5 | none | |
 //!
 //! Only the AUX outputs are this chip's: the MAIN outputs and the RC input hang on a second one, whose firmware is
@@ -16,51 +18,52 @@
 //! and ArduPilot (`fmuv5`) name.
 
 use assign_resources::assign_resources;
-use embassy_stm32::adc::{Adc, AdcChannel};
+use embassy_embedded_hal::adapter::BlockingAsync;
+use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{AnyPin, Level, Output, OutputType, Pull, Speed};
-use embassy_stm32::i2c::I2c;
+use embassy_stm32::gpio::{AnyPin, Level, Output, Pull, Speed};
 use embassy_stm32::mode::Async;
-use embassy_stm32::spi::{MODE_3, Spi};
-use embassy_stm32::time::{Hertz, hz, mhz};
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
-use embassy_stm32::usart::Uart;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, spi, usart};
-use embassy_time::Duration;
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::mhz;
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
+use sophie_drivers::esc_protocol::Protocol;
+use sophie_drivers::fram::Fram;
 use sophie_drivers::icm20689::{self, Icm20689};
 use sophie_drivers::mounting::{Heading, Mounting};
-use static_cell::ConstStaticCell;
 
 use super::Board;
+use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
-    Aligned, AnalogInputs, AnalogScale, Converter, Dog, EscBurst, EscTimer, Lights, Protocol, ReceiverLine,
-    Selected, ServoPairs, TelemetryLine,
+    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
+    Selected, ServoPairs, Tone, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "cuav-v5";
 
 /// The vehicle's inertial sensor.
-pub type ImuPort = Icm20689<Selected, ExtiInput<'static, Async>>;
+pub type ImuPort = Icm20689<DmaChip, ExtiInput<'static, Async>>;
 /// The arms' inertial sensors.
-pub type ArmsPort = ArmBuses<I2c<'static, Async, i2c::Master>, I2c<'static, Async, i2c::Master>>;
+pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
 /// Pressure sensors and battery.
-pub type AnalogPort = AnalogInputs<Converter<peripherals::ADC1, peripherals::DMA2_CH4, Irqs>>;
+pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
 /// The motors.
 pub type MotorsPort = EscTimer<peripherals::TIM1, peripherals::DMA2_CH5, Irqs>;
 /// The tendon servos.
-pub type ServosPort = ServoPairs;
-/// From the receiver.
-pub type ReceiverPort = ReceiverLine;
-/// To the receiver.
-pub type TelemetryPort = TelemetryLine;
+pub type ServosPort = ServoPairs<peripherals::TIM4, peripherals::TIM12>;
 /// The watchdog.
 pub type WatchdogPort = Dog<peripherals::IWDG>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<Fram<PlainChip>>;
+/// Lights and buzzer.
+pub type LightsPort = Lights<Tone<peripherals::TIM9>>;
 
 crate::levels_on!(SAI1, SAI2);
+crate::i2c_bus!(LeftArms, Irqs);
+crate::i2c_bus!(RightArms, Irqs);
 
 bind_interrupts! {
     /// Which handler serves which vector.
@@ -80,6 +83,7 @@ bind_interrupts! {
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
         USART3 => usart::InterruptHandler<peripherals::USART3>;
     }
 }
@@ -120,17 +124,19 @@ assign_resources! {
         servo_3: PH6,
         servo_4: PH9,
     }
-    arms: ArmParts {
-        left: I2C1,
-        left_clock: PB8,
-        left_data: PB9,
-        left_tx_dma: DMA1_CH6,
-        left_rx_dma: DMA1_CH0,
-        right: I2C2,
-        right_clock: PF1,
-        right_data: PF0,
-        right_tx_dma: DMA1_CH7,
-        right_rx_dma: DMA1_CH2,
+    left_arms: LeftArms {
+        bus: I2C1,
+        clock: PB8,
+        data: PB9,
+        tx_dma: DMA1_CH6,
+        rx_dma: DMA1_CH0,
+    }
+    right_arms: RightArms {
+        bus: I2C2,
+        clock: PF1,
+        data: PF0,
+        tx_dma: DMA1_CH7,
+        rx_dma: DMA1_CH2,
     }
     analog: AnalogParts {
         adc: ADC1,
@@ -149,39 +155,61 @@ assign_resources! {
         rx_dma: DMA1_CH1,
         tx_dma: DMA1_CH3,
     }
+    console: ConsoleParts {
+        uart: USART2,
+        rx: PD6,
+        tx: PD5,
+    }
+    storage: StorageParts {
+        spi: SPI2,
+        clock: PI1,
+        data_in: PI2,
+        data_out: PI3,
+        select: PF5,
+    }
     lights: LightParts {
         green: PC6,
         red: PB1,
+        tone: TIM9,
+        buzzer: PE5,
     }
     watchdog: WatchdogParts {
         dog: IWDG,
     }
 }
 
-// What DMA reads and writes. All statics lie in DTCM, which DMA1 and DMA2 reach; `cargo xtask firmware` checks it.
-static DMA_MOTORS: ConstStaticCell<EscBurst> = ConstStaticCell::new(EscBurst::IDLE);
-static DMA_ANALOG: ConstStaticCell<Aligned<[u16; 6]>> = ConstStaticCell::new(Aligned([0; 6]));
-static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(Aligned([0; 512]));
-
-/// Starts the clocks and builds every port. Called once.
-pub fn take(params: &Params) -> Board {
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
     let p = embassy_stm32::init(clocks());
-    // SAFETY: called once, and no one else uses the core's cache control. Only the instruction cache: with the data
-    // cache on, what DMA writes would have to be invalidated by hand.
-    unsafe { cortex_m::Peripherals::steal() }.SCB.enable_icache();
+    stop_motors();
+    enable_instruction_cache();
     let parts = split_resources!(p);
     rails(parts.rails);
-    let (receiver, telemetry) = receiver(parts.receiver);
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = super::load(&mut storage).await;
+    let r = parts.receiver;
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
+    let c = parts.console;
+    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, Protocol::from_params(params)),
-        imu: imu(parts.imu),
-        arms: arms(parts.arms),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
+        arms: ArmBuses::new(
+            ArmBus::new(parts.left_arms),
+            ArmBus::new(parts.right_arms),
+            [bno055::Config::default(); 4],
+        ),
         analog: analog(parts.analog),
-        servos: servos(parts.servos),
+        servos: servos(parts.servos, &params),
         receiver,
         telemetry,
+        console_input,
+        console_output,
         lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
     }
 }
 
@@ -223,82 +251,42 @@ fn rails(p: RailParts) {
     hold(p.high_power_off.into(), Level::Low);
 }
 
-fn imu(p: ImuParts) -> ImuPort {
-    let mut config = spi::Config::default();
-    config.mode = MODE_3;
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
     // The part takes 8 MHz; 6.75 MHz is the next divider below.
-    config.frequency = Hertz(8_000_000);
-    let device = Selected {
-        bus: Spi::new(
-            p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
-        ),
-        select: Output::new(p.select, Level::High, Speed::VeryHigh),
-    };
+    let config = spi_config(8_000_000);
+    let bus = Spi::new(
+        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
+    );
     let ready = ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs);
     // Marking up, x to the right (ArduPilot: ROTATION_NONE after its driver's swap of x and y).
+    let mounting = Mounting::top_up(Heading::Right);
     Icm20689::new(
-        device,
+        Selected::new(bus, p.select),
         ready,
-        icm20689::Config::default(),
-        Mounting::top_up(Heading::Right),
+        icm20689::Config::from_params(params),
+        mounting,
     )
 }
 
-fn motors(p: MotorParts, protocol: Protocol) -> MotorsPort {
-    EscTimer::new(
-        p.timer,
-        (p.motor_1, p.motor_2, p.motor_3, p.motor_4),
-        p.dma,
-        Irqs,
-        DMA_MOTORS.take(),
-        protocol,
-    )
+fn motors(p: MotorParts, params: &Params) -> MotorsPort {
+    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
+    EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))
 }
 
-/// Pins low, whatever the timer does: the last resort of a fault handler, callable at any time.
+/// The motors' pins low, whatever drives them: from the start on, and the last resort of a fault handler.
 pub fn stop_motors() {
-    super::stm32::pull_low(pac::GPIOE, [9, 11, 14, 14]);
-    super::stm32::pull_low(pac::GPIOA, [10; 4]);
+    pull_low(pac::GPIOE, [9, 11, 14, 14]);
+    pull_low(pac::GPIOA, [10; 4]);
 }
 
-fn servos(p: ServoParts) -> ServosPort {
-    let push_pull = OutputType::PushPull;
-    let first = SimplePwm::new(
+fn servos(p: ServoParts, params: &Params) -> ServosPort {
+    ServoPairs::new(
         p.first,
-        None,
-        Some(PwmPin::new(p.servo_1, push_pull)),
-        Some(PwmPin::new(p.servo_2, push_pull)),
-        None,
-        hz(50),
-        Default::default(),
-    );
-    ServoPairs::new(first, p.second, p.servo_3, p.servo_4)
-}
-
-fn arms(p: ArmParts) -> ArmsPort {
-    let mut config = i2c::Config::default();
-    config.frequency = Hertz(400_000);
-    // The driver spins this long on a stretched clock; only the background can afford that.
-    config.timeout = Duration::from_millis(3);
-    let left = I2c::new(
-        p.left,
-        p.left_clock,
-        p.left_data,
-        p.left_tx_dma,
-        p.left_rx_dma,
-        Irqs,
-        config,
-    );
-    let right = I2c::new(
-        p.right,
-        p.right_clock,
-        p.right_data,
-        p.right_tx_dma,
-        p.right_rx_dma,
-        Irqs,
-        config,
-    );
-    ArmBuses::new(left, right, [bno055::Config::default(); 4])
+        (p.servo_1, p.servo_2),
+        p.second,
+        (p.servo_3, p.servo_4),
+        params,
+    )
 }
 
 fn analog(p: AnalogParts) -> AnalogPort {
@@ -310,43 +298,24 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
     ];
-    AnalogInputs {
-        converter: Converter::new(
-            Adc::new(p.adc),
-            pac::ADC1,
-            channels,
-            p.dma,
-            Irqs,
-            DMA_ANALOG.take(),
-        ),
-        scale: AnalogScale {
-            extra_bits: 0,
-            // 3.3 V full scale; divider and current sensor of the power module, as PX4 measured them.
-            volts_per_count: 3.3 / 4095.0 * 18.1,
-            amps_per_count: 3.3 / 4095.0 * 36.37,
-        },
-    }
-}
-
-fn receiver(p: ReceiverParts) -> (ReceiverPort, TelemetryPort) {
-    let mut config = usart::Config::default();
-    config.baudrate = 420_000;
-    // Cannot fail: the rate is within the port's range.
-    let Ok(uart) = Uart::new(p.uart, p.rx, p.tx, p.tx_dma, p.rx_dma, Irqs, config) else {
-        panic!("receiver: the port refuses its configuration")
+    // Divider and current sensor of the power module, as PX4 measured them.
+    let scale = BatteryScale {
+        divider: 18.1,
+        amps_per_volt: 36.37,
     };
-    let (tx, rx) = uart.split();
-    (
-        ReceiverLine(rx.into_ring_buffered(&mut DMA_RECEIVER.take().0)),
-        TelemetryLine(tx),
-    )
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
 }
 
-fn lights(p: LightParts) -> Lights {
+fn storage(p: StorageParts) -> StoragePort {
+    // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
+    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, spi_config(20_000_000));
+    BoardStorage::new(Fram::new(Selected::new(BlockingAsync::new(bus), p.select)))
+}
+
+fn lights(p: LightParts) -> LightsPort {
     Lights {
-        state: (Output::new(p.green, Level::High, Speed::Low), Level::Low),
-        fault: (Output::new(p.red, Level::High, Speed::Low), Level::Low),
-        // The board's sounder needs a tone, not a level.
-        buzzer: None,
+        state: Lamp::new(p.green, Level::Low),
+        fault: Lamp::new(p.red, Level::Low),
+        buzzer: Tone::new(p.tone, p.buzzer),
     }
 }

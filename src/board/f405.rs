@@ -9,62 +9,62 @@
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | PB8 PB9, PB10 PB11 |
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | PC0 to PC3; PA0 voltage, PA1 current |
 //! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
+//! | console | USART2 | none | PA3 in, PA2 out |
 //! | lights, buzzer | | none | PC10 state, PC11 fault, PC12 |
+//! | parameters | flash | none | sectors 1 and 2 |
 //! | time | TIM5 | none | |
 //!
 //! Here a DMA stream serves few requests (RM0090 §10.3.3), and two peripherals must not share one: the compiler refuses a
 //! stream that does not serve its peripheral, and a stream that is used twice.
 
 use assign_resources::assign_resources;
-use embassy_stm32::adc::{Adc, AdcChannel};
+use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
-use embassy_stm32::i2c::I2c;
+use embassy_stm32::gpio::{Level, Pull};
 use embassy_stm32::mode::Async;
-use embassy_stm32::spi::{MODE_3, Spi};
-use embassy_stm32::time::{Hertz, hz, mhz};
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
-use embassy_stm32::usart::Uart;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, spi, usart};
-use embassy_time::Duration;
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::mhz;
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
+use sophie_drivers::esc_protocol::Protocol;
 #[cfg(feature = "imu-icm20689")]
 use sophie_drivers::icm20689 as part;
 #[cfg(not(feature = "imu-icm20689"))]
 use sophie_drivers::icm42688p as part;
 use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_drivers::spi_imu::SpiImu;
-use static_cell::ConstStaticCell;
 
 use super::Board;
 use super::stm32::{
-    Aligned, AnalogInputs, AnalogScale, Converter, Dog, EscBurst, EscTimer, Lights, Protocol, ReceiverLine,
-    Selected, ServoTimer, TelemetryLine,
+    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
+    Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "f405";
 
 /// The vehicle's inertial sensor.
-pub type ImuPort = SpiImu<part::Config, Selected, ExtiInput<'static, Async>>;
+pub type ImuPort = SpiImu<part::Config, DmaChip, ExtiInput<'static, Async>>;
 /// The arms' inertial sensors.
-pub type ArmsPort = ArmBuses<I2c<'static, Async, i2c::Master>, I2c<'static, Async, i2c::Master>>;
+pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
 /// Pressure sensors and battery.
-pub type AnalogPort = AnalogInputs<Converter<peripherals::ADC1, peripherals::DMA2_CH4, Irqs>>;
+pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
 /// The motors.
 pub type MotorsPort = EscTimer<peripherals::TIM8, peripherals::DMA2_CH1, Irqs>;
 /// The tendon servos.
 pub type ServosPort = ServoTimer<peripherals::TIM3>;
-/// From the receiver.
-pub type ReceiverPort = ReceiverLine;
-/// To the receiver.
-pub type TelemetryPort = TelemetryLine;
 /// The watchdog.
 pub type WatchdogPort = Dog<peripherals::IWDG>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<ParamFlash<0x4000>>;
+/// Lights and buzzer.
+pub type LightsPort = Lights<Lamp>;
 
 crate::levels_on!(CAN1_TX, CAN2_TX);
+crate::i2c_bus!(LeftArms, Irqs);
+crate::i2c_bus!(RightArms, Irqs);
 
 bind_interrupts! {
     /// Which handler serves which vector.
@@ -85,6 +85,7 @@ bind_interrupts! {
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
         USART1 => usart::InterruptHandler<peripherals::USART1>;
+        USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
     }
 }
 
@@ -115,17 +116,19 @@ assign_resources! {
         servo_3: PB0,
         servo_4: PB1,
     }
-    arms: ArmParts {
-        left: I2C1,
-        left_clock: PB8,
-        left_data: PB9,
-        left_tx_dma: DMA1_CH6,
-        left_rx_dma: DMA1_CH0,
-        right: I2C2,
-        right_clock: PB10,
-        right_data: PB11,
-        right_tx_dma: DMA1_CH7,
-        right_rx_dma: DMA1_CH2,
+    left_arms: LeftArms {
+        bus: I2C1,
+        clock: PB8,
+        data: PB9,
+        tx_dma: DMA1_CH6,
+        rx_dma: DMA1_CH0,
+    }
+    right_arms: RightArms {
+        bus: I2C2,
+        clock: PB10,
+        data: PB11,
+        tx_dma: DMA1_CH7,
+        rx_dma: DMA1_CH2,
     }
     analog: AnalogParts {
         adc: ADC1,
@@ -144,6 +147,14 @@ assign_resources! {
         rx_dma: DMA2_CH5,
         tx_dma: DMA2_CH7,
     }
+    console: ConsoleParts {
+        uart: USART2,
+        rx: PA3,
+        tx: PA2,
+    }
+    storage: StorageParts {
+        flash: FLASH,
+    }
     lights: LightParts {
         state: PC10,
         fault: PC11,
@@ -154,26 +165,36 @@ assign_resources! {
     }
 }
 
-// What DMA reads and writes. All statics lie in SRAM1 and SRAM2, which DMA1 and DMA2 reach; `cargo xtask firmware` checks it.
-static DMA_MOTORS: ConstStaticCell<EscBurst> = ConstStaticCell::new(EscBurst::IDLE);
-static DMA_ANALOG: ConstStaticCell<Aligned<[u16; 6]>> = ConstStaticCell::new(Aligned([0; 6]));
-static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(Aligned([0; 512]));
-
-/// Starts the clocks and builds every port. Called once.
-pub fn take(params: &Params) -> Board {
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
     let p = embassy_stm32::init(clocks());
+    stop_motors();
     let parts = split_resources!(p);
-    let (receiver, telemetry) = receiver(parts.receiver);
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = super::load(&mut storage).await;
+    let r = parts.receiver;
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
+    let c = parts.console;
+    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, Protocol::from_params(params)),
-        imu: imu(parts.imu),
-        arms: arms(parts.arms),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
+        arms: ArmBuses::new(
+            ArmBus::new(parts.left_arms),
+            ArmBus::new(parts.right_arms),
+            [bno055::Config::default(); 4],
+        ),
         analog: analog(parts.analog),
-        servos: servos(parts.servos),
+        servos: servos(parts.servos, &params),
         receiver,
         telemetry,
+        console_input,
+        console_output,
         lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
     }
 }
 
@@ -203,84 +224,40 @@ fn clocks() -> embassy_stm32::Config {
     config
 }
 
-fn imu(p: ImuParts) -> ImuPort {
-    let mut config = spi::Config::default();
-    config.mode = MODE_3;
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
     // The ICM-20689 takes 8 MHz, the ICM-42688-P 24 MHz. Dividers of 84 MHz: 5.25 and 10.5 MHz.
-    config.frequency = Hertz(if cfg!(feature = "imu-icm20689") {
+    let hz = if cfg!(feature = "imu-icm20689") {
         8_000_000
     } else {
         12_500_000
-    });
-    let device = Selected {
-        bus: Spi::new(
-            p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
-        ),
-        select: Output::new(p.select, Level::High, Speed::VeryHigh),
     };
+    let config = spi_config(hz);
+    let bus = Spi::new(
+        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
+    );
     let ready = ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs);
     // Marking up, x forward; a board of one's own says here how it is.
+    let mounting = Mounting::top_up(Heading::Forward);
     SpiImu::new(
-        device,
+        Selected::new(bus, p.select),
         ready,
-        part::Config::default(),
-        Mounting::top_up(Heading::Forward),
+        part::Config::from_params(params),
+        mounting,
     )
 }
 
-fn motors(p: MotorParts, protocol: Protocol) -> MotorsPort {
-    EscTimer::new(
-        p.timer,
-        (p.motor_1, p.motor_2, p.motor_3, p.motor_4),
-        p.dma,
-        Irqs,
-        DMA_MOTORS.take(),
-        protocol,
-    )
+fn motors(p: MotorParts, params: &Params) -> MotorsPort {
+    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
+    EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))
 }
 
-/// Pins low, whatever the timer does: the last resort of a fault handler, callable at any time.
+/// The motors' pins low, whatever drives them: from the start on, and the last resort of a fault handler.
 pub fn stop_motors() {
-    super::stm32::pull_low(pac::GPIOC, [6, 7, 8, 9]);
+    pull_low(pac::GPIOC, [6, 7, 8, 9]);
 }
 
-fn servos(p: ServoParts) -> ServosPort {
-    let push_pull = OutputType::PushPull;
-    ServoTimer::new(SimplePwm::new(
-        p.timer,
-        Some(PwmPin::new(p.servo_1, push_pull)),
-        Some(PwmPin::new(p.servo_2, push_pull)),
-        Some(PwmPin::new(p.servo_3, push_pull)),
-        Some(PwmPin::new(p.servo_4, push_pull)),
-        hz(50),
-        Default::default(),
-    ))
-}
-
-fn arms(p: ArmParts) -> ArmsPort {
-    let mut config = i2c::Config::default();
-    config.frequency = Hertz(400_000);
-    // The driver spins this long on a stretched clock; only the background can afford that.
-    config.timeout = Duration::from_millis(3);
-    let left = I2c::new(
-        p.left,
-        p.left_clock,
-        p.left_data,
-        p.left_tx_dma,
-        p.left_rx_dma,
-        Irqs,
-        config,
-    );
-    let right = I2c::new(
-        p.right,
-        p.right_clock,
-        p.right_data,
-        p.right_tx_dma,
-        p.right_rx_dma,
-        Irqs,
-        config,
-    );
-    ArmBuses::new(left, right, [bno055::Config::default(); 4])
+fn servos(p: ServoParts, params: &Params) -> ServosPort {
+    ServoTimer::new(p.timer, (p.servo_1, p.servo_2, p.servo_3, p.servo_4), params)
 }
 
 fn analog(p: AnalogParts) -> AnalogPort {
@@ -292,42 +269,22 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
     ];
-    AnalogInputs {
-        converter: Converter::new(
-            Adc::new(p.adc),
-            pac::ADC1,
-            channels,
-            p.dma,
-            Irqs,
-            DMA_ANALOG.take(),
-        ),
-        scale: AnalogScale {
-            extra_bits: 0,
-            // 3.3 V full scale; divider 1:11 and 40 A/V, as on most boards of this kind.
-            volts_per_count: 3.3 / 4095.0 * 11.0,
-            amps_per_count: 3.3 / 4095.0 * 40.0,
-        },
-    }
-}
-
-fn receiver(p: ReceiverParts) -> (ReceiverPort, TelemetryPort) {
-    let mut config = usart::Config::default();
-    config.baudrate = 420_000;
-    // Cannot fail: the rate is within the port's range.
-    let Ok(uart) = Uart::new(p.uart, p.rx, p.tx, p.tx_dma, p.rx_dma, Irqs, config) else {
-        panic!("receiver: the port refuses its configuration")
+    // Divider 1:11 and 40 A/V, as on most boards of this kind.
+    let scale = BatteryScale {
+        divider: 11.0,
+        amps_per_volt: 40.0,
     };
-    let (tx, rx) = uart.split();
-    (
-        ReceiverLine(rx.into_ring_buffered(&mut DMA_RECEIVER.take().0)),
-        TelemetryLine(tx),
-    )
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
 }
 
-fn lights(p: LightParts) -> Lights {
+fn storage(p: StorageParts) -> StoragePort {
+    BoardStorage::new(ParamFlash::new(p.flash))
+}
+
+fn lights(p: LightParts) -> LightsPort {
     Lights {
-        state: (Output::new(p.state, Level::Low, Speed::Low), Level::High),
-        fault: (Output::new(p.fault, Level::Low, Speed::Low), Level::High),
-        buzzer: Some((Output::new(p.buzzer, Level::Low, Speed::Low), Level::High)),
+        state: Lamp::new(p.state, Level::High),
+        fault: Lamp::new(p.fault, Level::High),
+        buzzer: Lamp::new(p.buzzer, Level::High),
     }
 }

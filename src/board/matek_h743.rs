@@ -8,57 +8,58 @@
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 1 to 4 | CL1 DA1, CL2 DA2 |
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | AirS, RSSI, VB2, CU2; on board |
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
+//! | console | UART7 | none | RX7, TX7 |
+//! | parameters | flash | none | sectors 6 and 7 of bank 2 |
 //! | time | TIM2 | none | |
 //!
 //! Motors and servos each have a timer of their own: a motor frame stops its timer between frames, and a servo
 //! wants 50 Hz. Pins are those of the board's maker as Betaflight (`MATEKH743`) and ArduPilot (`MatekH743`) name them.
 
 use assign_resources::assign_resources;
-use embassy_stm32::adc::{Adc, AdcChannel, SampleTime};
+use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Output, OutputType, Pull, Speed};
-use embassy_stm32::i2c::I2c;
+use embassy_stm32::gpio::{Level, Pull};
 use embassy_stm32::mode::Async;
-use embassy_stm32::spi::{MODE_3, Spi};
-use embassy_stm32::time::{Hertz, hz, mhz};
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
-use embassy_stm32::usart::Uart;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, spi, usart};
-use embassy_time::Duration;
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::mhz;
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
+use sophie_drivers::esc_protocol::Protocol;
 use sophie_drivers::icm42688p::{self, Icm42688p};
 use sophie_drivers::mounting::{Heading, Mounting};
-use static_cell::ConstStaticCell;
 
 use super::Board;
+use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
-    Aligned, AnalogInputs, AnalogScale, Converter, Dog, EscBurst, EscTimer, Lights, Protocol, ReceiverLine,
-    Selected, ServoTimer, TelemetryLine,
+    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
+    Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "matek-h743";
 
 /// The vehicle's inertial sensor.
-pub type ImuPort = Icm42688p<Selected, ExtiInput<'static, Async>>;
+pub type ImuPort = Icm42688p<DmaChip, ExtiInput<'static, Async>>;
 /// The arms' inertial sensors.
-pub type ArmsPort = ArmBuses<I2c<'static, Async, i2c::Master>, I2c<'static, Async, i2c::Master>>;
+pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
 /// Pressure sensors and battery.
-pub type AnalogPort = AnalogInputs<Converter<peripherals::ADC1, peripherals::DMA2_CH4, Irqs>>;
+pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
 /// The motors.
 pub type MotorsPort = EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>;
 /// The tendon servos.
 pub type ServosPort = ServoTimer<peripherals::TIM5>;
-/// From the receiver.
-pub type ReceiverPort = ReceiverLine;
-/// To the receiver.
-pub type TelemetryPort = TelemetryLine;
 /// The watchdog.
 pub type WatchdogPort = Dog<peripherals::IWDG1>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<ParamFlash<0x2_0000>>;
+/// Lights and buzzer.
+pub type LightsPort = Lights<Lamp>;
 
 crate::levels_on!(SAI3, SAI4);
+crate::i2c_bus!(LeftArms, Irqs);
+crate::i2c_bus!(RightArms, Irqs);
 
 bind_interrupts! {
     /// Which handler serves which vector.
@@ -78,6 +79,7 @@ bind_interrupts! {
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
         USART6 => usart::InterruptHandler<peripherals::USART6>;
     }
 }
@@ -109,17 +111,19 @@ assign_resources! {
         servo_3: PA2,
         servo_4: PA3,
     }
-    arms: ArmParts {
-        left: I2C1,
-        left_clock: PB6,
-        left_data: PB7,
-        left_tx_dma: DMA1_CH1,
-        left_rx_dma: DMA1_CH2,
-        right: I2C2,
-        right_clock: PB10,
-        right_data: PB11,
-        right_tx_dma: DMA1_CH3,
-        right_rx_dma: DMA1_CH4,
+    left_arms: LeftArms {
+        bus: I2C1,
+        clock: PB6,
+        data: PB7,
+        tx_dma: DMA1_CH1,
+        rx_dma: DMA1_CH2,
+    }
+    right_arms: RightArms {
+        bus: I2C2,
+        clock: PB10,
+        data: PB11,
+        tx_dma: DMA1_CH3,
+        rx_dma: DMA1_CH4,
     }
     analog: AnalogParts {
         adc: ADC1,
@@ -138,6 +142,14 @@ assign_resources! {
         rx_dma: DMA2_CH0,
         tx_dma: DMA2_CH1,
     }
+    console: ConsoleParts {
+        uart: UART7,
+        rx: PE7,
+        tx: PE8,
+    }
+    storage: StorageParts {
+        flash: FLASH,
+    }
     lights: LightParts {
         blue: PE3,
         green: PE4,
@@ -148,29 +160,37 @@ assign_resources! {
     }
 }
 
-// What DMA reads and writes. All statics lie in AXI SRAM, which DMA1 and DMA2 reach; `cargo xtask firmware` checks it.
-static DMA_MOTORS: ConstStaticCell<EscBurst> = ConstStaticCell::new(EscBurst::IDLE);
-static DMA_ANALOG: ConstStaticCell<Aligned<[u16; 6]>> = ConstStaticCell::new(Aligned([0; 6]));
-static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(Aligned([0; 512]));
-
-/// Starts the clocks and builds every port. Called once.
-pub fn take(params: &Params) -> Board {
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
     let p = embassy_stm32::init(clocks());
-    // SAFETY: called once, and no one else uses the core's cache control. Only the instruction cache: with the data
-    // cache on, what DMA writes would have to be invalidated by hand.
-    unsafe { cortex_m::Peripherals::steal() }.SCB.enable_icache();
+    stop_motors();
+    enable_instruction_cache();
     let parts = split_resources!(p);
-    let (receiver, telemetry) = receiver(parts.receiver);
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = super::load(&mut storage).await;
+    let r = parts.receiver;
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
+    let c = parts.console;
+    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
-        motors: motors(parts.motors, Protocol::from_params(params)),
-        imu: imu(parts.imu),
-        arms: arms(parts.arms),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
+        arms: ArmBuses::new(
+            ArmBus::new(parts.left_arms),
+            ArmBus::new(parts.right_arms),
+            [bno055::Config::default(); 4],
+        ),
         analog: analog(parts.analog),
-        servos: servos(parts.servos),
+        servos: servos(parts.servos, &params),
         receiver,
         telemetry,
+        console_input,
+        console_output,
         lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
     }
 }
 
@@ -218,80 +238,35 @@ fn clocks() -> embassy_stm32::Config {
     config
 }
 
-fn imu(p: ImuParts) -> ImuPort {
-    let mut config = spi::Config::default();
-    config.mode = MODE_3;
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
     // The part takes 24 MHz; the next divider below.
-    config.frequency = Hertz(12_500_000);
-    let device = Selected {
-        bus: Spi::new(
-            p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
-        ),
-        select: Output::new(p.select, Level::High, Speed::VeryHigh),
-    };
+    let config = spi_config(12_500_000);
+    let bus = Spi::new(
+        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
+    );
     let ready = ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs);
     // On the underside, turned by half a turn about the vertical (ArduPilot: ROTATION_YAW_180).
+    let mounting = Mounting::top_down(Heading::Back);
     Icm42688p::new(
-        device,
+        Selected::new(bus, p.select),
         ready,
-        icm42688p::Config::default(),
-        Mounting::top_down(Heading::Back),
+        icm42688p::Config::from_params(params),
+        mounting,
     )
 }
 
-fn motors(p: MotorParts, protocol: Protocol) -> MotorsPort {
-    EscTimer::new(
-        p.timer,
-        (p.motor_1, p.motor_2, p.motor_3, p.motor_4),
-        p.dma,
-        Irqs,
-        DMA_MOTORS.take(),
-        protocol,
-    )
+fn motors(p: MotorParts, params: &Params) -> MotorsPort {
+    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
+    EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))
 }
 
-/// Pins low, whatever the timer does: the last resort of a fault handler, callable at any time.
+/// The motors' pins low, whatever drives them: from the start on, and the last resort of a fault handler.
 pub fn stop_motors() {
-    super::stm32::pull_low(pac::GPIOD, [12, 13, 14, 15]);
+    pull_low(pac::GPIOD, [12, 13, 14, 15]);
 }
 
-fn servos(p: ServoParts) -> ServosPort {
-    let push_pull = OutputType::PushPull;
-    ServoTimer::new(SimplePwm::new(
-        p.timer,
-        Some(PwmPin::new(p.servo_1, push_pull)),
-        Some(PwmPin::new(p.servo_2, push_pull)),
-        Some(PwmPin::new(p.servo_3, push_pull)),
-        Some(PwmPin::new(p.servo_4, push_pull)),
-        hz(50),
-        Default::default(),
-    ))
-}
-
-fn arms(p: ArmParts) -> ArmsPort {
-    let mut config = i2c::Config::default();
-    config.frequency = Hertz(400_000);
-    // The driver spins this long on a stretched clock; only the background can afford that.
-    config.timeout = Duration::from_millis(3);
-    let left = I2c::new(
-        p.left,
-        p.left_clock,
-        p.left_data,
-        p.left_tx_dma,
-        p.left_rx_dma,
-        Irqs,
-        config,
-    );
-    let right = I2c::new(
-        p.right,
-        p.right_clock,
-        p.right_data,
-        p.right_tx_dma,
-        p.right_rx_dma,
-        Irqs,
-        config,
-    );
-    ArmBuses::new(left, right, [bno055::Config::default(); 4])
+fn servos(p: ServoParts, params: &Params) -> ServosPort {
+    ServoTimer::new(p.timer, (p.servo_1, p.servo_2, p.servo_3, p.servo_4), params)
 }
 
 fn analog(p: AnalogParts) -> AnalogPort {
@@ -303,42 +278,22 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
     ];
-    AnalogInputs {
-        converter: Converter {
-            adc: Adc::new(p.adc),
-            channels,
-            sample_time: SampleTime::CYCLES387_5,
-            dma: p.dma,
-            irqs: Irqs,
-            buffer: DMA_ANALOG.take(),
-        },
-        scale: AnalogScale {
-            extra_bits: 4,
-            // 3.3 V full scale; divider 1:11 and 40 A/V as the maker states.
-            volts_per_count: 3.3 / 4095.0 * 11.0,
-            amps_per_count: 3.3 / 4095.0 * 40.0,
-        },
-    }
-}
-
-fn receiver(p: ReceiverParts) -> (ReceiverPort, TelemetryPort) {
-    let mut config = usart::Config::default();
-    config.baudrate = 420_000;
-    // Cannot fail: the rate is within the port's range.
-    let Ok(uart) = Uart::new(p.uart, p.rx, p.tx, p.tx_dma, p.rx_dma, Irqs, config) else {
-        panic!("receiver: the port refuses its configuration")
+    // Divider 1:11 and 40 A/V as the maker states.
+    let scale = BatteryScale {
+        divider: 11.0,
+        amps_per_volt: 40.0,
     };
-    let (tx, rx) = uart.split();
-    (
-        ReceiverLine(rx.into_ring_buffered(&mut DMA_RECEIVER.take().0)),
-        TelemetryLine(tx),
-    )
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
 }
 
-fn lights(p: LightParts) -> Lights {
+fn storage(p: StorageParts) -> StoragePort {
+    BoardStorage::new(ParamFlash::new(p.flash))
+}
+
+fn lights(p: LightParts) -> LightsPort {
     Lights {
-        state: (Output::new(p.green, Level::High, Speed::Low), Level::Low),
-        fault: (Output::new(p.blue, Level::High, Speed::Low), Level::Low),
-        buzzer: Some((Output::new(p.buzzer, Level::Low, Speed::Low), Level::High)),
+        state: Lamp::new(p.green, Level::Low),
+        fault: Lamp::new(p.blue, Level::Low),
+        buzzer: Lamp::new(p.buzzer, Level::High),
     }
 }

@@ -25,11 +25,14 @@ pub mod stm32;
 mod chosen;
 
 pub use chosen::{
-    AnalogPort, ArmsPort, ImuPort, MotorsPort, NAME, ReceiverPort, ServosPort, TelemetryPort, WatchdogPort,
+    AnalogPort, ArmsPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort, WatchdogPort,
     start_levels, stop_motors, take,
 };
+pub use cortex_m::Restarter;
 pub use cortex_m::retained::ResetCause;
-pub use stm32::take_reset_cause;
+use sophie_control::params::Params;
+use sophie_tasks::ports::{Loaded, Storage};
+pub use stm32::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, take_reset_cause};
 
 /// What a board hands to the tasks.
 pub struct Board {
@@ -44,11 +47,29 @@ pub struct Board {
     /// The tendon servos.
     pub servos: ServosPort,
     /// From the receiver.
-    pub receiver: ReceiverPort,
+    pub receiver: ReceiverLine,
     /// To the receiver.
-    pub telemetry: TelemetryPort,
+    pub telemetry: TelemetryLine,
+    /// From the console.
+    pub console_input: ConsoleInput,
+    /// To the console.
+    pub console_output: ConsoleOutput,
     /// The watchdog, running.
     pub watchdog: WatchdogPort,
     /// Lights and buzzer.
-    pub lights: stm32::Lights,
+    pub lights: LightsPort,
+    /// Where parameters are stored.
+    pub storage: StoragePort,
+    /// The parameters as which the ports were built: what was stored, or the defaults.
+    pub params: Params,
+    /// What reading them gave.
+    pub loaded: Loaded,
+}
+
+/// The defaults with what is stored in their place. The first thing that a board does: the ports are built by it, and
+/// the motors' pins are held low until then.
+async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
+    let mut params = Params::default();
+    let loaded = storage.load(&mut params).await;
+    (params, loaded)
 }

@@ -10,8 +10,7 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_hil::scenario::Overrides;
 use sophie_hil::scenario::keys::{self, Range};
-
-use super::console;
+use sophie_report::terminal::console;
 
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]

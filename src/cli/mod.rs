@@ -4,30 +4,24 @@
 //! reported.
 
 mod args;
-mod console;
-mod live;
-mod output;
-mod result;
 mod study;
-pub mod table;
 
 use std::process::ExitCode;
 
 use sophie_hil::flight::fly;
-use sophie_hil::record::FlightRecord;
 use sophie_hil::scenario::Scenario;
+use sophie_report::terminal::console::{self, Console};
+use sophie_report::terminal::output::OutDir;
+use sophie_report::terminal::{FILES, complain, finish, result};
 
 use self::args::{FlyArgs, Task};
-use self::console::Console;
-use self::output::OutDir;
-use crate::report::{self, summary::Summary};
 
 /// The mission was not accomplished.
 const FAILED: u8 = 1;
-/// The files of a report.
-const FILES: [&str; 3] = ["report.html", "flight.mcap", "summary.json"];
 /// Bad input, or the results could not be written.
 const REFUSED: u8 = 2;
+/// Name before every complaint.
+const PROGRAM: &str = "sophie";
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
@@ -57,44 +51,15 @@ fn run(args: &FlyArgs) -> Result<bool, String> {
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
     let record = console.watch(|observer| fly(&scenario, observer));
-    finish(&record, &out, &console, args.json)
-}
-
-fn finish(record: &FlightRecord, out: &OutDir, console: &Console, json: bool) -> Result<bool, String> {
-    let summary = Summary::of(record).to_json();
-    let contents = [
-        report::page::html(record).into_bytes(),
-        report::log::mcap(record)?,
-        summary.clone().into_bytes(),
-    ];
-    let files: Vec<_> = FILES.into_iter().zip(contents).collect();
-    let written = out.write(&files)?;
-    for line in result::tables(record) {
-        console.say(&line);
-    }
-    console.say("");
-    console.say(&console.verdict(record));
-    console.say(&format!("written: {}", written.join("  ")));
-    if json {
-        console::print(summary.trim_end())?;
-    }
-    console.end()?;
+    finish(&record, None, &out, &console, args.json)?;
     if !record.outcome.accomplished {
-        eprintln_safely(&format!(
-            "sophie: not accomplished: {}",
-            console::one_line(&record.outcome.reason)
-        ));
+        let reason = console::one_line(&record.outcome.reason);
+        complain(PROGRAM, &format!("not accomplished: {reason}"));
     }
     Ok(record.outcome.accomplished)
 }
 
 fn refuse(line: &str) -> ExitCode {
-    eprintln_safely(&format!("sophie: {}", console::one_line(line)));
+    complain(PROGRAM, line);
     ExitCode::from(REFUSED)
-}
-
-/// One line on stderr; a closed stderr is nobody's concern.
-fn eprintln_safely(line: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
+use sophie_report::terminal::console::{self, Console};
+use sophie_report::terminal::output::OutDir;
+
 use super::args::{FitArgs, PaperArgs};
-use super::console::{self, Console};
-use super::output::OutDir;
 use crate::paper::printed::Printed;
 use crate::paper::{self, bench_data, fit, fit_report, json, page, text};
 

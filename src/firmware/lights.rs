@@ -13,7 +13,7 @@ use embassy_time::{Duration, Ticker};
 use sophie_control::mode::Mode;
 use sophie_tasks::links::Links;
 
-use crate::board::stm32::Lights;
+use crate::board::LightsPort;
 
 /// Time between two looks; ten make a pattern.
 const PERIOD: Duration = Duration::from_millis(100);
@@ -27,7 +27,7 @@ const DOUBLE: [bool; 10] = [true, false, true, false, false, false, false, false
 const ON: [bool; 10] = [true; 10];
 
 /// Shows the state for ever.
-pub async fn run(links: &Links, mut lights: Lights) -> ! {
+pub async fn run(links: &Links, mut lights: LightsPort) -> ! {
     let mut ticker = Ticker::every(PERIOD);
     loop {
         for step in 0..10 {

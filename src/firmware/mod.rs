@@ -2,35 +2,56 @@
 //!
 //! Nothing here knows the chip; that is [`crate::board`]'s.
 
+mod grip;
 mod lights;
 mod report;
 pub mod tasks;
 
+use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
+use sophie_control::warm::Grasp;
 use sophie_tasks::links::Links;
+use sophie_tasks::ports::Loaded;
+use sophie_tasks::start::Start;
 use static_cell::StaticCell;
 
 use crate::board;
-use crate::board::cortex_m::retained::{self, ResetCause};
+use crate::board::cortex_m::retained::{self, Kept, Memory, ResetCause};
 
 /// Every link of the vehicle.
 static LINKS: StaticCell<Links> = StaticCell::new();
 
-/// The links, without messages. Called once.
-pub fn links() -> &'static Links {
-    LINKS.init_with(|| Links::new(Params::default()))
+/// What is known at start-up, before clocks and log are there.
+pub struct Beginning {
+    /// Why the chip was reset.
+    pub cause: ResetCause,
+    /// What the tasks go on from.
+    pub start: Start,
+    kept: Kept,
 }
 
-/// Says who this is and why it starts, with what the run before left behind; returns why.
-pub fn greet() -> ResetCause {
+/// Takes the cause of the reset and what the run before left, and the memory for the next. Called once, first of all.
+pub fn begin() -> (Beginning, Memory) {
     let cause = board::take_reset_cause();
+    let (kept, memory) = retained::start(cause);
+    let start = Start::new(cause.told(kept.last_words.is_some()), &kept.copies);
+    (Beginning { cause, start, kept }, memory)
+}
+
+/// The links, without messages. Called once.
+pub fn links(params: Params, start: Start) -> &'static Links {
+    LINKS.init_with(|| Links::starting(params, start))
+}
+
+/// Says who this is and why it starts, with what the run before left behind.
+pub fn greet(beginning: &Beginning) {
+    let Beginning { cause, start, kept } = beginning;
     defmt::info!(
         "SOPHIE {=str} on {=str}, start after {}",
         env!("CARGO_PKG_VERSION"),
         board::NAME,
         cause
     );
-    let kept = retained::start(cause);
     if kept.faults > 0 {
         defmt::warn!(
             "{=u32} starts since power-on, {=u32} of them after a fault",
@@ -38,8 +59,31 @@ pub fn greet() -> ResetCause {
             kept.faults
         );
     }
-    if let Some(words) = kept.last_words {
+    if let Some(words) = &kept.last_words {
         defmt::error!("the run before ended with: {=str}", words.as_str());
     }
-    cause
+    let calibrated = start.warm.is_some_and(|warm| warm.gyro_bias.is_some());
+    match start.warm.map(|warm| warm.grasp) {
+        Some(Grasp::Closed(_)) => defmt::warn!("arms closed: they go on from where they were"),
+        Some(Grasp::Kept(_)) => defmt::warn!("arms closed: left to the servos' gears"),
+        _ => {}
+    }
+    if calibrated {
+        defmt::info!("goes on with the calibration of the run before");
+    }
+}
+
+/// Tells what reading the parameters gave; storage that cannot be read speaks against arming.
+pub fn loaded(links: &Links, loaded: Loaded) {
+    defmt::info!("parameters: {=u16} from storage", loaded.taken);
+    if loaded.refused > 0 {
+        defmt::warn!(
+            "parameters: {=u16} left out, unknown or no longer allowed",
+            loaded.refused
+        );
+    }
+    if loaded.unreadable {
+        defmt::error!("parameters: storage unreadable");
+    }
+    links.report(Refusal::StorageUnreadable, loaded.unreadable);
 }

@@ -1,12 +1,15 @@
 //! What the firmware tells over defmt while it runs. Background: logging never delays a flight.
 //!
-//! A line when the state or the reason changes; once a second, for every task whose count of overruns grew, its worst
-//! times; every ten seconds the depth of the stack.
+//! A line when the state, its reason or the warning changes, for each arm of a proven grip, and for each thing of the hardware that begins or ceases to
+//! speak against arming; once a second, for every task whose count of overruns grew, its worst times; every ten seconds
+//! the depth of the stack. The first line says how long the start took.
 
-use embassy_time::{Duration, Ticker};
+use embassy_time::{Duration, Instant, Ticker};
+use sophie_control::arming::{Refusal, Refusals};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 
+use super::grip::GripReport;
 use crate::board::cortex_m::stack;
 
 /// Time between two looks.
@@ -18,9 +21,13 @@ const STACK_EVERY: u32 = 200;
 
 /// Reports for ever.
 pub async fn run(links: &Links) -> ! {
+    // The clock starts when the chip's clocks are up, some milliseconds after the reset.
+    defmt::info!("started in {=u64} ms", Instant::now().as_millis());
     let mut ticker = Ticker::every(PERIOD);
     let mut shown: Option<Status> = None;
+    let mut blocking = Refusals::NONE;
     let mut overruns = [0; TaskId::COUNT];
+    let mut grip = GripReport::default();
     let mut looks = 0u32;
     loop {
         ticker.next().await;
@@ -28,12 +35,11 @@ pub async fn run(links: &Links) -> ! {
         if let Some(status) = links.status.latest().map(|m| m.value)
             && shown != Some(status)
         {
+            state(status, shown);
             shown = Some(status);
-            match status.reason {
-                "" => defmt::info!("{=str}", status.mode.name()),
-                reason => defmt::warn!("{=str}: {=str}", status.mode.name(), reason),
-            }
         }
+        grip.look(links);
+        hardware(links, &mut blocking);
         if looks.is_multiple_of(TIMING_EVERY) {
             timing(links, &mut overruns);
         }
@@ -46,6 +52,29 @@ pub async fn run(links: &Links) -> ! {
             );
         }
     }
+}
+
+fn state(now: Status, before: Option<Status>) {
+    match now.reason {
+        "" => defmt::info!("{=str}", now.mode.name()),
+        reason => defmt::warn!("{=str}: {=str}", now.mode.name(), reason),
+    }
+    if before.is_none_or(|b| b.warning != now.warning) && !now.warning.is_empty() {
+        defmt::warn!("warning: {=str}", now.warning);
+    }
+}
+
+/// All that speaks against arming, where the state's line has room for the first reason only.
+fn hardware(links: &Links, shown: &mut Refusals) {
+    let now = links.hardware();
+    for reason in Refusal::ALL {
+        match (shown.contains(reason), now.contains(reason)) {
+            (false, true) => defmt::warn!("arming blocked: {=str}", reason.text()),
+            (true, false) => defmt::info!("no longer blocked: {=str}", reason.text()),
+            _ => {}
+        }
+    }
+    *shown = now;
 }
 
 fn timing(links: &Links, shown: &mut [u32; TaskId::COUNT]) {

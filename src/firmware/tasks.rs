@@ -1,20 +1,30 @@
 //! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`.
 
+use sophie_control::arming::Refusal;
 use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::Links;
 
 use crate::board;
-use crate::board::stm32::Lights;
+use crate::board::cortex_m::retained::Memory;
+
+/// Most self-tests of the inertial sensor at one start.
+const SELF_TESTS: u8 = 3;
 
 /// Flight level: inertial sensor.
 ///
-/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight.
+/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. One
+/// that fails is repeated, since a vehicle that is being carried fails it too; the last verdict stands.
 #[embassy_executor::task]
 pub async fn imu(links: &'static Links, mut port: board::ImuPort, self_test: bool) -> ! {
-    if self_test {
-        match port.self_test().await {
-            Ok(_) => defmt::info!("imu: self-test passed"),
+    for _ in 0..if self_test { SELF_TESTS } else { 0 } {
+        let result = port.self_test().await;
+        links.report(Refusal::ImuSelfTest, result.is_err());
+        match result {
+            Ok(_) => {
+                defmt::info!("imu: self-test passed");
+                break;
+            }
             Err(fault) => defmt::error!("imu: {=str} ({})", fault.what(), fault),
         }
     }
@@ -65,7 +75,7 @@ pub async fn servos(links: &'static Links, port: board::ServosPort) -> ! {
 
 /// Steady level: receiver.
 #[embassy_executor::task]
-pub async fn rc(links: &'static Links, port: board::ReceiverPort) -> ! {
+pub async fn rc(links: &'static Links, port: board::ReceiverLine) -> ! {
     sophie_tasks::rc::run(links, port).await
 }
 
@@ -75,10 +85,10 @@ pub async fn commander(links: &'static Links) -> ! {
     sophie_tasks::commander::run(links).await
 }
 
-/// Steady level: supervision and watchdog.
+/// Steady level: supervision, watchdog, and what outlives it.
 #[embassy_executor::task]
-pub async fn supervisor(links: &'static Links, port: board::WatchdogPort) -> ! {
-    sophie_tasks::supervisor::run(links, port).await
+pub async fn supervisor(links: &'static Links, port: board::WatchdogPort, memory: Memory) -> ! {
+    sophie_tasks::supervisor::run(links, port, memory).await
 }
 
 /// Background: arm sensors.
@@ -89,13 +99,24 @@ pub async fn arms(links: &'static Links, port: board::ArmsPort) -> ! {
 
 /// Background: telemetry to the pilot.
 #[embassy_executor::task]
-pub async fn telemetry(links: &'static Links, port: board::TelemetryPort) -> ! {
+pub async fn telemetry(links: &'static Links, port: board::TelemetryLine) -> ! {
     sophie_tasks::telemetry::run(links, port).await
+}
+
+/// Background: the builder's console.
+#[embassy_executor::task]
+pub async fn console(
+    links: &'static Links,
+    input: board::ConsoleInput,
+    output: board::ConsoleOutput,
+    storage: board::StoragePort,
+) -> ! {
+    sophie_tasks::console::run(links, input, output, storage, board::Restarter).await
 }
 
 /// Background: lights and buzzer.
 #[embassy_executor::task]
-pub async fn lights(links: &'static Links, lights: Lights) -> ! {
+pub async fn lights(links: &'static Links, lights: board::LightsPort) -> ! {
     super::lights::run(links, lights).await
 }
 

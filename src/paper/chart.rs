@@ -1,8 +1,8 @@
 //! A chart as SVG: axes with ticks and units, curves, points, levels, maps.
 
 use super::model::{Axis, Chart, Look, Series};
-use crate::report::scale::ticks;
-use crate::report::svg::{escape, line, path, rect, short, text};
+use sophie_report::scale::ticks;
+use sophie_report::svg::{escape, line, path, rect, short, text};
 
 /// Size of the drawing, px; it scales with the page.
 const WIDTH: f64 = 520.0;

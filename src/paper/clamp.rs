@@ -12,7 +12,7 @@ use sophie_hil::study::bench::{Closed, Closing, close};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::parallel;
 use super::printed::Printed;
-use crate::report::units::kgcm;
+use sophie_report::units::kgcm;
 
 /// Infills (%) and diameters (m) that are tried.
 const INFILLS: [f64; 4] = [6.0, 6.9, 8.0, 10.0];
@@ -352,8 +352,8 @@ fn servos(s: &mut Section, p: &Printed, all: &[(f64, f64, &Closed)]) {
     // A 270° servo of its printed stall, with the speed that the stack assumes.
     let made = |stall: f64, range: f64| ServoSpec {
         stall: stall * kg,
-        slew: 6.16,
         range,
+        ..ServoSpec::from(ServoProfile::Paper)
     };
     let list = [
         (

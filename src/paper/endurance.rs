@@ -225,7 +225,7 @@ fn inspection(s: &mut Section, p: &Printed) -> Chart {
         let closed = bench(*i, PIPE, servo, closing_thrust(p));
         closed
             .closure
-            .map_or(f64::NAN, |_| crate::report::units::kgcm(closed.steady))
+            .map_or(f64::NAN, |_| sophie_report::units::kgcm(closed.steady))
     });
     let minutes =
         |force: f64, arms: f64| 60.0 * capacity / (arms * (idle + (at_stall - idle) * force / stall));

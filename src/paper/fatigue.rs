@@ -247,7 +247,7 @@ fn soft_airframes(s: &mut Section, p: &Printed) -> [f64; 2] {
     }
     s.table(t);
     let lost = flights.iter().filter(|f| f.lost.is_some()).count();
-    let off = |i: usize| flights.get(i).map_or(f64::NAN, |f| heading(f));
+    let off = |i: usize| flights.get(i).map_or(f64::NAN, heading);
     s.text(format!(
         "\"For ρ < {:.0} % the autopilot is not able to correct these perturbations in real time\": of these {} flights {lost} \
          are lost, but the tendency is there for an autopilot that takes the arms as stiff, which stands {:.1}° off its \

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::model::{Axis, Block, Cell, Chart, Comparison, Section};
-use crate::report::summary::tidy;
+use sophie_report::summary::tidy;
 
 /// Most points of a curve in the file.
 const POINTS: usize = 300;

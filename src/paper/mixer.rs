@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use sophie_control::deflection::ArmModel;
-use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse};
+use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use sophie_control::mixer::{Conditions, Mixer, Variant};
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, FORE, SIDE, Wrench, YAW};
@@ -74,10 +74,12 @@ fn one_step_loop(infill: f64, gain_k: f64, start: f32, steps: usize) -> Vec<f64>
             thrust: weight,
             ..Wrench::default()
         };
-        let Some(inverse) = Inverse::new(geometry, e) else {
+        let Some(inverse) = Inverse::new(&e) else {
             break;
         };
-        thrusts = inverse.solve(w).map(|t| t.clamp(p.thrust_idle, p.thrust_max));
+        thrusts = inverse
+            .solve(Load::of(&geometry, w))
+            .map(|t| t.clamp(p.thrust_idle, p.thrust_max));
         let pattern: f32 = thrusts.iter().zip(&YAW).map(|(t, y)| 0.25 * t * y).sum();
         out.push(f64::from(pattern));
     }

@@ -2,10 +2,10 @@
 
 use super::chart;
 use super::model::{Block, Cell, Class, Comparison, Section, Table};
-use crate::report::svg::escape;
+use sophie_report::svg::escape;
 
 /// The look of all reports, and what this page has besides.
-const STYLE: [&str; 2] = [include_str!("../report/style.css"), include_str!("style.css")];
+const STYLE: [&str; 2] = [sophie_report::page::STYLE, include_str!("style.css")];
 
 /// What the three classes mean.
 const CLASSES: [(Class, &str); 3] = [

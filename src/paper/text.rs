@@ -2,7 +2,7 @@
 
 use super::model::{Block, Cell, Section};
 use super::page::{deviation, value};
-use crate::cli::table::{Align, Table};
+use sophie_report::terminal::table::{Align, Table};
 
 /// Width to which paragraphs are broken.
 const WIDTH: usize = 110;

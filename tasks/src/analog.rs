@@ -2,8 +2,13 @@
 //!
 //! Steady level. Pressures at 500 Hz, the battery at every fifth conversion; a conversion must be over before
 //! the next. A converter that fails publishes nothing: its links go stale, and their readers know what to do.
+//! After 100 ms without a conversion it is reported against arming.
 
-use embassy_time::{Duration, Instant};
+use core::pin::pin;
+
+use embassy_futures::select::{Either, select};
+use embassy_time::{Duration, Instant, Timer};
+use sophie_control::arming::Refusal;
 use sophie_control::battery::Monitor;
 use sophie_control::fsr::{Fsr, FsrScale};
 
@@ -13,6 +18,8 @@ use crate::ports::Analog;
 
 /// Time between two conversions.
 pub const PERIOD: Duration = Duration::from_millis(2);
+/// Time without a conversion after which the inputs count as silent.
+pub const SILENCE: Duration = Duration::from_millis(100);
 /// Conversions for one battery reading.
 const BATTERY_EVERY: u8 = 5;
 
@@ -25,12 +32,34 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     let mut battery_dt = 0.0;
     let mut until_battery = BATTERY_EVERY;
     let mut sensor_dt = 0.0;
+    let mut last_good = Instant::now();
+    let mut silent = false;
     loop {
         let tick = rate.next().await;
         sensor_dt += tick.dt;
         battery_dt += tick.dt;
         let at = Instant::now();
-        let Ok(frame) = port.read().await else { continue };
+        let conversion = {
+            let mut conversion = pin!(port.read());
+            match select(&mut conversion, Timer::at(last_good + SILENCE)).await {
+                Either::First(result) => result,
+                Either::Second(()) => {
+                    watch(links, &mut silent, true);
+                    // A converter that never ends holds its task: the supervisor sees to that.
+                    conversion.await
+                }
+            }
+        };
+        let Ok(frame) = conversion else {
+            watch(
+                links,
+                &mut silent,
+                at.saturating_duration_since(last_good) >= SILENCE,
+            );
+            continue;
+        };
+        last_good = at;
+        watch(links, &mut silent, false);
 
         let mut contact = Contact::default();
         let slots = contact.pressure.iter_mut().zip(contact.fault.iter_mut());
@@ -60,5 +89,13 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
             links.battery.send(at, message);
         }
         battery_dt = 0.0;
+    }
+}
+
+/// Reports silence when it begins and when it ends.
+fn watch(links: &Links, known: &mut bool, silent: bool) {
+    if *known != silent {
+        *known = silent;
+        links.report(Refusal::AnalogSilent, silent);
     }
 }

@@ -1,9 +1,11 @@
 //! The arms' own inertial sensors: tilt of each arm against the body.
 //!
 //! Background level: the sensors stretch the I2C clock, and nothing in flight waits for them. 100 Hz; a round
-//! of four sensors must end within its period.
+//! of four sensors must end within its period. A sensor that gives nothing for a second is reported against arming;
+//! one that never answers costs its own reading, not those of the others.
 
-use embassy_time::{Duration, Instant};
+use embassy_time::{Duration, Instant, with_timeout};
+use sophie_control::arming::Refusal;
 use sophie_control::math;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::{PerArm, SIDE};
@@ -15,14 +17,37 @@ use crate::ports::ArmImus;
 /// Time between two rounds.
 pub const PERIOD: Duration = Duration::from_millis(10);
 
+/// Time without a reading after which a sensor counts as silent.
+pub const SILENCE: Duration = Duration::from_secs(1);
+/// Time from power-up in which nothing is silent yet. A BNO055 needs 650 ms before it answers; its driver, which
+/// asks at growing pauses, finds it by 1.3 s, and resets and configures it in 0.75 s.
+pub const START: Duration = Duration::from_millis(2500);
+/// Longest time that one reading may take. The driver bounds each transfer to 3 ms itself, a few of them in a call.
+const READING: Duration = Duration::from_millis(20);
+/// What is reported of each arm.
+const REASONS: PerArm<Refusal> = [
+    Refusal::ArmSensor1,
+    Refusal::ArmSensor2,
+    Refusal::ArmSensor3,
+    Refusal::ArmSensor4,
+];
+
 /// Serves the arm sensors for ever. A sensor that fails leaves `None` for its arm.
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Arms, PERIOD, PERIOD);
+    let start = Instant::now() + START - SILENCE;
+    let mut watches = REASONS.map(|reason| Watch {
+        reason,
+        last: start,
+        silent: false,
+    });
     loop {
         rate.next().await;
         let mut gravity: PerArm<Option<Vec3>> = [None; 4];
-        for (arm, g) in gravity.iter_mut().enumerate() {
-            *g = port.gravity(arm).await.ok();
+        for (arm, (g, watch)) in gravity.iter_mut().zip(&mut watches).enumerate() {
+            let reading = with_timeout(READING, port.gravity(arm)).await;
+            *g = reading.ok().and_then(Result::ok).filter(plausible);
+            watch.see(links, g.is_some());
         }
         let Some(body) = links.attitude.fresh().filter(|a| a.calibrated) else {
             continue;
@@ -35,6 +60,34 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     }
 }
 
+/// What is known of one sensor's answers.
+struct Watch {
+    reason: Refusal,
+    /// When it last gave a reading.
+    last: Instant,
+    silent: bool,
+}
+
+impl Watch {
+    fn see(&mut self, links: &Links, reading: bool) {
+        let now = Instant::now();
+        if reading {
+            // One that came before the start was over must not bring its end forward.
+            self.last = self.last.max(now);
+        }
+        let silent = now.saturating_duration_since(self.last) >= SILENCE;
+        if silent != self.silent {
+            self.silent = silent;
+            links.report(self.reason, silent);
+        }
+    }
+}
+
+/// True for a vector that can be gravity, m/s².
+fn plausible(gravity: &Vec3) -> bool {
+    gravity.is_finite() && (5.0..15.0).contains(&gravity.norm())
+}
+
 /// Tilt (rad, tip up) of an arm on side `side` that sees gravity along `gravity` (m/s², its own axes), on
 /// a body at the attitude `q`. `None` for a vector that cannot be gravity.
 ///
@@ -43,10 +96,9 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
 fn arm_tilt(q: Quat, gravity: Vec3, side: f32) -> Option<f32> {
     /// Least share of gravity in the y-z plane for its direction to mean anything.
     const LEAST: f32 = 0.3;
-    let plausible = gravity.is_finite() && (5.0..15.0).contains(&gravity.norm());
     let body = q.down_in_body();
     let planar = |v: Vec3, length: f32| v.y * v.y + v.z * v.z > (LEAST * length) * (LEAST * length);
-    if !plausible || !planar(gravity, gravity.norm()) || !planar(body, 1.0) {
+    if !plausible(&gravity) || !planar(gravity, gravity.norm()) || !planar(body, 1.0) {
         return None;
     }
     // Gravity turned by +a about x: (y, z) of the arm's view is the body's view turned back by a.

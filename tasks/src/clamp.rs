@@ -2,14 +2,18 @@
 //!
 //! Steady level, 100 Hz, to be done before the next step. What happens when an input is old:
 //!
-//! - the command (200 ms): forces and the last judgement are held; before the first command, released;
+//! - the command (200 ms): forces and the last judgement are held; before the first one, what the run before left;
 //! - the pressure (20 ms): that arm's force is held and it is faulty until there is one again;
 //! - an arm's tilt (100 ms): its force is held, and after half a second it is faulty;
 //! - the thrusts (10 ms): the motors have stopped by then, so the thrust fed forward is none;
 //! - the tension (200 ms): the force asked for counts as given, and nothing is proven free.
+//!
+//! No force is sent before one is known: after power-on the arms may be closed, and the servos' gears hold them as long
+//! as no pulse opens them.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::clamp::{ArmInput, Clamp, Config, Pressure};
+use sophie_control::warm::{Grasp, Warm};
 use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
@@ -22,31 +26,64 @@ pub const PERIOD: Duration = Duration::from_millis(10);
 pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, PERIOD);
     let config = Config::from_params(&links.params);
-    let mut clamp = Clamp::default();
-    let mut forces = TendonForces::default();
-    let mut grip = GripState::default();
+    let (mut clamp, mut forces) = begin(links.start.warm);
+    let mut grip = None;
+    let mut found = false;
     loop {
         let tick = rate.next().await;
-        let command = match links.clamp_command.latest() {
-            None => Some(ClampCommand::Release),
-            Some(_) => links.clamp_command.fresh(),
-        };
-        if let Some(command) = command {
+        if let Some(command) = links.clamp_command.fresh() {
             let close = match command {
-                ClampCommand::Release => [false; 4],
+                ClampCommand::Release | ClampCommand::Keep => [false; 4],
                 ClampCommand::Close { arms } => arms.mask(),
             };
             let out = clamp.step(&config, close, &inputs(links), tick.dt);
-            forces = TendonForces { force: out.force };
-            grip = GripState {
+            let pressed = |grip: GripState| {
+                let mut arms = grip.arms.iter();
+                arms.any(|arm| arm.pressure > links.params.release_pressure)
+            };
+            let now = GripState {
                 proven: out.proven,
                 released: out.released,
                 arms: out.arms,
             };
+            grip = Some(now);
+            if command == ClampCommand::Keep {
+                found = pressed(now);
+            } else {
+                forces = Some(TendonForces {
+                    force: out.force,
+                    found,
+                    stay: out.stay,
+                });
+            }
         }
         let now = Instant::now();
-        links.tendons.send(now, forces);
-        links.grip.send(now, grip);
+        if let Some(forces) = forces {
+            links.tendons.send(now, forces);
+        }
+        if let Some(grip) = grip {
+            links.grip.send(now, grip);
+        }
+    }
+}
+
+/// Loops and forces at the start: those of closed arms go on, all others wait for a command.
+fn begin(warm: Option<Warm>) -> (Clamp, Option<TendonForces>) {
+    match warm {
+        Some(Warm {
+            grasp: Grasp::Closed(_),
+            force,
+            fault,
+            ..
+        }) => (
+            Clamp::resume(force, fault),
+            Some(TendonForces {
+                force,
+                found: false,
+                stay: [true; 4],
+            }),
+        ),
+        _ => (Clamp::default(), None),
     }
 }
 

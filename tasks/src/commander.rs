@@ -30,7 +30,10 @@ const LATE_MAX: u32 = 10;
 
 /// Steps the mode logic for ever.
 pub async fn run(links: &Links) -> ! {
-    let mut logic = ModeLogic::new(&links.params);
+    let mut logic = match links.start.warm {
+        Some(warm) => ModeLogic::resume(&links.params, warm.grasp),
+        None => ModeLogic::new(&links.params),
+    };
     let mut late = Lateness::new();
     let mut rate = FixedRate::new(links, TaskId::Commander, PERIOD, PERIOD);
     loop {
@@ -40,11 +43,14 @@ pub async fn run(links: &Links) -> ! {
             mode,
             rotors,
             tendons,
+            grasp,
             reason,
+            refusals,
             ..
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
+        links.grasp.send(tick.started, grasp);
         let warning = warning(links, mode);
         links.status.send(
             tick.started,
@@ -52,6 +58,7 @@ pub async fn run(links: &Links) -> ! {
                 mode,
                 reason,
                 warning,
+                refusals,
             },
         );
     }
@@ -61,6 +68,10 @@ pub async fn run(links: &Links) -> ! {
 fn warning(links: &Links, mode: Mode) -> &'static str {
     if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         "arm tilt beyond its model"
+    } else if matches!(mode, Mode::Calibrating | Mode::Disarmed | Mode::Perched)
+        && !links.start.cause.warning().is_empty()
+    {
+        links.start.cause.warning()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
         "servo weaker than the force limit"
     } else if mode == Mode::Disarmed && links.params.infill < INFILL_FLOWN {

@@ -22,7 +22,7 @@ pub enum TaskId {
     Analog,
     /// Clamp loop, 100 Hz.
     Clamp,
-    /// Servo output, 50 Hz.
+    /// Servo output, 50 to 333 Hz.
     Servos,
     /// Receiver, as frames come.
     Rc,

@@ -16,7 +16,11 @@ pub async fn run(links: &Links) {
     let Some(mut imu) = links.imu.receiver() else {
         return;
     };
-    let mut estimator = Estimator::new(&links.params);
+    let bias = links.start.warm.and_then(|warm| warm.gyro_bias);
+    let mut estimator = match bias {
+        Some(bias) => Estimator::resume(&links.params, bias),
+        None => Estimator::new(&links.params),
+    };
     loop {
         let sample = imu.changed().await;
         let started = Instant::now();

@@ -3,13 +3,14 @@
 //! Flight level. Deadline: the filtered sample leaves within 200 µs of the last reading of its batch.
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
+use sophie_control::arming::Refusal;
 use sophie_control::imu_filter::ImuFilter;
 use sophie_control::math;
 use sophie_control::vector::Vec3;
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::{ImuSample, Links};
-use crate::ports::Imu;
+use crate::ports::{Imu, PortError};
 
 /// Rate at which samples are handed on, Hz.
 pub const CONTROL_RATE_HZ: f32 = 1000.0;
@@ -20,7 +21,13 @@ pub const SILENCE: Duration = Duration::from_millis(3);
 /// Pause after a failed read.
 pub const RETRY: Duration = Duration::from_millis(1);
 
-/// Serves the inertial sensor for ever. A failed or silent read sends nothing: readers see the age.
+/// Errors, with never [`CLEAN`] between two, from which on the fault is reported: one glitch is none.
+const ERRORS: u8 = 3;
+/// Time without an error after which good samples take the report back.
+const CLEAN: Duration = Duration::from_millis(100);
+
+/// Serves the inertial sensor for ever. A failed or silent read sends nothing: readers see the age. What the part
+/// answers in place of samples is reported against arming; that it says nothing at all shows as age.
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let rate_hz = port.rate_hz();
     let mut filter = ImuFilter::new(links.params.gyro_cutoff, rate_hz);
@@ -30,23 +37,25 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let mut collected = 0.0f32;
     let mut last_sent: Option<Instant> = None;
     let mut newest = (Vec3::ZERO, Vec3::ZERO);
+    let mut faults = Faults::default();
     loop {
         let batch = match with_timeout(SILENCE, port.read()).await {
             Ok(Ok(batch)) if !batch.is_empty() => batch,
             // A port that fails at once must not keep the flight level from everything below it.
-            Ok(_) => {
+            Ok(failed) => {
+                if let Err(error) = failed {
+                    faults.failed(links, error);
+                }
                 Timer::after(RETRY).await;
                 continue;
             }
             Err(_) => continue,
         };
         let released = Instant::now();
-        for reading in &batch {
-            if let Some(filtered) = filter.step(reading.gyro, reading.accel - bias) {
-                newest = filtered;
-                collected += 1.0;
-            }
-        }
+        faults.good(links, released);
+        let filtered = filter.batch(batch.iter().map(|reading| (reading.gyro, reading.accel - bias)));
+        newest = filtered.newest.unwrap_or(newest);
+        collected += f32::from(filtered.count);
         if collected + 0.5 < per_output {
             continue;
         }
@@ -65,5 +74,49 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
             },
         );
         record_run(links, TaskId::Imu, released, released, DEADLINE);
+    }
+}
+
+/// The port's errors, and what has been made of them.
+#[derive(Default)]
+struct Faults {
+    /// When the last error came, and how many have been counted.
+    errors: Option<(Instant, u8)>,
+    reported: Option<Refusal>,
+}
+
+impl Faults {
+    fn failed(&mut self, links: &Links, error: PortError) {
+        let fault = match error {
+            PortError::Absent => Refusal::ImuAbsent,
+            PortError::WrongPart => Refusal::ImuWrongPart,
+            PortError::Corrupt => Refusal::ImuCorrupt,
+            // Silence shows as age.
+            PortError::Timeout => return,
+        };
+        let count = self.errors.map_or(0, |(_, count)| count).saturating_add(1);
+        self.errors = Some((Instant::now(), count));
+        if count >= ERRORS && self.reported != Some(fault) {
+            self.clear(links);
+            links.report(fault, true);
+            self.reported = Some(fault);
+        }
+    }
+
+    /// Every sound batch comes here, and mostly there is nothing to do.
+    #[inline]
+    fn good(&mut self, links: &Links, at: Instant) {
+        if let Some((last, _)) = self.errors
+            && at.saturating_duration_since(last) >= CLEAN
+        {
+            self.errors = None;
+            self.clear(links);
+        }
+    }
+
+    fn clear(&mut self, links: &Links) {
+        if let Some(fault) = self.reported.take() {
+            links.report(fault, false);
+        }
     }
 }

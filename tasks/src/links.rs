@@ -9,6 +9,8 @@
 //!              │  ^                                            │
 //!              v  └─────── grip ──── clamp <───────────────────┘
 //!          clamp command ──────────> clamp ──> servos          steady level, 50 to 500 Hz
+//!
+//! grasp, reel angle, tendon forces, gyro bias ──> supervisor ──> memory that outlives a reset ──> start
 //! ```
 
 use core::cell::Cell;
@@ -24,9 +26,11 @@ use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::vector::{Quat, Vec3};
+use sophie_control::warm::Grasp;
 use sophie_control::wrench::{PerArm, Wrench};
 
 use crate::deadline::{TaskId, Timing};
+use crate::start::{Cause, Start};
 
 /// The mutex of every link: tasks of different priority meet here on the board.
 pub type Raw = CriticalSectionRawMutex;
@@ -186,6 +190,10 @@ pub struct ArmAngles {
 pub struct TendonForces {
     /// Tension, N; 0 is slack.
     pub force: PerArm<f32>,
+    /// The tendons were found wound when the power came on: where their servos stand is to be taken from the tilt.
+    pub found: bool,
+    /// Servos that are to stay where they are, whatever the force.
+    pub stay: PerArm<bool>,
 }
 
 /// State of the radio link.
@@ -208,12 +216,16 @@ pub struct Status {
     pub reason: &'static str,
     /// What does not stop the flight but must be known; empty when there is nothing.
     pub warning: &'static str,
+    /// Everything that forbids arming now.
+    pub refusals: Refusals,
 }
 
 /// Every link of one vehicle.
 pub struct Links {
     /// Parameters, fixed while armed.
     pub params: Params,
+    /// Why the board started and what the run before left, fixed. start-up -> every task that goes on from it.
+    pub start: Start,
     /// imu -> estimator. 1 kHz, stale after 5 ms.
     pub imu: Link<ImuSample>,
     /// estimator -> control, commander, arms. 1 kHz, stale after 5 ms.
@@ -222,7 +234,8 @@ pub struct Links {
     pub setpoint: Link<Setpoint>,
     /// control -> mixer. 1 kHz, stale after 5 ms.
     pub demand: Link<Demand>,
-    /// control -> log. 1 kHz, stale after 50 ms: roll, pitch and heading aimed at, rad.
+    /// control -> log. 1 kHz, stale after 50 ms: roll and pitch aimed at, and the wanted heading
+    /// against the present one, rad.
     pub target: Link<Vec3>,
     /// mixer -> motors, control (what it could not give), commander. 1 kHz, stale after 10 ms: motors stop.
     pub mix: Link<MixOutput>,
@@ -232,13 +245,17 @@ pub struct Links {
     pub battery: Link<Battery>,
     /// arms -> mixer, servos. 100 Hz, stale after 100 ms.
     pub arms: Link<ArmAngles>,
-    /// commander -> clamp. 100 Hz, stale after 200 ms: forces are held then.
+    /// commander -> clamp. 100 Hz, stale after 200 ms: forces are held then; before the first nothing is sent.
     pub clamp_command: Link<ClampCommand>,
-    /// clamp -> servos. 100 Hz, stale after 200 ms: servos hold then.
+    /// clamp -> servos, supervisor. 100 Hz, stale after 200 ms: servos hold then; before the first no pulses.
     pub tendons: Link<TendonForces>,
-    /// servos -> clamp. 50 Hz, stale after 200 ms: tension that the servos can be giving now, N.
+    /// servos -> clamp. Each servo frame (50 to 333 Hz), stale after 200 ms: tension that the servos can be giving now, N.
     pub tension: Link<PerArm<f32>>,
-    /// clamp -> commander. 100 Hz, stale after 100 ms.
+    /// servos -> supervisor. 50 Hz, stale after 200 ms: angle to which each servo is sent, rad from release.
+    pub reel_angle: Link<PerArm<f32>>,
+    /// commander -> supervisor. 100 Hz, stale after 200 ms: the grip that must outlive a reset.
+    pub grasp: Link<Grasp>,
+    /// clamp -> commander, supervisor. 100 Hz, stale after 100 ms.
     pub grip: Link<GripState>,
     /// rc -> commander. As frames come (50 to 500 Hz), stale after 500 ms: failsafe.
     pub rc: Link<RcState>,
@@ -249,13 +266,19 @@ pub struct Links {
 }
 
 impl Links {
-    /// Links without messages.
+    /// Links without messages, after power-on.
     pub const fn new(params: Params) -> Self {
+        Self::starting(params, Start::COLD)
+    }
+
+    /// Links without messages after this start.
+    pub const fn starting(params: Params, start: Start) -> Self {
         const fn ms(n: u64) -> Duration {
             Duration::from_millis(n)
         }
         Self {
             params,
+            start,
             imu: Link::new(ms(5)),
             attitude: Link::new(ms(5)),
             setpoint: Link::new(ms(50)),
@@ -268,11 +291,16 @@ impl Links {
             clamp_command: Link::new(ms(200)),
             tendons: Link::new(ms(200)),
             tension: Link::new(ms(200)),
+            reel_angle: Link::new(ms(200)),
+            grasp: Link::new(ms(200)),
             grip: Link::new(ms(100)),
             rc: Link::new(ms(500)),
             status: Link::new(ms(200)),
             timing: [const { Mutex::new(Cell::new(Timing::new())) }; TaskId::COUNT],
-            hardware: Mutex::new(Cell::new(Refusals::NONE)),
+            hardware: Mutex::new(Cell::new(match start.cause {
+                Cause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
+                _ => Refusals::NONE,
+            })),
         }
     }
 

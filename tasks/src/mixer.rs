@@ -71,7 +71,7 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
         };
         let tilt = mixer.tilt();
         let (thrusts, commands) = if running {
-            (mix.thrusts, mix.thrusts.map(|t| curve.command(t, ratio)))
+            (mix.thrusts, curve.commands(&mix.thrusts, ratio))
         } else {
             ([0.0; 4], [0.0; 4])
         };

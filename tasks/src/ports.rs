@@ -3,6 +3,7 @@
 use heapless::Vec;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
+use sophie_control::warm::Words;
 use sophie_control::wrench::PerArm;
 
 /// Why a port gave nothing.
@@ -112,6 +113,12 @@ pub trait SerialOutput {
 pub trait Watchdog {
     /// Puts off the reset by the watchdog's period.
     fn feed(&mut self);
+}
+
+/// Memory that outlives a reset, though not a loss of power.
+pub trait Retain {
+    /// Keeps `words` as the second copy or the first. A reset in the midst of it may spoil this copy, never the other.
+    fn keep(&mut self, second: bool, words: &Words);
 }
 
 /// What reading the stored parameters gave.

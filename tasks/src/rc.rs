@@ -1,17 +1,15 @@
 //! The receiver: bytes in, the pilot's wishes out.
 //!
-//! CRSF at 420 kbaud, 50 to 500 frames a second. A frame that is broken, or whose channels no transmitter
-//! sends on purpose, is counted and otherwise as if it had not come: the link then turns stale by itself.
-//!
-//! A receiver that has lost its transmitter may go on with the last channels it had. Its link statistics tell:
-//! at an uplink quality of 0 % no sticks are published, so that the link turns stale and the failsafe acts.
-//! They are again with the first frame after a quality above 0 %, or when no statistics have come for
-//! 1 s: a receiver that has stopped reporting is judged by its frames alone, as one that
-//! never reports is. Set the receiver to send nothing without a link ("no pulses") all the same.
+//! CRSF or SBUS, as the parameter `receiver_protocol` says; 50 to 500 frames a second. A frame that is broken, or
+//! whose channels no transmitter sends on purpose, is counted and otherwise as if it had not come: the link then
+//! turns stale by itself. So it does when the receiver says that it has lost its transmitter, and when the line
+//! speaks the other protocol.
+
+mod crsf;
+pub mod sbus;
 
 use embassy_time::{Duration, Instant, Timer};
-use sophie_control::rc::Sticks;
-use uf_crsf::{CrsfParser, Packet};
+use sophie_control::params::Params;
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::{Links, RcState};
@@ -23,12 +21,47 @@ const BUFFER: usize = 128;
 const DEADLINE: Duration = Duration::from_millis(2);
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
-/// Silence of the link statistics after which the last of them no longer counts. Receivers report at 5 to 10 Hz.
-const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
+
+/// What the receiver speaks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Protocol {
+    /// CRSF: 420 kbaud, 8N1, telemetry back to the pilot on the other line.
+    #[default]
+    Crsf,
+    /// SBUS: 100 kbaud, 8E2, inverted, no way back.
+    Sbus,
+}
+
+impl Protocol {
+    /// As the parameters say.
+    pub fn from_params(p: &Params) -> Self {
+        if p.receiver_protocol < 0.5 {
+            Self::Crsf
+        } else {
+            Self::Sbus
+        }
+    }
+}
+
+/// Frames and counts out of a stream of bytes, however it is cut.
+trait Decode {
+    /// Takes bytes that were there at `at`; gives the state when they held at least one good frame of channels and
+    /// the radio is not known to be lost.
+    fn take(&mut self, bytes: &[u8], at: Instant) -> Option<RcState>;
+
+    /// The line has failed at `at`: bytes are missing.
+    fn broken(&mut self, at: Instant);
+}
 
 /// Decodes frames for ever.
-pub async fn run(links: &Links, mut port: impl SerialInput) -> ! {
-    let mut decoder = Decoder::new();
+pub async fn run(links: &Links, port: impl SerialInput) -> ! {
+    match Protocol::from_params(&links.params) {
+        Protocol::Crsf => serve(links, port, crsf::Decoder::new()).await,
+        Protocol::Sbus => serve(links, port, sbus::Decoder::new()).await,
+    }
+}
+
+async fn serve(links: &Links, mut port: impl SerialInput, mut decoder: impl Decode) -> ! {
     let mut buffer = [0; BUFFER];
     loop {
         let count = match port.read(&mut buffer).await {
@@ -38,7 +71,7 @@ pub async fn run(links: &Links, mut port: impl SerialInput) -> ! {
                 continue;
             }
             Err(_) => {
-                decoder.state.errors = decoder.state.errors.wrapping_add(1);
+                decoder.broken(Instant::now());
                 Timer::after(PAUSE).await;
                 continue;
             }
@@ -48,195 +81,5 @@ pub async fn run(links: &Links, mut port: impl SerialInput) -> ! {
             links.rc.send(at, state);
         }
         record_run(links, TaskId::Rc, at, at, DEADLINE);
-    }
-}
-
-/// Frames and counts out of a stream of bytes, however it is cut.
-struct Decoder {
-    parser: CrsfParser,
-    state: RcState,
-    /// When the receiver last reported an uplink quality of 0 %; `None` while the radio is not known to be lost.
-    lost: Option<Instant>,
-}
-
-impl Decoder {
-    fn new() -> Self {
-        Self {
-            parser: CrsfParser::new(),
-            state: RcState::default(),
-            lost: None,
-        }
-    }
-
-    /// Takes bytes that came at `at`; gives the state when they held at least one good frame of channels and the
-    /// radio is not known to be lost.
-    fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        let mut news = false;
-        self.lost = self
-            .lost
-            .filter(|since| at.saturating_duration_since(*since) < STATISTICS_SILENCE);
-        while let Some(packet) = self.parser.next_packet(&mut bytes) {
-            match packet {
-                Ok(Packet::RCChannels(channels)) => match Sticks::from_channels(&channels.0) {
-                    Ok(sticks) => {
-                        self.state.frames = self.state.frames.wrapping_add(1);
-                        if self.lost.is_none() {
-                            self.state.sticks = sticks;
-                            news = true;
-                        }
-                    }
-                    Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
-                },
-                Ok(Packet::LinkStatistics(link)) => {
-                    self.lost = (link.uplink_link_quality == 0).then_some(at);
-                    // What came just before the report may be the last frame over again.
-                    news &= self.lost.is_none();
-                }
-                // Device information and the like: well formed, nothing for flying.
-                Ok(_) => (),
-                Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
-            }
-        }
-        news.then_some(self.state)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    extern crate std;
-    use std::vec::Vec;
-
-    use uf_crsf::packets::{LinkStatistics, PacketAddress, RcChannelsPacked};
-    use uf_crsf::write_packet_to_buffer;
-
-    use super::*;
-
-    fn frame(sticks: Sticks) -> Vec<u8> {
-        let mut out = [0; 64];
-        let packet = RcChannelsPacked(sticks.to_channels());
-        let n = write_packet_to_buffer(&mut out, PacketAddress::FlightController, &packet).unwrap_or(0);
-        out.into_iter().take(n).collect()
-    }
-
-    fn statistics(uplink_link_quality: u8) -> Vec<u8> {
-        let mut out = [0; 64];
-        let packet = LinkStatistics {
-            uplink_rssi_1: 90,
-            uplink_rssi_2: 95,
-            uplink_link_quality,
-            uplink_snr: 4,
-            active_antenna: 0,
-            rf_mode: 4,
-            uplink_tx_power: 3,
-            downlink_rssi: 80,
-            downlink_link_quality: 100,
-            downlink_snr: 6,
-        };
-        let n = write_packet_to_buffer(&mut out, PacketAddress::FlightController, &packet).unwrap_or(0);
-        out.into_iter().take(n).collect()
-    }
-
-    fn throttle(throttle: f32) -> Vec<u8> {
-        frame(Sticks {
-            throttle,
-            ..Default::default()
-        })
-    }
-
-    /// The throttle published for `bytes` at `ms`, in whole percent.
-    fn published(decoder: &mut Decoder, bytes: &[u8], ms: u64) -> Option<u32> {
-        decoder
-            .take(bytes, Instant::from_millis(ms))
-            .map(|state| (state.sticks.throttle * 100.0 + 0.5) as u32)
-    }
-
-    #[test]
-    fn a_receiver_without_a_radio_is_not_believed() {
-        let mut d = Decoder::new();
-        assert_eq!(
-            published(&mut d, &throttle(0.4), 0),
-            Some(40),
-            "no statistics yet"
-        );
-        assert_eq!(
-            published(&mut d, &statistics(97), 10),
-            None,
-            "statistics are no sticks"
-        );
-        assert_eq!(published(&mut d, &throttle(0.5), 20), Some(50));
-        assert_eq!(published(&mut d, &statistics(0), 30), None);
-        // The last frame over and over, the loss reported at 5 Hz: for longer than any silence.
-        for ms in (40..3000).step_by(20) {
-            if ms % 200 == 0 {
-                assert_eq!(published(&mut d, &statistics(0), ms), None, "{ms}");
-            }
-            assert_eq!(published(&mut d, &throttle(0.5), ms), None, "{ms}");
-        }
-        assert!(
-            (d.state.frames, d.state.errors) == (150, 0),
-            "counted all the same: {:?}",
-            d.state
-        );
-        // 1 % is a link; the channels are those of the first frame after it.
-        assert_eq!(published(&mut d, &throttle(0.6), 3000), None);
-        assert_eq!(published(&mut d, &statistics(1), 3010), None);
-        assert_eq!(published(&mut d, &throttle(0.7), 3020), Some(70));
-    }
-
-    #[test]
-    fn a_report_of_loss_counts_for_a_second() {
-        let mut d = Decoder::new();
-        let _ = published(&mut d, &statistics(0), 500);
-        assert_eq!(published(&mut d, &throttle(0.3), 1499), None);
-        assert_eq!(published(&mut d, &throttle(0.3), 1500), Some(30));
-        // A report among the frames of one read counts for all of them.
-        let read = [throttle(0.1), statistics(0), throttle(0.2)].concat();
-        assert_eq!(published(&mut d, &read, 1600), None);
-        let read = [throttle(0.1), statistics(50), throttle(0.2)].concat();
-        assert_eq!(published(&mut d, &read, 1700), Some(20));
-    }
-
-    #[test]
-    fn every_frame_is_decoded_however_the_bytes_are_cut() {
-        for cut in [1, 7, 26, 32, 64] {
-            let mut decoder = Decoder::new();
-            let bytes: Vec<u8> = (0..50)
-                .flat_map(|i| {
-                    frame(Sticks {
-                        throttle: 0.02 * i as f32,
-                        ..Default::default()
-                    })
-                })
-                .collect();
-            for chunk in bytes.chunks(cut) {
-                let _ = decoder.take(chunk, Instant::MIN);
-            }
-            assert_eq!((decoder.state.frames, decoder.state.errors), (50, 0), "{cut}");
-            assert!((decoder.state.sticks.throttle - 0.98).abs() < 2e-3);
-        }
-    }
-
-    #[test]
-    fn garbage_is_counted_and_the_next_frame_is_understood() {
-        let mut decoder = Decoder::new();
-        let good = frame(Sticks {
-            roll: 0.5,
-            ..Default::default()
-        });
-        let mut broken = good.clone();
-        if let Some(byte) = broken.get_mut(5) {
-            *byte ^= 0x10;
-        }
-        assert!(decoder.take(&broken, Instant::MIN).is_none());
-        let _ = decoder.take(&[0x55; 9], Instant::MIN);
-        for _ in 0..3 {
-            let _ = decoder.take(&good, Instant::MIN);
-        }
-        assert!(
-            decoder.state.errors > 0 && decoder.state.frames >= 2,
-            "{:?}",
-            decoder.state
-        );
-        assert!((decoder.state.sticks.roll - 0.5).abs() < 2e-3);
     }
 }

@@ -1,8 +1,10 @@
-//! The supervisor: the watchdog is fed only while everything runs that flying needs.
+//! The supervisor: the watchdog is fed only while everything runs that flying needs, and what must outlive its bite
+//! is kept.
 //!
 //! 100 Hz, steady level, so that a flight level that never yields starves it too. A window of 100 ms in which
 //! a task has made less than half of its runs, or a flight level that has gone stale after calibration, leaves
-//! the watchdog unfed: with a period of 200 to 500 ms it then resets the board, which starts disarmed.
+//! the watchdog unfed: with a period of 200 to 500 ms it then resets the board, which starts
+//! disarmed, with the grip as it was.
 //!
 //! Not watched: rc (a lost radio is the failsafe's business, no fault of the board), arms (its bus may stall;
 //! the mixer lives without) and telemetry.
@@ -10,8 +12,9 @@
 use embassy_time::{Duration, Instant};
 
 use crate::deadline::{FixedRate, TaskId};
+use crate::keeper::Keeper;
 use crate::links::Links;
-use crate::ports::Watchdog;
+use crate::ports::{Retain, Watchdog};
 
 /// Time between two looks.
 pub const PERIOD: Duration = Duration::from_millis(10);
@@ -77,11 +80,13 @@ const WATCHED: [Watched; 9] = [
 ];
 
 /// Watches for ever.
-pub async fn run(links: &Links, mut watchdog: impl Watchdog) -> ! {
+pub async fn run(links: &Links, mut watchdog: impl Watchdog, memory: impl Retain) -> ! {
+    let mut keeper = Keeper::new(links, memory);
     let mut health = Health::new(links, Instant::now());
     let mut rate = FixedRate::new(links, TaskId::Supervisor, PERIOD, PERIOD);
     loop {
         let tick = rate.next().await;
+        keeper.keep(links);
         if health.look(links, tick.started) {
             watchdog.feed();
         }

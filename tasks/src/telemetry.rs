@@ -1,6 +1,7 @@
 //! Telemetry to the pilot's transmitter, over the receiver's serial line.
 //!
-//! 20 Hz, background: one frame a run, so that the thin downlink never queues.
+//! 20 Hz, background: one frame a run, so that the thin downlink never queues. SBUS has no way back: with it nothing
+//! is sent.
 //!
 //! | frame | type | rate |
 //! |---|---|---|
@@ -9,6 +10,7 @@
 //! | battery | 0x08 | 2 Hz |
 
 use core::fmt::Write;
+use core::future::pending;
 
 use embassy_time::Duration;
 use heapless::String;
@@ -19,6 +21,7 @@ use uf_crsf::write_packet_to_buffer;
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Battery, Links, Status};
 use crate::ports::SerialOutput;
+use crate::rc::Protocol;
 
 /// Time between two frames.
 pub const PERIOD: Duration = Duration::from_millis(50);
@@ -34,6 +37,9 @@ type Frame = heapless::Vec<u8, 64>;
 
 /// Sends frames for ever.
 pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
+    while Protocol::from_params(&links.params) == Protocol::Sbus {
+        pending::<()>().await;
+    }
     let mut rate = FixedRate::new(links, TaskId::Telemetry, PERIOD, PERIOD);
     let mut slot = 0;
     let mut shown = None;
@@ -81,6 +87,7 @@ fn mode_text(status: Status) -> String<TEXT> {
         mode,
         reason,
         warning,
+        ..
     } = status;
     let reason = if reason.is_empty() { warning } else { reason };
     let mut text = String::new();
@@ -137,7 +144,7 @@ mod tests {
                 let text = mode_text(Status {
                     mode,
                     reason,
-                    warning: "",
+                    ..Status::default()
                 });
                 assert_eq!(parse_mode_text(&text), Some((mode, reason)));
                 assert!(encode(packets::FlightMode::new(&text).ok()).is_some());
@@ -148,7 +155,7 @@ mod tests {
             mode_text(Status {
                 mode: Mode::Disarmed,
                 reason: long,
-                warning: ""
+                ..Status::default()
             }),
             "DISARMED"
         );

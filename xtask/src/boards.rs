@@ -1,7 +1,5 @@
 //! The boards, as far as a build has to know them.
 
-use crate::Error;
-
 /// One board.
 pub struct Board {
     /// Name, which is also its cargo feature.
@@ -49,11 +47,12 @@ pub const BOARDS: [Board; 3] = [
     },
 ];
 
-/// The board called `name`.
-pub fn find(name: &str) -> Result<&'static Board, Error> {
-    let names: Vec<&str> = BOARDS.iter().map(|b| b.name).collect();
-    BOARDS
-        .iter()
-        .find(|b| b.name == name)
-        .ok_or_else(|| format!("no board is called `{name}`; there are {}", names.join(", ")).into())
+/// The board called `name`; `None` when there is none.
+pub fn find(name: &str) -> Option<&'static Board> {
+    BOARDS.iter().find(|b| b.name == name)
+}
+
+/// The boards' names, for a sentence.
+pub fn names() -> String {
+    BOARDS.map(|b| b.name).join(", ")
 }

@@ -15,28 +15,38 @@ use crate::toolchain::{self, TARGET};
 /// # Errors
 /// No toolchain, or the build failed (and said why).
 pub fn firmware(board: &Board) -> Result<PathBuf, Error> {
+    image("sophie", &["--features", board.name], board.core, board.name)
+}
+
+/// Builds the image of `package` for a `core`, with the profile and the flags that all images have; returns the path of
+/// its ELF, kept under a name that ends in `kept`.
+///
+/// # Errors
+/// No toolchain, or the build failed (and said why).
+pub fn image(package: &str, arguments: &[&str], core: &str, kept: &str) -> Result<PathBuf, Error> {
     let toolchain = toolchain::find()?;
-    eprintln!("{}: {}", board.name, toolchain.name);
+    eprintln!("{kept}: {}", toolchain.name);
 
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root());
     command.args([
         "build",
-        "--release",
+        "--profile",
+        "firmware",
         "--locked",
         "--package",
-        "sophie",
+        package,
         "--target",
         TARGET,
     ]);
-    command.args(["--features", board.name]).args(toolchain.arguments);
+    command.args(arguments).args(toolchain.arguments);
     command.envs(toolchain.variables.iter().map(|(name, value)| (name, value)));
     // Only makes the code faster: an image that is built without it does the same.
     let mut flags = env::var_os("RUSTFLAGS").unwrap_or_default();
     if !flags.is_empty() {
         flags.push(" ");
     }
-    flags.push(format!("-Ctarget-cpu={}", board.core));
+    flags.push(format!("-Ctarget-cpu={core}"));
     command.env("RUSTFLAGS", flags);
     eprintln!("{}", shown(&command));
 
@@ -53,13 +63,13 @@ pub fn firmware(board: &Board) -> Result<PathBuf, Error> {
         }
     }
     if !cargo.wait()?.success() {
-        return Err(format!("the firmware of {} does not build", board.name).into());
+        return Err(format!("{package} does not build for {kept}").into());
     }
     let built = built.ok_or("cargo built no executable")?;
     // Cargo calls every board's image the same: keep one of each.
-    let kept = built.with_file_name(format!("sophie-{}.elf", board.name));
-    fs::copy(&built, &kept)?;
-    Ok(kept)
+    let copy = built.with_file_name(format!("{package}-{kept}.elf"));
+    fs::copy(&built, &copy)?;
+    Ok(copy)
 }
 
 /// Folder of the workspace.

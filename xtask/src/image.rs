@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
 
 use crate::Error;
@@ -21,6 +22,14 @@ pub struct Section {
     pub writable: bool,
 }
 
+/// Bytes that flashing writes.
+pub struct Load {
+    /// Where they are written to.
+    pub address: u64,
+    /// How many.
+    pub size: u64,
+}
+
 /// A static.
 pub struct Static {
     /// Mangled name.
@@ -37,6 +46,8 @@ pub struct Image {
     pub entry: u64,
     /// Sections that take memory.
     pub sections: Vec<Section>,
+    /// What flashing writes.
+    pub loads: Vec<Load>,
     /// Statics.
     pub statics: Vec<Static>,
     /// Addresses of all named symbols.
@@ -52,7 +63,8 @@ impl Image {
     /// Not an ELF, or one without vector table.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let bytes = std::fs::read(path)?;
-        let file = object::File::parse(&*bytes)?;
+        let file = ElfFile32::<object::Endianness>::parse(&*bytes)?;
+        let endian = file.endian();
         let table = file
             .section_by_name(".vector_table")
             .ok_or("the image has no vector table")?;
@@ -73,6 +85,15 @@ impl Image {
                 writable: sh_flags & u64::from(object::elf::SHF_WRITE) != 0,
             });
         }
+        let loads = file
+            .elf_program_headers()
+            .iter()
+            .filter(|h| h.p_type(endian) == object::elf::PT_LOAD && h.p_filesz(endian) > 0)
+            .map(|h| Load {
+                address: h.p_paddr(endian).into(),
+                size: h.p_filesz(endian).into(),
+            })
+            .collect();
         let mut statics = Vec::new();
         let mut symbols = HashMap::new();
         for symbol in file.symbols() {
@@ -91,6 +112,7 @@ impl Image {
         Ok(Self {
             entry: file.entry(),
             sections,
+            loads,
             statics,
             symbols,
             vectors: words.iter().map(|word| u32::from_le_bytes(*word)).collect(),

@@ -1,9 +1,13 @@
 //! Developer verbs that need more than cargo. `cargo xtask` without a verb prints them.
 
+mod bench;
 mod boards;
 mod build;
+mod conformance;
+mod cost;
 mod dma;
 mod image;
+mod params;
 mod sizes;
 mod toolchain;
 mod vectors;
@@ -21,29 +25,80 @@ usage: cargo xtask VERB
 
   firmware BOARD     build the firmware and check its image; the last line is the path of the ELF
   flash BOARD        build, flash through probe-rs and show the log
-  sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml;
-                     --tighten lowers the ceilings to what is taken now
+  bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--json]
+                     build and fly a mission on the emulated board (matek-h743); exit status 1 when it fails, 2 for bad input
+  sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml and with
+                     the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
+  cost [--tighten|--json]
+                     count the instructions of every control stage under QEMU, print them beside targets and peers,
+                     compare with hil/cost/baseline.toml; --tighten takes what is counted now as the baseline and
+                     writes the table of docs/cost.md
+  conformance        run one image of exceptions, floats and control laws on QEMU and on the emulated core of the bench;
+                     their logs must be equal
 
 boards: matek-h743 (reference), cuav-v5, f405
-variables: PROBE_RS_* as probe-rs knows them; RUSTFLAGS is kept and added to";
+variables: PROBE_RS_* as probe-rs knows them; RUSTFLAGS is kept and added to
+exit status: 0 done, 1 failed, 2 not understood";
+
+/// What is to be done.
+enum Verb {
+    Firmware(&'static Board),
+    Flash(&'static Board),
+    Sizes { tighten: bool },
+    Cost(cost::Then),
+    Conformance,
+    Help,
+}
+
+impl Verb {
+    /// What `words` ask for; else why they are not understood.
+    fn parse(words: &[&str]) -> Result<Self, String> {
+        let one_board = |names: &[&str]| match names {
+            [name] => boards::find(name)
+                .ok_or_else(|| format!("no board is called `{name}`; there are {}", boards::names())),
+            _ => Err(format!("name exactly one board: {}", boards::names())),
+        };
+        match words {
+            [] | ["help" | "-h" | "--help"] => Ok(Self::Help),
+            ["firmware", names @ ..] => one_board(names).map(Self::Firmware),
+            ["flash", names @ ..] => one_board(names).map(Self::Flash),
+            ["sizes"] => Ok(Self::Sizes { tighten: false }),
+            ["sizes", "--tighten"] => Ok(Self::Sizes { tighten: true }),
+            ["conformance"] => Ok(Self::Conformance),
+            ["cost"] => Ok(Self::Cost(cost::Then::Compare)),
+            ["cost", "--json"] => Ok(Self::Cost(cost::Then::Json)),
+            ["cost", "--tighten"] => Ok(Self::Cost(cost::Then::Tighten)),
+            _ => Err(format!(
+                "`{}` is not understood; `cargo xtask help` shows what is",
+                words.join(" ")
+            )),
+        }
+    }
+}
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let done = match words.as_slice() {
-        ["firmware", board] => boards::find(board).and_then(|board| {
-            let (elf, _) = firmware(board)?;
-            println!("{}", elf.display());
-            Ok(())
-        }),
-        ["flash", board] => boards::find(board).and_then(flash),
-        ["sizes"] => all_sizes(false),
-        ["sizes", "--tighten"] => all_sizes(true),
-        [] | ["help" | "-h" | "--help"] => {
+    if let ["bench", rest @ ..] = words.as_slice() {
+        return bench(rest);
+    }
+    let verb = match Verb::parse(&words) {
+        Ok(verb) => verb,
+        Err(complaint) => {
+            eprintln!("{complaint}");
+            return ExitCode::from(2);
+        }
+    };
+    let done = match verb {
+        Verb::Firmware(board) => firmware(board).map(|(elf, _)| println!("{}", elf.display())),
+        Verb::Flash(board) => flash(board),
+        Verb::Sizes { tighten } => all_sizes(tighten),
+        Verb::Cost(then) => cost::cost(then),
+        Verb::Conformance => conformance::conformance(),
+        Verb::Help => {
             println!("{USAGE}");
             Ok(())
         }
-        _ => Err(USAGE.into()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -54,6 +109,20 @@ fn main() -> ExitCode {
     }
 }
 
+fn bench(words: &[&str]) -> ExitCode {
+    let (board, status) = match bench::board(words) {
+        Ok(board) => (board, bench::fly(board, words.get(1..).unwrap_or_default())),
+        Err(complaint) => {
+            eprintln!("{complaint}");
+            return ExitCode::from(2);
+        }
+    };
+    status.unwrap_or_else(|error| {
+        eprintln!("{}: {error}", board.name);
+        ExitCode::FAILURE
+    })
+}
+
 /// Builds one board's firmware and checks its image.
 fn firmware(board: &Board) -> Result<(PathBuf, image::Image), Error> {
     let elf = build::firmware(board)?;
@@ -61,7 +130,11 @@ fn firmware(board: &Board) -> Result<(PathBuf, image::Image), Error> {
     let vectors = vectors::check(board, &image)?;
     let buffers = dma::check(board, &image)?;
     eprintln!("vector table: {vectors} handlers, levels and reset in place");
+    let kept = params::check(&image)?;
     eprintln!("DMA: {buffers} buffers and task futures, all where their DMA reaches");
+    if kept > 0 {
+        eprintln!("parameters: {kept} bytes of flash kept, nothing loaded there");
+    }
     Ok((elf, image))
 }
 
@@ -97,6 +170,31 @@ fn all_sizes(tighten: bool) -> Result<(), Error> {
     for board in &BOARDS {
         rows.push((board, sizes::Sizes::of(&firmware(board)?.1)?));
     }
-    sizes::table(&rows);
+    sizes::print(&rows);
     sizes::compare(&rows, tighten)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exactly_one_board_that_exists_is_built() {
+        for board in &BOARDS {
+            assert!(
+                matches!(Verb::parse(&["firmware", board.name]), Ok(Verb::Firmware(b)) if b.name == board.name)
+            );
+        }
+        for words in [
+            &["firmware"] as &[&str],
+            &["firmware", "matek"],
+            &["firmware", "matek-h743", "f405"],
+            &["flash"],
+            &["sizes", "--loosen"],
+            &["fly"],
+        ] {
+            let complaint = Verb::parse(words).err().unwrap_or_default();
+            assert!(!complaint.is_empty() && !complaint.contains('\n'), "{words:?}");
+        }
+    }
 }

@@ -14,6 +14,11 @@ const FLASH_LIMIT: u64 = 256 * 1024;
 /// Most static RAM on any board, bytes.
 const RAM_LIMIT: u64 = 64 * 1024;
 
+/// Where the ceilings are shown to users, between two marks.
+const PAGE: &str = "docs/boards.md";
+const BEGIN: &str = "<!-- sizes: written by `cargo xtask sizes --tighten` -->";
+const END: &str = "<!-- sizes end -->";
+
 /// Sizes of one image, bytes.
 pub struct Sizes {
     /// Code, constants and initial values.
@@ -50,7 +55,7 @@ struct Ceiling {
 }
 
 /// Prints the sizes as a table.
-pub fn table(rows: &[(&Board, Sizes)]) {
+pub fn print(rows: &[(&Board, Sizes)]) {
     println!("| board | flash, bytes | static RAM, bytes | stack, bytes |");
     println!("|---|---:|---:|---:|");
     for (board, s) in rows {
@@ -59,10 +64,11 @@ pub fn table(rows: &[(&Board, Sizes)]) {
     println!("| limit | {FLASH_LIMIT} | {RAM_LIMIT} | |");
 }
 
-/// Compares with the limits and with `xtask/ceilings.toml`; lowers those if `tighten`.
+/// Compares with the limits, with `xtask/ceilings.toml`, and that with its table in `docs/boards.md`. If `tighten`,
+/// lowers the ceilings and writes the table.
 ///
 /// # Errors
-/// What is too large, each on its line.
+/// What is too large or out of date, each on its line.
 pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let path = build::root().join("xtask/ceilings.toml");
     let mut ceilings: BTreeMap<String, Ceiling> = toml::from_str(&fs::read_to_string(&path)?)?;
@@ -92,9 +98,18 @@ pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
             }
         }
     }
+    let page_path = build::root().join(PAGE);
+    let page = fs::read_to_string(&page_path)?;
+    let stacks: Vec<_> = rows.iter().map(|(board, s)| (board.name, s.stack)).collect();
+    let updated = with_table(&page, &ceilings, &stacks)?;
     if tighten {
         let head = "# Most that a board's firmware may take, bytes. `cargo xtask sizes` compares; `--tighten` lowers.\n";
         fs::write(&path, format!("{head}\n{}", toml::to_string(&ceilings)?))?;
+        fs::write(&page_path, updated)?;
+    } else if updated != page {
+        complaints.push(format!(
+            "{PAGE}: its table is not that of xtask/ceilings.toml; `cargo xtask sizes --tighten` writes it"
+        ));
     }
     if complaints.is_empty() {
         Ok(())
@@ -103,7 +118,51 @@ pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     }
 }
 
+/// `page` with the ceilings between its marks.
+fn with_table(
+    page: &str,
+    ceilings: &BTreeMap<String, Ceiling>,
+    stacks: &[(&str, u64)],
+) -> Result<String, Error> {
+    let (head, rest) = page
+        .split_once(BEGIN)
+        .ok_or_else(|| format!("{PAGE} has no `{BEGIN}`"))?;
+    let (_, tail) = rest
+        .split_once(END)
+        .ok_or_else(|| format!("{PAGE} has no `{END}`"))?;
+    let mut table =
+        String::from("\n| board | flash, KiB | static RAM, KiB | stack, KiB |\n|---|---:|---:|---:|\n");
+    for &(name, stack) in stacks {
+        let ceiling = ceilings.get(name).ok_or("a board without ceiling")?;
+        let (flash, ram) = (ceiling.flash / 1024, ceiling.ram / 1024);
+        table += &format!("| `{name}` | {flash} | {ram} | {} |\n", stack / 1024);
+    }
+    table += &format!("| limit | {} | {} | |\n", FLASH_LIMIT / 1024, RAM_LIMIT / 1024);
+    Ok(format!("{head}{BEGIN}{table}{END}{tail}"))
+}
+
 /// A few per cent of room, in whole KiB: compilers differ.
 fn rounded(size: u64) -> u64 {
     (size + size / 32).next_multiple_of(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_replaced_and_nothing_else() {
+        let page = format!("before\n{BEGIN}old{END}\nafter\n");
+        let ceiling = Ceiling {
+            flash: 200 * 1024,
+            ram: 14 * 1024,
+        };
+        let ceilings = BTreeMap::from([("f405".to_string(), ceiling)]);
+        let stacks = [("f405", 32 * 1024)];
+        let once = with_table(&page, &ceilings, &stacks).unwrap();
+        assert!(once.starts_with("before\n") && once.ends_with("\nafter\n") && !once.contains("old"));
+        assert!(once.contains("| `f405` | 200 | 14 | 32 |"));
+        assert_eq!(with_table(&once, &ceilings, &stacks).unwrap(), once);
+        assert!(with_table("no marks", &ceilings, &stacks).is_err());
+    }
 }

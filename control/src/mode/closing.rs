@@ -4,7 +4,8 @@ use super::Inputs;
 use super::hold::{Hold, Spool, held, hopeless};
 use super::logic::{ModeLogic, State};
 use crate::math::clamp;
-use crate::rc::{ArmChoice, Sticks};
+use crate::rc::Sticks;
+use crate::warm::Grasp;
 
 /// Time of the linear ramp of the collective between the pilot's throttle and nothing, s.
 pub const SPOOL_TIME: f32 = 1.5;
@@ -40,6 +41,7 @@ impl ModeLogic {
             share: spool.share,
             free: 0.0,
             opening: false,
+            kept: false,
         };
 
         // Without the radio nobody could fly away: a poor grip is then better than none.
@@ -89,11 +91,13 @@ impl ModeLogic {
             };
         }
         if spool.still >= STOP_TIME && proven {
-            return State::Perched { arms: hold.arms };
+            return State::Perched {
+                grasp: Grasp::Closed(hold.arms),
+            };
         }
         if spool.still >= STOP_TIME && last_resort {
             return State::Disarmed {
-                closed: Some(hold.arms),
+                grasp: Grasp::Closed(hold.arms),
             };
         }
         if spool.still >= STOP_TIME + PROOF_TIME {
@@ -108,17 +112,17 @@ impl ModeLogic {
         State::Clamping { hold, spool }
     }
 
-    pub(super) fn perched(&mut self, i: &Inputs, arms: ArmChoice, sticks: Option<Sticks>) -> State {
-        let Some(s) = sticks else {
-            return State::Perched { arms };
+    pub(super) fn perched(&mut self, i: &Inputs, grasp: Grasp, sticks: Option<Sticks>) -> State {
+        let (Some(s), Some(arms)) = (sticks, grasp.arms()) else {
+            return State::Perched { grasp };
         };
         if !s.arm_switch {
             // Rotors stay locked. The disarming gesture hands the closed vehicle over to a person.
             if self.gesture == Some(crate::arming::Gesture::Disarm) {
                 self.perch_seen_on = false;
-                return State::Disarmed { closed: Some(arms) };
+                return State::Disarmed { grasp };
             }
-            return State::Perched { arms };
+            return State::Perched { grasp };
         }
         let throttle_set = (RELEASE_THROTTLE_MIN..=self.params.perch_throttle_max).contains(&s.throttle);
         let asked = !s.perch_switch && self.perch_seen_on && throttle_set;
@@ -131,20 +135,21 @@ impl ModeLogic {
                     share: 0.0,
                     free: 0.0,
                     opening: false,
+                    kept: matches!(grasp, Grasp::Kept(_)),
                 }
             }
-            _ => State::Perched { arms },
+            _ => State::Perched { grasp },
         }
     }
 
     /// What the pilot should know while perched.
-    pub(super) fn perch_trouble(&self, i: &Inputs, arms: ArmChoice) -> Option<&'static str> {
+    pub(super) fn perch_trouble(&self, i: &Inputs, grasp: Grasp) -> Option<&'static str> {
         let asked = i
             .sticks
             .is_some_and(|s| !s.perch_switch && s.throttle >= RELEASE_THROTTLE_MIN);
         if i.grip.is_none() {
             Some("clamp loop silent")
-        } else if !held(i.grip, arms, &self.params) {
+        } else if !self.grasps(i, grasp) {
             Some("grip lost")
         } else if i.sticks.is_none() {
             Some("radio lost")
@@ -167,7 +172,7 @@ impl ModeLogic {
         &mut self,
         i: &Inputs,
         hold: Hold,
-        (share, free, opening): (f32, f32, bool),
+        (share, free, opening, kept): (f32, f32, bool, bool),
         sticks: Option<Sticks>,
         dt: f32,
     ) -> State {
@@ -177,6 +182,12 @@ impl ModeLogic {
             return State::Flight;
         }
         let again = sticks.is_none_or(|s| s.perch_switch && self.perch_seen_off);
+        if again && kept && !opening {
+            // The gears hold what they held all along; the loops could only close from where the drives are not.
+            return State::Perched {
+                grasp: Grasp::Kept(hold.arms),
+            };
+        }
         if again && !released {
             // Radio lost: hold on. A later release takes a new turn of the switch.
             self.perch_seen_on = sticks.is_some();
@@ -194,6 +205,7 @@ impl ModeLogic {
             share,
             free,
             opening: opening || share >= 1.0,
+            kept,
         }
     }
 }

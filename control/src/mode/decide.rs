@@ -6,11 +6,14 @@ use super::logic::{ModeLogic, State};
 use super::{ClampCommand, Inputs, Mode, Outputs, Setpoint, demand};
 use crate::arming::{Checks, Refusal, Refusals};
 use crate::math::clamp;
+use crate::warm::Grasp;
 
 impl ModeLogic {
     pub(super) fn refusals(&self, i: &Inputs) -> Refusals {
-        let chosen = i.sticks.unwrap_or_default().arms.mask();
-        Checks {
+        let grasp = self.grasp();
+        let chosen = grasp.arms().unwrap_or(i.sticks.unwrap_or_default().arms).mask();
+        let held = grasp.arms().is_some() && self.grasps(i, grasp);
+        let refusals = Checks {
             calibrated: i.motion.is_some_and(|m| m.calibrated),
             cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
             sticks: i.sticks,
@@ -23,20 +26,44 @@ impl ModeLogic {
                 .any(|(&fault, chosen)| fault && chosen),
             late: i.late,
             hardware: i.hardware,
-            arms_closed: !matches!(self.state, State::Disarmed { closed: None } | State::Calibrating),
+            arms_closed: grasp != Grasp::Open && !held,
         }
-        .refusals(&self.params)
+        .refusals(&self.params);
+        if grasp.arms().is_some() {
+            // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms are
+            // opened; and no one can reach the battery there to put a broken supply right.
+            refusals
+                .without(Refusal::PerchSwitchOn)
+                .without(Refusal::BrownOut)
+        } else {
+            refusals
+        }
+    }
+
+    /// The grip that must outlive a reset: from the first step of closing until every arm is proven free.
+    fn grasp(&self) -> Grasp {
+        match self.state {
+            State::Calibrating { grasp } | State::Disarmed { grasp } | State::Perched { grasp } => grasp,
+            State::Releasing {
+                hold,
+                opening: false,
+                kept: true,
+                ..
+            } => Grasp::Kept(hold.arms),
+            State::Clamping { hold, .. } | State::Releasing { hold, .. } => Grasp::Closed(hold.arms),
+            State::Armed | State::Flight | State::Contact { .. } | State::Landed | State::Failsafe(_) => {
+                Grasp::Open
+            }
+        }
     }
 
     pub(super) fn decide(&mut self, i: &Inputs, dt: f32) -> Outputs {
         let mode = self.state.mode();
-        let tendons = match self.state {
-            State::Disarmed { closed: Some(arms) } | State::Perched { arms } => ClampCommand::Close { arms },
-            State::Clamping { hold, .. }
-            | State::Releasing {
-                hold, opening: false, ..
-            } => ClampCommand::Close { arms: hold.arms },
-            _ => ClampCommand::Release,
+        let grasp = self.grasp();
+        let tendons = match (self.state, grasp) {
+            (State::Releasing { opening: true, .. }, _) | (_, Grasp::Open) => ClampCommand::Release,
+            (_, Grasp::Closed(arms)) => ClampCommand::Close { arms },
+            (_, Grasp::Kept(_) | Grasp::Unknown) => ClampCommand::Keep,
         };
         self.probe(dt);
         let wish = self.wish(i);
@@ -52,6 +79,7 @@ impl ModeLogic {
             mode,
             rotors,
             tendons,
+            grasp,
             reason,
             refusals,
         }
@@ -79,17 +107,24 @@ impl ModeLogic {
     fn reason(&self, i: &Inputs, refusals: Refusals) -> &'static str {
         let note = if self.note.1 > 0.0 { self.note.0 } else { "" };
         match self.state {
-            State::Calibrating if i.motion.is_none() => "inertial sensor silent",
-            State::Calibrating => "keep still",
+            State::Calibrating { .. } if i.motion.is_none() => first(i.hardware.with(Refusal::ImuStale)),
+            State::Calibrating { .. } if i.hardware.is_empty() => "keep still",
+            // A builder must see what is broken without trying to arm.
+            State::Calibrating { .. } => first(i.hardware),
             // What just happened comes before what keeps from arming again.
             State::Disarmed { .. } if note.is_empty() && i.sticks.is_some_and(|s| s.arm_switch) => {
-                refusals.first().map_or("", Refusal::text)
+                first(refusals)
             }
-            State::Perched { arms } => self.perch_trouble(i, arms).unwrap_or(note),
+            State::Disarmed { .. } if note.is_empty() && !i.hardware.is_empty() => first(i.hardware),
+            State::Perched { grasp } => self.perch_trouble(i, grasp).unwrap_or(note),
             State::Failsafe(cause) => cause.text(),
             _ if self.dangers.battery_critical() => Cause::BatteryCritical.text(),
             _ if i.sticks.is_none() && self.state.mode() != Mode::Disarmed => "radio lost",
             _ => note,
         }
     }
+}
+
+fn first(refusals: Refusals) -> &'static str {
+    refusals.first().map_or("", Refusal::text)
 }

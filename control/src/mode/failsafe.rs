@@ -14,6 +14,7 @@ use crate::math::{clamp, deg};
 use crate::params::Params;
 use crate::rc::{StickMode, Sticks};
 use crate::support::{HINT_FORCE, Held};
+use crate::warm::Grasp;
 
 /// Silence of the inertial sensor after which the rotors stop, s. Control has stopped them before: this makes
 /// it last.
@@ -101,20 +102,33 @@ impl ModeLogic {
         let proven = i.grip.is_some_and(|g| g.proven);
         let free = i.grip.is_some_and(|g| g.released);
         let state = match self.state {
-            State::Calibrating | State::Disarmed { .. } | State::Perched { .. } => return None,
-            State::Releasing { opening: true, .. } if free => State::Disarmed { closed: None },
+            State::Calibrating { .. } | State::Disarmed { .. } | State::Perched { .. } => return None,
+            State::Releasing { opening: true, .. } if free => State::Disarmed { grasp: Grasp::Open },
+            State::Releasing {
+                hold,
+                opening: false,
+                kept: true,
+                ..
+            } => {
+                self.perch_seen_on = false;
+                State::Perched {
+                    grasp: Grasp::Kept(hold.arms),
+                }
+            }
             State::Clamping { hold, .. } | State::Releasing { hold, .. } => {
                 // Opening takes a new and deliberate turn of the switch.
                 self.perch_seen_on = false;
                 if proven && !matches!(self.state, State::Releasing { opening: true, .. }) {
-                    State::Perched { arms: hold.arms }
+                    State::Perched {
+                        grasp: Grasp::Closed(hold.arms),
+                    }
                 } else {
                     State::Disarmed {
-                        closed: Some(hold.arms),
+                        grasp: Grasp::Closed(hold.arms),
                     }
                 }
             }
-            _ => State::Disarmed { closed: None },
+            _ => State::Disarmed { grasp: Grasp::Open },
         };
         Some((state, why))
     }

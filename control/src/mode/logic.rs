@@ -2,12 +2,14 @@
 
 use super::failsafe::{Cause, Dangers};
 use super::hold::{Hold, Spool};
+use super::look::Look;
 use super::{Inputs, Mode, Outputs, demand};
 use crate::arming::{Gesture, GestureWatch};
 use crate::math::{clamp, cos};
 use crate::params::Params;
-use crate::rc::{ArmChoice, Sticks};
+use crate::rc::Sticks;
 use crate::support::{Felt, Support};
+use crate::warm::Grasp;
 
 /// Longest step believed, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
@@ -31,10 +33,13 @@ const NOTE_TIME: f32 = 10.0;
 /// The state with what belongs to it; [`Mode`] is its public name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum State {
-    Calibrating,
-    /// With the arms that were left closed: a grip outlives the rotors.
+    /// A grip outlives rotors and resets.
+    Calibrating {
+        grasp: Grasp,
+    },
+    /// As above.
     Disarmed {
-        closed: Option<ArmChoice>,
+        grasp: Grasp,
     },
     Armed,
     Flight,
@@ -46,7 +51,8 @@ pub(super) enum State {
         spool: Spool,
     },
     Perched {
-        arms: ArmChoice,
+        /// Closed or kept.
+        grasp: Grasp,
     },
     Releasing {
         hold: Hold,
@@ -56,6 +62,8 @@ pub(super) enum State {
         free: f32,
         /// The tendons are paying out.
         opening: bool,
+        /// The gears alone hold: the tendons' drives start when they open.
+        kept: bool,
     },
     Landed,
     Failsafe(Cause),
@@ -64,7 +72,7 @@ pub(super) enum State {
 impl State {
     pub(super) fn mode(self) -> Mode {
         match self {
-            Self::Calibrating => Mode::Calibrating,
+            Self::Calibrating { .. } => Mode::Calibrating,
             Self::Disarmed { .. } => Mode::Disarmed,
             Self::Armed => Mode::Armed,
             Self::Flight => Mode::Flight,
@@ -98,6 +106,9 @@ pub struct ModeLogic {
     pub(super) perch_seen_off: bool,
     /// The perch switch has been on since the arms closed: off opens them.
     pub(super) perch_seen_on: bool,
+    /// The perch switch has been on since the start: where it was left says nothing about what the pilot wants now.
+    perch_left_on: bool,
+    pub(super) look: Look,
     pub(super) collective: demand::Collective,
     /// A reason and the time for which it is still shown, s.
     pub(super) note: (&'static str, f32),
@@ -106,11 +117,16 @@ pub struct ModeLogic {
 }
 
 impl ModeLogic {
-    /// A vehicle that has just been switched on.
+    /// A vehicle that has just been switched on: whether its arms are closed is looked at first.
     pub fn new(params: &Params) -> Self {
+        Self::resume(params, Grasp::Unknown)
+    }
+
+    /// A vehicle whose board has restarted with this grip. The rotors wait for the pilot, whatever ran before.
+    pub fn resume(params: &Params, grasp: Grasp) -> Self {
         Self {
             params: *params,
-            state: State::Calibrating,
+            state: State::Calibrating { grasp },
             since: 0.0,
             support: Support::new(params),
             dangers: Dangers::default(),
@@ -120,6 +136,8 @@ impl ModeLogic {
             arm_seen_off: false,
             perch_seen_off: false,
             perch_seen_on: false,
+            perch_left_on: true,
+            look: Look::default(),
             collective: demand::Collective::default(),
             note: ("", 0.0),
             gravity: crate::math::GRAVITY,
@@ -159,10 +177,12 @@ impl ModeLogic {
             self.throttle = clamp(s.throttle, 0.0, 1.0);
             self.arm_seen_off |= !s.arm_switch;
             self.perch_seen_off |= !s.perch_switch;
-            self.perch_seen_on |= s.perch_switch;
+            self.perch_left_on &= s.perch_switch;
+            self.perch_seen_on |= s.perch_switch && !self.perch_left_on;
         }
+        self.look_for_grasp(i, dt);
         let down = i.motion.map_or(-self.gravity, |m| m.q.rotate(m.accel).z);
-        if matches!(self.state, State::Calibrating | State::Disarmed { closed: None }) && i.motion.is_some() {
+        if matches!(self.state, State::Calibrating { .. } | State::Disarmed { .. }) && i.motion.is_some() {
             // What the accelerometer calls gravity at rest: its bias would otherwise add up in the sink rate.
             let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
             self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
@@ -180,10 +200,15 @@ impl ModeLogic {
     fn transition(&mut self, i: &Inputs, dt: f32) -> State {
         let low = |s: &Sticks| s.throttle <= self.params.throttle_low;
         match (self.state, i.sticks) {
-            (State::Calibrating, _) if i.motion.is_some_and(|m| m.calibrated) => {
-                State::Disarmed { closed: None }
+            (State::Calibrating { grasp }, sticks) => {
+                let grasp = sticks.map_or(grasp, |s| self.after_switch(s, grasp));
+                if i.motion.is_some_and(|m| m.calibrated) {
+                    State::Disarmed { grasp }
+                } else {
+                    State::Calibrating { grasp }
+                }
             }
-            (State::Disarmed { closed }, Some(s)) => self.disarmed(i, s, closed),
+            (State::Disarmed { grasp }, Some(s)) => self.disarmed(i, s, grasp),
             (State::Armed | State::Landed, None) => self.stop("radio lost"),
             (State::Armed | State::Landed, Some(_)) if self.gesture == Some(Gesture::Disarm) => self.stop(""),
             (State::Armed | State::Landed, Some(s)) if !low(&s) => State::Flight,
@@ -197,30 +222,46 @@ impl ModeLogic {
             (State::Flight, Some(s)) => self.touch(i, s).unwrap_or(State::Flight),
             (State::Contact { hold }, sticks) => self.contact(hold, sticks, dt),
             (State::Clamping { hold, spool }, sticks) => self.clamping(i, hold, spool, sticks, dt),
-            (State::Perched { arms }, sticks) => self.perched(i, arms, sticks),
+            (State::Perched { grasp }, sticks) => self.perched(i, grasp, sticks),
             (
                 State::Releasing {
                     hold,
                     share,
                     free,
                     opening,
+                    kept,
                 },
                 sticks,
-            ) => self.releasing(i, hold, (share, free, opening), sticks, dt),
+            ) => self.releasing(i, hold, (share, free, opening, kept), sticks, dt),
             (State::Failsafe(cause), sticks) => self.failsafe(cause, sticks),
             (state, _) => state,
         }
     }
 
-    fn disarmed(&mut self, i: &Inputs, s: Sticks, closed: Option<ArmChoice>) -> State {
-        if closed.is_some() && !s.perch_switch && self.perch_seen_on {
-            // A person holds the vehicle and has turned the perch switch on and off again.
-            return State::Disarmed { closed: None };
+    fn disarmed(&mut self, i: &Inputs, s: Sticks, grasp: Grasp) -> State {
+        let grasp = self.after_switch(s, grasp);
+        if self.gesture != Some(Gesture::Arm) || !self.refusals(i).is_empty() {
+            return State::Disarmed { grasp };
         }
-        if self.gesture == Some(Gesture::Arm) && self.refusals(i).is_empty() {
-            return State::Armed;
+        match grasp {
+            Grasp::Closed(_) | Grasp::Kept(_) => {
+                // Armed on purpose with the switch where it is: from here on, off is a wish to go.
+                self.perch_seen_on = s.perch_switch;
+                self.perch_left_on = false;
+                State::Perched { grasp }
+            }
+            Grasp::Open => State::Armed,
+            Grasp::Unknown => State::Disarmed { grasp },
         }
-        State::Disarmed { closed }
+    }
+
+    /// The grip of a disarmed vehicle. A person who holds it opens the arms by the perch switch, on and off again.
+    fn after_switch(&self, s: Sticks, grasp: Grasp) -> Grasp {
+        if grasp.arms().is_some() && !s.perch_switch && self.perch_seen_on {
+            Grasp::Open
+        } else {
+            grasp
+        }
     }
 
     /// The touch of the pipe: perch switch turned on, throttle down, something carries, nearly level.
@@ -269,7 +310,7 @@ impl ModeLogic {
     /// Rotors off for good, from a state in which no arm is closed.
     pub(super) fn stop(&mut self, why: &'static str) -> State {
         self.note(why);
-        State::Disarmed { closed: None }
+        State::Disarmed { grasp: Grasp::Open }
     }
 
     /// Shows `why` for a while.

@@ -110,12 +110,19 @@ fn spells() -> impl Strategy<Value = Vec<Spell>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..Default::default() })]
     #[test]
-    fn whatever_happens(spells in spells(), start in 0u8..4) {
+    fn whatever_happens(spells in spells(), start in 0u8..7) {
         let mut r = match start {
             0 => Rig::new(),
             1 => Rig::armed(),
             2 => Rig::flying(),
-            _ => Rig::perched(),
+            3 => Rig::perched(),
+            _ => {
+                let mut r = Rig::new();
+                let grasps = [Grasp::Closed(ArmChoice::All), Grasp::Kept(ArmChoice::Front), Grasp::Open];
+                let grasp = grasps.into_iter().nth(usize::from(start) - 4).unwrap_or_default();
+                r.logic = ModeLogic::resume(&r.params, grasp);
+                r
+            }
         };
         for (steps, sticks, grip, roll, carried, battery, there) in spells {
             r.inputs.sticks = sticks;
@@ -125,7 +132,7 @@ proptest! {
             let q = Quat::from_euler(roll, 0.0, 0.0);
             r.inputs.motion = there.then_some(Motion { q, calibrated: true, ..Default::default() });
             for _ in 0..steps {
-                let before = r.out.mode;
+                let (before, grasp) = (r.out.mode, r.out.grasp);
                 r.step();
                 let Outputs { mode, rotors, tendons, reason, .. } = r.out;
                 let still = [Mode::Calibrating, Mode::Disarmed, Mode::Perched].contains(&mode);
@@ -136,6 +143,11 @@ proptest! {
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.len() <= 40);
+                // Nothing opens but by the switch, turned off, or by rotors that carry.
+                if grasp.arms().is_some() && tendons == ClampCommand::Release {
+                    prop_assert!(mode == Mode::Releasing || sticks.is_some_and(|s| !s.perch_switch)
+                        || r.inputs.grip.is_some_and(|g| g.released), "{before:?} -> {mode:?}");
+                }
                 // Rotors start from rest only where the pilot asked for it in that very step.
                 if [Mode::Disarmed, Mode::Perched].contains(&before) && rotors.spin() {
                     prop_assert!(sticks.is_some_and(|s| s.arm_switch));

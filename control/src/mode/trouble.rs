@@ -132,6 +132,10 @@ fn a_person_opens_the_arms_of_a_disarmed_vehicle_on_purpose() {
     r.sticks().yaw = -1.0;
     r.expect(1.1, Mode::Disarmed);
     assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
+    // Only a grip that is lost forbids arming, which here only leads back to the perch.
+    assert!(!r.out.refusals.contains(Refusal::ArmsClosed));
+    r.grip(false, false, ArmState::Touching, 100.0);
+    r.run(0.1);
     assert!(r.out.refusals.contains(Refusal::ArmsClosed));
     r.sticks().perch_switch = false;
     r.run(0.1);

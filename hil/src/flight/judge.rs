@@ -5,7 +5,7 @@ use sophie_control::mode::Mode;
 use sophie_control::tendon::ForceLimit;
 use sophie_control::wrench::PerArm;
 
-use super::stack::Stack;
+use super::aircraft::Aircraft;
 use crate::plant::Plant;
 use crate::plant::contact::BELLY_Z;
 use crate::plant::tendon::TendonSpec;
@@ -16,6 +16,9 @@ use crate::sensors::fsr::LARGEST_ERROR;
 const SLIP: f64 = 0.03;
 /// Largest true pressure on an arm, Pa: the tendons' and the skin's sake.
 const PRESSURE_MAX: f64 = 1500.0;
+/// The same until the loops go on after a reset that stopped the rotors at once: what pulled against their thrust
+/// presses the pipe, Pa.
+const PRESSURE_JOLT: f64 = 3000.0;
 /// Tolerances that a pressure may be off while the rotors stop and while the vehicle is pushed: the body moves on its
 /// pads and the loop follows slowly.
 const DISTURBED: f64 = 2.0;
@@ -25,6 +28,8 @@ const ROLL_SHARE: f64 = 0.9;
 const SETTLE: f64 = 3.0;
 /// Rotor thrust that counts as stopped, N.
 const STOPPED: f64 = 0.05;
+/// Time in which stopped rotors run out, s.
+const RUN_OUT: f64 = 1.0;
 /// Speed at which touching the ground is a crash, m/s.
 const CRASH_SPEED: f64 = 2.0;
 
@@ -33,11 +38,15 @@ pub struct Judge {
     chosen: PerArm<bool>,
     target: f64,
     tolerance: f64,
+    /// Pressure below which an arm is free, Pa.
+    released: f64,
     /// Largest error of the pressure sensor at the target, Pa: what the stack cannot know, the truth is granted.
     sensor_error: f64,
     torque_max: f64,
     reel_radius: f64,
     proven: bool,
+    /// Where a gripped vehicle hung when its board was reset, until it is let go.
+    hanging: Option<DVec3>,
     /// Angle of the roll manoeuvre under way and the farthest true roll to either side, rad.
     roll: Option<(f64, [f64; 2])>,
     hold_start: Option<(f64, DVec3)>,
@@ -55,10 +64,12 @@ impl Judge {
             chosen: scenario.arms.mask(),
             target,
             tolerance: f64::from(p.grip_tolerance),
+            released: f64::from(p.release_pressure),
             sensor_error: target * LARGEST_ERROR,
             torque_max: f64::from(ForceLimit::from_params(p).force * p.reel_radius),
             reel_radius: TendonSpec::default().reel_radius,
             proven: false,
+            hanging: None,
             roll: None,
             hold_start: None,
             pushed: f64::NEG_INFINITY,
@@ -72,7 +83,7 @@ impl Judge {
         t: f64,
         step: Option<(usize, &Step)>,
         plant: &Plant,
-        stack: &Stack,
+        stack: &impl Aircraft,
     ) -> Option<String> {
         let pose = plant.pose();
         if !pose.position.is_finite() || !pose.omega.is_finite() {
@@ -81,9 +92,11 @@ impl Judge {
         if pose.position.z > -BELLY_Z && pose.velocity.z > CRASH_SPEED {
             return Some(format!("crashed into the ground at {:.1} m/s", pose.velocity.z));
         }
-        if let Some((arm, pressure)) = worst(plant.pressure()).filter(|(_, p)| *p > PRESSURE_MAX) {
+        let jolted = stack.reset().is_some_and(|r| t - r.at < SETTLE);
+        let allowed = if jolted { PRESSURE_JOLT } else { PRESSURE_MAX };
+        if let Some((arm, pressure)) = worst(plant.pressure()).filter(|(_, p)| *p > allowed) {
             return Some(format!(
-                "pressure on arm {arm} reached {pressure:.0} N/m2, allowed {PRESSURE_MAX:.0}"
+                "pressure on arm {arm} reached {pressure:.0} N/m2, allowed {allowed:.0}"
             ));
         }
         if let Some((arm, tension)) = worst(plant.tension())
@@ -118,7 +131,10 @@ impl Judge {
             *left = left.max(-roll);
         }
 
-        let grip = stack.links.grip.latest().is_some_and(|g| g.value.proven);
+        if let Some(why) = self.after_reset(t, step, plant, stack) {
+            return Some(why);
+        }
+        let grip = stack.grip().is_some_and(|g| g.proven);
         let just_proven = grip && !self.proven;
         self.proven = grip;
         if just_proven && let Some(why) = self.badly_held(plant, 1.0) {
@@ -156,6 +172,46 @@ impl Judge {
         }
         let quiet = t - start.max(self.pushed) > SETTLE;
         self.badly_held(plant, if quiet { 1.0 } else { DISTURBED })
+    }
+
+    /// Over a reset no rotor turns before the pilot has armed, and a vehicle that was gripped stays so.
+    fn after_reset(
+        &mut self,
+        t: f64,
+        step: Option<(usize, &Step)>,
+        plant: &Plant,
+        stack: &impl Aircraft,
+    ) -> Option<String> {
+        match step {
+            Some((_, Step::Reset { .. })) => {
+                let reset = stack.reset().filter(|r| Some(r.step) == step.map(|(i, _)| i));
+                if let Some(reset) = reset {
+                    let asked = stack.motors();
+                    let turns = plant.thrust().iter().any(|thrust| *thrust > STOPPED);
+                    if asked != [0.0; 4] || turns && t - reset.at > RUN_OUT {
+                        return Some("a rotor turned after the reset".to_owned());
+                    }
+                } else if self.proven && stack.mode() == Mode::Perched {
+                    self.hanging = Some(plant.pose().position);
+                }
+            }
+            Some((_, Step::Arm | Step::Hold { .. })) => {}
+            _ => self.hanging = None,
+        }
+        let slip = (plant.pose().position - self.hanging?).length();
+        if slip > SLIP {
+            return Some(format!(
+                "slipped {:.0} mm on the pipe after the reset",
+                slip * 1e3
+            ));
+        }
+        let mut arms = plant.pressure().into_iter().zip(self.chosen).enumerate();
+        // Without a pulse a weak servo's gears give way to what their friction carries; no arm may come off.
+        let (arm, (pressure, _)) = arms.find(|(_, (p, chosen))| *chosen && *p < self.released)?;
+        Some(format!(
+            "after the reset arm {} holds {pressure:.0} N/m2 only",
+            arm + 1
+        ))
     }
 
     /// The chosen arm whose true pressure is off by more than `tolerances` tolerances and the sensor's error.

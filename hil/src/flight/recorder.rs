@@ -3,7 +3,7 @@
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
 
-use super::stack::Stack;
+use super::aircraft::{Aircraft, Said};
 use crate::plant::Plant;
 use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample};
 use crate::scenario::{Scenario, Step};
@@ -22,9 +22,10 @@ pub struct Recorder {
     reel_radius: f64,
     current: Option<Current>,
     mode: Mode,
-    reason: &'static str,
-    warning: &'static str,
+    reason: String,
+    warning: String,
     proven: bool,
+    resets: u32,
     digest: Digest,
 }
 
@@ -50,9 +51,10 @@ impl Recorder {
             reel_radius: f64::from(scenario.params.reel_radius),
             current: None,
             mode: Mode::Calibrating,
-            reason: "",
-            warning: "",
+            reason: String::new(),
+            warning: String::new(),
             proven: false,
+            resets: 0,
             digest: Digest::new(),
         }
     }
@@ -63,7 +65,7 @@ impl Recorder {
         ms: u64,
         step: Option<(usize, &Step)>,
         plant: &Plant,
-        stack: &Stack,
+        stack: &impl Aircraft,
         throttle: f64,
         observer: &mut dyn Observer,
     ) {
@@ -88,7 +90,7 @@ impl Recorder {
     pub fn finish(
         mut self,
         scenario: &Scenario,
-        stack: &Stack,
+        stack: &impl Aircraft,
         outcome: Outcome,
         last: Event,
         wall_seconds: f64,
@@ -112,7 +114,7 @@ impl Recorder {
         }
     }
 
-    fn begin_phase(&mut self, t: f64, index: usize, step: &Step, stack: &Stack) {
+    fn begin_phase(&mut self, t: f64, index: usize, step: &Step, stack: &impl Aircraft) {
         self.current = Some(Current {
             index,
             phase: Phase {
@@ -132,7 +134,14 @@ impl Recorder {
         });
     }
 
-    fn end_phase(&mut self, t: f64, done: bool, voltage: f64, stack: &Stack, observer: &mut dyn Observer) {
+    fn end_phase(
+        &mut self,
+        t: f64,
+        done: bool,
+        voltage: f64,
+        stack: &impl Aircraft,
+        observer: &mut dyn Observer,
+    ) {
         let Some(mut current) = self.current.take() else {
             return;
         };
@@ -146,44 +155,42 @@ impl Recorder {
     }
 
     /// Takes changes of mode, reasons and proofs of grip from the stack.
-    fn watch_stack(&mut self, t: f64, plant: &Plant, stack: &Stack, observer: &mut dyn Observer) {
-        if let Some(status) = stack.links.status.latest().map(|s| s.value) {
-            if status.mode != self.mode {
-                self.mode = status.mode;
-                self.note(
-                    Event {
-                        t,
-                        text: format!("mode {}", status.mode.name()),
-                    },
-                    observer,
-                );
+    fn watch_stack(&mut self, t: f64, plant: &Plant, stack: &impl Aircraft, observer: &mut dyn Observer) {
+        if stack.resets() != self.resets
+            && let Some(reset) = stack.reset()
+        {
+            self.resets = stack.resets();
+            let text = if reset.cause.loses_memory() {
+                "power lost"
+            } else {
+                "board reset"
+            };
+            self.say(t, text.to_owned(), observer);
+        }
+        if let Some(Said {
+            mode,
+            reason,
+            warning,
+        }) = stack.status()
+        {
+            if mode != self.mode {
+                self.mode = mode;
+                self.say(t, format!("mode {}", mode.name()), observer);
             }
-            if status.reason != self.reason {
-                self.reason = status.reason;
-                if !status.reason.is_empty() {
-                    self.note(
-                        Event {
-                            t,
-                            text: status.reason.to_owned(),
-                        },
-                        observer,
-                    );
+            if reason != self.reason {
+                reason.clone_into(&mut self.reason);
+                if !reason.is_empty() {
+                    self.say(t, reason.to_owned(), observer);
                 }
             }
-            if status.warning != self.warning {
-                self.warning = status.warning;
-                if !status.warning.is_empty() {
-                    self.note(
-                        Event {
-                            t,
-                            text: format!("warning: {}", status.warning),
-                        },
-                        observer,
-                    );
+            if warning != self.warning {
+                warning.clone_into(&mut self.warning);
+                if !warning.is_empty() {
+                    self.say(t, format!("warning: {warning}"), observer);
                 }
             }
         }
-        let Some(grip) = stack.links.grip.latest().map(|g| g.value) else {
+        let Some(grip) = stack.grip() else {
             return;
         };
         if grip.proven && !self.proven {
@@ -199,15 +206,13 @@ impl Recorder {
                     });
                 }
             }
-            self.note(
-                Event {
-                    t,
-                    text: "grip proven".to_owned(),
-                },
-                observer,
-            );
+            self.say(t, "grip proven".to_owned(), observer);
         }
         self.proven = grip.proven;
+    }
+
+    fn say(&mut self, t: f64, text: String, observer: &mut dyn Observer) {
+        self.note(Event { t, text }, observer);
     }
 
     fn note(&mut self, event: Event, observer: &mut dyn Observer) {
@@ -237,45 +242,30 @@ impl Recorder {
 }
 
 /// Truth and belief now.
-fn sample(t: f64, plant: &Plant, stack: &Stack, throttle: f64) -> Sample {
-    let links = stack.links;
+fn sample(t: f64, plant: &Plant, stack: &impl Aircraft, throttle: f64) -> Sample {
     let pose = plant.pose();
-    let wide = |v: PerArm<f32>| v.map(f64::from);
-    let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
-    let estimate = links
-        .attitude
-        .latest()
-        .map(|a| a.value.q.to_euler())
-        .unwrap_or_default();
-    let target = links.target.latest().map(|v| v.value.to_array().map(f64::from));
-    let arms = links.arms.fresh().unwrap_or_default();
+    let belief = stack.belief();
     Sample {
         t,
         mode: stack.mode(),
         position: pose.position.to_array(),
         velocity: pose.velocity.to_array(),
         attitude: plant.euler(),
-        attitude_estimate: [estimate.0, estimate.1, estimate.2].map(f64::from),
-        attitude_setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
+        attitude_estimate: belief.attitude,
+        attitude_setpoint: belief.setpoint,
         rate: pose.omega.to_array(),
         tilt: plant.tilt(),
-        tilt_measured: arms.tilt.map(|a| a.map_or(f64::NAN, f64::from)),
-        tilt_model: wide(mix.tilt),
+        tilt_measured: belief.tilt_measured,
+        tilt_model: belief.tilt_model,
         thrust: plant.thrust(),
-        thrust_asked: wide(mix.thrusts),
+        thrust_asked: belief.thrust_asked,
         tension: plant.tension(),
-        tension_asked: wide(links.tendons.latest().map(|f| f.value.force).unwrap_or_default()),
+        tension_asked: belief.tension_asked,
         pressure: plant.pressure(),
-        pressure_measured: wide(
-            links
-                .contact
-                .latest()
-                .map(|c| c.value.pressure)
-                .unwrap_or_default(),
-        ),
+        pressure_measured: belief.pressure,
         battery_voltage: plant.battery_voltage(),
         throttle,
-        saturated: mix.running && mix.given.saturated(),
+        saturated: belief.saturated,
     }
 }
 

@@ -24,21 +24,39 @@ const STANDS: f64 = 0.4;
 /// Sink rate of a vehicle that stands, m/s, and the time for which it must last, s.
 const STOPPED: f64 = 0.06;
 const STOPPED_TIME: f64 = 0.5;
+/// Time for which the arm switch is turned off, s.
+const SWITCH_OFF: f64 = 0.5;
+/// Time for which the arming gesture is held, and after which it is tried again, s.
+const GESTURE: f64 = 2.0;
+const GESTURE_AGAIN: f64 = 3.0;
 
 impl Mind {
     pub(super) fn arm(&mut self, v: &View<'_>) -> Progress {
         match (self.phase, v.mode) {
-            (Phase::Start, Some(Mode::Disarmed)) => {
+            // Left on over a restart: it must have been off.
+            (Phase::Start, Some(Mode::Disarmed)) if self.arm_switch => {
+                self.arm_switch = false;
+                self.enter(Phase::Throttle);
+                Progress::Going(Wish::default())
+            }
+            (Phase::Start, Some(Mode::Disarmed)) | (Phase::Throttle, _)
+                if self.phase == Phase::Start || self.phase_time > SWITCH_OFF =>
+            {
                 self.arm_switch = true;
                 self.enter(Phase::Gesture);
                 Progress::Going(Wish::default())
             }
-            (Phase::Gesture, Some(Mode::Armed)) => {
+            (Phase::Gesture, Some(Mode::Armed | Mode::Perched)) => {
                 self.enter(Phase::Wait);
                 Progress::Going(Wish::default())
             }
             (Phase::Gesture, _) => Progress::Going(Wish {
-                yaw: 1.0,
+                // Refused for now: let go and try again.
+                yaw: if self.phase_time % GESTURE_AGAIN < GESTURE {
+                    1.0
+                } else {
+                    0.0
+                },
                 ..Default::default()
             }),
             (Phase::Wait, _) if self.phase_time > 0.5 => Progress::Done(Wish::default()),

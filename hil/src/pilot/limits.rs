@@ -16,11 +16,14 @@ pub fn of(step: &Step) -> f64 {
         Step::Clamp { .. } => 60.0,
         Step::Perch { .. } => 120.0,
         Step::Hold { seconds, .. } => seconds + 1.0,
+        Step::Open => 15.0,
         Step::Release => 45.0,
         Step::FlyTo { .. } => 120.0,
         Step::Land => 90.0,
         Step::Disarm => 10.0,
         // The display must come back.
         Step::RadioOff { seconds } => seconds + 5.0,
+        // Calibration at rest is part of it where power was lost.
+        Step::Reset { after, off, .. } => after + off + 20.0,
     }
 }

@@ -167,10 +167,12 @@ impl Mind {
             Step::Clamp { throttle } => self.clamp(view, throttle, sticks[3], dt),
             Step::Perch { throttle } => self.perch(view, throttle, sticks[3], dt),
             Step::Hold { seconds, .. } => self.hold(view, seconds, dt),
+            Step::Open => self.open(view, dt),
             Step::Release => self.release(view, dt),
             Step::Land => self.land(view, dt),
             Step::Disarm => self.disarm(view),
             Step::RadioOff { seconds } => self.radio_off(view, seconds, sticks[3]),
+            Step::Reset { after, off, .. } => self.reset(view, after + off, sticks[3], dt),
         };
         let limit = limits::of(step);
         match progress {

@@ -1,7 +1,7 @@
 //! The simulated pilot: flies the steps of a scenario with sticks alone.
 //!
 //! He sees the vehicle from outside (position, speed, attitude: late and with errors) and the transmitter's
-//! display; he has hands of limited bandwidth. What leaves him are channel frames of the radio. He knows
+//! display, or hears the log read aloud where there is no telemetry; he has hands of limited bandwidth. What leaves him are channel frames of the radio. He knows
 //! nothing else, and the flight stack learns nothing of him but those bytes.
 
 mod air;
@@ -24,6 +24,7 @@ use std::collections::VecDeque;
 use glam::DVec3;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
+use sophie_control::rc::CHANNELS;
 
 use self::eyes::Eyes;
 use self::hands::{Hands, Wish};
@@ -67,8 +68,10 @@ pub enum StepEvent {
 /// What the pilot did in one step of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PilotOutput {
-    /// A channel frame for the receiver, [`FRAME_HZ`] a second while the transmitter is on.
+    /// A channel frame from a receiver of CRSF, [`FRAME_HZ`] a second while the transmitter is on.
     pub rc_bytes: Option<Frame>,
+    /// The same channels as they come over the air, for a receiver that speaks another protocol.
+    pub channels: Option<[u16; CHANNELS]>,
     /// Index of the step being flown; the number of steps once all are done.
     pub step: usize,
     /// Steps that began or ended just now.
@@ -143,10 +146,20 @@ impl Pilot {
                 self.think(seen, 1.0 / FRAME_HZ, &mut out);
             }
             let sticks = self.hands.move_to(&self.wish, 1.0 / FRAME_HZ);
-            out.rc_bytes = self.mind.transmits().then(|| rc_frame(&sticks));
+            if self.mind.transmits() {
+                out.rc_bytes = Some(rc_frame(&sticks));
+                out.channels = Some(sticks.to_channels());
+            }
         }
         out.step = self.index;
         out
+    }
+
+    /// Somebody reads the vehicle's log aloud: with a receiver that has no way back the display shows nothing.
+    pub fn hear(&mut self, mode: Mode, reason: &str) {
+        if self.mind.transmits() {
+            self.telemetry.tell(mode, reason);
+        }
     }
 
     /// How the mission ended; `None` while it goes on.

@@ -236,11 +236,24 @@ impl Mind {
         }
     }
 
+    pub(super) fn open(&mut self, v: &View<'_>, dt: f64) -> Progress {
+        match self.release(v, dt) {
+            Progress::Going(wish) if v.mode == Some(Mode::Releasing) => Progress::Done(wish),
+            other => other,
+        }
+    }
+
     pub(super) fn release(&mut self, v: &View<'_>, dt: f64) -> Progress {
         match self.phase {
+            Phase::Start if v.mode == Some(Mode::Releasing) => {
+                self.enter(Phase::Wait);
+                Progress::Going(self.throttle_to(RELEASE_THROTTLE, EASE, dt))
+            }
             Phase::Start | Phase::Throttle => {
                 if self.phase == Phase::Start {
                     self.throttle = 0.0;
+                    // Off already after a release that a reset has cut short: off counts only after on.
+                    self.perch_switch = true;
                     self.enter(Phase::Throttle);
                 }
                 let wish = self.throttle_to(RELEASE_THROTTLE, EASE, dt);

@@ -1,4 +1,5 @@
-//! Without a radio: the transmitter off for a while, and a vehicle taken back from its failsafe.
+//! Without a vehicle that answers: the transmitter off for a while, a vehicle taken back from its failsafe, a board that
+//! restarts.
 
 use sophie_control::mode::Mode;
 
@@ -8,6 +9,8 @@ use crate::scenario::Step;
 
 /// Roll stick that says "I have you", share of its travel: beyond the 0.3 that ends the failsafe.
 const TAKE_OVER: f64 = 0.45;
+/// Time for which the display must show a restarted vehicle, s.
+const SHOWN: f64 = 1.0;
 
 impl Mind {
     /// Sticks let go, the throttle where it is: whatever comes back must find the vehicle as it was.
@@ -25,6 +28,25 @@ impl Mind {
             ..Wish::default()
         };
         if self.phase == Phase::Wait && v.mode.is_some() {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    /// Sticks let go, the throttle and the switches where they are, until the vehicle says that it is disarmed; nothing
+    /// before `over` s can be it.
+    pub(super) fn reset(&mut self, v: &View<'_>, over: f64, throttle: f64, dt: f64) -> Progress {
+        if self.phase == Phase::Start {
+            self.throttle = throttle;
+            self.enter(Phase::Wait);
+        }
+        let wish = Wish {
+            throttle: self.throttle,
+            ..Wish::default()
+        };
+        let disarmed = self.step_time > over + SHOWN && v.mode == Some(Mode::Disarmed);
+        if self.held_for(disarmed, SHOWN, dt) {
             Progress::Done(wish)
         } else {
             Progress::Going(wish)

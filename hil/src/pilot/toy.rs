@@ -116,7 +116,7 @@ impl Toy {
 
     fn command(&mut self) {
         let dt = 5.0 * DT;
-        let close = self.out.tendons != ClampCommand::Release;
+        let close = matches!(self.out.tendons, ClampCommand::Close { .. });
         self.closed = (self.closed + if close { dt } else { -3.0 * dt }).clamp(0.0, CLOSING + 1.0);
         let pressure = self.pressure * (self.closed / CLOSING).min(1.0) as f32;
         let state = if self.closed > 0.0 {

@@ -22,7 +22,7 @@ use self::body::{Body, BodyState};
 use self::contact::{ArmSkin, ArmTip, Belly, Pipe, Pose, Surface};
 use self::gust::Gust;
 use self::rotor::Rotor;
-use self::tendon::{Tendon, TendonSpec};
+use self::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::scenario::Scenario;
 
 /// Integration step, s.
@@ -96,7 +96,10 @@ impl Plant {
             Limb {
                 arm: Arm::new(i, spec),
                 rotor: Rotor::new(i, chi, v.rotor),
-                tendon: Tendon::new(v.servo.into(), TendonSpec::default()),
+                tendon: Tendon::new(
+                    ServoSpec::from(v.servo).measured(&scenario.params, i),
+                    TendonSpec::default(),
+                ),
                 skin: ArmSkin::new(i),
                 tip: ArmTip::new(i),
                 pressure: 0.0,

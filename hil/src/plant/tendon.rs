@@ -6,12 +6,11 @@
 
 use std::f64::consts::PI;
 
-use sophie_control::tendon::{FULL_US, REFERENCE_TILT, RELEASE_US};
+use sophie_control::params::Params;
+use sophie_control::tendon::{REFERENCE_TILT, Reel};
 
 use crate::scenario::ServoProfile;
 
-/// Time between two pulses that a servo obeys, s: the 50 Hz frame of analog servos.
-const FRAME: f64 = 0.02;
 /// Change of pulse width that a servo ignores, µs (digital servos state 2 to 5; MG996R datasheet 5).
 const DEADBAND_US: f64 = 2.0;
 /// Shortest and longest pulse that a servo takes for a command, µs.
@@ -26,24 +25,53 @@ pub struct ServoSpec {
     pub stall: f64,
     /// Speed without load, rad/s.
     pub slew: f64,
-    /// Travel from [`RELEASE_US`] to [`FULL_US`], rad.
+    /// Travel from `release_us` to `full_us`, rad.
     pub range: f64,
+    /// Pulse at which it stands at its release position, µs.
+    pub release_us: f64,
+    /// Pulse at which it has travelled `range`, µs; less than `release_us` for a servo that turns the other way.
+    pub full_us: f64,
+    /// Time between two pulses that it obeys, s: 20 ms for an analog servo.
+    pub frame: f64,
+}
+
+impl ServoSpec {
+    /// This servo as a builder mounted and measured it on arm `arm` (0..=3): what the parameters say of its pulses
+    /// and frames is true.
+    #[must_use]
+    pub fn measured(self, params: &Params, arm: usize) -> Self {
+        let reel = Reel::from_params(params, arm);
+        Self {
+            release_us: f64::from(reel.pulse(0.0)),
+            full_us: f64::from(reel.pulse(params.servo_range)),
+            frame: 1.0 / f64::from(params.servo_frame_rate),
+            ..self
+        }
+    }
 }
 
 impl From<ServoProfile> for ServoSpec {
     fn from(profile: ServoProfile) -> Self {
+        let usual = Self {
+            stall: 0.0,
+            slew: 6.16,
+            range: 0.0,
+            release_us: 550.0,
+            full_us: 2450.0,
+            frame: 0.02,
+        };
         match profile {
             // 35 kgcm (paper), the speed of the MG996R that it names, the 270 degree version of such servos.
             ServoProfile::Paper => Self {
                 stall: 3.432,
-                slew: 6.16,
                 range: 4.71,
+                ..usual
             },
             // 9.4 kgcm and 0.17 s for 60 degrees at 4.8 V (datasheet), 180 degrees.
             ServoProfile::Mg996r => Self {
                 stall: 0.922,
-                slew: 6.16,
                 range: PI,
+                ..usual
             },
         }
     }
@@ -112,7 +140,7 @@ impl Tendon {
     pub fn step(&mut self, dt: f64, pulse_us: f64, alpha: f64) -> f64 {
         self.to_next_frame -= dt;
         if self.to_next_frame <= 0.0 {
-            self.to_next_frame += FRAME;
+            self.to_next_frame += self.servo.frame;
             self.target = self.commanded(pulse_us);
         }
         let before = self.position;
@@ -157,11 +185,16 @@ impl Tendon {
         if !(pulse_us >= PULSE_LIMITS_US.0 && pulse_us <= PULSE_LIMITS_US.1) {
             return None;
         }
-        let (release, full) = (f64::from(RELEASE_US), f64::from(FULL_US));
-        let per_us = self.servo.range / (full - release);
-        let angle = (pulse_us - release) * per_us;
+        let ServoSpec {
+            range,
+            release_us,
+            full_us,
+            ..
+        } = self.servo;
+        let per_us = range / (full_us - release_us);
+        let angle = (pulse_us - release_us) * per_us;
         match self.target {
-            Some(held) if (angle - held).abs() < DEADBAND_US * per_us => Some(held),
+            Some(held) if (angle - held).abs() < DEADBAND_US * per_us.abs() => Some(held),
             _ => Some(angle),
         }
     }
@@ -200,7 +233,7 @@ mod tests {
         let mut t = paper();
         for alpha in [-0.55, -0.2, 0.0, 0.35] {
             assert!(
-                run(&mut t, f64::from(RELEASE_US), alpha, 0.2) == 0.0 && t.tension() == 0.0,
+                run(&mut t, 550.0, alpha, 0.2) == 0.0 && t.tension() == 0.0,
                 "{alpha}"
             );
         }
@@ -221,19 +254,42 @@ mod tests {
     }
 
     #[test]
+    fn a_servo_obeys_the_pulses_that_were_measured_on_it() {
+        let params = Params {
+            servo_release_3: 2300.0,
+            servo_full_3: 800.0,
+            servo_trim_3: 30.0,
+            servo_frame_rate: 333.0,
+            ..Params::default()
+        };
+        let spec = ServoSpec::from(ServoProfile::Paper).measured(&params, 2);
+        assert!((spec.release_us, spec.full_us) == (2330.0, 830.0) && (spec.frame - 3.003e-3).abs() < 1e-6);
+        let mut t = Tendon::new(spec, TendonSpec::default());
+        // Half the way from 2330 to 830 µs is half the travel; the deadband works this way round as well.
+        for (pulse, angle) in [(2330.0, 0.0), (1580.0, 2.355), (1581.5, 2.355), (830.0, 4.71)] {
+            run(&mut t, pulse, -2.5, 1.0);
+            assert!(
+                (t.servo_angle() - angle).abs() < 1e-3,
+                "{pulse}: {}",
+                t.servo_angle()
+            );
+        }
+    }
+
+    #[test]
     fn the_servo_takes_its_time() {
         let mut t = paper();
         // 4.71 rad at 6.16 rad/s with the tendon slack: 0.765 s, and a frame.
-        run(&mut t, f64::from(FULL_US), -2.5, 0.74);
+        run(&mut t, 2450.0, -2.5, 0.74);
         assert!(t.servo_angle() < 4.6);
-        run(&mut t, f64::from(FULL_US), -2.5, 0.1);
+        run(&mut t, 2450.0, -2.5, 0.1);
         assert!((t.servo_angle() - 4.71).abs() < 1e-6);
     }
 
     #[test]
     fn a_weak_servo_stalls_below_its_target() {
         let mut t = Tendon::new(ServoProfile::Mg996r.into(), TendonSpec::default());
-        run(&mut t, f64::from(FULL_US), 0.0, 5.0);
+        run(&mut t, 2450.0, 0.0, 5.0);
         assert!((t.servo_torque() - 0.922).abs() < 1e-3 && t.servo_angle() < 3.0);
     }
 

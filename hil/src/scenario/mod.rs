@@ -22,6 +22,7 @@ pub use steps::{STEPS, StepKind, StepNumber};
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
+use sophie_tasks::start::Cause;
 
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
@@ -164,6 +165,8 @@ pub enum Step {
         /// Sideways push at the centre of mass, N, on during the middle third.
         push: f64,
     },
+    /// Spool up and turn the perch switch off; done once the display shows it.
+    Open,
     /// Spool up, release the tendons, wait until every arm is free, lift off by 1 m.
     Release,
     /// Fly to a point north and east of the take-off point, m, at a height.
@@ -183,6 +186,17 @@ pub enum Step {
     RadioOff {
         /// Duration, s.
         seconds: f64,
+    },
+    /// The board is reset; done once the display shows it disarmed.
+    Reset {
+        /// Why: whether what was kept in memory is lost.
+        cause: Cause,
+        /// Time from the start of the step, s.
+        after: f64,
+        /// Time for which the board is dead, s.
+        off: f64,
+        /// Sideways push at the centre of mass, N, on during the step.
+        push: f64,
     },
 }
 

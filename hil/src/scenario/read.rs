@@ -219,7 +219,9 @@ fn believe_the_vehicle(scenario: &mut Scenario) {
     params.thrust_max = vehicle.rotor.thrust_max as f32;
     let servo = ServoSpec::from(vehicle.servo);
     params.servo_stall = servo.stall as f32;
-    params.servo_slew = servo.slew as f32;
+    let slew = servo.slew as f32;
+    (params.servo_slew_1, params.servo_slew_2) = (slew, slew);
+    (params.servo_slew_3, params.servo_slew_4) = (slew, slew);
     params.servo_range = servo.range as f32;
 }
 

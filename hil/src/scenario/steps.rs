@@ -5,6 +5,7 @@ use core::f64::consts::PI;
 
 use super::Step;
 use super::keys::Range;
+use sophie_tasks::start::Cause;
 
 /// One kind of step.
 pub struct StepKind {
@@ -36,6 +37,22 @@ const PERCH_THROTTLE: StepNumber = number("throttle_percent", Range::new(5.0, 60
 /// Longest time without a transmitter after which the vehicle surely flies on by itself, s: the link turns stale
 /// after 0.5 s, and 1 s later only the sticks end the failsafe.
 const FLIES_ON: f64 = 1.4;
+
+/// Numbers of the steps that reset the board.
+const RESET: &[StepNumber] = &[
+    number("after_s", Range::new(0.0, 60.0, "s"), 1.0),
+    number("off_s", Range::new(0.02, 60.0, "s"), 0.3),
+    number("push_n", Range::new(0.0, 20.0, "N"), 0.0),
+];
+
+fn reset(cause: Cause, [after, off, push]: [f64; 3]) -> Step {
+    Step::Reset {
+        cause,
+        after,
+        off,
+        push,
+    }
+}
 
 /// Every kind of step.
 pub const STEPS: &[StepKind] = &[
@@ -91,6 +108,11 @@ pub const STEPS: &[StepKind] = &[
         build: |[seconds, push, _]| Step::Hold { seconds, push },
     },
     StepKind {
+        name: "open",
+        numbers: &[],
+        build: |_| Step::Open,
+    },
+    StepKind {
         name: "release",
         numbers: &[],
         build: |_| Step::Release,
@@ -119,6 +141,16 @@ pub const STEPS: &[StepKind] = &[
         numbers: &[number("seconds", Range::new(0.05, 600.0, "s"), 5.0)],
         build: |[seconds, ..]| Step::RadioOff { seconds },
     },
+    StepKind {
+        name: "reset",
+        numbers: RESET,
+        build: |numbers| reset(Cause::Watchdog, numbers),
+    },
+    StepKind {
+        name: "power-cycle",
+        numbers: RESET,
+        build: |numbers| reset(Cause::PowerOn, numbers),
+    },
 ];
 
 impl Step {
@@ -134,11 +166,14 @@ impl Step {
             Self::Clamp { .. } => "clamp",
             Self::Perch { .. } => "perch",
             Self::Hold { .. } => "hold",
+            Self::Open => "open",
             Self::Release => "release",
             Self::FlyTo { .. } => "fly-to",
             Self::Land => "land",
             Self::Disarm => "disarm",
             Self::RadioOff { .. } => "radio-off",
+            Self::Reset { cause, .. } if cause.loses_memory() => "power-cycle",
+            Self::Reset { .. } => "reset",
         }
     }
 }
@@ -153,6 +188,9 @@ pub(super) enum Whereabouts {
     OnPipe,
     Closing,
     Clamped,
+    Opening,
+    /// Clamped, but the board has restarted.
+    Hanging,
     /// Out of the pilot's hands for so long that it sinks, or has landed.
     Sinking,
 }
@@ -162,6 +200,7 @@ impl Whereabouts {
     pub(super) fn after(self, step: &Step) -> Result<Self, String> {
         use Whereabouts::*;
         let (from, to): (&[Self], Self) = match step {
+            Step::Arm if self == Hanging => (&[Hanging], Clamped),
             Step::Arm => (&[OnGroundDisarmed], OnGroundArmed),
             Step::TakeOff { .. } => (&[OnGroundArmed], InAir),
             Step::Hover { .. } if self == OverPipe => (&[OverPipe], OverPipe),
@@ -172,7 +211,13 @@ impl Whereabouts {
             Step::Clamp { .. } => (&[OnPipe], Closing),
             Step::Perch { .. } => (&[OnPipe, Closing], Clamped),
             Step::Hold { .. } => (&[Clamped], Clamped),
-            Step::Release => (&[Clamped], OverPipe),
+            Step::Open => (&[Clamped], Opening),
+            Step::Release => (&[Clamped, Opening], OverPipe),
+            Step::Reset { .. } => match self {
+                OnGroundDisarmed | OnGroundArmed => (&[OnGroundDisarmed, OnGroundArmed], OnGroundDisarmed),
+                InAir => (&[InAir], Sinking),
+                _ => (&[Closing, Clamped, Opening, Hanging], Hanging),
+            },
             // Over the pipe there is no ground below: it must be flown away from first.
             Step::Land => (&[InAir], OnGroundArmed),
             Step::Disarm => (&[OnGroundArmed, Sinking], OnGroundDisarmed),
@@ -199,6 +244,8 @@ impl Whereabouts {
             Self::OnPipe => "touching the pipe",
             Self::Closing => "closing its arms on the pipe",
             Self::Clamped => "clamped to the pipe",
+            Self::Opening => "letting go of the pipe",
+            Self::Hanging => "clamped to the pipe, disarmed by a reset",
             Self::Sinking => "sinking without a radio",
         }
     }

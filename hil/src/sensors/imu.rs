@@ -6,11 +6,12 @@ use glam::DVec3;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
+use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
 
-/// Samples per second.
-pub const RATE_HZ: f64 = 4000.0;
+/// Samples per second unless the parameters say otherwise.
+const RATE_HZ: f64 = 4000.0;
 /// Gyro noise, rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
 const GYRO_NOISE: f64 = 2.8e-3 * (std::f64::consts::PI / 180.0) * 44.7;
 /// Accelerometer noise, m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
@@ -21,16 +22,18 @@ const GYRO_BIAS: f64 = 0.5 * (std::f64::consts::PI / 180.0);
 const ACCEL_BIAS: f64 = 0.020 * 9.806_65;
 /// Largest error of the bench calibration, m/s²: a bench that is level to a quarter of a degree (assumed).
 const BENCH_ERROR: f64 = 0.04;
-/// One count of the gyro at ±2000 dps, rad/s.
-const GYRO_LSB: f64 = 2000.0 * (std::f64::consts::PI / 180.0) / 32768.0;
-/// One count of the accelerometer at ±16 g, m/s².
-const ACCEL_LSB: f64 = 16.0 * 9.806_65 / 32768.0;
 /// Vibration at the rotor's speed for each rotor at 600 rad/s: rad/s and m/s² (assumed; soft arms isolate).
 const VIBRATION: (f64, f64) = (0.01, 0.25);
 
 /// The sensor with its errors.
 #[derive(Clone, Debug)]
 pub struct Imu {
+    /// Samples per second.
+    rate: f64,
+    /// Noise in a sample over that in one at 4 kHz: it grows with the band that half the rate leaves open.
+    noise: f64,
+    /// One count of the gyro, rad/s, and of the accelerometer, m/s².
+    lsb: (f64, f64),
     gyro_bias: DVec3,
     accel_bias: DVec3,
     rng: Pcg64Mcg,
@@ -39,13 +42,24 @@ pub struct Imu {
 }
 
 impl Imu {
-    /// A part with biases of its own.
+    /// A part with biases of its own, configured as `params` say.
     #[must_use]
-    pub fn new(mut rng: Pcg64Mcg) -> Self {
+    pub fn new(params: &Params, mut rng: Pcg64Mcg) -> Self {
+        let rate = f64::from(params.imu_rate);
+        let (dps, g) = (
+            f64::from(params.imu_gyro_range),
+            f64::from(params.imu_accel_range),
+        );
         let mut within =
             |limit: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-limit..limit)));
         let (gyro_bias, accel_bias) = (within(GYRO_BIAS), within(ACCEL_BIAS));
         Self {
+            rate,
+            noise: (rate / RATE_HZ).sqrt(),
+            lsb: (
+                dps * (std::f64::consts::PI / 180.0) / 32768.0,
+                g * 9.806_65 / 32768.0,
+            ),
             gyro_bias,
             accel_bias,
             rng,
@@ -67,7 +81,7 @@ impl Imu {
     pub fn sample(&mut self, rate: DVec3, specific_force: DVec3, rotors: &[f64; 4]) -> ImuReading {
         let (mut shake_gyro, mut shake_accel) = (DVec3::ZERO, DVec3::ZERO);
         for (i, (phase, speed)) in self.phase.iter_mut().zip(rotors).enumerate() {
-            *phase += speed / RATE_HZ;
+            *phase += speed / self.rate;
             if *phase > TAU {
                 *phase -= TAU;
             }
@@ -75,11 +89,16 @@ impl Imu {
             shake_gyro += DVec3::new(size, -size, 0.3 * size) * VIBRATION.0;
             shake_accel += DVec3::new(size, 0.7 * size, size) * VIBRATION.1;
         }
-        let gyro = self.measure(rate + self.gyro_bias + shake_gyro, GYRO_NOISE, GYRO_LSB);
+        let (gyro_lsb, accel_lsb) = self.lsb;
+        let gyro = self.measure(
+            rate + self.gyro_bias + shake_gyro,
+            GYRO_NOISE * self.noise,
+            gyro_lsb,
+        );
         let accel = self.measure(
             specific_force + self.accel_bias + shake_accel,
-            ACCEL_NOISE,
-            ACCEL_LSB,
+            ACCEL_NOISE * self.noise,
+            accel_lsb,
         );
         std::mem::replace(&mut self.pipeline, ImuReading { gyro, accel })
     }
@@ -103,7 +122,7 @@ mod tests {
 
     #[test]
     fn noise_and_bias_are_those_of_the_datasheet() {
-        let mut imu = Imu::new(Pcg64Mcg::new(3));
+        let mut imu = Imu::new(&Params::default(), Pcg64Mcg::new(3));
         let n = 40_000;
         let (mut sum, mut square) = (0.0, 0.0);
         for _ in 0..n {
@@ -117,8 +136,37 @@ mod tests {
     }
 
     #[test]
+    fn noise_and_full_scale_follow_the_parameters() {
+        let spread = |rate| {
+            let params = Params {
+                imu_rate: rate,
+                ..Params::default()
+            };
+            let mut imu = Imu::new(&params, Pcg64Mcg::new(3));
+            let x: Vec<f64> = (0..20_000)
+                .map(|_| f64::from(imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]).gyro.x))
+                .collect();
+            let mean = x.iter().sum::<f64>() / x.len() as f64;
+            (x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64).sqrt()
+        };
+        // Twice the band is √2 of the noise.
+        let (slow, fast) = (spread(1000.0), spread(8000.0));
+        assert!((fast / slow / 8f64.sqrt() - 1.0).abs() < 0.1, "{slow} {fast}");
+
+        let params = Params {
+            imu_gyro_range: 250.0,
+            imu_accel_range: 2.0,
+            ..Params::default()
+        };
+        let mut imu = Imu::new(&params, Pcg64Mcg::new(3));
+        imu.sample(DVec3::splat(100.0), DVec3::splat(-500.0), &[0.0; 4]);
+        let r = imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]);
+        assert!((r.gyro.x - 4.363).abs() < 0.001 && (r.accel.y + 19.613).abs() < 0.01);
+    }
+
+    #[test]
     fn it_saturates_at_full_scale() {
-        let mut imu = Imu::new(Pcg64Mcg::new(3));
+        let mut imu = Imu::new(&Params::default(), Pcg64Mcg::new(3));
         imu.sample(DVec3::splat(100.0), DVec3::splat(-500.0), &[0.0; 4]);
         let r = imu.sample(DVec3::ZERO, DVec3::ZERO, &[0.0; 4]);
         assert!((r.gyro.x - 34.905).abs() < 0.01 && (r.accel.y + 156.9).abs() < 0.1);

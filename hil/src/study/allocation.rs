@@ -3,7 +3,7 @@
 use embassy_time::Instant;
 use sophie_control::deflection::Algorithm1;
 use sophie_control::desaturation::{Given, Patterns, desaturate};
-use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse};
+use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use sophie_control::params::Params;
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::tilt::TiltModel;
@@ -69,7 +69,7 @@ impl Allocator {
             }
             Studied::SignAware => {
                 let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
-                let mut e = Effectiveness::quasi_static(&self.geometry, self.tilt.model(), &thrusts, &tilt);
+                let mut e = Effectiveness::quasi_static(&self.geometry, &tilt, &self.tilt.follow());
                 let k_q = self.geometry.drag.abs();
                 let mean = 0.25 * e.yaw.iter().sum::<f32>();
                 let fade = ((mean.abs() / k_q - FADE.0) / (FADE.1 - FADE.0)).clamp(0.0, 1.0);
@@ -87,8 +87,9 @@ impl Allocator {
                 (e, thrusts, rest, if yaw { fade } else { 0.0 })
             }
         };
-        let patterns = Inverse::new(self.geometry, e).map(|inverse| {
-            let mut collective = inverse.solve(rest);
+        let patterns = Inverse::new(&e).map(|inverse| {
+            let of = |w: Wrench| inverse.solve(Load::of(&self.geometry, w));
+            let mut collective = of(rest);
             for (c, b) in collective.iter_mut().zip(&base) {
                 *c += b;
             }
@@ -99,7 +100,6 @@ impl Allocator {
                     *c -= (1.0 - fade) * left * y;
                 }
             }
-            let of = |w: Wrench| inverse.solve(w);
             let yaw = of(Wrench {
                 yaw: w.yaw,
                 ..Wrench::default()

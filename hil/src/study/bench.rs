@@ -79,7 +79,7 @@ pub fn close(what: &Closing) -> Closed {
     let params = Params {
         infill: what.infill as f32,
         servo_stall: what.servo.stall as f32,
-        servo_slew: what.servo.slew as f32,
+        servo_slew_1: what.servo.slew as f32,
         servo_range: what.servo.range as f32,
         ..Params::default()
     };
@@ -109,9 +109,9 @@ pub fn close(what: &Closing) -> Closed {
     let (config, scale, reel) = (
         Config::from_params(&params),
         FsrScale::from_params(&params),
-        Reel::from_params(&params),
+        Reel::from_params(&params, 0),
     );
-    let (mut fsr, mut clamp, mut drive) = (Fsr::default(), ArmClamp::default(), TendonDrive::new(0.0));
+    let (mut fsr, mut clamp, mut drive) = (Fsr::default(), ArmClamp::default(), TendonDrive::new());
     let mut driven = drive.hold(&reel);
     let (mut sensed, mut tilts, mut measured) = (Pressure::Stale, VecDeque::new(), None);
     let (mut asked, mut thrust) = (what.thrust, what.thrust);

@@ -12,16 +12,22 @@ use heapless::Vec as Few;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
+use sophie_control::warm::{WORDS, Words};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::ports::{
-    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, SerialInput, Servos,
+    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain, SerialInput, Servos,
     Watchdog,
 };
 
 /// Links without messages, for as long as the process lives.
 pub fn links() -> &'static Links {
-    Box::leak(Box::new(Links::new(Params::default())))
+    links_with(Params::default())
+}
+
+/// The same with these parameters.
+pub fn links_with(params: Params) -> &'static Links {
+    Box::leak(Box::new(Links::new(params)))
 }
 
 /// How a port answers.
@@ -34,6 +40,8 @@ pub enum Answer {
     Fails,
     /// With an error at once, as a part that was never set up.
     Refuses,
+    /// With this error, after the time that a reading takes.
+    Errs(PortError),
     /// Never.
     Hangs,
 }
@@ -46,6 +54,8 @@ const SPIN: u32 = 1000;
 pub struct Part {
     pub answer: Rc<Cell<Answer>>,
     pub spun: Rc<Cell<bool>>,
+    /// Errors given with [`Answer::Errs`], as long as the test does not set it back.
+    pub failed: Rc<Cell<u32>>,
     asked: Rc<Cell<(u64, u32)>>,
 }
 
@@ -68,6 +78,11 @@ impl Part {
             Answer::Fails => {
                 Timer::after_micros(us).await;
                 Err(PortError::Timeout)
+            }
+            Answer::Errs(error) => {
+                Timer::after_micros(us).await;
+                self.failed.set(self.failed.get() + 1);
+                Err(error)
             }
             Answer::Refuses => Err(PortError::Absent),
             Answer::Hangs => pending().await,
@@ -95,13 +110,14 @@ impl Imu for FakeImu {
     }
 }
 
-/// Arm sensors that see level arms.
+/// Arm sensors that see level arms: their bus, and each of them.
 #[derive(Clone, Default)]
-pub struct FakeArms(pub Part);
+pub struct FakeArms(pub Part, pub [Part; 4]);
 
 impl ArmImus for FakeArms {
-    async fn gravity(&mut self, _arm: usize) -> Result<Vec3, PortError> {
+    async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
         self.0.work(400).await?;
+        self.1[arm].work(10).await?;
         Ok(Vec3::new(0.0, 0.0, GRAVITY))
     }
 }
@@ -187,6 +203,11 @@ impl FakeLine {
         self.bytes.borrow_mut().extend_from_slice(bytes);
         self.news.0.signal(());
     }
+
+    /// Bytes that nobody has read yet.
+    pub fn waiting(&self) -> usize {
+        self.bytes.borrow().len()
+    }
 }
 
 impl SerialInput for FakeLine {
@@ -228,5 +249,31 @@ impl FakeWatchdog {
 impl Watchdog for FakeWatchdog {
     fn feed(&mut self) {
         self.0.borrow_mut().push(Instant::now().as_micros());
+    }
+}
+
+/// Memory that outlives a reset: both copies, and how often each was written.
+#[derive(Clone)]
+pub struct FakeMemory(pub Rc<Cell<([Words; 2], [u32; 2])>>);
+
+impl Default for FakeMemory {
+    fn default() -> Self {
+        Self(Rc::new(Cell::new(([[0; WORDS]; 2], [0; 2]))))
+    }
+}
+
+impl FakeMemory {
+    /// What is in it.
+    pub fn copies(&self) -> [Words; 2] {
+        self.0.get().0
+    }
+}
+
+impl Retain for FakeMemory {
+    fn keep(&mut self, second: bool, words: &Words) {
+        let (mut copies, mut writes) = self.0.get();
+        copies[usize::from(second)] = *words;
+        writes[usize::from(second)] += 1;
+        self.0.set((copies, writes));
     }
 }

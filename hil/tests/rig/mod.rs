@@ -66,7 +66,7 @@ impl Rig {
         let time = VirtualTime::new();
         let mut rng = Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1);
         let plant = Plant::new(scenario, rng.clone());
-        let board: &'static Board = Box::leak(Box::new(Board::new(&mut rng)));
+        let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, &mut rng)));
         let links: &'static Links = Box::leak(Box::new(Links::new(scenario.params)));
         let (mixer, configuration) = (scenario.mixer, scenario.vehicle.configuration);
         time.spawn(sophie_tasks::imu::run(links, Port(board)));

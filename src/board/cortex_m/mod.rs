@@ -1,8 +1,14 @@
-//! What every Cortex-M board does the same way: levels, stack, the end of a run and what outlives it.
+//! What every Cortex-M board does the same way: levels, stack, caches, restarts, the end of a run and what outlives it.
 
+#[cfg(not(feature = "f405"))]
+mod cache;
 mod fault;
 mod levels;
+mod restart;
 pub mod retained;
 pub mod stack;
 
+#[cfg(not(feature = "f405"))]
+pub use cache::enable_instruction_cache;
 pub use levels::{FLIGHT, STEADY};
+pub use restart::Restarter;

@@ -1,9 +1,17 @@
-//! The few words that outlive a reset: how often the board started, and what ended the run before.
+//! The few words that outlive a reset: how often the board started, what ended the run before, and two copies of what
+//! the tasks go on from (`sophie_control::warm`), which this file only stores.
+//!
+//! Nothing but these functions reaches the memory: the linker gives it to no one else, no DMA is pointed at it, and the
+//! stack lies alone at the very bottom of a memory, where one that overflows faults. A fault handler writes the message
+//! only; the copies are not in its way, however torn the one being written is.
 
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
 
 use heapless::String;
+use sophie_control::warm::{WORDS as WARM_WORDS, Words};
+use sophie_tasks::ports::Retain;
+use sophie_tasks::start::Cause;
 
 /// Why the chip was reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
@@ -22,6 +30,19 @@ pub enum ResetCause {
     Unknown,
 }
 
+impl ResetCause {
+    /// What the tasks are told; `fault` when a message of the run before says that it gave up.
+    pub fn told(self, fault: bool) -> Cause {
+        match self {
+            Self::PowerOn => Cause::PowerOn,
+            Self::BrownOut => Cause::BrownOut,
+            _ if fault => Cause::Fault,
+            Self::Watchdog => Cause::Watchdog,
+            Self::Software | Self::Pin | Self::Unknown => Cause::Asked,
+        }
+    }
+}
+
 /// Longest message of a fault.
 const LONGEST: usize = 240;
 /// Message of the fault that ended the run before.
@@ -35,6 +56,8 @@ pub struct Kept {
     pub faults: u32,
     /// Message of the fault that ended the run before.
     pub last_words: Option<LastWords>,
+    /// The copies that the run before kept; blank after power-on.
+    pub copies: [Words; 2],
 }
 
 const WORDS: usize = LONGEST / 4;
@@ -100,6 +123,35 @@ unsafe impl Sync for Cell {}
 #[unsafe(link_section = ".retained")]
 static BLOCK: Cell = Cell(UnsafeCell::new(Block::EMPTY));
 
+/// The copies, beside the block.
+#[repr(transparent)]
+struct Copies(UnsafeCell<[Words; 2]>);
+
+// SAFETY: written by `Memory` alone, of which `start` makes one; read by `start`, before there is one.
+unsafe impl Sync for Copies {}
+
+// SAFETY: as for the block.
+#[unsafe(link_section = ".retained")]
+static COPIES: Copies = Copies(UnsafeCell::new([[0; WARM_WORDS]; 2]));
+
+/// Writes the copies. One exists, from [`start`].
+pub struct Memory(());
+
+impl Retain for Memory {
+    fn keep(&mut self, second: bool, words: &Words) {
+        // SAFETY: the pointer stays within the two copies. Nothing reads them before the next start, and nothing else
+        // writes them: `start` gave this out once. Volatile, because the compiler sees no reader at all.
+        unsafe {
+            COPIES
+                .0
+                .get()
+                .cast::<Words>()
+                .add(usize::from(second))
+                .write_volatile(*words);
+        }
+    }
+}
+
 fn load() -> Block {
     // SAFETY: valid, aligned and any bits are a `Block`; volatile, because the compiler believes in the initialiser.
     unsafe { BLOCK.0.get().read_volatile() }
@@ -113,8 +165,8 @@ fn store(mut block: Block) {
     }
 }
 
-/// Takes what the run before left, counts this start and forgets the message.
-pub fn start(cause: ResetCause) -> Kept {
+/// Takes what the run before left, counts this start and forgets the message. Called once, before any task.
+pub fn start(cause: ResetCause) -> (Kept, Memory) {
     // After power-on the block is noise, and its memory's error correction would stumble over it.
     let lost = matches!(cause, ResetCause::PowerOn | ResetCause::BrownOut);
     let mut block = if lost { Block::EMPTY } else { load() };
@@ -125,13 +177,26 @@ pub fn start(cause: ResetCause) -> Kept {
     block.starts = block.starts.saturating_add(1);
     let faulty = last_words.is_some() || cause == ResetCause::Watchdog;
     block.faults = block.faults.saturating_add(u32::from(faulty));
+    let mut memory = Memory(());
+    let blank = [[0; WARM_WORDS]; 2];
+    let copies = if lost {
+        // Written before it is ever read, as the error correction wants it.
+        for (second, words) in [false, true].into_iter().zip(&blank) {
+            memory.keep(second, words);
+        }
+        blank
+    } else {
+        // SAFETY: valid, aligned, any bits are words, and no task runs yet.
+        unsafe { COPIES.0.get().read_volatile() }
+    };
     let kept = Kept {
         starts: block.starts,
         faults: block.faults,
         last_words,
+        copies,
     };
     store(Block { length: 0, ..block });
-    kept
+    (kept, memory)
 }
 
 /// Leaves `message` for the next start. Called with interrupts off, as the last thing before a reset.

@@ -4,10 +4,12 @@
 //! readings that are wanted 500 times. This starts one scan when one is wanted.
 
 use embassy_stm32::Peri;
-use embassy_stm32::adc::{Adc, AnyAdcChannel, DefaultInstance, RxDma, SampleTime};
+use embassy_stm32::adc::{Adc, AnyAdcChannel, RxDma, SampleTime};
 use embassy_stm32::dma::{self, InterruptHandler, TransferOptions};
 use embassy_stm32::interrupt::typelevel::Binding;
+use embassy_stm32::pac;
 use embassy_stm32::pac::adc::vals::{Dds, Eocs};
+use embassy_stm32::peripherals::ADC1;
 use embassy_time::{Duration, with_timeout};
 use sophie_tasks::ports::PortError;
 
@@ -18,31 +20,28 @@ use super::analog::{CHANNELS, Scan};
 const LONGEST: Duration = Duration::from_millis(1);
 
 /// The converter with its channels.
-pub struct Converter<T: DefaultInstance, D: RxDma<T>, I> {
-    registers: embassy_stm32::pac::adc::Adc,
+pub struct Converter<D: RxDma<ADC1>, I> {
     /// Kept, so that converter and pins stay this driver's.
-    _kept: (Adc<'static, T>, [AnyAdcChannel<'static, T>; CHANNELS]),
+    _kept: (Adc<'static, ADC1>, [AnyAdcChannel<'static, ADC1>; CHANNELS]),
     dma: Peri<'static, D>,
     irqs: I,
     buffer: &'static mut Aligned<[u16; CHANNELS]>,
 }
 
-impl<T, D, I> Converter<T, D, I>
-where
-    T: DefaultInstance,
-    D: RxDma<T>,
-    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
-{
-    /// The converter `adc`, whose registers are `registers`, with pressure sensors 1 to 4, battery voltage and battery
-    /// current on `channels`.
+impl<D: RxDma<ADC1>, I> Converter<D, I> {
+    /// Bits that the converter gives beyond the port's twelve.
+    pub const EXTRA_BITS: u32 = 0;
+
+    /// The converter with pressure sensors 1 to 4, battery voltage and battery current on `channels`.
     pub fn new(
-        adc: Adc<'static, T>,
-        registers: embassy_stm32::pac::adc::Adc,
-        channels: [AnyAdcChannel<'static, T>; CHANNELS],
+        adc: Peri<'static, ADC1>,
+        channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],
         dma: Peri<'static, D>,
         irqs: I,
         buffer: &'static mut Aligned<[u16; CHANNELS]>,
     ) -> Self {
+        let adc = Adc::new(adc);
+        let registers = pac::ADC1;
         registers.cr1().modify(|w| w.set_scan(true));
         registers.cr2().modify(|w| {
             w.set_cont(false);
@@ -66,7 +65,6 @@ where
             }
         }
         Self {
-            registers,
             _kept: (adc, channels),
             dma,
             irqs,
@@ -75,14 +73,13 @@ where
     }
 }
 
-impl<T, D, I> Scan for Converter<T, D, I>
+impl<D, I> Scan for Converter<D, I>
 where
-    T: DefaultInstance,
-    D: RxDma<T>,
+    D: RxDma<ADC1>,
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
 {
     async fn scan(&mut self) -> Result<[u16; CHANNELS], PortError> {
-        let r = self.registers;
+        let r = pac::ADC1;
         // The request must fall before each scan: after the last transfer of the one before it stays masked.
         r.cr2().modify(|w| w.set_dma(false));
         r.sr().modify(|w| {

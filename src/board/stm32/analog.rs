@@ -1,9 +1,22 @@
 //! The analog inputs: six channels of one converter, moved by DMA in one scan on demand.
 
+use embassy_stm32::Peri;
+use embassy_stm32::adc::{AnyAdcChannel, RxDma};
+use embassy_stm32::dma::InterruptHandler;
+use embassy_stm32::interrupt::typelevel::Binding;
+use embassy_stm32::peripherals::ADC1;
 use sophie_tasks::ports::{Analog, AnalogFrame, PortError};
+use static_cell::ConstStaticCell;
+
+use super::Aligned;
+use super::adc::Converter;
 
 /// Channels of a scan: pressure sensors 1 to 4, battery voltage, battery current.
 pub const CHANNELS: usize = 6;
+/// Full scale at the pin, V, over its counts.
+const VOLTS_PER_COUNT: f32 = 3.3 / 4095.0;
+
+static DMA_ANALOG: ConstStaticCell<Aligned<[u16; CHANNELS]>> = ConstStaticCell::new(Aligned([0; CHANNELS]));
 
 /// A converter with its channels.
 pub trait Scan {
@@ -11,37 +24,58 @@ pub trait Scan {
     async fn scan(&mut self) -> Result<[u16; CHANNELS], PortError>;
 }
 
-/// What the converter's counts mean.
+/// What the battery's inputs mean.
 #[derive(Clone, Copy)]
-pub struct AnalogScale {
-    /// Bits that the converter gives beyond the port's twelve.
-    pub extra_bits: u32,
-    /// Battery voltage, V per count of twelve bits.
-    pub volts_per_count: f32,
-    /// Battery current, A per count of twelve bits.
-    pub amps_per_count: f32,
+pub struct BatteryScale {
+    /// Battery voltage over the voltage at its pin.
+    pub divider: f32,
+    /// Battery current for each volt at its pin, A/V.
+    pub amps_per_volt: f32,
 }
 
 /// The analog inputs of a board.
-pub struct AnalogInputs<S> {
-    /// The converter.
-    pub converter: S,
-    /// What its counts mean.
-    pub scale: AnalogScale,
+pub struct AnalogInputs<D: RxDma<ADC1>, I> {
+    converter: Converter<D, I>,
+    scale: BatteryScale,
 }
 
-impl<S: Scan> Analog for AnalogInputs<S> {
+impl<D, I> AnalogInputs<D, I>
+where
+    D: RxDma<ADC1>,
+    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
+{
+    /// Pressure sensors 1 to 4, battery voltage and battery current on `channels`. Called once.
+    pub fn new(
+        adc: Peri<'static, ADC1>,
+        channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],
+        dma: Peri<'static, D>,
+        irqs: I,
+        scale: BatteryScale,
+    ) -> Self {
+        Self {
+            converter: Converter::new(adc, channels, dma, irqs, DMA_ANALOG.take()),
+            scale,
+        }
+    }
+}
+
+impl<D, I> Analog for AnalogInputs<D, I>
+where
+    D: RxDma<ADC1>,
+    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
+{
     fn volts_per_count(&self) -> f32 {
-        self.scale.volts_per_count
+        VOLTS_PER_COUNT * self.scale.divider
     }
 
     fn amps_per_count(&self) -> f32 {
-        self.scale.amps_per_count
+        VOLTS_PER_COUNT * self.scale.amps_per_volt
     }
 
     async fn read(&mut self) -> Result<AnalogFrame, PortError> {
         let counts = self.converter.scan().await?;
-        let [a, b, c, d, battery_voltage, battery_current] = counts.map(|n| n >> self.scale.extra_bits);
+        let [a, b, c, d, battery_voltage, battery_current] =
+            counts.map(|n| n >> Converter::<D, I>::EXTRA_BITS);
         Ok(AnalogFrame {
             fsr: [a, b, c, d],
             battery_voltage,

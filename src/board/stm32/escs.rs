@@ -9,12 +9,13 @@ use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
 use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, Channel, GeneralInstance4Channel, TimerPin, UpDma};
 use embassy_stm32::{Peri, rcc};
 use embassy_time::{Duration, with_timeout};
-use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
 use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
+use sophie_drivers::esc_protocol::Protocol;
 use sophie_drivers::esc_pwm::EscPulse;
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_tasks::ports::Motors;
+use static_cell::ConstStaticCell;
 
 use super::Aligned;
 
@@ -25,37 +26,12 @@ const LONGEST_FRAME: Duration = Duration::from_micros(500);
 /// Length of a OneShot125 period, µs: the longest pulse and a moment of rest before it.
 const ONESHOT_US: u32 = 260;
 
-/// What the speed controllers understand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Protocol {
-    /// Digital frames.
-    DShot(dshot::Speed),
-    /// Pulses.
-    Pulse(EscPulse),
-}
-
-impl Protocol {
-    /// The protocol that the parameter `motor_protocol` names: 150, 300 or 600 for DShot, 400 for pulses at 400 Hz,
-    /// 125 for OneShot125; DShot300 for any other number.
-    pub fn from_params(params: &Params) -> Self {
-        match params.get("motor_protocol").map(|number| number as u32) {
-            Some(150) => Self::DShot(dshot::Speed::Dshot150),
-            Some(600) => Self::DShot(dshot::Speed::Dshot600),
-            Some(400) => Self::Pulse(EscPulse::Standard),
-            Some(125) => Self::Pulse(EscPulse::OneShot125),
-            _ => Self::DShot(dshot::Speed::Dshot300),
-        }
-    }
-}
-
 /// Rows of compare values that DMA writes into the timer: one for each bit of a frame, and two of zeros. The first of
 /// those is in force when the second has been moved, so the pins are low at the end of the transfer.
-pub type EscBurst = Aligned<[u16; dshot::BURST + dshot::MOTORS]>;
+type EscBurst = Aligned<[u16; dshot::BURST + dshot::MOTORS]>;
 
-impl EscBurst {
-    /// Pins low.
-    pub const IDLE: Self = Aligned([0; dshot::BURST + dshot::MOTORS]);
-}
+static DMA_MOTORS: ConstStaticCell<EscBurst> =
+    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
 
 /// How commands become compare values.
 #[derive(Clone, Copy)]
@@ -63,6 +39,7 @@ enum Timing {
     DShot(BitTiming),
     Pulse(PwmTiming),
     OneShot(PwmTiming),
+    Off,
 }
 
 /// Four speed controllers on the channels 1 to 4 of a 16-bit timer.
@@ -91,7 +68,7 @@ impl<T: GeneralInstance4Channel, D: UpDma<T>, I> EscTimer<T, D, I>
 where
     u16: Into<T::Word>,
 {
-    /// The controllers on `pins`, which stay low until the first command.
+    /// The controllers on these pins, which stay low until the first command. Called once.
     pub fn new(
         timer: Peri<'static, T>,
         (one, two, three, four): (
@@ -102,7 +79,6 @@ where
         ),
         dma: Peri<'static, D>,
         irqs: I,
-        burst: &'static mut EscBurst,
         protocol: Protocol,
     ) -> Self {
         let timing = timing(protocol, rcc::frequency::<T>().0);
@@ -110,6 +86,7 @@ where
         let (prescaler, period) = match timing {
             Timing::DShot(bit) => (0, u32::from(bit.period)),
             Timing::Pulse(t) | Timing::OneShot(t) => (t.prescaler, t.period),
+            Timing::Off => (0, 1),
         };
         timer.regs_core().psc().write_value(prescaler);
         // `PwmTiming` and `BitTiming` are made for 16 bits: period - 1 always fits.
@@ -142,7 +119,7 @@ where
             _pins: pins,
             dma,
             irqs,
-            burst,
+            burst: DMA_MOTORS.take(),
             timing,
         }
     }
@@ -208,6 +185,7 @@ where
             Timing::DShot(bit) => self.send_frame(bit, commands).await,
             Timing::Pulse(t) => self.set_pulses(t, commands),
             Timing::OneShot(t) => self.shoot(t, commands),
+            Timing::Off => {}
         }
     }
 }
@@ -224,6 +202,7 @@ fn timing(protocol: Protocol, clock_hz: u32) -> Timing {
         Protocol::Pulse(EscPulse::OneShot125) => {
             PwmTiming::new(clock_hz, 1_000_000 / ONESHOT_US).map(Timing::OneShot)
         }
+        Protocol::Off => Some(Timing::Off),
     };
     match found {
         Some(timing) => timing,

@@ -1,28 +1,56 @@
 //! Lights and buzzer.
 
-use embassy_stm32::gpio::{Level, Output};
+use embassy_stm32::Peri;
+use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 
-/// Two lights and a buzzer, each with the level that switches it on.
-pub struct Lights {
-    /// State of the vehicle.
-    pub state: (Output<'static>, Level),
-    /// Something is wrong.
-    pub fault: (Output<'static>, Level),
-    /// Buzzer, where the board has one.
-    pub buzzer: Option<(Output<'static>, Level)>,
+/// What is on or off.
+pub trait Switch {
+    /// Switches on or off.
+    fn set(&mut self, on: bool);
 }
 
-impl Lights {
-    /// Switches all three.
-    pub fn show(&mut self, state: bool, fault: bool, buzzer: bool) {
-        switch(&mut self.state, state);
-        switch(&mut self.fault, fault);
-        if let Some(output) = &mut self.buzzer {
-            switch(output, buzzer);
+/// A pin that switches something on.
+pub struct Lamp {
+    pin: Output<'static>,
+    on: Level,
+}
+
+impl Lamp {
+    /// Something that is on while `pin` is at `on`; off.
+    pub fn new(pin: Peri<'static, impl Pin>, on: Level) -> Self {
+        let off = if on == Level::High {
+            Level::Low
+        } else {
+            Level::High
+        };
+        Self {
+            pin: Output::new(pin, off, Speed::Low),
+            on,
         }
     }
 }
 
-fn switch((output, on_level): &mut (Output<'static>, Level), on: bool) {
-    output.set_level(Level::from(on == (*on_level == Level::High)));
+impl Switch for Lamp {
+    fn set(&mut self, on: bool) {
+        self.pin.set_level(Level::from(on == (self.on == Level::High)));
+    }
+}
+
+/// Two lights, and a buzzer that is a pin or a tone.
+pub struct Lights<B> {
+    /// State of the vehicle.
+    pub state: Lamp,
+    /// Something is wrong.
+    pub fault: Lamp,
+    /// Buzzer.
+    pub buzzer: B,
+}
+
+impl<B: Switch> Lights<B> {
+    /// Switches all three.
+    pub fn show(&mut self, state: bool, fault: bool, buzzer: bool) {
+        self.state.set(state);
+        self.fault.set(fault);
+        self.buzzer.set(buzzer);
+    }
 }

@@ -5,6 +5,11 @@
 mod adc;
 mod analog;
 mod escs;
+#[cfg(not(feature = "cuav-v5"))]
+mod flash;
+#[cfg(feature = "matek-h743")]
+mod flash_ecc;
+mod i2c_bus;
 mod lights;
 mod reset;
 mod serial;
@@ -12,20 +17,32 @@ mod serial;
 mod servo_pairs;
 #[cfg(not(feature = "cuav-v5"))]
 mod servos;
+#[cfg(feature = "cuav-v5")]
+mod small_timer;
 mod spi;
+mod storage;
+#[cfg(feature = "cuav-v5")]
+mod tone;
 mod watchdog;
 
-pub use adc::Converter;
-pub use analog::{AnalogInputs, AnalogScale};
-pub use escs::{EscBurst, EscTimer, Protocol, pull_low};
-pub use lights::Lights;
+pub use analog::{AnalogInputs, BatteryScale};
+pub use escs::{EscTimer, pull_low};
+#[cfg(not(feature = "cuav-v5"))]
+pub use flash::ParamFlash;
+pub use i2c_bus::{ArmBus, BusParts, i2c_config};
+pub use lights::{Lamp, Lights};
 pub use reset::take_reset_cause;
-pub use serial::{ReceiverLine, TelemetryLine};
+pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, console_lines, receiver_line};
 #[cfg(feature = "cuav-v5")]
 pub use servo_pairs::ServoPairs;
 #[cfg(not(feature = "cuav-v5"))]
 pub use servos::ServoTimer;
-pub use spi::Selected;
+#[cfg(feature = "cuav-v5")]
+pub use spi::PlainChip;
+pub use spi::{DmaChip, Selected, spi_config};
+pub use storage::BoardStorage;
+#[cfg(feature = "cuav-v5")]
+pub use tone::Tone;
 pub use watchdog::Dog;
 
 /// A buffer that DMA moves in bursts of up to 16 bytes: a burst must not cross a 1 KiB boundary.

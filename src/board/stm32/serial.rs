@@ -1,15 +1,118 @@
-//! The receiver's serial line, both ways.
+//! Serial lines: the receiver's, both ways, and the console's.
 
+use embassy_stm32::gpio::Pull;
+use embassy_stm32::interrupt::typelevel::Binding;
 use embassy_stm32::mode::Async;
-use embassy_stm32::usart::{RingBufferedUartRx, UartTx};
+use embassy_stm32::usart::{
+    BufferedInterruptHandler, BufferedUart, BufferedUartRx, BufferedUartTx, Config, ConfigError, Instance,
+    InterruptHandler, Parity, RingBufferedUartRx, RxDma, RxPin, StopBits, TxDma, TxPin, Uart, UartRx, UartTx,
+};
+use embassy_stm32::{Peri, dma};
 use embassy_time::{Duration, with_timeout};
+use embedded_io_async::{Read, Write};
+use sophie_control::params::Params;
 use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
+use sophie_tasks::rc::Protocol;
+use static_cell::ConstStaticCell;
+
+use super::Aligned;
 
 /// The longest telemetry frame takes 1.6 ms at 420 kbaud; a line that needs this long is broken.
-const LONGEST_WRITE: Duration = Duration::from_millis(20);
+const LONGEST_FRAME: Duration = Duration::from_millis(20);
+/// The console's longest line takes 20 ms at 115,200 baud, behind a buffer of as many.
+const LONGEST_LINE: Duration = Duration::from_millis(200);
+
+static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(Aligned([0; 512]));
+static CONSOLE_IN: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; 128]);
+static CONSOLE_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
+
+/// How the receiver's line is set up for a protocol.
+fn receiver_config(protocol: Protocol) -> Config {
+    let mut config = Config::default();
+    match protocol {
+        Protocol::Crsf => {
+            config.baudrate = 420_000;
+            config.rx_pull = Pull::Up;
+        }
+        Protocol::Sbus => {
+            config.baudrate = 100_000;
+            config.parity = Parity::ParityEven;
+            config.stop_bits = StopBits::STOP2;
+            // The F4's ports cannot invert: an inverter on the board makes the line idle high there.
+            #[cfg(feature = "f405")]
+            {
+                config.rx_pull = Pull::Up;
+            }
+            #[cfg(not(feature = "f405"))]
+            {
+                config.invert_rx = true;
+                config.rx_pull = Pull::Down;
+            }
+        }
+    }
+    config
+}
+
+/// The receiver's line, as the parameter `receiver_protocol` says.
+#[expect(clippy::too_many_arguments, reason = "the parts of one port of the board")]
+pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
+    uart: Peri<'static, T>,
+    rx: Peri<'static, impl RxPin<T>>,
+    tx: Peri<'static, impl TxPin<T>>,
+    rx_dma: Peri<'static, R>,
+    tx_dma: Peri<'static, D>,
+    irqs: impl Binding<T::Interrupt, InterruptHandler<T>>
+    + Binding<R::Interrupt, dma::InterruptHandler<R>>
+    + Binding<D::Interrupt, dma::InterruptHandler<D>>
+    + 'static,
+    params: &Params,
+) -> (ReceiverLine, TelemetryLine) {
+    let protocol = Protocol::from_params(params);
+    let config = receiver_config(protocol);
+    let (rx, tx) = match protocol {
+        Protocol::Crsf => {
+            let both = Uart::new(uart, rx, tx, tx_dma, rx_dma, irqs, config);
+            let (tx, rx) = accepted(both).split();
+            (rx, Some(tx))
+        }
+        // Nobody listens on the other pin: it stays an input.
+        Protocol::Sbus => {
+            let rx = UartRx::new(uart, rx, rx_dma, irqs, config);
+            (accepted(rx), None)
+        }
+    };
+    (
+        ReceiverLine(rx.into_ring_buffered(&mut DMA_RECEIVER.take().0)),
+        TelemetryLine(tx),
+    )
+}
+
+/// The console's line: 115,200 baud, 8N1, moved by the processor byte by byte, since streams are scarce.
+pub fn console_lines<T: Instance>(
+    uart: Peri<'static, T>,
+    rx: Peri<'static, impl RxPin<T>>,
+    tx: Peri<'static, impl TxPin<T>>,
+    irqs: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
+) -> (ConsoleInput, ConsoleOutput) {
+    let mut config = Config::default();
+    config.baudrate = 115_200;
+    // Nothing plugged in must not look like a character.
+    config.rx_pull = Pull::Up;
+    let uart = BufferedUart::new(uart, rx, tx, CONSOLE_OUT.take(), CONSOLE_IN.take(), irqs, config);
+    let (tx, rx) = accepted(uart).split();
+    (ConsoleInput(rx), ConsoleOutput(tx))
+}
+
+/// Every rate above is within every port's range: a refusal is a mistake of the board's clocks, found at the bench.
+fn accepted<U>(port: Result<U, ConfigError>) -> U {
+    match port {
+        Ok(port) => port,
+        Err(_) => panic!("a serial port refuses its configuration"),
+    }
+}
 
 /// From the receiver: a ring filled by DMA, read when the line falls idle, that is at the end of a frame.
-pub struct ReceiverLine(pub RingBufferedUartRx<'static>);
+pub struct ReceiverLine(RingBufferedUartRx<'static>);
 
 impl SerialInput for ReceiverLine {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
@@ -18,14 +121,42 @@ impl SerialInput for ReceiverLine {
     }
 }
 
-/// To the receiver.
-pub struct TelemetryLine(pub UartTx<'static, Async>);
+/// To the receiver; nothing where it does not listen.
+pub struct TelemetryLine(Option<UartTx<'static, Async>>);
 
 impl SerialOutput for TelemetryLine {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
-        match with_timeout(LONGEST_WRITE, self.0.write(bytes)).await {
-            Ok(sent) => sent.map_err(|_| PortError::Corrupt),
-            Err(_) => Err(PortError::Timeout),
+        match &mut self.0 {
+            Some(line) => in_time(LONGEST_FRAME, line.write(bytes)).await,
+            None => Ok(()),
         }
+    }
+}
+
+/// From the console.
+pub struct ConsoleInput(BufferedUartRx<'static>);
+
+impl SerialInput for ConsoleInput {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        self.0.read(buffer).await.map_err(|_| PortError::Corrupt)
+    }
+}
+
+/// To the console.
+pub struct ConsoleOutput(BufferedUartTx<'static>);
+
+impl SerialOutput for ConsoleOutput {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        in_time(LONGEST_LINE, self.0.write_all(bytes)).await
+    }
+}
+
+async fn in_time<E>(
+    longest: Duration,
+    writing: impl Future<Output = Result<(), E>>,
+) -> Result<(), PortError> {
+    match with_timeout(longest, writing).await {
+        Ok(sent) => sent.map_err(|_| PortError::Corrupt),
+        Err(_) => Err(PortError::Timeout),
     }
 }

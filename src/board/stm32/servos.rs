@@ -1,7 +1,11 @@
 //! The tendon servos: four channels of one timer.
 
-use embassy_stm32::timer::simple_pwm::SimplePwm;
-use embassy_stm32::timer::{Channel, GeneralInstance4Channel};
+use embassy_stm32::Peri;
+use embassy_stm32::gpio::OutputType;
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
+use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, Channel, GeneralInstance4Channel, TimerPin};
+use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_drivers::servo_pulse;
@@ -17,8 +21,27 @@ pub struct ServoTimer<T: GeneralInstance4Channel> {
 }
 
 impl<T: GeneralInstance4Channel> ServoTimer<T> {
-    /// Servos without pulses, on a timer that is set to the servos' frame.
-    pub fn new(mut pwm: SimplePwm<'static, T>) -> Self {
+    /// Servos on these pins without pulses, with the frames of the parameter `servo_frame_rate`.
+    pub fn new(
+        timer: Peri<'static, T>,
+        (one, two, three, four): (
+            Peri<'static, impl TimerPin<T, Ch1>>,
+            Peri<'static, impl TimerPin<T, Ch2>>,
+            Peri<'static, impl TimerPin<T, Ch3>>,
+            Peri<'static, impl TimerPin<T, Ch4>>,
+        ),
+        params: &Params,
+    ) -> Self {
+        let push_pull = OutputType::PushPull;
+        let mut pwm = SimplePwm::new(
+            timer,
+            Some(PwmPin::new(one, push_pull)),
+            Some(PwmPin::new(two, push_pull)),
+            Some(PwmPin::new(three, push_pull)),
+            Some(PwmPin::new(four, push_pull)),
+            Hertz((params.servo_frame_rate + 0.5) as u32),
+            Default::default(),
+        );
         let timing = PwmTiming::given(pwm.max_duty_cycle(), pwm.get_frequency().0 as f32);
         for channel in SERVOS {
             let mut output = pwm.channel(channel);

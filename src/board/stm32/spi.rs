@@ -1,19 +1,46 @@
 //! One chip on an SPI bus of its own.
 
-use embassy_stm32::gpio::Output;
-use embassy_stm32::mode::Async;
-use embassy_stm32::spi::Spi;
+use embassy_stm32::Peri;
+use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 use embassy_stm32::spi::mode::Master;
+use embassy_stm32::spi::{Config, MODE_3, Spi};
+use embassy_stm32::time::Hertz;
 use embassy_time::Timer;
 use embedded_hal_async::spi::{ErrorType, Operation, SpiBus, SpiDevice};
 
-/// A bus with its only chip's select line.
-pub struct Selected {
-    /// The bus.
-    pub bus: Spi<'static, Async, Master>,
-    /// Low while the chip is spoken to.
-    pub select: Output<'static>,
+/// Mode 3, which every chip on these boards takes, and the next clock at or below `hz`.
+pub fn spi_config(hz: u32) -> Config {
+    let mut config = Config::default();
+    config.mode = MODE_3;
+    config.frequency = Hertz(hz);
+    config
 }
+
+/// A bus with its only chip's select line.
+pub struct Selected<B> {
+    bus: B,
+    /// Low while the chip is spoken to.
+    select: Output<'static>,
+}
+
+impl<B> Selected<B> {
+    /// The chip on `bus` that `select` addresses.
+    pub fn new(bus: B, select: Peri<'static, impl Pin>) -> Self {
+        Self {
+            bus,
+            select: Output::new(select, Level::High, Speed::VeryHigh),
+        }
+    }
+}
+
+/// A chip whose bus is moved by DMA.
+pub type DmaChip = Selected<Spi<'static, embassy_stm32::mode::Async, Master>>;
+
+/// A chip whose bus is moved by the processor, which waits meanwhile.
+#[cfg(feature = "cuav-v5")]
+pub type PlainChip = Selected<
+    embassy_embedded_hal::adapter::BlockingAsync<Spi<'static, embassy_stm32::mode::Blocking, Master>>,
+>;
 
 /// Holds the select line low; a transfer that is given up half-way still lets go of the chip.
 struct Hold<'a>(&'a mut Output<'static>);
@@ -24,24 +51,24 @@ impl Drop for Hold<'_> {
     }
 }
 
-impl ErrorType for Selected {
-    type Error = embassy_stm32::spi::Error;
+impl<B: SpiBus> ErrorType for Selected<B> {
+    type Error = B::Error;
 }
 
-impl SpiDevice for Selected {
+impl<B: SpiBus> SpiDevice for Selected<B> {
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Self::Error> {
         self.select.set_low();
         let hold = Hold(&mut self.select);
         for operation in operations {
             match operation {
-                Operation::Read(words) => SpiBus::read(&mut self.bus, words).await?,
-                Operation::Write(words) => SpiBus::write(&mut self.bus, words).await?,
-                Operation::Transfer(read, write) => SpiBus::transfer(&mut self.bus, read, write).await?,
-                Operation::TransferInPlace(words) => SpiBus::transfer_in_place(&mut self.bus, words).await?,
+                Operation::Read(words) => self.bus.read(words).await?,
+                Operation::Write(words) => self.bus.write(words).await?,
+                Operation::Transfer(read, write) => self.bus.transfer(read, write).await?,
+                Operation::TransferInPlace(words) => self.bus.transfer_in_place(words).await?,
                 Operation::DelayNs(ns) => Timer::after_nanos(u64::from(*ns)).await,
             }
         }
-        SpiBus::<u8>::flush(&mut self.bus).await?;
+        self.bus.flush().await?;
         drop(hold);
         Ok(())
     }

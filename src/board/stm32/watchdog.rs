@@ -1,12 +1,23 @@
 //! The independent watchdog.
 
 use embassy_stm32::Peri;
+#[cfg(not(feature = "matek-h743"))]
+use embassy_stm32::pac::IWDG;
+#[cfg(feature = "matek-h743")]
+use embassy_stm32::pac::IWDG1 as IWDG;
+use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::wdg::{IndependentWatchdog, Instance};
+use embassy_time::Timer;
 use sophie_tasks::ports::Watchdog;
 
 /// Time without food after which the board is reset, µs. Its clock is only good to about -15 and +45 % (datasheets,
 /// LSI): 0.2 to 0.35 s, within the 0.2 to 0.5 s that the supervisor is written for.
 const PERIOD_US: u32 = 300_000;
+/// The same in the watchdog's own counts: prescaler, and reload value at 32 kHz.
+const SHORT: (Pr, u16) = (Pr::DIVIDE_BY4, 2399);
+/// While parameters are stored: 22 s at the fastest clock. Two sectors of the H7 take 8 s at the worst (datasheet,
+/// 128 KiB), two of the F4 1.6 s (16 KiB).
+const LONG: (Pr, u16) = (Pr::DIVIDE_BY256, 0xFFF);
 
 /// The watchdog, running.
 pub struct Dog<T: Instance + 'static>(IndependentWatchdog<'static, T>);
@@ -24,4 +35,24 @@ impl<T: Instance + 'static> Watchdog for Dog<T> {
     fn feed(&mut self) {
         self.0.pet();
     }
+}
+
+/// Makes the watchdog wait for some twenty seconds, or for its usual time again, and feeds it.
+pub async fn be_patient(patient: bool) {
+    let (prescaler, reload) = if patient { LONG } else { SHORT };
+    // Whole: the supervisor's feeding would close the registers between the key and the values.
+    critical_section::with(|_| {
+        IWDG.kr().write(|w| w.set_key(Key::ENABLE));
+        IWDG.pr().write(|w| w.set_pr(prescaler));
+        IWDG.rlr().write(|w| w.set_rl(reload));
+    });
+    // The values cross over to the watchdog's own clock: 0.2 ms. They count from the next food on.
+    for _ in 0..20 {
+        Timer::after_micros(100).await;
+        let status = IWDG.sr().read();
+        if !status.pvu() && !status.rvu() {
+            break;
+        }
+    }
+    IWDG.kr().write(|w| w.set_key(Key::RESET));
 }

@@ -1,0 +1,446 @@
+//! What outlives a reset: the grip on the pipe, and what would else have to be calibrated at rest.
+//!
+//! A reset (watchdog, fault, command, pin) leaves the memory that start-up code does not touch as it was. Two copies
+//! of this lie there, written by turns, each with a sequence number and a checksum: a reset in the midst of a write
+//! leaves the other one whole. After power-on the memory is noise, which the checksum does not let pass.
+
+use crate::clamp::Fault;
+use crate::math;
+use crate::rc::ArmChoice;
+use crate::vector::Vec3;
+use crate::wrench::PerArm;
+
+/// Words of one copy.
+pub const WORDS: usize = 16;
+/// One copy as it lies in memory.
+pub type Words = [u32; WORDS];
+
+/// Marks a copy ("WARM") of this layout; another layout takes another number.
+const MAGIC: u32 = 0x5741_524D + 1;
+/// Largest servo angle believed, rad: beyond any servo's travel.
+const ANGLE_MAX: f32 = 6.5;
+/// Largest tendon force believed, N: beyond what any parameters allow.
+const FORCE_MAX: f32 = 2000.0;
+/// Largest gyro bias believed, rad/s: the estimator's own bound.
+const BIAS_MAX: f32 = 0.1;
+
+/// What the tendons do to the pipe, as far as it must outlive the rotors and a reset.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Grasp {
+    /// Not looked at yet since the power came on: the arms may be closed.
+    #[default]
+    Unknown,
+    /// Open, or opening because a person wanted it.
+    Open,
+    /// These arms are closed, closing, or not proven free yet: the clamp loops hold them.
+    Closed(ArmChoice),
+    /// These arms were found pressed when the power came on; where their servos stand is not known. The gears hold.
+    Kept(ArmChoice),
+}
+
+impl Grasp {
+    /// The arms that hold something.
+    pub const fn arms(self) -> Option<ArmChoice> {
+        match self {
+            Self::Closed(arms) | Self::Kept(arms) => Some(arms),
+            Self::Open | Self::Unknown => None,
+        }
+    }
+}
+
+/// What a run leaves to the next one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Warm {
+    /// The grip; never [`Grasp::Unknown`] in memory.
+    pub grasp: Grasp,
+    /// Angle to which each tendon's servo was sent, rad from release, 0 to 6.5.
+    pub angle: PerArm<f32>,
+    /// Force asked of each tendon, less what met the thrust of its rotor, N, 0 to 2000.
+    pub force: PerArm<f32>,
+    /// What is wrong with an arm for as long as it is closed.
+    pub fault: PerArm<Option<Fault>>,
+    /// Gyro bias, rad/s, at most 0.1 on each axis; `None` before the first calibration at rest.
+    pub gyro_bias: Option<Vec3>,
+}
+
+impl Warm {
+    /// The words of one copy. `None` when there is nothing to be kept: a grip not looked at, or what is no number.
+    pub fn to_words(&self, sequence: u32) -> Option<Words> {
+        let (grasp, arms) = match self.grasp {
+            Grasp::Unknown => return None,
+            Grasp::Open => (1, 0),
+            Grasp::Closed(arms) => (2, arm_code(arms)),
+            Grasp::Kept(arms) => (3, arm_code(arms)),
+        };
+        let faults = self
+            .fault
+            .iter()
+            .fold(0, |word, &fault| word << 2 | fault_code(fault));
+        let bias = self.gyro_bias.unwrap_or_default();
+        let [angle_1, angle_2, angle_3, angle_4] = self.angle.map(f32::to_bits);
+        let [force_1, force_2, force_3, force_4] = self.force.map(f32::to_bits);
+        let [bias_x, bias_y, bias_z] = bias.to_array().map(f32::to_bits);
+        let mut words = [
+            MAGIC,
+            sequence,
+            grasp | arms << 8 | u32::from(self.gyro_bias.is_some()) << 16,
+            faults,
+            angle_1,
+            angle_2,
+            angle_3,
+            angle_4,
+            force_1,
+            force_2,
+            force_3,
+            force_4,
+            bias_x,
+            bias_y,
+            bias_z,
+            0,
+        ];
+        let sum = checksum(&words);
+        if let Some(last) = words.last_mut() {
+            *last = sum;
+        }
+        // What would not be believed again must not take the place of what would.
+        Self::from_words(&words).map(|_| words)
+    }
+
+    /// The copy and its sequence number; `None` when a bit or a value is not as it was written.
+    pub fn from_words(words: &Words) -> Option<(Self, u32)> {
+        let [
+            magic,
+            sequence,
+            state,
+            faults,
+            angle_1,
+            angle_2,
+            angle_3,
+            angle_4,
+            force_1,
+            force_2,
+            force_3,
+            force_4,
+            bias_x,
+            bias_y,
+            bias_z,
+            sum,
+        ] = *words;
+        if magic != MAGIC || sum != checksum(words) || state >> 17 != 0 || faults >> 8 != 0 {
+            return None;
+        }
+        let arms = arm_choice(state >> 8 & 0xFF)?;
+        let grasp = match state & 0xFF {
+            1 => Grasp::Open,
+            2 => Grasp::Closed(arms),
+            3 => Grasp::Kept(arms),
+            _ => return None,
+        };
+        let mut fault = [None; 4];
+        for (slot, shift) in fault.iter_mut().zip([6, 4, 2, 0]) {
+            *slot = fault_of(faults >> shift & 3)?;
+        }
+        let warm = Self {
+            grasp,
+            angle: [angle_1, angle_2, angle_3, angle_4].map(f32::from_bits),
+            force: [force_1, force_2, force_3, force_4].map(f32::from_bits),
+            fault,
+            gyro_bias: (state >> 16 & 1 != 0)
+                .then_some(Vec3::from([bias_x, bias_y, bias_z].map(f32::from_bits))),
+        };
+        warm.is_sane().then_some((warm, sequence))
+    }
+
+    /// The later of two copies and its sequence number; the other one when it is broken.
+    pub fn newest(copies: &[Words; 2]) -> Option<(Self, u32)> {
+        let [a, b] = copies.each_ref().map(Self::from_words);
+        match (a, b) {
+            // Sequence numbers wrap.
+            (Some(a), Some(b)) => Some(if a.1.wrapping_sub(b.1) < 1 << 31 { a } else { b }),
+            (a, b) => a.or(b),
+        }
+    }
+
+    /// Every number is one, and within its range.
+    fn is_sane(&self) -> bool {
+        let within = |values: &[f32], low: f32, high: f32| values.iter().all(|v| (low..=high).contains(v));
+        let bias = self.gyro_bias.unwrap_or_default().to_array();
+        within(&self.angle, 0.0, ANGLE_MAX)
+            && within(&self.force, 0.0, FORCE_MAX)
+            && within(&bias, -BIAS_MAX, BIAS_MAX)
+    }
+
+    /// The same with servo angles and forces brought into what is believed again.
+    pub fn bounded(self) -> Self {
+        Self {
+            angle: self.angle.map(|a| math::clamp(a, 0.0, ANGLE_MAX)),
+            force: self.force.map(|f| math::clamp(f, 0.0, FORCE_MAX)),
+            gyro_bias: self
+                .gyro_bias
+                .filter(|b| b.is_finite())
+                .map(|b| b.map(|x| math::clamp_abs(x, BIAS_MAX))),
+            ..self
+        }
+    }
+}
+
+fn arm_code(arms: ArmChoice) -> u32 {
+    match arms {
+        ArmChoice::All => 0,
+        ArmChoice::Front => 1,
+        ArmChoice::Rear => 2,
+    }
+}
+
+fn arm_choice(code: u32) -> Option<ArmChoice> {
+    [ArmChoice::All, ArmChoice::Front, ArmChoice::Rear]
+        .into_iter()
+        .find(|&arms| arm_code(arms) == code)
+}
+
+/// Only the faults that stay until release: the others show themselves again.
+fn fault_code(fault: Option<Fault>) -> u32 {
+    match fault {
+        Some(Fault::Sensor) => 1,
+        Some(Fault::Unfelt) => 2,
+        _ => 0,
+    }
+}
+
+/// The outer `None` for a code that stands for nothing.
+fn fault_of(code: u32) -> Option<Option<Fault>> {
+    match code {
+        0 => Some(None),
+        1 => Some(Some(Fault::Sensor)),
+        2 => Some(Some(Fault::Unfelt)),
+        _ => None,
+    }
+}
+
+/// CRC-32 (IEEE 802.3, bit by bit: a few thousand cycles) of all words but the last: every single wrong bit shows.
+fn checksum(words: &Words) -> u32 {
+    let (_, head) = words.split_last().unwrap_or((&0, &[]));
+    let mut crc = u32::MAX;
+    for word in head {
+        crc ^= word;
+        for _ in 0..32 {
+            crc = crc >> 1 ^ (0xEDB8_8320 & (crc & 1).wrapping_neg());
+        }
+    }
+    !crc
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn held() -> Warm {
+        Warm {
+            grasp: Grasp::Closed(ArmChoice::Rear),
+            angle: [0.0, 2.5, 0.0, 2.75],
+            force: [0.0, 53.5, 0.0, 61.25],
+            fault: [None, Some(Fault::Sensor), None, Some(Fault::Unfelt)],
+            gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
+        }
+    }
+
+    fn words(warm: Warm, sequence: u32) -> Words {
+        warm.to_words(sequence).unwrap_or_default()
+    }
+
+    #[test]
+    fn what_is_kept_comes_back() {
+        for grasp in [
+            Grasp::Open,
+            Grasp::Closed(ArmChoice::All),
+            Grasp::Closed(ArmChoice::Front),
+            Grasp::Kept(ArmChoice::Rear),
+        ] {
+            for gyro_bias in [None, held().gyro_bias] {
+                let warm = Warm {
+                    grasp,
+                    gyro_bias,
+                    ..held()
+                };
+                assert_eq!(Warm::from_words(&words(warm, 7)), Some((warm, 7)));
+            }
+        }
+    }
+
+    #[test]
+    fn the_checksum_is_the_standard_one() {
+        // CRC-32 of fifteen zero words, by zlib: crc32(bytes(60)).
+        assert_eq!(checksum(&[0; WORDS]), 0x0412_8908);
+    }
+
+    #[test]
+    fn every_single_wrong_bit_is_found_out() {
+        let good = words(held(), 41);
+        assert!(Warm::from_words(&good).is_some());
+        for word in 0..WORDS {
+            for bit in 0..32 {
+                let mut bad = good;
+                bad[word] ^= 1 << bit;
+                assert_eq!(Warm::from_words(&bad), None, "word {word} bit {bit}");
+                // The copy written before takes its place.
+                let before = Warm {
+                    grasp: Grasp::Kept(ArmChoice::All),
+                    ..held()
+                };
+                assert_eq!(
+                    Warm::newest(&[words(before, 40), bad]),
+                    Some((before, 40)),
+                    "word {word} bit {bit}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_write_that_a_reset_cut_short_anywhere_loses_one_step_at_most() {
+        let (old, new) = (
+            held(),
+            Warm {
+                angle: [0.5; 4],
+                force: [9.0; 4],
+                ..held()
+            },
+        );
+        let other = words(old, 8);
+        for written in 0..=WORDS {
+            // The copy of two steps ago is written over from its start.
+            let mut torn = words(Warm::default().opened(), 7);
+            for (slot, word) in torn.iter_mut().zip(words(new, 9)).take(written) {
+                *slot = word;
+            }
+            let kept = Warm::newest(&[torn, other]).map(|(warm, _)| warm);
+            let expected = if written == WORDS { new } else { old };
+            assert_eq!(kept, Some(expected), "{written} words written");
+        }
+    }
+
+    #[test]
+    fn the_later_copy_counts_also_where_the_sequence_wraps() {
+        for sequence in [0, 1, 99, u32::MAX - 1, u32::MAX] {
+            let next = sequence.wrapping_add(1);
+            let later = Warm {
+                force: [5.0; 4],
+                ..held()
+            };
+            for copies in [
+                [words(held(), sequence), words(later, next)],
+                [words(later, next), words(held(), sequence)],
+            ] {
+                assert_eq!(Warm::newest(&copies), Some((later, next)));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_or_out_of_range_is_neither_kept_nor_believed() {
+        let nan = f32::NAN;
+        let bad = [
+            Warm {
+                angle: [nan, 0.0, 0.0, 0.0],
+                ..held()
+            },
+            Warm {
+                angle: [0.0, -0.1, 0.0, 0.0],
+                ..held()
+            },
+            Warm {
+                angle: [0.0, 0.0, 6.6, 0.0],
+                ..held()
+            },
+            Warm {
+                force: [0.0, 0.0, 0.0, f32::INFINITY],
+                ..held()
+            },
+            Warm {
+                force: [-1.0, 0.0, 0.0, 0.0],
+                ..held()
+            },
+            Warm {
+                force: [2001.0, 0.0, 0.0, 0.0],
+                ..held()
+            },
+            Warm {
+                gyro_bias: Some(Vec3::new(0.0, nan, 0.0)),
+                ..held()
+            },
+            Warm {
+                gyro_bias: Some(Vec3::new(0.0, 0.0, 0.2)),
+                ..held()
+            },
+            Warm {
+                grasp: Grasp::Unknown,
+                ..held()
+            },
+        ];
+        for warm in bad {
+            assert_eq!(warm.to_words(1), None, "{warm:?}");
+        }
+        // With a sound checksum, too.
+        for (word, value) in [
+            (4, nan.to_bits()),
+            (11, 1e9f32.to_bits()),
+            (2, 4),
+            (2, 0x0302),
+            (3, 3),
+            (3, 0x100),
+        ] {
+            let mut forged = words(held(), 3);
+            forged[word] = value;
+            forged[WORDS - 1] = checksum(&forged);
+            assert_eq!(Warm::from_words(&forged), None, "word {word} {value:#x}");
+        }
+        for warm in bad.into_iter().take(8) {
+            assert!(warm.bounded().to_words(1).is_some(), "{warm:?}");
+        }
+    }
+
+    #[test]
+    fn blank_memory_is_nothing() {
+        for word in [0, u32::MAX, 0xCCCC_CCCC] {
+            assert_eq!(Warm::newest(&[[word; WORDS]; 2]), None);
+        }
+    }
+
+    impl Warm {
+        fn opened(self) -> Self {
+            Self {
+                grasp: Grasp::Open,
+                ..self
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn noise_is_nothing(noise in prop::array::uniform16(any::<u32>()), marked: bool) {
+            let mut words = noise;
+            if marked {
+                words[0] = MAGIC;
+            }
+            prop_assert_eq!(Warm::from_words(&words), None);
+        }
+
+        #[test]
+        fn a_burst_of_wrong_bits_is_found_out(start in 0usize..(32 * WORDS - 31), pattern in 1u32..) {
+            let mut bad = words(held(), 5);
+            for bit in (0..32).filter(|bit| pattern >> bit & 1 != 0) {
+                bad[(start + bit) / 32] ^= 1 << ((start + bit) % 32);
+            }
+            prop_assert_eq!(Warm::from_words(&bad), None);
+        }
+
+        #[test]
+        fn whatever_is_kept_is_sane(angle in prop::array::uniform4(any::<f32>()), force in prop::array::uniform4(any::<f32>())) {
+            let warm = Warm { angle, force, ..held() }.bounded();
+            let back = warm.to_words(1).and_then(|w| Warm::from_words(&w));
+            prop_assert_eq!(back, Some((warm, 1)));
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Flash for looking, not for touching.
+
+use core::ops::Range;
+
+use embedded_storage_async::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
+
+/// Reads after which the contents count as noise: five times what the fullest sound log takes.
+const READS_MAX: u16 = 20_000;
+/// Bits at 0 in a page's mark from which it counts as set (the map's own rule).
+const MARKED: u32 = 4;
+
+/// Why a read was not made, or gave nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Refused {
+    /// By the flash.
+    Flash,
+    /// It was a write, or one read too many.
+    NotAllowed,
+}
+
+impl NorFlashError for Refused {
+    fn kind(&self) -> NorFlashErrorKind {
+        NorFlashErrorKind::Other
+    }
+}
+
+/// Lets the map read, and repair in its imagination only: a page that it erases reads as blank from then on.
+pub(super) struct ReadOnly<'a, F> {
+    flash: &'a mut F,
+    range: Range<u32>,
+    /// Pages that count as erased, a bit each.
+    erased: u32,
+    reads: u16,
+    /// End of the last read.
+    end: u32,
+}
+
+impl<'a, F: NorFlash> ReadOnly<'a, F> {
+    const PAGE: u32 = F::ERASE_SIZE as u32;
+    const WORD: u32 = if F::WRITE_SIZE > F::READ_SIZE {
+        F::WRITE_SIZE
+    } else {
+        F::READ_SIZE
+    } as u32;
+
+    pub(super) const fn new(flash: &'a mut F, range: Range<u32>) -> Self {
+        Self {
+            flash,
+            range,
+            erased: 0,
+            reads: 0,
+            end: 0,
+        }
+    }
+
+    /// True when nothing at all is written in the range, not even in pages that count as erased.
+    pub(super) async fn blank(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
+        self.erased = 0;
+        self.all_ones(self.range.clone(), buffer).await
+    }
+
+    /// True when nothing is written behind the item that was read last, which is the newest sound one: something
+    /// there is a newer one that was cut short, or that has been damaged.
+    pub(super) async fn blank_behind_last_read(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
+        let (end, start) = (self.end, self.range.start);
+        let page = start + end.saturating_sub(start + 1) / Self::PAGE * Self::PAGE;
+        if !self.all_ones(end..page + Self::PAGE - Self::WORD, buffer).await? {
+            return Ok(false);
+        }
+        let next = if page + Self::PAGE < self.range.end {
+            page + Self::PAGE
+        } else {
+            start
+        };
+        // A closed page is an old one, an unmarked one is to be erased before its use.
+        let in_use =
+            self.marked(next).await? && !self.marked(next + Self::PAGE - F::READ_SIZE as u32).await?;
+        let inside = next + Self::WORD..next + Self::PAGE - Self::WORD;
+        Ok(!in_use || self.all_ones(inside, buffer).await?)
+    }
+
+    async fn marked(&mut self, at: u32) -> Result<bool, Refused> {
+        let mut mark = [0xFF; 32];
+        let mark = mark.get_mut(..F::READ_SIZE).ok_or(Refused::NotAllowed)?;
+        self.read(at, mark).await?;
+        Ok(mark.iter().map(|byte| byte.count_zeros()).sum::<u32>() >= MARKED)
+    }
+
+    async fn all_ones(&mut self, range: Range<u32>, buffer: &mut [u8]) -> Result<bool, Refused> {
+        let step = buffer.len() as u32;
+        for at in range.clone().step_by(buffer.len()) {
+            let length = step.min(range.end - at) as usize;
+            let chunk = buffer.get_mut(..length).ok_or(Refused::NotAllowed)?;
+            self.read(at, chunk).await?;
+            if chunk.iter().any(|&byte| byte != 0xFF) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Bit of the page that `at` lies in.
+    const fn bit(&self, at: u32) -> Option<u32> {
+        1u32.checked_shl(at.saturating_sub(self.range.start) / Self::PAGE)
+    }
+}
+
+impl<F: NorFlash> ErrorType for ReadOnly<'_, F> {
+    type Error = Refused;
+}
+
+impl<F: NorFlash> ReadNorFlash for ReadOnly<'_, F> {
+    const READ_SIZE: usize = F::READ_SIZE;
+
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Refused> {
+        self.reads = self.reads.saturating_add(1);
+        if self.reads > READS_MAX {
+            return Err(Refused::NotAllowed);
+        }
+        self.flash.read(offset, bytes).await.map_err(|_| Refused::Flash)?;
+        self.end = offset.saturating_add(bytes.len() as u32);
+        if self.bit(offset).is_some_and(|bit| self.erased & bit != 0) {
+            bytes.fill(0xFF);
+        }
+        Ok(())
+    }
+
+    fn capacity(&self) -> usize {
+        self.flash.capacity()
+    }
+}
+
+impl<F: NorFlash> NorFlash for ReadOnly<'_, F> {
+    const WRITE_SIZE: usize = F::WRITE_SIZE;
+    const ERASE_SIZE: usize = F::ERASE_SIZE;
+
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Refused> {
+        for page in (from..to).step_by(F::ERASE_SIZE) {
+            self.erased |= self.bit(page).ok_or(Refused::NotAllowed)?;
+        }
+        Ok(())
+    }
+
+    async fn write(&mut self, _offset: u32, _bytes: &[u8]) -> Result<(), Refused> {
+        Err(Refused::NotAllowed)
+    }
+}

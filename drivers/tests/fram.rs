@@ -1,0 +1,190 @@
+//! The FRAM driver against a fake part.
+
+#[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
+mod fake;
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use embedded_storage_async::nor_flash::{NorFlash, ReadNorFlash};
+use fake::fram::{Answer, Bus, Chip};
+use fake::run;
+use sophie_control::params::Params;
+use sophie_drivers::fault::Fault;
+use sophie_drivers::fram::{CAPACITY, Fram, FramFault};
+use sophie_drivers::param_store::ParamStore;
+use sophie_tasks::ports::{Loaded, Storage, StorageError};
+
+/// What identity and protection take before the first access.
+fn bring_up() -> Vec<Vec<u8>> {
+    vec![
+        vec![0x9F, 0, 0, 0, 0, 0, 0, 0, 0, 0],
+        vec![0x05, 0],
+        vec![0x05, 0],
+    ]
+}
+
+#[test]
+fn every_transfer_is_what_the_datasheet_asks_for() {
+    let chip = Chip::new();
+    let bus = Bus(chip.clone());
+    let read = run(async move {
+        let mut fram = Fram::new(bus);
+        let mut read = [0; 5];
+        fram.write(0x1234, &[1, 2, 3]).await.unwrap();
+        fram.read(0x1233, &mut read).await.unwrap();
+        read
+    });
+    assert_eq!(read, [0xFF, 1, 2, 3, 0xFF]);
+    let mut expected = bring_up();
+    expected.push(vec![0x06]);
+    expected.push(vec![0x02, 0x12, 0x34, 1, 2, 3]);
+    expected.push(vec![0x03, 0x12, 0x33, 0, 0, 0, 0, 0]);
+    let mut sent = chip.borrow().sent.clone();
+    // What lies in the buffer where the part speaks does not matter.
+    sent.last_mut().unwrap()[3..].fill(0);
+    assert_eq!(sent, expected);
+    assert_eq!(chip.borrow().status, 0x40, "the latch has dropped");
+}
+
+#[test]
+fn long_writes_go_in_pieces_each_with_its_own_enable() {
+    let chip = Chip::new();
+    let bus = Bus(chip.clone());
+    let data: Vec<u8> = (0..150).collect();
+    let written = data.clone();
+    let read = run(async move {
+        let mut fram = Fram::new(bus);
+        fram.write(0x00F0, &written).await.unwrap();
+        let mut read = vec![0; 150];
+        fram.read(0x00F0, &mut read).await.unwrap();
+        read
+    });
+    assert_eq!(read, data);
+    assert_eq!(chip.borrow().cells[0x00F0..0x00F0 + 150], data);
+    let heads: Vec<(u8, usize)> = chip.borrow().sent[3..].iter().map(|t| (t[0], t.len())).collect();
+    assert_eq!(
+        heads,
+        [
+            (6, 1),
+            (2, 67),
+            (6, 1),
+            (2, 67),
+            (6, 1),
+            (2, 25),
+            (3, 67),
+            (3, 67),
+            (3, 25)
+        ]
+    );
+}
+
+#[test]
+fn an_erase_fills_whole_pages_and_no_more() {
+    let chip = Chip::new();
+    chip.borrow_mut().cells.fill(0x00);
+    let bus = Bus(chip.clone());
+    let results = run(async move {
+        let mut fram = Fram::new(bus);
+        let good = fram.erase(4096, 12288).await;
+        let mut bad = Vec::new();
+        for (from, to) in [(0, 100), (100, 4096), (8192, 4096), (0, CAPACITY + 4096)] {
+            bad.push(fram.erase(from, to).await);
+        }
+        bad.push(fram.write(CAPACITY - 1, &[0; 2]).await);
+        bad.push(fram.read(CAPACITY, &mut [0]).await);
+        bad.push(fram.read(u32::MAX, &mut [0]).await);
+        (good, bad)
+    });
+    assert_eq!(results.0, Ok(()));
+    assert!(
+        results.1.iter().all(|r| *r == Err(FramFault::OutOfBounds)),
+        "{results:?}"
+    );
+    let chip = chip.borrow();
+    let erased: Vec<usize> = (0..8).filter(|p| chip.cells[p * 4096] == 0xFF).collect();
+    assert_eq!(erased, [1, 2]);
+    assert_eq!(chip.cells.iter().filter(|c| **c == 0xFF).count(), 8192);
+}
+
+fn first_read(chip: &Rc<RefCell<Chip>>) -> Result<(), FramFault> {
+    let bus = Bus(chip.clone());
+    run(async move { Fram::new(bus).read(0, &mut [0; 4]).await })
+}
+
+#[test]
+fn another_chip_or_none_is_named() {
+    for (answer, found) in [(Answer::Only(0x00), 0x00), (Answer::Only(0xFF), 0xFF)] {
+        let chip = Chip::new();
+        chip.borrow_mut().answer = answer;
+        let fault = Fault::Identity {
+            expected: 0x7F,
+            found,
+        };
+        assert_eq!(first_read(&chip), Err(FramFault::Chip(fault)));
+        assert_eq!(fault.what(), "no answer");
+    }
+    // Another maker, and the part of twice the size.
+    for (index, expected, found) in [(6, 0xC2, 0x04), (7, 0x22, 0x23)] {
+        let chip = Chip::new();
+        chip.borrow_mut().identity[index] = found;
+        let fault = Fault::Identity { expected, found };
+        assert_eq!(first_read(&chip), Err(FramFault::Chip(fault)));
+        assert_eq!(fault.what(), "wrong chip");
+        assert_eq!(chip.borrow().sent.len(), 1, "nothing more is tried");
+    }
+    let chip = Chip::new();
+    chip.borrow_mut().answer = Answer::Bus;
+    assert_eq!(first_read(&chip), Err(FramFault::Chip(Fault::Bus)));
+    // A later revision is the same part.
+    let chip = Chip::new();
+    chip.borrow_mut().identity[8] = 0x10;
+    assert_eq!(first_read(&chip), Ok(()));
+}
+
+#[test]
+fn write_protection_is_taken_off_once() {
+    let chip = Chip::new();
+    chip.borrow_mut().status = 0x4C;
+    assert_eq!(first_read(&chip), Ok(()));
+    assert_eq!(chip.borrow().status, 0x40);
+    let sent: Vec<Vec<u8>> = chip.borrow().sent[1..5].to_vec();
+    assert_eq!(sent, [vec![0x05, 0], vec![0x06], vec![0x01, 0], vec![0x05, 0]]);
+}
+
+/// Loads, saves and loads again.
+fn store(chip: &Rc<RefCell<Chip>>, params: Params) -> (Loaded, Result<(), StorageError>, Params) {
+    let bus = Bus(chip.clone());
+    run(async move {
+        let mut store = ParamStore::new(Fram::new(bus), 0..CAPACITY);
+        let loaded = store.load(&mut Params::default()).await;
+        let saved = store.save(&params).await;
+        let mut again = Params::default();
+        let _ = store.load(&mut again).await;
+        (loaded, saved, again)
+    })
+}
+
+#[test]
+fn it_keeps_parameters_and_a_missing_one_is_a_broken_storage() {
+    let mut params = Params::default();
+    params.set("infill", 8.0).unwrap();
+    let chip = Chip::new();
+    assert_eq!(store(&chip, params), (Loaded::default(), Ok(()), params));
+    let loaded = store(&chip, params).0;
+    assert_eq!((loaded.taken, loaded.unreadable), (1, false));
+
+    for answer in [Answer::Only(0x00), Answer::Only(0xFF), Answer::Bus] {
+        chip.borrow_mut().answer = answer;
+        let (loaded, saved, again) = store(&chip, Params::default());
+        assert!(
+            loaded.unreadable && saved == Err(StorageError::Broken),
+            "{answer:?}"
+        );
+        assert_eq!(again, Params::default());
+    }
+    // One that takes no write is found out by reading back, and keeps what it had.
+    chip.borrow_mut().answer = Answer::Deaf;
+    let (_, saved, again) = store(&chip, Params::default());
+    assert_eq!((saved, again), (Err(StorageError::Broken), params));
+}

@@ -1,0 +1,367 @@
+//! The parameter store on flash of three kinds, whatever happens to power and contents.
+
+#[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
+mod fake;
+
+use std::ops::Range;
+
+use fake::flash::Flash;
+use fake::run;
+use proptest::prelude::{ProptestConfig, any};
+use proptest::{prop_assert, prop_assert_eq, proptest};
+use sequential_storage::cache::Cache;
+use sequential_storage::map::{MapConfig, MapStorage};
+use sophie_control::params::Params;
+use sophie_drivers::param_store::{ParamStore, hash};
+use sophie_tasks::ports::{Loaded, Storage, StorageError};
+
+/// Pages as small as a short log needs, so that it goes round often.
+const SMALL: usize = 512;
+
+fn load<const W: usize, const P: usize>(flash: &Flash<W, P>) -> (Params, Loaded) {
+    let (flash, range) = (flash.clone(), flash.range());
+    run(async move {
+        let mut params = Params::default();
+        let loaded = ParamStore::new(flash, range).load(&mut params).await;
+        (params, loaded)
+    })
+}
+
+fn save<const W: usize, const P: usize>(flash: &Flash<W, P>, params: Params) -> Result<(), StorageError> {
+    let (flash, range) = (flash.clone(), flash.range());
+    run(async move { ParamStore::new(flash, range).save(&params).await })
+}
+
+fn sound(taken: u16) -> Loaded {
+    Loaded {
+        taken,
+        ..Loaded::default()
+    }
+}
+
+fn set(values: &[(&str, f32)]) -> Params {
+    let mut params = Params::default();
+    for (name, value) in values {
+        params.set(name, *value).unwrap();
+    }
+    params
+}
+
+/// Every parameter away from its default.
+fn all_changed() -> Params {
+    let mut params = Params::default();
+    for row in Params::TABLE {
+        let other = if row.default == row.max { row.min } else { row.max };
+        params.set(row.name, other).unwrap();
+    }
+    params
+}
+
+fn keeps_what_differs<const W: usize, const P: usize>() {
+    let flash = Flash::<W, P>::blank(2);
+    assert_eq!(load(&flash), (Params::default(), sound(0)));
+    assert_eq!(save(&flash, Params::default()), Ok(()));
+    assert_eq!(flash.0.borrow().steps, 0, "nothing differs, nothing is written");
+
+    let first = set(&[("infill", 8.0), ("rate_p", 12.5), ("accel_bias_z", -0.25)]);
+    assert_eq!(save(&flash, first), Ok(()));
+    assert_eq!(load(&flash), (first, sound(3)));
+    let steps = flash.0.borrow().steps;
+    assert_eq!(save(&flash, first), Ok(()));
+    assert_eq!(flash.0.borrow().steps, steps, "the same again costs nothing");
+
+    let second = set(&[("infill", 5.0)]);
+    assert_eq!(save(&flash, second), Ok(()));
+    assert_eq!(load(&flash), (second, sound(1)), "what is default again is gone");
+    assert_eq!(save(&flash, Params::default()), Ok(()));
+    assert_eq!(load(&flash), (Params::default(), sound(0)));
+
+    assert_eq!(save(&flash, all_changed()), Ok(()));
+    assert_eq!(load(&flash), (all_changed(), sound(Params::TABLE.len() as u16)));
+    assert_eq!(flash.0.borrow().violations, [""; 0]);
+}
+
+#[test]
+fn every_kind_of_flash_keeps_what_differs_from_the_defaults() {
+    keeps_what_differs::<32, { 128 * 1024 }>();
+    keeps_what_differs::<1, { 16 * 1024 }>();
+    keeps_what_differs::<4, 4096>();
+    keeps_what_differs::<8, 2048>();
+}
+
+fn goes_round<const W: usize, const P: usize>(pages: usize, saves: u32) -> usize {
+    let flash = Flash::<W, P>::blank(pages);
+    for i in 0..saves {
+        let params = set(&[("infill", 4.0 + (i % 600) as f32 * 0.01), ("rate_p", 5.0)]);
+        assert_eq!(save(&flash, params), Ok(()), "save {i}");
+        assert_eq!(load(&flash).0, params, "save {i}");
+        assert!(!load(&flash).1.unreadable, "save {i}");
+    }
+    assert_eq!(flash.0.borrow().violations, [""; 0]);
+    flash.0.borrow().erases
+}
+
+#[test]
+fn the_log_goes_round_and_spares_the_flash() {
+    // 20 bytes in items of 64 (32 + 32), 28 (8 + 20) and 28 bytes; a page holds 14, 18 and 145 of them.
+    assert!(goes_round::<32, 1024>(2, 300) <= 300 / 13);
+    assert!(goes_round::<1, SMALL>(2, 300) <= 300 / 16);
+    // Eleven pages are begun; with the eighth one in use, the next must be blank.
+    assert_eq!(goes_round::<1, 4096>(8, 1500), 4);
+}
+
+/// Saves the sets in turn on flash that loses power at every step, one after the other.
+fn survives_cuts<const W: usize, const P: usize>(pages: usize, before: &[Params], new: Params) -> usize {
+    let start = Flash::<W, P>::blank(pages);
+    for params in before {
+        assert_eq!(save(&start, *params), Ok(()));
+    }
+    let old = before.last().copied().unwrap_or_default();
+    let whole = start.copy();
+    assert_eq!(save(&whole, new), Ok(()));
+    let (first, last) = (start.0.borrow().steps, whole.0.borrow().steps);
+    for cut in first..last {
+        let flash = start.copy();
+        flash.0.borrow_mut().cut_at = Some(cut);
+        assert_eq!(save(&flash, new), Err(StorageError::Broken), "cut {cut}");
+        let flash = flash.copy();
+        let contents = flash.0.borrow().bytes.clone();
+        let (found, loaded) = load(&flash);
+        assert!(found == old || found == new, "cut {cut}: neither old nor new");
+        assert_eq!(loaded.refused, 0, "cut {cut}");
+        assert_eq!(contents, flash.0.borrow().bytes, "loading wrote");
+        // Power is lost once more while it is saved again, at the same step of that save.
+        let again = flash.copy();
+        let steps = again.0.borrow().steps;
+        again.0.borrow_mut().cut_at = Some(steps + cut - first);
+        let _ = save(&again, new);
+        let again = again.copy();
+        let (found, _) = load(&again);
+        assert!(found == old || found == new, "cut {cut} twice");
+        for flash in [flash, again] {
+            assert_eq!(save(&flash, new), Ok(()), "cut {cut}");
+            let (found, loaded) = load(&flash);
+            assert!(found == new && !loaded.unreadable, "cut {cut}: {loaded:?}");
+            assert_eq!(flash.0.borrow().violations, [""; 0], "cut {cut}");
+        }
+    }
+    last - first
+}
+
+#[test]
+fn power_may_go_at_every_step_of_every_save() {
+    let at = |i: usize| set(&[("infill", 4.0 + 0.1 * i as f32), ("rate_p", 5.0), ("rate_i", 3.0)]);
+    let mut cuts = 0;
+    // The first save, and each up to twice round the log: appends, new pages, moves of a page's last item, erases.
+    for saves in 0..40 {
+        let before: Vec<Params> = (0..saves).map(at).collect();
+        cuts += survives_cuts::<32, 512>(2, &before, at(saves));
+        cuts += survives_cuts::<32, 512>(3, &before, at(saves));
+        cuts += survives_cuts::<4, 256>(2, &before, at(saves));
+        if saves % 5 < 2 {
+            cuts += survives_cuts::<1, 128>(2, &before, at(saves));
+            cuts += survives_cuts::<1, 128>(4, &before, at(saves));
+        }
+    }
+    println!("{cuts} cuts");
+    assert!(cuts > 1000);
+}
+
+/// Flash on which another program keeps `item` in the same kind of map.
+fn with_item<const W: usize, const P: usize>(item: &'static [u8]) -> Flash<W, P> {
+    let flash = Flash::<W, P>::blank(2);
+    let (device, range) = (flash.clone(), flash.range());
+    run(async move {
+        let mut map = MapStorage::<(), _, _>::new(device, MapConfig::new(range), Cache::new_uncached());
+        map.store_item(&mut [0; 2048], &(), &item).await.unwrap();
+    });
+    flash
+}
+
+#[test]
+fn what_firmware_with_other_parameters_stored_is_read_as_far_as_it_is_known() {
+    let record = |name, value: f32| [hash(name).to_le_bytes(), value.to_bits().to_le_bytes()].concat();
+    let item = [
+        b"SPH1".to_vec(),
+        record("infill", 7.5),
+        record("a_parameter_of_old", 1.0),
+        record("mass", 500.0),
+        record("rate_p", f32::NAN),
+        record("motor_protocol", 151.0),
+        record("gain_k", 5.0),
+    ]
+    .concat();
+    let flash = with_item::<32, SMALL>(item.leak());
+    let known = set(&[("infill", 7.5), ("gain_k", 5.0)]);
+    let loaded = Loaded {
+        taken: 2,
+        refused: 4,
+        unreadable: false,
+    };
+    assert_eq!(load(&flash), (known, loaded));
+    // A save leaves nothing of what was refused.
+    assert_eq!(save(&flash, known), Ok(()));
+    assert_eq!(load(&flash), (known, sound(2)));
+}
+
+#[test]
+fn what_other_programs_stored_is_not_taken_for_parameters() {
+    let items: [&[u8]; 6] = [b"", b"x", b"SPH", b"SPH1 and 9", b"SPH2abcdefgh", &[0x55; 1500]];
+    for item in items {
+        let flash = with_item::<8, 2048>(item);
+        let (params, loaded) = load(&flash);
+        assert!(
+            params == Params::default() && loaded.unreadable,
+            "{item:?}: {loaded:?}"
+        );
+        assert_eq!(save(&flash, set(&[("infill", 5.0)])), Ok(()), "{item:?}");
+        assert_eq!(load(&flash), (set(&[("infill", 5.0)]), sound(1)), "{item:?}");
+    }
+}
+
+#[test]
+fn damage_to_the_newest_set_is_noticed_and_the_one_before_is_kept() {
+    let (old, new) = (set(&[("infill", 5.0)]), set(&[("infill", 8.0)]));
+    let mut noticed = 0;
+    let flash = Flash::<4, SMALL>::blank(2);
+    assert_eq!((save(&flash, old), save(&flash, new)), (Ok(()), Ok(())));
+    // Mark 4 bytes, then two items of 8 + 12.
+    for bit in 24 * 8..44 * 8 {
+        let flash = flash.copy();
+        flash.0.borrow_mut().bytes[bit / 8] ^= 1 << (bit % 8);
+        let (params, loaded) = load(&flash);
+        assert!(loaded.unreadable && params == old, "bit {bit}: {loaded:?}");
+        noticed += 1;
+        assert_eq!(save(&flash, new), Ok(()), "bit {bit}");
+        assert_eq!(load(&flash), (new, sound(1)), "bit {bit}");
+    }
+    assert_eq!(noticed, 160);
+}
+
+#[test]
+fn a_flash_that_is_too_small_or_broken_says_so() {
+    // A page of 256 bytes does not take every parameter, and keeps what it had.
+    let flash = Flash::<1, 256>::blank(2);
+    let few = set(&[("infill", 5.0)]);
+    assert_eq!(save(&flash, few), Ok(()));
+    assert_eq!(save(&flash, all_changed()), Err(StorageError::Full));
+    assert_eq!(load(&flash).0, few);
+
+    // A cell that takes no 0, in the mark, the head and the values of the first item.
+    for cell in [0, 4, 8, 12, 20] {
+        let flash = Flash::<4, SMALL>::blank(2);
+        flash.0.borrow_mut().stuck = Some(cell);
+        let saved = save(&flash, few);
+        assert!(saved.is_err() || load(&flash) == (few, sound(1)), "cell {cell}");
+        assert!(
+            saved.is_ok() || saved == Err(StorageError::Broken),
+            "cell {cell}: {saved:?}"
+        );
+    }
+
+    let dead = Flash::<4, SMALL>::blank(2);
+    dead.0.borrow_mut().dead = true;
+    assert!(load(&dead).1.unreadable);
+    assert_eq!(save(&dead, few), Err(StorageError::Broken));
+}
+
+#[test]
+fn a_range_that_does_not_suit_is_a_broken_storage() {
+    for (start, end) in [(0, 512), (0, 2048), (100, 1124), (1024, 0), (512, 512)] {
+        let range = Range { start, end };
+        let flash = Flash::<4, SMALL>::blank(2);
+        let watched = flash.clone();
+        let what = format!("{range:?}");
+        let (loaded, saved) = run(async move {
+            let mut store = ParamStore::new(flash, range);
+            let loaded = store.load(&mut Params::default()).await;
+            (loaded, store.save(&all_changed()).await)
+        });
+        assert!(loaded.unreadable && saved == Err(StorageError::Broken), "{what}");
+        assert_eq!(watched.0.borrow().steps, 0, "{what}: touched");
+    }
+}
+
+/// Loads and saves on flash with `bytes` in it; gives what was loaded.
+fn lives_with<const W: usize, const P: usize>(bytes: Vec<u8>) -> (Params, Loaded) {
+    let flash = Flash::<W, P>::holding(bytes.clone());
+    let (params, loaded) = load(&flash);
+    assert!(flash.0.borrow().bytes == bytes, "loading wrote");
+    assert!(
+        flash.0.borrow().reads <= 20_010,
+        "{} reads",
+        flash.0.borrow().reads
+    );
+    let wanted = set(&[("infill", 5.5), ("rate_i", 2.0)]);
+    assert_eq!(save(&flash, wanted), Ok(()));
+    assert_eq!(load(&flash), (wanted, sound(2)));
+    (params, loaded)
+}
+
+/// `length` bytes of a seeded noise.
+fn noise(seed: u32, length: usize) -> Vec<u8> {
+    let mut state = seed | 1;
+    let next = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        (state >> 11) as u8
+    };
+    std::iter::repeat_with(next).take(length).collect()
+}
+
+#[test]
+fn pages_full_of_one_byte_are_no_parameters() {
+    for byte in 0..=0xFE {
+        for (params, loaded) in [
+            lives_with::<32, 1024>(vec![byte; 3072]),
+            lives_with::<1, 1024>(vec![byte; 2048]),
+        ] {
+            assert!(
+                params == Params::default() && loaded.unreadable,
+                "{byte}: {loaded:?}"
+            );
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn noise_boots_with_the_defaults_and_takes_a_save(seed in any::<u32>(), marks in any::<[u8; 8]>()) {
+        for (params, loaded) in [
+            // The sectors of an STM32F405, pages with and without the marks of the map.
+            lives_with::<1, { 16 * 1024 }>(noise(seed, 32 * 1024)),
+            lives_with::<32, 2048>(noise(seed, 8192)),
+            lives_with::<1, 1024>({
+                let mut bytes = noise(seed, 4096);
+                for (page, pair) in bytes.chunks_mut(1024).zip(marks.chunks(2)) {
+                    page[0] = if pair[0] % 2 == 0 { 0xFF } else { 0x00 };
+                    page[1023] = if pair[1] % 2 == 0 { 0xFF } else { 0x00 };
+                }
+                bytes
+            }),
+        ] {
+            prop_assert_eq!(params, Params::default());
+            prop_assert!(loaded.unreadable);
+        }
+    }
+
+    #[test]
+    fn flipped_bits_never_give_a_value_that_was_not_stored(
+        saves in 1usize..60, flips in proptest::collection::vec(0usize..2048 * 8, 1..20),
+    ) {
+        let flash = Flash::<4, SMALL>::blank(4);
+        let at = |i: usize| set(&[("infill", 4.0 + 0.1 * i as f32), ("rate_p", 5.0)]);
+        for i in 0..saves {
+            assert_eq!(save(&flash, at(i)), Ok(()));
+        }
+        let mut bytes = flash.0.borrow().bytes.clone();
+        for flip in flips {
+            bytes[flip / 8] ^= 1 << (flip % 8);
+        }
+        let (params, _) = lives_with::<4, SMALL>(bytes);
+        prop_assert!(params == Params::default() || (0..saves).any(|i| params == at(i)));
+    }
+}

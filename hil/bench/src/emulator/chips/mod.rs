@@ -1,0 +1,5 @@
+//! What hangs on the chip's buses.
+
+pub mod bno055;
+pub mod icm42688p;
+pub mod line;

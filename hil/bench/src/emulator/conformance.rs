@@ -1,0 +1,125 @@
+//! The emulator's core alone, with the memory of QEMU's mps2 machines: runs the conformance image and keeps its log.
+
+use std::num::{NonZeroU32, NonZeroU64};
+use std::path::Path;
+
+use rigless::emulator::{self, Driver, Host, Start, Stop};
+use rigless::image::Image;
+use rigless::machine::armv7m::{Config, Core, Fpu, Variant};
+use rigless::machine::{Board, Target};
+use rigless::mcu::{Bare, Mcu};
+use rigless::session::Session;
+use rigless::snapshot::{self, Reader, Store, Writer};
+use rigless::soc::{Bus, Cpu, Endian, Region};
+use rigless::time::{NO_DEADLINE, VirtualNanos};
+
+/// Memory of mps2-an386 and mps2-an500, as the image's linker map has it.
+const MEMORY: &[Region] = &[
+    Region::flash("code", 0, 4 << 20),
+    Region::ram("ram", 0x2000_0000, 4 << 20),
+];
+/// Virtual time after which an image that does not end is stopped: it takes a tenth of that.
+const LONGEST: VirtualNanos = VirtualNanos(10_000_000_000);
+/// Interrupt lines of both machines.
+const LINES: u16 = 32;
+
+/// A Cortex-M core.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoreKind {
+    /// Cortex-M4 with FPv4 in single precision.
+    M4F,
+    /// Cortex-M7 with FPv5 in double precision.
+    M7,
+}
+
+#[derive(Debug)]
+struct Machine {
+    mcu: Bare,
+    kind: CoreKind,
+}
+
+impl Store for Machine {
+    fn store(&self, to: &mut Writer) -> Result<(), snapshot::Error> {
+        self.mcu.bus().store(to)
+    }
+
+    fn load(&mut self, from: &mut Reader) -> Result<(), snapshot::Error> {
+        self.mcu.bus_mut().load(from)
+    }
+}
+
+impl Board for Machine {
+    fn name(&self) -> &'static str {
+        "core"
+    }
+
+    fn target_names(&self) -> Vec<&'static str> {
+        vec!["core"]
+    }
+
+    fn mcu(&mut self, target: usize) -> Option<&mut dyn Mcu> {
+        (target == 0).then_some(&mut self.mcu)
+    }
+
+    fn targets(&mut self) -> Vec<Target<'_>> {
+        let (variant, fpu) = match self.kind {
+            CoreKind::M4F => (Variant::M4, Fpu::FpV4Sp),
+            CoreKind::M7 => (Variant::M7, Fpu::FpV5Dp),
+        };
+        let hz = NonZeroU64::new(100_000_000).expect("not zero");
+        let core = Core {
+            variant,
+            clock_hz: hz,
+            interrupt_lines: NonZeroU32::new(u32::from(LINES)).expect("not zero"),
+            // What an STM32 has; the image only uses priorities that three bits tell apart.
+            priority_bits: 4,
+            refclk_divider: NonZeroU32::new(8).expect("not zero"),
+            instructions_per_second: hz,
+            boot: "code",
+        };
+        let mut config = Config::new(core, &[]);
+        config.fpu = fpu;
+        // The code region is at zero itself, not only an alias of it.
+        config.vector_table = Some(0);
+        vec![Target::new("core", &mut self.mcu, config.spec())]
+    }
+}
+
+/// Keeps what the image prints.
+#[derive(Default)]
+struct Console(Vec<u8>);
+
+impl Driver<Machine> for Console {
+    fn on_stop(&mut self, _: &mut Session<Machine>, _: Stop, _: &mut dyn Host) -> Option<VirtualNanos> {
+        None
+    }
+
+    fn on_console(&mut self, _: VirtualNanos, _: u64, bytes: &[u8]) {
+        self.0.extend_from_slice(bytes);
+    }
+}
+
+/// What the image at `elf` prints on the emulated core.
+///
+/// # Errors
+/// An image that cannot be read or placed, that ends with another status than 0, or that does not end.
+pub fn run(elf: &Path, kind: CoreKind) -> Result<String, Box<dyn std::error::Error>> {
+    let cpu = Cpu::new("core", true, LINES, Endian::Little);
+    let mcu = Bare::new(Bus::builder(cpu, MEMORY, []))?;
+    let images = [Image::read(elf, None)?];
+    let mut session = Session::new(Box::new(Machine { mcu, kind }), 0, NO_DEADLINE)?;
+    session.run_until(LONGEST);
+    let mut start = Start::new(&images);
+    start.semihosting = true;
+    let finished = emulator::run(session, &start, Console::default())?;
+    let log = String::from_utf8_lossy(&finished.driver.0).into_owned();
+    match finished.exit_status {
+        Some(0) => Ok(log),
+        Some(status) => Err(format!("the image ended with status {status}, having printed\n{log}").into()),
+        None => Err(format!(
+            "the image did not end within {} s, having printed\n{log}",
+            LONGEST.0 / 1_000_000_000
+        )
+        .into()),
+    }
+}

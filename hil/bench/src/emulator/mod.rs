@@ -1,0 +1,349 @@
+//! The emulated board, a millisecond at a time. Nothing outside this module knows which emulator it is.
+//!
+//! The emulator keeps its core to itself on a thread of its own and calls back at each stop; here the call waits for the
+//! next millisecond's [`Wires`]. So the two threads take turns, and a run is as deterministic as one thread.
+
+mod chips;
+pub mod conformance;
+mod matek_h743;
+mod part;
+mod rtt;
+mod tap;
+mod watchdog;
+
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+
+use rigless::emulator::{self, Driver, Host, Start, Stop};
+use rigless::image::Image;
+use rigless::session::Session;
+use rigless::time::{NO_DEADLINE, VirtualNanos};
+use sophie_control::wrench::PerArm;
+
+use self::chips::icm42688p::Sample;
+use self::matek_h743::MatekBoard;
+use self::rtt::Rtt;
+use crate::elf::Firmware;
+use crate::esc::{Esc, Line};
+use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
+
+const MS: u64 = 1_000_000;
+/// From a start of the processor until every pin must be what it is wired to, ns: the arms' buses wait for their chips.
+const START_UP: u64 = 1000 * MS;
+/// Longest time from data-ready to motor frame that can be told from a lost sample: the time between two samples, ns.
+const SAMPLE: u64 = 250_000;
+
+/// How the board is emulated.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Instructions for each cycle of the core's clock.
+    pub speed: f64,
+    /// What the motor controllers understand.
+    pub line: Line,
+}
+
+/// A board under emulation.
+pub struct Emulator {
+    wires: Option<SyncSender<Wires>>,
+    pins: Receiver<Pins>,
+    thread: Option<JoinHandle<Result<Run, String>>>,
+}
+
+impl Emulator {
+    /// The board with `firmware` in its flash, powered and about to execute its first instruction.
+    ///
+    /// # Errors
+    /// One line: what the emulator refuses.
+    pub fn power_on(firmware: &Firmware, settings: Settings) -> Result<Self, String> {
+        let image = Image::new(&firmware.path, firmware.bytes.clone(), None)
+            .map_err(|e| format!("{}: {e}", firmware.path.display()))?;
+        let board = MatekBoard::new(settings.speed)?;
+        let (wires, wires_in) = sync_channel(1);
+        let (pins_out, pins) = sync_channel(1);
+        let driver = World {
+            wires: wires_in,
+            pins: pins_out,
+            ms: 0,
+            rtt: Rtt::new(firmware.rtt),
+            escs: std::array::from_fn(|_| Esc::new(settings.line)),
+            servos: [0.0; 4],
+            resets: 0,
+            latency: Latency::default(),
+            digest: Digest::default(),
+            pulses: Vec::new(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("emulator".to_owned())
+            .spawn(move || run(board, image, driver))
+            .map_err(|e| format!("emulator: {e}"))?;
+        let mut emulator = Self {
+            wires: Some(wires),
+            pins,
+            thread: Some(thread),
+        };
+        emulator.wait()?;
+        Ok(emulator)
+    }
+
+    /// Runs the board for a millisecond with `wires`.
+    ///
+    /// # Errors
+    /// One line: why the processor cannot go on.
+    pub fn advance(&mut self, wires: Wires) -> Result<Pins, String> {
+        // A closed channel is told by the wait.
+        if let Some(sender) = &self.wires {
+            let _ = sender.send(wires);
+        }
+        self.wait()
+    }
+
+    /// Ends the run.
+    ///
+    /// # Errors
+    /// One line: why the emulator failed.
+    pub fn finish(&mut self) -> Result<Run, String> {
+        self.wires = None;
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Ok(run)) => run,
+            Some(Err(_)) => Err("emulator: it panicked".to_owned()),
+            None => Err("emulator: the run has ended already".to_owned()),
+        }
+    }
+
+    fn wait(&mut self) -> Result<Pins, String> {
+        match self.pins.recv() {
+            Ok(pins) => Ok(pins),
+            Err(_) => Err(match self.finish() {
+                Ok(_) => "emulator: the run ended by itself".to_owned(),
+                Err(why) => why,
+            }),
+        }
+    }
+}
+
+/// The emulator's thread.
+fn run(board: MatekBoard, image: Image, driver: World) -> Result<Run, String> {
+    let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
+    let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
+    // The first stop is at power-on, to get the wires of the first millisecond.
+    session.run_until(VirtualNanos(1));
+    let images = [image];
+    let mut finished = emulator::run(session, &Start::new(&images), driver).map_err(|e| told(&e))?;
+    let (at, instructions) = finished
+        .stop
+        .map_or((VirtualNanos(0), 0), |s| (s.at, s.instruction_count));
+    let mut gaps = gaps(&finished.session);
+    let started = finished.session.resets().last().map_or(0, |reset| reset.at.0);
+    let miswired = if at.0 - started.min(at.0) > START_UP {
+        finished.session.board_mut().miswired(at)
+    } else {
+        Vec::new()
+    };
+    gaps.extend(miswired.into_iter().map(|line| {
+        let (at, what) = line.split_once(' ').unwrap_or((&line, ""));
+        Gap {
+            kind: "miswired",
+            at: at.to_owned(),
+            what: what.to_owned(),
+        }
+    }));
+    let world = finished.driver;
+    Ok(Run {
+        gaps,
+        instructions,
+        escs: world.escs.map(|esc| esc.stats),
+        latency_us: world.latency,
+        pins_digest: world.digest.0,
+    })
+}
+
+/// Everything that the emulator says it could not do.
+fn gaps(session: &Session<MatekBoard>) -> Vec<Gap> {
+    let mut gaps = Vec::new();
+    let mut add = |kind, at: String, what: String| gaps.push(Gap { kind, at, what });
+    for entry in session.unmapped() {
+        add(
+            "unmapped",
+            format!("{:#010x}", entry.address),
+            format!("first from {:#010x}", entry.program_counter),
+        );
+    }
+    for (address, fault) in session.refused() {
+        add("refused", format!("{address:#010x}"), format!("{fault:?}"));
+    }
+    for entry in session.unimplemented().values() {
+        add(
+            "unimplemented",
+            format!("{}.{}", entry.instance, entry.register),
+            format!(
+                "{} reads, {} writes, first from {:#010x}",
+                entry.reads, entry.writes, entry.program_counter
+            ),
+        );
+    }
+    for (address, entry) in session.undefined() {
+        add(
+            "undefined",
+            format!("{} {address:#010x}", entry.instance),
+            format!(
+                "{} reads, {} writes, first from {:#010x}",
+                entry.reads, entry.writes, entry.program_counter
+            ),
+        );
+    }
+    for (instance, request) in session.unrouted() {
+        add("unrouted", format!("{instance} request {request}"), String::new());
+    }
+    for entry in session.told() {
+        add(
+            "told",
+            format!("{}.{}", entry.instance, entry.register),
+            entry.reason.to_owned(),
+        );
+    }
+    gaps
+}
+
+/// The world's end of the wires, called by the emulator each millisecond.
+struct World {
+    wires: Receiver<Wires>,
+    pins: SyncSender<Pins>,
+    ms: u64,
+    rtt: Rtt,
+    escs: PerArm<Esc>,
+    servos: PerArm<f64>,
+    resets: usize,
+    latency: Latency,
+    digest: Digest,
+    /// Data-ready pulses of the last milliseconds, ns.
+    pulses: Vec<u64>,
+}
+
+impl World {
+    /// Reads the pins at `now`.
+    fn read(&mut self, session: &mut Session<MatekBoard>, now: VirtualNanos, host: &mut dyn Host) -> Pins {
+        let resets = session.resets();
+        let new = resets.get(self.resets..).unwrap_or_default();
+        let resets: Vec<_> = new.iter().map(|r| (r.at.0, format!("{:?}", r.cause))).collect();
+        self.resets += resets.len();
+        if !resets.is_empty() {
+            // A processor that stood still goes on after its reset.
+            host.hold(false);
+        }
+
+        let board = session.board_mut();
+        if let Some(imu) = board.imu() {
+            self.pulses.append(&mut imu.pulsed);
+        }
+        self.motors(board, now);
+        let servos = board
+            .servo_pulses(now)
+            .map(|pulse| pulse.map_or(0.0, |(width, _)| width as f64 * 1e-3));
+        if servos != self.servos {
+            self.servos = servos;
+            servos.iter().for_each(|us| self.digest.word(us.to_bits()));
+        }
+        let words = board
+            .receiver()
+            .map(|line| std::mem::take(&mut line.incoming))
+            .unwrap_or_default();
+        let telemetry: Vec<u8> = words.into_iter().map(|word| word as u8).collect();
+        telemetry.iter().for_each(|byte| self.digest.byte(*byte));
+        Pins {
+            ms: self.ms,
+            motors: self.escs.each_ref().map(|esc| esc.command(now.0)),
+            servos,
+            telemetry,
+            log: self.rtt.drain(host),
+            signals: board.signals(now),
+            resets,
+        }
+    }
+
+    fn motors(&mut self, board: &mut MatekBoard, now: VirtualNanos) {
+        let driven = board.motors_driven(now);
+        for edge in std::mem::take(&mut board.part.motors.edges) {
+            self.digest
+                .word(edge.at << 3 | (edge.channel as u64) << 1 | u64::from(edge.high));
+            // A pin that is not the timer's does not show what the timer does.
+            if !driven[edge.channel] {
+                continue;
+            }
+            let Some(began) = self.escs[edge.channel].edge(edge.at, edge.high) else {
+                continue;
+            };
+            // A stopped motor's frames come by themselves, not from a sample.
+            let ready = self.pulses.iter().rev().find(|at| **at <= began);
+            if edge.channel == 0
+                && self.escs[0].command(edge.at) > 0.0
+                && let Some(age) = ready.map(|at| began - at)
+                && age < SAMPLE
+            {
+                self.latency.add(age as f64 * 1e-3);
+            }
+        }
+        self.pulses.retain(|at| at + MS > now.0);
+    }
+
+    /// Puts the world's side on the wires.
+    fn write(&mut self, session: &mut Session<MatekBoard>, stop: Stop, wires: Wires, host: &mut dyn Host) {
+        for fault in wires.faults {
+            let board = session.board_mut();
+            match fault {
+                Fault::ImuUnplugged(out) => board.silence_imu(out),
+                Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
+                Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
+                Fault::Hang(still) => host.hold(still),
+                Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
+            }
+        }
+        let board = session.board_mut();
+        let count = wires.imu.len().max(1) as u64;
+        if let Some(imu) = board.imu() {
+            for (nth, (rate, force)) in (1..).zip(wires.imu) {
+                imu.feed(Sample {
+                    at: self.ms * MS + nth * MS / count,
+                    rate: on_underside(rate).map(|v| (v.to_degrees() * 1e3).round() as i32),
+                    force: on_underside(force).map(|v| (v / 9.806_65 * 1e6).round() as i32),
+                });
+            }
+        }
+        for (arm, [x, y, z]) in wires.arms.into_iter().enumerate() {
+            if let Some(sensor) = board.arm(arm) {
+                // Marking up, x forward: the chip's y points left and its z up, and it feels what carries it.
+                sensor.up = [-x, y, z];
+            }
+        }
+        board.set_analog(wires.analog);
+        if let Some(line) = board.receiver() {
+            line.outgoing.extend(wires.receiver.into_iter().map(u16::from));
+        }
+    }
+}
+
+/// A vector of body axes on the axes of the inertial sensor, which the board carries on its underside, turned by half a
+/// turn about the vertical (ArduPilot's `hwdef.dat`: ROTATION_YAW_180).
+fn on_underside([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [-x, -y, z]
+}
+
+impl Driver<MatekBoard> for World {
+    fn on_stop(
+        &mut self,
+        session: &mut Session<MatekBoard>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        if self.ms == 0 {
+            session.board_mut().power_up(stop.at);
+        }
+        let pins = self.read(session, stop.at, host);
+        // Both ends close when the run is to end.
+        self.pins.send(pins).ok()?;
+        let wires = self.wires.recv().ok()?;
+        self.write(session, stop, wires, host);
+        // On its own grid: a stop may come slightly late.
+        self.ms += 1;
+        Some(VirtualNanos(self.ms * MS))
+    }
+}

@@ -1,0 +1,47 @@
+//! The probe's side of the log: reads the firmware's buffer in its memory and says how far it has read.
+
+use rigless::emulator::Host;
+use rigless::soc::Width;
+
+/// From the control block to the first buffer from the firmware to the probe.
+const UP: u64 = 24;
+/// From a buffer's descriptor to its fields.
+const BUFFER: u64 = 4;
+const SIZE: u64 = 8;
+const WRITTEN: u64 = 12;
+const READ: u64 = 16;
+/// Largest believable buffer: before the firmware has set it up, memory holds anything.
+const LARGEST: u64 = 1 << 16;
+
+/// The reader.
+#[derive(Debug)]
+pub struct Rtt {
+    up: u64,
+}
+
+impl Rtt {
+    /// A reader of the control block at `address`.
+    pub fn new(address: u64) -> Self {
+        Self { up: address + UP }
+    }
+
+    /// Takes what has been written since the last call.
+    pub fn drain(&mut self, host: &mut dyn Host) -> Vec<u8> {
+        let mut field = |offset| host.read(self.up + offset, Width::W32).unwrap_or(0);
+        let (buffer, size, written, mut read) = (field(BUFFER), field(SIZE), field(WRITTEN), field(READ));
+        let mut bytes = Vec::new();
+        if size == 0 || size > LARGEST || written >= size || read >= size || read == written {
+            return bytes;
+        }
+        while read != written {
+            let Ok(byte) = host.read(buffer + read, Width::W8) else {
+                return bytes;
+            };
+            bytes.push(byte as u8);
+            read = (read + 1) % size;
+        }
+        // Refused only where there is no memory, and then nothing was read either.
+        let _ = host.write(self.up + READ, Width::W32, read);
+        bytes
+    }
+}

@@ -1,0 +1,65 @@
+//! One flight of an image on the bench, with its verdict.
+
+use sophie_hil::flight::fly_with;
+use sophie_hil::record::{FlightRecord, Observer};
+use sophie_hil::scenario::Scenario;
+
+use crate::bench::{Bench, Finished};
+use crate::elf::Firmware;
+use crate::emulator::{Emulator, Settings};
+use crate::esc::Line;
+use crate::log::{self, Log};
+use crate::plan::Plan;
+use crate::wires::Gap;
+use crate::{flyable, gaps};
+
+/// A flown flight.
+pub struct Flight {
+    /// The record, as that of any flight.
+    pub record: FlightRecord,
+    /// What the emulated board tells besides.
+    pub board: Finished,
+    /// Gaps of the emulation that are not allowed; with any, the flight proves nothing.
+    pub gaps: Vec<Gap>,
+}
+
+impl Flight {
+    /// The mission was flown, and the emulation vouches for it.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.record.outcome.accomplished && self.gaps.is_empty()
+    }
+
+    /// Digest of the log and of the pins: equal digests mean equal runs.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        let mut digest = crate::wires::Digest::default();
+        digest.word(self.board.log_digest);
+        digest.word(self.board.run.pins_digest);
+        digest.0
+    }
+}
+
+/// Flies `scenario` with `firmware` on a board that runs `speed` instructions a cycle; `plan` goes wrong on the way.
+/// Each line of the log goes to `told`.
+///
+/// # Errors
+/// One line: why the scenario cannot be flown, or the emulator failed.
+pub fn fly(
+    firmware: &Firmware,
+    scenario: &Scenario,
+    speed: f64,
+    plan: Plan,
+    told: impl FnMut(&log::Line),
+    observer: &mut dyn Observer,
+) -> Result<Flight, String> {
+    flyable::check(scenario)?;
+    let line = Line::from_number(scenario.params.get("motor_protocol").unwrap_or_default());
+    let emulator = Emulator::power_on(firmware, Settings { speed, line })?;
+    let log = Log::new(&firmware.table);
+    let make = |rng: &mut _| Bench::new(emulator, log, plan, rng, told);
+    let (record, bench) = fly_with(scenario, make, observer);
+    let board = bench.finish()?;
+    let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();
+    Ok(Flight { record, board, gaps })
+}

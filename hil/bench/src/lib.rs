@@ -1,0 +1,22 @@
+//! Flies the image that is flashed: an emulated board in closed loop with SOPHIE's simulated vehicle.
+//!
+//! ```text
+//! plant ─> sensors ─> wires ─┐                 ┌─> pins ─> motor controllers, servos ─> plant
+//! pilot ─> radio ──────────> emulated board (ELF) ─> telemetry ─> pilot
+//!                                              └─> log
+//! ```
+//!
+//! The image learns nothing of the simulation but by its registers and wires, and the simulation nothing of the image
+//! but by its pins, its telemetry and its log.
+
+pub mod bench;
+pub mod elf;
+pub mod emulator;
+pub mod esc;
+pub mod flight;
+pub mod flyable;
+pub mod gaps;
+pub mod log;
+pub mod plan;
+pub mod sensors;
+pub mod wires;

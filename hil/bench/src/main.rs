@@ -1,0 +1,192 @@
+//! `sophie-bench`: flies a scenario with the image of a board, emulated. `cargo xtask bench` builds both and calls it.
+//!
+//! Exit status: 0 when the mission was accomplished and the emulator vouches for it, 1 when not, 2 for bad input.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+use sophie_bench::elf::Firmware;
+use sophie_bench::flight::{self, Flight};
+use sophie_bench::flyable;
+use sophie_bench::plan::Plan;
+use sophie_hil::scenario::{Overrides, Scenario};
+use sophie_report::terminal::console::{self, Console};
+use sophie_report::terminal::live::Lines;
+use sophie_report::terminal::output::OutDir;
+use sophie_report::terminal::{Besides, FILES, complain, finish, result};
+
+/// Name before every complaint.
+const PROGRAM: &str = "bench";
+/// Boards that can be emulated.
+const BOARDS: [&str; 1] = ["matek-h743"];
+/// Instructions for each cycle of the clock that can be asked for.
+const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
+
+/// Flies a mission with the image that is flashed, on an emulated board.
+#[derive(Parser)]
+#[command(name = "bench", version)]
+struct Args {
+    /// Board: matek-h743.
+    board: String,
+    /// Scenario file; without one the default mission is flown.
+    scenario: Option<PathBuf>,
+    /// Image to fly, as `cargo xtask firmware BOARD` builds it.
+    #[arg(long, value_name = "FILE")]
+    elf: PathBuf,
+    /// Seed of every random number.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Directory for report.html, flight.mcap, summary.json and bench.json.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// Instructions for each cycle of the core's clock, 0.25 to 1: a real core manages fewer than one at times.
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
+    speed: f64,
+    /// Print the result as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    json: bool,
+}
+
+fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => {
+            let text = error.render().to_string();
+            // What is wrong stands before the first empty line.
+            let lines: Vec<&str> = text
+                .lines()
+                .map(str::trim)
+                .take_while(|l| !l.is_empty())
+                .collect();
+            complain(PROGRAM, lines.join(" ").trim_start_matches("error: "));
+            return ExitCode::from(2);
+        }
+    };
+    match run(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(line) => {
+            complain(PROGRAM, &line);
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(args: &Args) -> Result<bool, String> {
+    if !BOARDS.contains(&args.board.as_str()) {
+        return Err(format!(
+            "no board called `{}` is emulated: allowed is {}",
+            args.board,
+            BOARDS.join(", ")
+        ));
+    }
+    if !SPEEDS.contains(&args.speed) {
+        let (low, high) = (SPEEDS.start(), SPEEDS.end());
+        return Err(format!("--speed {}: allowed is {low} to {high}", args.speed));
+    }
+    let overrides = Overrides {
+        seed: args.seed,
+        ..Overrides::default()
+    };
+    let scenario = match &args.scenario {
+        Some(path) => Scenario::load(path, &overrides).map_err(|e| e.to_string())?,
+        None => Scenario::default_mission_with(&overrides),
+    };
+    flyable::check(&scenario)?;
+    let firmware = Firmware::read(&args.elf)?;
+    let out = OutDir::prepare(&args.out, &FILES)?;
+    let console = Console::new(args.json);
+    console.say(&result::intro(&scenario));
+    console.say(&format!(
+        "{} on an emulated {}, {} instructions a cycle",
+        args.elf.display(),
+        args.board,
+        args.speed
+    ));
+    let flight = flight::fly(
+        &firmware,
+        &scenario,
+        args.speed,
+        Plan::default(),
+        |line| console.say(&line.to_string()),
+        &mut Lines::new(&console),
+    )?;
+    let besides = Besides {
+        name: "bench",
+        value: told(args, &flight),
+        lines: lines(&flight),
+    };
+    finish(&flight.record, Some(&besides), &out, &console, args.json)?;
+    if !flight.record.outcome.accomplished {
+        let reason = console::one_line(&flight.record.outcome.reason);
+        complain(PROGRAM, &format!("not accomplished: {reason}"));
+    }
+    for gap in &flight.gaps {
+        complain(
+            PROGRAM,
+            &format!(
+                "the emulator cannot vouch for {} {}: {}: allowed is what hil/bench/allowed_gaps.toml lists",
+                gap.kind, gap.at, gap.what
+            ),
+        );
+    }
+    Ok(flight.passed())
+}
+
+/// What the bench knows besides the flight, for programs.
+fn told(args: &Args, flight: &Flight) -> serde_json::Value {
+    let board = &flight.board;
+    let run = &board.run;
+    let intervals = run.escs.iter().filter_map(|esc| esc.interval);
+    let longest = intervals.map(|[_, longest]| longest).max().unwrap_or(0);
+    serde_json::json!({
+        "board": args.board,
+        "speed": args.speed,
+        "passed": flight.passed(),
+        "digest": format!("{:016x}", flight.digest()),
+        "instructions": run.instructions,
+        "motor_frames": run.escs.map(|esc| esc.frames),
+        "motor_frames_bad": run.escs.map(|esc| esc.bad),
+        "motor_frame_gap_max_us": longest as f64 * 1e-3,
+        "latency_mean_us": run.latency_us.mean(),
+        "latency_max_us": run.latency_us.worst,
+        "overruns": board.overruns,
+        "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
+        "log_lines": board.lines.len(),
+        "log_malformed": board.malformed,
+        "gaps_allowed": run.gaps.len() - flight.gaps.len(),
+        "gaps": flight.gaps.iter().map(|g| serde_json::json!({"kind": g.kind, "at": g.at, "what": g.what})).collect::<Vec<_>>(),
+    })
+}
+
+/// The same for people.
+fn lines(flight: &Flight) -> Vec<String> {
+    let run = &flight.board.run;
+    let frames: u64 = run.escs.iter().map(|esc| esc.frames).sum();
+    let bad: u64 = run.escs.iter().map(|esc| esc.bad).sum();
+    vec![
+        format!(
+            "motor frames: {frames} good, {bad} bad; from data-ready to their first edge {:.0} us, at most {:.0}",
+            run.latency_us.mean(),
+            run.latency_us.worst
+        ),
+        format!(
+            "emulator: {} million instructions, {} gaps, {} resets; digest {:016x}",
+            run.instructions / 1_000_000,
+            run.gaps.len(),
+            flight.board.resets.len(),
+            flight.digest()
+        ),
+    ]
+}

@@ -1,0 +1,131 @@
+//! What crosses between the emulated board and the world: plain data, whatever emulates the board.
+
+use sophie_control::wrench::PerArm;
+
+use crate::esc::EscStats;
+
+/// What the world puts on the board's wires for the next millisecond.
+#[derive(Clone, Debug, Default)]
+pub struct Wires {
+    /// Samples of the inertial sensor, evenly over the millisecond: body rate (rad/s), specific force (m/s²), both in
+    /// body axes.
+    pub imu: Vec<([f64; 3], [f64; 3])>,
+    /// Gravity at each arm's sensor, m/s², in the arm's axes: forward, right, down.
+    pub arms: PerArm<[f64; 3]>,
+    /// Volts at the pins of pressure 1 to 4, battery voltage, battery current.
+    pub analog: [f64; 6],
+    /// Bytes from the radio's receiver.
+    pub receiver: Vec<u8>,
+    /// What breaks or is mended now.
+    pub faults: Vec<Fault>,
+}
+
+/// Something done to the board, from now on unless it says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The inertial sensor is unplugged (true) or plugged in again.
+    ImuUnplugged(bool),
+    /// Bits flipped in the next word that the inertial sensor answers.
+    ImuWord(u8),
+    /// The sensor of this arm, 0 to 3, is unplugged (true) or plugged in again.
+    ArmUnplugged(usize, bool),
+    /// The processor stands still (true) or goes on: only the watchdog is left.
+    Hang(bool),
+    /// The reset pin is pulled, once.
+    ResetPin,
+}
+
+/// What the board did in the millisecond past.
+#[derive(Clone, Debug, Default)]
+pub struct Pins {
+    /// Time since power-on, ms.
+    pub ms: u64,
+    /// Command of each motor as its controller decodes it, 0..1.
+    pub motors: PerArm<f64>,
+    /// Pulse of each servo, µs; 0 is none.
+    pub servos: PerArm<f64>,
+    /// Bytes to the radio's receiver.
+    pub telemetry: Vec<u8>,
+    /// Bytes of the log, as they lie in the buffer that a probe reads.
+    pub log: Vec<u8>,
+    /// State light, fault light and buzzer: level of the pin.
+    pub signals: [bool; 3],
+    /// Restarts of the processor: when (ns since power-on) and why.
+    pub resets: Vec<(u64, String)>,
+}
+
+/// What a run leaves behind.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// What the emulator could not do, or was told that it does wrongly.
+    pub gaps: Vec<Gap>,
+    /// Instructions executed.
+    pub instructions: u64,
+    /// What each motor's controller heard.
+    pub escs: PerArm<EscStats>,
+    /// From data-ready to the first edge of the motor frame: count, mean and largest, µs.
+    pub latency_us: Latency,
+    /// Digest of every edge at the motors' pins, every servo pulse and every telemetry byte.
+    pub pins_digest: u64,
+}
+
+/// Statistics of a latency.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Latency {
+    /// How many were measured.
+    pub count: u64,
+    /// Their sum, µs.
+    pub sum: f64,
+    /// The largest, µs.
+    pub worst: f64,
+}
+
+impl Latency {
+    /// Adds one, µs.
+    pub fn add(&mut self, us: f64) {
+        self.count += 1;
+        self.sum += us;
+        self.worst = self.worst.max(us);
+    }
+
+    /// Mean, µs.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.sum / self.count.max(1) as f64
+    }
+}
+
+/// Something that the emulator cannot vouch for.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Gap {
+    /// `unmapped`, `refused`, `unimplemented`, `undefined`, `unrouted`, `told` or `miswired`.
+    pub kind: &'static str,
+    /// Where: instance and register, an address, or a pin.
+    pub at: String,
+    /// What happened there.
+    pub what: String,
+}
+
+/// FNV-1a.
+#[derive(Clone, Copy, Debug)]
+pub struct Digest(pub u64);
+
+impl Default for Digest {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Digest {
+    /// Adds a word.
+    pub fn word(&mut self, word: u64) {
+        for byte in word.to_le_bytes() {
+            self.byte(byte);
+        }
+    }
+
+    /// Adds a byte.
+    pub fn byte(&mut self, byte: u8) {
+        self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    }
+}

@@ -1,0 +1,21 @@
+use super::*;
+
+/// Armed and off the ground when the time is over.
+fn start(seed: u64) -> Scenario {
+    Scenario {
+        seed,
+        time_limit: 7.0,
+        ..scenario("hover.toml")
+    }
+}
+
+#[test]
+fn one_seed_is_one_run_to_the_last_edge_at_a_pin() {
+    let [first, second, other] = [1, 1, 2].map(|seed| fly(&start(seed), 1.0, &[]));
+    assert!(told(&first, 0.0, "FLIGHT").is_some(), "{}", log(&first));
+    assert_eq!(first.board.lines, second.board.lines);
+    assert_eq!(first.board.run.pins_digest, second.board.run.pins_digest);
+    assert_eq!(first.digest(), second.digest());
+    assert_eq!(first.record.digest, second.record.digest);
+    assert_ne!(first.board.run.pins_digest, other.board.run.pins_digest);
+}

@@ -1,0 +1,142 @@
+//! Parts that fail at their wires: what the log says and what the pins do.
+
+use sophie_bench::wires::Fault;
+use sophie_hil::sensors::fsr::FsrBreak;
+
+use super::*;
+
+/// In the air at about 6 s.
+const AIRBORNE: f64 = 9.0;
+
+fn hover(seconds: f64) -> Scenario {
+    Scenario {
+        time_limit: seconds,
+        ..scenario("hover.toml")
+    }
+}
+
+/// A flight of the hover of at most `seconds` s with a trouble in the air.
+fn with(trouble: Trouble, seconds: f64) -> Flight {
+    let flight = fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]);
+    assert!(
+        told(&flight, 0.0, "FLIGHT").is_some_and(|t| t < AIRBORNE),
+        "{}",
+        log(&flight)
+    );
+    assert!(running(&flight, AIRBORNE - 1.0, AIRBORNE));
+    assert_eq!(flight.gaps, [], "{}", log(&flight));
+    flight
+}
+
+#[test]
+fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board() {
+    let flight = with(Trouble::Board(Fault::ImuUnplugged(true)), AIRBORNE + 2.0);
+    assert!(
+        told(&flight, AIRBORNE, "ICM-42688-P: no answer").is_some(),
+        "{}",
+        log(&flight)
+    );
+    let t = told(&flight, AIRBORNE, "DISARMED: inertial sensor silent");
+    assert!(t.is_some_and(|t| t < AIRBORNE + 0.3), "{}", log(&flight));
+    assert!(
+        stopped(&flight, AIRBORNE + 0.3, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+    // The supervisor feeds no watchdog without a flight level.
+    assert!(
+        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
+        "{}",
+        log(&flight)
+    );
+}
+
+#[test]
+fn a_flipped_word_of_the_inertial_sensor_now_and_then_is_flown_through() {
+    let words = (0..40).map(|n| {
+        (
+            AIRBORNE + 0.2 * f64::from(n),
+            Trouble::Board(Fault::ImuWord(0x40)),
+        )
+    });
+    let troubles: Vec<_> = words.collect();
+    let flight = fly(&scenario("hover.toml"), 1.0, &troubles);
+    assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
+}
+
+#[test]
+fn a_silenced_arm_sensor_is_named_and_flown_without() {
+    let troubles = [
+        (AIRBORNE, Trouble::Board(Fault::ArmUnplugged(2, true))),
+        (AIRBORNE + 3.0, Trouble::Board(Fault::ArmUnplugged(2, false))),
+    ];
+    let flight = fly(&scenario("hover.toml"), 1.0, &troubles);
+    assert!(told(&flight, AIRBORNE, "BNO055").is_some(), "{}", log(&flight));
+    assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
+}
+
+#[test]
+fn a_silent_receiver_ends_in_the_failsafe() {
+    let flight = with(Trouble::RadioSilent(true), AIRBORNE + 3.0);
+    let t = told(&flight, AIRBORNE, "FAILSAFE: radio lost");
+    assert!(t.is_some_and(|t| t < AIRBORNE + 2.0), "{}", log(&flight));
+}
+
+#[test]
+fn flipped_bits_on_the_receivers_line_are_flown_through() {
+    let flight = fly(
+        &scenario("hover.toml"),
+        1.0,
+        &[(AIRBORNE, Trouble::RadioBits(97))],
+    );
+    assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
+}
+
+#[test]
+fn a_sagging_battery_ends_in_the_failsafe() {
+    let flight = with(Trouble::BatteryShare(0.75), AIRBORNE + 10.0);
+    assert!(told(&flight, AIRBORNE, "battery").is_some(), "{}", log(&flight));
+}
+
+#[test]
+fn a_processor_that_stands_still_is_reset_by_its_watchdog_with_the_motors_stopped() {
+    let flight = with(Trouble::Board(Fault::Hang(true)), AIRBORNE + 3.0);
+    let [(ms, cause)] = &flight.board.resets[..] else {
+        panic!("{:?}", flight.board.resets)
+    };
+    assert!(cause.contains("IWDG"), "{cause}");
+    let after = ms * 1e-3 - AIRBORNE;
+    assert!((0.2..0.5).contains(&after), "{after}");
+    assert!(
+        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(
+        stopped(&flight, AIRBORNE + 0.4, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+}
+
+#[test]
+fn a_pulled_reset_pin_is_told_as_such() {
+    let flight = with(Trouble::Board(Fault::ResetPin), AIRBORNE + 2.0);
+    assert!(
+        told(&flight, AIRBORNE, "start after Pin").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(
+        stopped(&flight, AIRBORNE + 0.3, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+}
+
+#[test]
+fn a_shorted_pressure_sensor_speaks_before_the_arms_close() {
+    let troubles = [(2.0, Trouble::Fsr(1, Some(FsrBreak::Short)))];
+    let flight = fly(&hover(6.0), 1.0, &troubles);
+    assert!(told(&flight, 2.0, "pressure").is_some(), "{}", log(&flight));
+}

@@ -1,0 +1,90 @@
+//! Flights of the image that `cargo xtask firmware matek-h743` builds, on the emulated board.
+//!
+//! The image is taken from the variable `SOPHIE_ELF`, or built.
+
+#![allow(missing_docs)]
+
+mod determinism;
+mod faults;
+mod images;
+mod missions;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use sophie_bench::elf::Firmware;
+use sophie_bench::flight::{self, Flight};
+use sophie_bench::plan::{Plan, Trouble};
+use sophie_hil::record::{Sample, Silent};
+use sophie_hil::scenario::{Overrides, Scenario};
+
+/// Tasks of the flight level: none of them may ever miss a deadline.
+const FLIGHT_LEVEL: [&str; 5] = ["imu", "estimator", "control", "mixer", "motors"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap()
+}
+
+fn image() -> &'static Path {
+    static IMAGE: OnceLock<PathBuf> = OnceLock::new();
+    IMAGE.get_or_init(|| {
+        if let Some(path) = std::env::var_os("SOPHIE_ELF") {
+            return path.into();
+        }
+        let built = Command::new(env!("CARGO"))
+            .args(["xtask", "firmware", "matek-h743"])
+            .current_dir(root())
+            .output()
+            .unwrap();
+        assert!(
+            built.status.success(),
+            "{}",
+            String::from_utf8_lossy(&built.stderr)
+        );
+        let text = String::from_utf8(built.stdout).unwrap();
+        text.lines().last().unwrap().into()
+    })
+}
+
+fn scenario(name: &str) -> Scenario {
+    let path = root().join("tests/scenarios").join(name);
+    Scenario::load(&path, &Overrides::default()).unwrap()
+}
+
+/// Flies `scenario` while `troubles` happen, each at its time in s.
+fn fly(scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
+    let firmware = Firmware::read(image()).unwrap();
+    let plan = Plan::new(troubles.iter().map(|(t, trouble)| ((t * 1e3) as u64, *trouble)));
+    flight::fly(&firmware, scenario, speed, plan, |_| (), &mut Silent).unwrap()
+}
+
+/// The log, for the message of a failed assertion.
+fn log(flight: &Flight) -> String {
+    let lines = flight.board.lines.iter();
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+/// Time in s of the first line at `from` s or later that contains `text`.
+fn told(flight: &Flight, from: f64, text: &str) -> Option<f64> {
+    let lines = flight.board.lines.iter();
+    let mut times = lines
+        .filter(|line| line.text.contains(text))
+        .map(|line| line.ms as f64 * 1e-3);
+    times.find(|t| *t >= from)
+}
+
+fn samples(flight: &Flight, from: f64, to: f64) -> impl Iterator<Item = &Sample> {
+    let all = flight.record.samples.iter();
+    all.filter(move |s| (from..to).contains(&s.t))
+}
+
+/// Every motor's pin says stop, throughout; a flight that ended before tells nothing.
+fn stopped(flight: &Flight, from: f64, to: f64) -> bool {
+    samples(flight, from, to).count() > 5 && samples(flight, from, to).all(|s| s.thrust_asked == [0.0; 4])
+}
+
+/// Every motor's pin asks for thrust, throughout.
+fn running(flight: &Flight, from: f64, to: f64) -> bool {
+    samples(flight, from, to).all(|s| s.thrust_asked.iter().all(|t| *t > 0.0))
+}

@@ -1,0 +1,17 @@
+//! What only the target's core can show: its instructions and its exceptions.
+
+#![allow(
+    unsafe_code,
+    reason = "the core's own instructions and registers are what is tested; each use has its reason beside it"
+)]
+
+mod exceptions;
+mod float;
+
+use core::fmt::Arguments;
+
+/// Prints a line for each group.
+pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
+    float::run(print);
+    exceptions::run(print);
+}

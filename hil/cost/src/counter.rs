@@ -1,0 +1,118 @@
+//! The count of executed instructions, and its statistics.
+
+use core::sync::atomic::{Ordering, compiler_fence};
+
+/// Counts of one stage's calls.
+#[derive(Clone, Copy)]
+pub struct Tally {
+    /// Calls.
+    pub calls: u32,
+    /// Instructions of all calls.
+    pub total: u64,
+    /// Instructions of the cheapest call.
+    pub min: u32,
+    /// Instructions of the dearest call.
+    pub max: u32,
+}
+
+impl Tally {
+    /// No calls.
+    pub const fn new() -> Self {
+        Self {
+            calls: 0,
+            total: 0,
+            min: u32::MAX,
+            max: 0,
+        }
+    }
+
+    /// Adds a call of `count` instructions.
+    pub fn add(&mut self, count: u32) {
+        self.calls += 1;
+        self.total += u64::from(count);
+        self.min = self.min.min(count);
+        self.max = self.max.max(count);
+    }
+}
+
+/// Instructions of one run of `work`, with those of reading the counter and of the call.
+///
+/// Not inlined and called with different functions, so that every one of them is called alike.
+#[inline(never)]
+pub fn gross<S, I>(work: fn(&mut S, &I), state: &mut S, input: &I) -> u32 {
+    let before = clock::now();
+    // Nothing may be moved across, or it would be counted wrongly.
+    compiler_fence(Ordering::SeqCst);
+    work(state, input);
+    compiler_fence(Ordering::SeqCst);
+    instructions(before.wrapping_sub(clock::now()))
+}
+
+/// Instructions between two readings of the downward counter that differ by `ticks`: 128 ns each, a tick is 40 ns.
+const fn instructions(ticks: u32) -> u32 {
+    (ticks * 5 + 8) / 16
+}
+
+pub use clock::{known, known_loop, start};
+
+#[cfg(target_os = "none")]
+#[allow(unsafe_code, reason = "the timer's registers, and a loop of known length")]
+mod clock {
+    use core::arch::asm;
+
+    /// CMSDK timer 0 of QEMU's mps2 boards: 25 MHz, counting down.
+    const TIMER: usize = 0x4000_0000;
+    const CONTROL: *mut u32 = TIMER as *mut u32;
+    const VALUE: *mut u32 = (TIMER + 4) as *mut u32;
+    const RELOAD: *mut u32 = (TIMER + 8) as *mut u32;
+
+    /// Starts the counter.
+    pub fn start() {
+        // SAFETY: the timer's registers, which nothing else uses.
+        unsafe {
+            RELOAD.write_volatile(u32::MAX);
+            VALUE.write_volatile(u32::MAX);
+            CONTROL.write_volatile(1);
+        }
+    }
+
+    /// Ticks left.
+    #[inline(always)]
+    pub fn now() -> u32 {
+        // SAFETY: reading the timer changes nothing.
+        unsafe { VALUE.read_volatile() }
+    }
+
+    /// Executes 2 `rounds` instructions, `rounds` > 0, and one to load that number.
+    #[inline(never)]
+    pub fn known_loop(_: &mut (), rounds: &u32) {
+        // SAFETY: counts a register of its own down to zero.
+        unsafe {
+            asm!("2:", "subs {n}, {n}, #1", "bne 2b", n = inout(reg) *rounds => _);
+        }
+    }
+
+    /// Instructions of [`known_loop`].
+    pub const fn known(rounds: u32) -> u32 {
+        2 * rounds + 1
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+mod clock {
+    /// The host counts nothing.
+    pub fn start() {}
+
+    /// Always the same.
+    pub fn now() -> u32 {
+        0
+    }
+
+    /// Executes nothing that counts.
+    pub fn known_loop(_: &mut (), _: &u32) {}
+
+    /// Nothing.
+    pub const fn known(_: u32) -> u32 {
+        0
+    }
+}

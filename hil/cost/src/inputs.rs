@@ -1,0 +1,166 @@
+//! What the control path is fed with: flight-like numbers that take every branch, the same on every machine.
+//!
+//! Half-second stretches of hover, gusts, hard turns, saturated rotors, low thrust with yaw given up, and a sagging
+//! battery follow each other; rates and sticks are held for a while with noise on top. Now and then a reading is no
+//! number.
+
+use sophie_conformance::fold::Noise;
+use sophie_control::attitude::AttitudeSetpoint;
+use sophie_control::math::GRAVITY;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
+
+/// Readings of the inertial sensor in a control step: 4 kHz.
+pub const READINGS: usize = 4;
+/// Steps before the vehicle moves, in which the estimator calibrates.
+pub const REST: u32 = 2500;
+/// Steps of flight.
+pub const FLIGHT: u32 = 12_000;
+/// Steps of a stretch.
+const STRETCH: u32 = 500;
+/// Steps for which a rate and the sticks are held.
+const HOLD: u32 = 40;
+/// One reading of this many is no number.
+const BAD: u32 = 4001;
+
+/// One reading of the inertial sensor.
+pub type Reading = (Vec3, Vec3);
+
+/// Inputs of one control step.
+#[derive(Clone, Copy)]
+pub struct Inputs {
+    /// Raw rates (rad/s) and specific forces (m/s²).
+    pub batch: [Reading; READINGS],
+    /// Wanted attitude.
+    pub setpoint: AttitudeSetpoint,
+    /// Wanted collective thrust, N.
+    pub thrust: f32,
+    /// Yaw may be used.
+    pub yaw: bool,
+    /// The integrators may move.
+    pub integrate: bool,
+    /// Battery voltage over nominal.
+    pub battery_ratio: f32,
+    /// What the arms' sensors read, rad, when they do in this step.
+    pub arms: Option<PerArm<Option<f32>>>,
+    /// Step time, s.
+    pub dt: f32,
+}
+
+/// What one stretch of flight is like.
+struct Stretch {
+    rate: f32,
+    noise: f32,
+    stick: f32,
+    thrust: (f32, f32),
+    yaw: bool,
+    integrate: bool,
+    battery: f32,
+}
+
+const fn stretch(rate: f32, noise: f32, stick: f32, thrust: (f32, f32), battery: f32) -> Stretch {
+    Stretch {
+        rate,
+        noise,
+        stick,
+        thrust,
+        yaw: true,
+        integrate: true,
+        battery,
+    }
+}
+
+const STRETCHES: [Stretch; 8] = [
+    // Hover, then gusts on it.
+    stretch(0.1, 0.05, 0.05, (17.7, 1.0), 1.05),
+    stretch(1.0, 0.3, 0.2, (17.7, 3.0), 1.0),
+    // Hard turns; full throttle, where roll and pitch are given up too.
+    stretch(3.0, 1.0, 1.0, (18.0, 8.0), 0.95),
+    stretch(4.0, 2.0, 1.5, (30.0, 6.0), 0.85),
+    // About the yaw gate, and down to nothing.
+    stretch(0.5, 0.2, 0.3, (8.0, 3.0), 1.1),
+    stretch(2.0, 0.5, 0.8, (2.0, 2.0), 1.2),
+    // Anything, on a battery that is nearly empty.
+    stretch(3.0, 1.5, 2.0, (17.0, 17.0), 0.7),
+    // On the pipe: yaw given up, integrators held.
+    Stretch {
+        yaw: false,
+        integrate: false,
+        ..stretch(0.3, 0.3, 0.1, (6.0, 5.0), 0.95)
+    },
+];
+
+/// Gives the inputs step by step.
+pub struct Sequence {
+    noise: Noise,
+    step: u32,
+    reading: u32,
+    rate: Vec3,
+    sticks: Vec3,
+    thrust: f32,
+}
+
+impl Sequence {
+    /// From the start.
+    pub const fn new() -> Self {
+        Self {
+            noise: Noise::new(7),
+            step: 0,
+            reading: 0,
+            rate: Vec3::ZERO,
+            sticks: Vec3::ZERO,
+            thrust: 0.0,
+        }
+    }
+
+    /// Inputs of the next step.
+    pub fn next(&mut self) -> Inputs {
+        let step = self.step;
+        self.step += 1;
+        let resting = step < REST;
+        let kind = step.saturating_sub(REST) / STRETCH;
+        let [first, ..] = &STRETCHES;
+        let s = STRETCHES.get(kind as usize % STRETCHES.len()).unwrap_or(first);
+        if !resting && step.is_multiple_of(HOLD) {
+            self.rate = self.vector() * s.rate;
+            self.sticks = self.vector() * s.stick;
+            self.thrust = s.thrust.0 + s.thrust.1 * self.noise.unit();
+        }
+        let noise = if resting { 0.01 } else { s.noise };
+        let batch = core::array::from_fn(|_| self.read(noise));
+        let arms = step.is_multiple_of(10).then(|| self.arms());
+        Inputs {
+            batch,
+            setpoint: AttitudeSetpoint {
+                roll: self.sticks.x,
+                pitch: self.sticks.y,
+                yaw_rate: self.sticks.z,
+            },
+            thrust: self.thrust,
+            yaw: s.yaw,
+            integrate: s.integrate,
+            battery_ratio: s.battery + 0.02 * self.noise.unit(),
+            arms,
+            dt: 1e-3 * (1.0 + 0.02 * self.noise.unit()),
+        }
+    }
+
+    /// One reading about the held rate, `noise` rad/s and five times as many m/s² off.
+    fn read(&mut self, noise: f32) -> Reading {
+        self.reading += 1;
+        let mut gyro = self.rate + self.vector() * noise;
+        let accel = Vec3::new(0.0, 0.0, -GRAVITY) + self.vector() * (5.0 * noise);
+        if self.reading.is_multiple_of(BAD) {
+            gyro.y = f32::NAN;
+        }
+        (gyro, accel)
+    }
+
+    fn arms(&mut self) -> PerArm<Option<f32>> {
+        core::array::from_fn(|_| Some(0.2 * self.noise.unit()))
+    }
+
+    fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.noise.unit(), self.noise.unit(), self.noise.unit())
+    }
+}

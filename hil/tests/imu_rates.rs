@@ -1,0 +1,41 @@
+//! The flight level with the inertial sensor at each of its rates and ranges, closed loop.
+
+#[allow(dead_code, reason = "each test file uses the part of the rig that it needs")]
+mod rig;
+
+use rig::{Rig, Wish, vehicle};
+use sophie_control::mixer::Variant;
+use sophie_control::wrench::Configuration;
+use sophie_tasks::deadline::TaskId;
+
+/// Leans by 10° to the right for two seconds, and back.
+fn lean(t: f64) -> Wish {
+    Wish {
+        roll: if (8.0..10.0).contains(&t) { 0.1745 } else { 0.0 },
+        yaw_rate: 0.0,
+    }
+}
+
+#[test]
+fn every_rate_flies_alike_and_hands_on_at_1_khz() {
+    for (rate, dps, g) in [
+        (1000.0, 2000.0, 16.0),
+        (2000.0, 1000.0, 8.0),
+        (4000.0, 500.0, 4.0),
+        (8000.0, 250.0, 4.0),
+    ] {
+        let mut scenario = vehicle(Configuration::B, 7.75, 6.9, Variant::Flexible);
+        scenario.params.set("imu_rate", rate).unwrap();
+        scenario.params.set("imu_gyro_range", dps).unwrap();
+        scenario.params.set("imu_accel_range", g).unwrap();
+        let mut rig = Rig::new(&scenario);
+        let e = rig.fly(16.0, lean);
+        println!("{rate} Hz: {e:?}");
+        // 4 s of calibration and 16 s of flight.
+        let runs = rig.links.timing(TaskId::Imu).runs;
+        assert!((19_990..=20_000).contains(&runs), "{rate} Hz: {runs} samples");
+        assert!(e.worst_pitch < 1.0 && e.worst_yaw < 3.0, "{rate} Hz: {e:?}");
+        // The answer to the lean, delay and all: what differs is a sample of delay in the part itself.
+        assert!((e.rms_roll - 2.2).abs() < 0.1, "{rate} Hz: {e:?}");
+    }
+}

@@ -1,0 +1,2 @@
+//! Nothing: that it is there is all that counts.
+#![no_std]

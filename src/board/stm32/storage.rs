@@ -1,0 +1,35 @@
+//! Parameters that outlive power, in whichever memory the board has.
+
+use embedded_storage_async::nor_flash::NorFlash;
+use sophie_control::params::Params;
+use sophie_drivers::param_store::ParamStore;
+use sophie_tasks::ports::{Loaded, Storage, StorageError};
+
+use super::watchdog;
+
+/// The parameters' storage on memory `F`.
+pub struct BoardStorage<F>(ParamStore<F>);
+
+impl<F: NorFlash> BoardStorage<F> {
+    /// The storage that fills `memory`.
+    pub fn new(memory: F) -> Self {
+        // Every memory here is shorter than 4 GiB.
+        let all = 0..memory.capacity() as u32;
+        Self(ParamStore::new(memory, all))
+    }
+}
+
+impl<F: NorFlash> Storage for BoardStorage<F> {
+    async fn load(&mut self, params: &mut Params) -> Loaded {
+        self.0.load(params).await
+    }
+
+    async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
+        // Erasing may stall the processor for longer than the watchdog's patience. Only disarmed: nothing is being
+        // watched that could fall.
+        watchdog::be_patient(true).await;
+        let saved = self.0.save(params).await;
+        watchdog::be_patient(false).await;
+        saved
+    }
+}

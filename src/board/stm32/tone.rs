@@ -1,0 +1,46 @@
+//! A sounder without electronics of its own, which wants a tone.
+
+use embassy_stm32::gpio::Flex;
+use embassy_stm32::timer::{Ch1, Channel, GeneralInstance4Channel, TimerPin};
+use embassy_stm32::{Peri, rcc};
+use sophie_drivers::pwm_timing::PwmTiming;
+
+use super::lights::Switch;
+use super::small_timer::SmallTimer;
+
+/// Pitch, Hz: about where such sounders are loudest.
+const PITCH_HZ: u32 = 2700;
+
+/// A sounder on the first channel of a timer.
+pub struct Tone<T: GeneralInstance4Channel> {
+    timer: SmallTimer<T>,
+    /// Counts of half a wave.
+    half: u32,
+    /// Kept, so that the pin stays the timer's.
+    _pin: Flex<'static>,
+}
+
+impl<T: GeneralInstance4Channel> Tone<T> {
+    /// The sounder on `pin`, silent.
+    ///
+    /// # Panics
+    /// If the clock cannot make the tone: a board with such a clock never starts, so it is found at the bench.
+    pub fn new(timer: Peri<'static, T>, pin: Peri<'static, impl TimerPin<T, Ch1>>) -> Self {
+        let Some(timing) = PwmTiming::new(rcc::frequency::<T>().0, PITCH_HZ) else {
+            panic!("the sounder's timer cannot make {PITCH_HZ} Hz")
+        };
+        let mut timer = SmallTimer::new(timer, timing);
+        let pin = timer.output(pin);
+        Self {
+            timer,
+            half: timing.period / 2,
+            _pin: pin,
+        }
+    }
+}
+
+impl<T: GeneralInstance4Channel> Switch for Tone<T> {
+    fn set(&mut self, on: bool) {
+        self.timer.set(Channel::Ch1, if on { self.half } else { 0 });
+    }
+}

@@ -1,0 +1,146 @@
+//! The console: a line for builders, over any terminal program at 115,200 baud.
+//!
+//! Background level, no deadline. Parameters in force are fixed; what is set here goes into a working copy, which `save`
+//! stores and a restart puts in force. A terminal that takes nothing loses its text and delays nobody else; a line that
+//! carries noise is read as lines that mean nothing.
+
+mod command;
+mod line;
+mod nearest;
+mod output;
+mod parameters;
+mod report;
+mod save;
+
+use embassy_futures::yield_now;
+use embassy_time::{Duration, Timer};
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+
+use self::command::{Command, HELP, parse};
+use self::line::{CHUNK, Echo, Line, LineError};
+use self::output::Output;
+use crate::links::{Links, Status};
+use crate::ports::{Restart, SerialInput, SerialOutput, Storage};
+
+/// Pause after a line error or an empty read, so that a dead line cannot take the processor.
+const PAUSE: Duration = Duration::from_millis(1);
+/// What asks for a line.
+const PROMPT: &[u8] = b"> ";
+
+/// Serves the console for ever.
+pub async fn run(
+    links: &Links,
+    mut input: impl SerialInput,
+    output: impl SerialOutput,
+    storage: impl Storage,
+    restart: impl Restart,
+) -> ! {
+    let mut console = Console {
+        links,
+        out: Output::new(output),
+        storage,
+        restart,
+        params: links.params,
+    };
+    let mut line = Line::default();
+    let mut chunk = [0; CHUNK];
+    loop {
+        match input.read(&mut chunk).await {
+            Ok(count) if count > 0 => {
+                let mut echo = Echo::new();
+                for byte in chunk.iter().take(count) {
+                    if line.push(*byte, &mut echo) {
+                        console.out.resume();
+                        console.out.bytes(&echo).await;
+                        echo.clear();
+                        console.obey(line.take().as_deref()).await;
+                    }
+                }
+                console.out.bytes(&echo).await;
+                // A line that is never silent must not starve the others of this level.
+                yield_now().await;
+            }
+            Ok(_) => Timer::after(PAUSE).await,
+            Err(_) => {
+                line.spoil(LineError::Damaged);
+                Timer::after(PAUSE).await;
+            }
+        }
+    }
+}
+
+struct Console<'a, O, S, R> {
+    links: &'a Links,
+    out: Output<O>,
+    storage: S,
+    restart: R,
+    /// The working copy.
+    params: Params,
+}
+
+impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
+    async fn obey(&mut self, line: Result<&str, &LineError>) {
+        self.out.line(format_args!("")).await;
+        match line.map(parse) {
+            Ok(None) => (),
+            Ok(Some(Ok(command))) => self.run(command).await,
+            Ok(Some(Err(misunderstood))) => self.out.line(format_args!("{misunderstood}")).await,
+            Err(error) => self.out.line(format_args!("{}", error.text())).await,
+        }
+        self.out.bytes(PROMPT).await;
+    }
+
+    async fn run(&mut self, command: Command<'_>) {
+        match command {
+            Command::Help => {
+                for (usage, text) in HELP {
+                    self.out.line(format_args!("{usage:15} {text}")).await;
+                }
+            }
+            Command::Status => self.status().await,
+            Command::Timing => self.timing().await,
+            Command::List(part) => self.list(part).await,
+            Command::Get(name) => self.get(name).await,
+            Command::Set(name, value) => self.set(name, value).await,
+            Command::Reset(name) => self.reset(name).await,
+            Command::Defaults => {
+                self.params = Params::default();
+                self.changes().await;
+            }
+            Command::Changes => self.changes().await,
+            Command::Save => self.save().await,
+            Command::Restart => match self.stopped() {
+                Ok(()) => {
+                    self.out.line(format_args!("restarting")).await;
+                    self.restart.restart();
+                }
+                Err(status) => self.refuse("not restarted", status).await,
+            },
+        }
+    }
+
+    /// Motors stand still, as far as the commander says.
+    fn stopped(&self) -> Result<(), Option<Status>> {
+        match self.links.status.fresh() {
+            Some(status) if matches!(status.mode, Mode::Disarmed | Mode::Calibrating) => Ok(()),
+            status => Err(status),
+        }
+    }
+
+    async fn refuse(&mut self, what: &str, status: Option<Status>) {
+        match status {
+            Some(status) => {
+                let mode = status.mode.name();
+                self.out
+                    .line(format_args!("{what} while {mode}: disarm first"))
+                    .await;
+            }
+            None => {
+                self.out
+                    .line(format_args!("{what}: the commander is silent"))
+                    .await
+            }
+        }
+    }
+}

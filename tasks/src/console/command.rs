@@ -1,0 +1,128 @@
+//! What can be typed.
+
+use core::fmt;
+
+use super::nearest::nearest;
+
+/// A line understood.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Command<'a> {
+    Help,
+    Status,
+    List(&'a str),
+    Get(&'a str),
+    Set(&'a str, &'a str),
+    Reset(&'a str),
+    Defaults,
+    Changes,
+    Save,
+    Restart,
+    Timing,
+}
+
+/// Name and arguments, and what it does.
+pub(super) const HELP: [(&str, &str); 11] = [
+    ("help", "this list"),
+    ("status", "mode, what forbids arming, battery, receiver"),
+    (
+        "list [PART]",
+        "parameters, or those with PART in their name; * is not the default",
+    ),
+    ("get NAME", "one parameter and what it is"),
+    ("set NAME VALUE", "changes it; in force after save"),
+    ("reset NAME", "back to its default; in force after save"),
+    ("defaults", "all back to their defaults; in force after save"),
+    ("changes", "what save would change"),
+    ("save", "stores the parameters and restarts; only while disarmed"),
+    ("restart", "restarts without storing; only while disarmed"),
+    ("timing", "rate and worst times of every task"),
+];
+
+/// A line not understood.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Misunderstood<'a> {
+    Unknown(&'a str),
+    /// With the arguments that the command takes.
+    Arguments(&'static str),
+}
+
+impl fmt::Display for Misunderstood<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(word) => {
+                write!(f, "no command '{word}'; ")?;
+                match nearest(word, HELP.iter().map(|(usage, _)| name(usage))) {
+                    Some(name) => write!(f, "did you mean '{name}'?"),
+                    None => f.write_str("try 'help'"),
+                }
+            }
+            Self::Arguments(usage) => write!(f, "say '{usage}'"),
+        }
+    }
+}
+
+fn name(usage: &'static str) -> &'static str {
+    usage.split_once(' ').map_or(usage, |(name, _)| name)
+}
+
+/// Understands a line; `None` when it is empty.
+pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>> {
+    let mut words = line.split_ascii_whitespace();
+    let word = words.next()?;
+    // One more than any command takes, so that too many are noticed.
+    let arguments = [words.next(), words.next(), words.next()];
+    let command = match (word, arguments) {
+        ("help", [None, ..]) => Command::Help,
+        ("status", [None, ..]) => Command::Status,
+        ("list", [part, None, _]) => Command::List(part.unwrap_or_default()),
+        ("get", [Some(name), None, _]) => Command::Get(name),
+        ("set", [Some(name), Some(value), None]) => Command::Set(name, value),
+        ("reset", [Some(name), None, _]) => Command::Reset(name),
+        ("defaults", [None, ..]) => Command::Defaults,
+        ("changes", [None, ..]) => Command::Changes,
+        ("save", [None, ..]) => Command::Save,
+        ("restart", [None, ..]) => Command::Restart,
+        ("timing", [None, ..]) => Command::Timing,
+        _ => {
+            let usage = HELP.iter().find(|(usage, _)| name(usage) == word);
+            return Some(Err(usage.map_or(Misunderstood::Unknown(word), |(usage, _)| {
+                Misunderstood::Arguments(usage)
+            })));
+        }
+    };
+    Some(Ok(command))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_in_the_help_is_understood() {
+        for (usage, _) in HELP {
+            let line = usage.trim_matches(['[', ']']);
+            assert!(matches!(parse(line), Some(Ok(_))), "{usage}");
+        }
+        assert_eq!(parse("  set\tinfill  8 "), Some(Ok(Command::Set("infill", "8"))));
+        assert_eq!(parse("list"), Some(Ok(Command::List(""))));
+        assert_eq!(parse("   "), None);
+    }
+
+    #[test]
+    fn a_command_with_the_wrong_arguments_is_not_guessed() {
+        for line in [
+            "set infill",
+            "set infill 8 9",
+            "save now",
+            "get",
+            "list a b",
+            "restart 5",
+        ] {
+            assert!(
+                matches!(parse(line), Some(Err(Misunderstood::Arguments(_)))),
+                "{line}"
+            );
+        }
+        assert_eq!(parse("SAVE"), Some(Err(Misunderstood::Unknown("SAVE"))));
+    }
+}

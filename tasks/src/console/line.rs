@@ -1,0 +1,164 @@
+//! Bytes from a terminal to lines, with echo.
+
+use heapless::{String, Vec};
+
+/// Longest line, characters.
+pub(super) const LENGTH: usize = 80;
+/// Bytes taken at once.
+pub(super) const CHUNK: usize = 32;
+/// What goes back to the terminal for one chunk: at most three bytes for each.
+pub(super) type Echo = Vec<u8, { 3 * CHUNK }>;
+
+/// Why a line is not obeyed, not even its beginning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LineError {
+    /// More than [`LENGTH`] characters.
+    TooLong,
+    /// A byte above 127.
+    NotAscii,
+    /// Bytes were lost on the way.
+    Damaged,
+}
+
+impl LineError {
+    pub(super) const fn text(self) -> &'static str {
+        match self {
+            Self::TooLong => "line too long: 80 characters at most",
+            Self::NotAscii => "only ASCII characters are understood",
+            Self::Damaged => "the line was damaged on its way: type it again",
+        }
+    }
+}
+
+/// Where in a cursor key's sequence of bytes the terminal is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Escape {
+    #[default]
+    None,
+    Begun,
+    Within,
+}
+
+/// The line being typed.
+#[derive(Default)]
+pub(super) struct Line {
+    text: String<LENGTH>,
+    error: Option<LineError>,
+    escape: Escape,
+    after_cr: bool,
+}
+
+impl Line {
+    /// Takes one byte; true when it ends the line. CR, LF and CR LF all do.
+    pub(super) fn push(&mut self, byte: u8, echo: &mut Echo) -> bool {
+        let after_cr = core::mem::replace(&mut self.after_cr, byte == b'\r');
+        match byte {
+            b'\n' if after_cr => return false,
+            b'\r' | b'\n' => {
+                self.escape = Escape::None;
+                return true;
+            }
+            _ => (),
+        }
+        match (self.escape, byte) {
+            (Escape::Begun, b'[' | b'O') => self.escape = Escape::Within,
+            (Escape::Begun, _) => self.escape = Escape::None,
+            (Escape::Within, 0x40..=0x7E) => self.escape = Escape::None,
+            (Escape::Within, _) => (),
+            (Escape::None, 0x1B) => self.escape = Escape::Begun,
+            (Escape::None, 0x08 | 0x7F) => {
+                if self.text.pop().is_some() {
+                    let _ = echo.extend_from_slice(b"\x08 \x08");
+                }
+            }
+            (Escape::None, b' '..=b'~') => match self.text.push(char::from(byte)) {
+                Ok(()) => {
+                    let _ = echo.push(byte);
+                }
+                Err(_) => self.spoil(LineError::TooLong),
+            },
+            (Escape::None, 0x80..) => self.spoil(LineError::NotAscii),
+            (Escape::None, _) => (),
+        }
+        false
+    }
+
+    /// The line will not be obeyed; the first reason stays.
+    pub(super) fn spoil(&mut self, error: LineError) {
+        self.error.get_or_insert(error);
+    }
+
+    /// The line that has ended, and a new one.
+    pub(super) fn take(&mut self) -> Result<String<LENGTH>, LineError> {
+        let text = core::mem::take(&mut self.text);
+        match self.error.take() {
+            Some(error) => Err(error),
+            None => Ok(text),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::string::String as Text;
+    use std::vec::Vec as Many;
+
+    use super::*;
+
+    /// The lines that `bytes` make, and what is echoed.
+    fn lines(bytes: &[u8]) -> (Many<Result<Text, LineError>>, Text) {
+        let mut line = Line::default();
+        let (mut lines, mut echoed) = (Many::new(), Text::new());
+        for byte in bytes {
+            let mut echo = Echo::new();
+            if line.push(*byte, &mut echo) {
+                lines.push(line.take().map(|l| Text::from(l.as_str())));
+            }
+            echoed.push_str(str::from_utf8(&echo).unwrap());
+        }
+        (lines, echoed)
+    }
+
+    fn ok(texts: &[&str]) -> Many<Result<Text, LineError>> {
+        texts.iter().map(|t| Ok(Text::from(*t))).collect()
+    }
+
+    #[test]
+    fn every_line_end_ends_one_line() {
+        assert_eq!(
+            lines(b"a\rb\nc\r\nd\n\re\r").0,
+            ok(&["a", "b", "c", "d", "", "e"])
+        );
+    }
+
+    #[test]
+    fn a_line_can_be_corrected() {
+        assert_eq!(
+            lines(b"\x08helq\x7Fp\r"),
+            (ok(&["help"]), "helq\x08 \x08p".into())
+        );
+        // Cursor keys and other controls leave nothing.
+        assert_eq!(lines(b"s\x1B[Aa\x1B[1;5Cv\x1BOPe\t\x00\r").0, ok(&["save"]));
+        assert_eq!(lines(b"x\x1B[\rhelp\r").0, ok(&["x", "help"]));
+    }
+
+    #[test]
+    fn a_bad_line_is_refused_as_a_whole_and_the_next_is_not() {
+        let mut bytes = b"save".to_vec();
+        bytes.extend([b' '; LENGTH]);
+        bytes.extend(b"\rok\rs\xE4ve\rok\r");
+        assert_eq!(
+            lines(&bytes).0,
+            [
+                Err(LineError::TooLong),
+                Ok("ok".into()),
+                Err(LineError::NotAscii),
+                Ok("ok".into())
+            ]
+        );
+        let fits = [b'x'; LENGTH];
+        assert_eq!(lines(&[&fits[..], b"\r"].concat()).0.len(), 1);
+        assert!(lines(&[&fits[..], b"\r"].concat()).0.iter().all(Result::is_ok));
+    }
+}

@@ -1,0 +1,63 @@
+//! Text to a terminal that may not be there.
+
+use core::fmt::{self, Write};
+
+use embassy_time::{Duration, with_timeout};
+use heapless::String;
+
+use crate::ports::{PortError, SerialOutput};
+
+/// Longest line written, bytes; more is cut off. 160 take 14 ms at 115,200 baud.
+const LENGTH: usize = 160;
+/// Time after which a line that was not taken is given up.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// A terminal's screen.
+pub(super) struct Output<O> {
+    port: O,
+    /// The line takes nothing: what belongs to the same command is dropped.
+    stalled: bool,
+}
+
+impl<O: SerialOutput> Output<O> {
+    pub(super) const fn new(port: O) -> Self {
+        Self { port, stalled: false }
+    }
+
+    /// Tries again after a line that did not drain.
+    pub(super) const fn resume(&mut self) {
+        self.stalled = false;
+    }
+
+    pub(super) async fn line(&mut self, text: fmt::Arguments<'_>) {
+        let mut line = Cut(String::new());
+        // Never an error: what does not fit is cut off.
+        let _ = line.write_fmt(text);
+        let Cut(mut line) = line;
+        let _ = line.push_str("\r\n");
+        self.bytes(line.as_bytes()).await;
+    }
+
+    pub(super) async fn bytes(&mut self, bytes: &[u8]) {
+        if self.stalled || bytes.is_empty() {
+            return;
+        }
+        let sent = with_timeout(PATIENCE, self.port.write(bytes)).await;
+        self.stalled = sent.unwrap_or(Err(PortError::Timeout)).is_err();
+    }
+}
+
+/// A line that keeps room for its end.
+struct Cut(String<{ LENGTH + 2 }>);
+
+impl Write for Cut {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for c in text.chars() {
+            if self.0.len() < LENGTH {
+                let c = if c.is_ascii() { c } else { '?' };
+                self.0.push(c).map_err(|_| fmt::Error)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,178 @@
+//! The working copy of the parameters.
+
+use core::fmt;
+
+use sophie_control::decimal::{self, Decimal};
+use sophie_control::params::{ParamError, ParamInfo, Params};
+
+use super::Console;
+use super::nearest::nearest;
+use crate::ports::{Restart, SerialOutput, Storage};
+
+impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
+    pub(super) async fn list(&mut self, part: &str) {
+        let mut count = 0;
+        for row in Params::TABLE.iter().filter(|row| row.name.contains(part)) {
+            count += 1;
+            self.row(row).await;
+        }
+        if count == 0 {
+            self.out
+                .line(format_args!("no parameter has '{part}' in its name"))
+                .await;
+        }
+    }
+
+    /// One parameter: mark, name, value, what is allowed.
+    async fn row(&mut self, row: &ParamInfo) {
+        let value = self.value(row);
+        let mark = if same(value, row.default) { ' ' } else { '*' };
+        let (name, value, allowed) = (row.name, Decimal(value), Allowed(row));
+        self.out
+            .line(format_args!("{mark} {name:19} {value:<9} {allowed}"))
+            .await;
+    }
+
+    pub(super) async fn get(&mut self, name: &str) {
+        let Some(row) = self.find(name).await else { return };
+        self.row(row).await;
+        let default = Decimal(row.default);
+        self.out.line(format_args!("  default {default}")).await;
+        self.out.bytes(b"  ").await;
+        self.out.bytes(row.doc.trim().as_bytes()).await;
+        self.out.line(format_args!("")).await;
+    }
+
+    pub(super) async fn set(&mut self, name: &str, text: &str) {
+        let Some(row) = self.find(name).await else { return };
+        let allowed = Allowed(row);
+        let Some(value) = decimal::parse(text) else {
+            return self
+                .out
+                .line(format_args!("'{text}' is not a number; {name} takes {allowed}"))
+                .await;
+        };
+        self.put(row, value).await;
+    }
+
+    pub(super) async fn reset(&mut self, name: &str) {
+        let Some(row) = self.find(name).await else { return };
+        self.put(row, row.default).await;
+    }
+
+    async fn put(&mut self, row: &ParamInfo, value: f32) {
+        let old = self.value(row);
+        let (name, unit) = (row.name, Unit(row.unit));
+        let (old, shown) = (Decimal(old), Decimal(value));
+        match self.params.set(name, value) {
+            Ok(()) => {
+                let force = if same(value, self.links.params.get(name).unwrap_or(value)) {
+                    "as in force"
+                } else {
+                    "in force after save"
+                };
+                self.out
+                    .line(format_args!("{name} {old} -> {shown}{unit}, {force}"))
+                    .await;
+            }
+            Err(allowed) => {
+                self.out
+                    .line(format_args!("{name} cannot be {shown}; it takes {allowed}"))
+                    .await;
+            }
+        }
+    }
+
+    /// Says what `save` would change.
+    pub(super) async fn changes(&mut self) {
+        let mut count = 0;
+        for row in Params::TABLE {
+            let (old, new) = (self.links.params.get(row.name), self.value(row));
+            let old = old.unwrap_or(row.default);
+            if same(old, new) {
+                continue;
+            }
+            count += 1;
+            let (name, unit) = (row.name, Unit(row.unit));
+            let (old, new) = (Decimal(old), Decimal(new));
+            self.out.line(format_args!("{name} {old} -> {new}{unit}")).await;
+        }
+        match count {
+            0 => self.out.line(format_args!("no changes")).await,
+            1 => self.out.line(format_args!("1 change, in force after save")).await,
+            _ => {
+                self.out
+                    .line(format_args!("{count} changes, in force after save"))
+                    .await;
+            }
+        }
+    }
+
+    /// Parameters that differ from those in force.
+    pub(super) fn changed(&self) -> usize {
+        let force = |row: &ParamInfo| self.links.params.get(row.name).unwrap_or(row.default);
+        let differs = |row: &&ParamInfo| !same(force(row), self.value(row));
+        Params::TABLE.iter().filter(differs).count()
+    }
+
+    fn value(&self, row: &ParamInfo) -> f32 {
+        self.params.get(row.name).unwrap_or(row.default)
+    }
+
+    /// The parameter called `name`, or a line that there is none.
+    async fn find(&mut self, name: &str) -> Option<&'static ParamInfo> {
+        let row = Params::TABLE.iter().find(|row| row.name == name);
+        if row.is_none() {
+            match nearest(name, Params::TABLE.iter().map(|row| row.name)) {
+                Some(other) => {
+                    self.out
+                        .line(format_args!("no parameter '{name}'; did you mean '{other}'?"))
+                        .await;
+                }
+                None => {
+                    self.out
+                        .line(format_args!("no parameter '{name}'; 'list' shows them all"))
+                        .await;
+                }
+            }
+        }
+        row
+    }
+}
+
+/// The very same value.
+fn same(a: f32, b: f32) -> bool {
+    a.to_bits() == b.to_bits()
+}
+
+/// What a parameter takes.
+struct Allowed<'a>(&'a ParamInfo);
+
+impl fmt::Display for Allowed<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ParamInfo {
+            min,
+            max,
+            choices,
+            unit,
+            ..
+        } = *self.0;
+        if choices.is_empty() {
+            ParamError::OutOfRange { min, max, unit }.fmt(f)
+        } else {
+            ParamError::NotAChoice { choices, unit }.fmt(f)
+        }
+    }
+}
+
+/// A unit behind its value; nothing for a pure number.
+struct Unit(&'static str);
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            "1" => Ok(()),
+            unit => write!(f, " {unit}"),
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! How the vehicle is.
+
+use embassy_time::Instant;
+use sophie_control::decimal::Decimal;
+use sophie_control::mode::Mode;
+
+use super::Console;
+use crate::deadline::TaskId;
+use crate::ports::{Restart, SerialOutput, Storage};
+
+impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
+    pub(super) async fn status(&mut self) {
+        match self.links.status.fresh() {
+            None => self.out.line(format_args!("the commander is silent")).await,
+            Some(status) => {
+                let colon = if status.reason.is_empty() { "" } else { ": " };
+                let (mode, reason) = (status.mode.name(), status.reason);
+                self.out.line(format_args!("{mode}{colon}{reason}")).await;
+                if !status.warning.is_empty() {
+                    self.out.line(format_args!("warning: {}", status.warning)).await;
+                }
+                if status.mode == Mode::Disarmed && status.refusals.is_empty() {
+                    self.out.line(format_args!("nothing forbids arming")).await;
+                }
+                for refusal in status.refusals.iter() {
+                    self.out
+                        .line(format_args!("arming refused: {}", refusal.text()))
+                        .await;
+                }
+            }
+        }
+        match self.links.battery.fresh() {
+            Some(b) => {
+                // A·s to mAh.
+                let [volts, amps, used] = [b.voltage, b.current, b.used / 3.6].map(Decimal);
+                self.out
+                    .line(format_args!(
+                        "battery {volts:.2} V, {amps:.1} A, {used:.0} mAh used"
+                    ))
+                    .await;
+            }
+            None => self.out.line(format_args!("battery not measured")).await,
+        }
+        match self.links.rc.latest() {
+            Some(rc) => {
+                let heard = if rc.fresh(self.links.rc.stale_after).is_some() {
+                    ""
+                } else {
+                    ", silent now"
+                };
+                let (frames, errors) = (rc.value.frames, rc.value.errors);
+                self.out
+                    .line(format_args!("receiver {frames} frames, {errors} errors{heard}"))
+                    .await;
+            }
+            None => {
+                self.out
+                    .line(format_args!("receiver silent since the start"))
+                    .await
+            }
+        }
+        let up = Instant::now().as_secs();
+        let (hours, minutes, seconds) = (up / 3600, up / 60 % 60, up % 60);
+        self.out
+            .line(format_args!("up for {hours}:{minutes:02}:{seconds:02}"))
+            .await;
+        match self.changed() {
+            0 => (),
+            1 => self.out.line(format_args!("1 change is not saved")).await,
+            n => self.out.line(format_args!("{n} changes are not saved")).await,
+        }
+    }
+
+    pub(super) async fn timing(&mut self) {
+        self.out
+            .line(format_args!(
+                "            runs/s  worst us: late  response execution  overruns"
+            ))
+            .await;
+        // In milliseconds, so that a young start does not divide by zero.
+        let up = Instant::now().as_millis().max(1);
+        for task in TaskId::ALL {
+            let t = self.links.timing(task);
+            let rate = u64::from(t.runs) * 1000 / up;
+            let name = task.name();
+            self.out
+                .line(format_args!(
+                    "{name:11} {rate:>6} {:>15} {:>9} {:>9} {:>9}",
+                    t.worst_lateness_us, t.worst_response_us, t.worst_execution_us, t.overruns
+                ))
+                .await;
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Why the board started, and what the run before left.
+
+use sophie_control::warm::{Warm, Words};
+
+/// Why the board started.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cause {
+    /// Power was switched on.
+    #[default]
+    PowerOn,
+    /// The supply broke down for a moment: what was in memory is gone, as after power-on.
+    BrownOut,
+    /// The watchdog was not fed.
+    Watchdog,
+    /// The firmware gave up: a panic or a fault of the processor.
+    Fault,
+    /// Somebody asked for it: a command, a button, the probe.
+    Asked,
+}
+
+impl Cause {
+    /// What is left in memory is noise.
+    pub const fn loses_memory(self) -> bool {
+        matches!(self, Self::PowerOn | Self::BrownOut)
+    }
+
+    /// What the pilot must know of it; empty when there is nothing.
+    pub const fn warning(self) -> &'static str {
+        match self {
+            Self::PowerOn | Self::Asked => "",
+            Self::BrownOut => "restarted by a brown-out",
+            Self::Watchdog => "restarted by the watchdog",
+            Self::Fault => "restarted after a fault",
+        }
+    }
+}
+
+/// A start of the board.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Why it started.
+    pub cause: Cause,
+    /// What the run before left, when it can be believed.
+    pub warm: Option<Warm>,
+    /// Number of the last copy that was kept; the next one takes the next.
+    pub sequence: u32,
+}
+
+impl Start {
+    /// Power-on, with nothing left.
+    pub const COLD: Self = Self {
+        cause: Cause::PowerOn,
+        warm: None,
+        sequence: 0,
+    };
+
+    /// A start for `cause` with these two copies in memory.
+    pub fn new(cause: Cause, copies: &[Words; 2]) -> Self {
+        let kept = if cause.loses_memory() {
+            None
+        } else {
+            Warm::newest(copies)
+        };
+        Self {
+            cause,
+            warm: kept.map(|(warm, _)| warm),
+            sequence: kept.map_or(0, |(_, sequence)| sequence),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sophie_control::rc::ArmChoice;
+    use sophie_control::warm::Grasp;
+
+    use super::*;
+
+    #[test]
+    fn memory_is_believed_only_where_power_never_went() {
+        let warm = Warm {
+            grasp: Grasp::Closed(ArmChoice::All),
+            force: [50.0; 4],
+            ..Warm::default()
+        };
+        let copy = warm.to_words(8).unwrap_or_default();
+        for (cause, believed) in [
+            (Cause::PowerOn, false),
+            (Cause::BrownOut, false),
+            (Cause::Watchdog, true),
+            (Cause::Fault, true),
+            (Cause::Asked, true),
+        ] {
+            let start = Start::new(cause, &[copy, [0; 16]]);
+            assert_eq!(start.warm, believed.then_some(warm), "{cause:?}");
+            assert_eq!(start.sequence, if believed { 8 } else { 0 });
+            assert!(Start::new(cause, &[[7; 16]; 2]).warm.is_none());
+            assert!(cause.warning().len() <= 40);
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Runs the counting image and reads what it prints.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::{Core, Count};
+use crate::{Error, build};
+
+/// What one run gave.
+pub struct Run {
+    /// Counts of every stage.
+    pub counts: Vec<Count>,
+    /// Digests of the motor commands: stage by stage, and at one go.
+    pub commands: Vec<String>,
+}
+
+/// Runs `elf` on `core`.
+///
+/// # Errors
+/// No QEMU, or the image did not end well.
+pub fn run(core: &Core, elf: &Path) -> Result<Run, Error> {
+    let mut command = Command::new("qemu-system-arm");
+    // An instruction lasts 2^7 ns, some ticks of the machine's timer: what the image counts with.
+    command.args(["-machine", core.machine, "-nographic", "-icount", "shift=7"]);
+    command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
+    command.arg(elf).stdin(Stdio::null()).stderr(Stdio::inherit());
+    eprintln!("{}", build::shown(&command));
+    let output = command.output().map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            "qemu-system-arm is not installed (Debian, Ubuntu: apt-get install qemu-system-arm)".to_string()
+        }
+        _ => e.to_string(),
+    })?;
+    let text = String::from_utf8(output.stdout)?;
+    if !output.status.success() {
+        return Err(format!("the image failed on {}:\n{text}", core.name).into());
+    }
+    let mut run = Run {
+        counts: Vec::new(),
+        commands: Vec::new(),
+    };
+    for line in text.lines() {
+        match line.split_whitespace().collect::<Vec<_>>().as_slice() {
+            ["stage", name, calls, total, min, max] => {
+                let (calls, total): (u64, u64) = (calls.parse()?, total.parse()?);
+                run.counts.push(Count {
+                    stage: (*name).into(),
+                    core: core.name,
+                    calls,
+                    mean: total as f64 / calls as f64,
+                    min: min.parse()?,
+                    max: max.parse()?,
+                });
+            }
+            ["commands" | "commands-whole", digest @ ..] => run.commands.push(digest.join(" ")),
+            ["overhead", overhead] => {
+                eprintln!(
+                    "{}: {overhead} instructions of counting and calling are subtracted",
+                    core.name
+                );
+            }
+            _ => return Err(format!("what the image printed is not understood: {line}").into()),
+        }
+    }
+    Ok(run)
+}

@@ -1,0 +1,77 @@
+//! The stages: what they are, what they may cost, and what the best peer takes for the same.
+
+/// Share by which a stage may cost more on an M4F than its target on an M7.
+pub const M4F_ALLOWANCE: f64 = 1.3;
+/// Largest part of the dearest call over the mean one.
+pub const SPREAD: f64 = 1.05;
+
+/// One stage.
+pub struct Stage {
+    /// Name in the image's output.
+    pub name: &'static str,
+    /// What it is.
+    pub what: &'static str,
+    /// Parts of a call that the figures are for.
+    pub parts: f64,
+    /// Instructions that it may take on an M7.
+    pub target: Option<f64>,
+    /// Best peer's figure.
+    pub peer: &'static str,
+}
+
+const fn stage(name: &'static str, what: &'static str, target: Option<f64>, peer: &'static str) -> Stage {
+    Stage {
+        name,
+        what,
+        parts: 1.0,
+        target,
+        peer,
+    }
+}
+
+/// In the order of the table.
+pub const STAGES: [Stage; 10] = [
+    Stage {
+        parts: 3.0,
+        ..stage("biquads", "low pass, one biquad-axis", Some(16.0), "22 (PX4)")
+    },
+    stage("filter", "IMU filter: 4 readings, 6 axes", None, "none compares"),
+    stage(
+        "estimator",
+        "estimator, quaternion out",
+        Some(300.0),
+        "425 (Betaflight), 445 (Crazyflie), both with Euler",
+    ),
+    stage("attitude", "attitude control", Some(150.0), "260 (Crazyflie)"),
+    stage(
+        "rate",
+        "rate PID, 3 axes, D filter, anti-windup, notch",
+        Some(250.0),
+        "198 (PX4, minimal), 990 (Betaflight), 996 (ArduPilot)",
+    ),
+    stage("tilt", "tilt and slope of four arms", Some(200.0), "none has it"),
+    stage(
+        "allocation",
+        "Jacobian, allocation, desaturation",
+        Some(600.0),
+        "1636 (ArduPilot-style), about 35000 (PX4)",
+    ),
+    stage(
+        "commands",
+        "thrust curve, battery, 4 commands",
+        Some(120.0),
+        "496 (Crazyflie), 908 (ArduPilot)",
+    ),
+    stage(
+        "arm-sensors",
+        "bias of the tilt, one step in ten",
+        None,
+        "none has it",
+    ),
+    stage(
+        "whole",
+        "whole step",
+        Some(1800.0),
+        "4700 (Betaflight F745, RPM notches, no tilt)",
+    ),
+];
