@@ -170,7 +170,8 @@ impl Mixer {
     }
 
     /// First half of [`Self::mix`]: the thrusts, with the arms where they are believed to be.
-    #[inline(always)]
+    // On its own: inlined into a caller that is built for size, its loops would not be unrolled and cost twice as much.
+    #[inline(never)]
     pub fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
             return self.at_idle();
@@ -199,7 +200,8 @@ impl Mixer {
     }
 
     /// Second half: steps the models of arms and motors by `dt` s with the thrusts (N) sent.
-    #[inline(always)]
+    // On its own as the first half.
+    #[inline(never)]
     pub fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
         self.last = *thrusts;
         self.tilt.step(thrusts, dt);
