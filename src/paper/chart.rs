@@ -9,7 +9,8 @@ const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 330.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
-const TOP: f64 = 14.0;
+/// Room above the field for the words of uprights.
+const TOP: f64 = 20.0;
 const BOTTOM: f64 = 44.0;
 /// Most points of a curve that are drawn: about two to a pixel.
 const POINTS: usize = 900;
@@ -120,15 +121,13 @@ pub fn draw(chart: &Chart) -> String {
         svg += &line(left, f.py(*level), right, f.py(*level), "level");
         svg += &text(right - 5.0, f.py(*level) - 4.0, "small end halo", word);
     }
-    for (i, (at, word)) in chart.uprights.iter().enumerate() {
-        svg += &line(f.px(*at), TOP, f.px(*at), bottom, "level");
-        let room = f.px(*at) < right - 110.0;
-        let (x, class) = if room {
-            (f.px(*at) + 4.0, "small halo")
-        } else {
-            (f.px(*at) - 4.0, "small end halo")
-        };
-        svg += &text(x, TOP + 14.0 + 14.0 * i as f64, class, word);
+    for (at, word) in &chart.uprights {
+        let x = f.px(*at);
+        svg += &line(x, TOP, x, bottom, "level");
+        // Centred on the line unless the drawing ends before the words do.
+        let half = 3.2 * word.chars().count() as f64;
+        let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
+        svg += &text(middle, TOP - 5.0, "small mid", word);
     }
     // The paper's own on top.
     let printed = |s: &&Series| s.look == Look::Printed;

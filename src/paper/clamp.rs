@@ -204,7 +204,7 @@ fn figures(s: &mut Section, p: &Printed, all: &[(f64, f64, &Closed)], pairs: &[(
             .closure_s
             .iter()
             .enumerate()
-            .map(|(i, t)| (*t, format!("t{} printed", i + 1)))
+            .map(|(i, t)| (*t, format!("t{}", i + 1)))
             .collect()
     };
     let half_force = 0.5 * p.text.force_max_kgcm;
@@ -248,7 +248,7 @@ fn figures(s: &mut Section, p: &Printed, all: &[(f64, f64, &Closed)], pairs: &[(
         .collect();
     s.figure(
         "As Fig. 10, in its units: pressure over the target of 950 N/m², servo force over half of 25 kgcm; the four closings \
-         are those nearest to Table IV's forces. The printed times are dashed. Below: where the printed pairs lie among all \
+         are those nearest to Table IV's forces. Dashed: the target, the printed times t1 to t4 and the printed forces. Below: where the printed pairs lie among all \
          closings, and the force that holds over the pipe's diameter.",
         vec![
             Chart {
@@ -315,7 +315,7 @@ fn in_flight(s: &mut Section) {
         ],
     );
     for ((infill, arms), r) in jobs.iter().zip(&records) {
-        let range = |f: &dyn Fn(&sophie_hil::record::Grip) -> f64| {
+        let range = |digits: usize, f: &dyn Fn(&sophie_hil::record::Grip) -> f64| {
             let (low, high) = r
                 .grip
                 .iter()
@@ -324,7 +324,7 @@ fn in_flight(s: &mut Section) {
                     (l.min(v), h.max(v))
                 });
             if low.is_finite() {
-                format!("{low:.2} to {high:.2}")
+                format!("{low:.digits$} to {high:.digits$}")
             } else {
                 "–".to_owned()
             }
@@ -337,9 +337,9 @@ fn in_flight(s: &mut Section) {
                 "two (front)"
             }
             .into(),
-            range(&|g| g.closure).into(),
-            range(&|g| kgcm(g.torque)).into(),
-            range(&|g| g.pressure_true).into(),
+            range(2, &|g| g.closure).into(),
+            range(2, &|g| kgcm(g.torque)).into(),
+            range(0, &|g| g.pressure_true).into(),
             r.outcome.reason.clone().into(),
         ]);
     }

@@ -60,6 +60,15 @@ pub fn lost_when(flown: &Flown) -> Cell {
     }
 }
 
+/// `name`, and that the vehicle was lost where it was.
+pub fn named(name: &str, flown: &Flown) -> String {
+    match flown.lost {
+        None => name.to_owned(),
+        Some(t) if t < 0.0 => format!("{name}: lost at take-off"),
+        Some(t) => format!("{name}: lost after {t:.1} s"),
+    }
+}
+
 /// A curve over time, every `every` ms.
 pub fn curve(flown: &Flown, every: usize, value: impl Fn(&Moment) -> f64) -> Vec<(f64, f64)> {
     flown

@@ -11,7 +11,7 @@ use sophie_hil::plant::GRAVITY;
 use sophie_hil::study::allocation::Studied;
 use sophie_hil::study::rig::{Flown, Wish, fly};
 
-use super::flights::{curve, error, in_gusts, lost_when, or_lost, swing, vehicle};
+use super::flights::{curve, error, in_gusts, lost_when, named, or_lost, swing, vehicle};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::parallel;
 use super::printed::Printed;
@@ -42,7 +42,7 @@ fn rank(mut m: Matrix) -> (usize, f64) {
     let (mut rank, mut determinant) = (0, 1.0);
     for column in 0..4 {
         let pivot = (rank..4).max_by(|a, b| m[*a][column].abs().total_cmp(&m[*b][column].abs()));
-        let Some(pivot) = pivot.filter(|r| m[*r][column].abs() > 1e-9) else {
+        let Some(pivot) = pivot.filter(|r| m[*r][column].abs() > 1e-6) else {
             determinant = 0.0;
             continue;
         };
@@ -117,6 +117,9 @@ fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     f64::from(high - low)
 }
 
+/// Time over which the rotors' swing is shown, s.
+const WINDOW: f64 = 3.0;
+
 /// A mixer to be flown.
 #[derive(Clone, Copy)]
 enum Flies {
@@ -166,7 +169,7 @@ pub fn section(p: &Printed) -> Section {
     let k_diverges = root(0.1, 9.0, |k| multiplier(infill, k).abs() - 1.0).unwrap_or(f64::NAN);
     let k_cycles = root(0.1, 9.0, |k| multiplier(infill, k).abs() - bound).unwrap_or(f64::NAN);
 
-    matrices(&mut s, &here);
+    matrices(&mut s, p, &here);
 
     // The one-step loop: closed form against the loop itself.
     let gains: Vec<f64> = (2..=18).map(|i| 0.5 * f64::from(i)).collect();
@@ -301,11 +304,14 @@ pub fn section(p: &Printed) -> Section {
     let traces = |f: &dyn Fn(&sophie_hil::study::rig::Moment) -> f64| {
         shown
             .iter()
-            .map(|(i, f_)| Series::new(FLOWN[*i].0, *i, Look::Line, curve(f_, 20, f)))
+            .map(|(i, f_)| Series::new(named(FLOWN[*i].0, f_), *i, Look::Line, curve(f_, 10, f)))
             .collect::<Vec<_>>()
     };
     s.figure(
-        &format!("The flights of the table at K {k}: a curve that ends is a vehicle that was lost."),
+        &format!(
+            "The flights of the table at K {k}; rigid and paper lie on each other. Of the thrust the first {WINDOW} s are \
+             shown: the frozen inverse runs its rotors from limit to limit."
+        ),
         vec![
             Chart {
                 title: "Yaw in gusts".to_owned(),
@@ -316,7 +322,7 @@ pub fn section(p: &Printed) -> Section {
             },
             Chart {
                 title: "Thrust asked of rotor 1".to_owned(),
-                x: Axis::between("time (s)", 0.0, 20.0),
+                x: Axis::between("time (s)", 0.0, WINDOW),
                 y: Axis::new("thrust (N)"),
                 series: traces(&|m| m.asked[0]),
                 levels: vec![(thrust, "hover".to_owned())],
@@ -344,13 +350,13 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-fn matrices(s: &mut Section, hover: &AtThrust) {
+fn matrices(s: &mut Section, p: &Printed, hover: &AtThrust) {
     let k_q = f64::from(Params::default().torque_ratio);
     let tilt = hover.sin.atan2(hover.cos);
     let row = |signs: [f64; 4]| signs.map(|x| x * k_q);
     let yaw = YAW.map(f64::from);
     let mut t = Table::new(
-        "Mixer matrices, rows f_z, τ_φ, τ_θ, τ_ψ",
+        "Mixer matrices and their rank",
         &[
             "yaw row",
             "signs of rotors 1 to 4",
@@ -361,44 +367,62 @@ fn matrices(s: &mut Section, hover: &AtThrust) {
     let at = |thrust: f64| AtThrust::new(6.9, f64::from(Params::default().gain_k), thrust);
     let reversal = root(1.0, 6.0, |t| at(t).frozen(1.0)).unwrap_or(f64::NAN);
     let full = |a: AtThrust, chi: f64| yaw.map(|y| y * a.frozen(chi) * k_q);
-    let mut ranks = vec![];
-    for (what, signs, m) in [
-        ("as printed", "- + - +", matrix(tilt, row([-1.0, 1.0, -1.0, 1.0]))),
+    let all = [
+        ("as printed", matrix(tilt, row(p.mixer_matrix.yaw_row))),
         (
             "Algorithm 1: CW, CW, CCW, CCW",
-            "- - + +",
-            matrix(tilt, row([-1.0, -1.0, 1.0, 1.0])),
+            matrix(tilt, row(p.mixer_matrix.algorithm_1_row)),
         ),
         (
             "the text: 1 and 4 against 2 and 3",
-            "- + + -",
             matrix(tilt, row([-1.0, 1.0, 1.0, -1.0])),
         ),
         (
             "with the sideways thrust, B in hover",
-            "+ - - +",
             matrix(tilt, full(*hover, 1.0)),
         ),
         (
             "with the sideways thrust, A in hover",
-            "- + + -",
             matrix(tilt, full(*hover, -1.0)),
         ),
         (
             "with the sideways thrust, B at the frozen reversal",
-            "0 0 0 0",
             matrix(tilt, full(at(reversal), 1.0)),
         ),
-    ] {
+    ];
+    let mut ranks = vec![];
+    for (what, m) in all {
         let (rank, determinant) = rank(m);
+        let signs = m[3].map(|x| match x {
+            x if x.abs() < 1e-6 => "0",
+            x if x < 0.0 => "-",
+            _ => "+",
+        });
         ranks.push(rank);
         t.row([
             what.into(),
-            signs.into(),
+            signs.join(" ").into(),
             num(rank as f64, 0),
             num(determinant, 3),
         ]);
     }
+    let mut entries = Table::new(
+        "The matrices in hover, divided by C_T: f_z pure, moments in m",
+        &["matrix", "row", "rotor 1", "rotor 2", "rotor 3", "rotor 4"],
+    );
+    for (what, m) in [&all[0], &all[2], &all[3]] {
+        for (name, row) in ["f_z", "τ_φ", "τ_θ", "τ_ψ"].into_iter().zip(m) {
+            entries.row([
+                (*what).into(),
+                name.into(),
+                num(row[0], 4),
+                num(row[1], 4),
+                num(row[2], 4),
+                num(row[3], 4),
+            ]);
+        }
+    }
+    s.table(entries);
     s.table(t);
     s.compare(
         "What a mixer for four axes needs",
@@ -414,7 +438,7 @@ fn matrices(s: &mut Section, hover: &AtThrust) {
         }],
     );
     s.text(format!(
-        "The last row is the point at {reversal:.2} N a rotor where b sin α = -k_q: what a frozen inverse divides by changes \
-         its sign there."
+        "The last matrix is that of {reversal:.2} N a rotor, where b sin α = -k_q: what a frozen inverse divides by changes its \
+         sign there."
     ));
 }

@@ -11,6 +11,8 @@ const FILE: &str = include_str!("printed.toml");
 pub struct Printed {
     /// What is said about Eq. 1.
     pub eq_1: Eq1,
+    /// Signs of the printed mixer matrix.
+    pub mixer_matrix: MixerMatrix,
     /// Table I.
     pub table_1: Table1,
     /// Table II, by rows.
@@ -37,6 +39,16 @@ pub struct Eq1 {
     pub valid_tilt_deg: f64,
     /// Infill from which it is said to hold, %.
     pub valid_infill_percent: f64,
+}
+
+/// Signs of the yaw row, rotors 1 to 4.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MixerMatrix {
+    /// In the printed matrix, over C_Q.
+    pub yaw_row: [f64; 4],
+    /// By Algorithm 1's senses of rotation.
+    pub algorithm_1_row: [f64; 4],
 }
 
 /// Table I: coefficients of Eq. 1, °/N, °/(N %), °/N², °/(N² %).

@@ -175,18 +175,18 @@ pub fn section(p: &Printed) -> Section {
     };
 
     let mut t = Table::new(
-        "The manoeuvre flown, configuration B",
+        "The manoeuvre flown, configuration B; ratio: largest φ+Δα of the first of three over that of this one",
         &[
             "arms",
             "ρ %",
-            "mixer and command",
+            "mixer, command",
             "φ_max °",
-            "ΔT/T max",
+            "ΔT/T",
             "Δα_max °",
-            "κ Eq. 11",
-            "κ flown",
+            "κ, Eq. 11",
+            "κ, exact",
             "(φ+Δα)_max °",
-            "ratio to the first",
+            "ratio",
             "lost",
         ],
     );
@@ -240,7 +240,7 @@ pub fn section(p: &Printed) -> Section {
         .collect();
     s.compare("Table III against the flights", rows);
     columns(&mut s, p, &of, fitted);
-    figures(&mut s, &of, &cases.map(|c| c.0), fitted);
+    figures(&mut s, p, &of, &cases.map(|c| c.0), fitted);
 
     let middle = |arms| {
         of(0, 8.0, arms)
@@ -526,12 +526,13 @@ fn columns<'a>(
 
 fn figures<'a>(
     s: &mut Section,
+    p: &Printed,
     of: &impl Fn(usize, f64, Arms) -> Option<&'a Flown>,
     names: &[&str; 3],
     fitted: Arms,
 ) {
-    let chart = |title: &str, arms: Arms, y: &str, value: &dyn Fn(&Moment) -> f64| Chart {
-        title: title.to_owned(),
+    let chart = |title: &str, infill: f64, arms: Arms, y: &str, value: &dyn Fn(&Moment) -> f64| Chart {
+        title: format!("{title}, ρ {infill} %"),
         x: Axis::between("time (s)", 0.0, SECONDS),
         y: Axis::new(y),
         series: names
@@ -542,16 +543,16 @@ fn figures<'a>(
                     *name,
                     i,
                     Look::Line,
-                    curve(of(i, 8.0, arms)?, 5, value),
+                    curve(of(i, infill, arms)?, 5, value),
                 ))
             })
             .collect(),
         ..Chart::default()
     };
-    let tilts = |title: &str, arms: Arms| {
+    let tilts = |title: &str, infill: f64, arms: Arms| {
         let mut series = vec![];
         for (case, look, word) in [(0, Look::Line, "hard"), (2, Look::Dashed, "prefiltered")] {
-            let Some(flown) = of(case, 8.0, arms) else {
+            let Some(flown) = of(case, infill, arms) else {
                 continue;
             };
             let mean = |i: usize, j: usize| move |m: &Moment| (0.5 * (m.tilt[i] + m.tilt[j])).to_degrees();
@@ -569,7 +570,7 @@ fn figures<'a>(
             ));
         }
         Chart {
-            title: title.to_owned(),
+            title: format!("{title}, ρ {infill} %"),
             x: Axis::between("time (s)", 0.0, SECONDS),
             y: Axis::new("α (°)"),
             series,
@@ -577,22 +578,49 @@ fn figures<'a>(
         }
     };
     let commanded = |chart: Chart| Chart {
-        levels: vec![(25.0, "commanded, and the paper's φ_max".to_owned())],
+        levels: vec![(p.text.roll_deg, "commanded, and the paper's φ_max".to_owned())],
         ..chart
+    };
+    let bounded = |infill: f64, chart: Chart| {
+        let row = p.table_3.iter().find(|r| r.infill_percent == infill);
+        let most = row.map(|r| p.text.roll_deg + r.delta_alpha_max_deg);
+        Chart {
+            levels: most
+                .map(|m| (m, format!("25° + printed Δα_max = {m:.1}°")))
+                .into_iter()
+                .collect(),
+            ..chart
+        }
     };
     let roll = |m: &Moment| m.attitude[0].to_degrees();
     let effective = |m: &Moment| (m.attitude[0] + delta_alpha(m)).to_degrees();
+    let trio = |infill: f64, arms: Arms, word: &str| {
+        [
+            commanded(chart(&format!("Roll φ, {word}"), infill, arms, "φ (°)", &roll)),
+            tilts(&format!("Tilt of the arms, {word}"), infill, arms),
+            bounded(
+                infill,
+                chart(
+                    &format!("Effective angle φ + Δα, {word}"),
+                    infill,
+                    arms,
+                    "φ + Δα (°)",
+                    &effective,
+                ),
+            ),
+        ]
+    };
+    let charts = [6.0, 8.0, 10.0]
+        .into_iter()
+        .flat_map(|infill| trio(infill, fitted, "massless arms"));
     s.figure(
-        "The manoeuvre of Fig. 8 at ρ 8 %. First three: massless arms with the fitted damping; last \
-         three: arms that carry their own tip mass. The arms bend only while the vehicle is being turned: Δα and 25° never \
-         stand together.",
-        vec![
-            commanded(chart("Roll φ, fitted arms", fitted, "φ (°)", &roll)),
-            tilts("Arms, fitted", fitted),
-            chart("Effective angle φ + Δα, fitted arms", fitted, "φ + Δα (°)", &effective),
-            commanded(chart("Roll φ, tip mass", Arms::Heavy, "φ (°)", &roll)),
-            tilts("Arms, tip mass", Arms::Heavy),
-            chart("Effective angle φ + Δα, tip mass", Arms::Heavy, "φ + Δα (°)", &effective),
-        ],
+        "The manoeuvre of Fig. 8 (printed for ρ 8 %) with massless arms of the fitted damping; rigid and flexible mixer lie \
+         on each other. The arms bend only while the vehicle is being turned: Δα and 25° never stand together.",
+        charts.collect(),
+    );
+    s.figure(
+        "The same with arms that carry their own tip mass. The hard gains excite the arms' mode already in hover, which the \
+         stack's own gains and prefilter do not; a curve that ends is a vehicle that was lost.",
+        trio(8.0, Arms::Heavy, "tip mass").into(),
     );
 }

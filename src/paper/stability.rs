@@ -9,7 +9,7 @@ use sophie_hil::study::allocation::Studied;
 use sophie_hil::study::perturbation::Trial;
 use sophie_hil::study::rig::{Flown, Wish, fly};
 
-use super::flights::{BOTH, curve, vehicle};
+use super::flights::{BOTH, curve, named, vehicle};
 use super::model::{Axis, Chart, Look, Section, Series, Table, Tile, num};
 use super::parallel;
 use super::printed::Printed;
@@ -256,7 +256,13 @@ fn responses(s: &mut Section, k: f64, infill: f64) {
             Variant::Rigid,
             None,
         ),
-        ("A, K 3, rigid mixer", Configuration::A, 3.0, Variant::Rigid, None),
+        (
+            "A, K 2.1, rigid mixer",
+            Configuration::A,
+            2.1,
+            Variant::Rigid,
+            None,
+        ),
         (
             "A, K 7.75, sign-aware mixer",
             Configuration::A,
@@ -275,13 +281,8 @@ fn responses(s: &mut Section, k: f64, infill: f64) {
         series: range
             .filter_map(|i| {
                 let ((name, ..), flown) = cases.get(i).zip(flights.get(i))?;
-                let name = match flown.lost {
-                    Some(t) if t < 0.0 => format!("{name}: lost before the perturbation"),
-                    Some(t) => format!("{name}: lost at {t:.1} s"),
-                    None => (*name).to_owned(),
-                };
                 Some(Series::new(
-                    name,
+                    named(name, flown),
                     i,
                     Look::Line,
                     curve(flown, 10, |m| m.attitude[2].to_degrees()),

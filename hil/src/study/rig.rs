@@ -196,8 +196,10 @@ pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: im
             thrust: thrust.clamp(0.0, 40.0) as f32,
         });
         if t >= 0.0 {
-            let wanted = heading
-                .get_or_insert_with(|| rig.links.target.latest().map_or(0.0, |v| f64::from(v.value.z)));
+            let wanted = heading.get_or_insert_with(|| {
+                let ahead = rig.links.target.latest().map_or(0.0, |v| f64::from(v.value.z));
+                rig.plant.euler()[2] + ahead
+            });
             *wanted += yaw_rate * 1e-3;
             flown.moments.push(rig.moment(t, *wanted));
         }
