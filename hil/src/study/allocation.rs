@@ -165,7 +165,9 @@ pub async fn run(links: &Links, kind: Studied, configuration: Configuration) {
             && !resting
         {
             arms_seen = arms.at;
-            allocator.tilt.correct(&arms.value.tilt);
+            for (arm, tilt) in arms.value.tilt.into_iter().enumerate() {
+                allocator.tilt.correct(arm, tilt.unwrap_or(f32::NAN));
+            }
         }
         let idle = [links.params.thrust_idle; 4];
         let (thrusts, given, yaw_gated, running) = match message.value {
