@@ -240,28 +240,12 @@ fn signs(r: &Value) {
     }
 }
 
-/// Bench data of three arms at two battery powers: Table I times 7.75, a quarter of a degree of scatter.
-fn bench() -> String {
-    let mut out = String::from("infill_percent,thrust_n,tilt_deg,power_ratio\n");
-    let mut n = 0.0_f64;
-    for infill in [6.0, 6.9, 8.0] {
-        for power in [1.0, 0.85_f64] {
-            for i in 0..12 {
-                let t = 0.7 * f64::from(i);
-                let elastic = (2.4387 - 0.1997 * infill) * t + (-0.162 + 0.0151 * infill) * t * t;
-                n += 1.0;
-                let tilt = -26.4 + 7.75 * elastic * power.powf(1.7) + 0.25 * (12.9898 * n).sin();
-                out += &format!("{infill},{t},{tilt},{power}\n");
-            }
-        }
-    }
-    out
-}
-
 #[test]
 fn an_arm_from_the_bench_is_fitted_and_flies() {
     let temp = Temp::new("fit");
-    fs::write(temp.0.join("bench.csv"), bench()).unwrap();
+    // The example of docs/paper.md.
+    let example = include_str!("../docs/arm-bench.csv");
+    fs::write(temp.0.join("bench.csv"), example).unwrap();
     let output = sophie(&temp.0, &["fit-arm", "bench.csv", "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let results: Value = serde_json::from_slice(&output.stdout).unwrap();

@@ -61,7 +61,7 @@ pub struct FitArgs {
     /// Bench data.
     #[arg(value_name = "BENCH.csv")]
     pub bench: PathBuf,
-    /// Directory for fit.html, fit.json and arm.toml.
+    /// Directory for fit.html, fit.json, arm.toml and arm.console.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Print the fit as JSON on stdout, everything else on stderr.

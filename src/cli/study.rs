@@ -13,7 +13,7 @@ use crate::paper::{self, bench_data, fit, fit_report, json, page, text};
 const FILES: [&str; 2] = ["paper.html", "paper.json"];
 
 /// The files of a fit.
-const FIT_FILES: [&str; 3] = ["fit.html", "fit.json", "arm.toml"];
+const FIT_FILES: [&str; 4] = ["fit.html", "fit.json", "arm.toml", "arm.console"];
 
 /// Computes, flies, prints and writes every section.
 pub fn paper(args: &PaperArgs) -> Result<bool, String> {
@@ -63,10 +63,12 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     }
     let results = json::json(&sections);
     let page = page::html("An arm from bench data", &file, &sections);
+    let lines = fit_report::console_lines(&parameters);
     let files = [
         page.into_bytes(),
         results.clone().into_bytes(),
         parameters.into_bytes(),
+        lines.into_bytes(),
     ];
     let written = out.write(&FIT_FILES.into_iter().zip(files).collect::<Vec<_>>())?;
     console.say("");

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
+use sophie_control::tendon::REFERENCE_TILT;
 use sophie_control::wrench::Configuration;
 use sophie_hil::study::allocation::Studied;
 use sophie_hil::study::rig::{Flown, Wish, fly};
@@ -436,16 +437,18 @@ fn soft(s: &mut Section, p: &Printed, k: f64) {
          nothing in this model stops at 5 or 4 %: an allocation that knows Eq. 1 flies them. The notch at the arms' mode is \
          what lets the gain rise: with a yaw gain of 10 on springy arms (ζ 0.05) they tilt by {:.1}° with it and by {:.1}° \
          without. The limit that does appear is lift, if the arms are level without thrust and all bend up: largest lift \
-         over weight {:.2}, {:.2}, {:.2} and {:.2} at ρ 6.9, 6, 5 and 4 %, at tilts beyond the {} ° up to which the paper's \
-         statics are said to hold. The last rows of the table fly that. Algorithm 1's own rule, which sets α to 0 beyond \
-         40°, is a jump of 40° in the mixer that a softer arm meets first.",
+         over weight {:.2}, {:.2}, {:.2} and {:.2} at ρ 6.9, 6, 5 and 4 %, at tilts beyond the {}° up to which the paper's \
+         statics are said to hold. The last rows of the table fly such arms: from {:.0}° on the released tendons are taut and \
+         hold them, which saves the lift and the flight but is no part of Eq. 1: the learnt bias goes to its limit. \
+         Algorithm 1's own rule, which sets α to 0 beyond 40°, is a jump of 40° in the mixer that a softer arm meets first.",
         bent(6),
         bent(7),
         lift(6.9),
         lift(6.0),
         lift(5.0),
         lift(4.0),
-        p.eq_1.valid_tilt_deg
+        p.eq_1.valid_tilt_deg,
+        f64::from(REFERENCE_TILT).to_degrees()
     ));
 }
 

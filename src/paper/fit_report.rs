@@ -101,6 +101,17 @@ pub fn section(points: &[Point], fit: &Fit) -> Section {
     s
 }
 
+/// The lines that give a board's console the parameters of the file `text`.
+pub fn console_lines(text: &str) -> String {
+    let named = text.lines().skip_while(|l| *l != "[params]").skip(1);
+    let mut lines: String = named
+        .filter_map(|l| l.split_once(" = "))
+        .map(|(name, value)| format!("set {name} {value}\n"))
+        .collect();
+    lines += "save\n";
+    lines
+}
+
 /// The parameter file: a scenario whose `[vehicle]` is this arm, and `[params]` the same for the stack.
 ///
 /// # Errors
@@ -170,6 +181,28 @@ mod tests {
             assert!((believed.angle(t).to_degrees() - truth).abs() < 0.01, "{t}");
         }
         assert!((s.vehicle.arm_coefficients[0] - 4.0).abs() < 1e-4);
+        // A board that is told the same over its console has the same parameters.
+        let lines = console_lines(&text);
+        let mut board = Params::default();
+        for line in lines.lines().filter(|l| *l != "save") {
+            let [_, name, value] = line.split(' ').collect::<Vec<_>>()[..] else {
+                panic!("{line}");
+            };
+            board.set(name, value.parse().unwrap()).unwrap();
+        }
+        for name in [
+            "infill",
+            "gain_k",
+            "arm_a1",
+            "arm_a2",
+            "arm_b1",
+            "arm_b2",
+            "arm_level_share",
+            "power_exponent",
+        ] {
+            assert!(board.get(name) == s.params.get(name), "{name}");
+        }
+        assert!(lines.ends_with("save\n"));
         // An arm that falls with thrust is refused.
         let falling: Vec<Point> = points.iter().map(|p| Point { tilt: -p.tilt, ..*p }).collect();
         let f = fit(&falling, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();

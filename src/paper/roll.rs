@@ -247,11 +247,14 @@ pub fn section(p: &Printed) -> Section {
             .and_then(found)
             .map_or(f64::NAN, |f| f.delta_alpha.to_degrees())
     };
-    let (rest, _, heavy) = (middle(Arms::Static), middle(fitted), middle(Arms::Heavy));
+    let (rest, heavy) = (middle(Arms::Static), middle(Arms::Heavy));
+    let heavy_flexible = of(1, 8.0, Arms::Heavy)
+        .and_then(found)
+        .map_or(f64::NAN, |f| f.delta_alpha.to_degrees());
     s.text(format!(
         "What that says about K: the same command at ρ 8 % bends the arms by {rest:.1}° if they hardly swing (ζ 0.7: the \
-         rotor's lag takes the rest of Eq. 1's static difference), by {heavy:.1}° if they carry {} kg at their tips, because \
-         the arm that is pushed up has to push its motor up; the printed {:.1}° take massless arms of ζ {:.2}. A table of Δα \
+         rotor's lag takes the rest of Eq. 1's static difference), by {heavy:.1}° (rigid mixer) and {heavy_flexible:.1}° (flexible) if \
+         they carry {} kg at their tips, because the arm that is pushed up has to push its motor up, and swings; the printed {:.1}° take massless arms of ζ {:.2}. A table of Δα \
          in a fast roll does not identify the static gain K: mass and damping of the arm are in it too. A bench identifies \
          it (sophie fit-arm).",
         sophie_hil::plant::arm::TIP_MASS,
@@ -268,7 +271,7 @@ pub fn section(p: &Printed) -> Section {
     let worst = worst.fold(0.0, f64::max);
     s.finding = format!(
         "A step hard enough for ΔT/T = 3/5 bends massless, well damped arms by {rest:.1}° at ρ 8 % and arms that carry their \
-         motors by {heavy:.1}° (printed {:.1}°); massless arms of ζ {:.2} meet the whole column within {worst:.0} %. The mixer has no part in the ratio column: the roll lever of a hinged arm \
+         motors by {heavy:.1}° under the rigid and {heavy_flexible:.1}° under the flexible mixer (printed {:.1}°); massless arms of ζ {:.2} meet the whole column within {worst:.0} %. The mixer has no part in the ratio column: the roll lever of a hinged arm \
          does not depend on α, so only a softer command lowers φ + Δα. Two of the printed ratios are larger than the printed \
          Δα_max allows.",
         p.table_3.get(1).map_or(f64::NAN, |r| r.delta_alpha_max_deg),
