@@ -34,12 +34,15 @@ pub fn html(title: &str, lead: &str, sections: &[Section]) -> String {
         STYLE[1],
         escape(lead)
     );
-    page += "<ul class=\"legend\">";
-    for (class, meaning) in CLASSES {
-        page += &format!("<li>{} {}</li>", badge(class), escape(meaning));
+    let compares = |s: &Section| s.blocks.iter().any(|b| matches!(b, Block::Comparisons(..)));
+    if sections.iter().any(compares) {
+        page += "<ul class=\"legend\">";
+        for (class, meaning) in CLASSES {
+            page += &format!("<li>{} {}</li>", badge(class), escape(meaning));
+        }
+        page += "<li><svg viewBox=\"0 0 30 14\"><path class=\"printed\" d=\"M15 7m-6 0l6 -6l6 6l-6 6z\"/></svg>printed in \
+                 the paper</li></ul>";
     }
-    page += "<li><svg viewBox=\"0 0 30 14\"><path class=\"printed\" d=\"M15 7m-6 0l6 -6l6 6l-6 6z\"/></svg>printed in the \
-             paper</li></ul>";
     if sections.len() > 1 {
         page += "<nav>";
         for (i, s) in sections.iter().enumerate() {

@@ -554,7 +554,7 @@ fn figures<'a>(
     };
     let tilts = |title: &str, infill: f64, arms: Arms| {
         let mut series = vec![];
-        for (case, look, word) in [(0, Look::Line, "hard"), (2, Look::Dashed, "prefiltered")] {
+        for (case, look, word) in [(1, Look::Line, "hard"), (2, Look::Dashed, "prefiltered")] {
             let Some(flown) = of(case, infill, arms) else {
                 continue;
             };
@@ -618,7 +618,7 @@ fn figures<'a>(
         .flat_map(|infill| trio(infill, fitted, "massless arms"));
     s.figure(
         "The manoeuvre of Fig. 8 (printed for ρ 8 %) with massless arms of the fitted damping; rigid and flexible mixer lie \
-         on each other. The arms bend only while the vehicle is being turned: Δα and 25° never stand together.",
+         on each other (the tilts are the flexible one's). The arms bend only while the vehicle is being turned: Δα and 25° never stand together.",
         charts.collect(),
     );
     s.figure(
