@@ -37,8 +37,13 @@ impl ArmModel {
     /// The arm of infill `infill` (%) with the gain `gain_k` on the elastic term, level at the thrust
     /// `level_thrust` (N).
     pub fn new(infill: f32, gain_k: f32, level_thrust: f32) -> Self {
-        let linear = math::deg(gain_k * (A1 + infill * A2));
-        let quadratic = math::deg(gain_k * (B1 + infill * B2));
+        Self::with([A1, A2, B1, B2], infill, gain_k, level_thrust)
+    }
+
+    /// The same with coefficients A1, A2, B1, B2 of its own (°/N, °/(N %), °/N², °/(N² %)).
+    pub fn with([a1, a2, b1, b2]: [f32; 4], infill: f32, gain_k: f32, level_thrust: f32) -> Self {
+        let linear = math::deg(gain_k * (a1 + infill * a2));
+        let quadratic = math::deg(gain_k * (b1 + infill * b2));
         let model = Self {
             offset: 0.0,
             linear,
@@ -50,9 +55,10 @@ impl ArmModel {
         }
     }
 
-    /// The arm that the parameters describe, level at half throttle.
+    /// The arm that the parameters describe.
     pub fn from_params(p: &Params) -> Self {
-        Self::new(p.infill, p.gain_k, 0.5 * p.thrust_max)
+        let coefficients = [p.arm_a1, p.arm_a2, p.arm_b1, p.arm_b2];
+        Self::with(coefficients, p.infill, p.gain_k, p.arm_level_share * p.thrust_max)
     }
 
     /// Elastic part of the tilt at the thrust `thrust` (N), rad.
@@ -126,6 +132,23 @@ mod tests {
                 "{infill}: {difference}"
             );
         }
+    }
+
+    #[test]
+    fn the_parameters_are_table_1_until_somebody_fits_an_arm() {
+        let p = Params::default();
+        assert!(ArmModel::from_params(&p) == ArmModel::new(6.9, 7.75, 0.5 * p.thrust_max));
+        let own = Params {
+            arm_a1: 3.0,
+            arm_a2: 0.0,
+            arm_b1: -0.1,
+            arm_b2: 0.0,
+            gain_k: 1.0,
+            ..p
+        };
+        // 3·5 - 0.1·25 = 12.5° more than without thrust, at any infill.
+        let m = ArmModel::from_params(&own);
+        assert!((degrees(m.angle(5.0) - m.angle(0.0)) - 12.5).abs() < 1e-4);
     }
 
     #[test]

@@ -198,6 +198,16 @@ params! {
     infill = 6.9, "%", 4.0 ..= 10.0;
     /// Gain on the elastic term of Eq. 1 that the paper's Table III needs; 1 is the literal equation.
     gain_k = 7.75, "1", 1.0 ..= 10.0;
+    /// Linear coefficient A1 of Eq. 1 (paper, Table I; of your own arm from `sophie fit-arm`).
+    arm_a1 = 2.4387, "deg/N", -10.0 ..= 30.0;
+    /// What A1 loses for each percent of infill, A2 (paper, Table I).
+    arm_a2 = -0.1997, "deg/(N %)", -10.0 ..= 30.0;
+    /// Quadratic coefficient B1 of Eq. 1 (paper, Table I).
+    arm_b1 = -0.162, "deg/N2", -10.0 ..= 30.0;
+    /// What B1 gains for each percent of infill, B2 (paper, Table I).
+    arm_b2 = 0.0151, "deg/(N2 %)", -10.0 ..= 30.0;
+    /// Thrust at which an arm is level, as a share of the largest: sets α0 (paper, "positive above 50 %").
+    arm_level_share = 0.5, "1", -0.5 ..= 1.0;
     /// Exponent C_P of the battery's power ratio in Eq. 1 (paper, 1.6 to 1.8).
     power_exponent = 1.7, "1", 1.0 ..= 2.5;
     /// Cut-off of the thrust about which the arm model is linearised (0.2 to 30 Hz all work).

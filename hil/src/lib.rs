@@ -10,3 +10,4 @@ pub mod record;
 pub mod sbus;
 pub mod scenario;
 pub mod sensors;
+pub mod study;

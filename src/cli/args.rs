@@ -33,6 +33,51 @@ enum Command {
     ///
     /// Exit status: 0 mission accomplished, 1 not accomplished, 2 bad input or unwritable output.
     Fly(FlyArgs),
+    /// Compute and fly every table and figure of the paper, and set them beside the printed numbers.
+    ///
+    /// Exit status: 0 done, 2 bad input or unwritable output.
+    Paper(PaperArgs),
+    /// Fit the arm equation to thrust-bench data and write the arm for the simulator and the flight stack.
+    ///
+    /// BENCH.csv has a header line with the columns infill_percent (%), thrust_n (N), tilt_deg (degrees, tip up
+    /// positive) and, if wanted, power_ratio (P/P0, 1 without it). Exit status: 0 done, 2 bad input or unwritable output.
+    FitArm(FitArgs),
+}
+
+/// What this process is to do.
+#[derive(Debug)]
+pub enum Task {
+    /// Fly a mission.
+    Fly(FlyArgs),
+    /// Reproduce the paper.
+    Paper(PaperArgs),
+    /// Fit an arm.
+    FitArm(FitArgs),
+}
+
+/// Which data, and where the fit goes.
+#[derive(Args, Debug)]
+pub struct FitArgs {
+    /// Bench data.
+    #[arg(value_name = "BENCH.csv")]
+    pub bench: PathBuf,
+    /// Directory for fit.html, fit.json, arm.toml and arm.console.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the fit as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Where the paper's results go.
+#[derive(Args, Debug)]
+pub struct PaperArgs {
+    /// Directory for paper.html and paper.json.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the results as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What to fly and where to report it. Options win over the file.
@@ -105,30 +150,37 @@ impl Message {
         };
         if let Some(ContextValue::String(extra)) = extra
             && !extra.starts_with('-')
-            && extra != "fly"
+            && !["fly", "paper", "fit-arm"].contains(&extra.as_str())
         {
-            return format!("unexpected argument '{extra}': allowed is one scenario file");
+            let allowed = match std::env::args().nth(1).as_deref() {
+                Some("paper") => "no file",
+                Some("fit-arm") => "one CSV file",
+                _ => "one scenario file",
+            };
+            return format!("unexpected argument '{extra}': allowed is {allowed}");
         }
         let text = self.0.to_string();
         let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
         let told = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
-        let line = told.collect::<Vec<_>>().join("; ");
+        let line = told.collect::<Vec<_>>().join("; ").replace(":; ", ": ");
         line.strip_prefix("error: ").unwrap_or(&line).to_owned()
     }
 }
 
 /// The options of this process.
-pub fn parse() -> Result<FlyArgs, Message> {
+pub fn parse() -> Result<Task, Message> {
     parse_from(std::env::args_os())
 }
 
 fn parse_from(
     args: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>,
-) -> Result<FlyArgs, Message> {
+) -> Result<Task, Message> {
     let cli = Cli::try_parse_from(args).map_err(Message)?;
     Ok(match cli.command {
-        Some(Command::Fly(fly)) => fly,
-        None => cli.fly,
+        Some(Command::Fly(fly)) => Task::Fly(fly),
+        Some(Command::Paper(paper)) => Task::Paper(paper),
+        Some(Command::FitArm(fit)) => Task::FitArm(fit),
+        None => Task::Fly(cli.fly),
     })
 }
 
@@ -181,7 +233,10 @@ mod tests {
     use super::*;
 
     fn args(line: &str) -> Result<FlyArgs, String> {
-        parse_from(["sophie"].into_iter().chain(line.split_whitespace())).map_err(|m| m.line())
+        match parse_from(["sophie"].into_iter().chain(line.split_whitespace())).map_err(|m| m.line())? {
+            Task::Fly(fly) => Ok(fly),
+            other => Err(format!("{other:?}")),
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! reported.
 
 mod args;
+mod study;
 
 use std::process::ExitCode;
 
@@ -13,7 +14,7 @@ use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain, finish, result};
 
-use self::args::FlyArgs;
+use self::args::{FlyArgs, Task};
 
 /// The mission was not accomplished.
 const FAILED: u8 = 1;
@@ -24,11 +25,16 @@ const PROGRAM: &str = "sophie";
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let args = match args::parse() {
-        Ok(args) => args,
+    let task = match args::parse() {
+        Ok(task) => task,
         Err(message) => return message.show(),
     };
-    match run(&args) {
+    let done = match task {
+        Task::Fly(args) => run(&args),
+        Task::Paper(args) => study::paper(&args),
+        Task::FitArm(args) => study::fit_arm(&args),
+    };
+    match done {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(FAILED),
         Err(line) => refuse(&line),

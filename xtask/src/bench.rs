@@ -7,7 +7,7 @@ use crate::boards::{self, Board};
 use crate::{Error, build};
 
 /// Boards that can be emulated.
-pub const EMULATED: [&str; 2] = ["matek-h743", "f405"];
+const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
 /// The board that `words`, the arguments behind the verb, begin with, if it can be emulated.
 ///

@@ -8,14 +8,14 @@ use std::process::Command;
 use std::sync::LazyLock;
 
 use sophie_bench::elf::Firmware;
-use sophie_bench::emulator::rig::{Defect, run};
+use sophie_bench::emulator::rig::{Defect, read, run};
 use sophie_bench::gaps;
 use sophie_bench::suite::{self, Test};
 
 /// The image: the one that `SOPHIE_RIG_ELF` names, or a new one.
 static IMAGE: LazyLock<(Firmware, Vec<Test>)> = LazyLock::new(|| {
     let path = std::env::var_os("SOPHIE_RIG_ELF").map_or_else(build, PathBuf::from);
-    let image = Firmware::read(&path).expect("the tests' image");
+    let image = read(&path).expect("the tests' image");
     let tests = suite::tests(&image).expect("its tests");
     (image, tests)
 });

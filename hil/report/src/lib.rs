@@ -9,11 +9,11 @@ pub mod log;
 mod moments;
 pub mod page;
 mod plot;
-mod scale;
+pub mod scale;
 mod scene;
 mod schemas;
 pub mod summary;
-mod svg;
+pub mod svg;
 #[cfg(test)]
 mod synthetic;
 mod tables;

@@ -11,7 +11,8 @@ use super::svg::escape;
 use super::tables;
 use super::units::{deg, kgcm};
 
-const STYLE: &str = include_str!("style.css");
+/// The look of all pages.
+pub const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("cursor.js");
 
 /// The page.

@@ -8,7 +8,7 @@ use super::plot::Span;
 const COLUMNS: usize = 460;
 
 /// The curve as its smallest and largest value in each column, in the order in which they come.
-pub fn thin(record: &FlightRecord, span: Span, values: &[f64]) -> Vec<(f64, f64)> {
+pub(crate) fn thin(record: &FlightRecord, span: Span, values: &[f64]) -> Vec<(f64, f64)> {
     let shown: Vec<(f64, f64)> = record
         .samples
         .iter()

@@ -13,6 +13,8 @@ use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
 
 /// Mass at the arm's tip: motor, propeller and the arm's share, kg (assumed, sets the mode to 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
+/// A1, A2, B1, B2 of Eq. 1 (paper, Table I).
+pub const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 /// Thrust at which an arm is level, N: half of the largest of the paper's rotors.
 const LEVEL_THRUST: f64 = 4.15;
 /// Thrust at which the damping ratio is meant, N: hover.
@@ -42,9 +44,21 @@ impl ArmSpec {
     /// and bent by `offset` (rad) against the nominal one, with the damping ratio `zeta` in hover.
     #[must_use]
     pub fn new(infill: f64, gain_k: f64, gain: f64, offset: f64, zeta: f64) -> Self {
-        // Table I of the paper.
-        let nominal_linear = (gain_k * (2.4387 - 0.1997 * infill)).to_radians();
-        let nominal_quadratic = (gain_k * (-0.162 + 0.0151 * infill)).to_radians();
+        Self::with(TABLE_1, infill, gain_k, gain, offset, zeta)
+    }
+
+    /// The same with coefficients A1, A2, B1, B2 of its own in Eq. 1 (°/N, °/(N %), °/N², °/(N² %)).
+    #[must_use]
+    pub fn with(
+        [a1, a2, b1, b2]: [f64; 4],
+        infill: f64,
+        gain_k: f64,
+        gain: f64,
+        offset: f64,
+        zeta: f64,
+    ) -> Self {
+        let nominal_linear = (gain_k * (a1 + a2 * infill)).to_radians();
+        let nominal_quadratic = (gain_k * (b1 + b2 * infill)).to_radians();
         let (linear, quadratic) = (nominal_linear * gain, nominal_quadratic * gain);
         let slope = linear + 2.0 * quadratic * HOVER_THRUST;
         let stiffness = ARM_LENGTH / slope;

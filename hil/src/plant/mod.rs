@@ -71,6 +71,8 @@ pub struct Plant {
     coupled: bool,
     /// Push at the centre of mass, N, NED, from outside.
     pub push: DVec3,
+    /// Moment from outside, N·m, body.
+    pub moment: DVec3,
     specific_force: DVec3,
 }
 
@@ -82,8 +84,15 @@ impl Plant {
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
         let limb = |i: usize| {
-            let spec = ArmSpec::new(v.infill, v.gain_k, v.arm_gain[i], v.arm_offset[i], v.arm_damping)
-                .level_at(0.5 * v.rotor.thrust_max);
+            let spec = ArmSpec::with(
+                v.arm_coefficients,
+                v.infill,
+                v.gain_k,
+                v.arm_gain[i],
+                v.arm_offset[i],
+                v.arm_damping,
+            )
+            .level_at(v.arm_level_share * v.rotor.thrust_max);
             Limb {
                 arm: Arm::new(i, spec),
                 rotor: Rotor::new(i, chi, v.rotor),
@@ -121,6 +130,7 @@ impl Plant {
             },
             coupled: v.coupled_arms,
             push: DVec3::ZERO,
+            moment: DVec3::ZERO,
             specific_force: DVec3::new(0.0, 0.0, -GRAVITY),
         }
     }
@@ -133,7 +143,7 @@ impl Plant {
 
         // Everything from outside on the body: gravity is added by the solver.
         let mut force = pose.to_body(self.push - pose.velocity * DRAG + self.gust.force());
-        let mut moment = self.gust.moment();
+        let mut moment = self.gust.moment() + self.moment;
         self.gust.step(STEP);
         let near_ground = pose.position.z > -NEAR;
         if near_ground {

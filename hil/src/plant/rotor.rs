@@ -62,6 +62,15 @@ impl Rotor {
         }
     }
 
+    /// Rotor `index` as [`Rotor::new`], already turning with the thrust `thrust` N.
+    #[must_use]
+    pub fn turning(index: usize, chi: f64, spec: RotorSpec, thrust: f64) -> Self {
+        Self {
+            speed: (thrust.max(0.0) / THRUST_COEFFICIENT).sqrt(),
+            ..Self::new(index, chi, spec)
+        }
+    }
+
     /// Advances by `dt` s under the command `command` (0..1) at `voltage` V; returns the thrust, N.
     pub fn step(&mut self, dt: f64, command: f64, voltage: f64) -> f64 {
         // Steady speed x of full speed: u V/V0 = (1 - s) x + s x², the winding's drop with the torque's square.

@@ -8,6 +8,7 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 
 use super::{Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read_steps};
+use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
 
@@ -20,6 +21,8 @@ impl Default for Vehicle {
             infill: 6.9,
             gain_k: 7.75,
             configuration: Configuration::B,
+            arm_coefficients: TABLE_1,
+            arm_level_share: 0.5,
             arm_gain: [1.0; 4],
             arm_offset: [0.0; 4],
             coupled_arms: true,

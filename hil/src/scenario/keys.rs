@@ -209,6 +209,15 @@ pub const KEYS: &[Key] = &[
         kind: Kind::Choice(CONFIGURATIONS, |s, v| s.vehicle.configuration = configuration(v)),
     },
     Key {
+        name: "vehicle.arm_coefficients",
+        kind: Kind::PerArm(Range::new(-10.0, 30.0, ""), |s| &mut s.vehicle.arm_coefficients),
+    },
+    number!(
+        "vehicle.arm_level_share",
+        Range::new(-0.5, 1.0, ""),
+        vehicle.arm_level_share
+    ),
+    Key {
         name: "vehicle.arm_gain",
         kind: Kind::PerArm(Range::new(0.5, 1.5, ""), |s| &mut s.vehicle.arm_gain),
     },

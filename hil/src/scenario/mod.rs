@@ -63,6 +63,10 @@ pub struct Vehicle {
     pub gain_k: f64,
     /// Sense of rotation of the rotors.
     pub configuration: Configuration,
+    /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): the paper's Table I or those of a fitted arm.
+    pub arm_coefficients: [f64; 4],
+    /// Thrust at which the nominal arm is level over the rotor's largest: sets α0.
+    pub arm_level_share: f64,
     /// Factor on each arm's elastic tilt: 1 is the nominal arm.
     pub arm_gain: PerArm<f64>,
     /// Offset of each arm's tilt, rad: 0 is the nominal arm.

@@ -208,6 +208,9 @@ fn believe_the_vehicle(scenario: &mut Scenario) {
     let Scenario { params, vehicle, .. } = scenario;
     params.infill = vehicle.infill as f32;
     params.gain_k = vehicle.gain_k as f32;
+    let [a1, a2, b1, b2] = vehicle.arm_coefficients.map(|c| c as f32);
+    (params.arm_a1, params.arm_a2, params.arm_b1, params.arm_b2) = (a1, a2, b1, b2);
+    params.arm_level_share = vehicle.arm_level_share as f32;
     params.mass = vehicle.body.mass as f32;
     let [roll, pitch, yaw] = vehicle.body.inertia.map(|i| i as f32);
     (params.inertia_roll, params.inertia_pitch, params.inertia_yaw) = (roll, pitch, yaw);

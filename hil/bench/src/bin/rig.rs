@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use sophie_bench::elf::Firmware;
-use sophie_bench::emulator::rig::{Defect, run};
+use sophie_bench::emulator::rig::{Defect, read, run};
 use sophie_bench::gaps;
 use sophie_bench::suite::{self, Test};
 
@@ -17,7 +17,7 @@ fn main() -> ExitCode {
         eprintln!("rig: say `rig ELF`, with parts of names of tests behind it or none");
         return ExitCode::from(2);
     };
-    let tests = Firmware::read(Path::new(elf)).and_then(|image| {
+    let tests = read(Path::new(elf)).and_then(|image| {
         let tests = suite::tests(&image)?;
         Ok((image, tests))
     });

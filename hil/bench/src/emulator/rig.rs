@@ -1,5 +1,7 @@
 //! The emulated board on a test rig: it lies still, and every jumper and part of `hil/README.md` is in place.
 
+use std::path::Path;
+
 use rigless::device::Level;
 use rigless::emulator::{self, AccessKind, Driver, Host, Settled, Start, Stop, Watch};
 use rigless::image::Image;
@@ -14,6 +16,7 @@ use super::h743::{H743, MATEK};
 use super::pads::At;
 use super::rtt::Rtt;
 use super::{MS, gaps};
+use crate::boards;
 use crate::elf::Firmware;
 use crate::log::{Line, Log};
 use crate::suite::{self, Test};
@@ -80,6 +83,14 @@ pub struct Ended {
     pub lines: Vec<Line>,
     /// What the emulator could not do.
     pub gaps: Vec<Gap>,
+}
+
+/// Reads the tests' image of the one board that has a rig here, the reference board.
+///
+/// # Errors
+/// One line: what is wrong with the file.
+pub fn read(path: &Path) -> Result<Firmware, String> {
+    Firmware::read(path, boards::find(MATEK.name)?)
 }
 
 /// Runs `test` of `image` on a rig with a defect, from power-on.
@@ -202,10 +213,10 @@ fn erase(host: &mut dyn Host) {
 impl Driver<Wired<H743>> for Rig {
     fn on_settled(&mut self, session: &mut Session<Wired<H743>>, host: &mut dyn Host, settled: Settled) {
         match settled {
-            Settled::Access { access, .. } => {
-                if PORTS.contains(&access.address) && access.kind == AccessKind::Write {
-                    self.carry(session.board_mut(), access.virtual_time);
-                }
+            Settled::Access { access, .. }
+                if PORTS.contains(&access.address) && access.kind == AccessKind::Write =>
+            {
+                self.carry(session.board_mut(), access.virtual_time);
             }
             Settled::Stop(stop) => {
                 let resets = session.resets().len();

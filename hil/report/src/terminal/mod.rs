@@ -4,7 +4,7 @@ pub mod console;
 pub mod live;
 pub mod output;
 pub mod result;
-mod table;
+pub mod table;
 
 use sophie_hil::record::FlightRecord;
 

@@ -1,0 +1,81 @@
+//! `sophie paper` and `sophie fit-arm`: their results on the terminal and on disk.
+
+use std::time::Instant;
+
+use sophie_report::terminal::console::{self, Console};
+use sophie_report::terminal::output::OutDir;
+
+use super::args::{FitArgs, PaperArgs};
+use crate::paper::printed::Printed;
+use crate::paper::{self, bench_data, fit, fit_report, json, page, text};
+
+/// The files of the paper's results.
+const FILES: [&str; 2] = ["paper.html", "paper.json"];
+
+/// The files of a fit.
+const FIT_FILES: [&str; 4] = ["fit.html", "fit.json", "arm.toml", "arm.console"];
+
+/// Computes, flies, prints and writes every section.
+pub fn paper(args: &PaperArgs) -> Result<bool, String> {
+    let out = OutDir::prepare(&args.out, &FILES)?;
+    let console = Console::new(args.json);
+    let printed = Printed::read();
+    let started = Instant::now();
+    let mut sections = vec![];
+    for work in paper::SECTIONS {
+        let section = work(&printed);
+        for line in text::lines(sections.len() + 1, &section) {
+            console.say(&line);
+        }
+        sections.push(section);
+    }
+    let results = json::json(&sections);
+    let page = page::html(paper::TITLE, paper::LEAD, &sections);
+    let files = [page.into_bytes(), results.clone().into_bytes()];
+    let written = out.write(&FILES.into_iter().zip(files).collect::<Vec<_>>())?;
+    console.say("");
+    console.say(&format!(
+        "{} sections in {:.1} s, written: {}",
+        sections.len(),
+        started.elapsed().as_secs_f64(),
+        written.join("  ")
+    ));
+    if args.json {
+        console::print(results.trim_end())?;
+    }
+    console.end()?;
+    Ok(true)
+}
+
+/// Fits an arm to bench data, prints and writes it.
+pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
+    let file = args.bench.display().to_string();
+    let points = bench_data::load(&args.bench)?;
+    let t = Printed::read().table_1;
+    let fitted = fit::fit(&points, [t.a1, t.a2, t.b1, t.b2]).map_err(|why| format!("{file}: {why}"))?;
+    let parameters =
+        fit_report::parameters(&points, &fitted, &file).map_err(|why| format!("{file}: {why}"))?;
+    let out = OutDir::prepare(&args.out, &FIT_FILES)?;
+    let console = Console::new(args.json);
+    let sections = [fit_report::section(&points, &fitted)];
+    for line in text::lines(1, &sections[0]) {
+        console.say(&line);
+    }
+    let results = json::json(&sections);
+    let page = page::html("An arm from bench data", &file, &sections);
+    let lines = fit_report::console_lines(&parameters);
+    let files = [
+        page.into_bytes(),
+        results.clone().into_bytes(),
+        parameters.into_bytes(),
+        lines.into_bytes(),
+    ];
+    let written = out.write(&FIT_FILES.into_iter().zip(files).collect::<Vec<_>>())?;
+    console.say("");
+    console.say(&format!("written: {}", written.join("  ")));
+    if args.json {
+        console::print(results.trim_end())?;
+    }
+    console.end()?;
+    Ok(true)
+}

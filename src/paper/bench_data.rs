@@ -1,0 +1,202 @@
+//! Thrust-bench data of soft arms: a CSV file of thrusts and tilts, read line by line.
+//!
+//! The first line names the columns, in any order: `infill_percent` (%), `thrust_n` (N) and `tilt_deg` (degrees, tip up
+//! positive) must be there; `power_ratio` (P/P0, 1 where it is missing) may. Blank lines and what follows a `#` are
+//! skipped.
+
+use std::path::Path;
+
+/// Largest file that is read, bytes.
+const MAX_BYTES: u64 = 16 << 20;
+
+/// A measured point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Infill, %.
+    pub infill: f64,
+    /// Thrust, N.
+    pub thrust: f64,
+    /// Tilt, degrees, tip up positive.
+    pub tilt: f64,
+    /// Battery power over full, 0.3 to 1.
+    pub power: f64,
+}
+
+/// A column: name, smallest and largest value, unit.
+type Column = (&'static str, f64, f64, &'static str);
+
+const COLUMNS: [Column; 4] = [
+    ("infill_percent", 1.0, 100.0, "%"),
+    ("thrust_n", 0.0, 100.0, "N"),
+    ("tilt_deg", -90.0, 90.0, "deg"),
+    ("power_ratio", 0.3, 1.0, ""),
+];
+
+/// Reads a file.
+///
+/// # Errors
+/// One line: file, line, column, value, what is allowed, and which other lines are bad.
+pub fn load(path: &Path) -> Result<Vec<Point>, String> {
+    let file = path.display();
+    let told = |why: String| format!("{file}: {why}");
+    let size =
+        std::fs::metadata(path).map_err(|e| told(format!("cannot be read: {e}: allowed is a CSV file")))?;
+    if size.is_dir() || size.len() > MAX_BYTES {
+        return Err(told(
+            "cannot be read: allowed is a CSV file of at most 16 MiB".to_owned(),
+        ));
+    }
+    let bytes =
+        std::fs::read(path).map_err(|e| told(format!("cannot be read: {e}: allowed is a CSV file")))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| told("is not text: allowed is a CSV file in UTF-8".to_owned()))?;
+    parse(&text, &file.to_string())
+}
+
+/// Reads the text of a file called `file`.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
+    let content = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .map(|(i, l)| (i + 1, content(l)))
+        .filter(|(_, l)| !l.is_empty());
+    let Some((number, header)) = lines.next() else {
+        return Err(format!(
+            "{file}: holds no line: allowed is a header with {}",
+            names()
+        ));
+    };
+    let header: Vec<&str> = header.split(',').map(str::trim).collect();
+    let mut order = vec![];
+    for name in &header {
+        let Some(column) = COLUMNS.iter().position(|c| c.0 == *name) else {
+            return Err(format!(
+                "{file}:{number}: column '{name}' is not known: allowed are {}",
+                names()
+            ));
+        };
+        if order.contains(&column) {
+            return Err(format!(
+                "{file}:{number}: column '{name}' stands twice: allowed is once"
+            ));
+        }
+        order.push(column);
+    }
+    if let Some(missing) = (0..3).find(|c| !order.contains(c)) {
+        return Err(format!(
+            "{file}:{number}: column '{}' is missing: needed are {}",
+            COLUMNS[missing].0,
+            names()
+        ));
+    }
+    let (mut points, mut bad): (Vec<Point>, Vec<(usize, String)>) = (vec![], vec![]);
+    for (number, line) in lines {
+        match row(&line, &order) {
+            Ok(point) => points.push(point),
+            Err(why) => bad.push((number, why)),
+        }
+    }
+    let Some((number, why)) = bad.first() else {
+        return Ok(points);
+    };
+    let others: Vec<String> = bad.iter().skip(1).take(8).map(|(n, _)| n.to_string()).collect();
+    let rest = if others.is_empty() {
+        String::new()
+    } else {
+        let dots = if bad.len() > 9 { ", ..." } else { "" };
+        format!(" (bad as well: lines {}{dots})", others.join(", "))
+    };
+    Err(format!("{file}:{number}: {why}{rest}"))
+}
+
+fn names() -> String {
+    "infill_percent, thrust_n, tilt_deg and, if wanted, power_ratio".to_owned()
+}
+
+fn row(line: &str, order: &[usize]) -> Result<Point, String> {
+    let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+    if cells.len() != order.len() {
+        return Err(format!(
+            "{} values: allowed are {}, as in the header",
+            cells.len(),
+            order.len()
+        ));
+    }
+    let mut values = [f64::NAN, f64::NAN, f64::NAN, 1.0];
+    for (cell, column) in cells.iter().zip(order) {
+        let (name, low, high, unit) = COLUMNS[*column];
+        let value = cell.parse().ok().filter(|v| (low..=high).contains(v));
+        let allowed = format!("{low} to {high} {unit}");
+        values[*column] = value.ok_or_else(|| {
+            format!(
+                "{name} = '{cell}': allowed is a number from {}",
+                allowed.trim_end()
+            )
+        })?;
+    }
+    let [infill, thrust, tilt, power] = values;
+    Ok(Point {
+        infill,
+        thrust,
+        tilt,
+        power,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_may_come_in_any_order_and_comments_are_skipped() {
+        let points = parse(
+            "# bench\ntilt_deg, thrust_n ,infill_percent\n1.5,2,6 # good\n\n-3,0,8\n",
+            "b.csv",
+        )
+        .unwrap();
+        assert_eq!(
+            points[0],
+            Point {
+                infill: 6.0,
+                thrust: 2.0,
+                tilt: 1.5,
+                power: 1.0
+            }
+        );
+        assert_eq!(points.len(), 2);
+    }
+
+    #[test]
+    fn a_bad_row_is_told_by_its_line_with_the_others() {
+        let head = "infill_percent,thrust_n,tilt_deg\n";
+        for (rows, told) in [
+            (
+                "6,2,1\n6,x,1\n",
+                "b.csv:3: thrust_n = 'x': allowed is a number from 0 to 100 N",
+            ),
+            ("6,2\n", "b.csv:2: 2 values: allowed are 3, as in the header"),
+            (
+                "6,2,NaN\n0.5,2,3\n",
+                "b.csv:2: tilt_deg = 'NaN': allowed is a number from -90 to 90 deg (bad as well: lines 3)",
+            ),
+        ] {
+            assert_eq!(parse(&format!("{head}{rows}"), "b.csv").unwrap_err(), told);
+        }
+        assert!(
+            parse("thrust_n,tilt_deg\n", "b")
+                .unwrap_err()
+                .contains("'infill_percent' is missing")
+        );
+        assert!(
+            parse("thrust_n,thrust\n", "b")
+                .unwrap_err()
+                .contains("'thrust' is not known")
+        );
+        assert!(parse("", "b").unwrap_err().contains("no line"));
+    }
+}

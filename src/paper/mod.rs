@@ -1,0 +1,53 @@
+//! The paper's results: every table and figure, computed and flown with this stack and set beside what is printed.
+//!
+//! A section a file. Numbers come from running code; the paper's own stand in `printed.toml`, with table and row.
+
+pub mod arm;
+pub mod bench_data;
+pub mod beyond;
+pub mod chart;
+pub mod clamp;
+pub mod endurance;
+pub mod fatigue;
+pub mod fit;
+pub mod fit_report;
+pub mod flights;
+pub mod json;
+pub mod mass;
+pub mod mixer;
+pub mod model;
+pub mod page;
+pub mod parallel;
+pub mod printed;
+pub mod roll;
+pub mod stability;
+pub mod statics;
+pub mod text;
+pub mod translation;
+
+use self::model::Section;
+use self::printed::Printed;
+
+/// A section's function.
+type Work = fn(&Printed) -> Section;
+
+/// The sections, in the order of the paper.
+pub const SECTIONS: &[Work] = &[
+    arm::section,
+    mass::section,
+    mixer::section,
+    stability::section,
+    roll::section,
+    clamp::section,
+    translation::section,
+    endurance::section,
+    fatigue::section,
+    beyond::section,
+];
+
+/// Title of the page.
+pub const TITLE: &str = "SOPHIE: the paper's results, reproduced and corrected";
+/// What stands under it.
+pub const LEAD: &str = "Every table and figure of Ruiz, Arrue and Ollero (IEEE RA-L 2022), computed or flown with this \
+                        flight stack on a simulated vehicle. No hardware was involved. The model, its parameters and \
+                        their sources are in docs/paper.md.";

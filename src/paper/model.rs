@@ -1,0 +1,309 @@
+//! What a section of the results is made of: text, tables, comparisons with the printed numbers, charts.
+
+/// What a number beside a printed one is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Nothing in the model was set with this number in view.
+    Prediction,
+    /// A parameter of the model was set so that this number comes out.
+    Calibrated,
+    /// The paper contradicts itself or physics here; the reason stands beside it.
+    Inconsistent,
+}
+
+impl Class {
+    /// The word for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Prediction => "prediction",
+            Self::Calibrated => "calibrated",
+            Self::Inconsistent => "inconsistent",
+        }
+    }
+}
+
+/// A number of the paper and what comes out here.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// What it is.
+    pub what: String,
+    /// Unit; empty for a pure number.
+    pub unit: &'static str,
+    /// What the paper prints.
+    pub printed: f64,
+    /// What the code gives.
+    pub here: f64,
+    /// What that is worth.
+    pub class: Class,
+    /// Why, in a line.
+    pub why: String,
+}
+
+impl Comparison {
+    /// Deviation from the printed number as a share of it.
+    pub fn deviation(&self) -> f64 {
+        self.here / self.printed - 1.0
+    }
+}
+
+/// A cell of a table.
+#[derive(Clone, Debug)]
+pub enum Cell {
+    /// Words.
+    Text(String),
+    /// A number with its decimals; not finite is shown as a dash.
+    Number(f64, usize),
+}
+
+impl Cell {
+    /// What is shown.
+    pub fn shown(&self) -> String {
+        match self {
+            Self::Text(text) => text.clone(),
+            Self::Number(v, _) if !v.is_finite() => "–".to_owned(),
+            Self::Number(v, digits) => {
+                let text = format!("{v:.digits$}");
+                // No minus before nothing.
+                let zero = text
+                    .trim_start_matches('-')
+                    .chars()
+                    .all(|c| matches!(c, '0' | '.'));
+                if zero {
+                    text.trim_start_matches('-').to_owned()
+                } else {
+                    text
+                }
+            }
+        }
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+/// A number with `digits` decimals.
+pub const fn num(value: f64, digits: usize) -> Cell {
+    Cell::Number(value, digits)
+}
+
+/// A table.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// What it shows.
+    pub caption: String,
+    /// Titles of the columns, with units.
+    pub columns: Vec<String>,
+    /// Rows.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// An empty table.
+    pub fn new(caption: &str, columns: &[&str]) -> Self {
+        Self {
+            caption: caption.to_owned(),
+            columns: columns.iter().map(|c| (*c).to_owned()).collect(),
+            rows: vec![],
+        }
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = Cell>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// A line.
+    Line,
+    /// A dashed line.
+    Dashed,
+    /// Dots.
+    Dots,
+    /// The paper's own values: open diamonds, the same in every figure.
+    Printed,
+}
+
+/// One series of a chart.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Its name in the legend; empty for none.
+    pub name: String,
+    /// Colour, 0 to 7.
+    pub colour: usize,
+    /// How it is drawn.
+    pub look: Look,
+    /// Its points; one that is not finite breaks a line.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Series {
+    /// A series.
+    pub fn new(name: impl Into<String>, colour: usize, look: Look, points: Vec<(f64, f64)>) -> Self {
+        Self {
+            name: name.into(),
+            colour,
+            look,
+            points,
+        }
+    }
+}
+
+/// A coloured cell of a map.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// Middle, in the axes' units.
+    pub at: (f64, f64),
+    /// Width and height, in the axes' units.
+    pub size: (f64, f64),
+    /// From 0 (bad) to 1 (good); below 0 is lost.
+    pub shade: f64,
+    /// What stands in it.
+    pub text: String,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Default)]
+pub struct Axis {
+    /// Title with its unit.
+    pub title: String,
+    /// Values that it must show at least.
+    pub include: Vec<f64>,
+    /// Limits that hold whatever the data.
+    pub limits: Option<(f64, f64)>,
+    /// Names at 0, 1, 2 and so on, in the place of numbers.
+    pub names: Vec<String>,
+}
+
+impl Axis {
+    /// An axis that follows its data.
+    pub fn new(title: &str) -> Self {
+        Self {
+            title: title.to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// An axis between two values.
+    pub fn between(title: &str, low: f64, high: f64) -> Self {
+        Self {
+            title: title.to_owned(),
+            limits: Some((low, high)),
+            ..Self::default()
+        }
+    }
+
+    /// An axis of cells with a name each.
+    pub fn of_cells(title: &str, names: Vec<String>) -> Self {
+        Self {
+            names: names.clone(),
+            ..Self::between(title, -0.5, names.len() as f64 - 0.5)
+        }
+    }
+
+    /// The axis that also shows `values`.
+    pub fn with(mut self, values: &[f64]) -> Self {
+        self.include.extend(values);
+        self
+    }
+}
+
+/// One drawing.
+#[derive(Clone, Debug, Default)]
+pub struct Chart {
+    /// Its title.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Curves and points.
+    pub series: Vec<Series>,
+    /// Dashed levels across, with a word each.
+    pub levels: Vec<(f64, String)>,
+    /// Dashed lines upright, with a word each.
+    pub uprights: Vec<(f64, String)>,
+    /// Cells of a map, under everything.
+    pub tiles: Vec<Tile>,
+}
+
+/// Charts side by side.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// What is shown and what of it is the paper's.
+    pub caption: String,
+    /// The drawings.
+    pub charts: Vec<Chart>,
+}
+
+/// A part of a section.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// Printed numbers beside ours.
+    Comparisons(String, Vec<Comparison>),
+    /// A table of our own.
+    Table(Table),
+    /// A figure.
+    Figure(Figure),
+}
+
+/// A section of the results.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// Short name for links and JSON.
+    pub id: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// What it comes to, in a sentence or two.
+    pub finding: String,
+    /// Its parts.
+    pub blocks: Vec<Block>,
+}
+
+impl Section {
+    /// An empty section.
+    pub fn new(id: &'static str, title: &'static str) -> Self {
+        Self {
+            id,
+            title,
+            finding: String::new(),
+            blocks: vec![],
+        }
+    }
+
+    /// Adds a paragraph.
+    pub fn text(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Text(text.into()));
+    }
+
+    /// Adds printed numbers beside ours.
+    pub fn compare(&mut self, caption: &str, rows: Vec<Comparison>) {
+        self.blocks.push(Block::Comparisons(caption.to_owned(), rows));
+    }
+
+    /// Adds a table.
+    pub fn table(&mut self, table: Table) {
+        self.blocks.push(Block::Table(table));
+    }
+
+    /// Adds a figure.
+    pub fn figure(&mut self, caption: &str, charts: Vec<Chart>) {
+        self.blocks.push(Block::Figure(Figure {
+            caption: caption.to_owned(),
+            charts,
+        }));
+    }
+}

@@ -1,0 +1,47 @@
+//! Flights in as many threads as there are processors; the results come in the order of the jobs.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+/// Does `work` on every job. Each job's result depends on the job alone, so the threads change nothing.
+pub fn each<J: Sync, R: Send>(jobs: &[J], work: impl Fn(&J) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let results: Vec<Mutex<Option<R>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
+    let threads = thread::available_parallelism()
+        .map_or(1, usize::from)
+        .min(jobs.len().max(1));
+    thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some((job, slot)) = {
+                    let i = next.fetch_add(1, Ordering::Relaxed);
+                    jobs.get(i).zip(results.get(i))
+                } {
+                    let result = work(job);
+                    if let Ok(mut slot) = slot.lock() {
+                        *slot = Some(result);
+                    }
+                }
+            });
+        }
+    });
+    // A job that panicked has ended the scope with its panic: every slot is filled here.
+    results
+        .into_iter()
+        .filter_map(|slot| slot.into_inner().ok().flatten())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn results_keep_the_order_of_the_jobs() {
+        let jobs: Vec<u32> = (0..100).collect();
+        assert_eq!(
+            super::each(&jobs, |j| j * 2),
+            jobs.iter().map(|j| j * 2).collect::<Vec<_>>()
+        );
+        assert!(super::each(&[] as &[u32], |j| *j).is_empty());
+    }
+}

@@ -1,0 +1,90 @@
+//! The sections as text for a terminal.
+
+use super::model::{Block, Cell, Section};
+use super::page::{deviation, value};
+use sophie_report::terminal::table::{Align, Table};
+
+/// Width to which paragraphs are broken.
+const WIDTH: usize = 110;
+
+/// The lines of a section: finding, comparisons and tables. Figures are on the page.
+pub fn lines(number: usize, s: &Section) -> Vec<String> {
+    let mut out = vec![String::new(), format!("{number}. {}", s.title)];
+    out.extend(wrapped(&s.finding));
+    for block in &s.blocks {
+        match block {
+            Block::Text(_) | Block::Figure(_) => {}
+            Block::Comparisons(caption, rows) => {
+                out.push(String::new());
+                let mut t = Table::new(&[
+                    (caption, Align::Left),
+                    ("printed", Align::Right),
+                    ("here", Align::Right),
+                    ("unit", Align::Left),
+                    ("deviation", Align::Right),
+                    ("class", Align::Left),
+                ]);
+                for r in rows {
+                    let mark = if r.class == super::model::Class::Inconsistent {
+                        " *"
+                    } else {
+                        ""
+                    };
+                    t.row([
+                        r.what.clone(),
+                        value(r.printed),
+                        value(r.here),
+                        r.unit.to_owned(),
+                        deviation(r),
+                        format!("{}{mark}", r.class.word()),
+                    ]);
+                }
+                out.extend(t.lines());
+                let mut told: Vec<&str> = vec![];
+                for r in rows
+                    .iter()
+                    .filter(|r| r.class == super::model::Class::Inconsistent)
+                {
+                    if !told.contains(&r.why.as_str()) {
+                        told.push(&r.why);
+                        out.extend(wrapped(&format!("* {}", r.why)));
+                    }
+                }
+            }
+            Block::Table(table) => {
+                out.push(String::new());
+                out.push(table.caption.clone());
+                let align = |i: usize| {
+                    let words = table.rows.iter().any(|r| matches!(r.get(i), Some(Cell::Text(_))));
+                    if words { Align::Left } else { Align::Right }
+                };
+                let columns: Vec<(&str, Align)> = table
+                    .columns
+                    .iter()
+                    .enumerate()
+                    .map(|(i, c)| (c.as_str(), align(i)))
+                    .collect();
+                let mut t = Table::new(&columns);
+                for row in &table.rows {
+                    t.row(row.iter().map(Cell::shown));
+                }
+                out.extend(t.lines());
+            }
+        }
+    }
+    out
+}
+
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = vec![];
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(last) if last.chars().count() + word.chars().count() < WIDTH => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
