@@ -31,6 +31,12 @@ pub enum Fault {
     ImuWord(u8),
     /// The sensor of this arm, 0 to 3, is unplugged (true) or plugged in again.
     ArmUnplugged(usize, bool),
+    /// The chips on this bus of the arms, 0 or 1, hold the clock low for so many µs after each byte; 0 is none.
+    ClockHeld(usize, u32),
+    /// The processor's supply breaks down (false), or is back.
+    Supply(bool),
+    /// The task of this name in `src/firmware/tasks.rs` is never run again: it hangs in what it awaits.
+    TaskHung(&'static str),
     /// The flash that is kept for parameters is overwritten, as a program of another maker would.
     CorruptParameters,
     /// The processor stands still (true) or goes on: only the watchdog is left.

@@ -73,6 +73,16 @@ impl<C: Chip> Wired<C> {
         }
     }
 
+    /// Makes the chips on a bus of the arms hold the clock for `us` µs after each byte; false where the emulator cannot.
+    pub fn hold_clock(&mut self, bus: usize, us: u32) -> bool {
+        self.chip.hold_clock(bus, u64::from(us) * 1000)
+    }
+
+    /// Makes the next reset one by a supply that broke down.
+    pub fn brown_out(&mut self) {
+        self.chip.brown_out();
+    }
+
     /// Puts volts on the analog inputs: pressure 1 to 4, battery voltage, battery current.
     pub fn set_analog(&mut self, volts: [f64; 6]) {
         for (channel, volts) in self.pads.analog.into_iter().zip(volts) {
