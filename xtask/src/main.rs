@@ -25,8 +25,9 @@ usage: cargo xtask VERB
 
   firmware BOARD     build the firmware and check its image; the last line is the path of the ELF
   flash BOARD        build, flash through probe-rs and show the log
-  bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--json]
-                     build and fly a mission on the emulated board (matek-h743); exit status 1 when it fails, 2 for bad input
+  bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--console PORT] [--json]
+                     build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
+                     input
   sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml and with
                      the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
   cost [--tighten|--json]

@@ -25,6 +25,7 @@ use crate::emulator::{Emulator, Settings};
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
+use crate::terminal::Terminal;
 use crate::wires::{Digest, Fault, Pins, Run, Wires};
 
 /// A vehicle with the emulated board in it.
@@ -38,6 +39,7 @@ pub struct Bench<'a> {
     wires: Wires,
     pins: Pins,
     log: Log<'a>,
+    terminal: Option<Terminal>,
     told: Box<dyn FnMut(&Line) + 'a>,
     telemetry: VecDeque<u8>,
     display: Telemetry,
@@ -93,12 +95,14 @@ pub struct Finished {
 impl<'a> Bench<'a> {
     /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
     /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
-    /// `told`.
+    /// `told`; the console is at `terminal`.
+    #[expect(clippy::too_many_arguments, reason = "what a vehicle is made of")]
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
         speed: f64,
         plan: Plan,
+        terminal: Option<Terminal>,
         rng: &mut Pcg64Mcg,
         told: impl FnMut(&Line) + 'a,
     ) -> Self {
@@ -119,6 +123,7 @@ impl<'a> Bench<'a> {
             wires: Wires::default(),
             pins: Pins::default(),
             log: Log::new(&firmware.table),
+            terminal,
             told: Box::new(told),
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
@@ -248,6 +253,9 @@ impl Aircraft for Bench<'_> {
             };
             self.pins = emulator.advance(std::mem::take(&mut self.wires))?;
             let ms = self.pins.ms;
+            if let Some(terminal) = &mut self.terminal {
+                self.wires.console = terminal.exchange(&self.pins.console);
+            }
             let bytes = std::mem::take(&mut self.pins.telemetry);
             self.display.take(&bytes);
             self.telemetry.extend(bytes);

@@ -21,4 +21,5 @@ pub mod log;
 pub mod plan;
 pub mod sensors;
 pub mod stored;
+pub mod terminal;
 pub mod wires;

@@ -13,6 +13,7 @@ use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::flyable;
 use sophie_bench::plan::Plan;
+use sophie_bench::terminal::Terminal;
 use sophie_hil::scenario::{Overrides, Scenario};
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
@@ -49,6 +50,9 @@ struct Args {
         allow_negative_numbers = true
     )]
     speed: f64,
+    /// Put the board's console on this port of 127.0.0.1.
+    #[arg(long, value_name = "PORT")]
+    console: Option<u16>,
     /// Print the result as JSON on stdout, everything else on stderr.
     #[arg(long)]
     json: bool,
@@ -99,6 +103,7 @@ fn run(args: &Args) -> Result<bool, String> {
     };
     flyable::check(&scenario)?;
     let firmware = Firmware::read(&args.elf, board)?;
+    let terminal = args.console.map(Terminal::listen).transpose()?;
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
@@ -113,6 +118,7 @@ fn run(args: &Args) -> Result<bool, String> {
         &scenario,
         args.speed,
         Plan::default(),
+        terminal,
         |line| console.say(&line.to_string()),
         &mut Lines::new(&console),
     )?;

@@ -18,6 +18,8 @@ pub struct Wires {
     pub analog: [f64; 6],
     /// Words from the radio's receiver, the parity on top where its line has one.
     pub receiver: Vec<u16>,
+    /// Bytes that are typed at the console.
+    pub console: Vec<u8>,
     /// What breaks or is mended now.
     pub faults: Vec<Fault>,
 }
@@ -56,6 +58,8 @@ pub struct Pins {
     pub servos: PerArm<f64>,
     /// Bytes to the radio's receiver.
     pub telemetry: Vec<u8>,
+    /// Bytes that the console says.
+    pub console: Vec<u8>,
     /// Bytes of the log, as they lie in the buffer that a probe reads.
     pub log: Vec<u8>,
     /// State light, fault light and buzzer: level of the pin.

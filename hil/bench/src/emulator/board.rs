@@ -97,6 +97,11 @@ impl<C: Chip> Wired<C> {
         self.chip.line(self.pads.receiver)
     }
 
+    /// The console's line.
+    pub fn console(&mut self) -> Option<&mut Line> {
+        self.chip.line(self.pads.console)
+    }
+
     /// Takes the edges at the motor timer's outputs, oldest first.
     pub fn motor_edges(&mut self) -> Vec<Edge> {
         self.chip.motor_edges()

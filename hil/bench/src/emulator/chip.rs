@@ -82,7 +82,9 @@ macro_rules! same_on_this_part {
             for (bus, address) in pads.arms {
                 self.i2c(bus).attach(Bno055::new(address));
             }
-            self.inner.usart[pads.receiver].attach(Line::default());
+            for port in [pads.receiver, pads.console] {
+                self.inner.usart[port].attach(Line::default());
+            }
         }
 
         fn imu(&mut self, interface: usize) -> Option<&mut Imu> {

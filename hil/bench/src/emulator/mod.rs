@@ -31,13 +31,14 @@ use sophie_tasks::rc::Protocol;
 use self::board::Wired;
 use self::chip::Chip;
 use self::chips::icm42688p::Sample;
+use self::chips::line::Line;
 use self::f405::F405;
 use self::h743::H743;
 use self::pads::Pads;
 use self::rtt::Rtt;
 use crate::boards::Kind;
 use crate::elf::Firmware;
-use crate::esc::{Esc, Line};
+use crate::esc::{self, Esc};
 use crate::stored;
 use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
 
@@ -85,7 +86,7 @@ impl Emulator {
         let stored =
             Image::new(Path::new("parameters"), stored, Some(first)).map_err(|e| format!("emulator: {e}"))?;
         let images = [image, stored];
-        let line = Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
+        let line = esc::Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
         let receiver = serial::Setup::of(Protocol::from_params(&settings.params), kind);
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);
@@ -307,17 +308,15 @@ impl World {
             self.servos = servos;
             servos.iter().for_each(|us| self.digest.word(us.to_bits()));
         }
-        let words = board
-            .receiver()
-            .map(|line| std::mem::take(&mut line.incoming))
-            .unwrap_or_default();
-        let telemetry: Vec<u8> = words.into_iter().map(|word| word as u8).collect();
+        let telemetry = heard(board.receiver());
+        let console = heard(board.console());
         telemetry.iter().for_each(|byte| self.digest.byte(*byte));
         Pins {
             ms: self.ms,
             motors: self.escs.each_ref().map(|esc| esc.command(now.0)),
             servos,
             telemetry,
+            console,
             log: self.rtt.drain(host),
             signals: board.signals(now),
             resets,
@@ -437,7 +436,16 @@ impl World {
         if let Some(line) = board.receiver() {
             line.outgoing.extend(wires.receiver);
         }
+        if let Some(line) = board.console() {
+            line.outgoing.extend(wires.console.into_iter().map(u16::from));
+        }
     }
+}
+
+/// Takes the bytes that the chip has sent over a line.
+fn heard(line: Option<&mut Line>) -> Vec<u8> {
+    let words = line.map_or(Vec::new(), |line| std::mem::take(&mut line.incoming));
+    words.into_iter().map(|word| word as u8).collect()
 }
 
 impl<C: Chip> Driver<Wired<C>> for World {

@@ -65,6 +65,7 @@ pub static PADS: Pads = Pads {
     analog: [10, 11, 12, 13, 0, 1],
     receiver: 0,
     receiver_out: (At(0, 9), 7),
+    console: 1,
     motors: TimerPins {
         pins: [At(2, 6), At(2, 7), At(2, 8), At(2, 9)],
         function: 3,
@@ -82,8 +83,10 @@ pub static PADS: Pads = Pads {
         (At(1, 10), 4),
         (At(1, 11), 4),
         (At(0, 10), 7),
+        (At(0, 2), 7),
+        (At(0, 3), 7),
     ],
-    resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10)],
+    resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10), At(0, 3)],
     signals: [At(2, 10), At(2, 11), At(2, 12)],
 };
 

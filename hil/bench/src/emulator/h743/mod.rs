@@ -59,6 +59,7 @@ pub static MATEK: Pads = Pads {
     analog: [4, 8, 18, 7, 10, 11],
     receiver: 5,
     receiver_out: (At(2, 6), 7),
+    console: 6,
     motors: TimerPins {
         pins: [At(3, 12), At(3, 13), At(3, 14), At(3, 15)],
         function: 2,
@@ -76,8 +77,10 @@ pub static MATEK: Pads = Pads {
         (At(1, 10), 4),
         (At(1, 11), 4),
         (At(2, 7), 7),
+        (At(4, 7), 7),
+        (At(4, 8), 7),
     ],
-    resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7)],
+    resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7), At(4, 7)],
     signals: [At(4, 4), At(4, 3), At(0, 15)],
 };
 
