@@ -22,4 +22,5 @@ pub mod plan;
 pub mod sensors;
 pub mod stored;
 pub mod terminal;
+pub mod tilt;
 pub mod wires;

@@ -161,6 +161,8 @@ fn told(args: &Args, flight: &Flight) -> serde_json::Value {
         "motor_frame_gap_max_us": longest as f64 * 1e-3,
         "latency_mean_us": run.latency_us.mean(),
         "latency_max_us": run.latency_us.worst,
+        "arm_tilt_error_mean_deg": board.tilt_error.mean().map(f64::to_degrees),
+        "arm_tilt_error_max_deg": board.tilt_error.mean().map(|_| board.tilt_error.worst.to_degrees()),
         "overruns": board.overruns,
         "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
         "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
@@ -176,7 +178,16 @@ fn lines(flight: &Flight) -> Vec<String> {
     let run = &flight.board.run;
     let frames: u64 = run.escs.iter().map(|esc| esc.frames).sum();
     let bad: u64 = run.escs.iter().map(|esc| esc.bad).sum();
+    let tilt = flight.board.tilt_error;
     vec![
+        tilt.mean()
+            .map_or("arm tilt: never in the air".to_owned(), |mean| {
+                format!(
+                    "arm tilt in flight, measured against the model: {:.1} deg off, at most {:.1}",
+                    mean.to_degrees(),
+                    tilt.worst.to_degrees()
+                )
+            }),
         format!(
             "motor frames: {frames} good, {bad} bad; from data-ready to their first edge {:.0} us, at most {:.0}",
             run.latency_us.mean(),
