@@ -26,8 +26,9 @@ usage: cargo xtask VERB
 
   firmware BOARD     build the firmware and check its image; the last line is the path of the ELF
   flash BOARD        build, flash through probe-rs and show the log
-  bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--json]
-                     build and fly a mission on the emulated board (matek-h743); exit status 1 when it fails, 2 for bad input
+  bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--console PORT] [--json]
+                     build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
+                     input
   rig BOARD [--build|--emulated] [--wired] [NAME...]
                      build the tests of a board and run them on it through probe-rs, or on the emulated board (matek-h743);
                      --wired fails what the wiring of hil/README.md lacks; names, or parts of them, choose tests

@@ -25,7 +25,12 @@ use crate::emulator::{Emulator, Settings};
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
+use crate::terminal::Terminal;
+use crate::tilt::{TiltError, Tilts};
 use crate::wires::{Digest, Fault, Pins, Run, Wires};
+
+/// Height at which the arms hang free in the air, m.
+const AIRBORNE: f64 = 0.3;
 
 /// A vehicle with the emulated board in it.
 pub struct Bench<'a> {
@@ -38,6 +43,7 @@ pub struct Bench<'a> {
     wires: Wires,
     pins: Pins,
     log: Log<'a>,
+    terminal: Option<Terminal>,
     told: Box<dyn FnMut(&Line) + 'a>,
     telemetry: VecDeque<u8>,
     display: Telemetry,
@@ -54,6 +60,7 @@ pub struct Bench<'a> {
     params: Params,
     protocol: Protocol,
     watched: Watched,
+    tilts: Tilts,
     /// Every line of the log.
     pub lines: Vec<Line>,
     /// Restarts of the processor: when (ms since power-on) and why.
@@ -82,6 +89,8 @@ pub struct Finished {
     pub overruns: BTreeMap<String, u32>,
     /// Digest of every line of the log with its time.
     pub log_digest: u64,
+    /// How far the arms' measured tilt was from the model's in flight.
+    pub tilt_error: TiltError,
     /// Every line of the log.
     pub lines: Vec<Line>,
     /// Restarts of the processor: when (ms since power-on) and why.
@@ -93,12 +102,14 @@ pub struct Finished {
 impl<'a> Bench<'a> {
     /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
     /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
-    /// `told`.
+    /// `told`; the console is at `terminal`.
+    #[expect(clippy::too_many_arguments, reason = "what a vehicle is made of")]
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
         speed: f64,
         plan: Plan,
+        terminal: Option<Terminal>,
         rng: &mut Pcg64Mcg,
         told: impl FnMut(&Line) + 'a,
     ) -> Self {
@@ -119,6 +130,7 @@ impl<'a> Bench<'a> {
             wires: Wires::default(),
             pins: Pins::default(),
             log: Log::new(&firmware.table),
+            terminal,
             told: Box::new(told),
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
@@ -134,6 +146,7 @@ impl<'a> Bench<'a> {
             params,
             protocol: Protocol::from_params(&params),
             watched: Watched::default(),
+            tilts: Tilts::new(&params),
             lines: Vec::new(),
             resets: Vec::new(),
         }
@@ -149,6 +162,7 @@ impl<'a> Bench<'a> {
             run: emulator.finish()?,
             overruns: self.overruns,
             log_digest: self.log_digest.0,
+            tilt_error: self.tilts.error,
             lines: self.lines,
             resets: self.resets,
             malformed: self.log.malformed,
@@ -194,6 +208,15 @@ impl<'a> Bench<'a> {
             .map(|counts| f64::from(scale.pressure(counts)))
     }
 
+    /// Thrust of each rotor (N) that its motor's command asks for.
+    fn thrusts(&self) -> PerArm<f32> {
+        let curve = ThrustCurve::from_params(&self.params);
+        let ratio = self.watched.voltage as f32 / self.params.battery_nominal;
+        self.pins
+            .motors
+            .map(|command| curve.thrust(command as f32, ratio))
+    }
+
     /// Force of each tendon (N) that its servo's pulse asks for.
     fn tension(&self) -> PerArm<f64> {
         let mut force = [0.0; 4];
@@ -218,6 +241,10 @@ impl Aircraft for Bench<'_> {
         self.sensors.step(plant, &actuators, &mut self.wires);
         self.watched.tilt = plant.tilt();
         self.watched.voltage = plant.battery_voltage();
+        let [roll, ..] = plant.euler();
+        let thrusts = self.thrusts();
+        let flies = self.mode() == Mode::Flight && -plant.pose().position.z > AIRBORNE;
+        self.tilts.step(&thrusts, &self.wires.arms, roll, flies);
     }
 
     fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize {
@@ -248,6 +275,9 @@ impl Aircraft for Bench<'_> {
             };
             self.pins = emulator.advance(std::mem::take(&mut self.wires))?;
             let ms = self.pins.ms;
+            if let Some(terminal) = &mut self.terminal {
+                self.wires.console = terminal.exchange(&self.pins.console);
+            }
             let bytes = std::mem::take(&mut self.pins.telemetry);
             self.display.take(&bytes);
             self.telemetry.extend(bytes);
@@ -281,18 +311,12 @@ impl Aircraft for Bench<'_> {
     }
 
     fn belief(&self) -> Belief {
-        let unknown = [f64::NAN; 4];
-        let curve = ThrustCurve::from_params(&self.params);
-        let ratio = self.watched.voltage as f32 / self.params.battery_nominal;
         Belief {
             attitude: self.display.attitude.unwrap_or([f64::NAN; 3]),
             setpoint: self.setpoint,
-            tilt_measured: unknown,
-            tilt_model: unknown,
-            thrust_asked: self
-                .pins
-                .motors
-                .map(|command| f64::from(curve.thrust(command as f32, ratio))),
+            tilt_measured: self.tilts.measured,
+            tilt_model: self.tilts.modelled(),
+            thrust_asked: self.thrusts().map(f64::from),
             tension_asked: self.tension(),
             pressure: self.pressure(),
             saturated: false,

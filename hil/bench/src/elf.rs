@@ -1,5 +1,6 @@
 //! The image that is flashed: the ELF with what the bench has to know of it.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use defmt_decoder::Table;
@@ -17,6 +18,8 @@ pub struct Firmware {
     pub rtt: u64,
     /// The flash that is kept for parameters: first address, and first one beyond.
     pub params: (u64, u64),
+    /// Addresses of the tasks, by their names in `src/firmware/tasks.rs`.
+    pub tasks: BTreeMap<String, u64>,
     /// How the log is written.
     pub table: Table,
     /// The board that it is for.
@@ -97,6 +100,10 @@ impl Firmware {
                     "keeps no flash for parameters (symbols _params_start, _params_end); {wanted}"
                 ))
             })?;
+        let tasks = file
+            .symbols()
+            .filter_map(|s| Some((task(s.name().ok()?)?, s.address())))
+            .collect();
         let table = Table::parse(&bytes)
             .map_err(|e| wrong(format!("has a log that cannot be decoded: {e}")))?
             .ok_or_else(|| wrong(format!("has no table of log messages (.defmt); {wanted}")))?;
@@ -104,9 +111,29 @@ impl Firmware {
             path: path.to_owned(),
             rtt,
             params,
+            tasks,
             table,
             bytes,
             board,
         })
+    }
+}
+
+/// The name of the task whose pool is called `symbol`: in mangled names each part has its length before it.
+fn task(symbol: &str) -> Option<String> {
+    let (_, rest) = symbol.strip_suffix("4POOL")?.rsplit_once("5tasks")?;
+    let name = rest.trim_start_matches(|c: char| c.is_ascii_digit());
+    (rest.len() - name.len() > 0).then(|| name.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_task_is_found_by_its_pool() {
+        let pool = "_RNvNvNtNtCs1qUga5DPFW4_6sophie8firmware5tasks9commander4POOL";
+        assert_eq!(task(pool).as_deref(), Some("commander"));
+        assert_eq!(task("_RNvNvCs1qUga5DPFW4_6sophie14___embassy_main4POOL"), None);
     }
 }

@@ -22,4 +22,6 @@ pub mod plan;
 pub mod sensors;
 pub mod stored;
 pub mod suite;
+pub mod terminal;
+pub mod tilt;
 pub mod wires;

@@ -13,6 +13,7 @@ use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::flyable;
 use sophie_bench::plan::Plan;
+use sophie_bench::terminal::Terminal;
 use sophie_hil::scenario::{Overrides, Scenario};
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
@@ -49,6 +50,9 @@ struct Args {
         allow_negative_numbers = true
     )]
     speed: f64,
+    /// Put the board's console on this port of 127.0.0.1.
+    #[arg(long, value_name = "PORT")]
+    console: Option<u16>,
     /// Print the result as JSON on stdout, everything else on stderr.
     #[arg(long)]
     json: bool,
@@ -99,6 +103,7 @@ fn run(args: &Args) -> Result<bool, String> {
     };
     flyable::check(&scenario)?;
     let firmware = Firmware::read(&args.elf, board)?;
+    let terminal = args.console.map(Terminal::listen).transpose()?;
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
@@ -113,6 +118,7 @@ fn run(args: &Args) -> Result<bool, String> {
         &scenario,
         args.speed,
         Plan::default(),
+        terminal,
         |line| console.say(&line.to_string()),
         &mut Lines::new(&console),
     )?;
@@ -155,6 +161,8 @@ fn told(args: &Args, flight: &Flight) -> serde_json::Value {
         "motor_frame_gap_max_us": longest as f64 * 1e-3,
         "latency_mean_us": run.latency_us.mean(),
         "latency_max_us": run.latency_us.worst,
+        "arm_tilt_error_mean_deg": board.tilt_error.mean().map(f64::to_degrees),
+        "arm_tilt_error_max_deg": board.tilt_error.mean().map(|_| board.tilt_error.worst.to_degrees()),
         "overruns": board.overruns,
         "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
         "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
@@ -170,7 +178,16 @@ fn lines(flight: &Flight) -> Vec<String> {
     let run = &flight.board.run;
     let frames: u64 = run.escs.iter().map(|esc| esc.frames).sum();
     let bad: u64 = run.escs.iter().map(|esc| esc.bad).sum();
+    let tilt = flight.board.tilt_error;
     vec![
+        tilt.mean()
+            .map_or("arm tilt: never in the air".to_owned(), |mean| {
+                format!(
+                    "arm tilt in flight, measured against the model: {:.1} deg off, at most {:.1}",
+                    mean.to_degrees(),
+                    tilt.worst.to_degrees()
+                )
+            }),
         format!(
             "motor frames: {frames} good, {bad} bad; from data-ready to their first edge {:.0} us, at most {:.0}",
             run.latency_us.mean(),

@@ -18,6 +18,8 @@ pub struct Wires {
     pub analog: [f64; 6],
     /// Words from the radio's receiver, the parity on top where its line has one.
     pub receiver: Vec<u16>,
+    /// Bytes that are typed at the console.
+    pub console: Vec<u8>,
     /// What breaks or is mended now.
     pub faults: Vec<Fault>,
 }
@@ -31,6 +33,12 @@ pub enum Fault {
     ImuWord(u8),
     /// The sensor of this arm, 0 to 3, is unplugged (true) or plugged in again.
     ArmUnplugged(usize, bool),
+    /// The chips on this bus of the arms, 0 or 1, hold the clock low for so many µs after each byte; 0 is none.
+    ClockHeld(usize, u32),
+    /// The processor's supply breaks down (false), or is back.
+    Supply(bool),
+    /// The task of this name in `src/firmware/tasks.rs` is never run again: it hangs in what it awaits.
+    TaskHung(&'static str),
     /// The flash that is kept for parameters is overwritten, as a program of another maker would.
     CorruptParameters,
     /// The processor stands still (true) or goes on: only the watchdog is left.
@@ -50,6 +58,8 @@ pub struct Pins {
     pub servos: PerArm<f64>,
     /// Bytes to the radio's receiver.
     pub telemetry: Vec<u8>,
+    /// Bytes that the console says.
+    pub console: Vec<u8>,
     /// Bytes of the log, as they lie in the buffer that a probe reads.
     pub log: Vec<u8>,
     /// State light, fault light and buzzer: level of the pin.

@@ -74,6 +74,16 @@ impl<C: Chip> Wired<C> {
         }
     }
 
+    /// Makes the chips on a bus of the arms hold the clock for `us` µs after each byte; false where the emulator cannot.
+    pub fn hold_clock(&mut self, bus: usize, us: u32) -> bool {
+        self.chip.hold_clock(bus, u64::from(us) * 1000)
+    }
+
+    /// Makes the next reset one by a supply that broke down.
+    pub fn brown_out(&mut self) {
+        self.chip.brown_out();
+    }
+
     /// Puts volts on the analog inputs: pressure 1 to 4, battery voltage, battery current.
     pub fn set_analog(&mut self, volts: [f64; 6]) {
         for (channel, volts) in self.pads.analog.into_iter().zip(volts) {
@@ -86,6 +96,11 @@ impl<C: Chip> Wired<C> {
     /// The receiver's line.
     pub fn receiver(&mut self) -> Option<&mut Line> {
         self.chip.line(self.pads.receiver)
+    }
+
+    /// The console's line.
+    pub fn console(&mut self) -> Option<&mut Line> {
+        self.chip.line(self.pads.console)
     }
 
     /// Takes the edges at the motor timer's outputs, oldest first.

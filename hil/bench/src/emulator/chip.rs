@@ -44,6 +44,10 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn motor_edges(&mut self) -> Vec<Edge>;
     /// High time and period of the pulse at a channel (0 to 3) of the servos' timer, ns; `None` without pulses.
     fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)>;
+    /// Makes the chips on a bus hold the clock for `hold` ns after each byte; false where the emulator cannot.
+    fn hold_clock(&mut self, bus: usize, hold: u64) -> bool;
+    /// Makes the next reset one by a supply that broke down.
+    fn brown_out(&mut self);
     /// How a serial port is set up.
     fn serial_setup(&self, port: usize) -> Setup;
     /// First address of the flash sector that a write of `value` to `address` begins to erase.
@@ -78,7 +82,9 @@ macro_rules! same_on_this_part {
             for (bus, address) in pads.arms {
                 self.i2c(bus).attach(Bno055::new(address));
             }
-            self.inner.usart[pads.receiver].attach(Line::default());
+            for port in [pads.receiver, pads.console] {
+                self.inner.usart[port].attach(Line::default());
+            }
         }
 
         fn imu(&mut self, interface: usize) -> Option<&mut Imu> {
@@ -136,6 +142,10 @@ macro_rules! same_on_this_part {
                     port.level(number, file) == Level::High
                 })
             })
+        }
+
+        fn brown_out(&mut self) {
+            self.browned_out = true;
         }
 
         fn motor_edges(&mut self) -> Vec<Edge> {

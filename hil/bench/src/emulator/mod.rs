@@ -32,13 +32,14 @@ use sophie_tasks::rc::Protocol;
 use self::board::Wired;
 use self::chip::Chip;
 use self::chips::icm42688p::Sample;
+use self::chips::line::Line;
 use self::f405::F405;
 use self::h743::H743;
 use self::pads::Pads;
 use self::rtt::Rtt;
 use crate::boards::Kind;
 use crate::elf::Firmware;
-use crate::esc::{Esc, Line};
+use crate::esc::{self, Esc};
 use crate::stored;
 use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
 
@@ -50,6 +51,11 @@ const SAMPLE: u64 = 250_000;
 
 /// What a corrupted flash holds: each word its address with these bits flipped.
 const NOISE: u64 = 0x5A5A_5A5A;
+
+/// Bytes of the header of a task of embassy-executor 0.10, and in its state the bits "spawned" and "queued to run".
+const HEADER: u64 = 64;
+const SPAWNED: u64 = 1;
+const QUEUED: u64 = 1 << 8;
 
 /// How the board is emulated.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +87,7 @@ impl Emulator {
         let stored =
             Image::new(Path::new("parameters"), stored, Some(first)).map_err(|e| format!("emulator: {e}"))?;
         let images = [image, stored];
-        let line = Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
+        let line = esc::Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
         let receiver = serial::Setup::of(Protocol::from_params(&settings.params), kind);
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);
@@ -93,7 +99,9 @@ impl Emulator {
             params: firmware.params,
             receiver,
             erases: BTreeMap::new(),
-            unwritable: false,
+            tasks: firmware.tasks.clone(),
+            impossible: Vec::new(),
+            dark: false,
             escs: std::array::from_fn(|_| Esc::new(line)),
             servos: [0.0; 4],
             resets: 0,
@@ -184,13 +192,11 @@ fn run<C: Chip>(
         what,
     }));
     let world = finished.driver;
-    if world.unwritable {
-        gaps.push(Gap {
-            kind: "refused",
-            at: "flash".to_owned(),
-            what: "this part's flash cannot be overwritten".to_owned(),
-        });
-    }
+    gaps.extend(world.impossible.iter().map(|fault| Gap {
+        kind: "refused",
+        at: "fault".to_owned(),
+        what: format!("this part cannot have {fault:?}"),
+    }));
     Ok(Run {
         gaps,
         instructions,
@@ -259,8 +265,12 @@ struct World {
     /// How the receiver's port must be set up.
     receiver: serial::Setup,
     erases: BTreeMap<u64, u32>,
-    /// The flash was to be overwritten from outside, and could not be.
-    unwritable: bool,
+    /// Addresses of the tasks.
+    tasks: BTreeMap<String, u64>,
+    /// Faults that this part cannot have.
+    impossible: Vec<Fault>,
+    /// The supply is down.
+    dark: bool,
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
@@ -282,7 +292,7 @@ impl World {
         let new = resets.get(self.resets..).unwrap_or_default();
         let resets: Vec<_> = new.iter().map(|r| (r.at.0, format!("{:?}", r.cause))).collect();
         self.resets += resets.len();
-        if !resets.is_empty() {
+        if !resets.is_empty() && !self.dark {
             // A processor that stood still goes on after its reset.
             host.hold(false);
         }
@@ -299,17 +309,15 @@ impl World {
             self.servos = servos;
             servos.iter().for_each(|us| self.digest.word(us.to_bits()));
         }
-        let words = board
-            .receiver()
-            .map(|line| std::mem::take(&mut line.incoming))
-            .unwrap_or_default();
-        let telemetry: Vec<u8> = words.into_iter().map(|word| word as u8).collect();
+        let telemetry = heard(board.receiver());
+        let console = heard(board.console());
         telemetry.iter().for_each(|byte| self.digest.byte(*byte));
         Pins {
             ms: self.ms,
             motors: self.escs.each_ref().map(|esc| esc.command(now.0)),
             servos,
             telemetry,
+            console,
             log: self.rtt.drain(host),
             signals: board.signals(now),
             resets,
@@ -341,6 +349,58 @@ impl World {
         self.pulses.retain(|at| at + MS > now.0);
     }
 
+    /// Breaks or mends something; false where the emulator cannot.
+    fn inflict<C: Chip>(
+        &mut self,
+        fault: Fault,
+        session: &mut Session<Wired<C>>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> bool {
+        let board = session.board_mut();
+        match fault {
+            Fault::ImuUnplugged(out) => board.silence_imu(out),
+            Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
+            Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
+            Fault::ClockHeld(bus, us) => return board.hold_clock(bus, us),
+            Fault::Supply(false) => {
+                board.brown_out();
+                session.reset_by_pin(stop.at, stop.instruction_count, host);
+                self.dark = true;
+                host.hold(true);
+            }
+            Fault::Supply(true) => {
+                self.dark = false;
+                host.hold(false);
+            }
+            Fault::TaskHung(name) => return self.hang(name, host),
+            Fault::CorruptParameters => {
+                let (first, end) = self.params;
+                let mut words = (first..end).step_by(4);
+                return words.all(|at| host.program(at, Width::W32, at ^ NOISE).is_ok());
+            }
+            Fault::Hang(still) => host.hold(still),
+            Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
+        }
+        true
+    }
+
+    /// Marks a task as waiting in its executor's queue, where it is not: nothing will ever put it there again.
+    fn hang(&self, name: &str, host: &mut dyn Host) -> bool {
+        let mut word = |at: u64| host.read(at, Width::W32).unwrap_or(0);
+        // The executor's header has no fixed layout: the state is what is "spawned" in every task.
+        let mut places = (0..HEADER).step_by(4);
+        let state = places.find(|place| {
+            self.tasks
+                .values()
+                .all(|task| word(task + place) & !QUEUED == SPAWNED)
+        });
+        let (Some(state), Some(task)) = (state, self.tasks.get(name)) else {
+            return false;
+        };
+        host.write(task + state, Width::W32, SPAWNED | QUEUED).is_ok()
+    }
+
     /// Puts the world's side on the wires.
     fn write<C: Chip>(
         &mut self,
@@ -350,18 +410,8 @@ impl World {
         host: &mut dyn Host,
     ) {
         for fault in wires.faults {
-            let board = session.board_mut();
-            match fault {
-                Fault::ImuUnplugged(out) => board.silence_imu(out),
-                Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
-                Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
-                Fault::CorruptParameters => {
-                    let (first, end) = self.params;
-                    let mut words = (first..end).step_by(4);
-                    self.unwritable |= words.any(|at| host.program(at, Width::W32, at ^ NOISE).is_err());
-                }
-                Fault::Hang(still) => host.hold(still),
-                Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
+            if !self.inflict(fault, session, stop, host) {
+                self.impossible.push(fault);
             }
         }
         let board = session.board_mut();
@@ -387,7 +437,16 @@ impl World {
         if let Some(line) = board.receiver() {
             line.outgoing.extend(wires.receiver);
         }
+        if let Some(line) = board.console() {
+            line.outgoing.extend(wires.console.into_iter().map(u16::from));
+        }
     }
+}
+
+/// Takes the bytes that the chip has sent over a line.
+fn heard(line: Option<&mut Line>) -> Vec<u8> {
+    let words = line.map_or(Vec::new(), |line| std::mem::take(&mut line.incoming));
+    words.into_iter().map(|word| word as u8).collect()
 }
 
 impl<C: Chip> Driver<Wired<C>> for World {

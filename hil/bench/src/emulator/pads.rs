@@ -46,6 +46,8 @@ pub struct Pads {
     pub receiver: usize,
     /// Where the port sends to the receiver, with its alternate function; SBUS leaves it alone.
     pub receiver_out: (At, u8),
+    /// Serial port of the console.
+    pub console: usize,
     /// The motors.
     pub motors: TimerPins,
     /// The servos.

@@ -135,8 +135,87 @@ fn a_pulled_reset_pin_is_told_as_such() {
 }
 
 #[test]
+fn a_bus_whose_clock_is_held_keeps_the_background_only() {
+    // 300 us a byte: a reading of one sensor takes four milliseconds.
+    let troubles = [(AIRBORNE, Trouble::Board(Fault::ClockHeld(0, 300)))];
+    let flight = fly(&hover(AIRBORNE + 3.0), 1.0, &troubles);
+    assert!(
+        running(&flight, AIRBORNE - 1.0, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+    for task in FLIGHT_LEVEL {
+        assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(&flight));
+    }
+    let latency = flight.board.run.latency_us;
+    assert!(latency.worst < 60.0, "{latency:?}");
+    assert!(flight.board.resets.is_empty());
+    assert_eq!(flight.gaps, []);
+}
+
+#[test]
+fn a_task_that_hangs_ends_in_a_reset_by_the_watchdog_with_the_motors_stopped() {
+    let flight = with(Trouble::Board(Fault::TaskHung("commander")), AIRBORNE + 2.0);
+    let [(ms, cause)] = &flight.board.resets[..] else {
+        panic!("{:?}\n{}", flight.board.resets, log(&flight))
+    };
+    assert!(cause.contains("IWDG"), "{cause}");
+    let after = ms * 1e-3 - AIRBORNE;
+    assert!((0.2..1.0).contains(&after), "{after}");
+    assert!(
+        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(
+        stopped(&flight, AIRBORNE + after + 0.05, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+}
+
+#[test]
+fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() {
+    let troubles = [
+        (AIRBORNE, Trouble::BatteryShare(0.4)),
+        (AIRBORNE + 0.02, Trouble::Board(Fault::Supply(false))),
+        (AIRBORNE + 0.1, Trouble::Board(Fault::Supply(true))),
+        (AIRBORNE + 0.1, Trouble::BatteryShare(1.0)),
+    ];
+    let flight = fly(&hover(AIRBORNE + 2.5), 1.0, &troubles);
+    assert!(running(&flight, AIRBORNE - 1.0, AIRBORNE), "{}", log(&flight));
+    assert!(
+        told(&flight, AIRBORNE, "start after BrownOut").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(
+        stopped(&flight, AIRBORNE + 0.3, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+    assert_eq!(flight.gaps, []);
+}
+
+#[test]
 fn a_shorted_pressure_sensor_speaks_before_the_arms_close() {
     let troubles = [(2.0, Trouble::Fsr(1, Some(FsrBreak::Short)))];
     let flight = fly(&hover(6.0), 1.0, &troubles);
     assert!(told(&flight, 2.0, "pressure").is_some(), "{}", log(&flight));
+}
+
+#[test]
+fn a_cut_pressure_sensor_proves_no_grip_and_the_rotors_keep_turning() {
+    let scenario = Scenario {
+        time_limit: 62.0,
+        ..scenario("perch-short.toml")
+    };
+    let flight = fly(&scenario, 1.0, &[(20.0, Trouble::Fsr(1, Some(FsrBreak::Open)))]);
+    let closing = told(&flight, 20.0, "CLAMPING").expect("a perch");
+    // A sound grip is proven four seconds later.
+    for never in ["grip proven", "PERCHED"] {
+        assert_eq!(told(&flight, closing, never), None, "{}", log(&flight));
+    }
+    assert!(closing < 55.0, "{closing}");
+    assert!(running(&flight, closing, f64::INFINITY), "{}", log(&flight));
 }

@@ -4,6 +4,7 @@
 
 #![allow(missing_docs)]
 
+mod console;
 mod determinism;
 mod faults;
 mod images;
@@ -78,7 +79,7 @@ fn fly_small(scenario: &Scenario, speed: f64) -> Flight {
 
 fn fly_image(firmware: &Firmware, scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
     let plan = Plan::new(troubles.iter().map(|(t, trouble)| ((t * 1e3) as u64, *trouble)));
-    flight::fly(firmware, scenario, speed, plan, |_| (), &mut Silent).unwrap()
+    flight::fly(firmware, scenario, speed, plan, None, |_| (), &mut Silent).unwrap()
 }
 
 /// The log, for the message of a failed assertion.

@@ -17,6 +17,7 @@ use rigless::emulator::CoreSpec;
 use rigless::machine::armv7m;
 use rigless::mcu::{Mcu, Operate};
 use rigless::soc::stm32f427::generated::dma2::Register as DmaRegister;
+use rigless::soc::stm32f427::generated::rcc::Register as Clocks;
 use rigless::soc::stm32f427::generated::usart6::Register as Serial;
 use rigless::soc::stm32f427::peripherals::dma::{Dma, Wire};
 use rigless::soc::stm32f427::peripherals::i2c::I2c;
@@ -64,6 +65,7 @@ pub static PADS: Pads = Pads {
     analog: [10, 11, 12, 13, 0, 1],
     receiver: 0,
     receiver_out: (At(0, 9), 7),
+    console: 1,
     motors: TimerPins {
         pins: [At(2, 6), At(2, 7), At(2, 8), At(2, 9)],
         function: 3,
@@ -81,8 +83,10 @@ pub static PADS: Pads = Pads {
         (At(1, 10), 4),
         (At(1, 11), 4),
         (At(0, 10), 7),
+        (At(0, 2), 7),
+        (At(0, 3), 7),
     ],
-    resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10)],
+    resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10), At(0, 3)],
     signals: [At(2, 10), At(2, 11), At(2, 12)],
 };
 
@@ -158,11 +162,14 @@ pub struct F405 {
     syscfg: Syscfg,
     slots: Slots,
     pulses: u64,
+    /// The next reset is by a supply that broke down.
+    browned_out: bool,
 }
 
 #[derive(Debug)]
 struct Slots {
     motors: usize,
+    clocks: usize,
     dma: usize,
     buses: [usize; 2],
     exti: usize,
@@ -185,6 +192,7 @@ impl F405 {
         }
         let slots = Slots {
             motors: slot(MOTOR_TIMER)?,
+            clocks: slot("RCC")?,
             dma: slot(CONTROLLERS[1].instance)?,
             buses: [slot("I2C1")?, slot("I2C2")?],
             exti: slot("EXTI")?,
@@ -205,6 +213,7 @@ impl F405 {
             syscfg: Syscfg,
             slots,
             pulses: 0,
+            browned_out: false,
         })
     }
 
@@ -236,6 +245,10 @@ impl F405 {
 
 impl Chip for F405 {
     same_on_this_part!(stm32f427);
+
+    fn hold_clock(&mut self, _: usize, _: u64) -> bool {
+        false
+    }
 
     fn serial_setup(&self, port: usize) -> Setup {
         let file = self.inner.bus().registers(SERIAL_PORTS[port].instance);
@@ -289,6 +302,11 @@ impl Mcu for F405 {
             Device::reset(own);
         }
         self.motors.restart(at);
+        if std::mem::take(&mut self.browned_out) {
+            // The emulator knows no brown-out: its flag is set beside the pin's (RM0090 §7.3.21).
+            let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();
+            file.set(Clocks::Csr, file.get(Clocks::Csr) | 1 << 25);
+        }
         self.dma = controller();
         self.exti = Exti::default();
     }

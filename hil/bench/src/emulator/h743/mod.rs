@@ -11,6 +11,7 @@ use rigless::machine::matekh743::MatekH743;
 use rigless::mcu::Mcu;
 use rigless::soc::Bus;
 use rigless::soc::stm32h743::Stm32h743;
+use rigless::soc::stm32h743::generated::rcc::Register as Clocks;
 use rigless::soc::stm32h743::generated::usart1::Register as Serial;
 use rigless::soc::stm32h743::peripherals::i2c::I2c;
 use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
@@ -58,6 +59,7 @@ pub static MATEK: Pads = Pads {
     analog: [4, 8, 18, 7, 10, 11],
     receiver: 5,
     receiver_out: (At(2, 6), 7),
+    console: 6,
     motors: TimerPins {
         pins: [At(3, 12), At(3, 13), At(3, 14), At(3, 15)],
         function: 2,
@@ -75,8 +77,10 @@ pub static MATEK: Pads = Pads {
         (At(1, 10), 4),
         (At(1, 11), 4),
         (At(2, 7), 7),
+        (At(4, 7), 7),
+        (At(4, 8), 7),
     ],
-    resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7)],
+    resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7), At(4, 7)],
     signals: [At(4, 4), At(4, 3), At(0, 15)],
 };
 
@@ -105,12 +109,15 @@ pub struct H743 {
     buses: [StretchedI2c; 2],
     slots: Slots,
     pulses: u64,
+    /// The next reset is by a supply that broke down.
+    browned_out: bool,
 }
 
 #[derive(Debug)]
 struct Slots {
     watchdog: usize,
     motors: usize,
+    clocks: usize,
     buses: [usize; 2],
     serial: Vec<usize>,
     unused: Vec<bool>,
@@ -133,6 +140,7 @@ impl H743 {
         let slots = Slots {
             watchdog: slot("IWDG")?,
             motors: slot("TIM4")?,
+            clocks: slot("RCC")?,
             buses: [slot("I2C1")?, slot("I2C2")?],
             serial: SERIAL.into_iter().map(slot).collect::<Result<_, _>>()?,
             unused,
@@ -145,6 +153,7 @@ impl H743 {
             buses: [(); 2].map(|()| StretchedI2c::new(I2c::with_kernel_clock(HSI_HZ))),
             slots,
             pulses: 0,
+            browned_out: false,
         })
     }
 
@@ -190,6 +199,11 @@ impl H743 {
 impl Chip for H743 {
     same_on_this_part!(stm32h743);
 
+    fn hold_clock(&mut self, bus: usize, hold: u64) -> bool {
+        self.buses[bus].hold = hold;
+        true
+    }
+
     fn serial_setup(&self, port: usize) -> Setup {
         let file = self.inner.bus().slots()[self.slots.serial[port]].registers();
         let [brr, cr1, cr2] = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.get(r));
@@ -233,6 +247,11 @@ impl Mcu for H743 {
         }
         self.watchdog = Watchdog::default();
         self.motors.restart(at);
+        if std::mem::take(&mut self.browned_out) {
+            // The emulator knows no brown-out: its flag is set beside the pin's (RM0433 §8.7.37).
+            let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();
+            file.set(Clocks::Rsr, file.get(Clocks::Rsr) | 1 << 21);
+        }
     }
 
     fn poll(&mut self, now: VirtualNanos) {

@@ -1,0 +1,86 @@
+//! Commands typed at the emulated board's console while it runs.
+
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::time::Duration;
+
+use sophie_bench::terminal::Terminal;
+
+use super::*;
+
+/// Types `command` and reads until the console says `answer`; gives what it said.
+fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
+    user.write_all(command.as_bytes()).unwrap();
+    let mut said = String::new();
+    let mut bytes = [0; 64];
+    while !said.contains(answer) {
+        let count = user.read(&mut bytes).unwrap();
+        assert!(count > 0, "the board has gone: {said}");
+        said.push_str(&String::from_utf8_lossy(&bytes[..count]));
+    }
+    said
+}
+
+/// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
+fn wake(user: &mut TcpStream) {
+    let mut bytes = [0; 64];
+    user.set_read_timeout(Some(Duration::from_secs(1))).unwrap();
+    while !matches!(user.read(&mut bytes), Ok(count) if count > 0) {
+        user.write_all(b"\r").unwrap();
+    }
+    // An answer that does not come ends the test, whatever the load of the machine.
+    user.set_read_timeout(Some(Duration::from_secs(300))).unwrap();
+}
+
+#[test]
+fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
+    let port = {
+        let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        free.local_addr().unwrap().port()
+    };
+    let terminal = Terminal::listen(port).unwrap();
+    let user = std::thread::spawn(move || {
+        let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
+        wake(&mut user);
+        type_in(&mut user, "status\r", "up for");
+        type_in(&mut user, "set infill 8\r", "in force after save");
+        type_in(&mut user, "save\r", "saved; restarting");
+        wake(&mut user);
+        type_in(&mut user, "list infill\r", "4 to 10 %")
+    });
+    let scenario = Scenario {
+        // Nobody arms: the board has the time that the session needs.
+        time_limit: 14.0,
+        ..scenario("hover.toml")
+    };
+    let plan = Plan::new([(0, Trouble::RadioSilent(true))]);
+    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let told_to = |_: &sophie_bench::log::Line| ();
+    let flight = flight::fly(
+        &firmware,
+        &scenario,
+        1.0,
+        plan,
+        Some(terminal),
+        told_to,
+        &mut Silent,
+    )
+    .unwrap();
+    let listed = user.join().unwrap();
+    assert!(listed.contains("* infill") && listed.contains(" 8 "), "{listed}");
+    // One more than the calibration.
+    assert!(
+        told(&flight, 0.0, "parameters: 3 from storage").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(
+        told(&flight, 0.0, "parameters: 4 from storage").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert_eq!(flight.board.resets.len(), 1, "{:?}", flight.board.resets);
+    // The set was appended: no sector is worn by a save.
+    assert!(flight.board.run.erases.is_empty());
+    assert_eq!(flight.gaps, []);
+}
