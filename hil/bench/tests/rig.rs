@@ -55,10 +55,7 @@ type Found = (Defect, &'static [(&'static str, &'static str)]);
 const TRIED: [Found; 8] = [
     (
         Defect::Crystal,
-        &[
-            ("t00_clock::the_core_runs_at_its_clock", "Hz instead of"),
-            ("t20_imu::samples_come_at_their_rate", "Hz instead of"),
-        ],
+        &[("t20_imu::samples_come_at_their_rate", "Hz instead of")],
     ),
     (
         Defect::NoImu,
@@ -96,7 +93,10 @@ const TRIED: [Found; 8] = [
         Defect::Stalls,
         &[
             ("t10_timers::a_millisecond_lasts_a_millisecond", "us late"),
-            ("t10_timers::the_flight_level_preempts_the_background", "us late"),
+            (
+                "t10_timers::the_flight_level_preempts_the_background",
+                "beats in 100 ms",
+            ),
             ("t40_analog::every_conversion_is_in_time", " us"),
         ],
     ),
@@ -115,6 +115,9 @@ const TRIED: [Found; 8] = [
         )],
     ),
 ];
+
+/// Compares dividers of the image's own: nothing outside the chip can make it fail.
+const WITHIN: &str = "t00_clock::the_core_runs_at_its_clock";
 
 /// Each test that is tried with `defect` passes on a sound rig and fails with it, saying what is wrong.
 fn found(defect: Defect) {
@@ -135,10 +138,17 @@ fn no_test_is_left_out() {
     let mut tried: Vec<&str> = TRIED
         .iter()
         .flat_map(|(_, f)| f.iter().map(|(name, _)| *name))
+        .chain([WITHIN])
         .collect();
     tried.sort_unstable();
     let tests: Vec<&str> = IMAGE.1.iter().map(|test| test.name.as_str()).collect();
     assert_eq!(tests, tried);
+}
+
+#[test]
+fn the_core_runs_at_its_clock() {
+    let (status, told) = verdict(WITHIN, Defect::None);
+    assert_eq!(status, Some(0), "{told}");
 }
 
 #[test]

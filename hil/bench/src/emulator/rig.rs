@@ -28,10 +28,11 @@ const LONGEST: u64 = 30_000 * MS;
 const SPEED: f64 = 1.0;
 /// Registers of all ports: first address, and first one beyond.
 const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
-/// Time for which a processor that stalls stands still, ns.
+/// Time for which a processor that stalls stands still, and how often, ns: not in step with a task of 1 kHz.
 const STALL: u64 = 600_000;
-/// Crystal of twice the frequency, Hz.
-const CRYSTAL: u64 = 16_000_000;
+const STALL_EVERY: u64 = 1_700_000;
+/// The wrong crystal, Hz: one at which the chip still starts.
+const CRYSTAL: u64 = 6_000_000;
 /// Flash of the parameters: first address, and first one beyond.
 const PARAMETERS: std::ops::Range<u64> = 0x081C_0000..0x0820_0000;
 /// Half the supply, V, from a divider at every analog input.
@@ -56,7 +57,7 @@ const PORT_FUNCTION: u8 = 7;
 pub enum Defect {
     /// Nothing.
     None,
-    /// The crystal has twice the frequency that the board expects.
+    /// The crystal is not the one that the board expects.
     Crystal,
     /// The inertial sensor is unplugged.
     NoImu,
@@ -66,7 +67,7 @@ pub enum Defect {
     NoJumpers,
     /// The divider is not of equal resistors.
     Divider,
-    /// The processor stands still for [`STALL`] in each millisecond.
+    /// The processor stands still for a third of the time, 0.6 ms at once.
     Stalls,
     /// The watchdog's clock stands still.
     Watchdog,
@@ -258,9 +259,9 @@ impl Driver<Wired<H743>> for Rig {
             board.chip.still_watchdog();
         }
         if self.defect == Defect::Stalls {
-            let stalled = self.next % MS < STALL;
-            host.hold(stalled);
-            self.next += if stalled { STALL } else { MS - STALL };
+            let stalls = self.next % STALL_EVERY < STALL;
+            host.hold(stalls);
+            self.next += if stalls { STALL } else { STALL_EVERY - STALL };
         } else {
             self.next += MS;
         }

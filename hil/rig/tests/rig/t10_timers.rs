@@ -50,8 +50,8 @@ mod tests {
 
     /// Largest lateness of so many periods, µs.
     async fn worst_lateness(periods: u32) -> u32 {
-        let mut ticker = Ticker::every(PERIOD);
         let start = Instant::now();
+        let mut ticker = Ticker::every(PERIOD);
         let mut worst = 0;
         for nth in 1..=periods {
             ticker.next().await;
