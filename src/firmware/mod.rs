@@ -6,6 +6,7 @@ mod grip;
 mod lights;
 mod report;
 pub mod tasks;
+mod timing;
 
 use sophie_control::arming::Refusal;
 use sophie_control::params::Params;

@@ -49,6 +49,7 @@ pub struct Bench<'a> {
     watched: Watched,
     /// Every line of the log.
     pub lines: Vec<Line>,
+    raw: Vec<u8>,
     /// Restarts of the processor: when (ms since power-on) and why.
     pub resets: Vec<(f64, String)>,
 }
@@ -77,6 +78,8 @@ pub struct Finished {
     pub log_digest: u64,
     /// Every line of the log.
     pub lines: Vec<Line>,
+    /// The log as the firmware wrote it.
+    pub log: Vec<u8>,
     /// Restarts of the processor: when (ms since power-on) and why.
     pub resets: Vec<(f64, String)>,
     /// Stretches of the log that could not be decoded.
@@ -114,6 +117,7 @@ impl<'a> Bench<'a> {
             params: Params::default(),
             watched: Watched::default(),
             lines: Vec::new(),
+            raw: Vec::new(),
             resets: Vec::new(),
         }
     }
@@ -128,6 +132,7 @@ impl<'a> Bench<'a> {
             overruns: self.overruns,
             log_digest: self.log_digest.0,
             lines: self.lines,
+            log: self.raw,
             resets: self.resets,
             malformed: self.log.malformed,
         })
@@ -230,6 +235,7 @@ impl Aircraft for Bench<'_> {
                 self.status = None;
             }
             let log = std::mem::take(&mut self.pins.log);
+            self.raw.extend(&log);
             for line in self.log.take(ms, &log) {
                 self.hear(line);
             }
