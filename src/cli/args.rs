@@ -33,6 +33,34 @@ enum Command {
     ///
     /// Exit status: 0 mission accomplished, 1 not accomplished, 2 bad input or unwritable output.
     Fly(FlyArgs),
+    /// Say what a board's log tells of its timing.
+    ///
+    /// Exit status: 0 read, also when parts were cut off (told on stderr), 2 bad input or unwritable output.
+    Timing(TimingArgs),
+}
+
+/// Which log to look at and what to make of it.
+#[derive(Args, Debug)]
+pub struct TimingArgs {
+    /// Log: text as `probe-rs run` or the bench writes it, or the log's own bytes.
+    pub capture: PathBuf,
+    /// Image that wrote it; needed for the log's own bytes only.
+    #[arg(long, value_name = "FILE")]
+    pub elf: Option<PathBuf>,
+    /// Also bound every response in the worst case, and say how far it is from its deadline on each board.
+    #[arg(long)]
+    pub analyse: bool,
+    /// Directory for timing.html and timing.csv.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+/// What the command line asks for.
+pub enum Task {
+    /// Fly a mission.
+    Fly(FlyArgs),
+    /// Look at a log.
+    Timing(TimingArgs),
 }
 
 /// What to fly and where to report it. Options win over the file.
@@ -105,7 +133,7 @@ impl Message {
         };
         if let Some(ContextValue::String(extra)) = extra
             && !extra.starts_with('-')
-            && extra != "fly"
+            && !["fly", "timing"].contains(&extra.as_str())
         {
             return format!("unexpected argument '{extra}': allowed is one scenario file");
         }
@@ -118,17 +146,18 @@ impl Message {
 }
 
 /// The options of this process.
-pub fn parse() -> Result<FlyArgs, Message> {
+pub fn parse() -> Result<Task, Message> {
     parse_from(std::env::args_os())
 }
 
 fn parse_from(
     args: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>,
-) -> Result<FlyArgs, Message> {
+) -> Result<Task, Message> {
     let cli = Cli::try_parse_from(args).map_err(Message)?;
     Ok(match cli.command {
-        Some(Command::Fly(fly)) => fly,
-        None => cli.fly,
+        Some(Command::Fly(fly)) => Task::Fly(fly),
+        Some(Command::Timing(timing)) => Task::Timing(timing),
+        None => Task::Fly(cli.fly),
     })
 }
 
@@ -181,7 +210,10 @@ mod tests {
     use super::*;
 
     fn args(line: &str) -> Result<FlyArgs, String> {
-        parse_from(["sophie"].into_iter().chain(line.split_whitespace())).map_err(|m| m.line())
+        match parse_from(["sophie"].into_iter().chain(line.split_whitespace())).map_err(|m| m.line())? {
+            Task::Fly(fly) => Ok(fly),
+            Task::Timing(_) => Err("not a flight".to_owned()),
+        }
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! The `sophie` command line.
 //!
-//! Exit status: 0 when the mission was accomplished, 1 when it was not, 2 when it could not be flown or
-//! reported.
+//! Exit status: 0 when the mission was accomplished or the log read, 1 when the mission was not accomplished, 2 when it
+//! could not be flown, read or reported.
 
 mod args;
+mod timing;
 
 use std::process::ExitCode;
 
@@ -13,7 +14,7 @@ use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain, finish, result};
 
-use self::args::FlyArgs;
+use self::args::{FlyArgs, Task};
 
 /// The mission was not accomplished.
 const FAILED: u8 = 1;
@@ -24,11 +25,15 @@ const PROGRAM: &str = "sophie";
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let args = match args::parse() {
-        Ok(args) => args,
+    let task = match args::parse() {
+        Ok(task) => task,
         Err(message) => return message.show(),
     };
-    match run(&args) {
+    let done = match &task {
+        Task::Fly(args) => run(args),
+        Task::Timing(args) => timing::run(args).map(|()| true),
+    };
+    match done {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(FAILED),
         Err(line) => refuse(&line),

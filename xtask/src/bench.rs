@@ -3,6 +3,7 @@
 use std::process::{Command, ExitCode};
 
 use crate::boards::{self, Board};
+use crate::build::Trace;
 use crate::{Error, build};
 
 /// Boards that can be emulated.
@@ -30,7 +31,9 @@ pub fn board(words: &[&str]) -> Result<&'static Board, String> {
 /// # Errors
 /// The firmware does not build.
 pub fn fly(board: &Board, rest: &[&str]) -> Result<ExitCode, Error> {
-    let (elf, _) = crate::firmware(board)?;
+    let (trace, rest): (Vec<&str>, Vec<&str>) = rest.iter().partition(|word| **word == "--trace");
+    let trace = if trace.is_empty() { Trace::Off } else { Trace::On };
+    let (elf, _) = crate::firmware(board, trace)?;
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // The emulator declares a newer Rust than it needs.
     command.args([
