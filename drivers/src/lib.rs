@@ -27,6 +27,7 @@
 
 pub mod arm_buses;
 pub mod bno055;
+pub mod data_ready;
 pub mod dshot;
 pub mod dshot_decoder;
 pub mod esc_protocol;

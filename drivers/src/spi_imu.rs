@@ -9,13 +9,13 @@
 //! costs its task no processor time.
 
 use embassy_time::{Duration, Instant, Timer};
-use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::SpiDevice;
 use heapless::Vec;
 use sophie_control::math;
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::{IMU_BATCH, Imu, ImuReading, PortError};
 
+use crate::data_ready::DataReady;
 use crate::fault::{Fault, report};
 use crate::mounting::Mounting;
 use crate::registers::{Registers, Setting};
@@ -189,6 +189,7 @@ pub struct SpiImu<C, S, D> {
     chip: C,
     registers: Registers<S>,
     data_ready: D,
+    ready_at: Instant,
     mounting: Mounting,
     state: State,
     pause: Duration,
@@ -203,7 +204,7 @@ pub struct SpiImu<C, S, D> {
     last_fault: Option<Fault>,
 }
 
-impl<C: Chip, S: SpiDevice, D: Wait> SpiImu<C, S, D> {
+impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     /// A driver; nothing happens on the bus before [`SpiImu::init`] or the first read.
     ///
     /// `data_ready` rises with each sample. `mounting` turns the part's axes into the body's.
@@ -213,6 +214,7 @@ impl<C: Chip, S: SpiDevice, D: Wait> SpiImu<C, S, D> {
             chip,
             registers: Registers::new(spi, C::BANK_SELECT),
             data_ready,
+            ready_at: Instant::from_ticks(0),
             mounting,
             state: State::Down(Instant::from_ticks(0)),
             pause,
@@ -293,10 +295,7 @@ impl<C: Chip, S: SpiDevice, D: Wait> SpiImu<C, S, D> {
         }
         self.waiting = true;
         for _ in 0..self.chip.pulses_per_sample().max(1) {
-            self.data_ready
-                .wait_for_rising_edge()
-                .await
-                .map_err(|_| Fault::Silent)?;
+            self.ready_at = self.data_ready.next().await;
         }
         self.waiting = false;
         let raw = self.read_raw().await?;
@@ -478,7 +477,7 @@ impl<C: Chip, S: SpiDevice, D: Wait> SpiImu<C, S, D> {
     }
 }
 
-impl<C: Chip, S: SpiDevice, D: Wait> Imu for SpiImu<C, S, D> {
+impl<C: Chip, S: SpiDevice, D: DataReady> Imu for SpiImu<C, S, D> {
     fn rate_hz(&self) -> f32 {
         self.chip.rate_hz()
     }
@@ -491,6 +490,10 @@ impl<C: Chip, S: SpiDevice, D: Wait> Imu for SpiImu<C, S, D> {
         self.silences = 0;
         self.garbled = 0;
         Ok(Vec::from_array([reading]))
+    }
+
+    fn ready_at(&self) -> Instant {
+        self.ready_at
     }
 }
 

@@ -7,7 +7,7 @@ use std::cell::{Cell, RefCell};
 
 use embassy_sync::pipe::Pipe;
 use embassy_sync::signal::Signal;
-use embassy_time::Timer;
+use embassy_time::{Instant, Timer};
 use heapless::Vec;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -191,6 +191,11 @@ impl ports::Imu for Port {
     async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {
         Ok(self.0.imu_ready.wait().await)
     }
+
+    // No bus lies between the simulated part and the processor.
+    fn ready_at(&self) -> Instant {
+        Instant::now()
+    }
 }
 
 impl ports::ArmImus for Port {
@@ -237,12 +242,13 @@ impl ports::Analog for Port {
 }
 
 impl ports::Motors for Port {
-    async fn write(&mut self, commands: PerArm<f32>) {
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
         let actuators = self.0.actuators.get();
         self.0.actuators.set(Actuators {
             motors: commands.map(f64::from),
             ..actuators
         });
+        Instant::now()
     }
 }
 

@@ -22,7 +22,6 @@ use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Pull, Speed};
-use embassy_stm32::mode::Async;
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
@@ -38,14 +37,14 @@ use super::Board;
 use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
-    Selected, ServoPairs, Tone, console_lines, pull_low, receiver_line, spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoPairs, Tone, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "cuav-v5";
 
 /// The vehicle's inertial sensor.
-pub type ImuPort = Icm20689<DmaChip, ExtiInput<'static, Async>>;
+pub type ImuPort = Icm20689<DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
 pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
 /// Pressure sensors and battery.
@@ -78,7 +77,7 @@ bind_interrupts! {
         DMA2_STREAM3 => dma::InterruptHandler<peripherals::DMA2_CH3>;
         DMA2_STREAM4 => dma::InterruptHandler<peripherals::DMA2_CH4>;
         DMA2_STREAM5 => dma::InterruptHandler<peripherals::DMA2_CH5>;
-        EXTI4 => exti::InterruptHandler<interrupt::typelevel::EXTI4>;
+        EXTI4 => ReadyStamp, exti::InterruptHandler<interrupt::typelevel::EXTI4>;
         I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
@@ -257,7 +256,7 @@ fn imu(p: ImuParts, params: &Params) -> ImuPort {
     let bus = Spi::new(
         p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
     );
-    let ready = ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs);
+    let ready = ReadyLine(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs));
     // Marking up, x to the right (ArduPilot: ROTATION_NONE after its driver's swap of x and y).
     let mounting = Mounting::top_up(Heading::Right);
     Icm20689::new(

@@ -21,7 +21,6 @@ use assign_resources::assign_resources;
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Pull};
-use embassy_stm32::mode::Async;
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
@@ -39,14 +38,14 @@ use sophie_drivers::spi_imu::SpiImu;
 use super::Board;
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "f405";
 
 /// The vehicle's inertial sensor.
-pub type ImuPort = SpiImu<part::Config, DmaChip, ExtiInput<'static, Async>>;
+pub type ImuPort = SpiImu<part::Config, DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
 pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
 /// Pressure sensors and battery.
@@ -79,7 +78,7 @@ bind_interrupts! {
         DMA2_STREAM4 => dma::InterruptHandler<peripherals::DMA2_CH4>;
         DMA2_STREAM5 => dma::InterruptHandler<peripherals::DMA2_CH5>;
         DMA2_STREAM7 => dma::InterruptHandler<peripherals::DMA2_CH7>;
-        EXTI4 => exti::InterruptHandler<interrupt::typelevel::EXTI4>;
+        EXTI4 => ReadyStamp, exti::InterruptHandler<interrupt::typelevel::EXTI4>;
         I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
@@ -235,7 +234,7 @@ fn imu(p: ImuParts, params: &Params) -> ImuPort {
     let bus = Spi::new(
         p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
     );
-    let ready = ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs);
+    let ready = ReadyLine(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs));
     // Marking up, x forward; a board of one's own says here how it is.
     let mounting = Mounting::top_up(Heading::Forward);
     SpiImu::new(

@@ -19,7 +19,6 @@ use assign_resources::assign_resources;
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Pull};
-use embassy_stm32::mode::Async;
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
@@ -34,14 +33,14 @@ use super::Board;
 use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "matek-h743";
 
 /// The vehicle's inertial sensor.
-pub type ImuPort = Icm42688p<DmaChip, ExtiInput<'static, Async>>;
+pub type ImuPort = Icm42688p<DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
 pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
 /// Pressure sensors and battery.
@@ -74,7 +73,7 @@ bind_interrupts! {
         DMA2_STREAM2 => dma::InterruptHandler<peripherals::DMA2_CH2>;
         DMA2_STREAM3 => dma::InterruptHandler<peripherals::DMA2_CH3>;
         DMA2_STREAM4 => dma::InterruptHandler<peripherals::DMA2_CH4>;
-        EXTI2 => exti::InterruptHandler<interrupt::typelevel::EXTI2>;
+        EXTI2 => ReadyStamp, exti::InterruptHandler<interrupt::typelevel::EXTI2>;
         I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
@@ -244,7 +243,7 @@ fn imu(p: ImuParts, params: &Params) -> ImuPort {
     let bus = Spi::new(
         p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
     );
-    let ready = ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs);
+    let ready = ReadyLine(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs));
     // On the underside, turned by half a turn about the vertical (ArduPilot: ROTATION_YAW_180).
     let mounting = Mounting::top_down(Heading::Back);
     Icm42688p::new(

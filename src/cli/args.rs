@@ -42,6 +42,10 @@ enum Command {
     /// BENCH.csv has a header line with the columns infill_percent (%), thrust_n (N), tilt_deg (degrees, tip up
     /// positive) and, if wanted, power_ratio (P/P0, 1 without it). Exit status: 0 done, 2 bad input or unwritable output.
     FitArm(FitArgs),
+    /// Say what a board's log tells of its timing.
+    ///
+    /// Exit status: 0 read, also when parts were cut off (told on stderr), 2 bad input or unwritable output.
+    Timing(TimingArgs),
 }
 
 /// What this process is to do.
@@ -53,6 +57,24 @@ pub enum Task {
     Paper(PaperArgs),
     /// Fit an arm.
     FitArm(FitArgs),
+    /// Look at a log.
+    Timing(TimingArgs),
+}
+
+/// Which log to look at and what to make of it.
+#[derive(Args, Debug)]
+pub struct TimingArgs {
+    /// Log: text as `probe-rs run` or the bench writes it, or the log's own bytes.
+    pub capture: PathBuf,
+    /// Image that wrote it; needed for the log's own bytes only.
+    #[arg(long, value_name = "FILE")]
+    pub elf: Option<PathBuf>,
+    /// Also bound every response in the worst case, and say how far it is from its deadline on each board.
+    #[arg(long)]
+    pub analyse: bool,
+    /// Directory for timing.html and timing.csv.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
 }
 
 /// Which data, and where the fit goes.
@@ -150,7 +172,7 @@ impl Message {
         };
         if let Some(ContextValue::String(extra)) = extra
             && !extra.starts_with('-')
-            && !["fly", "paper", "fit-arm"].contains(&extra.as_str())
+            && !["fly", "paper", "fit-arm", "timing"].contains(&extra.as_str())
         {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper") => "no file",
@@ -180,6 +202,7 @@ fn parse_from(
         Some(Command::Fly(fly)) => Task::Fly(fly),
         Some(Command::Paper(paper)) => Task::Paper(paper),
         Some(Command::FitArm(fit)) => Task::FitArm(fit),
+        Some(Command::Timing(timing)) => Task::Timing(timing),
         None => Task::Fly(cli.fly),
     })
 }

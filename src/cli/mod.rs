@@ -1,10 +1,11 @@
 //! The `sophie` command line.
 //!
-//! Exit status: 0 when the mission was accomplished, 1 when it was not, 2 when it could not be flown or
-//! reported.
+//! Exit status: 0 when the mission was accomplished or the log read, 1 when the mission was not accomplished, 2 when it
+//! could not be flown, read or reported.
 
 mod args;
 mod study;
+mod timing;
 
 use std::process::ExitCode;
 
@@ -33,6 +34,7 @@ pub fn main() -> ExitCode {
         Task::Fly(args) => run(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
+        Task::Timing(args) => timing::run(&args).map(|()| true),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,

@@ -7,11 +7,16 @@ mod grip;
 mod lights;
 mod report;
 pub mod tasks;
+mod timing;
+#[cfg(feature = "trace")]
+pub mod trace;
 
+use embassy_executor::SpawnToken;
 pub use end::end_of_run;
 use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_control::warm::Grasp;
+use sophie_tasks::deadline::Level;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::Loaded;
 use sophie_tasks::start::Start;
@@ -19,6 +24,15 @@ use static_cell::StaticCell;
 
 use crate::board;
 use crate::board::cortex_m::retained::{self, Kept, Memory, ResetCause};
+
+#[cfg(feature = "trace")]
+pub use self::trace::named;
+
+/// Keeps what a task is called and where it runs; without the trace nobody asks.
+#[cfg(not(feature = "trace"))]
+pub fn named<S>(_: Level, _: &'static str, token: SpawnToken<S>) -> SpawnToken<S> {
+    token
+}
 
 /// Every link of the vehicle.
 static LINKS: StaticCell<Links> = StaticCell::new();

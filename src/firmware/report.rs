@@ -1,21 +1,22 @@
 //! What the firmware tells over defmt while it runs. Background: logging never delays a flight.
 //!
-//! A line when the state, its reason or the warning changes, for each arm of a proven grip, and for each thing of the hardware that begins or ceases to
-//! speak against arming; once a second, for every task whose count of overruns grew, its worst times; every ten seconds
-//! the depth of the stack. The first line says how long the start took.
+//! A line when the state, its reason or the warning changes, for each arm of a proven grip, and for each thing of the
+//! hardware that begins or ceases to speak against arming; each second the timing of every task, and missed deadlines
+//! ([`super::timing`]); every ten seconds the depth of the stack. The first line says how long the start took.
 
+use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
 use sophie_control::arming::{Refusal, Refusals};
-use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 
 use super::grip::GripReport;
+use super::timing::TimingReport;
 use crate::board::cortex_m::stack;
 
 /// Time between two looks.
 const PERIOD: Duration = Duration::from_millis(50);
-/// Looks between two reports of the tasks' timing.
-const TIMING_EVERY: u32 = 20;
+/// Looks in a second: one for each task's timing, so that they do not come in one burst.
+const SECOND: u32 = 20;
 /// Looks between two reports of the stack.
 const STACK_EVERY: u32 = 200;
 
@@ -26,11 +27,15 @@ pub async fn run(links: &Links) -> ! {
     let mut ticker = Ticker::every(PERIOD);
     let mut shown: Option<Status> = None;
     let mut blocking = Refusals::NONE;
-    let mut overruns = [0; TaskId::COUNT];
+    let mut timing = TimingReport::default();
     let mut grip = GripReport::default();
     let mut looks = 0u32;
     loop {
-        ticker.next().await;
+        // A missed deadline of the flight level does not wait for the next look, but only one in each look.
+        if let Either::Second(()) = select(ticker.next(), links.missed.wait()).await {
+            timing.missed(links);
+            ticker.next().await;
+        }
         looks = looks.wrapping_add(1);
         if let Some(status) = links.status.latest().map(|m| m.value)
             && shown != Some(status)
@@ -40,9 +45,7 @@ pub async fn run(links: &Links) -> ! {
         }
         grip.look(links);
         hardware(links, &mut blocking);
-        if looks.is_multiple_of(TIMING_EVERY) {
-            timing(links, &mut overruns);
-        }
+        timing.second(links, looks % SECOND);
         if looks.is_multiple_of(STACK_EVERY) {
             let (size, free) = stack::size_and_free();
             defmt::info!(
@@ -75,22 +78,4 @@ fn hardware(links: &Links, shown: &mut Refusals) {
         }
     }
     *shown = now;
-}
-
-fn timing(links: &Links, shown: &mut [u32; TaskId::COUNT]) {
-    for (task, shown) in TaskId::ALL.into_iter().zip(shown) {
-        let t = links.timing(task);
-        if t.overruns != *shown {
-            *shown = t.overruns;
-            defmt::warn!(
-                "{=str}: {=u32} overruns in {=u32} runs; worst: {=u32} us late, {=u32} us response, {=u32} us execution",
-                task.name(),
-                t.overruns,
-                t.runs,
-                t.worst_lateness_us,
-                t.worst_response_us,
-                t.worst_execution_us
-            );
-        }
-    }
 }

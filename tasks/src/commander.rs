@@ -8,21 +8,13 @@ use sophie_control::math::cos;
 use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
 use sophie_control::tendon::ForceLimit;
 
-use crate::deadline::{FixedRate, TaskId};
+use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::{Links, MixOutput, Status};
 
 /// Time between two steps.
 pub const PERIOD: Duration = Duration::from_millis(10);
 /// Infill below which the paper's authors did not fly, %.
 const INFILL_FLOWN: f32 = 6.0;
-/// Tasks whose missed deadlines forbid arming.
-const FLIGHT_LEVEL: [TaskId; 5] = [
-    TaskId::Imu,
-    TaskId::Estimator,
-    TaskId::Control,
-    TaskId::Mixer,
-    TaskId::Motors,
-];
 /// Time over which missed deadlines are counted.
 const LATE_WINDOW: Duration = Duration::from_secs(1);
 /// Misses of the whole flight level in that time beyond which it counts as late: 1 % of one task's runs.
@@ -112,7 +104,7 @@ fn lift(mix: &MixOutput) -> f32 {
         .sum()
 }
 
-/// Missed deadlines of the flight level over the last window.
+/// Missed deadlines of the flight level over the last window: they forbid arming.
 struct Lateness {
     window_start: Instant,
     count_at_start: u32,
@@ -129,9 +121,10 @@ impl Lateness {
     }
 
     fn step(&mut self, links: &Links, now: Instant) -> bool {
-        let count = FLIGHT_LEVEL
-            .iter()
-            .fold(0u32, |n, &t| n.wrapping_add(links.timing(t).overruns));
+        let count = TaskId::ALL
+            .into_iter()
+            .filter(|task| task.level() == Level::Flight)
+            .fold(0u32, |n, task| n.wrapping_add(links.timing(task).overruns));
         let many = count.wrapping_sub(self.count_at_start) > LATE_MAX;
         self.late |= many;
         if now.saturating_duration_since(self.window_start) >= LATE_WINDOW {

@@ -3,6 +3,30 @@
 use embassy_time::{Duration, Instant, Timer};
 
 use crate::links::Links;
+use crate::timing::Run;
+pub use crate::timing::Timing;
+
+/// How urgent a task is: each level preempts those below it, tasks of one level take turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// From data-ready to the motor frame.
+    Flight,
+    /// Fixed rates of 50 to 500 Hz.
+    Steady,
+    /// What may wait.
+    Background,
+}
+
+impl Level {
+    /// Name for logs.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flight => "flight",
+            Self::Steady => "steady",
+            Self::Background => "background",
+        }
+    }
+}
 
 /// Every task whose timing is watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,58 +99,43 @@ impl TaskId {
             Self::Supervisor => "supervisor",
         }
     }
-}
 
-/// Timing of one task since power-up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Timing {
-    /// Completed runs.
-    pub runs: u32,
-    /// Runs that ended after their deadline, and periods that were skipped altogether.
-    pub overruns: u32,
-    /// Longest time from release to start, µs.
-    pub worst_lateness_us: u32,
-    /// Longest time from release to end, µs.
-    pub worst_response_us: u32,
-    /// Longest time from start to end, µs.
-    pub worst_execution_us: u32,
-}
-
-impl Timing {
-    /// Nothing measured yet.
-    pub const fn new() -> Self {
-        Self {
-            runs: 0,
-            overruns: 0,
-            worst_lateness_us: 0,
-            worst_response_us: 0,
-            worst_execution_us: 0,
+    /// The level that the task runs on.
+    pub const fn level(self) -> Level {
+        match self {
+            Self::Imu | Self::Estimator | Self::Control | Self::Mixer | Self::Motors => Level::Flight,
+            Self::Analog | Self::Clamp | Self::Servos | Self::Rc | Self::Commander | Self::Supervisor => {
+                Level::Steady
+            }
+            Self::Arms | Self::Telemetry => Level::Background,
         }
-    }
-
-    /// Adds a run that was released at `released`, started at `started`, ended at `ended` and had to end
-    /// `deadline` after its release; `skipped` periods before it were lost.
-    fn add(&mut self, released: Instant, started: Instant, ended: Instant, deadline: Duration, skipped: u32) {
-        let us = |d: Duration| u32::try_from(d.as_micros()).unwrap_or(u32::MAX);
-        let response = ended.saturating_duration_since(released);
-        self.runs = self.runs.wrapping_add(1);
-        self.overruns = self
-            .overruns
-            .saturating_add(skipped + u32::from(response > deadline));
-        self.worst_lateness_us = self
-            .worst_lateness_us
-            .max(us(started.saturating_duration_since(released)));
-        self.worst_response_us = self.worst_response_us.max(us(response));
-        self.worst_execution_us = self
-            .worst_execution_us
-            .max(us(ended.saturating_duration_since(started)));
     }
 }
 
 /// Records one run of an event-driven task: released when its input was measured, run from `started` to now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
-    let ended = Instant::now();
-    links.record(task, |t| t.add(released, started, ended, deadline, 0));
+    record_run_until(links, task, released, started, Instant::now(), deadline);
+}
+
+/// Records one run whose deadline is for what it did at `ended`, not for what it waits for afterwards.
+pub fn record_run_until(
+    links: &Links,
+    task: TaskId,
+    released: Instant,
+    started: Instant,
+    ended: Instant,
+    deadline: Duration,
+) {
+    links.record(
+        task,
+        &Run {
+            released,
+            started,
+            ended,
+            deadline,
+            skipped: 0,
+        },
+    );
 }
 
 /// Start of a period.
@@ -174,10 +183,16 @@ impl<'a> FixedRate<'a> {
         let period_s = self.period.as_micros() as f32 * 1e-6;
         let previous = self.current.take();
         if let Some(tick) = previous {
-            let (ended, deadline, skipped) = (Instant::now(), self.deadline, self.skipped);
-            self.links.record(self.task, |t| {
-                t.add(tick.released, tick.started, ended, deadline, skipped)
-            });
+            self.links.record(
+                self.task,
+                &Run {
+                    released: tick.released,
+                    started: tick.started,
+                    ended: Instant::now(),
+                    deadline: self.deadline,
+                    skipped: self.skipped,
+                },
+            );
         }
         self.skipped = 0;
         Timer::at(self.next).await;

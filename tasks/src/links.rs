@@ -13,10 +13,11 @@
 //! grasp, reel angle, tendon forces, gyro bias ──> supervisor ──> memory that outlives a reset ──> start
 //! ```
 
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
 use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
@@ -29,8 +30,10 @@ use sophie_control::vector::{Quat, Vec3};
 use sophie_control::warm::Grasp;
 use sophie_control::wrench::{PerArm, Wrench};
 
-use crate::deadline::{TaskId, Timing};
+use crate::deadline::{Level, TaskId};
+use crate::histogram::Histogram;
 use crate::start::{Cause, Start};
+use crate::timing::{Quantity, Record, Run, Timing};
 
 /// The mutex of every link: tasks of different priority meet here on the board.
 pub type Raw = CriticalSectionRawMutex;
@@ -261,7 +264,9 @@ pub struct Links {
     pub rc: Link<RcState>,
     /// commander -> telemetry, log. 100 Hz, stale after 200 ms.
     pub status: Link<Status>,
-    timing: [Mutex<Raw, Cell<Timing>>; TaskId::COUNT],
+    /// every task of the flight level -> log. When one misses its deadline.
+    pub missed: Signal<Raw, ()>,
+    timing: [Mutex<Raw, RefCell<Record>>; TaskId::COUNT],
     hardware: Mutex<Raw, Cell<Refusals>>,
 }
 
@@ -296,7 +301,8 @@ impl Links {
             grip: Link::new(ms(100)),
             rc: Link::new(ms(500)),
             status: Link::new(ms(200)),
-            timing: [const { Mutex::new(Cell::new(Timing::new())) }; TaskId::COUNT],
+            missed: Signal::new(),
+            timing: [const { Mutex::new(RefCell::new(Record::new())) }; TaskId::COUNT],
             hardware: Mutex::new(Cell::new(match start.cause {
                 Cause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
                 _ => Refusals::NONE,
@@ -321,21 +327,28 @@ impl Links {
         });
     }
 
-    /// What is known of a task's timing.
+    /// Timing of a task since power-up.
     pub fn timing(&self, task: TaskId) -> Timing {
-        self.timing
-            .get(task as usize)
-            .map_or(Timing::new(), |m| m.lock(Cell::get))
+        self.with_record(task, |record| record.totals).unwrap_or_default()
+    }
+
+    /// Histogram of a task's times since it was taken last.
+    pub fn take_histogram(&self, task: TaskId, quantity: Quantity) -> Histogram {
+        self.with_record(task, |record| record.take(quantity))
+            .unwrap_or(Histogram::EMPTY)
     }
 
     /// Records one run of a task.
-    pub fn record(&self, task: TaskId, update: impl FnOnce(&mut Timing)) {
-        if let Some(m) = self.timing.get(task as usize) {
-            m.lock(|cell| {
-                let mut timing = cell.get();
-                update(&mut timing);
-                cell.set(timing);
-            });
+    pub fn record(&self, task: TaskId, run: &Run) {
+        let missed = self.with_record(task, |record| record.add(run));
+        if missed == Some(true) && task.level() == Level::Flight {
+            self.missed.signal(());
         }
+    }
+
+    fn with_record<T>(&self, task: TaskId, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
+        let slot = self.timing.get(task as usize)?;
+        // Borrowed nowhere else: the lock is held for as long.
+        slot.lock(|cell| cell.try_borrow_mut().ok().map(|mut record| f(&mut record)))
     }
 }

@@ -1,10 +1,11 @@
 //! Motor output, one frame for each mix; stops the motors by itself when mixes stop coming.
 //!
-//! Flight level. Deadline: the frame starts within 600 µs of data-ready.
+//! Flight level. Deadline: the frame starts within 600 µs of data-ready. This task's response is therefore that of the
+//! whole chain.
 
 use embassy_time::{Duration, Instant, with_timeout};
 
-use crate::deadline::{TaskId, record_run};
+use crate::deadline::{TaskId, record_run_until};
 use crate::links::Links;
 use crate::ports::Motors;
 use sophie_control::wrench::PerArm;
@@ -28,16 +29,19 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                 let commands = message
                     .fresh(links.mix.stale_after)
                     .map_or([0.0; 4], |m| m.commands);
-                write(&mut port, commands.map(|c| if c.is_finite() { c } else { 0.0 })).await;
-                record_run(links, TaskId::Motors, message.at, started, DEADLINE);
+                let began = write(&mut port, commands.map(|c| if c.is_finite() { c } else { 0.0 })).await;
+                // A frame that never began is late by all the time that was waited for it.
+                let began = began.unwrap_or_else(Instant::now);
+                record_run_until(links, TaskId::Motors, message.at, started, began, DEADLINE);
             }
-            Err(_) => write(&mut port, [0.0; 4]).await,
+            Err(_) => {
+                write(&mut port, [0.0; 4]).await;
+            }
         }
     }
 }
 
-/// Sends one frame; one that hangs is given up, and the next is tried.
-async fn write(port: &mut impl Motors, commands: PerArm<f32>) {
-    // Giving up is all that can be done here: the next frame follows within a millisecond.
-    let _ = with_timeout(FRAME_LIMIT, port.write(commands)).await;
+/// Sends one frame and gives its beginning; one that hangs is given up (`None`): the next follows within a millisecond.
+async fn write(port: &mut impl Motors, commands: PerArm<f32>) -> Option<Instant> {
+    with_timeout(FRAME_LIMIT, port.write(commands)).await.ok()
 }

@@ -1,5 +1,6 @@
 //! What a board implements. Every unit is SI unless said otherwise.
 
+use embassy_time::Instant;
 use heapless::Vec;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
@@ -42,6 +43,9 @@ pub trait Imu {
     /// # Errors
     /// A silent or garbled sensor.
     async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError>;
+
+    /// When the newest sample that was read was ready in the part: its data-ready, not the end of the transfer.
+    fn ready_at(&self) -> Instant;
 }
 
 /// The four inertial sensors at the arm tips, one BNO055 each.
@@ -81,8 +85,8 @@ pub trait Analog {
 
 /// The four motors.
 pub trait Motors {
-    /// Sends one command for each motor: 0 stops, 0 < c <= 1 is the share of full drive.
-    async fn write(&mut self, commands: PerArm<f32>);
+    /// Sends one command for each motor: 0 stops, 0 < c <= 1 is the share of full drive. Returns when the frame began.
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant;
 }
 
 /// The four tendon servos.

@@ -11,7 +11,7 @@
 
 use embassy_time::{Duration, Instant};
 
-use crate::deadline::{FixedRate, TaskId};
+use crate::deadline::{FixedRate, Level, TaskId};
 use crate::keeper::Keeper;
 use crate::links::Links;
 use crate::ports::{Retain, Watchdog};
@@ -27,55 +27,45 @@ pub const BOOT_TIME: Duration = Duration::from_secs(3);
 struct Watched {
     task: TaskId,
     least: u32,
-    /// Runs only count once the sensors are calibrated.
-    flight_level: bool,
 }
 
+/// Those of the flight level only count once the sensors are calibrated.
 const WATCHED: [Watched; 9] = [
     Watched {
         task: TaskId::Imu,
         least: 50,
-        flight_level: true,
     },
     Watched {
         task: TaskId::Estimator,
         least: 50,
-        flight_level: true,
     },
     Watched {
         task: TaskId::Control,
         least: 50,
-        flight_level: true,
     },
     Watched {
         task: TaskId::Mixer,
         least: 50,
-        flight_level: true,
     },
     Watched {
         task: TaskId::Motors,
         least: 50,
-        flight_level: true,
     },
     Watched {
         task: TaskId::Analog,
         least: 25,
-        flight_level: false,
     },
     Watched {
         task: TaskId::Clamp,
         least: 5,
-        flight_level: false,
     },
     Watched {
         task: TaskId::Servos,
         least: 2,
-        flight_level: false,
     },
     Watched {
         task: TaskId::Commander,
         least: 5,
-        flight_level: false,
     },
 ];
 
@@ -130,7 +120,8 @@ impl Health {
                 .iter()
                 .zip(self.runs.iter().zip(before))
                 .all(|(w, (&now, before))| {
-                    now.wrapping_sub(before) >= w.least || (w.flight_level && !self.calibrated)
+                    now.wrapping_sub(before) >= w.least
+                        || (w.task.level() == Level::Flight && !self.calibrated)
                 });
         }
         let fresh = links.attitude.fresh().is_some() && links.mix.fresh().is_some();

@@ -4,6 +4,7 @@ use std::ffi::OsStr;
 use std::process::{Command, ExitCode};
 
 use crate::boards::{self, Board};
+use crate::build::Trace;
 use crate::{Error, build};
 
 /// Boards that can be emulated.
@@ -31,11 +32,13 @@ pub fn board(words: &[&str]) -> Result<&'static Board, String> {
 /// # Errors
 /// The firmware does not build.
 pub fn fly(board: &Board, rest: &[&str]) -> Result<ExitCode, Error> {
-    let (elf, _) = crate::firmware(board)?;
+    let (trace, rest): (Vec<&str>, Vec<&str>) = rest.iter().partition(|word| **word == "--trace");
+    let trace = if trace.is_empty() { Trace::Off } else { Trace::On };
+    let (elf, _) = crate::firmware(board, trace)?;
     emulator(
         "sophie-bench",
         [OsStr::new(board.name), "--elf".as_ref(), elf.as_os_str()],
-        rest,
+        &rest,
     )
 }
 

@@ -10,12 +10,33 @@ use crate::Error;
 use crate::boards::Board;
 use crate::toolchain::{self, TARGET};
 
+/// Bytes of the log's buffer in a build with trace: 2 ms of events and their frames, where a probe may be slow.
+const TRACE_BUFFER: &str = "8192";
+
+/// Whether every event of the executors is logged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trace {
+    /// The image that flies.
+    Off,
+    /// One that tells of every event (docs/timing.md).
+    On,
+}
+
 /// Builds the firmware of `board`; returns the path of its ELF.
 ///
 /// # Errors
 /// No toolchain, or the build failed (and said why).
-pub fn firmware(board: &Board) -> Result<PathBuf, Error> {
-    image("sophie", &["--features", board.name], board.core, board.name)
+pub fn firmware(board: &Board, trace: Trace) -> Result<PathBuf, Error> {
+    match trace {
+        Trace::Off => image("sophie", &["--features", board.name], &[], board.core, board.name),
+        Trace::On => image(
+            "sophie",
+            &["--features", &format!("{},trace", board.name)],
+            &[("DEFMT_RTT_BUFFER_SIZE", TRACE_BUFFER)],
+            board.core,
+            &format!("{}-trace", board.name),
+        ),
+    }
 }
 
 /// Builds the image of `package` for a `core`, with the profile and the flags that all images have; returns the path of
@@ -23,7 +44,13 @@ pub fn firmware(board: &Board) -> Result<PathBuf, Error> {
 ///
 /// # Errors
 /// No toolchain, or the build failed (and said why).
-pub fn image(package: &str, arguments: &[&str], core: &str, kept: &str) -> Result<PathBuf, Error> {
+pub fn image(
+    package: &str,
+    arguments: &[&str],
+    variables: &[(&str, &str)],
+    core: &str,
+    kept: &str,
+) -> Result<PathBuf, Error> {
     let toolchain = toolchain::find()?;
     eprintln!("{kept}: {}", toolchain.name);
 
@@ -41,6 +68,7 @@ pub fn image(package: &str, arguments: &[&str], core: &str, kept: &str) -> Resul
     ]);
     command.args(arguments).args(toolchain.arguments);
     command.envs(toolchain.variables.iter().map(|(name, value)| (name, value)));
+    command.envs(variables.iter().copied());
     // Only makes the code faster: an image that is built without it does the same.
     let mut flags = env::var_os("RUSTFLAGS").unwrap_or_default();
     if !flags.is_empty() {

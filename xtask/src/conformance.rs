@@ -23,7 +23,7 @@ pub fn conformance() -> Result<(), Error> {
         } else {
             &[]
         };
-        let elf = build::image("sophie-conformance", features, core.cpu, core.cpu)?;
+        let elf = build::image("sophie-conformance", features, &[], core.cpu, core.cpu)?;
         let qemu = output(&mut qemu(core, &elf))?;
         let emulated = output(&mut emulated(core, &elf))?;
         let host = qemu

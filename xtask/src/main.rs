@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use boards::{BOARDS, Board};
+use build::Trace;
 
 /// Anything that ends a verb, as a sentence.
 type Error = Box<dyn std::error::Error>;
@@ -24,9 +25,12 @@ type Error = Box<dyn std::error::Error>;
 const USAGE: &str = "\
 usage: cargo xtask VERB
 
-  firmware BOARD     build the firmware and check its image; the last line is the path of the ELF
-  flash BOARD        build, flash through probe-rs and show the log
-  bench BOARD [SCENARIO.toml] [--seed N] [--out DIR] [--speed SHARE] [--console PORT] [--json]
+  firmware BOARD [--trace]
+                     build the firmware and check its image; the last line is the path of the ELF. --trace: one that logs
+                     every event of the executors, for `sophie timing` (docs/timing.md)
+  flash BOARD [--trace]
+                     build, flash through probe-rs and show the log
+  bench BOARD [SCENARIO.toml] [--trace] [--seed N] [--out DIR] [--speed SHARE] [--console PORT] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
                      input
   rig BOARD [--build|--emulated] [--wired] [NAME...]
@@ -47,8 +51,8 @@ exit status: 0 done, 1 failed, 2 not understood";
 
 /// What is to be done.
 enum Verb {
-    Firmware(&'static Board),
-    Flash(&'static Board),
+    Firmware(&'static Board, Trace),
+    Flash(&'static Board, Trace),
     Sizes { tighten: bool },
     Cost(cost::Then),
     Conformance,
@@ -59,14 +63,15 @@ impl Verb {
     /// What `words` ask for; else why they are not understood.
     fn parse(words: &[&str]) -> Result<Self, String> {
         let one_board = |names: &[&str]| match names {
-            [name] => boards::find(name)
+            [name, trace @ ..] if trace.is_empty() || trace == ["--trace"] => boards::find(name)
+                .map(|board| (board, if trace.is_empty() { Trace::Off } else { Trace::On }))
                 .ok_or_else(|| format!("no board is called `{name}`; there are {}", boards::names())),
             _ => Err(format!("name exactly one board: {}", boards::names())),
         };
         match words {
             [] | ["help" | "-h" | "--help"] => Ok(Self::Help),
-            ["firmware", names @ ..] => one_board(names).map(Self::Firmware),
-            ["flash", names @ ..] => one_board(names).map(Self::Flash),
+            ["firmware", names @ ..] => one_board(names).map(|(board, trace)| Self::Firmware(board, trace)),
+            ["flash", names @ ..] => one_board(names).map(|(board, trace)| Self::Flash(board, trace)),
             ["sizes"] => Ok(Self::Sizes { tighten: false }),
             ["sizes", "--tighten"] => Ok(Self::Sizes { tighten: true }),
             ["conformance"] => Ok(Self::Conformance),
@@ -97,8 +102,8 @@ fn main() -> ExitCode {
         }
     };
     let done = match verb {
-        Verb::Firmware(board) => firmware(board).map(|(elf, _)| println!("{}", elf.display())),
-        Verb::Flash(board) => flash(board),
+        Verb::Firmware(board, trace) => firmware(board, trace).map(|(elf, _)| println!("{}", elf.display())),
+        Verb::Flash(board, trace) => flash(board, trace),
         Verb::Sizes { tighten } => all_sizes(tighten),
         Verb::Cost(then) => cost::cost(then),
         Verb::Conformance => conformance::conformance(),
@@ -145,8 +150,8 @@ fn rig(words: &[&str]) -> ExitCode {
 }
 
 /// Builds one board's firmware and checks its image.
-fn firmware(board: &Board) -> Result<(PathBuf, image::Image), Error> {
-    let elf = build::firmware(board)?;
+fn firmware(board: &Board, trace: Trace) -> Result<(PathBuf, image::Image), Error> {
+    let elf = build::firmware(board, trace)?;
     let image = check(board, &elf)?;
     Ok((elf, image))
 }
@@ -165,8 +170,8 @@ fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
     Ok(image)
 }
 
-fn flash(board: &Board) -> Result<(), Error> {
-    let (elf, _) = firmware(board)?;
+fn flash(board: &Board, trace: Trace) -> Result<(), Error> {
+    let (elf, _) = firmware(board, trace)?;
     let mut command = Command::new("probe-rs");
     // The firmware drops log lines rather than wait for a probe; the probe must not make it wait either.
     command
@@ -195,7 +200,7 @@ fn flash(board: &Board) -> Result<(), Error> {
 fn all_sizes(tighten: bool) -> Result<(), Error> {
     let mut rows = Vec::new();
     for board in &BOARDS {
-        rows.push((board, sizes::Sizes::of(&firmware(board)?.1)?));
+        rows.push((board, sizes::Sizes::of(&firmware(board, Trace::Off)?.1)?));
     }
     sizes::print(&rows);
     sizes::compare(&rows, tighten)
@@ -209,7 +214,7 @@ mod tests {
     fn exactly_one_board_that_exists_is_built() {
         for board in &BOARDS {
             assert!(
-                matches!(Verb::parse(&["firmware", board.name]), Ok(Verb::Firmware(b)) if b.name == board.name)
+                matches!(Verb::parse(&["firmware", board.name]), Ok(Verb::Firmware(b, Trace::Off)) if b.name == board.name)
             );
         }
         for words in [

@@ -77,6 +77,7 @@ impl<'a> Rig<'a> {
         let elf = build::image(
             "sophie-rig",
             &["--test", "rig", "--features", &features],
+            &[],
             self.board.core,
             self.board.name,
         )?;

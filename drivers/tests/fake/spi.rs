@@ -5,10 +5,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use embassy_time::{Instant, Timer};
-use embedded_hal::digital;
 use embedded_hal::spi::{self, Operation};
-use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::SpiDevice;
+use sophie_drivers::data_ready;
 
 /// Which part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -342,12 +341,8 @@ impl SpiDevice for Bus {
     }
 }
 
-impl digital::ErrorType for DataReady {
-    type Error = core::convert::Infallible;
-}
-
-impl Wait for DataReady {
-    async fn wait_for_rising_edge(&mut self) -> Result<(), Self::Error> {
+impl data_ready::DataReady for DataReady {
+    async fn next(&mut self) -> Instant {
         loop {
             let period = self.0.borrow().period();
             let Some(period) = period else {
@@ -355,22 +350,11 @@ impl Wait for DataReady {
                 continue;
             };
             let now = Instant::now().as_micros();
-            Timer::at(Instant::from_micros((now / period + 1) * period)).await;
+            let at = Instant::from_micros((now / period + 1) * period);
+            Timer::at(at).await;
             if self.0.borrow().period().is_some() {
-                return Ok(());
+                return at;
             }
         }
-    }
-    async fn wait_for_high(&mut self) -> Result<(), Self::Error> {
-        unimplemented!("a pulse of 8 µs is too short for a level")
-    }
-    async fn wait_for_low(&mut self) -> Result<(), Self::Error> {
-        unimplemented!()
-    }
-    async fn wait_for_falling_edge(&mut self) -> Result<(), Self::Error> {
-        unimplemented!()
-    }
-    async fn wait_for_any_edge(&mut self) -> Result<(), Self::Error> {
-        unimplemented!()
     }
 }

@@ -63,6 +63,7 @@ pub struct Bench<'a> {
     tilts: Tilts,
     /// Every line of the log.
     pub lines: Vec<Line>,
+    raw: Vec<u8>,
     /// Restarts of the processor: when (ms since power-on) and why.
     pub resets: Vec<(f64, String)>,
 }
@@ -93,6 +94,8 @@ pub struct Finished {
     pub tilt_error: TiltError,
     /// Every line of the log.
     pub lines: Vec<Line>,
+    /// The log as the firmware wrote it.
+    pub log: Vec<u8>,
     /// Restarts of the processor: when (ms since power-on) and why.
     pub resets: Vec<(f64, String)>,
     /// Stretches of the log that could not be decoded.
@@ -103,7 +106,6 @@ impl<'a> Bench<'a> {
     /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
     /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
     /// `told`; the console is at `terminal`.
-    #[expect(clippy::too_many_arguments, reason = "what a vehicle is made of")]
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
@@ -148,6 +150,7 @@ impl<'a> Bench<'a> {
             watched: Watched::default(),
             tilts: Tilts::new(&params),
             lines: Vec::new(),
+            raw: Vec::new(),
             resets: Vec::new(),
         }
     }
@@ -164,6 +167,7 @@ impl<'a> Bench<'a> {
             log_digest: self.log_digest.0,
             tilt_error: self.tilts.error,
             lines: self.lines,
+            log: self.raw,
             resets: self.resets,
             malformed: self.log.malformed,
         })
@@ -287,6 +291,7 @@ impl Aircraft for Bench<'_> {
                 self.status = None;
             }
             let log = std::mem::take(&mut self.pins.log);
+            self.raw.extend(&log);
             for line in self.log.take(ms, &log) {
                 self.hear(line);
             }

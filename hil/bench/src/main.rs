@@ -22,6 +22,10 @@ use sophie_report::terminal::{Besides, FILES, complain, finish, result};
 
 /// Name before every complaint.
 const PROGRAM: &str = "bench";
+/// The log as it was decoded, and as the firmware wrote it.
+const LOG_FILES: [&str; 2] = ["log.txt", "log.bin"];
+/// Begin of the log's lines that come too often for a terminal.
+const EACH_SECOND: [&str; 2] = ["timing ", "trace "];
 /// Instructions for each cycle of the clock that can be asked for.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
 
@@ -39,7 +43,7 @@ struct Args {
     /// Seed of every random number.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Directory for report.html, flight.mcap, summary.json and bench.json.
+    /// Directory for report.html, flight.mcap, summary.json, bench.json, log.txt and log.bin.
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Instructions for each cycle of the core's clock, 0.25 to 1: a real core manages fewer than one at times.
@@ -104,7 +108,7 @@ fn run(args: &Args) -> Result<bool, String> {
     flyable::check(&scenario)?;
     let firmware = Firmware::read(&args.elf, board)?;
     let terminal = args.console.map(Terminal::listen).transpose()?;
-    let out = OutDir::prepare(&args.out, &FILES)?;
+    let out = OutDir::prepare(&args.out, &[&FILES[..], &LOG_FILES].concat())?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
     console.say(&format!(
@@ -119,7 +123,11 @@ fn run(args: &Args) -> Result<bool, String> {
         args.speed,
         Plan::default(),
         terminal,
-        |line| console.say(&line.to_string()),
+        |line| {
+            if !EACH_SECOND.iter().any(|begin| line.text.starts_with(begin)) {
+                console.say(&line.to_string());
+            }
+        },
         &mut Lines::new(&console),
     )?;
     let besides = Besides {
@@ -127,6 +135,15 @@ fn run(args: &Args) -> Result<bool, String> {
         value: told(args, &flight),
         lines: lines(&flight),
     };
+    let text: String = flight
+        .board
+        .lines
+        .iter()
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let logs = [text.into_bytes(), flight.board.log.clone()];
+    let logs: Vec<_> = LOG_FILES.into_iter().zip(logs).collect();
+    let _ = out.write(&logs)?;
     finish(&flight.record, Some(&besides), &out, &console, args.json)?;
     if !flight.record.outcome.accomplished {
         let reason = console::one_line(&flight.record.outcome.reason);

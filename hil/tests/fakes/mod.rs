@@ -108,6 +108,10 @@ impl Imu for FakeImu {
         });
         Ok(batch)
     }
+
+    fn ready_at(&self) -> Instant {
+        Instant::now()
+    }
 }
 
 /// Arm sensors that see level arms: their bus, and each of them.
@@ -155,9 +159,11 @@ pub struct FakeMotors {
 }
 
 impl Motors for FakeMotors {
-    async fn write(&mut self, commands: PerArm<f32>) {
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
+        let began = Instant::now();
         self.commands.set(commands);
         let _ = self.part.work(20).await;
+        began
     }
 }
 

@@ -7,6 +7,8 @@ mod levels;
 mod restart;
 pub mod retained;
 pub mod stack;
+#[cfg(feature = "trace")]
+pub mod trace;
 
 #[cfg(not(feature = "f405"))]
 pub use cache::enable_instruction_cache;

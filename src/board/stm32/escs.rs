@@ -8,7 +8,7 @@ use embassy_stm32::pac::gpio::vals::Moder;
 use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
 use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, Channel, GeneralInstance4Channel, TimerPin, UpDma};
 use embassy_stm32::{Peri, rcc};
-use embassy_time::{Duration, with_timeout};
+use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::wrench::PerArm;
 use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
 use sophie_drivers::esc_protocol::Protocol;
@@ -146,11 +146,11 @@ where
         self.timer.start();
     }
 
-    /// One frame to all four, over when this returns.
+    /// One frame to all four, over when this returns; gives its beginning.
     ///
     /// The order matters: counter stopped, DMA armed, request enabled, counter started. With the request enabled first,
     /// an update that comes before the stream is armed is lost, and with it the frame's first bit.
-    async fn send_frame(&mut self, bit: BitTiming, commands: PerArm<f32>)
+    async fn send_frame(&mut self, bit: BitTiming, commands: PerArm<f32>) -> Instant
     where
         I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
     {
@@ -168,10 +168,12 @@ where
         );
         self.timer.enable_update_dma(true);
         self.timer.start();
+        let began = Instant::now();
         // A transfer that does not end is given up: the task must go on, and the supervisor sees it late.
         let _ = with_timeout(LONGEST_FRAME, transfer).await;
         self.timer.enable_update_dma(false);
         self.timer.stop();
+        began
     }
 }
 
@@ -180,13 +182,14 @@ where
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
     u16: Into<T::Word>,
 {
-    async fn write(&mut self, commands: PerArm<f32>) {
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
         match self.timing {
-            Timing::DShot(bit) => self.send_frame(bit, commands).await,
+            Timing::DShot(bit) => return self.send_frame(bit, commands).await,
             Timing::Pulse(t) => self.set_pulses(t, commands),
             Timing::OneShot(t) => self.shoot(t, commands),
             Timing::Off => {}
         }
+        Instant::now()
     }
 }
 

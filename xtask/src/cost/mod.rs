@@ -69,7 +69,7 @@ pub fn cost(then: Then) -> Result<(), Error> {
     let mut counts = Vec::new();
     let mut commands = Vec::new();
     for core in &CORES {
-        let elf = build::image("sophie-cost", &[], core.cpu, core.cpu)?;
+        let elf = build::image("sophie-cost", &[], &[], core.cpu, core.cpu)?;
         let run = qemu::run(core, &elf)?;
         counts.extend(run.counts);
         commands.extend(run.commands);

@@ -1,0 +1,9 @@
+//! The line by which a part says that a sample is ready.
+
+use embassy_time::Instant;
+
+/// A data-ready line. A wait may be dropped.
+pub trait DataReady {
+    /// Waits for the next sample and gives the time at which it was ready.
+    async fn next(&mut self) -> Instant;
+}

@@ -1,0 +1,20 @@
+//! What a board's log says of its timing.
+//!
+//! [`source`] turns a file into messages, whatever wrote it; [`live`] reads the records that every firmware logs each
+//! second, [`trace`] the executor events of one built with the feature `trace`; [`capture::Capture`] is both.
+//! [`table`], [`csv`] and [`page`] show it, [`analyse`] asks whether every deadline would hold.
+
+#![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+pub mod analyse;
+pub mod capture;
+pub mod csv;
+pub mod garbled;
+pub mod live;
+pub mod page;
+pub mod replay;
+pub mod rta;
+pub mod source;
+pub mod stats;
+pub mod table;
+pub mod trace;

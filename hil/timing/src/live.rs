@@ -1,0 +1,159 @@
+//! The records that every firmware logs: one a second of each task, one of the chain, and missed deadlines.
+
+use crate::garbled::Garbled;
+
+/// Half, 99 % and all of a second's runs took no longer than this, µs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Quantiles {
+    /// Half of them.
+    pub p50: u32,
+    /// 99 % of them.
+    pub p99: u32,
+    /// All.
+    pub max: u32,
+}
+
+/// One task's second.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// Its name.
+    pub task: String,
+    /// Runs.
+    pub runs: u32,
+    /// From release to start.
+    pub late: Quantiles,
+    /// From start to end, with what preempted it and what it waited for.
+    pub run: Quantiles,
+    /// From release to end.
+    pub response: Quantiles,
+    /// Deadline, µs after release.
+    pub deadline: u32,
+    /// Deadlines missed.
+    pub missed: u32,
+}
+
+/// The chain's second, from data-ready to motor frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chain {
+    /// Frames.
+    pub frames: u32,
+    /// The quickest, µs.
+    pub min: u32,
+    /// The others.
+    pub times: Quantiles,
+}
+
+/// What a line of the log says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// Of a task.
+    Record(Record),
+    /// Of the chain.
+    Chain(Chain),
+}
+
+/// What `line` says of timing; `None` when it is about something else.
+///
+/// # Errors
+/// A line that begins as one about timing and then does not go on as one.
+pub fn parse(line: &str) -> Option<Result<Line, Garbled>> {
+    let (_, rest) = line.split_once("timing ")?;
+    let (task, rest) = rest.split_once(": ")?;
+    // Prose may have the word, too.
+    if task.contains(' ') {
+        return None;
+    }
+    let parsed = if task == "chain" {
+        chain(rest).map(Line::Chain)
+    } else {
+        record(task, rest).map(Line::Record)
+    };
+    Some(parsed.ok_or(Garbled))
+}
+
+fn record(task: &str, rest: &str) -> Option<Record> {
+    let (runs, rest) = rest.split_once("/s, late ")?;
+    let (late, rest) = rest.split_once(", run ")?;
+    let (run, rest) = rest.split_once(", response ")?;
+    let (response, rest) = rest.split_once(" of ")?;
+    let (deadline, rest) = rest.split_once(" us, ")?;
+    let (missed, _) = rest.split_once(" missed")?;
+    let [late, run, response] = [late, run, response].map(quantiles);
+    Some(Record {
+        task: task.to_owned(),
+        runs: runs.parse().ok()?,
+        late: late?,
+        run: run?,
+        response: response?,
+        deadline: deadline.parse().ok()?,
+        missed: missed.parse().ok()?,
+    })
+}
+
+fn chain(rest: &str) -> Option<Chain> {
+    let (frames, rest) = rest.split_once("/s, ")?;
+    let (times, _) = rest.split_once(" us from data-ready to motor frame")?;
+    let (min, times) = times.split_once('/')?;
+    Some(Chain {
+        frames: frames.parse().ok()?,
+        min: min.parse().ok()?,
+        times: quantiles(times)?,
+    })
+}
+
+fn quantiles(text: &str) -> Option<Quantiles> {
+    let mut numbers = text.split('/').map(|n| n.parse().ok());
+    let quantiles = Quantiles {
+        p50: numbers.next()??,
+        p99: numbers.next()??,
+        max: numbers.next()??,
+    };
+    numbers.next().is_none().then_some(quantiles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE: &str = "   6.400122 INFO  timing imu: 1000/s, late 21/22/24, run 3/3/4, response 24/27/28 of 200 us, 2 missed";
+
+    #[test]
+    fn a_record_is_read_behind_whatever_the_tool_writes_before_it() {
+        let Some(Ok(Line::Record(r))) = parse(LINE) else {
+            unreachable!()
+        };
+        assert_eq!(
+            (r.task.as_str(), r.runs, r.deadline, r.missed),
+            ("imu", 1000, 200, 2)
+        );
+        assert_eq!(
+            r.response,
+            Quantiles {
+                p50: 24,
+                p99: 27,
+                max: 28
+            }
+        );
+        let chain = parse("timing chain: 999/s, 42/43/43/44 us from data-ready to motor frame");
+        let times = Quantiles {
+            p50: 43,
+            p99: 43,
+            max: 44,
+        };
+        let expected = Chain {
+            frames: 999,
+            min: 42,
+            times,
+        };
+        assert_eq!(chain, Some(Ok(Line::Chain(expected))));
+    }
+
+    #[test]
+    fn other_lines_are_none_and_broken_ones_errors() {
+        assert_eq!(parse("0.1 INFO DISARMED"), None);
+        assert_eq!(parse("0.1 INFO the timing is good: indeed"), None);
+        for end in LINE.find("late").unwrap_or(0)..LINE.len() - "missed".len() {
+            assert_eq!(parse(&LINE[..end]), Some(Err(Garbled)), "{}", &LINE[..end]);
+        }
+    }
+}

@@ -1,0 +1,368 @@
+//! Events played back: polls, who preempted whom, and the runs that polls belong to.
+
+use std::collections::{BTreeMap, HashMap};
+
+use sophie_tasks::deadline::Level;
+
+use crate::stats::Sorted;
+use crate::trace::{Kind, Trace};
+
+/// Gaps between the polls of one run are shorter than those between runs by at least this factor.
+const APART: f64 = 4.0;
+
+/// A task was polled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Poll {
+    /// Index of the task.
+    pub task: usize,
+    /// When it was woken, µs.
+    pub ready: u64,
+    /// Exception that woke it; 0 for another task of thread mode.
+    pub waker: u16,
+    /// When the poll began and ended, µs.
+    pub begin: u64,
+    /// When it ended, µs.
+    pub end: u64,
+    /// How long levels above ran in between, µs.
+    pub preempted: u64,
+}
+
+/// What a task did for one cause: one poll, or several with waits for a bus in between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// When it was woken, µs.
+    pub ready: u64,
+    /// When its first poll began, µs.
+    pub begin: u64,
+    /// When its last poll ended, µs.
+    pub end: u64,
+    /// Time that it had the processor, µs.
+    pub execution: u64,
+    /// How long levels above ran within its polls, µs.
+    pub preempted: u64,
+    /// From the ends of its polls to the next wake, µs: what it waited for.
+    pub waited: u64,
+}
+
+/// A task of the trace.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// Its name, or its address.
+    pub name: String,
+    /// Where it runs; `None` when it was never named.
+    pub level: Option<Level>,
+    /// Its runs, in order.
+    pub runs: Vec<Run>,
+}
+
+/// Times that one task kept another from the processor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Preemption {
+    /// How often.
+    pub count: u32,
+    /// In all, µs.
+    pub total: u64,
+    /// The longest, µs.
+    pub longest: u64,
+}
+
+/// A trace, played back.
+#[derive(Clone, Debug, Default)]
+pub struct Replay {
+    /// The tasks, most urgent level first.
+    pub tasks: Vec<Task>,
+    /// Every poll, in the order of their ends.
+    pub polls: Vec<Poll>,
+    /// Who was preempted, by whom.
+    pub preemptions: BTreeMap<(usize, usize), Preemption>,
+    /// Wakes by exception: how many.
+    pub wakes: BTreeMap<u16, u32>,
+    /// Time that the events cover, µs.
+    pub covered: u64,
+    /// Time of it in which no executor ran, µs.
+    pub idle: u64,
+}
+
+/// What is under way.
+enum Frame {
+    Executor { exception: u16, start: u64 },
+    Poll(Poll),
+}
+
+impl Replay {
+    /// Plays `trace` back.
+    #[must_use]
+    pub fn of(trace: &Trace) -> Self {
+        let mut names: Vec<_> = trace.names.iter().collect();
+        names.sort_by_key(|n| n.level);
+        let mut replay = Self::default();
+        let mut index = HashMap::new();
+        for name in names {
+            index.insert(name.address, replay.tasks.len());
+            replay.tasks.push(Task {
+                name: name.name.clone(),
+                level: Some(name.level),
+                runs: Vec::new(),
+            });
+        }
+        let mut stack: Vec<Frame> = Vec::new();
+        let mut ready: HashMap<usize, (u64, u16)> = HashMap::new();
+        let mut quiet_since: Option<u64> = None;
+        let mut last: Option<u64> = None;
+        let mut gaps = trace.gaps.iter().peekable();
+        for (number, event) in trace.events.iter().enumerate() {
+            let mut cut = false;
+            while gaps.next_if(|&&gap| gap <= number).is_some() {
+                cut = true;
+            }
+            if cut {
+                // Whatever was under way may have ended unseen.
+                stack.clear();
+                ready.clear();
+                quiet_since = None;
+                last = None;
+            }
+            replay.covered += last.map_or(0, |last| event.at - last);
+            last = Some(event.at);
+            let mut task = || {
+                *index.entry(event.address).or_insert_with(|| {
+                    replay.tasks.push(Task {
+                        name: format!("{:05x}", event.address),
+                        level: None,
+                        runs: Vec::new(),
+                    });
+                    replay.tasks.len() - 1
+                })
+            };
+            match event.kind {
+                Kind::Ready => {
+                    ready.entry(task()).or_insert((event.at, event.exception));
+                    *replay.wakes.entry(event.exception).or_default() += 1;
+                }
+                Kind::Begin => {
+                    let task = task();
+                    let same = |f: &Frame| matches!(f, Frame::Executor { exception, .. } if *exception == event.exception);
+                    if !stack.last().is_some_and(same) {
+                        if stack.is_empty() {
+                            replay.idle += quiet_since.take().map_or(0, |since| event.at - since);
+                        }
+                        stack.push(Frame::Executor {
+                            exception: event.exception,
+                            start: event.at,
+                        });
+                    }
+                    let (ready, waker) = ready.remove(&task).unwrap_or((event.at, event.exception));
+                    stack.push(Frame::Poll(Poll {
+                        task,
+                        ready,
+                        waker,
+                        begin: event.at,
+                        end: event.at,
+                        preempted: 0,
+                    }));
+                }
+                Kind::End => {
+                    if let Some(Frame::Poll(poll)) = stack.pop_if(|f| matches!(f, Frame::Poll(_))) {
+                        replay.ended(
+                            &stack,
+                            Poll {
+                                end: event.at,
+                                ..poll
+                            },
+                        );
+                    }
+                }
+                Kind::Idle => {
+                    let top = stack.pop_if(|f| matches!(f, Frame::Executor { .. }));
+                    if let Some(Frame::Executor { start, .. }) = top
+                        && let Some(Frame::Poll(below)) = stack.last_mut()
+                    {
+                        below.preempted += event.at - start;
+                    }
+                    if stack.is_empty() {
+                        quiet_since = Some(event.at);
+                    }
+                }
+            }
+        }
+        replay.group();
+        replay
+    }
+
+    fn ended(&mut self, below: &[Frame], poll: Poll) {
+        let took = poll.end - poll.begin;
+        for frame in below {
+            if let Frame::Poll(victim) = frame {
+                let entry = self.preemptions.entry((victim.task, poll.task)).or_default();
+                entry.count += 1;
+                entry.total += took;
+                entry.longest = entry.longest.max(took);
+            }
+        }
+        self.polls.push(poll);
+    }
+
+    /// Makes runs of the polls.
+    fn group(&mut self) {
+        for (number, task) in self.tasks.iter_mut().enumerate() {
+            let polls: Vec<&Poll> = self.polls.iter().filter(|p| p.task == number).collect();
+            let gap = |pair: &[&Poll]| match pair {
+                [before, after] => after.ready.saturating_sub(before.end),
+                _ => 0,
+            };
+            let apart = threshold(polls.windows(2).map(gap).collect());
+            let mut previous: Option<&Poll> = None;
+            for poll in polls {
+                let waited = previous.map(|p| poll.ready.saturating_sub(p.end));
+                match (waited, task.runs.last_mut()) {
+                    (Some(waited), Some(run)) if (waited as f64) < apart => {
+                        run.end = poll.end;
+                        run.execution += poll.end - poll.begin - poll.preempted;
+                        run.preempted += poll.preempted;
+                        run.waited += waited;
+                    }
+                    _ => task.runs.push(Run {
+                        ready: poll.ready,
+                        begin: poll.begin,
+                        end: poll.end,
+                        execution: (poll.end - poll.begin).saturating_sub(poll.preempted),
+                        preempted: poll.preempted,
+                        waited: 0,
+                    }),
+                }
+                previous = Some(poll);
+            }
+        }
+    }
+}
+
+impl Task {
+    /// From the wake of a run to that of the next, µs.
+    #[must_use]
+    pub fn periods(&self) -> Sorted {
+        let pairs = self.runs.iter().zip(self.runs.iter().skip(1));
+        Sorted::new(pairs.map(|(a, b)| (b.ready - a.ready) as f64).collect())
+    }
+
+    /// What `of` says of each run, µs.
+    #[must_use]
+    pub fn times(&self, of: impl Fn(&Run) -> u64) -> Sorted {
+        Sorted::new(self.runs.iter().map(|run| of(run) as f64).collect())
+    }
+}
+
+/// The gap, µs, from which on a poll begins a run of its own: the middle of the widest step in a logarithmic scale, if a
+/// twentieth of the gaps lie on either side of it. Without such a step every poll is a run.
+fn threshold(gaps: Vec<u64>) -> f64 {
+    let mut gaps: Vec<f64> = gaps.into_iter().map(|g| (g as f64).max(1.0)).collect();
+    gaps.sort_by(f64::total_cmp);
+    let edge = gaps.len() / 20;
+    let pairs = gaps.windows(2).enumerate();
+    let steps = pairs.filter_map(|(below, pair)| match pair {
+        [a, b] if below >= edge && gaps.len() - below > edge + 1 => Some((b / a, (a * b).sqrt())),
+        _ => None,
+    });
+    match steps.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((step, middle)) if step >= APART => middle,
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{Event, Name};
+
+    const LOW: u32 = 0x100;
+    const HIGH: u32 = 0x200;
+
+    fn trace(events: &[(u64, Kind, u32)]) -> Trace {
+        let name = |address, level, name: &str| Name {
+            address,
+            level,
+            name: name.into(),
+        };
+        Trace {
+            events: events
+                .iter()
+                .map(|&(at, kind, address)| Event {
+                    at,
+                    kind,
+                    address,
+                    exception: if address == HIGH { 54 } else { 0 },
+                })
+                .collect(),
+            names: vec![
+                name(LOW, Level::Background, "low"),
+                name(HIGH, Level::Flight, "high"),
+            ],
+            ..Trace::default()
+        }
+    }
+
+    #[test]
+    fn a_preempted_poll_is_told_from_the_time_that_it_ran() {
+        use Kind::{Begin, End, Idle, Ready};
+        let replay = Replay::of(&trace(&[
+            (0, Ready, LOW),
+            (3, Begin, LOW),
+            (10, Ready, HIGH),
+            (12, Begin, HIGH),
+            (20, End, HIGH),
+            (21, Idle, HIGH),
+            (30, End, LOW),
+            (31, Idle, LOW),
+            (131, Begin, LOW),
+        ]));
+        // The most urgent first.
+        assert_eq!(replay.tasks[0].name, "high");
+        let low = replay.tasks[1].runs[0];
+        assert_eq!((low.execution, low.preempted, low.begin - low.ready), (18, 9, 3));
+        let once = Preemption {
+            count: 1,
+            total: 8,
+            longest: 8,
+        };
+        assert_eq!(replay.preemptions, BTreeMap::from([((1, 0), once)]));
+        assert_eq!((replay.covered, replay.idle), (131, 100));
+    }
+
+    #[test]
+    fn polls_with_a_short_wait_between_them_are_one_run() {
+        use Kind::{Begin, End, Ready};
+        let mut events = Vec::new();
+        for n in 0..40u64 {
+            let at = n * 250;
+            events.extend([(at, Ready, HIGH), (at + 1, Begin, HIGH), (at + 2, End, HIGH)]);
+            events.extend([
+                (at + 14, Ready, HIGH),
+                (at + 15, Begin, HIGH),
+                (at + 18, End, HIGH),
+            ]);
+        }
+        let replay = Replay::of(&trace(&events));
+        let task = &replay.tasks[0];
+        assert_eq!(task.runs.len(), 40);
+        let run = task.runs[7];
+        assert_eq!((run.execution, run.waited, run.end - run.ready), (4, 12, 18));
+        assert_eq!(task.periods().deviation(), Some(0.0));
+    }
+
+    #[test]
+    fn nothing_is_told_across_a_gap() {
+        use Kind::{Begin, End, Ready};
+        let events = [
+            (0, Ready, LOW),
+            (1, Begin, LOW),
+            (900, End, LOW),
+            (901, Ready, LOW),
+            (902, Begin, LOW),
+            (904, End, LOW),
+        ];
+        let mut broken = trace(&events);
+        broken.gaps = vec![2];
+        let replay = Replay::of(&broken);
+        assert_eq!(replay.polls.len(), 1);
+        assert_eq!(replay.tasks[1].runs[0].execution, 2);
+    }
+}

@@ -1,0 +1,122 @@
+//! The whole way over the captures of docs/timing, which the emulated board wrote.
+
+use std::path::{Path, PathBuf};
+
+use sophie_timing::analyse::analyse;
+use sophie_timing::capture::Capture;
+use sophie_timing::replay::Replay;
+use sophie_timing::{csv, page, table};
+
+fn capture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../docs/timing")
+        .join(name)
+}
+
+/// A file of this test's own with `content`.
+fn file(name: &str, content: &[u8]) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("sophie-timing-{}-{name}", std::process::id()));
+    std::fs::write(&path, content).unwrap();
+    path
+}
+
+#[test]
+fn a_flight_keeps_every_deadline() {
+    let capture = Capture::read(&capture("perch-short.txt"), None).unwrap();
+    assert_eq!(capture.board.as_deref(), Some("matek-h743"));
+    assert!(capture.incomplete.is_none());
+    assert_eq!(capture.tasks.len(), 13);
+    assert!(capture.tasks.iter().all(|t| t.missed() == 0));
+    let mixer = capture.tasks.iter().find(|t| t.name == "mixer").unwrap();
+    assert!((mixer.rate() - 1000.0).abs() < 1.0, "{}", mixer.rate());
+    // What docs/timing.md states.
+    assert!(
+        capture
+            .chain
+            .iter()
+            .all(|c| (30..=60).contains(&c.min) && c.times.max <= 60)
+    );
+    let text = analyse(&capture, &Replay::default());
+    assert!(text.contains("servos (each 20000 us) is above arms"), "{text}");
+}
+
+#[test]
+fn a_trace_becomes_tables_a_timeline_and_a_sheet() {
+    let capture = Capture::read(&capture("trace.txt"), None).unwrap();
+    let replay = Replay::of(&capture.trace);
+    assert_eq!((capture.trace.lost, replay.tasks.len()), (0, 17));
+    let of = |name: &str| replay.tasks.iter().find(|t| t.name == name).unwrap();
+    let period = |name| of(name).periods().mean().unwrap();
+    assert!((period("imu") - 250.0).abs() < 1.0 && (period("mixer") - 1000.0).abs() < 1.0);
+    assert!(replay.idle as f64 > 0.7 * replay.covered as f64);
+    // Nothing preempts the most urgent level, and every preemption is by a level above.
+    for (victim, by) in replay.preemptions.keys() {
+        assert!(replay.tasks[*by].level < replay.tasks[*victim].level);
+    }
+    let tables = table::tables(&capture, &replay) + &analyse(&capture, &replay);
+    assert!(tables.contains("executors idle") && tables.contains("f405"));
+    let html = page::html(&capture, &replay, &tables);
+    assert!(html.contains("<canvas") && !html.contains("http"));
+    let sheet = csv::csv(&capture, &replay);
+    let runs: usize = replay.tasks.iter().map(|t| t.runs.len()).sum();
+    assert_eq!(sheet.lines().count(), 1 + runs);
+    assert!(sheet.lines().all(|l| l.split(',').count() == 8));
+}
+
+#[test]
+fn a_capture_that_is_cut_off_is_read_as_far_as_it_goes() {
+    for name in ["perch-short.txt", "trace.txt"] {
+        let whole = std::fs::read(capture(name)).unwrap();
+        for share in 1..20 {
+            let end = whole.len() * share / 20;
+            let path = file(name, &whole[..end]);
+            match Capture::read(&path, None) {
+                Ok(capture) => {
+                    let cut = whole[end - 1] != b'\n';
+                    assert_eq!(capture.incomplete.is_some(), cut);
+                    let told = capture.incomplete.unwrap_or_default();
+                    assert!(!told.contains('\n'), "{told}");
+                }
+                Err(line) => assert!(!line.contains('\n'), "{line}"),
+            }
+            std::fs::remove_file(path).unwrap();
+        }
+    }
+}
+
+#[test]
+fn lines_that_were_lost_are_told() {
+    let whole = std::fs::read_to_string(capture("trace.txt")).unwrap();
+    let kept = whole.lines().enumerate().filter(|(n, _)| *n != 400);
+    let text: String = kept.map(|(_, line)| format!("{line}\n")).collect();
+    let path = file("lost.txt", text.as_bytes());
+    let capture = Capture::read(&path, None).unwrap();
+    std::fs::remove_file(path).unwrap();
+    assert_eq!(capture.trace.lost, 6);
+    assert!(
+        capture
+            .incomplete
+            .unwrap()
+            .contains("6 events of the trace are lost")
+    );
+}
+
+#[test]
+fn what_is_no_capture_is_refused_in_one_line() {
+    let image = file("no-elf", b"no image");
+    for (content, told) in [
+        (&b""[..], "is empty"),
+        (b"0.1 INFO DISARMED\n", "none of a task's timing"),
+        (&[0, 1, 2, 0xff], "is no text"),
+    ] {
+        let path = file("bad", content);
+        let line = Capture::read(&path, None).unwrap_err();
+        assert!(line.contains(told) && !line.contains('\n'), "{line}");
+        std::fs::remove_file(path).unwrap();
+    }
+    let bytes = file("raw", &[0, 1, 2, 0xff]);
+    assert!(Capture::read(&bytes, Some(&image)).is_err());
+    assert!(Capture::read(Path::new("/nowhere"), None).is_err());
+    std::fs::remove_file(bytes).unwrap();
+    std::fs::remove_file(image).unwrap();
+}

@@ -1,0 +1,143 @@
+//! What the executors do, event by event, into a ring in RAM (feature `trace`).
+//!
+//! An event is two words: the clock's low half (µs), and from the lowest bit on its kind (3 bits), the task's or
+//! executor's address without its two lowest bits (18 bits: enough to tell apart what lies in one memory) and the number
+//! of the exception that was active (9 bits, 0 in thread mode). The ring is filled in interrupts and emptied by
+//! [`drain`]; what does not fit is counted and lost. Nothing is logged here: a log line wakes no task, but takes longer
+//! than most of what is traced.
+
+use core::sync::atomic::Ordering::Relaxed;
+use core::sync::atomic::{AtomicBool, AtomicU32};
+
+use cortex_m::peripheral::SCB;
+use embassy_time::Instant;
+
+/// Events that the ring holds, a power of two: 20 ms of a flight, more than the background ever stands still.
+const EVENTS: u32 = 1024;
+/// Bits of the address that an event keeps, and where.
+const ADDRESS: u32 = 0x000F_FFFC;
+const ADDRESS_SHIFT: u32 = 1;
+/// Where the exception's number is.
+const EXCEPTION_SHIFT: u32 = 21;
+
+/// What happened, in the order of their numbers.
+#[repr(u32)]
+enum Kind {
+    /// A task was woken.
+    Ready = 0,
+    /// A task is polled.
+    Begin = 1,
+    /// It has been.
+    End = 2,
+    /// An executor has nothing left to poll.
+    Idle = 3,
+}
+
+static RING: [[AtomicU32; 2]; EVENTS as usize] =
+    [const { [const { AtomicU32::new(0) }; 2] }; EVENTS as usize];
+/// Events ever written and ever read.
+static WRITTEN: AtomicU32 = AtomicU32::new(0);
+static READ: AtomicU32 = AtomicU32::new(0);
+static LOST: AtomicU32 = AtomicU32::new(0);
+/// The clock runs: before it does, its registers must not be read.
+static ON: AtomicBool = AtomicBool::new(false);
+/// Time of the event before, µs.
+static LAST: AtomicU32 = AtomicU32::new(0);
+
+/// Begins to record. The clock must run.
+pub fn start() {
+    ON.store(true, Relaxed);
+}
+
+fn record(kind: Kind, address: u32) {
+    if !ON.load(Relaxed) {
+        return;
+    }
+    let what = kind as u32 | (address & ADDRESS) << ADDRESS_SHIFT | exception() << EXCEPTION_SHIFT;
+    critical_section::with(|_| {
+        let written = WRITTEN.load(Relaxed);
+        if written.wrapping_sub(READ.load(Relaxed)) >= EVENTS {
+            LOST.store(LOST.load(Relaxed).wrapping_add(1), Relaxed);
+        } else if let Some([time, event]) = RING.get((written % EVENTS) as usize) {
+            // Asked between the wrap of its timer and the interrupt that counts it, the clock may be a wrap behind.
+            let (now, last) = (Instant::now().as_ticks() as u32, LAST.load(Relaxed));
+            let now = if now.wrapping_sub(last) > u32::MAX / 2 {
+                last
+            } else {
+                now
+            };
+            LAST.store(now, Relaxed);
+            time.store(now, Relaxed);
+            event.store(what, Relaxed);
+            WRITTEN.store(written.wrapping_add(1), Relaxed);
+        }
+    });
+}
+
+/// Number of the active exception; 0 in thread mode.
+fn exception() -> u32 {
+    // SAFETY: the register exists on every Cortex-M and reading it changes nothing.
+    unsafe { (*SCB::PTR).icsr.read() & 0x1FF }
+}
+
+/// Moves events into `events`, oldest first, and says how many. Called by one task only.
+pub fn drain(events: &mut [[u32; 2]]) -> usize {
+    let mut count = 0;
+    for slot in events {
+        let read = READ.load(Relaxed);
+        // Entries before `WRITTEN` are whole: it moves last, within the writer's critical section.
+        if read == WRITTEN.load(Relaxed) {
+            break;
+        }
+        if let Some(entry) = RING.get((read % EVENTS) as usize) {
+            *slot = entry.each_ref().map(|word| word.load(Relaxed));
+        }
+        READ.store(read.wrapping_add(1), Relaxed);
+        count += 1;
+    }
+    count
+}
+
+/// Events lost since the start.
+pub fn lost() -> u32 {
+    LOST.load(Relaxed)
+}
+
+/// The executor of thread mode has polled since it was idle. Every interrupt wakes it, mostly for nothing.
+static POLLED: AtomicBool = AtomicBool::new(false);
+
+// SAFETY (all seven): the symbols are those that embassy-executor declares, each defined once with its signature.
+
+#[unsafe(no_mangle)]
+fn _embassy_trace_poll_start(_executor: u32) {}
+
+#[unsafe(no_mangle)]
+fn _embassy_trace_task_new(_executor: u32, _task: u32) {}
+
+#[unsafe(no_mangle)]
+fn _embassy_trace_task_end(_executor: u32, _task: u32) {}
+
+#[unsafe(no_mangle)]
+fn _embassy_trace_task_exec_begin(_executor: u32, task: u32) {
+    if exception() == 0 {
+        POLLED.store(true, Relaxed);
+    }
+    record(Kind::Begin, task);
+}
+
+#[unsafe(no_mangle)]
+fn _embassy_trace_task_exec_end(_executor: u32, task: u32) {
+    record(Kind::End, task);
+}
+
+#[unsafe(no_mangle)]
+fn _embassy_trace_task_ready_begin(_executor: u32, task: u32) {
+    record(Kind::Ready, task);
+}
+
+#[unsafe(no_mangle)]
+fn _embassy_trace_executor_idle(executor: u32) {
+    if exception() != 0 || POLLED.swap(false, Relaxed) {
+        record(Kind::Idle, executor);
+    }
+}

@@ -1,0 +1,101 @@
+//! The tasks' timing over defmt: each second a record of each task, and a line at once when the flight level is late.
+//!
+//! ```text
+//! timing estimator: 1000/s, late 28/28/29, run 1/1/2, response 29/29/31 of 300 us, 0 missed
+//! timing chain: 1000/s, 42/43/43/44 us from data-ready to motor frame
+//! ```
+//!
+//! Times are half, 99 % and all of the second's runs (too large by less than a quarter; the last is exact); the chain's
+//! first is the shortest. docs/timing.md says what they are of.
+
+use sophie_tasks::deadline::TaskId;
+use sophie_tasks::histogram::Histogram;
+use sophie_tasks::links::Links;
+use sophie_tasks::timing::Quantity;
+
+/// Missed deadlines that were told already.
+#[derive(Default)]
+pub struct TimingReport {
+    recorded: [u32; TaskId::COUNT],
+    told: [u32; TaskId::COUNT],
+}
+
+impl TimingReport {
+    /// What is due in the `look`-th look of each second: one task's record, after the last task the deadlines that any
+    /// task missed.
+    pub fn second(&mut self, links: &Links, look: u32) {
+        match TaskId::ALL.get(look as usize) {
+            Some(&task) => self.record(links, task),
+            None if look as usize == TaskId::COUNT => self.missed(links),
+            None => {}
+        }
+    }
+
+    /// Names every task that has missed deadlines since it was named last, with its worst times since the start.
+    pub fn missed(&mut self, links: &Links) {
+        for (task, told) in TaskId::ALL.into_iter().zip(&mut self.told) {
+            let t = links.timing(task);
+            if t.overruns != *told {
+                *told = t.overruns;
+                defmt::warn!(
+                    "{=str}: {=u32} overruns in {=u32} runs; worst: {=u32} us late, {=u32} us response, {=u32} us execution",
+                    task.name(),
+                    t.overruns,
+                    t.runs,
+                    t.worst_lateness_us,
+                    t.worst_response_us,
+                    t.worst_execution_us
+                );
+            }
+        }
+    }
+
+    fn record(&mut self, links: &Links, task: TaskId) {
+        let [late, run, response] = [Quantity::Lateness, Quantity::Execution, Quantity::Response]
+            .map(|quantity| links.take_histogram(task, quantity));
+        let totals = links.timing(task);
+        let Some(recorded) = self.recorded.get_mut(task as usize) else {
+            return;
+        };
+        let missed = totals
+            .overruns
+            .wrapping_sub(core::mem::replace(recorded, totals.overruns));
+        // A task that does not run, such as telemetry beside SBUS, has nothing to tell.
+        if run.count() == 0 && missed == 0 {
+            return;
+        }
+        let ([l50, l99, l100], [r50, r99, r100]) = (three(&late), three(&run));
+        let [t50, t99, t100] = three(&response);
+        defmt::info!(
+            "timing {=str}: {=u32}/s, late {=u32}/{=u32}/{=u32}, run {=u32}/{=u32}/{=u32}, response {=u32}/{=u32}/{=u32} of {=u32} us, {=u32} missed",
+            task.name(),
+            response.count(),
+            l50,
+            l99,
+            l100,
+            r50,
+            r99,
+            r100,
+            t50,
+            t99,
+            t100,
+            totals.deadline_us,
+            missed
+        );
+        if task == TaskId::Motors {
+            defmt::info!(
+                "timing chain: {=u32}/s, {=u32}/{=u32}/{=u32}/{=u32} us from data-ready to motor frame",
+                response.count(),
+                response.min(),
+                t50,
+                t99,
+                t100
+            );
+        }
+    }
+}
+
+/// Half, 99 % and all of the runs, µs.
+fn three(histogram: &Histogram) -> [u32; 3] {
+    [histogram.quantile(500), histogram.quantile(990), histogram.max()]
+}

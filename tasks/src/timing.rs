@@ -1,0 +1,125 @@
+//! What is known of a task's timing: totals since power-up, and histograms since they were last taken.
+//!
+//! Times are whole microseconds, the resolution of the clock. Lateness is from release to start, execution from start to
+//! end, response from release to end. A run's execution holds whatever preempted it and what it waited for on a bus; the
+//! executor trace (docs/timing.md) tells them apart.
+
+use embassy_time::{Duration, Instant};
+
+use crate::histogram::Histogram;
+
+/// One run of a task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// When its input was measured, or its period began.
+    pub released: Instant,
+    /// When it started.
+    pub started: Instant,
+    /// When it had done what its deadline is for.
+    pub ended: Instant,
+    /// Time from release by which it had to end.
+    pub deadline: Duration,
+    /// Periods before it that passed without a run.
+    pub skipped: u32,
+}
+
+/// Timing of one task since power-up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timing {
+    /// Completed runs.
+    pub runs: u32,
+    /// Runs that ended after their deadline, and periods that were skipped altogether.
+    pub overruns: u32,
+    /// Longest time from release to start, µs.
+    pub worst_lateness_us: u32,
+    /// Longest time from release to end, µs.
+    pub worst_response_us: u32,
+    /// Longest time from start to end, µs.
+    pub worst_execution_us: u32,
+    /// Deadline of the last run, µs after its release.
+    pub deadline_us: u32,
+}
+
+/// What a histogram is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// From release to start.
+    Lateness,
+    /// From start to end.
+    Execution,
+    /// From release to end.
+    Response,
+}
+
+/// Everything recorded of one task.
+#[derive(Debug)]
+pub struct Record {
+    /// Since power-up.
+    pub totals: Timing,
+    lateness: Histogram,
+    execution: Histogram,
+    response: Histogram,
+}
+
+impl Record {
+    /// Nothing measured yet.
+    pub const fn new() -> Self {
+        Self {
+            totals: Timing {
+                runs: 0,
+                overruns: 0,
+                worst_lateness_us: 0,
+                worst_response_us: 0,
+                worst_execution_us: 0,
+                deadline_us: 0,
+            },
+            lateness: Histogram::EMPTY,
+            execution: Histogram::EMPTY,
+            response: Histogram::EMPTY,
+        }
+    }
+
+    /// Adds a run; true when a deadline was missed.
+    pub fn add(&mut self, run: &Run) -> bool {
+        let lateness = between(run.released, run.started);
+        let execution = between(run.started, run.ended);
+        let response = between(run.released, run.ended);
+        let deadline = us(run.deadline);
+        let missed = run.skipped + u32::from(response > deadline);
+        let t = &mut self.totals;
+        t.runs = t.runs.wrapping_add(1);
+        t.overruns = t.overruns.saturating_add(missed);
+        t.worst_lateness_us = t.worst_lateness_us.max(lateness);
+        t.worst_response_us = t.worst_response_us.max(response);
+        t.worst_execution_us = t.worst_execution_us.max(execution);
+        t.deadline_us = deadline;
+        self.lateness.add(lateness);
+        self.execution.add(execution);
+        self.response.add(response);
+        missed > 0
+    }
+
+    /// The histogram of `quantity` since it was taken last.
+    pub fn take(&mut self, quantity: Quantity) -> Histogram {
+        let histogram = match quantity {
+            Quantity::Lateness => &mut self.lateness,
+            Quantity::Execution => &mut self.execution,
+            Quantity::Response => &mut self.response,
+        };
+        core::mem::replace(histogram, Histogram::EMPTY)
+    }
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn between(from: Instant, to: Instant) -> u32 {
+    us(to.saturating_duration_since(from))
+}
+
+fn us(time: Duration) -> u32 {
+    u32::try_from(time.as_micros()).unwrap_or(u32::MAX)
+}
