@@ -103,7 +103,6 @@ impl<'a> Bench<'a> {
     /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
     /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
     /// `told`; the console is at `terminal`.
-    #[expect(clippy::too_many_arguments, reason = "what a vehicle is made of")]
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
