@@ -83,19 +83,21 @@ impl TiltModel {
         self.fault = fault;
     }
 
-    /// Takes the tilts (rad) that the arms' sensors measured, at 100 Hz, while the arms hang free in the air.
+    /// Takes the tilt (rad) that the sensor of `arm` (0 to 3) measured, at 100 Hz, while the arm hangs free in the air.
     #[inline(always)]
-    pub fn correct(&mut self, measured: &PerArm<Option<f32>>) {
-        let (model, gain, limit) = (self.model, self.bias_gain, self.bias_max);
-        for (arm, measured) in self.arms.iter_mut().zip(measured) {
-            // A sensor that says nothing is one that says no number.
-            let measured = measured.unwrap_or(f32::NAN);
-            let felt = arm.lagged.value();
-            let gain = if felt > LEARN_THRUST { gain } else { 0.0 };
-            let bias = arm.bias + gain * (measured - model.angle(felt) - arm.bias);
-            // Neither a number beyond the limit nor none: a glitch moves nothing.
-            arm.bias = if bias.abs() <= limit { bias } else { arm.bias };
-        }
+    pub fn correct(&mut self, arm: usize, measured: f32) {
+        let Some(arm) = self.arms.get_mut(arm) else {
+            return;
+        };
+        let felt = arm.lagged.value();
+        let gain = if felt > LEARN_THRUST { self.bias_gain } else { 0.0 };
+        let bias = arm.bias + gain * (measured - self.model.angle(felt) - arm.bias);
+        // Neither a number beyond the limit nor none: a glitch moves nothing.
+        arm.bias = if bias.abs() <= self.bias_max {
+            bias
+        } else {
+            arm.bias
+        };
     }
 
     /// The static model.
@@ -137,6 +139,12 @@ mod tests {
     use super::*;
     use crate::math;
 
+    fn correct(t: &mut TiltModel, measured: PerArm<f32>) {
+        for (arm, measured) in measured.into_iter().enumerate() {
+            t.correct(arm, measured);
+        }
+    }
+
     fn settled(thrust: f32) -> TiltModel {
         let mut t = TiltModel::new(&Params::default());
         for _ in 0..3000 {
@@ -156,7 +164,7 @@ mod tests {
         let mut t = settled(4.4);
         let truth = t.model().angle(4.4) - math::deg(3.0);
         for _ in 0..300 {
-            t.correct(&[Some(truth), None, Some(f32::NAN), Some(truth)]);
+            correct(&mut t, [truth, f32::INFINITY, f32::NAN, truth]);
             t.step(&[4.4; 4], 1e-2);
         }
         let tilt = t.tilt();
@@ -201,7 +209,7 @@ mod tests {
             t.step(&[6.0; 4], 1e-3);
         }
         assert!(t.arms[0].lagged.value() < LEARN_THRUST);
-        t.correct(&[Some(0.1); 4]);
+        correct(&mut t, [0.1; 4]);
         assert!(t.bias() == [0.0; 4], "{:?}", t.bias());
         // Spooling down: the command is idle, the arm is still bent by a flying thrust.
         let mut t = settled(6.0);
@@ -211,7 +219,7 @@ mod tests {
         let felt = t.arms[0].lagged.value();
         assert!(felt > LEARN_THRUST);
         let truth = t.model().angle(felt) + 0.05;
-        t.correct(&[Some(truth); 4]);
+        correct(&mut t, [truth; 4]);
         assert!(t.bias().iter().all(|b| *b > 0.0), "{:?}", t.bias());
     }
 
@@ -220,7 +228,7 @@ mod tests {
         let limit = Params::default().tilt_bias_max;
         let mut t = settled(4.4);
         for _ in 0..3000 {
-            t.correct(&[Some(1.5), Some(-1.5), Some(f32::INFINITY), Some(1e30)]);
+            correct(&mut t, [1.5, -1.5, f32::INFINITY, 1e30]);
         }
         let [up, down, silent, glitch] = t.bias();
         assert!(up <= limit && up > limit - 0.04 && down >= -limit && down < 0.04 - limit);
@@ -230,7 +238,7 @@ mod tests {
     #[test]
     fn nothing_is_learnt_on_the_ground() {
         let mut t = settled(0.25);
-        t.correct(&[Some(0.1); 4]);
+        correct(&mut t, [0.1; 4]);
         assert!(t.bias() == [0.0; 4]);
     }
 }

@@ -23,6 +23,7 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
     let mut mixer = Mixer::new(variant, configuration, &links.params);
     let curve = ThrustCurve::from_params(&links.params);
     let mut arms_seen = Instant::MIN;
+    let mut readings = [None; 4].into_iter().enumerate();
     let mut last = Instant::MIN;
     loop {
         let message = demand.changed().await;
@@ -45,8 +46,12 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
         {
             arms_seen = arms.at;
             if let Some(arms) = arms.fresh(links.arms.stale_after) {
-                mixer.correct_tilt(&arms.tilt);
+                readings = arms.tilt.into_iter().enumerate();
             }
+        }
+        // One arm a step: all four in one would make it longer than the others.
+        if let Some((arm, Some(tilt))) = readings.next() {
+            mixer.correct_tilt(arm, tilt);
         }
         let (mix, running) = match message.value {
             Demand::Stop => (

@@ -114,8 +114,9 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
             yaw: torque.z,
         };
         if step % 10 == 0 {
-            let measured = mixer.tilt().tilt().map(|tilt| Some(tilt + 0.05 * noise.unit()));
-            mixer.correct_tilt(&measured);
+            for (arm, tilt) in mixer.tilt().tilt().into_iter().enumerate() {
+                mixer.correct_tilt(arm, tilt + 0.05 * noise.unit());
+            }
         }
         let battery_ratio = 1.0 + 0.15 * noise.unit();
         let mix = mixer.mix(

@@ -158,16 +158,16 @@ pub fn tilt(c: &mut Chain, i: &Inputs) {
     c.mixer.follow(&c.flow.mix.thrusts, i.dt);
 }
 
-/// What the arms' sensors teach of the tilt: at 100 Hz.
+/// What the sensor of one arm teaches of its tilt, each at 100 Hz.
 #[inline(never)]
-pub fn arm_sensors(c: &mut Chain, i: &Inputs) {
+pub fn arm_sensor(c: &mut Chain, i: &Inputs) {
     teach(&mut c.mixer, i);
 }
 
 #[inline(always)]
 fn teach(mixer: &mut Mixer, i: &Inputs) {
-    if let Some(measured) = &i.arms {
-        mixer.correct_tilt(measured);
+    if let Some((arm, measured)) = i.arm {
+        mixer.correct_tilt(arm, measured);
     }
 }
 

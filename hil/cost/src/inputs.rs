@@ -8,7 +8,6 @@ use sophie_conformance::fold::Noise;
 use sophie_control::attitude::AttitudeSetpoint;
 use sophie_control::math::GRAVITY;
 use sophie_control::vector::Vec3;
-use sophie_control::wrench::PerArm;
 
 /// Readings of the inertial sensor in a control step: 4 kHz.
 pub const READINGS: usize = 4;
@@ -41,8 +40,8 @@ pub struct Inputs {
     pub integrate: bool,
     /// Battery voltage over nominal.
     pub battery_ratio: f32,
-    /// What the arms' sensors read, rad, when they do in this step.
-    pub arms: Option<PerArm<Option<f32>>>,
+    /// What the sensor of one arm read, rad: each speaks in one step of ten, the four one after the other.
+    pub arm: Option<(usize, f32)>,
     /// Step time, s.
     pub dt: f32,
 }
@@ -128,7 +127,8 @@ impl Sequence {
         }
         let noise = if resting { 0.01 } else { s.noise };
         let batch = core::array::from_fn(|_| self.read(noise));
-        let arms = step.is_multiple_of(10).then(|| self.arms());
+        let turn = (step % 10) as usize;
+        let arm = (turn < 4).then(|| (turn, 0.2 * self.noise.unit()));
         Inputs {
             batch,
             setpoint: AttitudeSetpoint {
@@ -140,7 +140,7 @@ impl Sequence {
             yaw: s.yaw,
             integrate: s.integrate,
             battery_ratio: s.battery + 0.02 * self.noise.unit(),
-            arms,
+            arm,
             dt: 1e-3 * (1.0 + 0.02 * self.noise.unit()),
         }
     }
@@ -154,10 +154,6 @@ impl Sequence {
             gyro.y = f32::NAN;
         }
         (gyro, accel)
-    }
-
-    fn arms(&mut self) -> PerArm<Option<f32>> {
-        core::array::from_fn(|_| Some(0.2 * self.noise.unit()))
     }
 
     fn vector(&mut self) -> Vec3 {

@@ -22,7 +22,7 @@ const STAGES: [Stage; 9] = [
     ("allocation", chain::allocation),
     ("tilt", chain::tilt),
     ("commands", chain::commands),
-    ("arm-sensors", chain::arm_sensors),
+    ("arm-sensor", chain::arm_sensor),
 ];
 
 /// Counts everything; prints a line for each stage: `stage NAME CALLS TOTAL MIN MAX`.
@@ -59,8 +59,8 @@ fn stages(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) -> Fold {
         let inputs = black_box(sequence.next());
         for ((name, stage), tally) in STAGES.iter().zip(&mut tallies) {
             let count = gross(*stage, &mut chain, &inputs) - overhead;
-            // The arms' sensors speak in one step of ten.
-            if step >= REST && (*name != "arm-sensors" || inputs.arms.is_some()) {
+            // The arms' sensors speak in four steps of ten.
+            if step >= REST && (*name != "arm-sensor" || inputs.arm.is_some()) {
                 tally.add(count);
             }
         }

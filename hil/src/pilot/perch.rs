@@ -33,6 +33,8 @@ const ALONG: f64 = 0.25;
 /// Height over the pipe below which being far off it matters, m, and how far that is, m.
 const NEAR: f64 = 0.4;
 const ASTRAY: f64 = 0.20;
+/// Distance from the spot at which he descends again, m: well within [`ASTRAY`], or one gust would cost every try.
+const BACK: f64 = 0.10;
 /// Distance beside the crown at which a vehicle on the pipe will not stay, share of the pipe's radius.
 const SLIPPING: f64 = 0.33;
 /// Height over the pipe at which a vehicle that does not sink any more stands on it, m.
@@ -100,7 +102,7 @@ impl Mind {
         let off = v.seen.position.truncate() - self.pipe;
         if self.phase == Phase::GoAround {
             let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
-            if over > 0.75 * OVER_AGAIN && off.length() < ASTRAY {
+            if over > 0.75 * OVER_AGAIN && off.length() < BACK {
                 self.enter(Phase::Descend);
             }
             return (wish, false);

@@ -63,8 +63,8 @@ pub const STAGES: [Stage; 10] = [
         "496 (Crazyflie), 908 (ArduPilot)",
     ),
     stage(
-        "arm-sensors",
-        "bias of the tilt, one step in ten",
+        "arm-sensor",
+        "bias of one arm's tilt, four steps in ten",
         None,
         "none has it",
     ),
