@@ -204,10 +204,10 @@ fn erase(host: &mut dyn Host) {
 impl Driver<MatekBoard> for Rig {
     fn on_settled(&mut self, session: &mut Session<MatekBoard>, host: &mut dyn Host, settled: Settled) {
         match settled {
-            Settled::Access { access, .. } => {
-                if PORTS.contains(&access.address) && access.kind == AccessKind::Write {
-                    self.carry(session.board_mut(), access.virtual_time);
-                }
+            Settled::Access { access, .. }
+                if PORTS.contains(&access.address) && access.kind == AccessKind::Write =>
+            {
+                self.carry(session.board_mut(), access.virtual_time);
             }
             Settled::Stop(stop) => {
                 let resets = session.resets().len();
