@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::live::{self, Chain, Line, Quantiles, Record};
+use crate::live::{self, Chain, Garbled, Line, Quantiles, Record};
 use crate::source;
 use crate::trace::Trace;
 
@@ -76,7 +76,7 @@ impl Capture {
         }
     }
 
-    fn take(&mut self, line: &str) -> Result<(), ()> {
+    fn take(&mut self, line: &str) -> Result<(), Garbled> {
         if let Some((_, rest)) = line.split_once("SOPHIE ")
             && let Some((_, rest)) = rest.split_once(" on ")
             && let Some((board, _)) = rest.split_once(", start after")

@@ -1,5 +1,9 @@
 //! The records that every firmware logs: one a second of each task, one of the chain, and missed deadlines.
 
+/// A line that begins as one about timing and does not go on as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Garbled;
+
 /// Half, 99 % and all of a second's runs took no longer than this, µs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Quantiles {
@@ -54,7 +58,7 @@ pub enum Line {
 ///
 /// # Errors
 /// A line that begins as one about timing and then does not go on as one.
-pub fn parse(line: &str) -> Option<Result<Line, ()>> {
+pub fn parse(line: &str) -> Option<Result<Line, Garbled>> {
     let (_, rest) = line.split_once("timing ")?;
     let (task, rest) = rest.split_once(": ")?;
     // Prose may have the word, too.
@@ -66,7 +70,7 @@ pub fn parse(line: &str) -> Option<Result<Line, ()>> {
     } else {
         record(task, rest).map(Line::Record)
     };
-    Some(parsed.ok_or(()))
+    Some(parsed.ok_or(Garbled))
 }
 
 fn record(task: &str, rest: &str) -> Option<Record> {
@@ -151,7 +155,7 @@ mod tests {
         assert_eq!(parse("0.1 INFO DISARMED"), None);
         assert_eq!(parse("0.1 INFO the timing is good: indeed"), None);
         for end in LINE.find("late").unwrap_or(0)..LINE.len() - "missed".len() {
-            assert_eq!(parse(&LINE[..end]), Some(Err(())), "{}", &LINE[..end]);
+            assert_eq!(parse(&LINE[..end]), Some(Err(Garbled)), "{}", &LINE[..end]);
         }
     }
 }

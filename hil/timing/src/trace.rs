@@ -5,6 +5,8 @@
 
 use sophie_tasks::deadline::Level;
 
+use crate::live::Garbled;
+
 /// Bits of an address that an event keeps.
 const ADDRESS: u32 = 0x000F_FFFC;
 
@@ -65,15 +67,15 @@ impl Trace {
     ///
     /// # Errors
     /// A line of the trace that is garbled.
-    pub fn take(&mut self, line: &str) -> Result<bool, ()> {
+    pub fn take(&mut self, line: &str) -> Result<bool, Garbled> {
         let Some((_, rest)) = line.split_once("trace ") else {
             return Ok(false);
         };
         if let Some(name) = rest.strip_prefix("task ") {
-            return self.name(name).ok_or(()).map(|()| true);
+            return self.name(name).ok_or(Garbled).map(|()| true);
         }
         if let Some(count) = rest.strip_prefix("lost ") {
-            let count: u32 = count.trim().parse().map_err(|_| ())?;
+            let count: u32 = count.trim().parse().map_err(|_| Garbled)?;
             self.lost += u64::from(count.wrapping_sub(self.board_lost));
             self.board_lost = count;
             self.gaps.push(self.events.len());
@@ -81,7 +83,7 @@ impl Trace {
         }
         match rest.split_once(": [") {
             Some((number, bytes)) if number.bytes().all(|b| b.is_ascii_digit()) => {
-                self.events(number, bytes).ok_or(()).map(|()| true)
+                self.events(number, bytes).ok_or(Garbled).map(|()| true)
             }
             // Prose may have the word, too.
             _ => Ok(false),
@@ -204,9 +206,9 @@ mod tests {
         assert_eq!(trace.names.len(), 1);
         let whole = line(0, &[(1, 1)]);
         for end in [whole.len() - 1, whole.len() - 3, whole.len() - 5] {
-            assert_eq!(trace.take(&whole[..end]), Err(()));
+            assert_eq!(trace.take(&whole[..end]), Err(Garbled));
         }
-        assert_eq!(trace.take("trace task 240a51c0 flig"), Err(()));
+        assert_eq!(trace.take("trace task 240a51c0 flig"), Err(Garbled));
         assert_eq!(trace.take("no trace of it"), Ok(false));
     }
 }
