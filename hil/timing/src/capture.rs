@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use crate::garbled::Garbled;
-use crate::live::{self, Chain, Line, Quantiles, Record};
+use crate::live::{self, Chain, Garbled, Line, Quantiles, Record};
 use crate::source;
 use crate::trace::Trace;
 

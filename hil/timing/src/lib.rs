@@ -9,7 +9,6 @@
 pub mod analyse;
 pub mod capture;
 pub mod csv;
-pub mod garbled;
 pub mod live;
 pub mod page;
 pub mod replay;

@@ -96,12 +96,17 @@ fn raw(bytes: &[u8], table: &Table) -> Messages {
             }
         }
     }
-    let broken = (malformed > 0).then(|| {
+    let strange = (malformed > 0).then(|| {
         format!(
             "{malformed} stretches are not of this image's log or were lost on the way; {} messages are left",
             lines.len()
         )
     });
+    // Frames of an encoding that can recover end with a zero.
+    let cut = (table.encoding().can_recover() && bytes.last() != Some(&0))
+        .then(|| "the last message is cut off".to_owned());
+    let faults: Vec<String> = strange.into_iter().chain(cut).collect();
+    let broken = (!faults.is_empty()).then(|| faults.join(", "));
     Messages { lines, broken }
 }
 

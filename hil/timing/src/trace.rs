@@ -5,7 +5,7 @@
 
 use sophie_tasks::deadline::Level;
 
-use crate::garbled::Garbled;
+use crate::live::Garbled;
 
 /// Bits of an address that an event keeps.
 const ADDRESS: u32 = 0x000F_FFFC;
