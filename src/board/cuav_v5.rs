@@ -179,7 +179,7 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = embassy_stm32::init(clocks());
+    let p = super::stm32::start(clocks(), pac::TIM5);
     stop_motors();
     enable_instruction_cache();
     let parts = split_resources!(p);

@@ -14,3 +14,5 @@ pub mod trace;
 pub use cache::enable_instruction_cache;
 pub use levels::{FLIGHT, STEADY};
 pub use restart::Restarter;
+
+defmt::timestamp!("{=u64:us}", embassy_time::Instant::now().as_micros());

@@ -41,8 +41,6 @@ static READ: AtomicU32 = AtomicU32::new(0);
 static LOST: AtomicU32 = AtomicU32::new(0);
 /// The clock runs: before it does, its registers must not be read.
 static ON: AtomicBool = AtomicBool::new(false);
-/// Time of the event before, µs.
-static LAST: AtomicU32 = AtomicU32::new(0);
 
 /// Begins to record. The clock must run.
 pub fn start() {
@@ -59,15 +57,7 @@ fn record(kind: Kind, address: u32) {
         if written.wrapping_sub(READ.load(Relaxed)) >= EVENTS {
             LOST.store(LOST.load(Relaxed).wrapping_add(1), Relaxed);
         } else if let Some([time, event]) = RING.get((written % EVENTS) as usize) {
-            // Asked between the wrap of its timer and the interrupt that counts it, the clock may be a wrap behind.
-            let (now, last) = (Instant::now().as_ticks() as u32, LAST.load(Relaxed));
-            let now = if now.wrapping_sub(last) > u32::MAX / 2 {
-                last
-            } else {
-                now
-            };
-            LAST.store(now, Relaxed);
-            time.store(now, Relaxed);
+            time.store(Instant::now().as_ticks() as u32, Relaxed);
             event.store(what, Relaxed);
             WRITTEN.store(written.wrapping_add(1), Relaxed);
         }

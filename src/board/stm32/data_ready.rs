@@ -1,6 +1,6 @@
 //! The inertial sensor's data-ready line, stamped in its interrupt: a task that runs late does not move the sample.
 
-use core::sync::atomic::{AtomicU16, Ordering};
+use core::sync::atomic::{AtomicU32, Ordering};
 
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::interrupt::typelevel::{Handler, Interrupt};
@@ -8,16 +8,15 @@ use embassy_stm32::mode::Async;
 use embassy_time::{Duration, Instant};
 use sophie_drivers::data_ready::DataReady;
 
-/// The lowest 16 bits of the clock at the last interrupt, µs. All above may be stale in an interrupt that comes between
-/// the wrap of the clock's timer and the interrupt that counts it.
-static RISEN: AtomicU16 = AtomicU16::new(0);
+/// The lowest 32 bits of the clock at the last interrupt, µs.
+static RISEN: AtomicU32 = AtomicU32::new(0);
 
 /// Stamps the interrupt. To be bound before the driver's own handler.
 pub struct ReadyStamp;
 
 impl<I: Interrupt> Handler<I> for ReadyStamp {
     unsafe fn on_interrupt() {
-        RISEN.store(Instant::now().as_ticks() as u16, Ordering::Relaxed);
+        RISEN.store(Instant::now().as_ticks() as u32, Ordering::Relaxed);
     }
 }
 
@@ -28,8 +27,7 @@ impl DataReady for ReadyLine {
     async fn next(&mut self) -> Instant {
         self.0.wait_for_rising_edge().await;
         let now = Instant::now();
-        // A sample that waits for the 65 ms in which the stamp repeats itself was given up long before.
-        let age = (now.as_ticks() as u16).wrapping_sub(RISEN.load(Ordering::Relaxed));
-        now - Duration::from_ticks(age.into())
+        let age = (now.as_ticks() as u32).wrapping_sub(RISEN.load(Ordering::Relaxed));
+        now.checked_sub(Duration::from_ticks(age.into())).unwrap_or(now)
     }
 }

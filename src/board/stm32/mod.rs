@@ -4,6 +4,7 @@
 #[cfg_attr(not(feature = "matek-h743"), path = "adc_f4.rs")]
 mod adc;
 mod analog;
+mod clock;
 mod data_ready;
 mod escs;
 #[cfg(not(feature = "cuav-v5"))]
@@ -27,6 +28,7 @@ mod tone;
 mod watchdog;
 
 pub use analog::{AnalogInputs, BatteryScale};
+pub use clock::start;
 pub use data_ready::{ReadyLine, ReadyStamp};
 pub use escs::{EscTimer, pull_low};
 #[cfg(not(feature = "cuav-v5"))]

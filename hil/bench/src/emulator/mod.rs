@@ -7,6 +7,7 @@ mod board;
 mod chip;
 mod chips;
 pub mod conformance;
+mod deaf;
 mod f405;
 mod h743;
 mod pads;

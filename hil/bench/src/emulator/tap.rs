@@ -99,8 +99,7 @@ where
         self.look(file, c.now());
     }
 
-    // Every model hears every request, and a timer looks each one up among its wires. A burst through DMAR serves its
-    // request by itself, so nothing is lost by not listening, and a third of the run's time is won.
+    // As with [`super::deaf::Deaf`]: a burst through DMAR serves its request by itself.
     fn on_request(&mut self, _: RequestChange, _: &mut RegisterFile, _: &mut DeviceContext<'_>) {}
 
     fn on_clock(&mut self, hz: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {

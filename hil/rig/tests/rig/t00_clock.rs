@@ -1,4 +1,4 @@
-//! The core's clock against the time base: dividers of their own from one crystal. That the crystal is the one that the
+//! The core's clock against the time base, dividers of their own from one crystal, and the time base against itself. That the crystal is the one that the
 //! board expects shows where another oscillator comes in: the inertial sensor's (`t20_imu`), the watchdog's
 //! (`t70_watchdog`).
 
@@ -10,6 +10,10 @@ mod tests {
 
     /// Measured for this long; a tick of the time base is 1 µs.
     const SPAN: Duration = Duration::from_millis(100);
+    /// Spans two half turns of the time base's 16-bit counter, each 32.8 ms.
+    const TURN: Duration = Duration::from_millis(70);
+    /// As long as an interrupt that counts a half turn may have to wait.
+    const WAIT: u32 = 100;
 
     #[test]
     async fn the_core_runs_at_its_clock() {
@@ -25,5 +29,27 @@ mod tests {
             "{hz} Hz instead of {}",
             WIRING.core_hz
         );
+    }
+    /// Nor while the interrupt that counts its turns waits: the flight level reads it in interrupts.
+    #[test]
+    async fn the_time_base_never_runs_back() {
+        let board = board::take().await;
+        keep_alive(board.watchdog);
+        let (start, mut before) = (Instant::now(), Instant::now());
+        while before - start < TURN {
+            critical_section::with(|_| {
+                let masked = before;
+                while before.saturating_duration_since(masked).as_micros() < u64::from(WAIT) {
+                    let now = Instant::now();
+                    assert!(
+                        now >= before,
+                        "{} us after {} us",
+                        now.as_micros(),
+                        before.as_micros()
+                    );
+                    before = now;
+                }
+            });
+        }
     }
 }

@@ -24,6 +24,7 @@ use super::chip::{Chip, same_on_this_part};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
+use super::deaf::Deaf;
 use super::pads::{At, Pads, TimerPins};
 use super::serial::Setup;
 use super::tap::{Edge, Tap};
@@ -41,7 +42,8 @@ const ERASE: u64 = 1 << 2 | 1 << 7;
 const FLASH: u64 = 0x0800_0000;
 const BANK: u64 = 0x10_0000;
 const SECTOR: u64 = 0x2_0000;
-/// General-purpose timers of the motors and the servos: TIM4, TIM5.
+/// General-purpose timers of the clock, the motors and the servos: TIM2, TIM4, TIM5.
+const TIME_TIMER: usize = 0;
 const MOTOR_TIMER: usize = 2;
 const SERVO_TIMER: usize = 3;
 
@@ -86,10 +88,10 @@ pub static MATEK: Pads = Pads {
 
 /// Instances that no firmware of ours uses. Asking their models costs half the speed; whoever reaches one all the same
 /// finds it listed as unimplemented, and the run failed.
-const UNUSED: [&str; 27] = [
-    "TIM1", "TIM6", "TIM7", "TIM8", "TIM12", "TIM13", "TIM14", "TIM16", "TIM17", "SPI2", "SPI3", "SPI4",
-    "SPI5", "SPI6", "I2C3", "I2C4", "UART4", "UART5", "UART8", "BDMA", "DMAMUX2", "ADC2", "ADC3", "SDMMC2",
-    "GPIOI", "GPIOJ", "GPIOK",
+const UNUSED: [&str; 29] = [
+    "TIM1", "TIM3", "TIM15", "TIM6", "TIM7", "TIM8", "TIM12", "TIM13", "TIM14", "TIM16", "TIM17", "SPI2",
+    "SPI3", "SPI4", "SPI5", "SPI6", "I2C3", "I2C4", "UART4", "UART5", "UART8", "BDMA", "DMAMUX2", "ADC2",
+    "ADC3", "SDMMC2", "GPIOI", "GPIOJ", "GPIOK",
 ];
 /// Serial ports in the order of [`Stm32h743::usart`].
 const SERIAL: [&str; 8] = [
@@ -104,6 +106,7 @@ fn motor_timer() -> Tim<General> {
 #[derive(Debug)]
 pub struct H743 {
     inner: Stm32h743,
+    time: Deaf<General>,
     motors: Tap<General>,
     watchdog: Watchdog,
     buses: [StretchedI2c; 2],
@@ -116,6 +119,7 @@ pub struct H743 {
 #[derive(Debug)]
 struct Slots {
     watchdog: usize,
+    time: usize,
     motors: usize,
     clocks: usize,
     buses: [usize; 2],
@@ -139,6 +143,7 @@ impl H743 {
         }
         let slots = Slots {
             watchdog: slot("IWDG")?,
+            time: slot("TIM2")?,
             motors: slot("TIM4")?,
             clocks: slot("RCC")?,
             buses: [slot("I2C1")?, slot("I2C2")?],
@@ -147,6 +152,7 @@ impl H743 {
         };
         Ok(Self {
             inner,
+            time: Deaf(Tim::new(TIMERS[TIME_TIMER])),
             motors: Tap::new(motor_timer),
             watchdog: Watchdog::default(),
             // Their places are taken by `Mcu::split`.
@@ -246,6 +252,7 @@ impl Mcu for H743 {
             Device::reset(own);
         }
         self.watchdog = Watchdog::default();
+        self.time = Deaf(Tim::new(TIMERS[TIME_TIMER]));
         self.motors.restart(at);
         if std::mem::take(&mut self.browned_out) {
             // The emulator knows no brown-out: its flag is set beside the pin's (RM0433 §8.7.37).
@@ -270,6 +277,9 @@ impl Mcu for H743 {
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
         if slot == self.slots.watchdog {
             return (self.inner.bus_mut(), Some(&mut self.watchdog));
+        }
+        if slot == self.slots.time {
+            return (self.inner.bus_mut(), Some(&mut self.time));
         }
         if slot == self.slots.motors {
             return (self.inner.bus_mut(), Some(&mut self.motors));
