@@ -294,3 +294,54 @@ fn a_reader_that_leaves_does_not_stop_the_flight() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     assert!(output.stderr.is_empty() && temp.0.join("out/report.html").exists());
 }
+
+/// A log of the emulated board with the executors' trace, as `sophie timing` reads it.
+fn board_log() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/timing/trace.txt")
+}
+
+#[test]
+fn a_board_s_log_becomes_tables_a_page_and_a_sheet() {
+    let temp = Temp::new("timing");
+    let log = board_log().display().to_string();
+    let output = sophie(&temp, &["timing", &log, "--analyse", "--out", "there"]);
+    let (told, complaints) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success() && complaints.is_empty(), "{complaints}");
+    for part in [
+        "data-ready to motor frame",
+        "executors idle",
+        "f405",
+        "there/timing.csv",
+    ] {
+        assert!(told.contains(part), "no {part} in {told}");
+    }
+    let page = fs::read_to_string(temp.0.join("there/timing.html")).unwrap();
+    assert!(page.contains("mixer") && page.ends_with("</html>\n"));
+    let sheet = fs::read_to_string(temp.0.join("there/timing.csv")).unwrap();
+    assert!(sheet.lines().count() > 300);
+}
+
+#[test]
+fn a_board_s_log_that_is_cut_off_is_read_and_the_loss_told() {
+    let temp = Temp::new("cut-log");
+    let whole = fs::read(board_log()).unwrap();
+    let cut = temp.file("cut.txt", &whole[..whole.len() - 5]);
+    let output = sophie(&temp, &["timing", &cut]);
+    let complaints = text(&output.stderr);
+    assert!(
+        output.status.success() && complaints.lines().count() == 1,
+        "{complaints}"
+    );
+    assert!(text(&output.stdout).contains("data-ready to motor frame"));
+}
+
+#[test]
+fn what_is_no_board_s_log_is_refused() {
+    let temp = Temp::new("no-log");
+    let text = temp.file("notes.txt", b"a line of something else\n");
+    let bytes = temp.file("raw.bin", &[0, 1, 2, 0xff]);
+    assert!(refused(&temp, &["timing", &text]).contains("notes.txt"));
+    assert!(refused(&temp, &["timing", &bytes]).contains("raw.bin"));
+    assert!(refused(&temp, &["timing", "nowhere.txt"]).contains("nowhere.txt"));
+    assert!(refused(&temp, &["timing", &bytes, "--elf", &text]).contains("notes.txt"));
+}

@@ -5,16 +5,6 @@ use sophie_hil::sensors::fsr::FsrBreak;
 
 use super::*;
 
-/// In the air at about 6 s.
-const AIRBORNE: f64 = 9.0;
-
-fn hover(seconds: f64) -> Scenario {
-    Scenario {
-        time_limit: seconds,
-        ..scenario("hover.toml")
-    }
-}
-
 /// A flight of the hover of at most `seconds` s with a trouble in the air.
 fn with(trouble: Trouble, seconds: f64) -> Flight {
     let flight = fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]);

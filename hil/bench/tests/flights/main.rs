@@ -65,16 +65,27 @@ fn scenario(name: &str) -> Scenario {
     Scenario::load(&path, &Overrides::default()).unwrap()
 }
 
+/// In the air at about 6 s of a hover.
+const AIRBORNE: f64 = 9.0;
+
+/// The hover, of at most `seconds` s.
+fn hover(seconds: f64) -> Scenario {
+    Scenario {
+        time_limit: seconds,
+        ..scenario("hover.toml")
+    }
+}
+
 /// Flies `scenario` on the reference board while `troubles` happen, each at its time in s.
 fn fly(scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
     fly_image(&firmware, scenario, speed, troubles)
 }
 
-/// Flies `scenario` on the small board.
-fn fly_small(scenario: &Scenario, speed: f64) -> Flight {
+/// Flies `scenario` on the small board while `troubles` happen, each at its time in s.
+fn fly_small(scenario: &Scenario, troubles: &[(f64, Trouble)]) -> Flight {
     let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();
-    fly_image(&firmware, scenario, speed, &[])
+    fly_image(&firmware, scenario, 1.0, troubles)
 }
 
 fn fly_image(firmware: &Firmware, scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {

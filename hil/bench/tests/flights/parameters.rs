@@ -35,7 +35,7 @@ fn the_image_flies_what_is_stored() {
 #[test]
 fn the_small_board_flies_what_is_stored() {
     let scenario = start(|s| s.params.receiver_protocol = 1.0);
-    let flight = fly_small(&scenario, 1.0);
+    let flight = fly_small(&scenario, &[]);
     assert!(
         told(&flight, 0.0, "parameters: 4 from storage").is_some(),
         "{}",
