@@ -246,8 +246,9 @@ impl F405 {
 impl Chip for F405 {
     same_on_this_part!(stm32f427);
 
-    fn hold_clock(&mut self, _: usize, _: u64) -> bool {
-        false
+    fn hold_clock(&mut self, bus: usize, hold: u64) -> bool {
+        self.buses[bus].hold = hold;
+        true
     }
 
     fn serial_setup(&self, port: usize) -> Setup {
