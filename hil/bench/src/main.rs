@@ -9,11 +9,13 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 use sophie_bench::boards;
+use sophie_bench::compare;
 use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::flyable;
 use sophie_bench::plan::Plan;
 use sophie_bench::terminal::Terminal;
+use sophie_hil::record::Silent;
 use sophie_hil::scenario::{Overrides, Scenario};
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
@@ -130,10 +132,14 @@ fn run(args: &Args) -> Result<bool, String> {
         },
         &mut Lines::new(&console),
     )?;
+    // A second's work beside the minutes of the emulation.
+    let host = sophie_hil::flight::fly(&scenario, &mut Silent);
+    let mut value = told(args, &flight);
+    value["host"] = compare::value(&host);
     let besides = Besides {
         name: "bench",
-        value: told(args, &flight),
-        lines: lines(&flight),
+        value,
+        lines: [compare::lines(&host, &flight.record), lines(&flight)].concat(),
     };
     let text: String = flight
         .board
@@ -197,6 +203,7 @@ fn lines(flight: &Flight) -> Vec<String> {
     let bad: u64 = run.escs.iter().map(|esc| esc.bad).sum();
     let tilt = flight.board.tilt_error;
     vec![
+        String::new(),
         tilt.mean()
             .map_or("arm tilt: never in the air".to_owned(), |mean| {
                 format!(
