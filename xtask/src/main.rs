@@ -30,7 +30,8 @@ usage: cargo xtask VERB
                      every event of the executors, for `sophie timing` (docs/timing.md)
   flash BOARD [--trace]
                      build, flash through probe-rs and show the log
-  bench BOARD [SCENARIO.toml] [--trace] [--seed N] [--out DIR] [--speed SHARE] [--console PORT] [--json]
+  bench BOARD [SCENARIO.toml] [--trace] [--seed N] [--out DIR] [--speed SHARE] [--console PORT]
+        [--telemetry PORT] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
                      input
   rig BOARD [--build|--emulated] [--wired] [NAME...]

@@ -25,7 +25,7 @@ use crate::emulator::{Emulator, Settings};
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
-use crate::terminal::Terminal;
+use crate::terminal::Sockets;
 use crate::tilt::{TiltError, Tilts};
 use crate::wires::{Digest, Fault, Pins, Run, Wires};
 
@@ -43,7 +43,7 @@ pub struct Bench<'a> {
     wires: Wires,
     pins: Pins,
     log: Log<'a>,
-    terminal: Option<Terminal>,
+    sockets: Sockets,
     told: Box<dyn FnMut(&Line) + 'a>,
     telemetry: VecDeque<u8>,
     display: Telemetry,
@@ -105,13 +105,13 @@ pub struct Finished {
 impl<'a> Bench<'a> {
     /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
     /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
-    /// `told`; the console is at `terminal`.
+    /// `told`; `sockets` has the serial lines that are on one.
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
         speed: f64,
         plan: Plan,
-        terminal: Option<Terminal>,
+        sockets: Sockets,
         rng: &mut Pcg64Mcg,
         told: impl FnMut(&Line) + 'a,
     ) -> Self {
@@ -132,7 +132,7 @@ impl<'a> Bench<'a> {
             wires: Wires::default(),
             pins: Pins::default(),
             log: Log::new(&firmware.table),
-            terminal,
+            sockets,
             told: Box::new(told),
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
@@ -279,10 +279,13 @@ impl Aircraft for Bench<'_> {
             };
             self.pins = emulator.advance(std::mem::take(&mut self.wires))?;
             let ms = self.pins.ms;
-            if let Some(terminal) = &mut self.terminal {
-                self.wires.console = terminal.exchange(&self.pins.console);
+            if let Some(console) = &mut self.sockets.console {
+                self.wires.console = console.exchange(&self.pins.console);
             }
             let bytes = std::mem::take(&mut self.pins.telemetry);
+            if let Some(listener) = &mut self.sockets.telemetry {
+                let _ = listener.exchange(&bytes);
+            }
             self.display.take(&bytes);
             self.telemetry.extend(bytes);
             for (at, why) in std::mem::take(&mut self.pins.resets) {

@@ -8,7 +8,7 @@ use crate::bench::{Bench, Finished};
 use crate::elf::Firmware;
 use crate::log;
 use crate::plan::Plan;
-use crate::terminal::Terminal;
+use crate::terminal::Sockets;
 use crate::wires::Gap;
 use crate::{flyable, gaps};
 
@@ -40,7 +40,7 @@ impl Flight {
 }
 
 /// Flies `scenario` with `firmware` on a board that runs `speed` instructions a cycle; `plan` goes wrong on the way.
-/// The console is at `terminal`, if there is one. Each line of the log goes to `told`.
+/// `sockets` has the serial lines that are on one. Each line of the log goes to `told`.
 ///
 /// # Errors
 /// One line: why the scenario cannot be flown, or the emulator failed.
@@ -49,12 +49,12 @@ pub fn fly(
     scenario: &Scenario,
     speed: f64,
     plan: Plan,
-    terminal: Option<Terminal>,
+    sockets: Sockets,
     told: impl FnMut(&log::Line),
     observer: &mut dyn Observer,
 ) -> Result<Flight, String> {
     flyable::check(scenario)?;
-    let make = |rng: &mut _| Bench::new(firmware, scenario, speed, plan, terminal, rng, told);
+    let make = |rng: &mut _| Bench::new(firmware, scenario, speed, plan, sockets, rng, told);
     let (record, bench) = fly_with(scenario, make, observer);
     let board = bench.finish()?;
     let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();

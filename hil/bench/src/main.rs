@@ -14,7 +14,7 @@ use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::flyable;
 use sophie_bench::plan::Plan;
-use sophie_bench::terminal::Terminal;
+use sophie_bench::terminal::{Sockets, Terminal};
 use sophie_hil::record::Silent;
 use sophie_hil::scenario::{Overrides, Scenario};
 use sophie_report::terminal::console::{self, Console};
@@ -59,6 +59,9 @@ struct Args {
     /// Put the board's console on this port of 127.0.0.1.
     #[arg(long, value_name = "PORT")]
     console: Option<u16>,
+    /// Put what the board sends to its receiver on this port of 127.0.0.1.
+    #[arg(long, value_name = "PORT")]
+    telemetry: Option<u16>,
     /// Print the result as JSON on stdout, everything else on stderr.
     #[arg(long)]
     json: bool,
@@ -109,7 +112,11 @@ fn run(args: &Args) -> Result<bool, String> {
     };
     flyable::check(&scenario)?;
     let firmware = Firmware::read(&args.elf, board)?;
-    let terminal = args.console.map(Terminal::listen).transpose()?;
+    let listen = |option, port: Option<u16>| port.map(|port| Terminal::listen(option, port)).transpose();
+    let sockets = Sockets {
+        console: listen("--console", args.console)?,
+        telemetry: listen("--telemetry", args.telemetry)?,
+    };
     let out = OutDir::prepare(&args.out, &[&FILES[..], &LOG_FILES].concat())?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
@@ -124,7 +131,7 @@ fn run(args: &Args) -> Result<bool, String> {
         &scenario,
         args.speed,
         Plan::default(),
-        terminal,
+        sockets,
         |line| {
             if !EACH_SECOND.iter().any(|begin| line.text.starts_with(begin)) {
                 console.say(&line.to_string());

@@ -1,10 +1,19 @@
-//! The board's console on a socket: what a terminal program at its serial line would be.
+//! The board's serial lines on sockets: what a program at the far end of a line would be.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 
 /// Bytes taken from the socket in a millisecond: more than the line carries.
 const AT_ONCE: usize = 64;
+
+/// The lines that are on sockets.
+#[derive(Default)]
+pub struct Sockets {
+    /// The console, both ways.
+    pub console: Option<Terminal>,
+    /// What the board sends to its receiver; what comes back is dropped, the receiver's line is the pilot's.
+    pub telemetry: Option<Terminal>,
+}
 
 /// A listener on the loopback interface, and whoever is connected: one at a time, the latest.
 pub struct Terminal {
@@ -13,12 +22,12 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// A listener on `port`.
+    /// A listener on `port`, which `option` asked for.
     ///
     /// # Errors
     /// One line: the port, and why it cannot be had.
-    pub fn listen(port: u16) -> Result<Self, String> {
-        let refused = |e: std::io::Error| format!("--console {port}: cannot listen on 127.0.0.1:{port}: {e}");
+    pub fn listen(option: &str, port: u16) -> Result<Self, String> {
+        let refused = |e: std::io::Error| format!("{option} {port}: cannot listen on 127.0.0.1:{port}: {e}");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
         listener.set_nonblocking(true).map_err(refused)?;
         Ok(Self { listener, user: None })
@@ -53,11 +62,11 @@ mod tests {
 
     #[test]
     fn what_is_typed_and_said_crosses_and_a_user_may_go() {
-        let mut terminal = Terminal::listen(0).unwrap();
+        let mut terminal = Terminal::listen("--console", 0).unwrap();
         let port = terminal.listener.local_addr().unwrap().port();
-        let told = Terminal::listen(port).err().unwrap();
+        let told = Terminal::listen("--telemetry", port).err().unwrap();
         assert!(
-            told.starts_with(&format!("--console {port}: ")) && !told.contains('\n'),
+            told.starts_with(&format!("--telemetry {port}: ")) && !told.contains('\n'),
             "{told}"
         );
         assert!(terminal.exchange(b"lost").is_empty());

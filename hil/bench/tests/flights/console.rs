@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::Duration;
 
-use sophie_bench::terminal::Terminal;
+use sophie_bench::terminal::{Sockets, Terminal};
 
 use super::*;
 
@@ -39,11 +39,15 @@ fn wake(user: &mut TcpStream) {
 
 #[test]
 fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
-    let port = {
+    let [port, heard_at] = [(); 2].map(|()| {
         let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         free.local_addr().unwrap().port()
+    });
+    let sockets = Sockets {
+        console: Some(Terminal::listen("--console", port).unwrap()),
+        telemetry: Some(Terminal::listen("--telemetry", heard_at).unwrap()),
     };
-    let terminal = Terminal::listen(port).unwrap();
+    let mut listener = TcpStream::connect((Ipv4Addr::LOCALHOST, heard_at)).unwrap();
     let user = std::thread::spawn(move || {
         let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
         wake(&mut user);
@@ -62,17 +66,14 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     let plan = Plan::new([(0, Trouble::RadioSilent(true))]);
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
     let told_to = |_: &sophie_bench::log::Line| ();
-    let flight = flight::fly(
-        &firmware,
-        &scenario,
-        1.0,
-        plan,
-        Some(terminal),
-        told_to,
-        &mut Silent,
-    )
-    .unwrap();
+    let flight = flight::fly(&firmware, &scenario, 1.0, plan, sockets, told_to, &mut Silent).unwrap();
     let listed = user.join().unwrap();
+    // CRSF frames, one of them with the mode, marked as one that does not arm.
+    let mut telemetry = Vec::new();
+    listener.read_to_end(&mut telemetry).unwrap();
+    assert_eq!(telemetry.first(), Some(&0xC8), "{telemetry:02x?}");
+    let said = String::from_utf8_lossy(&telemetry);
+    assert!(said.contains("!DISARMED"), "{said}");
     assert!(listed.contains("* infill") && listed.contains(" 8 "), "{listed}");
     // One more than the calibration.
     assert!(

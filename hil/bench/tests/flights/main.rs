@@ -19,6 +19,7 @@ use sophie_bench::boards;
 use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::plan::{Plan, Trouble};
+use sophie_bench::terminal::Sockets;
 use sophie_hil::record::{Sample, Silent};
 use sophie_hil::scenario::{Overrides, Scenario};
 
@@ -90,7 +91,16 @@ fn fly_small(scenario: &Scenario, troubles: &[(f64, Trouble)]) -> Flight {
 
 fn fly_image(firmware: &Firmware, scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
     let plan = Plan::new(troubles.iter().map(|(t, trouble)| ((t * 1e3) as u64, *trouble)));
-    flight::fly(firmware, scenario, speed, plan, None, |_| (), &mut Silent).unwrap()
+    flight::fly(
+        firmware,
+        scenario,
+        speed,
+        plan,
+        Sockets::default(),
+        |_| (),
+        &mut Silent,
+    )
+    .unwrap()
 }
 
 /// The log, for the message of a failed assertion.

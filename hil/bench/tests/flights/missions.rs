@@ -74,6 +74,12 @@ fn in_time(flight: &Flight, longest: f64, jitter: f64) {
     // The buses really were slow.
     assert!(flight.board.overruns.contains_key("arms"), "{}", log(flight));
     let latency = flight.board.run.latency_us;
+    // For docs/timing.md.
+    println!(
+        "{:.1} us in the mean, {:.1} at most",
+        latency.mean(),
+        latency.worst
+    );
     assert!(
         latency.count > 5_000 && latency.worst <= longest && latency.worst - latency.mean() <= jitter,
         "{latency:?}"
