@@ -3,8 +3,9 @@
 //! The tilt is aimed at by where down is in body axes, which the heading has no part in: a yaw error cannot leak roll
 //! into pitch. The heading itself is never computed; its change from step to step moves the leash.
 //!
-//! Setpoints are limited before they are filtered, so that no number can stay in the filters: one that is not
-//! finite leaves roll and pitch where they were aimed and stops the turn in yaw.
+//! Roll and pitch become that direction when they are given, at the rate of the sticks; each step filters the direction,
+//! without a sine. Setpoints are limited before, so that no number can stay in the filters: one that is not finite leaves
+//! roll and pitch where they were aimed and stops the turn in yaw.
 
 use crate::filter::LowPass;
 use crate::math;
@@ -17,6 +18,8 @@ const HEADING_LEASH: f32 = 0.5;
 const ANGLE_MAX: f32 = 0.5 * math::PI;
 /// Time constant of the yaw stick's rate, s: torsion wants smooth commands.
 const YAW_RATE_TAU: f32 = 0.3;
+/// Down in the axes of a level body.
+const LEVEL: Vec3 = Vec3::new(0.0, 0.0, 1.0);
 
 /// Wanted attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,6 +32,39 @@ pub struct AttitudeSetpoint {
     pub yaw_rate: f32,
 }
 
+/// What the attitude loop aims at after the prefilter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Target {
+    /// Down as it is aimed at, in body axes; shorter than 1 while it changes.
+    pub down: Vec3,
+    /// How far the wanted heading is ahead of the present one, rad, ±0.5.
+    pub ahead: f32,
+}
+
+/// A direction through a low pass of second order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Smooth {
+    first: Vec3,
+    second: Vec3,
+}
+
+impl Smooth {
+    const fn at(direction: Vec3) -> Self {
+        Self {
+            first: direction,
+            second: direction,
+        }
+    }
+
+    /// One step towards `wanted`, by [`LowPass::gain`].
+    #[inline(always)]
+    fn blend(&mut self, wanted: Vec3, gain: f32) -> Vec3 {
+        self.first = self.first + (wanted - self.first) * gain;
+        self.second = self.second + (self.first - self.second) * gain;
+        self.second
+    }
+}
+
 /// The attitude loop's state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttitudeLoop {
@@ -37,8 +73,10 @@ pub struct AttitudeLoop {
     cutoff: f32,
     rate_max: f32,
     yaw_rate_max: f32,
-    roll: (LowPass, LowPass),
-    pitch: (LowPass, LowPass),
+    /// Where down is wanted, in body axes, and the yaw rate that is.
+    wanted: Vec3,
+    wanted_yaw_rate: f32,
+    down: Smooth,
     yaw_rate: LowPass,
     heading: Heading,
     ahead: f32,
@@ -53,20 +91,39 @@ impl AttitudeLoop {
             cutoff: p.setpoint_cutoff,
             rate_max: p.rate_max,
             yaw_rate_max: p.yaw_slew,
-            roll: Default::default(),
-            pitch: Default::default(),
+            wanted: LEVEL,
+            wanted_yaw_rate: 0.0,
+            down: Smooth::at(LEVEL),
             yaw_rate: LowPass::default(),
             heading: Heading::of(Quat::IDENTITY),
             ahead: 0.0,
         }
     }
 
-    /// Starts afresh from the attitude `q` (unit, body to world): setpoints where the vehicle is, no jump on the first step.
+    /// Starts afresh from the attitude `q` (unit, body to world): wanted is where the vehicle is until something else is,
+    /// and the first step does not jump.
     pub fn reset(&mut self, q: Quat) {
-        let (roll, pitch, _) = q.to_euler();
-        self.roll = (LowPass::at(roll), LowPass::at(roll));
-        self.pitch = (LowPass::at(pitch), LowPass::at(pitch));
+        self.wanted = q.down_in_body();
+        self.down = Smooth::at(self.wanted);
+        self.wanted_yaw_rate = 0.0;
         self.capture_heading(q);
+    }
+
+    /// Takes what is wanted from now on.
+    pub fn aim(&mut self, setpoint: AttitudeSetpoint) {
+        let AttitudeSetpoint {
+            roll,
+            pitch,
+            yaw_rate,
+        } = setpoint;
+        if !(roll + pitch + yaw_rate).is_finite() {
+            self.wanted_yaw_rate = 0.0;
+            return;
+        }
+        let (sin_roll, cos_roll) = math::sin_cos_quarter(math::clamp_abs(roll, ANGLE_MAX));
+        let (sin_pitch, cos_pitch) = math::sin_cos_quarter(math::clamp_abs(pitch, ANGLE_MAX));
+        self.wanted = Vec3::new(-sin_pitch, cos_pitch * sin_roll, cos_pitch * cos_roll);
+        self.wanted_yaw_rate = math::clamp_abs(yaw_rate, self.yaw_rate_max);
     }
 
     /// Takes the heading of `q` (unit, body to world) as the wanted one, while yaw is given up.
@@ -78,29 +135,16 @@ impl AttitudeLoop {
     }
 
     /// Body rates (rad/s, roll and pitch within ± the parameter `rate_max`, yaw within twice `yaw_slew`) that
-    /// lead from `q` (unit, body to world) to the setpoint; step time `dt` s, > 0.
+    /// lead from `q` (unit, body to world) to what is aimed at; step time `dt` s, > 0.
     #[inline(always)]
-    pub fn step(&mut self, q: Quat, setpoint: AttitudeSetpoint, dt: f32) -> Vec3 {
-        let sound = (setpoint.roll + setpoint.pitch + setpoint.yaw_rate).is_finite();
-        let gain = LowPass::gain(self.cutoff, dt);
-        let smooth = |f: &mut (LowPass, LowPass), x: f32| {
-            let x = math::clamp_abs(x, ANGLE_MAX);
-            let first = f.0.blend(if sound { x } else { f.0.value() }, gain);
-            f.1.blend(first, gain)
-        };
-        let roll = smooth(&mut self.roll, setpoint.roll);
-        let pitch = smooth(&mut self.pitch, setpoint.pitch);
-
+    pub fn step(&mut self, q: Quat, dt: f32) -> Vec3 {
         // The shortest turn from here to the wanted tilt, in body axes: twice the sine of half its angle about its axis.
-        let (sin_roll, cos_roll) = math::sin_cos_quarter(roll);
-        let (sin_pitch, cos_pitch) = math::sin_cos_quarter(pitch);
-        let aim = Vec3::new(-sin_pitch, cos_pitch * sin_roll, cos_pitch * cos_roll);
+        let aim = self.down.blend(self.wanted, LowPass::gain(self.cutoff, dt));
         let down = q.down_in_body();
         let gain = self.p * per_sine(aim.dot(down));
 
-        let wanted = math::clamp_abs(setpoint.yaw_rate, self.yaw_rate_max);
-        let wanted = if sound { wanted } else { 0.0 };
-        let yaw_rate = self.yaw_rate.blend(wanted, LowPass::gain(1.0 / YAW_RATE_TAU, dt));
+        let smoothing = LowPass::gain(1.0 / YAW_RATE_TAU, dt);
+        let yaw_rate = self.yaw_rate.blend(self.wanted_yaw_rate, smoothing);
         let now = Heading::of(q);
         let ahead = self.ahead + yaw_rate * dt - now.turned_since(self.heading);
         self.ahead = math::clamp_abs(ahead, HEADING_LEASH);
@@ -122,11 +166,13 @@ impl AttitudeLoop {
         )
     }
 
-    /// Roll and pitch (±π/2) aimed at after the prefilter, and how far the wanted heading is ahead of the present one
-    /// (±0.5), rad.
+    /// What is aimed at after the prefilter.
     #[inline]
-    pub const fn target(&self) -> Vec3 {
-        Vec3::new(self.roll.1.value(), self.pitch.1.value(), self.ahead)
+    pub const fn target(&self) -> Target {
+        Target {
+            down: self.down.second,
+            ahead: self.ahead,
+        }
     }
 }
 
@@ -174,9 +220,10 @@ mod tests {
     fn settled(q: Quat, setpoint: AttitudeSetpoint) -> Vec3 {
         let mut a = AttitudeLoop::new(&Params::default());
         a.reset(q);
+        a.aim(setpoint);
         let mut rate = Vec3::ZERO;
         for _ in 0..2000 {
-            rate = a.step(q, setpoint, 1e-3);
+            rate = a.step(q, 1e-3);
         }
         rate
     }
@@ -250,7 +297,7 @@ mod tests {
         let mut a = AttitudeLoop::new(&Params::default());
         a.reset(Quat::IDENTITY);
         let turned = Quat::from_euler(0.0, 0.0, 0.6);
-        let r = a.step(turned, AttitudeSetpoint::default(), 1e-3);
+        let r = a.step(turned, 1e-3);
         assert!(r.x.abs() < 0.01 && r.y.abs() < 0.01);
         // Leashed: 0.5 rad at 1.2 1/s, back towards the old heading.
         assert!((r.z + 0.6).abs() < 0.02, "{r:?}");
@@ -260,15 +307,12 @@ mod tests {
     fn the_heading_follows_the_stick_no_faster_than_its_limit() {
         let mut a = AttitudeLoop::new(&Params::default());
         let mut yaw = 0.0f32;
+        a.aim(AttitudeSetpoint {
+            yaw_rate: 3.0,
+            ..Default::default()
+        });
         for _ in 0..4000 {
-            let r = a.step(
-                Quat::from_euler(0.0, 0.0, yaw),
-                AttitudeSetpoint {
-                    yaw_rate: 3.0,
-                    ..Default::default()
-                },
-                1e-3,
-            );
+            let r = a.step(Quat::from_euler(0.0, 0.0, yaw), 1e-3);
             yaw += r.z * 1e-3;
             assert!(r.z <= 1.01);
         }
@@ -323,19 +367,22 @@ mod tests {
             yaw_rate: 0.4,
         };
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            a.aim(good);
             for _ in 0..2000 {
-                a.step(Quat::IDENTITY, good, 1e-3);
+                a.step(Quat::IDENTITY, 1e-3);
             }
             let none = AttitudeSetpoint {
                 roll: bad,
                 pitch: bad,
                 yaw_rate: bad,
             };
+            a.aim(none);
             for _ in 0..3000 {
-                a.step(Quat::IDENTITY, none, 1e-3);
+                a.step(Quat::IDENTITY, 1e-3);
             }
-            let target = a.target();
-            assert!((target.x - 0.2).abs() < 1e-3 && (target.y + 0.1).abs() < 1e-3);
+            let Vec3 { x, y, z } = a.target().down;
+            let (roll, pitch) = (f32::atan2(y, z), -f32::asin(x));
+            assert!((roll - 0.2).abs() < 1e-3 && (pitch + 0.1).abs() < 1e-3);
             assert!(a.yaw_rate.value().abs() < 1e-3, "{bad}: {}", a.yaw_rate.value());
         }
     }
@@ -353,16 +400,19 @@ mod tests {
                 q_now = Quat { w, x, y, z }.normalised();
                 let f = f32::from_bits;
                 let setpoint = AttitudeSetpoint { roll: f(roll), pitch: f(pitch), yaw_rate: f(yaw_rate) };
-                let r = a.step(q_now, setpoint, 1e-3);
-                prop_assert!(r.is_finite() && a.target().is_finite(), "{setpoint:?} {r:?}");
+                a.aim(setpoint);
+                let r = a.step(q_now, 1e-3);
+                let Target { down, ahead } = a.target();
+                prop_assert!(r.is_finite() && down.is_finite() && ahead.is_finite(), "{setpoint:?} {r:?}");
                 prop_assert!(r.x.abs() <= p.rate_max && r.y.abs() <= p.rate_max, "{r:?}");
                 prop_assert!(r.z.abs() <= 2.01 * p.yaw_slew, "{r:?}");
             }
             // A vehicle that does what it is told comes back to level and to rest, from wherever it was left.
             const DT: f32 = 4e-3;
             let mut r = Vec3::ZERO;
+            a.aim(AttitudeSetpoint::default());
             for _ in 0..2500 {
-                r = a.step(q_now, AttitudeSetpoint::default(), DT);
+                r = a.step(q_now, DT);
                 prop_assert!(r.is_finite());
                 let turn = r * (0.5 * DT);
                 q_now = (q_now * Quat { w: 1.0, x: turn.x, y: turn.y, z: turn.z }).normalised();

@@ -1,5 +1,6 @@
 //! What stands in for SOPHIE's hardware: the plant, the virtual clock, the simulated board and the pilot.
 
+pub mod aim;
 pub mod board;
 pub mod clock;
 pub mod crsf;

@@ -26,17 +26,22 @@ pub async fn run(links: &Links) {
         rate: RateLoop::new(&links.params, CONTROL_RATE_HZ),
         levers: [links.params.arm_d, links.params.arm_b],
         kind: Kind::None,
+        aimed: None,
     };
     loop {
         let estimate = attitude.changed().await;
         let started = Instant::now();
-        let setpoint = links.setpoint.fresh().unwrap_or(Setpoint::Stop);
+        let setpoint = links.setpoint.latest();
+        let asked = setpoint.map(|message| message.at);
+        let setpoint = setpoint
+            .and_then(|message| message.fresh(links.setpoint.stale_after))
+            .unwrap_or(Setpoint::Stop);
         let feedback = links.mix.fresh().map_or(NOTHING_GIVEN, |mix| Feedback {
             roll_pitch: mix.given.roll_pitch,
             yaw: mix.given.yaw,
             yaw_gated: mix.yaw_gated,
         });
-        let demand = loops.step(&estimate.value, setpoint, feedback);
+        let demand = loops.step(&estimate.value, setpoint, asked, feedback);
         links.demand.send(estimate.at, demand);
         links.target.send(estimate.at, loops.attitude.target());
         record_run(links, TaskId::Control, estimate.at, started, DEADLINE);
@@ -78,15 +83,34 @@ struct Loops {
     /// Sideways and fore-aft lever of a rotor, m.
     levers: [f32; 2],
     kind: Kind,
+    /// When what the attitude loop aims at was asked for.
+    aimed: Option<Instant>,
 }
 
 impl Loops {
-    fn step(&mut self, a: &Attitude, setpoint: Setpoint, feedback: Feedback) -> Demand {
+    /// Rates that lead to `angle`, asked for at `asked`. Only a new one is aimed at: that takes as long as half a step.
+    fn turn(&mut self, a: &Attitude, angle: AttitudeSetpoint, asked: Option<Instant>) -> Vec3 {
+        if self.aimed != asked {
+            self.attitude.aim(angle);
+            self.aimed = asked;
+        }
+        self.attitude.step(a.q, a.dt)
+    }
+
+    /// `asked` is when `setpoint` was.
+    fn step(
+        &mut self,
+        a: &Attitude,
+        setpoint: Setpoint,
+        asked: Option<Instant>,
+        feedback: Feedback,
+    ) -> Demand {
         // A loop that did not run has a past that is not this flight's: it starts afresh where the vehicle is.
         let kind = Kind::of(setpoint);
         if kind != self.kind {
             if kind == Kind::Attitude {
                 self.attitude.reset(a.q);
+                self.aimed = None;
             }
             if !matches!(
                 (self.kind, kind),
@@ -115,7 +139,7 @@ impl Loops {
                     pitch,
                     yaw_rate,
                 };
-                (self.attitude.step(a.q, angle, a.dt), thrust, false)
+                (self.turn(a, angle, asked), thrust, false)
             }
             Setpoint::Resting { roll, pitch, thrust } => {
                 let angle = AttitudeSetpoint {
@@ -123,7 +147,7 @@ impl Loops {
                     pitch,
                     yaw_rate: 0.0,
                 };
-                (self.attitude.step(a.q, angle, a.dt), thrust, true)
+                (self.turn(a, angle, asked), thrust, true)
             }
         };
         let Vec3 {

@@ -21,6 +21,7 @@ use embassy_sync::signal::Signal;
 use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::attitude::Target;
 pub use sophie_control::grip::GripState;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
@@ -239,7 +240,7 @@ pub struct Links {
     pub demand: Link<Demand>,
     /// control -> log. 1 kHz, stale after 50 ms: roll and pitch aimed at, and the wanted heading
     /// against the present one, rad.
-    pub target: Link<Vec3>,
+    pub target: Link<Target>,
     /// mixer -> motors, control (what it could not give), commander. 1 kHz, stale after 10 ms: motors stop.
     pub mix: Link<MixOutput>,
     /// analog -> clamp, commander. 500 Hz, stale after 20 ms.

@@ -104,7 +104,8 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
             pitch: 0.5 * noise.unit(),
             yaw_rate: 0.5 * noise.unit(),
         };
-        let wanted = attitude.step(q, setpoint, DT);
+        attitude.aim(setpoint);
+        let wanted = attitude.step(q, DT);
         let torque = rate.step(wanted, body_rate, feedback, true, DT);
         add(&mut asked, torque);
         let wrench = Wrench {

@@ -4,7 +4,7 @@
 
 use core::hint::black_box;
 
-use sophie_control::attitude::AttitudeLoop;
+use sophie_control::attitude::{AttitudeLoop, Target};
 use sophie_control::estimator::Estimator;
 use sophie_control::imu_filter::{AxisFilter, ImuFilter};
 use sophie_control::mixer::{Conditions, Mix, Mixer, Variant};
@@ -38,7 +38,7 @@ pub struct Flow {
     pub body_rate: Vec3,
     pub q: Quat,
     pub wanted: Vec3,
-    pub target: Vec3,
+    pub target: Target,
     pub moment: Vec3,
     pub mix: Mix,
     pub commands: PerArm<f32>,
@@ -64,7 +64,7 @@ impl Chain {
                 body_rate: Vec3::ZERO,
                 q: Quat::IDENTITY,
                 wanted: Vec3::ZERO,
-                target: Vec3::ZERO,
+                target: Target::default(),
                 moment: Vec3::ZERO,
                 mix: Mix {
                     yaw_gated: true,
@@ -115,13 +115,21 @@ pub fn estimator(c: &mut Chain, i: &Inputs) {
     c.flow.q = c.estimator.attitude();
 }
 
+/// What the sticks want, at 100 Hz.
+#[inline(never)]
+pub fn aim(c: &mut Chain, i: &Inputs) {
+    if let Some(setpoint) = i.setpoint {
+        c.attitude.aim(setpoint);
+    }
+}
+
 /// Wanted rates from the attitude, and the target that is logged. A yaw that was given up takes the heading along.
 #[inline(never)]
 pub fn attitude(c: &mut Chain, i: &Inputs) {
     if c.flow.mix.yaw_gated {
         c.attitude.capture_heading(c.flow.q);
     }
-    c.flow.wanted = c.attitude.step(c.flow.q, i.setpoint, i.dt);
+    c.flow.wanted = c.attitude.step(c.flow.q, i.dt);
     c.flow.target = c.attitude.target();
 }
 
@@ -192,7 +200,10 @@ pub fn whole(c: &mut Chain, i: &Inputs) {
     if f.mix.yaw_gated {
         c.attitude.capture_heading(f.q);
     }
-    f.wanted = c.attitude.step(f.q, i.setpoint, i.dt);
+    if let Some(setpoint) = i.setpoint {
+        c.attitude.aim(setpoint);
+    }
+    f.wanted = c.attitude.step(f.q, i.dt);
     f.target = c.attitude.target();
     f.moment = c
         .rate

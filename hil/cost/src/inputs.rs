@@ -19,6 +19,8 @@ pub const FLIGHT: u32 = 12_000;
 const STRETCH: u32 = 500;
 /// Steps for which a rate and the sticks are held.
 const HOLD: u32 = 40;
+/// The step of ten in which the sticks speak; the arms' sensors do in the first four.
+const STICKS: usize = 5;
 /// One reading of this many is no number.
 const BAD: u32 = 4001;
 
@@ -30,8 +32,8 @@ pub type Reading = (Vec3, Vec3);
 pub struct Inputs {
     /// Raw rates (rad/s) and specific forces (m/s²).
     pub batch: [Reading; READINGS],
-    /// Wanted attitude.
-    pub setpoint: AttitudeSetpoint,
+    /// Wanted attitude: the sticks speak in one step of ten.
+    pub setpoint: Option<AttitudeSetpoint>,
     /// Wanted collective thrust, N.
     pub thrust: f32,
     /// Yaw may be used.
@@ -131,11 +133,11 @@ impl Sequence {
         let arm = (turn < 4).then(|| (turn, 0.2 * self.noise.unit()));
         Inputs {
             batch,
-            setpoint: AttitudeSetpoint {
+            setpoint: (turn == STICKS).then_some(AttitudeSetpoint {
                 roll: self.sticks.x,
                 pitch: self.sticks.y,
                 yaw_rate: self.sticks.z,
-            },
+            }),
             thrust: self.thrust,
             yaw: s.yaw,
             integrate: s.integrate,

@@ -13,10 +13,11 @@ use crate::inputs::{FLIGHT, Inputs, REST, Sequence};
 type Stage = (&'static str, fn(&mut Chain, &Inputs));
 
 /// In the order of the data. The tilt follows the thrusts, so it comes after the allocation that it serves next.
-const STAGES: [Stage; 9] = [
+const STAGES: [Stage; 10] = [
     ("biquads", chain::axes),
     ("filter", chain::filter),
     ("estimator", chain::estimator),
+    ("aim", chain::aim),
     ("attitude", chain::attitude),
     ("rate", chain::rate),
     ("allocation", chain::allocation),
@@ -59,8 +60,13 @@ fn stages(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) -> Fold {
         let inputs = black_box(sequence.next());
         for ((name, stage), tally) in STAGES.iter().zip(&mut tallies) {
             let count = gross(*stage, &mut chain, &inputs) - overhead;
-            // The arms' sensors speak in four steps of ten.
-            if step >= REST && (*name != "arm-sensor" || inputs.arm.is_some()) {
+            // The arms' sensors speak in four steps of ten, the sticks in one.
+            let due = match *name {
+                "arm-sensor" => inputs.arm.is_some(),
+                "aim" => inputs.setpoint.is_some(),
+                _ => true,
+            };
+            if step >= REST && due {
                 tally.add(count);
             }
         }

@@ -5,13 +5,13 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::math;
 use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
-use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Status};
 use sophie_tasks::start::{Cause, Start};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
+use crate::aim;
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::plant::Plant;
@@ -133,8 +133,9 @@ impl Aircraft for Stack {
             .unwrap_or_default();
         // The wanted heading comes as what it is ahead of the present one.
         let target = links.target.latest().map(|v| {
-            let Vec3 { x, y, z } = v.value;
-            [x, y, math::wrap_pi(estimate.2 + z)].map(f64::from)
+            let [roll, pitch, ahead] = aim::angles(v.value);
+            let heading = math::wrap_pi(estimate.2 + ahead as f32);
+            [roll, pitch, f64::from(heading)]
         });
         let arms = links.arms.fresh().unwrap_or_default();
         let contact = links.contact.latest().map(|c| c.value).unwrap_or_default();

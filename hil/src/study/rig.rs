@@ -8,6 +8,7 @@ use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Setpoint};
 
 use super::allocation::{self, Studied};
+use crate::aim;
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::plant::{GRAVITY, Plant};
@@ -139,11 +140,7 @@ impl Rig {
     fn moment(&self, t: f64, heading: f64) -> Moment {
         let wide = |v: PerArm<f32>| v.map(f64::from);
         let mix = self.links.mix.latest().map(|m| m.value).unwrap_or_default();
-        let target = self
-            .links
-            .target
-            .latest()
-            .map(|v| v.value.to_array().map(f64::from));
+        let target = self.links.target.latest().map(|v| aim::angles(v.value));
         let measured = self.links.arms.fresh().unwrap_or_default().tilt;
         Moment {
             t,
@@ -197,7 +194,11 @@ pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: im
         });
         if t >= 0.0 {
             let wanted = heading.get_or_insert_with(|| {
-                let ahead = rig.links.target.latest().map_or(0.0, |v| f64::from(v.value.z));
+                let ahead = rig
+                    .links
+                    .target
+                    .latest()
+                    .map_or(0.0, |v| f64::from(v.value.ahead));
                 rig.plant.euler()[2] + ahead
             });
             *wanted += yaw_rate * 1e-3;

@@ -4,6 +4,7 @@ use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
+use sophie_hil::aim;
 use sophie_hil::board::{Board, Port};
 use sophie_hil::clock::VirtualTime;
 use sophie_hil::plant::Plant;
@@ -124,7 +125,11 @@ impl Rig {
                 continue;
             }
             let [r, p, y] = self.plant.euler();
-            let target = self.links.target.latest().map_or(0.0, |v| f64::from(v.value.x));
+            let target = self
+                .links
+                .target
+                .latest()
+                .map_or(0.0, |v| aim::angles(v.value)[0]);
             n += 1.0;
             e.worst_roll = e.worst_roll.max((r - target).abs());
             e.worst_pitch = e.worst_pitch.max(p.abs());

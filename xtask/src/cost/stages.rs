@@ -30,7 +30,7 @@ const fn stage(name: &'static str, what: &'static str, target: Option<f64>, peer
 }
 
 /// In the order of the table.
-pub const STAGES: [Stage; 10] = [
+pub const STAGES: [Stage; 11] = [
     Stage {
         parts: 3.0,
         ..stage("biquads", "low pass, one biquad-axis", Some(16.0), "22 (PX4)")
@@ -41,6 +41,12 @@ pub const STAGES: [Stage; 10] = [
         "estimator, quaternion out",
         Some(300.0),
         "425 (Betaflight), 445 (Crazyflie), both with Euler",
+    ),
+    stage(
+        "aim",
+        "direction that the sticks want, one step in ten",
+        None,
+        "none compares",
     ),
     stage("attitude", "attitude control", Some(150.0), "260 (Crazyflie)"),
     stage(
