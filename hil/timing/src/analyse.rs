@@ -7,7 +7,7 @@ use std::fmt::Write;
 use sophie_tasks::deadline::{Level, TaskId};
 
 use crate::capture::Capture;
-use crate::replay::Replay;
+use crate::replay::{Replay, Task};
 use crate::rta::{Load, rate_monotonic_bound, response, utilisation};
 
 /// Execution of one interrupt that wakes a task, µs on the reference board: 400 instructions.
@@ -16,6 +16,8 @@ const INTERRUPT: f64 = 1.0;
 const BLOCKING: f64 = 5.0;
 /// A clock of whole µs tells an execution too short by less than this.
 const RESOLUTION: f64 = 1.0;
+/// A task that follows each sample has paused when it is woken after so many of its periods.
+const PAUSE: f64 = 10.0;
 /// The task that tells of the trace: there is none in the image that flies.
 const TRACER: &str = "trace";
 /// The task whose wait for the bus is the beginning of every run of the flight level.
@@ -26,7 +28,7 @@ const FIRST: &str = "imu";
 const BOARDS: [(&str, f64); 3] = [
     ("matek-h743", 1.0),
     ("cuav-v5", 400.0 / 216.0),
-    ("f405", 400.0 / 168.0 * 2164.0 / 1754.0),
+    ("f405", 400.0 / 168.0 * 2166.0 / 1773.0),
 ];
 
 /// The task set of a capture.
@@ -42,7 +44,7 @@ pub fn analyse(capture: &Capture, replay: &Replay) -> String {
     let set = if replay.polls.is_empty() {
         of_seconds(capture)
     } else {
-        of_trace(capture, replay)
+        of_trace(capture, &at_work(replay))
     };
     let known = capture.board.as_deref();
     let measured = BOARDS.iter().find(|b| Some(b.0) == known).unwrap_or(&BOARDS[0]);
@@ -93,6 +95,30 @@ pub fn analyse(capture: &Capture, replay: &Replay) -> String {
     );
     text += &inversions(&set.loads);
     text
+}
+
+/// What ran since the flight level has worked without a pause: before that the sensor is tested, and nothing has its
+/// period.
+fn at_work(replay: &Replay) -> Replay {
+    let flight = replay.tasks.iter().filter(|t| t.level == Some(Level::Flight));
+    let start = flight.filter_map(after_the_last_pause).max().unwrap_or(0);
+    let begun = replay.polls.iter().map(|poll| poll.begin).min().unwrap_or(start);
+    let mut replay = replay.clone();
+    for task in &mut replay.tasks {
+        task.runs.retain(|run| run.begin >= start);
+    }
+    replay.covered = replay.covered.saturating_sub(start.saturating_sub(begun));
+    replay
+}
+
+fn after_the_last_pause(task: &Task) -> Option<u64> {
+    let usual = task.periods().quantile(0.5).unwrap_or(0.0);
+    let pairs = task.runs.windows(2).rev();
+    let paused = pairs.map_while(|pair| match pair {
+        [before, after] if ((after.ready - before.ready) as f64) < PAUSE * usual => Some(before.begin),
+        _ => None,
+    });
+    paused.last().or(task.runs.last().map(|run| run.begin))
 }
 
 fn of_trace(capture: &Capture, replay: &Replay) -> Set {
@@ -229,5 +255,61 @@ fn level_name(number: u8) -> &'static str {
         1 => Level::Flight.name(),
         2 => Level::Steady.name(),
         _ => Level::Background.name(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::replay::{Poll, Run};
+
+    fn run(begin: u64, execution: u64) -> Run {
+        Run {
+            ready: begin,
+            begin,
+            end: begin + execution,
+            execution,
+            preempted: 0,
+            waited: 0,
+        }
+    }
+
+    #[test]
+    fn the_test_of_the_sensor_at_the_start_is_no_part_of_the_work() {
+        // Everything is polled once at the start; then the sensor is tested, and after a second the samples come.
+        let samples = (0..100).map(|n| 1_000_000 + 1000 * n);
+        let imu = [run(10, 5), run(20_000, 460), run(220_000, 400)];
+        let task = |name: &str, runs: Vec<Run>| Task {
+            name: name.into(),
+            level: Some(Level::Flight),
+            runs,
+        };
+        let imu = imu.into_iter().chain(samples.clone().map(|t| run(t, 15)));
+        let estimator = [run(12, 1)].into_iter().chain(samples.map(|t| run(t + 16, 3)));
+        let replay = Replay {
+            tasks: vec![task("imu", imu.collect()), task("estimator", estimator.collect())],
+            polls: vec![Poll {
+                task: 0,
+                ready: 10,
+                waker: 0,
+                begin: 10,
+                end: 15,
+                preempted: 0,
+            }],
+            covered: 1_100_000,
+            ..Replay::default()
+        };
+        let work = at_work(&replay);
+        assert_eq!(
+            work.tasks.iter().map(|t| t.runs.len()).collect::<Vec<_>>(),
+            [99, 100]
+        );
+        assert_eq!(
+            work.tasks.first().unwrap().times(|r| r.execution).max(),
+            Some(15.0)
+        );
+        assert!((99_000..101_000).contains(&work.covered));
+        // A capture from within a flight is taken whole.
+        assert_eq!(at_work(&work).tasks.first().unwrap().runs.len(), 99);
     }
 }
