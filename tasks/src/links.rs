@@ -238,8 +238,8 @@ pub struct Links {
     pub setpoint: Link<Setpoint>,
     /// control -> mixer. 1 kHz, stale after 5 ms.
     pub demand: Link<Demand>,
-    /// control -> log. 1 kHz, stale after 50 ms: roll and pitch aimed at, and the wanted heading
-    /// against the present one, rad.
+    /// control -> log. 1 kHz, stale after 50 ms: where down is aimed at in body axes, and the wanted heading against the
+    /// present one.
     pub target: Link<Target>,
     /// mixer -> motors, control (what it could not give), commander. 1 kHz, stale after 10 ms: motors stop.
     pub mix: Link<MixOutput>,

@@ -14,6 +14,7 @@ mod pads;
 pub mod rig;
 mod rtt;
 mod serial;
+mod stretched;
 mod tap;
 
 use std::collections::BTreeMap;

@@ -1,5 +1,4 @@
-//! An I2C interface with what the emulator's lacks: the last byte of a DMA read is not acknowledged, and chips hold the
-//! clock.
+//! An I2C interface with what the emulator's lacks: the last byte of a DMA read is not acknowledged.
 //!
 //! The DMA controller tells the interface on the part when the byte on the wire is the last that it will take (RM0090
 //! §27.3.7, bit LAST). Without that the emulator's reads on, and the next transfer finds one byte too many.
@@ -19,10 +18,6 @@ pub struct DmaI2c {
     remaining: u64,
     /// Ends of bytes that wait for that count.
     ends: Vec<EventId>,
-    /// How long a chip holds the clock low after each byte, ns.
-    pub hold: u64,
-    /// The end of a hold, and what then ends on the wire.
-    held: Option<(EventId, EventId)>,
 }
 
 impl DmaI2c {
@@ -32,20 +27,6 @@ impl DmaI2c {
             inner,
             remaining,
             ends: Vec::new(),
-            hold: 0,
-            held: None,
-        }
-    }
-
-    /// What ends on the wire ends.
-    fn end(&mut self, event: EventId, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
-        let control = file.get(Register::Cr2);
-        let receiving = !sr2::TRA.is_set(file.get(Register::Sr2));
-        if receiving && cr2::DMAEN.is_set(control) && cr2::LAST.is_set(control) {
-            self.ends.push(event);
-            c.read_from(self.remaining, Width::W32, 0);
-        } else {
-            self.inner.on_event(event, file, c);
         }
     }
 }
@@ -66,16 +47,13 @@ impl Device for DmaI2c {
     }
 
     fn on_event(&mut self, event: EventId, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
-        match self.held {
-            Some((end, byte)) if end == event => {
-                self.held = None;
-                self.end(byte, file, c);
-            }
-            None if self.hold > 0 => {
-                let end = c.schedule(VirtualNanos(c.now().0 + self.hold));
-                self.held = Some((end, event));
-            }
-            _ => self.end(event, file, c),
+        let control = file.get(Register::Cr2);
+        let receiving = !sr2::TRA.is_set(file.get(Register::Sr2));
+        if receiving && cr2::DMAEN.is_set(control) && cr2::LAST.is_set(control) {
+            self.ends.push(event);
+            c.read_from(self.remaining, Width::W32, 0);
+        } else {
+            self.inner.on_event(event, file, c);
         }
     }
 
@@ -97,13 +75,11 @@ impl Device for DmaI2c {
 
     fn reset(&mut self) {
         self.ends.clear();
-        self.held = None;
         self.inner.reset();
     }
 
     fn reset_line(&mut self, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         self.ends.clear();
-        self.held = None;
         self.inner.reset_line(file, c);
     }
 }

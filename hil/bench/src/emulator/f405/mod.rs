@@ -36,6 +36,7 @@ use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::pads::{At, Pads, TimerPins};
 use super::serial::Setup;
+use super::stretched::Stretched;
 use super::tap::{Edge, Tap};
 
 /// Supply and converter reference, mV.
@@ -157,7 +158,7 @@ pub struct F405 {
     inner: Stm32f427,
     motors: Tap<Advanced>,
     dma: Dma,
-    buses: [DmaI2c; 2],
+    buses: [Stretched<DmaI2c>; 2],
     exti: Exti,
     syscfg: Syscfg,
     slots: Slots,
@@ -202,7 +203,7 @@ impl F405 {
         let buses = BUS_COUNTS.map(|count| {
             let count = generated::DMA1.base + u64::from(count.spec().offset);
             // Its place is taken by `Mcu::split`.
-            DmaI2c::new(I2c::with_clock(HSI_HZ), count)
+            Stretched::new(DmaI2c::new(I2c::with_clock(HSI_HZ), count))
         });
         Ok(Self {
             inner,
@@ -219,7 +220,7 @@ impl F405 {
 
     /// The interface of a bus.
     fn i2c(&mut self, bus: usize) -> &mut I2c {
-        &mut self.buses[bus].inner
+        &mut self.buses[bus].inner.inner
     }
 
     /// Gives the data-ready pulses that the sensor has sent to the pin that it is wired to, and to the interrupt line of
@@ -294,12 +295,12 @@ impl Mcu for F405 {
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
         // It builds its models anew, keeping what hangs on them; ours go the same way.
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
-            stock.inherit(&mut own.inner);
+            stock.inherit(&mut own.inner.inner);
         }
         self.inner.reset(at, cause);
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
-            own.inner = I2c::with_clock(HSI_HZ);
-            own.inner.inherit(stock);
+            own.inner.inner = I2c::with_clock(HSI_HZ);
+            own.inner.inner.inherit(stock);
             Device::reset(own);
         }
         self.motors.restart(at);

@@ -1,6 +1,5 @@
 //! The STM32H743 with what the emulator's own part lacks, and without what the board does not use.
 
-mod stretch;
 mod watchdog;
 
 use std::num::NonZeroU64;
@@ -18,7 +17,6 @@ use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
 use rigless::time::VirtualNanos;
 
-use self::stretch::StretchedI2c;
 use self::watchdog::Watchdog;
 use super::chip::{Chip, same_on_this_part};
 use super::chips::bno055::Bno055;
@@ -27,6 +25,7 @@ use super::chips::line::Line;
 use super::deaf::Deaf;
 use super::pads::{At, Pads, TimerPins};
 use super::serial::Setup;
+use super::stretched::Stretched;
 use super::tap::{Edge, Tap};
 
 /// Supply and converter reference, mV.
@@ -109,7 +108,7 @@ pub struct H743 {
     time: Deaf<General>,
     motors: Tap<General>,
     watchdog: Watchdog,
-    buses: [StretchedI2c; 2],
+    buses: [Stretched<I2c>; 2],
     slots: Slots,
     pulses: u64,
     /// The next reset is by a supply that broke down.
@@ -156,7 +155,7 @@ impl H743 {
             motors: Tap::new(motor_timer),
             watchdog: Watchdog::default(),
             // Their places are taken by `Mcu::split`.
-            buses: [(); 2].map(|()| StretchedI2c::new(I2c::with_kernel_clock(HSI_HZ))),
+            buses: [(); 2].map(|()| Stretched::new(I2c::with_kernel_clock(HSI_HZ))),
             slots,
             pulses: 0,
             browned_out: false,

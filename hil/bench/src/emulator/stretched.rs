@@ -1,24 +1,22 @@
 //! An I2C interface whose chips hold the clock, which the emulator's cannot.
 
 use rigless::device::{Device, DeviceContext, RegisterFile};
-use rigless::soc::stm32h743::generated::i2c1::Register;
-use rigless::soc::stm32h743::peripherals::i2c::I2c;
 use rigless::time::{EventId, VirtualNanos};
 
 /// The interface: what ends on the wire ends later by the time that a chip holds the clock.
 #[derive(Debug)]
-pub struct StretchedI2c {
-    /// The emulator's.
-    pub inner: I2c,
+pub struct Stretched<D> {
+    /// The interface with chips that hold nothing.
+    pub inner: D,
     /// How long a chip holds the clock low after each byte, ns.
     pub hold: u64,
     /// The end of a hold, and what then ends on the wire.
     held: Option<(EventId, EventId)>,
 }
 
-impl StretchedI2c {
+impl<D> Stretched<D> {
     /// `inner`, with chips that hold nothing.
-    pub fn new(inner: I2c) -> Self {
+    pub fn new(inner: D) -> Self {
         Self {
             inner,
             hold: 0,
@@ -27,18 +25,18 @@ impl StretchedI2c {
     }
 }
 
-impl Device for StretchedI2c {
-    type Register = Register;
+impl<D: Device> Device for Stretched<D> {
+    type Register = D::Register;
 
-    fn read(&mut self, r: Register, file: &mut RegisterFile, c: &mut DeviceContext<'_>) -> Option<u64> {
+    fn read(&mut self, r: D::Register, file: &mut RegisterFile, c: &mut DeviceContext<'_>) -> Option<u64> {
         self.inner.read(r, file, c)
     }
 
-    fn peek(&self, r: Register, file: &RegisterFile, now: VirtualNanos) -> Option<u64> {
+    fn peek(&self, r: D::Register, file: &RegisterFile, now: VirtualNanos) -> Option<u64> {
         self.inner.peek(r, file, now)
     }
 
-    fn write(&mut self, r: Register, value: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
+    fn write(&mut self, r: D::Register, value: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         self.inner.write(r, value, file, c);
     }
 
@@ -54,6 +52,10 @@ impl Device for StretchedI2c {
             }
             _ => self.inner.on_event(event, file, c),
         }
+    }
+
+    fn on_access(&mut self, token: u64, value: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
+        self.inner.on_access(token, value, file, c);
     }
 
     fn on_clock(&mut self, hz: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
