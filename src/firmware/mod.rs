@@ -11,12 +11,10 @@ mod timing;
 #[cfg(feature = "trace")]
 pub mod trace;
 
-use embassy_executor::SpawnToken;
 pub use end::end_of_run;
 use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_control::warm::Grasp;
-use sophie_tasks::deadline::Level;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::Loaded;
 use sophie_tasks::start::Start;
@@ -30,7 +28,7 @@ pub use self::trace::named;
 
 /// Keeps what a task is called and where it runs; without the trace nobody asks.
 #[cfg(not(feature = "trace"))]
-pub fn named<S>(_: Level, _: &'static str, token: SpawnToken<S>) -> SpawnToken<S> {
+pub fn named<T>(_: sophie_tasks::deadline::Level, _: &'static str, token: T) -> T {
     token
 }
 

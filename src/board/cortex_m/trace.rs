@@ -13,7 +13,7 @@ use cortex_m::peripheral::SCB;
 use embassy_time::Instant;
 
 /// Events that the ring holds, a power of two: 20 ms of a flight, more than the background ever stands still.
-const EVENTS: u32 = 1024;
+pub const EVENTS: u32 = 1024;
 /// Bits of the address that an event keeps, and where.
 const ADDRESS: u32 = 0x000F_FFFC;
 const ADDRESS_SHIFT: u32 = 1;
