@@ -17,10 +17,16 @@
 mod closing;
 mod decide;
 mod demand;
+mod escape;
 mod failsafe;
 mod hold;
+mod lean;
+#[cfg(test)]
+mod leaving;
 mod logic;
 mod look;
+#[cfg(test)]
+mod losses;
 #[cfg(test)]
 mod random;
 #[cfg(test)]
@@ -32,6 +38,7 @@ mod tests;
 #[cfg(test)]
 mod trouble;
 
+pub use self::lean::SLIDES;
 pub use self::logic::ModeLogic;
 use crate::arming::Refusals;
 use crate::grip::GripState;
@@ -61,6 +68,8 @@ pub enum Mode {
     Perched,
     /// Rotors spooled up again, tendons paying out until every arm is proven free.
     Releasing,
+    /// Leaving the pipe by itself after a slide or a closing that was given up, until the pilot takes the throttle.
+    Escaping,
     /// On the ground again, rotors idle, about to disarm.
     Landed,
     /// The pilot is lost or the battery empty: descend, stop on whatever carries.
@@ -69,7 +78,7 @@ pub enum Mode {
 
 impl Mode {
     /// Every mode, in the order of a mission.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Calibrating,
         Self::Disarmed,
         Self::Armed,
@@ -78,6 +87,7 @@ impl Mode {
         Self::Clamping,
         Self::Perched,
         Self::Releasing,
+        Self::Escaping,
         Self::Landed,
         Self::Failsafe,
     ];
@@ -93,6 +103,7 @@ impl Mode {
             Self::Clamping => "CLAMPING",
             Self::Perched => "PERCHED",
             Self::Releasing => "RELEASING",
+            Self::Escaping => "ESCAPING",
             Self::Landed => "LANDED",
             Self::Failsafe => "FAILSAFE",
         }
@@ -136,6 +147,31 @@ pub struct Inputs {
     pub late: bool,
     /// What the drivers, the storage and the start report against arming.
     pub hardware: Refusals,
+}
+
+impl Inputs {
+    /// What is no number has not come: it must not stay in a filter or an attitude that is held. An arm switch that is
+    /// off still counts.
+    fn finite(self) -> Self {
+        let sane = |m: &Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
+        let steady = |s: &Sticks| (s.roll + s.pitch + s.yaw + s.throttle).is_finite();
+        Self {
+            sticks: self.sticks.and_then(|s| match (steady(&s), s.arm_switch) {
+                (true, _) => Some(s),
+                (false, true) => None,
+                (false, false) => Some(Sticks {
+                    roll: 0.0,
+                    pitch: 0.0,
+                    yaw: 0.0,
+                    throttle: 0.0,
+                    ..s
+                }),
+            }),
+            motion: self.motion.filter(sane),
+            battery: self.battery.filter(|v| v.is_finite()),
+            ..self
+        }
+    }
 }
 
 /// What the mode logic decides in one step.

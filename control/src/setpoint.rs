@@ -35,6 +35,17 @@ pub enum Setpoint {
         /// The wrench.
         wrench: Wrench,
     },
+    /// Off the pipe: as [`Setpoint::Angle`], with nothing kept of what the loops held on it.
+    Escape {
+        /// Roll, rad.
+        roll: f32,
+        /// Pitch, rad.
+        pitch: f32,
+        /// Yaw rate, rad/s.
+        yaw_rate: f32,
+        /// Collective thrust, N.
+        thrust: f32,
+    },
     /// On the pipe: hold roll and pitch (rad) without integral action, give yaw up.
     Resting {
         /// Roll, rad.
@@ -56,7 +67,10 @@ impl Setpoint {
     pub fn thrust(self) -> f32 {
         match self {
             Self::Stop | Self::Idle => 0.0,
-            Self::Angle { thrust, .. } | Self::Rate { thrust, .. } | Self::Resting { thrust, .. } => thrust,
+            Self::Angle { thrust, .. }
+            | Self::Escape { thrust, .. }
+            | Self::Rate { thrust, .. }
+            | Self::Resting { thrust, .. } => thrust,
             Self::Direct { wrench } => wrench.thrust,
         }
     }
@@ -66,6 +80,12 @@ impl Setpoint {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,
             Self::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                ..
+            }
+            | Self::Escape {
                 roll,
                 pitch,
                 yaw_rate,

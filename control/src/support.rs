@@ -13,7 +13,7 @@ use crate::params::Params;
 /// Support that counts as resting, N.
 pub const RESTING_FORCE: f32 = 3.0;
 /// Support below which the vehicle no longer rests, N.
-const LEAVING_FORCE: f32 = 1.5;
+pub const LEAVING_FORCE: f32 = 1.5;
 /// Support that is worth looking into by taking thrust away, N.
 pub const HINT_FORCE: f32 = 1.8;
 /// Time for which the support must last, s.

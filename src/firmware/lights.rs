@@ -7,7 +7,8 @@
 //! | on | rotors may turn |
 //! | double flash each second | on the pipe, rotors stopped |
 //!
-//! The fault light is on while arming is refused or the failsafe acts; the buzzer sounds with it in the failsafe.
+//! The fault light is on while arming is refused or the failsafe acts; the buzzer sounds in the failsafe and while the
+//! vehicle leaves the pipe by itself.
 
 use embassy_time::{Duration, Ticker};
 use sophie_control::mode::Mode;
@@ -40,7 +41,8 @@ pub async fn run(links: &Links, mut lights: LightsPort) -> ! {
             };
             // No commander at all is the worst of faults.
             let fault = status.is_none_or(|s| !s.reason.is_empty());
-            let alarm = status.is_some_and(|s| s.mode == Mode::Failsafe) && DOUBLE[step];
+            let acts = status.is_some_and(|s| matches!(s.mode, Mode::Failsafe | Mode::Escaping));
+            let alarm = acts && DOUBLE[step];
             lights.show(pattern[step], fault, alarm);
             ticker.next().await;
         }

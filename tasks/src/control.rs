@@ -26,6 +26,7 @@ pub async fn run(links: &Links) {
         rate: RateLoop::new(&links.params, CONTROL_RATE_HZ),
         levers: [links.params.arm_d, links.params.arm_b],
         kind: Kind::None,
+        escapes: false,
         aimed: None,
     };
     loop {
@@ -70,7 +71,7 @@ impl Kind {
     fn of(setpoint: Setpoint) -> Self {
         match setpoint {
             Setpoint::Stop | Setpoint::Idle => Self::None,
-            Setpoint::Angle { .. } | Setpoint::Resting { .. } => Self::Attitude,
+            Setpoint::Angle { .. } | Setpoint::Escape { .. } | Setpoint::Resting { .. } => Self::Attitude,
             Setpoint::Rate { .. } => Self::Rate,
             Setpoint::Direct { .. } => Self::Direct,
         }
@@ -83,6 +84,8 @@ struct Loops {
     /// Sideways and fore-aft lever of a rotor, m.
     levers: [f32; 2],
     kind: Kind,
+    /// The vehicle leaves the pipe by itself.
+    escapes: bool,
     /// When what the attitude loop aims at was asked for.
     aimed: Option<Instant>,
 }
@@ -120,6 +123,12 @@ impl Loops {
             }
             self.kind = kind;
         }
+        let escapes = matches!(setpoint, Setpoint::Escape { .. });
+        if escapes && !self.escapes {
+            // What the integrals hold was wound up against the pipe: in the air it would throw the vehicle to that side.
+            self.rate.reset();
+        }
+        self.escapes = escapes;
         if feedback.yaw_gated {
             self.attitude.capture_heading(a.q);
         }
@@ -129,6 +138,12 @@ impl Loops {
             Setpoint::Direct { wrench } => return Demand::Wrench { wrench, yaw: true },
             Setpoint::Rate { rate, thrust } => (rate, thrust, false),
             Setpoint::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
+            }
+            | Setpoint::Escape {
                 roll,
                 pitch,
                 yaw_rate,

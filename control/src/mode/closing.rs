@@ -2,9 +2,10 @@
 
 use super::Inputs;
 use super::hold::{Hold, Spool, held, hopeless};
+use super::lean::{LEANS, SLIDES};
 use super::logic::{ModeLogic, State};
 use crate::math::clamp;
-use crate::rc::Sticks;
+use crate::rc::{ArmChoice, Sticks};
 use crate::warm::Grasp;
 
 /// Time of the linear ramp of the collective between the pilot's throttle and nothing, s.
@@ -36,20 +37,13 @@ impl ModeLogic {
         dt: f32,
     ) -> State {
         let proven = i.grip.is_some_and(|g| g.proven);
-        let give_up = State::Releasing {
-            hold,
-            share: spool.share,
-            free: 0.0,
-            opening: false,
-            kept: false,
-        };
+        let holds = held(i.grip, hold.arms, &self.params);
+        if !holds && self.slides() {
+            return self.leave(i, Grasp::Closed(hold.arms), SLIDES);
+        }
 
         // Without the radio nobody could fly away: a poor grip is then better than none.
         if let Some(s) = sticks {
-            if !s.perch_switch && self.perch_seen_on {
-                self.note("closing cancelled");
-                return give_up;
-            }
             let hope = hopeless(i.grip, hold.arms);
             spool.hopeless = if hope.is_some() && !proven {
                 spool.hopeless + dt
@@ -57,25 +51,36 @@ impl ModeLogic {
                 0.0
             };
             let limit = self.params.clamp_timeout + if spool.down { SPOOL_ALLOWANCE } else { 0.0 };
+            let cancelled = !s.perch_switch && self.perch_seen_on;
             let lost = match hope {
+                _ if cancelled => Some("closing cancelled"),
                 Some(why) if spool.hopeless >= HOPELESS_TIME => Some(why),
                 _ if self.since >= limit => Some("grip not proven in time"),
                 _ => None,
             };
-            if let Some(why) = lost {
-                self.note(why);
-                self.perch_seen_off = false;
-                return give_up;
+            match lost {
+                // Held where the belly alone would not stay: a poor grip is then better than none.
+                Some(_) if holds && self.leans_too_far() => self.note(LEANS),
+                // The arms carry and the rotors may stand: these spool up first, as on a release.
+                Some(why) if holds && spool.down => {
+                    self.note(why);
+                    self.perch_seen_off = false;
+                    return State::Releasing {
+                        hold,
+                        share: spool.share,
+                        free: 0.0,
+                        opening: false,
+                        kept: false,
+                    };
+                }
+                Some(why) => return self.leave(i, Grasp::Closed(hold.arms), why),
+                None => {}
             }
         }
 
         // Nobody could fly away and the rotors are about to stop anyway: down slowly, on whatever grip there is.
         let last_resort = sticks.is_none() && self.dangers.battery_critical();
-        let down = if spool.down {
-            held(i.grip, hold.arms, &self.params)
-        } else {
-            proven
-        };
+        let down = if spool.down { holds } else { proven };
         if down || last_resort {
             spool.down = true;
             spool.share = clamp(spool.share - dt / SPOOL_TIME, 0.0, 1.0);
@@ -127,7 +132,7 @@ impl ModeLogic {
         let throttle_set = (RELEASE_THROTTLE_MIN..=self.params.perch_throttle_max).contains(&s.throttle);
         let asked = !s.perch_switch && self.perch_seen_on && throttle_set;
         match i.motion {
-            Some(m) if asked && !self.dangers.battery_critical() => {
+            Some(m) if asked && !self.dangers.battery_critical() && !self.leans_too_far() => {
                 let (roll, pitch, _) = m.q.to_euler();
                 let hold = Hold { roll, pitch, arms };
                 State::Releasing {
@@ -140,6 +145,24 @@ impl ModeLogic {
             }
             _ => State::Perched { grasp },
         }
+    }
+
+    /// Arms that do not come free while the rotors pull at them: less throttle, and the tendons stay slack.
+    pub(super) fn stuck(&mut self, i: &Inputs, arms: ArmChoice) -> State {
+        self.note("arms do not come free");
+        let (roll, pitch, _) = i.motion.map_or((0.0, 0.0, 0.0), |m| m.q.to_euler());
+        State::Releasing {
+            hold: Hold { roll, pitch, arms },
+            share: 1.0,
+            free: 0.0,
+            opening: true,
+            kept: false,
+        }
+    }
+
+    /// Collective below which the arms are not opened, N.
+    pub(super) fn release_thrust(&self) -> f32 {
+        4.0 * self.params.thrust_max * RELEASE_THROTTLE_MIN
     }
 
     /// What the pilot should know while perched.
@@ -161,6 +184,8 @@ impl ModeLogic {
             Some("turn perch switch on first")
         } else if asked && i.sticks.is_some_and(|s| !s.arm_switch) {
             Some("arm switch off")
+        } else if asked && self.leans_too_far() {
+            Some(LEANS)
         } else if asked {
             Some("throttle too high to release")
         } else {
@@ -181,6 +206,10 @@ impl ModeLogic {
         if free >= FREE_TIME {
             return State::Flight;
         }
+        let holds = held(i.grip, hold.arms, &self.params);
+        if !holds && self.slides() || opening && self.falls() {
+            return self.leave(i, Grasp::Closed(hold.arms), SLIDES);
+        }
         let again = sticks.is_none_or(|s| s.perch_switch && self.perch_seen_off);
         if again && kept && !opening {
             // The gears hold what they held all along; the loops could only close from where the drives are not.
@@ -188,15 +217,20 @@ impl ModeLogic {
                 grasp: Grasp::Kept(hold.arms),
             };
         }
-        if again && !released {
+        let share = clamp(share + dt / SPOOL_TIME, 0.0, 1.0);
+        // The lean may have grown since the rotors began to lift: the arms stay closed.
+        let refused = !opening && share >= 1.0 && self.leans_too_far();
+        if refused {
+            self.note(LEANS);
+        }
+        if (again || refused) && !released {
             // Radio lost: hold on. A later release takes a new turn of the switch.
-            self.perch_seen_on = sticks.is_some();
+            self.perch_seen_on = again && sticks.is_some();
             return State::Clamping {
                 hold,
                 spool: Spool::at(share),
             };
         }
-        let share = clamp(share + dt / SPOOL_TIME, 0.0, 1.0);
         if self.since >= STUCK_TIME {
             self.note("arms do not come free");
         }

@@ -51,6 +51,7 @@ impl ModeLogic {
                 ..
             } => Grasp::Kept(hold.arms),
             State::Clamping { hold, .. } | State::Releasing { hold, .. } => Grasp::Closed(hold.arms),
+            State::Escaping(escape) => escape.grasp,
             State::Armed | State::Flight | State::Contact { .. } | State::Landed | State::Failsafe(_) => {
                 Grasp::Open
             }
@@ -62,6 +63,7 @@ impl ModeLogic {
         let grasp = self.grasp();
         let tendons = match (self.state, grasp) {
             (State::Releasing { opening: true, .. }, _) | (_, Grasp::Open) => ClampCommand::Release,
+            (State::Escaping(escape), _) if escape.opening => ClampCommand::Release,
             (_, Grasp::Closed(arms)) => ClampCommand::Close { arms },
             (_, Grasp::Kept(_) | Grasp::Unknown) => ClampCommand::Keep,
         };
@@ -92,6 +94,8 @@ impl ModeLogic {
         match (self.state, i.sticks) {
             (State::Armed | State::Landed, _) => Setpoint::Idle,
             (State::Flight, Some(s)) => demand::from_sticks(&s, &self.params),
+            // No transition leads here: without the radio it is the failsafe that flies.
+            (State::Flight, None) => self.descent(Cause::RadioLost, None),
             (State::Contact { hold }, _) => hold.rotors(perch_throttle * full),
             (State::Clamping { spool, .. }, _) if spool.stopped() => Setpoint::Stop,
             (State::Clamping { hold, spool }, _) => spool.rotors(hold, perch_throttle * full),
@@ -99,8 +103,9 @@ impl ModeLogic {
                 let throttle = clamp(self.throttle, CLOSE_AGAIN, self.params.perch_throttle_max);
                 hold.rotors(share * throttle * full)
             }
+            (State::Escaping(escape), sticks) => self.escape_rotors(escape, sticks),
             (State::Failsafe(cause), sticks) => self.descent(cause, sticks),
-            _ => Setpoint::Stop,
+            (State::Calibrating { .. } | State::Disarmed { .. } | State::Perched { .. }, _) => Setpoint::Stop,
         }
     }
 

@@ -9,6 +9,8 @@ use crate::wrench::Wrench;
 
 /// Time over which the collective goes from one state's to the next one's, s.
 pub const HAND_OVER_TIME: f32 = 0.5;
+/// The same when the vehicle slides off the pipe, s: its lean grows e-fold in 0.16 s.
+pub const ESCAPE_TIME: f32 = 0.15;
 
 /// What the pilot asks for in free flight.
 pub fn from_sticks(s: &Sticks, p: &Params) -> Setpoint {
@@ -52,30 +54,43 @@ pub struct Collective {
     /// What is left of the difference to the state before, N, and the time left for it, s.
     offset: f32,
     left: f32,
-    pending: bool,
+    /// Time that a hand-over which begins takes, s.
+    pending: Option<f32>,
+    /// Time that the one under way takes, s.
+    time: f32,
 }
 
 impl Collective {
-    /// A new state begins: its collective starts where the last one's is.
-    pub fn hand_over(&mut self) {
-        self.pending = true;
+    /// A new state begins: its collective starts where the last one's is, and has its own after `time` s (> 0).
+    pub fn hand_over(&mut self, time: f32) {
+        self.pending = Some(time);
+    }
+
+    /// Collective of the last step, N; 0 while the rotors are stopped or idle.
+    pub fn now(&self) -> f32 {
+        self.last.unwrap_or(0.0)
     }
 
     /// The demand as it goes out: handed over, limited to what four rotors give, stopped if it is no number.
     pub fn finish(&mut self, wish: Setpoint, p: &Params, dt: f32) -> Setpoint {
-        let begins = core::mem::take(&mut self.pending);
+        let begins = self.pending.take();
         if matches!(wish, Setpoint::Stop | Setpoint::Idle) || !wish.is_finite() {
             *self = Self::default();
             return if wish.is_finite() { wish } else { Setpoint::Stop };
         }
         let full = 4.0 * p.thrust_max;
         let target = wish.thrust();
-        if begins {
+        if let Some(time) = begins {
             self.offset = self.last.map_or(0.0, |last| last - target);
-            self.left = HAND_OVER_TIME;
+            (self.time, self.left) = (time, time);
         }
-        self.left = clamp(self.left - dt, 0.0, HAND_OVER_TIME);
-        let thrust = clamp(target + self.offset * self.left / HAND_OVER_TIME, 0.0, full);
+        self.left = clamp(self.left - dt, 0.0, self.time);
+        let rest = if self.left > 0.0 {
+            self.left / self.time
+        } else {
+            0.0
+        };
+        let thrust = clamp(target + self.offset * rest, 0.0, full);
         self.last = Some(thrust);
         with_thrust(wish, thrust)
     }
@@ -91,6 +106,17 @@ fn with_thrust(rotors: Setpoint, thrust: f32) -> Setpoint {
             yaw_rate,
             ..
         } => Setpoint::Angle {
+            roll: angle(roll),
+            pitch: angle(pitch),
+            yaw_rate,
+            thrust,
+        },
+        Setpoint::Escape {
+            roll,
+            pitch,
+            yaw_rate,
+            ..
+        } => Setpoint::Escape {
             roll: angle(roll),
             pitch: angle(pitch),
             yaw_rate,

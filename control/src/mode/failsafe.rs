@@ -44,6 +44,8 @@ pub enum Cause {
     RadioLost,
     /// The battery is at its end.
     BatteryCritical,
+    /// The vehicle has left the pipe by itself and nobody has taken the throttle since.
+    NotTakenOver,
 }
 
 impl Cause {
@@ -52,6 +54,7 @@ impl Cause {
         match self {
             Self::RadioLost => "radio lost",
             Self::BatteryCritical => "battery critical",
+            Self::NotTakenOver => "throttle not taken over",
         }
     }
 }
@@ -68,8 +71,7 @@ pub struct Dangers {
 
 impl Dangers {
     pub(super) fn step(&mut self, i: &Inputs, p: &Params, dt: f32) {
-        let sane = |m: super::Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
-        self.imu.step(!i.motion.is_some_and(sane), dt);
+        self.imu.step(i.motion.is_none(), dt);
         let tipped = i
             .motion
             .is_some_and(|m| m.q.down_in_body().z < crate::math::cos(TIPPED_TILT));
@@ -115,6 +117,10 @@ impl ModeLogic {
                     grasp: Grasp::Kept(hold.arms),
                 }
             }
+            State::Escaping(escape) if !free => {
+                self.perch_seen_on = false;
+                State::Disarmed { grasp: escape.grasp }
+            }
             State::Clamping { hold, .. } | State::Releasing { hold, .. } => {
                 // Opening takes a new and deliberate turn of the switch.
                 self.perch_seen_on = false;
@@ -140,9 +146,11 @@ impl ModeLogic {
             return self.stop(cause.text());
         }
         match (cause, sticks) {
-            (Cause::RadioLost, Some(_)) if self.dangers.battery_critical() => {
+            (Cause::RadioLost | Cause::NotTakenOver, Some(_)) if self.dangers.battery_critical() => {
                 State::Failsafe(Cause::BatteryCritical)
             }
+            (Cause::NotTakenOver, Some(s)) if self.takes_over(&s) => State::Flight,
+            (Cause::NotTakenOver, None) => State::Failsafe(Cause::RadioLost),
             (Cause::RadioLost, Some(s)) => {
                 let taken = s.roll.abs() > RESUME_STICK || s.pitch.abs() > RESUME_STICK;
                 if taken || self.since <= RESUME_TIME {
@@ -166,12 +174,12 @@ impl ModeLogic {
         self.dangers.probe = clamp(self.dangers.probe + rate * dt, 0.0, 1.0);
     }
 
-    /// Level and sinking; with an empty battery the pilot still steers.
+    /// Level and sinking; with the radio there the pilot still steers.
     pub(super) fn descent(&self, cause: Cause, sticks: Option<Sticks>) -> Setpoint {
         let short = clamp(1.0 - self.support.sink() / SINK_RATE, 0.0, 1.0);
         let share = clamp(1.0 - SINK_SHARE * short - self.dangers.probe, 0.0, 1.0);
         let thrust = share * self.support.weight();
-        let steer = sticks.filter(|_| cause == Cause::BatteryCritical);
+        let steer = sticks.filter(|_| cause != Cause::RadioLost);
         let steer = Sticks {
             stick_mode: StickMode::Angle,
             ..steer.unwrap_or_default()

@@ -1,7 +1,9 @@
 //! The state machine: one step takes what is seen and gives what is to be done.
 
+use super::escape::Escape;
 use super::failsafe::{Cause, Dangers};
 use super::hold::{Hold, Spool};
+use super::lean::{Lean, SLIDES};
 use super::look::Look;
 use super::{Inputs, Mode, Outputs, demand};
 use crate::arming::{Gesture, GestureWatch};
@@ -65,6 +67,7 @@ pub(super) enum State {
         /// The gears alone hold: the tendons' drives start when they open.
         kept: bool,
     },
+    Escaping(Escape),
     Landed,
     Failsafe(Cause),
 }
@@ -80,6 +83,7 @@ impl State {
             Self::Clamping { .. } => Mode::Clamping,
             Self::Perched { .. } => Mode::Perched,
             Self::Releasing { .. } => Mode::Releasing,
+            Self::Escaping(_) => Mode::Escaping,
             Self::Landed => Mode::Landed,
             Self::Failsafe(_) => Mode::Failsafe,
         }
@@ -109,6 +113,9 @@ pub struct ModeLogic {
     /// The perch switch has been on since the start: where it was left says nothing about what the pilot wants now.
     perch_left_on: bool,
     pub(super) look: Look,
+    pub(super) lean: Lean,
+    /// Acceleration along world down, m/s².
+    pub(super) sinking: f32,
     pub(super) collective: demand::Collective,
     /// A reason and the time for which it is still shown, s.
     pub(super) note: (&'static str, f32),
@@ -138,6 +145,8 @@ impl ModeLogic {
             perch_seen_on: false,
             perch_left_on: true,
             look: Look::default(),
+            lean: Lean::default(),
+            sinking: 0.0,
             collective: demand::Collective::default(),
             note: ("", 0.0),
             gravity: crate::math::GRAVITY,
@@ -147,6 +156,7 @@ impl ModeLogic {
     /// One step, `dt` s after the one before.
     pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let dt = clamp(dt, 0.0, STEP_MAX);
+        let inputs = &inputs.finite();
         self.observe(inputs, dt);
         let next = match self.emergency(inputs) {
             Some((state, why)) => {
@@ -155,9 +165,17 @@ impl ModeLogic {
             }
             None => self.transition(inputs, dt),
         };
+        // Whatever leads there: without the radio it is the failsafe that flies.
+        let next = match (next, inputs.sticks) {
+            (State::Flight, None) => State::Failsafe(Cause::RadioLost),
+            (next, _) => next,
+        };
         if next.mode() != self.state.mode() {
             self.since = 0.0;
-            self.collective.hand_over();
+            self.collective.hand_over(match next {
+                State::Escaping(_) => demand::ESCAPE_TIME,
+                _ => demand::HAND_OVER_TIME,
+            });
             if next.mode() == Mode::Armed {
                 self.note("");
             }
@@ -194,6 +212,8 @@ impl ModeLogic {
             lift: i.lift,
         });
         self.support.step(felt, dt);
+        self.sinking = felt.map_or(0.0, |f| f.down);
+        self.watch_lean(i, dt);
         self.dangers.step(i, &self.params, dt);
     }
 
@@ -214,13 +234,12 @@ impl ModeLogic {
             (State::Armed | State::Landed, Some(s)) if !low(&s) => State::Flight,
             (State::Armed, Some(_)) if self.since >= IDLE_MAX => self.stop("idle for too long"),
             (State::Landed, Some(_)) if self.since >= LANDED_TIME => self.stop(""),
-            (State::Flight, None) => State::Failsafe(Cause::RadioLost),
             (State::Flight, Some(_)) if self.dangers.battery_critical() => {
                 State::Failsafe(Cause::BatteryCritical)
             }
             (State::Flight, Some(s)) if low(&s) && self.support.grounded() => State::Landed,
             (State::Flight, Some(s)) => self.touch(i, s).unwrap_or(State::Flight),
-            (State::Contact { hold }, sticks) => self.contact(hold, sticks, dt),
+            (State::Contact { hold }, sticks) => self.contact(i, hold, sticks, dt),
             (State::Clamping { hold, spool }, sticks) => self.clamping(i, hold, spool, sticks, dt),
             (State::Perched { grasp }, sticks) => self.perched(i, grasp, sticks),
             (
@@ -233,6 +252,7 @@ impl ModeLogic {
                 },
                 sticks,
             ) => self.releasing(i, hold, (share, free, opening, kept), sticks, dt),
+            (State::Escaping(escape), _) => self.escaping(i, escape, dt),
             (State::Failsafe(cause), sticks) => self.failsafe(cause, sticks),
             (state, _) => state,
         }
@@ -267,8 +287,15 @@ impl ModeLogic {
     /// The touch of the pipe: perch switch turned on, throttle down, something carries, nearly level.
     fn touch(&mut self, i: &Inputs, s: Sticks) -> Option<State> {
         let motion = i.motion?;
-        let wanted = s.perch_switch && self.perch_seen_off && s.throttle <= self.params.perch_throttle_max;
+        let wanted = s.perch_switch && s.throttle <= self.params.perch_throttle_max;
+        if wanted && self.perch_seen_off && self.slides_at_touch() {
+            return Some(self.leave(i, Grasp::Open, SLIDES));
+        }
         if !(wanted && self.support.resting()) {
+            return None;
+        }
+        if !self.perch_seen_off {
+            self.note("turn perch switch off first");
             return None;
         }
         if motion.q.down_in_body().z < cos(PERCH_LEAN_MAX) {
@@ -285,10 +312,13 @@ impl ModeLogic {
         })
     }
 
-    fn contact(&mut self, hold: Hold, sticks: Option<Sticks>, dt: f32) -> State {
+    fn contact(&mut self, i: &Inputs, hold: Hold, sticks: Option<Sticks>, dt: f32) -> State {
         let most = self.params.perch_throttle_max + CONTACT_MARGIN;
         if sticks.is_some_and(|s| !s.perch_switch || s.throttle > most) {
             return State::Flight;
+        }
+        if self.slides() {
+            return self.leave(i, Grasp::Open, SLIDES);
         }
         if !self.support.resting() {
             // Lost the pipe, or the inertial sensor for a moment: back to where the pilot steers.

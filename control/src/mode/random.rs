@@ -139,13 +139,14 @@ proptest! {
                 prop_assert!(!(still && rotors.spin()), "{mode:?} {rotors:?}");
                 prop_assert!(mode != Mode::Perched || tendons != ClampCommand::Release);
                 prop_assert!(mode != Mode::Clamping || tendons != ClampCommand::Release);
+                prop_assert!(rotors != Setpoint::Stop || still || mode == Mode::Clamping, "{before:?} -> {mode:?}");
                 prop_assert!(rotors.is_finite());
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.len() <= 40);
                 // Nothing opens but by the switch, turned off, or by rotors that carry.
                 if grasp.arms().is_some() && tendons == ClampCommand::Release {
-                    prop_assert!(mode == Mode::Releasing || sticks.is_some_and(|s| !s.perch_switch)
+                    prop_assert!([Mode::Releasing, Mode::Escaping].contains(&mode) || before == Mode::Escaping || sticks.is_some_and(|s| !s.perch_switch)
                         || r.inputs.grip.is_some_and(|g| g.released), "{before:?} -> {mode:?}");
                 }
                 // Rotors start from rest only where the pilot asked for it in that very step.

@@ -12,6 +12,7 @@ use crate::rc::ArmChoice;
 pub(super) const DT: f32 = 0.01;
 
 /// A vehicle in a world of two switches: carried or not.
+#[derive(Clone)]
 pub(super) struct Rig {
     pub(super) logic: ModeLogic,
     pub(super) inputs: Inputs,

@@ -129,7 +129,7 @@ fn the_landing_on_the_pipe_needs_switch_throttle_and_evidence() {
         (false, 0.3, true, 0.0),
         (true, 0.43, true, 0.0),
         (true, 0.3, false, 0.0),
-        (true, 0.3, true, deg(30.0)),
+        (true, 0.3, true, deg(12.0)),
     ] {
         let mut r = Rig::flying();
         r.sticks().throttle = throttle;
@@ -160,7 +160,8 @@ fn a_contact_that_is_lost_or_called_off_is_flight_again() {
 fn the_pilot_calls_a_closing_off_or_a_release_back() {
     let mut r = Rig::clamping();
     r.sticks().perch_switch = false;
-    r.expect(0.1, Mode::Releasing);
+    r.expect(0.1, Mode::Escaping);
+    let mut r = Rig::releasing();
     r.sticks().perch_switch = true;
     r.expect(0.1, Mode::Clamping);
 }

@@ -72,13 +72,19 @@ fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
     ] {
         let mut r = Rig::clamping();
         r.grip(false, false, state, 500.0);
-        r.expect(seconds + 0.1, Mode::Releasing);
+        r.expect(seconds + 0.1, Mode::Escaping);
         assert_eq!(r.out.reason, why);
         assert!(r.out.rotors.spin());
         r.run(0.1);
         assert_eq!(r.out.tendons, ClampCommand::Release);
         r.grip(false, true, ArmState::Free, 0.0);
+        r.carried = false;
+        r.sticks().throttle = 0.53;
         r.expect(3.0, Mode::Flight);
+        r.carried = true;
+        r.sticks().throttle = 0.3;
+        r.expect(1.0, Mode::Flight);
+        assert_eq!(r.out.reason, "turn perch switch off first");
         r.sticks().perch_switch = false;
         r.run(0.1);
         r.sticks().perch_switch = true;

@@ -3,7 +3,7 @@
 pub mod aircraft;
 mod judge;
 mod recorder;
-mod stack;
+pub(crate) mod stack;
 
 use std::time::Instant as WallInstant;
 

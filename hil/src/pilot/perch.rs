@@ -1,6 +1,6 @@
 //! Steps at the pipe: fly over it, touch, perch, hold, release.
 
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, SLIDES};
 
 use super::hands::Wish;
 use super::mind::{Mind, Phase, Progress, View};
@@ -190,9 +190,10 @@ impl Mind {
             self.enter(Phase::Wait);
         }
         let beside = (v.seen.position.y - self.pipe.y).abs();
-        if self.phase == Phase::Throttle
-            && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK)
-        {
+        let slips = self.phase == Phase::Throttle
+            && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK);
+        let left = v.mode == Some(Mode::Escaping) && v.reason == SLIDES;
+        if slips || left {
             self.perch_switch = false;
             self.missed += 1;
             if self.missed >= TRIES {
@@ -203,7 +204,10 @@ impl Mind {
             self.enter(Phase::GoAround);
         }
         if self.phase == Phase::Wait
-            && matches!(v.mode, Some(Mode::Releasing | Mode::Flight | Mode::Failsafe))
+            && matches!(
+                v.mode,
+                Some(Mode::Releasing | Mode::Escaping | Mode::Flight | Mode::Failsafe)
+            )
         {
             return Progress::Failed(format!("no proven grip, {}", v.shown()));
         }
@@ -266,7 +270,7 @@ impl Mind {
                 Progress::Going(wish)
             }
             Phase::Wait => {
-                if v.mode == Some(Mode::Flight) {
+                if matches!(v.mode, Some(Mode::Flight | Mode::Escaping)) {
                     self.height = v.height();
                     self.spot = v.seen.position.truncate();
                     self.enter(Phase::Fly);

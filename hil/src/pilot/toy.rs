@@ -161,6 +161,12 @@ impl Toy {
                 pitch,
                 yaw_rate,
                 thrust,
+            }
+            | Setpoint::Escape {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
             } => (roll, pitch, yaw_rate, thrust),
             Setpoint::Resting { roll, pitch, thrust } => (roll, pitch, 0.0, thrust),
             // Spooling down in a proven grip: no moments.

@@ -206,6 +206,13 @@ impl Plant {
         pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
     }
 
+    /// Puts the vehicle at `position` (m, NED) with `velocity` (m/s, NED), attitude and arms as they are: none of its
+    /// sensors feels it. For studies.
+    pub fn place(&mut self, position: DVec3, velocity: DVec3) {
+        self.state.pose.position = position;
+        self.state.pose.velocity = velocity;
+    }
+
     /// Position, attitude and motion.
     #[must_use]
     pub fn pose(&self) -> &Pose {

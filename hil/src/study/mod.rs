@@ -7,3 +7,4 @@ pub mod allocation;
 pub mod bench;
 pub mod perturbation;
 pub mod rig;
+pub mod touch;

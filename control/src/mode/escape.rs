@@ -1,0 +1,119 @@
+//! Off the pipe by itself: what follows a closing that is given up, a lean that grows, a release that nothing carries.
+//!
+//! The rotors lift with more than the weight, nearly level, while the tendons pay out. A capped throttle would let a
+//! vehicle with sound rotors fall, and so would the pilot's, which is set to rest on the pipe. So the collective stays
+//! here until the throttle stick says hover; a pilot who never moves it is brought down by the failsafe.
+
+use super::failsafe::Cause;
+use super::logic::{ModeLogic, State};
+use super::{Inputs, Setpoint};
+use crate::math::{clamp, clamp_abs, deg};
+use crate::rc::Sticks;
+use crate::support::HINT_FORCE;
+use crate::warm::Grasp;
+
+/// Collective while the vehicle does not climb, share of the weight: 3.4 m/s² upwards.
+const LIFT_SHARE: f32 = 1.35;
+/// Least collective, share of the weight.
+const LEAST_SHARE: f32 = 0.9;
+/// Share of the weight for each m/s that the climb rate lacks.
+const CLIMB_GAIN: f32 = 0.7;
+/// Climb rate aimed at until the vehicle is clear, m/s; later the height is kept.
+const CLIMB_RATE: f32 = 0.5;
+/// Time in which it comes clear of the pipe, s: the sticks do not steer before.
+const CLEAR_TIME: f32 = 0.8;
+/// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank,
+/// and a lean across the crown throws it under the pipe.
+const AWAY_LEAN: f32 = deg(8.0);
+/// Time in which arms that open come free, s. Arms that do not hold the vehicle on the pipe: then pulling is no use.
+const FREE_MAX: f32 = 3.0;
+/// Time in which the pilot must have taken the throttle over, s.
+const TAKE_OVER_TIME: f32 = 5.0;
+/// Thrust of the stick by which he takes it over, share of the weight.
+pub(super) const TAKE_OVER_SHARE: f32 = 0.9;
+
+/// Progress of an escape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Escape {
+    /// What the tendons still hold: open, or closed until every arm is proven free.
+    pub grasp: Grasp,
+    /// Roll held until the vehicle is clear, rad.
+    roll: f32,
+    /// Climb rate since the escape began, m/s.
+    climb: f32,
+    /// The tendons are paying out.
+    pub opening: bool,
+}
+
+impl ModeLogic {
+    /// Leaves the pipe for `why` with the arms of `grasp` closed or closing.
+    pub(super) fn leave(&mut self, i: &Inputs, grasp: Grasp, why: &'static str) -> State {
+        self.note(why);
+        self.perch_seen_off = false;
+        let lean = i.motion.map_or(0.0, |m| m.q.to_euler().0);
+        State::Escaping(Escape {
+            grasp,
+            roll: clamp_abs(lean, AWAY_LEAN),
+            climb: 0.0,
+            opening: grasp == Grasp::Open,
+        })
+    }
+
+    pub(super) fn escaping(&mut self, i: &Inputs, mut escape: Escape, dt: f32) -> State {
+        escape.climb -= self.sinking * dt;
+        // Until the rotors carry the least throttle, the arms are all that does.
+        escape.opening |= self.collective.now() >= self.release_thrust();
+        if escape.opening && i.grip.is_some_and(|g| g.released) {
+            escape.grasp = Grasp::Open;
+        }
+        if let (Some(arms), true) = (escape.grasp.arms(), self.since >= FREE_MAX) {
+            if self.support.force() < -HINT_FORCE {
+                return self.stuck(i, arms);
+            }
+            // Nothing holds the vehicle: whatever the sensors say of an arm, it flies.
+            escape.grasp = Grasp::Open;
+        }
+        if !self.clear(escape) {
+            return State::Escaping(escape);
+        }
+        match i.sticks {
+            None => State::Failsafe(Cause::RadioLost),
+            Some(_) if self.dangers.battery_critical() => State::Failsafe(Cause::BatteryCritical),
+            Some(s) if self.takes_over(&s) => State::Flight,
+            Some(_) if self.since >= TAKE_OVER_TIME => State::Failsafe(Cause::NotTakenOver),
+            Some(_) => State::Escaping(escape),
+        }
+    }
+
+    /// The arms are free, and there was time to leave the pipe.
+    fn clear(&self, escape: Escape) -> bool {
+        self.since >= CLEAR_TIME && escape.grasp == Grasp::Open
+    }
+
+    /// The throttle stick carries the vehicle.
+    pub(super) fn takes_over(&self, s: &Sticks) -> bool {
+        4.0 * self.params.thrust_max * s.throttle >= TAKE_OVER_SHARE * self.support.weight()
+    }
+
+    /// Nearly level, climbing until the vehicle is clear; then where the pilot steers.
+    pub(super) fn escape_rotors(&self, escape: Escape, sticks: Option<Sticks>) -> Setpoint {
+        let clear = self.clear(escape);
+        let wanted = if clear { 0.0 } else { CLIMB_RATE };
+        let share = clamp(
+            1.0 + CLIMB_GAIN * (wanted - escape.climb),
+            LEAST_SHARE,
+            LIFT_SHARE,
+        );
+        let steer = sticks.filter(|_| clear).unwrap_or_default();
+        Setpoint::Escape {
+            roll: if clear {
+                steer.roll * self.params.stick_angle
+            } else {
+                escape.roll
+            },
+            pitch: steer.pitch * self.params.stick_angle,
+            yaw_rate: steer.yaw * self.params.stick_yaw_rate,
+            thrust: share * self.support.weight(),
+        }
+    }
+}

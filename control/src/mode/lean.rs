@@ -1,0 +1,89 @@
+//! The lean across the pipe: whether the vehicle stays on the crown, slides off it, or hangs too far to let go.
+
+use super::logic::ModeLogic;
+use super::{Inputs, Motion};
+use crate::math::deg;
+use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE};
+
+/// Lean beyond which a vehicle that rests on the pipe leaves it before the arms have begun to close, rad.
+const TOUCH_LEAN: f32 = deg(13.0);
+/// Rate at which a lean goes back, rad/s: then the attitude loop is about to set the vehicle upright.
+const LEVELLING_RATE: f32 = 0.2;
+/// Lean beyond which arms that close do not hold any more, rad: they need 1.3 s to touch, a slide from here takes 0.35 s
+/// to the flank.
+const HOPELESS_LEAN: f32 = deg(25.0);
+/// Lean from which on a growing one counts, rad, and its rate, rad/s: rocking on the pads stays below.
+const GROWING_LEAN: f32 = deg(13.0);
+const GROWING_RATE: f32 = 0.3;
+/// Time for which any of it must last, s: three steps.
+const SLIDE_TIME: f32 = 0.03;
+/// Largest lean at which the arms let go, rad: beyond, the belly slides down the flank before the rotors carry.
+pub const RELEASE_LEAN_MAX: f32 = deg(17.0);
+/// Time for which next to nothing may carry a vehicle, s, whose collective is below this share of its weight.
+const FALL_TIME: f32 = 0.05;
+const FALL_SHARE: f32 = 0.8;
+
+/// What the pilot reads when the arms are not opened.
+pub(super) const LEANS: &str = "leaning too far to let go";
+/// What he reads when the vehicle leaves the pipe by itself.
+pub const SLIDES: &str = "sliding off the pipe";
+
+/// What the lean has done over the last steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Lean {
+    /// Roll, rad; that of the last attitude known.
+    roll: f32,
+    sliding: Held,
+    leaning: Held,
+    falling: Held,
+}
+
+impl Lean {
+    fn step(&mut self, motion: Option<Motion>, dt: f32) {
+        let Some(motion) = motion else {
+            (self.sliding, self.leaning) = Default::default();
+            return;
+        };
+        (self.roll, _, _) = motion.q.to_euler();
+        let lean = self.roll.abs();
+        let outward = if self.roll > 0.0 {
+            motion.rate.x
+        } else {
+            -motion.rate.x
+        };
+        let grows = lean > GROWING_LEAN && outward > GROWING_RATE;
+        self.sliding.step(lean > HOPELESS_LEAN || grows, dt);
+        self.leaning
+            .step(lean > TOUCH_LEAN && outward > -LEVELLING_RATE, dt);
+    }
+}
+
+impl ModeLogic {
+    /// The lean is beyond what closing arms can hold, or on its way there.
+    pub(super) fn slides(&self) -> bool {
+        self.lean.sliding.time() >= SLIDE_TIME
+    }
+
+    /// Leans where a vehicle that means to perch feels the pipe.
+    pub(super) fn slides_at_touch(&self) -> bool {
+        self.lean.leaning.time() >= SLIDE_TIME && self.support.force() > RESTING_FORCE
+    }
+
+    /// Leans too far for the arms to let go.
+    pub(super) fn leans_too_far(&self) -> bool {
+        self.lean.roll.abs() > RELEASE_LEAN_MAX
+    }
+
+    /// Takes note of lean and support.
+    pub(super) fn watch_lean(&mut self, i: &Inputs, dt: f32) {
+        self.lean.step(i.motion, dt);
+        let idle = self.support.force() < LEAVING_FORCE;
+        let low = self.collective.now() < FALL_SHARE * self.support.weight();
+        self.lean.falling.step(idle && low, dt);
+    }
+
+    /// Neither the pipe nor the rotors carry the vehicle.
+    pub(super) fn falls(&self) -> bool {
+        self.lean.falling.time() >= FALL_TIME
+    }
+}

@@ -1,0 +1,299 @@
+//! Leaving the pipe by itself: what starts an escape, what it does, who ends it; and when the arms do not let go.
+
+use super::escape::TAKE_OVER_SHARE;
+use super::lean::{LEANS, SLIDES};
+use super::rig::{DT, Rig};
+use super::*;
+use crate::grip::ArmState;
+use crate::math::{GRAVITY, deg};
+use crate::rc::ArmChoice;
+
+impl Rig {
+    /// Leans by `degrees` to the right and turns further at `rate`, rad/s.
+    fn leans(&mut self, degrees: f32, rate: f32) {
+        self.inputs.motion = Some(Motion {
+            q: Quat::from_euler(deg(degrees), 0.0, 0.0),
+            rate: Vec3::new(rate, 0.0, 0.0),
+            calibrated: true,
+            ..Motion::default()
+        });
+    }
+
+    fn weight(&self) -> f32 {
+        self.params.mass * GRAVITY
+    }
+
+    /// Sliding off while the arms close.
+    fn escaping() -> Self {
+        let mut r = Self::clamping();
+        r.leans(20.0, 0.5);
+        r.expect(0.05, Mode::Escaping);
+        r
+    }
+}
+
+#[test]
+fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
+    for (degrees, rate, ends) in [
+        (20.0, 0.5, true),
+        (-20.0, -0.5, true),
+        (26.0, 0.0, true),
+        (-26.0, 0.0, true),
+        // Rocking on the pads, and coming back.
+        (10.0, 0.5, false),
+        (20.0, 0.1, false),
+        (20.0, -0.5, false),
+        (-20.0, 0.5, false),
+    ] {
+        for make in [Rig::touched as fn() -> Rig, Rig::clamping] {
+            let mut r = make();
+            r.leans(degrees, rate);
+            let mode = r.run(0.05);
+            assert_eq!(
+                mode == Mode::Escaping,
+                ends,
+                "{degrees} deg at {rate} rad/s: {mode:?}"
+            );
+            assert!(!ends || r.out.reason == SLIDES);
+        }
+    }
+    // Arms that hold need no rotors.
+    let mut r = Rig::clamping();
+    r.grip(true, false, ArmState::Holding, 950.0);
+    r.run(0.5);
+    r.leans(26.0, 0.5);
+    r.expect(0.5, Mode::Clamping);
+}
+
+#[test]
+fn a_touch_that_leans_too_much_is_left_before_an_arm_closes() {
+    for (degrees, carried, switch, leaves) in [
+        (14.0, true, true, true),
+        (-14.0, true, true, true),
+        (12.0, true, true, false),
+        (14.0, false, true, false),
+        (14.0, true, false, false),
+    ] {
+        let mut r = Rig::flying();
+        r.sticks().throttle = 0.3;
+        r.sticks().perch_switch = switch;
+        r.run(1.0);
+        r.carried = carried;
+        r.leans(degrees, 0.0);
+        let mode = r.run(0.4);
+        assert_eq!(
+            mode == Mode::Escaping,
+            leaves,
+            "{degrees} {carried} {switch}: {mode:?}"
+        );
+        assert!(!leaves || (r.out.grasp, r.out.tendons) == (Grasp::Open, ClampCommand::Release));
+    }
+}
+
+#[test]
+fn an_escape_lifts_nearly_level_until_the_throttle_carries() {
+    for side in [1.0f32, -1.0] {
+        let mut r = Rig::clamping();
+        r.leans(20.0 * side, 0.5 * side);
+        r.expect(0.05, Mode::Escaping);
+        r.run(0.2);
+        assert!(
+            r.out.rotors.thrust() >= 1.34 * r.weight(),
+            "{}",
+            r.out.rotors.thrust()
+        );
+        let Setpoint::Escape {
+            roll,
+            pitch,
+            yaw_rate,
+            ..
+        } = r.out.rotors
+        else {
+            panic!("{:?}", r.out.rotors)
+        };
+        // 8° of the 20° stay: away from the pipe, never across it.
+        assert!((roll - deg(8.0 * side)).abs() < 1e-4 && pitch == 0.0 && yaw_rate == 0.0);
+        assert_eq!(
+            (r.out.tendons, r.out.grasp),
+            (ClampCommand::Release, Grasp::Closed(ArmChoice::All))
+        );
+        r.grip(false, true, ArmState::Free, 0.0);
+        r.carried = false;
+        r.leans(0.0, 0.0);
+        // Resting throttle would drop it.
+        r.sticks().roll = 0.5;
+        r.expect(1.5, Mode::Escaping);
+        assert_eq!(r.out.grasp, Grasp::Open);
+        assert!(
+            matches!(r.out.rotors, Setpoint::Escape { roll, .. } if roll > 0.3),
+            "clear: the pilot steers"
+        );
+        r.sticks().throttle = TAKE_OVER_SHARE * r.weight() / 33.2 - 0.01;
+        r.expect(0.1, Mode::Escaping);
+        r.sticks().throttle += 0.02;
+        r.expect(0.02, Mode::Flight);
+    }
+}
+
+#[test]
+fn an_escape_climbs_and_then_keeps_its_height() {
+    let mut r = Rig::escaping();
+    r.grip(false, true, ArmState::Free, 0.0);
+    r.carried = false;
+    r.leans(0.0, 0.0);
+    let mut climb = 0.0f32;
+    let mut most = 0.0f32;
+    for _ in 0..(4.0 / DT) as u32 {
+        r.step();
+        climb += (r.out.rotors.thrust() / r.params.mass - GRAVITY) * DT;
+        most = most.max(climb);
+    }
+    assert_eq!(r.out.mode, Mode::Escaping);
+    assert!(
+        (0.3..0.7).contains(&most) && climb.abs() < 0.1,
+        "{most} then {climb} m/s"
+    );
+}
+
+#[test]
+fn nobody_on_the_throttle_is_brought_down_and_may_still_take_over() {
+    let mut r = Rig::escaping();
+    r.grip(false, true, ArmState::Free, 0.0);
+    r.carried = false;
+    r.leans(0.0, 0.0);
+    r.expect(4.8, Mode::Escaping);
+    r.expect(0.3, Mode::Failsafe);
+    assert_eq!(r.out.reason, "throttle not taken over");
+    r.run(1.0);
+    assert!((0.8..1.0).contains(&(r.out.rotors.thrust() / r.weight())));
+    r.sticks().throttle = 0.55;
+    r.expect(0.02, Mode::Flight);
+}
+
+#[test]
+fn an_escape_outlives_the_radio_until_the_vehicle_is_clear() {
+    let mut r = Rig::escaping();
+    r.inputs.sticks = None;
+    r.carried = false;
+    r.leans(0.0, 0.0);
+    r.grip(false, true, ArmState::Free, 0.0);
+    r.expect(0.7, Mode::Escaping);
+    r.expect(0.2, Mode::Failsafe);
+    assert_eq!(r.out.reason, "radio lost");
+    let mut r = Rig::escaping();
+    r.inputs.battery = Some(12.0);
+    r.carried = false;
+    r.leans(0.0, 0.0);
+    r.grip(false, true, ArmState::Free, 0.0);
+    r.expect(1.2, Mode::Failsafe);
+    assert_eq!(r.out.reason, "battery critical");
+}
+
+#[test]
+fn a_release_that_nothing_carries_is_an_escape() {
+    let mut r = Rig::releasing();
+    r.expect(1.8, Mode::Releasing);
+    assert_eq!(r.out.tendons, ClampCommand::Release);
+    r.carried = false;
+    // 0.05 s of nothing, seen through the support's low pass of 5 Hz.
+    let mut most = 0.0f32;
+    for _ in 0..35 {
+        r.step();
+        most = most.max(r.out.rotors.thrust());
+    }
+    assert_eq!(r.out.mode, Mode::Escaping);
+    assert!(most > 1.25 * r.weight(), "{most}");
+    let mut r = Rig::releasing();
+    r.grip(false, false, ArmState::Releasing, 100.0);
+    r.run(1.8);
+    r.leans(20.0, 0.5);
+    r.expect(0.05, Mode::Escaping);
+}
+
+#[test]
+fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
+    let mut r = Rig::escaping();
+    r.leans(0.0, 0.0);
+    r.expect(2.8, Mode::Escaping);
+    r.expect(0.3, Mode::Releasing);
+    assert_eq!(
+        (r.out.reason, r.out.tendons),
+        ("arms do not come free", ClampCommand::Release)
+    );
+    r.run(1.0);
+    assert!(
+        r.out.rotors.thrust() <= 0.42 * 33.2 + 0.1,
+        "the pipe carries the rest"
+    );
+    // What the sensors call closed may be free all the same: in the air it flies.
+    let mut r = Rig::escaping();
+    r.leans(0.0, 0.0);
+    r.carried = false;
+    r.sticks().throttle = 0.55;
+    r.expect(2.8, Mode::Escaping);
+    r.expect(0.3, Mode::Flight);
+}
+
+#[test]
+fn the_arm_switch_ends_an_escape_as_it_ends_a_release() {
+    for (free, grasp) in [(false, Grasp::Closed(ArmChoice::All)), (true, Grasp::Open)] {
+        for make in [Rig::escaping as fn() -> Rig, Rig::releasing] {
+            let mut r = make();
+            r.run(1.8);
+            r.grip(false, free, ArmState::Releasing, 0.0);
+            r.sticks().arm_switch = false;
+            r.step();
+            assert_eq!(
+                (r.out.mode, r.out.rotors, r.out.grasp),
+                (Mode::Disarmed, Setpoint::Stop, grasp)
+            );
+            r.run(2.0);
+            assert_eq!(r.out.grasp, grasp, "opening again takes a new turn of the switch");
+        }
+    }
+}
+
+#[test]
+fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
+    for (degrees, after) in [
+        (16.0, Mode::Releasing),
+        (18.0, Mode::Perched),
+        (-18.0, Mode::Perched),
+    ] {
+        let mut r = Rig::perched();
+        r.leans(degrees, 0.0);
+        r.sticks().throttle = 0.3;
+        r.sticks().perch_switch = false;
+        r.expect(0.5, after);
+        assert_eq!(
+            r.out.reason == LEANS,
+            after == Mode::Perched,
+            "'{}'",
+            r.out.reason
+        );
+    }
+    // The lean grows while the rotors spool up: the arms have not opened yet, and stay closed.
+    let mut r = Rig::releasing();
+    r.run(1.0);
+    r.leans(18.0, 0.0);
+    r.expect(0.6, Mode::Clamping);
+    assert_eq!(
+        (r.out.reason, r.out.tendons),
+        (LEANS, ClampCommand::Close { arms: ArmChoice::All })
+    );
+    // Cancelled in the grip: it stays closed and the rotors stop.
+    let mut r = Rig::clamping();
+    r.grip(true, false, ArmState::Holding, 950.0);
+    r.run(0.5);
+    r.leans(18.0, 0.0);
+    r.sticks().perch_switch = false;
+    r.expect(0.5, Mode::Clamping);
+    assert_eq!(r.out.reason, LEANS);
+    r.expect(2.0, Mode::Perched);
+    // Upright it is a release, with the rotors carrying before the arms open.
+    let mut r = Rig::clamping();
+    r.grip(true, false, ArmState::Holding, 950.0);
+    r.run(0.5);
+    r.sticks().perch_switch = false;
+    r.expect(0.1, Mode::Releasing);
+}
