@@ -15,6 +15,11 @@ use crate::links::RcState;
 
 /// Silence of the link statistics after which the last of them no longer counts. Receivers report at 5 to 10 Hz.
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
+/// Time that a byte takes on the line: ten bits at 420 kbaud.
+const BYTE: Duration = Duration::from_micros(24);
+/// Pause of the line by which a frame has ended: twice what the longest of 64 bytes takes. What came before it would
+/// else wait for bytes that never come, and be published as new with those of a link that comes back.
+const SILENCE: Duration = Duration::from_millis(3);
 
 /// Frames and counts out of a stream of bytes, however it is cut.
 pub(super) struct Decoder {
@@ -22,6 +27,10 @@ pub(super) struct Decoder {
     state: RcState,
     /// When the receiver last reported an uplink quality of 0 %; `None` while the radio is not known to be lost.
     lost: Option<Instant>,
+    /// When the line was last read, or failed.
+    last: Option<Instant>,
+    /// The last bytes read belong to a frame that is not whole yet.
+    unfinished: bool,
 }
 
 impl Decoder {
@@ -30,17 +39,36 @@ impl Decoder {
             parser: CrsfParser::new(),
             state: RcState::default(),
             lost: None,
+            last: None,
+            unfinished: false,
+        }
+    }
+
+    /// Drops what was gathered of a frame whose rest is missing.
+    fn drop_unfinished(&mut self) {
+        self.parser.reset();
+        if core::mem::take(&mut self.unfinished) {
+            self.state.errors = self.state.errors.wrapping_add(1);
         }
     }
 }
 
 impl Decode for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
+        // A read ends when its last byte is there, so these bytes began their own length earlier.
+        let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        let before = self.last.replace(at);
+        let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
+        if pause >= length + SILENCE {
+            self.drop_unfinished();
+        }
         let mut news = false;
         self.lost = self
             .lost
             .filter(|since| at.saturating_duration_since(*since) < STATISTICS_SILENCE);
+        self.unfinished |= !bytes.is_empty();
         while let Some(packet) = self.parser.next_packet(&mut bytes) {
+            self.unfinished = !bytes.is_empty();
             match packet {
                 Ok(Packet::RCChannels(channels)) => match Sticks::from_channels(&channels.0) {
                     Ok(sticks) => {
@@ -65,7 +93,10 @@ impl Decode for Decoder {
         news.then_some(self.state)
     }
 
-    fn broken(&mut self, _at: Instant) {
+    fn broken(&mut self, at: Instant) {
+        self.last = Some(at);
+        self.parser.reset();
+        self.unfinished = false;
         self.state.errors = self.state.errors.wrapping_add(1);
     }
 }
@@ -163,6 +194,52 @@ mod tests {
         assert_eq!(published(&mut d, &read, 1600), None);
         let read = [throttle(0.1), statistics(50), throttle(0.2)].concat();
         assert_eq!(published(&mut d, &read, 1700), Some(20));
+    }
+
+    #[test]
+    fn what_came_before_a_silence_is_never_published_after_it() {
+        for later in [4, 20, 1000, 60_000] {
+            for length in 2..=62 {
+                // The start of a frame of `length` bytes more, whose rest was lost, and the pilot's frame behind it.
+                let (mut d, mut missing) = (Decoder::new(), usize::from(length) + 2);
+                let read = [std::vec![0xC8, length], throttle(0.9)].concat();
+                let seen = published(&mut d, &read, 1000);
+                missing = missing.saturating_sub(read.len());
+                // The line wakes up: enough bytes for the frame that never was one, then the pilot's present one.
+                assert_eq!(
+                    published(&mut d, &std::vec![0; missing], 1000 + later),
+                    None,
+                    "{length}, {later} ms later, {seen:?} before"
+                );
+                assert_eq!(
+                    published(&mut d, &throttle(0.1), 1010 + 2 * later),
+                    Some(10),
+                    "{length}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_frame_in_two_reads_is_one_unless_the_line_was_silent_or_failed_between() {
+        let bytes = throttle(0.3);
+        let (first, rest) = bytes.split_at(11);
+        let mut d = Decoder::new();
+        let _ = published(&mut d, first, 1000);
+        assert_eq!(published(&mut d, rest, 1002), Some(30));
+        assert_eq!(d.state.errors, 0);
+        // A whole frame and silence after it are no error, and a read counts from its first byte.
+        assert_eq!(published(&mut d, &bytes.repeat(4), 1006), Some(30));
+        let _ = published(&mut d, first, 2000);
+        assert_eq!((d.state.frames, d.state.errors), (5, 0));
+        assert_eq!(published(&mut d, rest, 2004), None);
+        let errors = d.state.errors;
+        assert!(errors > 0);
+        let _ = published(&mut d, first, 3000);
+        d.broken(Instant::from_millis(3001));
+        assert_eq!(published(&mut d, rest, 3002), None);
+        assert!(d.state.errors > errors);
+        assert_eq!(published(&mut d, &bytes, 3010), Some(30));
     }
 
     #[test]
