@@ -49,6 +49,8 @@ mod reg {
 
 /// What the chip id register holds (§4.3.1).
 pub const CHIP_ID: u8 = 0xA0;
+/// PAGE_ID, which both pages have: the page without the registers above is selected.
+const OTHER_PAGE: u8 = 1;
 /// SYS_TRIGGER: reset the whole system.
 const RST_SYS: u8 = 0x20;
 /// UNIT_SEL: m/s², °/s, degrees, °C; Android's sense of pitch, the reset value.
@@ -268,8 +270,14 @@ impl Bno055 {
         Ok(())
     }
 
+    /// Finds the chip on either page. What shows no page of a BNO055 is not written to.
     async fn identify(&self, bus: &mut impl I2c) -> Result<(), Lost> {
-        let [found] = self.read(bus, reg::CHIP_ID).await?;
+        let [mut found] = self.read(bus, reg::CHIP_ID).await?;
+        // A reset of the processor alone, or a glitch on the bus, leaves the chip on the page that has no identity.
+        if found != CHIP_ID && self.read(bus, reg::PAGE_ID).await? == [OTHER_PAGE] {
+            self.write(bus, reg::PAGE_ID, 0).await?;
+            [found] = self.read(bus, reg::CHIP_ID).await?;
+        }
         if found == CHIP_ID {
             Ok(())
         } else {

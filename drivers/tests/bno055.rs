@@ -104,13 +104,46 @@ fn a_chip_found_in_the_middle_of_its_fusion_is_started_afresh() {
             }; 4],
         );
         Timer::after_millis(700).await;
-        // As a reset of the processor alone leaves it: fusing, page 1 selected.
+        // As a reset of the processor alone leaves it.
         chips[0].borrow_mut().pages[0][0x3D] = 0x0C;
-        rounds(&mut arms, Duration::from_secs(2)).await;
-        chips[0].borrow_mut().pages[0][0x07] = 0;
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls.iter().all(|c| c.result.is_ok()));
         assert_eq!(chips[0].borrow().pages[0][0x3D], 0x0C);
+    });
+}
+
+#[test]
+fn a_chip_left_on_its_second_page_is_found() {
+    run(async {
+        let (mut arms, chips) = arms([Config::default(); 4]);
+        Timer::after_millis(700).await;
+        // A reset of the processor alone leaves chips as they were: in their configuration mode, fusing.
+        chips[0].borrow_mut().pages[0][0x07] = 1;
+        chips[1].borrow_mut().pages[0][0x07] = 1;
+        chips[1].borrow_mut().pages[0][0x3D] = 0x08;
+        let calls = rounds(&mut arms, Duration::from_secs(2)).await;
+        assert!(calls.iter().all(|c| c.result.is_ok()), "{:?}", arms.last_fault(0));
+        assert!((0..4).all(|arm| arms.last_fault(arm).is_none()));
+        // A glitch on the bus turns the page of one that gives readings, of one that boots after its reset, and of one
+        // that enters its configuration mode.
+        for wait in [0, 725, 735] {
+            chips[2].borrow_mut().pages[0][0x07] = 1;
+            rounds(&mut arms, Duration::from_millis(wait)).await;
+            chips[2].borrow_mut().pages[0][0x07] = 1;
+            let calls = rounds(&mut arms, Duration::from_secs(3)).await;
+            assert!(calls.iter().all(|c| c.result.is_ok()), "{wait} ms");
+        }
+        assert!(chips.iter().all(|chip| chip.borrow().violations.is_empty()));
+    });
+}
+
+#[test]
+fn a_chip_that_is_no_bno055_is_not_written_to() {
+    run(async {
+        let (mut arms, chips) = arms([Config::default(); 4]);
+        chips[0].borrow_mut().pages[0][0x00] = 0x55;
+        let _ = rounds(&mut arms, Duration::from_secs(3)).await;
+        assert_eq!(chips[0].borrow().writes, []);
     });
 }
 
