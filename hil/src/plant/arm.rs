@@ -60,7 +60,8 @@ impl ArmSpec {
         let nominal_linear = (gain_k * (a1 + a2 * infill)).to_radians();
         let nominal_quadratic = (gain_k * (b1 + b2 * infill)).to_radians();
         let (linear, quadratic) = (nominal_linear * gain, nominal_quadratic * gain);
-        let slope = linear + 2.0 * quadratic * HOVER_THRUST;
+        // As the spring has it there: light vehicles may hover well below, where an arm that turns stiff is still soft.
+        let slope = (linear + 2.0 * quadratic * HOVER_THRUST).max(LEAST_COMPLIANCE * linear);
         let stiffness = ARM_LENGTH / slope;
         let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
         Self {

@@ -3,6 +3,7 @@
 //! Scenarios are TOML files; `tests/scenarios/mission.toml` shows every key with its default. Units are in
 //! the names of the keys; in here everything is SI.
 
+mod arm;
 mod defaults;
 mod error;
 pub mod keys;

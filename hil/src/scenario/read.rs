@@ -84,6 +84,7 @@ impl Source<'_> {
             self.params(table, &mut scenario.params)?;
         }
         self.pipe_clear_of_the_ground(&root, &scenario)?;
+        self.arms(&root, &scenario)?;
         scenario.steps = steps.unwrap_or_else(defaults::default_steps);
         Ok(scenario)
     }
@@ -190,8 +191,7 @@ impl Source<'_> {
         if scenario.world.pipe_top >= lowest {
             return Ok(());
         }
-        let world = root.get_ref().iter().find(|(name, _)| name.get_ref() == "world");
-        let keys = world.and_then(|(_, table)| table.get_ref().as_table());
+        let keys = table(root, "world");
         let find = |wanted: &str| keys.and_then(|t| t.iter().find(|(name, _)| name.get_ref() == wanted));
         let allowed = format!("pipe_top_m at least 0.2 m above pipe_diameter_m, here {lowest:.3} m");
         for name in ["pipe_top_m", "pipe_diameter_m"] {
@@ -201,6 +201,12 @@ impl Source<'_> {
         }
         Ok(())
     }
+}
+
+/// The table `name` of a document.
+pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Option<&'t DeTable<'i>> {
+    let (_, content) = root.get_ref().iter().find(|(key, _)| key.get_ref() == name)?;
+    content.get_ref().as_table()
 }
 
 /// Builders tell the stack what they built: the parameters follow the vehicle unless the file says otherwise.

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
@@ -9,6 +11,7 @@ use sophie_control::wrench::Configuration;
 
 use super::keys::{KEYS, Kind};
 use super::*;
+use crate::plant::{Actuators, Plant};
 
 fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     Scenario::parse(text, "perch.toml", &Overrides::default())
@@ -431,4 +434,119 @@ fn no_damage_to_a_file_makes_more_than_one_line() {
         }
     }
     assert!(good > 100 && bad > 100, "{good} {bad}");
+}
+
+#[test]
+fn coefficients_that_give_no_arm_are_refused_with_their_key() {
+    let vehicle = |numbers: &str| complaint(&format!("[vehicle]\n{numbers}\n"));
+    assert_eq!(
+        vehicle("arm_coefficients = [-10, -10, -10, -10]"),
+        "perch.toml:2: vehicle.arm_coefficients = [-10, -10, -10, -10]: allowed a tilt that rises without thrust by at \
+         least 0.10 deg/N, here -612.250 at infill 6.9000 % and gain_k 7.7500"
+    );
+    // The same slope whichever number spoils it: an infill beyond what the coefficients cover, a soft arm, hover.
+    let falls =
+        "perch.toml:2: vehicle.arm_coefficients = [1, -0.14, 0, 0]: allowed a tilt that rises without thrust";
+    let text = "[vehicle]\narm_coefficients = [1, -0.14, 0, 0]\n";
+    assert!(parse(text).is_ok());
+    let rho = |infill| Overrides {
+        infill: Some(infill),
+        ..Default::default()
+    };
+    let line = Scenario::parse(text, "perch.toml", &rho(8.0))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        line.starts_with(falls) && line.contains("infill 8.0000 %"),
+        "{line}"
+    );
+    let gain = Overrides {
+        gain_k: Some(1.0),
+        ..Default::default()
+    };
+    let line = Scenario::parse(text, "perch.toml", &gain)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        line.starts_with(falls) && line.contains("here 0.034 at infill 6.9000 % and gain_k 1.0000"),
+        "{line}"
+    );
+    let line = vehicle("arm_coefficients = [2, 0, -0.3, 0]");
+    assert!(
+        line.contains("still rises at hover, 4.43 N a rotor, here by -5.077"),
+        "{line}"
+    );
+    let line = vehicle("arm_coefficients = [30, 0, 0, 0]");
+    assert!(line.contains("within 90 deg from no thrust to 8.3 N"), "{line}");
+    assert!(
+        vehicle("arm_level_share = -0.5\nthrust_max_n = 20")
+            .starts_with("perch.toml:2: vehicle.arm_level_share = -0.5")
+    );
+    // What the stack believes is an arm too.
+    let line = complaint("[params]\narm_a1 = -1\n");
+    assert!(
+        line.starts_with("perch.toml:2: params.arm_a1 = -1: allowed a tilt that rises without thrust"),
+        "{line}"
+    );
+    // The paper's arm is one at every infill and gain that the command line takes.
+    for infill in [4.0, 6.9, 10.0] {
+        for gain_k in [1.0, 7.75, 10.0] {
+            let overrides = Overrides {
+                infill: Some(infill),
+                gain_k: Some(gain_k),
+                ..Default::default()
+            };
+            assert!(
+                Scenario::parse("", "perch.toml", &overrides).is_ok(),
+                "{infill} {gain_k}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_vehicle_that_loads_can_be_stepped() {
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    let (mut loaded, mut refused) = (0, 0);
+    for draw in 0..240 {
+        let mut text = String::from("[vehicle]\n");
+        for key in KEYS.iter().filter(|key| key.name.starts_with("vehicle.")) {
+            let mut any = |range: &keys::Range| rng.random_range(range.min..=range.max);
+            let value = match &key.kind {
+                // Most arms near the paper's, or hardly any would rise.
+                Kind::PerArm(..) if key.name.ends_with("coefficients") && draw % 8 != 0 => {
+                    let mut near = |x: f64| x * rng.random_range(0.2..3.0);
+                    format!("{:?}", crate::plant::arm::TABLE_1.map(&mut near))
+                }
+                Kind::Number(range, _) => format!("{:?}", any(range)),
+                Kind::PerArm(range, _) => format!("{:?}", [(); 4].map(|()| any(range))),
+                Kind::PerAxis(ranges, _) => format!("{:?}", ranges.each_ref().map(any)),
+                Kind::Flag(_) => rng.random::<bool>().to_string(),
+                _ => continue,
+            };
+            let (_, name) = key.name.split_once('.').unwrap();
+            text += &format!("{name} = {value}\n");
+        }
+        let Ok(scenario) = parse(&text) else {
+            refused += 1;
+            continue;
+        };
+        loaded += 1;
+        let mut plant = Plant::new(&scenario, Pcg64Mcg::seed_from_u64(loaded));
+        let mut actuators = Actuators {
+            servos: [550.0; 4],
+            ..Default::default()
+        };
+        for step in 0..2000 {
+            if step % 100 == 0 {
+                actuators.motors = [(); 4].map(|()| rng.random_range(0.0..1.0));
+            }
+            plant.step(&actuators);
+        }
+        let state = (plant.pose().position, plant.tilt(), plant.specific_force());
+        let finite = state.0.is_finite() && state.1.iter().all(|t| t.abs() < 6.3) && state.2.length() < 1e4;
+        assert!(finite, "{state:?} of\n{text}");
+    }
+    println!("{loaded} flown, {refused} refused");
+    assert!(loaded > 40 && refused > 20, "{loaded} flown, {refused} refused");
 }

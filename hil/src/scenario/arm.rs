@@ -1,0 +1,151 @@
+//! Whether the numbers of a scenario give an arm that can be built, and that the stack can believe in.
+//!
+//! Eq. 1 is a parabola in the thrust; the simulated arm's spring is its inverse. Coefficients that fall with thrust
+//! have none, and the allocation divides by what the tilt gains with thrust.
+
+use toml::Spanned;
+use toml::de::DeTable;
+
+use super::error::{Place, ScenarioError};
+use super::read::{Result, Source, Value};
+use super::{Scenario, Vehicle};
+use crate::plant::GRAVITY;
+use crate::plant::arm::ArmSpec;
+
+/// Least rise of the tilt without thrust, rad/N (0.1 deg/N): at 0.02 the bending mode of the lightest vehicle leaves
+/// what the plant's step of 0.5 ms can follow.
+const LEAST_RISE: f64 = 0.1 * DEGREE;
+/// Largest tilt of a free arm without thrust and under all of it, rad: beyond it the rotor pushes inward more than up.
+const LARGEST_TILT: f64 = 90.0 * DEGREE;
+const DEGREE: f64 = core::f64::consts::PI / 180.0;
+
+/// Keys that make the simulated arm, in the order in which they are blamed.
+const BUILT: [&str; 8] = [
+    "arm_coefficients",
+    "arm_level_share",
+    "gain_k",
+    "infill",
+    "arm_gain",
+    "arm_offset_deg",
+    "thrust_max_n",
+    "mass_kg",
+];
+/// Parameters that make the arm that the stack believes in.
+const BELIEVED: [&str; 7] = ["arm_a1", "arm_a2", "arm_b1", "arm_b2", "gain_k", "infill", "mass"];
+
+/// Eq. 1 of one arm, as far as its slope goes.
+struct Slope {
+    infill: f64,
+    gain_k: f64,
+    /// dα/dT without thrust, rad/N.
+    linear: f64,
+    /// Half of what it changes by with thrust, rad/N².
+    quadratic: f64,
+    /// Thrust of a rotor in hover, N.
+    hover: f64,
+}
+
+impl Slope {
+    fn new([a1, a2, b1, b2]: [f64; 4], infill: f64, gain_k: f64, mass: f64) -> Self {
+        Self {
+            infill,
+            gain_k,
+            linear: gain_k * (a1 + a2 * infill) * DEGREE,
+            quadratic: gain_k * (b1 + b2 * infill) * DEGREE,
+            hover: 0.25 * mass * GRAVITY,
+        }
+    }
+
+    /// What is wrong with an arm whose elastic term is `gain` times the nominal one, and what is allowed.
+    fn fault(&self, gain: f64) -> Option<String> {
+        let at = |thrust: f64| gain * (self.linear + 2.0 * self.quadratic * thrust);
+        let (still, hover) = (at(0.0), at(self.hover));
+        let here = format!("infill {:.4} % and gain_k {:.4}", self.infill, self.gain_k);
+        if still.is_nan() || still < LEAST_RISE {
+            return Some(format!(
+                "a tilt that rises without thrust by at least {:.2} deg/N, here {:.3} at {here}",
+                LEAST_RISE / DEGREE,
+                still / DEGREE
+            ));
+        }
+        (hover.is_nan() || hover <= 0.0).then(|| {
+            format!(
+                "a tilt that still rises at hover, {:.2} N a rotor, here by {:.3} deg/N at {here}",
+                self.hover,
+                hover / DEGREE
+            )
+        })
+    }
+}
+
+/// What is wrong with the arms of `vehicle`, and what is allowed; `None` for arms that can be built.
+fn unbuilt(vehicle: &Vehicle) -> Option<String> {
+    let v = vehicle;
+    let slope = Slope::new(v.arm_coefficients, v.infill, v.gain_k, v.body.mass);
+    let thrust_max = v.rotor.thrust_max;
+    v.arm_gain.iter().zip(&v.arm_offset).find_map(|(gain, offset)| {
+        if let Some(fault) = slope.fault(*gain) {
+            return Some(fault);
+        }
+        let spec = ArmSpec::with(
+            v.arm_coefficients,
+            v.infill,
+            v.gain_k,
+            *gain,
+            *offset,
+            v.arm_damping,
+        )
+        .level_at(v.arm_level_share * thrust_max);
+        let tilt = [0.0, thrust_max].map(|thrust| spec.static_tilt(thrust));
+        let far = tilt.into_iter().find(|t| t.is_nan() || t.abs() > LARGEST_TILT)?;
+        Some(format!(
+            "a tilt within {:.0} deg from no thrust to {thrust_max} N, here {:.0} deg at infill {:.4} % and gain_k {:.4}",
+            LARGEST_TILT / DEGREE,
+            far / DEGREE,
+            v.infill,
+            v.gain_k
+        ))
+    })
+}
+
+impl Source<'_> {
+    /// Refuses a vehicle, or a belief of the stack, whose numbers are each allowed but give no arm.
+    pub(super) fn arms(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
+        if let Some(allowed) = unbuilt(&scenario.vehicle) {
+            // The defaults are an arm at every infill and gain of the command line: the file has one of these keys.
+            let (key, value) = named(root, "vehicle", &BUILT).ok_or_else(|| self.no_key(&allowed))?;
+            return Err(self.bad(&key, value, allowed));
+        }
+        let p = &scenario.params;
+        let coefficients = [p.arm_a1, p.arm_a2, p.arm_b1, p.arm_b2].map(f64::from);
+        let slope = Slope::new(coefficients, p.infill.into(), p.gain_k.into(), p.mass.into());
+        match (slope.fault(1.0), named(root, "params", &BELIEVED)) {
+            (Some(allowed), Some((key, value))) => Err(self.bad(&key, value, allowed)),
+            _ => Ok(()),
+        }
+    }
+
+    fn no_key(&self, allowed: &str) -> ScenarioError {
+        ScenarioError::MissingKey {
+            at: Place {
+                file: self.file.to_owned(),
+                line: 1,
+            },
+            key: "vehicle.arm_coefficients".to_owned(),
+            allowed: allowed.to_owned(),
+        }
+    }
+}
+
+/// The first of `keys` that the file has in `table`, by its full name.
+fn named<'t, 'i>(
+    root: &'t Spanned<DeTable<'i>>,
+    table: &str,
+    keys: &[&str],
+) -> Option<(String, &'t Value<'i>)> {
+    let content = super::read::table(root, table)?;
+    keys.iter().find_map(|name| {
+        let (_, value) = content.iter().find(|(key, _)| key.get_ref() == *name)?;
+        Some((format!("{table}.{name}"), value))
+    })
+}
