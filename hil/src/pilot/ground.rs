@@ -5,6 +5,8 @@ use sophie_control::mode::Mode;
 use super::hands::Wish;
 use super::mind::{Mind, Phase, Progress, View};
 
+/// Throttle at which the paper's vehicle is sure to leave the ground.
+const TAKE_OFF: f64 = 0.85;
 /// Speed of the throttle while the weight is taken up, and given back, 1/s.
 const TAKE_UP: f64 = 0.3;
 const GIVE_BACK: f64 = 0.6;
@@ -72,7 +74,8 @@ impl Mind {
             }
             let risen = v.height() > self.height + RISEN || v.seen.velocity.z < -RISING;
             if !risen {
-                return Progress::Going(self.throttle_to(0.85, TAKE_UP, dt));
+                let s = self.guidance.strength();
+                return Progress::Going(self.throttle_to((TAKE_OFF * s).min(1.0), TAKE_UP * s, dt));
             }
             self.enter(Phase::Fly);
         }

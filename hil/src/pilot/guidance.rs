@@ -30,9 +30,12 @@ const HEIGHT_GAIN: f64 = 0.9;
 /// Fastest climb and descent, m/s.
 const CLIMB_MAX: f64 = 0.7;
 const DESCENT_MAX: f64 = 0.5;
-/// Climb error to throttle, s/m; and to the hover trim, 1/m.
+/// Climb error to throttle, s/m; and to the hover trim, 1/m. These and the throttles below are those of the paper's
+/// vehicle, which hovers at 53 %: see [`Guidance::strength`].
 const CLIMB_GAIN: f64 = 0.09;
 const HOVER_GAIN: f64 = 0.035;
+/// Range of the hover trim.
+const HOVER: (f64, f64) = (0.35, 0.75);
 /// Throttle range used in the air.
 const THROTTLE_MIN: f64 = 0.25;
 const THROTTLE_MAX: f64 = 0.85;
@@ -57,6 +60,8 @@ pub struct Guidance {
     stick_yaw_rate: f64,
     /// Throttle of hover as learned so far, 0..1.
     hover: f64,
+    /// See [`Guidance::strength`].
+    strength: f64,
     wind: DVec2,
     throttle: f64,
     foresight: Foresight,
@@ -67,16 +72,24 @@ pub struct Guidance {
 impl Guidance {
     /// A pilot who knows the weight and the stick travels, and sees `delay` s late.
     pub fn new(params: &Params, delay: f64) -> Self {
-        let hover = f64::from(params.mass) * GRAVITY / (4.0 * f64::from(params.thrust_max));
+        let hover = hover(params);
         Self {
             stick_angle: f64::from(params.stick_angle),
             stick_yaw_rate: f64::from(params.stick_yaw_rate),
             hover,
+            strength: hover / self::hover(&Params::default()),
             wind: DVec2::ZERO,
             throttle: 0.0,
             foresight: Foresight::new(delay),
             ahead: Default::default(),
         }
+    }
+
+    /// Throttle that gives the share of the weight that 1 of it gives the paper's vehicle: below 1 for a vehicle of
+    /// stronger rotors. Every throttle and its speed is so much of the paper's, or a pilot used to the one would
+    /// throw the other about.
+    pub fn strength(&self) -> f64 {
+        self.strength
     }
 
     /// Position, m, and velocity, m/s, NED, that the vehicle will have when the hands act.
@@ -141,9 +154,13 @@ impl Guidance {
             Vertical::Climb(rate) => rate,
         };
         let error = rate + velocity.z;
-        self.hover = (self.hover + HOVER_GAIN * error * dt).clamp(0.35, 0.75);
-        let goal = ((self.hover + CLIMB_GAIN * error) / upright).clamp(THROTTLE_MIN, THROTTLE_MAX);
-        self.throttle += (goal - self.throttle).clamp(-THROTTLE_SLEW * dt, THROTTLE_SLEW * dt);
+        let s = self.strength;
+        let (low, high) = HOVER;
+        self.hover = (self.hover + HOVER_GAIN * s * error * dt).clamp(low * s, high * s);
+        let goal = (self.hover + CLIMB_GAIN * s * error) / upright;
+        let goal = goal.clamp(THROTTLE_MIN * s, THROTTLE_MAX * s).min(1.0);
+        let step = THROTTLE_SLEW * s * dt;
+        self.throttle += (goal - self.throttle).clamp(-step, step);
         self.throttle
     }
 
@@ -151,4 +168,9 @@ impl Guidance {
     pub fn rudder(&self, seen: &Seen, heading: f64) -> f64 {
         (HEADING_GAIN * super::wrap(heading - seen.yaw) / self.stick_yaw_rate).clamp(-1.0, 1.0)
     }
+}
+
+/// Throttle of hover by the parameters.
+fn hover(params: &Params) -> f64 {
+    f64::from(params.mass) * GRAVITY / (4.0 * f64::from(params.thrust_max))
 }

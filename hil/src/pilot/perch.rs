@@ -55,6 +55,8 @@ const EASE: f64 = 0.25;
 /// Throttle at which the arms are opened: enough to steer by, but most of the weight still presses the belly onto
 /// the pipe. The more thrust, the more of it pushes a leaning vehicle off the crown.
 const RELEASE_THROTTLE: f64 = 0.25;
+/// The same at least: below 0.20 the stack opens nothing, whatever the rotors' strength.
+const RELEASE_LEAST: f64 = 0.21;
 /// Depth below where it stood at which the vehicle has slid off, m.
 const SUNK: f64 = 0.06;
 /// Time for which the display may tell of a lost grip, s.
@@ -63,6 +65,21 @@ const GRIP_LOST_TIME: f64 = 1.0;
 const CLEAR: f64 = 0.06;
 
 impl Mind {
+    /// Share of the throttles on the pipe that is given: less with stronger rotors, which would lift the vehicle off,
+    /// never more, since the stack takes more than `perch_throttle_max` for flying on.
+    fn lightly(&self) -> f64 {
+        self.guidance.strength().min(1.0)
+    }
+
+    /// The throttle while closing that the scenario wants, as far as it leaves a stronger vehicle standing on the pipe.
+    fn closing(&self, wanted: f64) -> f64 {
+        if self.lightly() < 1.0 {
+            wanted.min(FIRM_THROTTLE * self.lightly())
+        } else {
+            wanted
+        }
+    }
+
     pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {
         let wish = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
         if self.settled(v, dt) {
@@ -99,6 +116,7 @@ impl Mind {
     /// `throttle` is where that stick is.
     fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (Wish, bool) {
         let over = v.height() - self.pipe_top;
+        let (firm, firm_ease) = (FIRM_THROTTLE * self.lightly(), FIRM_EASE * self.lightly());
         let off = v.seen.position.truncate() - self.pipe;
         if self.phase == Phase::GoAround {
             let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
@@ -134,9 +152,9 @@ impl Mind {
                 let wish = Wish {
                     roll,
                     pitch,
-                    ..self.throttle_to(FIRM_THROTTLE, FIRM_EASE, dt)
+                    ..self.throttle_to(firm, firm_ease, dt)
                 };
-                let felt = self.held_for(stands && self.throttle <= FIRM_THROTTLE, STOPPED_TIME, dt);
+                let felt = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
                 if felt {
                     self.height = v.height();
                 }
@@ -215,7 +233,8 @@ impl Mind {
             return Progress::Failed(format!("rotors stopped on the pipe, {}", v.shown()));
         }
         let perched = v.mode == Some(Mode::Perched);
-        let wish = self.throttle_to(if perched { 0.0 } else { throttle }, EASE, dt);
+        let throttle = if perched { 0.0 } else { self.closing(throttle) };
+        let wish = self.throttle_to(throttle, EASE * self.lightly(), dt);
         if perched && self.throttle <= 0.0 {
             Progress::Done(wish)
         } else {
@@ -250,10 +269,14 @@ impl Mind {
     }
 
     pub(super) fn release(&mut self, v: &View<'_>, dt: f64) -> Progress {
+        let (opening, ease) = (
+            (RELEASE_THROTTLE * self.lightly()).max(RELEASE_LEAST),
+            EASE * self.lightly(),
+        );
         match self.phase {
             Phase::Start if v.mode == Some(Mode::Releasing) => {
                 self.enter(Phase::Wait);
-                Progress::Going(self.throttle_to(RELEASE_THROTTLE, EASE, dt))
+                Progress::Going(self.throttle_to(opening, ease, dt))
             }
             Phase::Start | Phase::Throttle => {
                 if self.phase == Phase::Start {
@@ -262,8 +285,8 @@ impl Mind {
                     self.perch_switch = true;
                     self.enter(Phase::Throttle);
                 }
-                let wish = self.throttle_to(RELEASE_THROTTLE, EASE, dt);
-                if self.held_for(self.throttle >= RELEASE_THROTTLE, 0.5, dt) {
+                let wish = self.throttle_to(opening, ease, dt);
+                if self.held_for(self.throttle >= opening, 0.5, dt) {
                     self.perch_switch = false;
                     self.enter(Phase::Wait);
                 }
@@ -277,7 +300,7 @@ impl Mind {
                 } else if v.mode == Some(Mode::Disarmed) {
                     return Progress::Failed(format!("rotors stopped on the pipe, {}", v.shown()));
                 }
-                Progress::Going(self.throttle_to(RELEASE_THROTTLE, EASE, dt))
+                Progress::Going(self.throttle_to(opening, ease, dt))
             }
             _ => {
                 let mut wish = self.go_to(v, self.spot, self.height + OVER, dt);
