@@ -1,7 +1,6 @@
 //! Steps in free flight: hover, the roll manoeuvre, flying to a point.
 
 use glam::DVec2;
-use sophie_control::mode::Mode;
 
 use super::guidance::Vertical;
 use super::hands::Wish;
@@ -19,23 +18,7 @@ const REACHED: f64 = 0.25;
 const REACHED_SPEED: f64 = 0.25;
 
 impl Mind {
-    /// The vehicle has stopped in the air: nothing that a pilot could do.
-    fn stopped(&self, v: &View<'_>) -> Option<Progress> {
-        (v.mode == Some(Mode::Disarmed)).then(|| {
-            let after = self.trouble.as_ref().map(|why| format!("failsafe, {why}: "));
-            Progress::Failed(format!(
-                "{}rotors stopped at a height of {:.2} m, {}",
-                after.unwrap_or_default(),
-                v.height(),
-                v.shown()
-            ))
-        })
-    }
-
     pub(super) fn hover(&mut self, v: &View<'_>, seconds: f64, dt: f64) -> Progress {
-        if let Some(failed) = self.stopped(v) {
-            return failed;
-        }
         if self.phase == Phase::Start {
             self.spot = v.seen.position.truncate();
             self.enter(Phase::Fly);
@@ -49,9 +32,6 @@ impl Mind {
     }
 
     pub(super) fn roll(&mut self, v: &View<'_>, angle: f64, seconds: f64, dt: f64) -> Progress {
-        if let Some(failed) = self.stopped(v) {
-            return failed;
-        }
         match self.phase {
             Phase::Start => {
                 self.spot = v.seen.position.truncate();
@@ -62,11 +42,12 @@ impl Mind {
             _ => (),
         }
         let side = if self.phase == Phase::Right { 1.0 } else { -1.0 };
-        if self.phase == Phase::Fly {
+        // A failsafe rolls no more: what it comes to is waited for over the spot.
+        if self.phase == Phase::Fly || self.trouble.is_some() {
             let wish = self.go_to(v, self.spot, self.height, dt);
             let off = (v.seen.position.truncate() - self.spot).length();
             let there = off < RECOVERED && v.seen.velocity.length() < RECOVERED_SPEED;
-            return if self.held_for(there, 0.5, dt) {
+            return if self.held_for(there && self.phase == Phase::Fly, 0.5, dt) {
                 Progress::Done(wish)
             } else {
                 Progress::Going(wish)
@@ -92,9 +73,6 @@ impl Mind {
     }
 
     pub(super) fn fly_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> Progress {
-        if let Some(failed) = self.stopped(v) {
-            return failed;
-        }
         let wish = self.go_to(v, target, height, dt);
         let off = (v.seen.position.truncate() - target)
             .length()

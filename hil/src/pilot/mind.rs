@@ -156,6 +156,9 @@ impl Mind {
             Some(Mode::Flight) => self.trouble = None,
             _ => (),
         }
+        if let Some(why) = self.stopped(step, view) {
+            return Progress::Failed(why);
+        }
         let progress = match *step {
             Step::Arm => self.arm(view),
             Step::TakeOff { height } => self.take_off(view, height, dt),
@@ -184,6 +187,45 @@ impl Mind {
             Progress::Done(wish) => Progress::Done(self.switches(wish)),
             failed @ Progress::Failed(_) => failed,
         }
+    }
+
+    /// Why a step that needs its rotors cannot go on: they stand still, after a failsafe or without one. Until then the
+    /// pilot flies on: a vehicle that sinks by itself is still steered.
+    fn stopped(&self, step: &Step, v: &View<'_>) -> Option<String> {
+        let rotors = match step {
+            Step::TakeOff { .. }
+            | Step::Hover { .. }
+            | Step::Roll { .. }
+            | Step::FlyTo { .. }
+            | Step::FlyToPipe
+            | Step::Touch
+            | Step::Clamp { .. }
+            | Step::Perch { .. }
+            | Step::Open
+            | Step::Release => true,
+            // These end with stopped rotors, or wait for a vehicle that may have them.
+            Step::Arm
+            | Step::Hold { .. }
+            | Step::Land
+            | Step::Disarm
+            | Step::RadioOff { .. }
+            | Step::Reset { .. } => false,
+        };
+        let stopped = rotors && v.mode == Some(Mode::Disarmed);
+        stopped.then(|| {
+            let after = self.trouble.as_ref().map(|why| format!("failsafe, {why}: "));
+            let on_pipe = v.height() > self.pipe_top && matches!(self.phase, Phase::Throttle | Phase::Wait);
+            let place = if on_pipe {
+                "on the pipe".to_owned()
+            } else {
+                format!("at a height of {:.2} m", v.height())
+            };
+            format!(
+                "{}rotors stopped {place}, {}",
+                after.unwrap_or_default(),
+                v.shown()
+            )
+        })
     }
 
     fn switches(&self, wish: Wish) -> Wish {

@@ -57,6 +57,9 @@ const EASE: f64 = 0.25;
 const RELEASE_THROTTLE: f64 = 0.25;
 /// The same at least: below 0.20 the stack opens nothing, whatever the rotors' strength.
 const RELEASE_LEAST: f64 = 0.21;
+/// What the display says where a perched vehicle will not be let go, and the time for which it must, s.
+const TROUBLES: [&str; 2] = ["battery critical", "radio lost"];
+const REFUSED_TIME: f64 = 3.0;
 /// Depth below where it stood at which the vehicle has slid off, m.
 const SUNK: f64 = 0.06;
 /// Time for which the display may tell of a lost grip, s.
@@ -229,9 +232,6 @@ impl Mind {
         {
             return Progress::Failed(format!("no proven grip, {}", v.shown()));
         }
-        if v.mode == Some(Mode::Disarmed) {
-            return Progress::Failed(format!("rotors stopped on the pipe, {}", v.shown()));
-        }
         let perched = v.mode == Some(Mode::Perched);
         let throttle = if perched { 0.0 } else { self.closing(throttle) };
         let wish = self.throttle_to(throttle, EASE * self.lightly(), dt);
@@ -297,8 +297,10 @@ impl Mind {
                     self.height = v.height();
                     self.spot = v.seen.position.truncate();
                     self.enter(Phase::Fly);
-                } else if v.mode == Some(Mode::Disarmed) {
-                    return Progress::Failed(format!("rotors stopped on the pipe, {}", v.shown()));
+                }
+                let refused = v.mode == Some(Mode::Perched) && TROUBLES.contains(&v.reason);
+                if self.held_for(refused, REFUSED_TIME, dt) {
+                    return Progress::Failed(format!("arms not opened, {}", v.shown()));
                 }
                 Progress::Going(self.throttle_to(opening, ease, dt))
             }

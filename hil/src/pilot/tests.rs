@@ -292,3 +292,99 @@ fn a_transmitter_that_is_off_sends_nothing_and_shows_nothing() {
     assert!(began > 0.0 && outcome.accomplished, "{outcome:?}");
     assert_eq!((frames, shown), (0, 0));
 }
+
+#[test]
+fn every_step_ends_on_a_failsafe_with_its_reason() {
+    let mission = with(&[
+        Step::Hover { seconds: 20.0 },
+        Step::Roll {
+            angle: 0.436,
+            seconds: 2.5,
+        },
+        Step::FlyToPipe,
+        Step::Touch,
+        Step::Clamp { throttle: 0.3 },
+        Step::Perch { throttle: 0.3 },
+        Step::Hold {
+            seconds: 5.0,
+            push: 0.0,
+        },
+        Step::Open,
+        Step::Release,
+        Step::FlyTo {
+            north: 0.0,
+            east: 0.0,
+            height: 2.0,
+        },
+        Step::Land,
+        Step::Disarm,
+    ]);
+    // Before the vehicle is armed nothing needs a failsafe.
+    for (index, step) in mission.iter().enumerate().skip(1) {
+        for why in ["battery critical", "radio lost"] {
+            let mut toy = Toy::new(&scenario(1, &mission));
+            let mut since = None;
+            let mut took = f64::NAN;
+            for _ in 0..(400.0 / toy::DT) as u64 {
+                let out = toy.step();
+                let began = out
+                    .events
+                    .contains(&StepEvent::Began(index))
+                    .then_some(toy.seen.t);
+                since = since.or(began);
+                // On the ground the rotors just stop: the take-off's failsafe is one in the air.
+                let up = !matches!(step, Step::TakeOff { .. }) || toy.seen.position.z < -1.0;
+                let due = up && since.is_some_and(|since| toy.seen.t > since + 0.3)
+                    || toy.deaf
+                    || toy.battery < 13.0;
+                toy.battery = if due && why == "battery critical" {
+                    12.0
+                } else {
+                    15.5
+                };
+                toy.deaf = due && why == "radio lost";
+                if out.outcome.is_some() {
+                    took = toy.seen.t - since.unwrap_or(f64::NAN);
+                    break;
+                }
+            }
+            let outcome = toy.pilot.outcome().cloned();
+            let outcome = outcome.unwrap_or_else(|| panic!("{} goes on under {why}", step.name()));
+            println!("{:12} {why:16} {took:5.1} s  {}", step.name(), outcome.reason);
+            // What ends on the ground anyway may end well; a perch is kept, and left for nothing but a sound vehicle.
+            let ends_well = matches!(step, Step::Land | Step::Disarm);
+            assert!(
+                outcome.accomplished || outcome.reason.contains(why),
+                "{}: {}",
+                step.name(),
+                outcome.reason
+            );
+            assert!(
+                ends_well || !outcome.accomplished,
+                "{}: {}",
+                step.name(),
+                outcome.reason
+            );
+            if matches!(step, Step::Hold { .. } | Step::Open) {
+                let words = format!("open: arms not opened, display PERCHED: {why}");
+                assert!(
+                    outcome.reason.contains(&words),
+                    "{}: {}",
+                    step.name(),
+                    outcome.reason
+                );
+            }
+            let flying = index < 6 || matches!(step, Step::FlyTo { .. });
+            if !ends_well && flying {
+                let words = format!(": failsafe, {why}: rotors stopped");
+                assert!(
+                    outcome.reason.contains(&words),
+                    "{}: {}",
+                    step.name(),
+                    outcome.reason
+                );
+            }
+            assert!(took < 35.0, "{}: {took:.1} s, {}", step.name(), outcome.reason);
+        }
+    }
+}

@@ -34,6 +34,10 @@ pub struct Toy {
     pub pressure: f32,
     /// Thrust of the real rotors over the nominal ones.
     pub strength: f64,
+    /// Voltage of the flight battery, V.
+    pub battery: f32,
+    /// The receiver hears nothing.
+    pub deaf: bool,
     /// Yaw rate that nobody asked for, rad/s.
     pub spin: f64,
     scenario: Scenario,
@@ -44,7 +48,7 @@ pub struct Toy {
     thrust: f64,
     closed: f64,
     steps: u64,
-    down: f64,
+    acceleration: DVec3,
 }
 
 impl Toy {
@@ -62,6 +66,8 @@ impl Toy {
             wind: DVec3::ZERO,
             pressure: 950.0,
             strength: 1.0,
+            battery: 15.5,
+            deaf: false,
             spin: 0.0,
             scenario: scenario.clone(),
             gust: Gust::new(scenario.world.gust_force, 0.0, gust_rng),
@@ -71,7 +77,7 @@ impl Toy {
             thrust: 0.0,
             closed: 0.0,
             steps: 0,
-            down: 0.0,
+            acceleration: DVec3::ZERO,
         }
     }
 
@@ -127,9 +133,10 @@ impl Toy {
         let proven = self.closed > CLOSING + 0.5 && (pressure - 950.0).abs() < 50.0;
         let s = &self.seen;
         let q = Quat::from_euler(s.roll as f32, s.pitch as f32, s.yaw as f32);
-        let felt = Vec3::new(0.0, 0.0, self.down as f32 - GRAVITY);
+        let [north, east, down] = self.acceleration.to_array().map(|a| a as f32);
+        let felt = q.rotate_inverse(Vec3::new(north, east, down - GRAVITY));
         let inputs = Inputs {
-            sticks: self.sticks,
+            sticks: self.sticks.filter(|_| !self.deaf),
             motion: Some(Motion {
                 q,
                 accel: felt,
@@ -146,7 +153,7 @@ impl Toy {
                     ..Default::default()
                 }; 4],
             }),
-            battery: Some(15.5),
+            battery: Some(self.battery),
             ..Default::default()
         };
         self.out = self.logic.step(&inputs, dt as f32);
@@ -201,7 +208,7 @@ impl Toy {
             force.z = force.z.min(0.0);
         }
         let acceleration = force / mass;
-        self.down = acceleration.z;
+        self.acceleration = acceleration;
         s.velocity += acceleration * DT;
         s.position += s.velocity * DT;
         s.t += DT;
