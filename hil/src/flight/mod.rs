@@ -4,6 +4,7 @@ pub mod aircraft;
 mod judge;
 mod recorder;
 pub(crate) mod stack;
+mod why;
 
 use std::time::Instant as WallInstant;
 
@@ -109,6 +110,10 @@ pub fn fly_with<A: Aircraft>(
             outcome = end;
             break;
         }
+    }
+    if !outcome.accomplished {
+        let step = scenario.steps.get(began.0);
+        outcome.reason += &why::detail(scenario, step, recorder.samples(), &outcome.reason);
     }
     let event = Event {
         t: ms as f64 * 1e-3,

@@ -86,6 +86,11 @@ impl Recorder {
         }
     }
 
+    /// The samples so far.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
     /// Ends the record.
     pub fn finish(
         mut self,

@@ -23,7 +23,7 @@ use self::contact::{ArmSkin, ArmTip, Belly, Pipe, Pose, Surface};
 use self::gust::Gust;
 use self::rotor::Rotor;
 use self::tendon::{ServoSpec, Tendon, TendonSpec};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Vehicle};
 
 /// Integration step, s.
 pub const STEP: f64 = 0.5e-3;
@@ -76,6 +76,21 @@ pub struct Plant {
     specific_force: DVec3,
 }
 
+/// Arm `arm` (0 to 3) of `vehicle` as built.
+#[must_use]
+pub fn arm_spec(vehicle: &Vehicle, arm: usize) -> ArmSpec {
+    let v = vehicle;
+    ArmSpec::with(
+        v.arm_coefficients,
+        v.infill,
+        v.gain_k,
+        v.arm_gain[arm],
+        v.arm_offset[arm],
+        v.arm_damping,
+    )
+    .level_at(v.arm_level_share * v.rotor.thrust_max)
+}
+
 impl Plant {
     /// The vehicle of `scenario` at rest on the ground at the origin, nose to the north.
     #[must_use]
@@ -83,27 +98,16 @@ impl Plant {
         let (v, w) = (&scenario.vehicle, &scenario.world);
         let chi = f64::from(v.configuration.chi());
         let radius = 0.5 * w.pipe_diameter;
-        let limb = |i: usize| {
-            let spec = ArmSpec::with(
-                v.arm_coefficients,
-                v.infill,
-                v.gain_k,
-                v.arm_gain[i],
-                v.arm_offset[i],
-                v.arm_damping,
-            )
-            .level_at(v.arm_level_share * v.rotor.thrust_max);
-            Limb {
-                arm: Arm::new(i, spec),
-                rotor: Rotor::new(i, chi, v.rotor),
-                tendon: Tendon::new(
-                    ServoSpec::from(v.servo).measured(&scenario.params, i),
-                    TendonSpec::default(),
-                ),
-                skin: ArmSkin::new(i),
-                tip: ArmTip::new(i),
-                pressure: 0.0,
-            }
+        let limb = |i: usize| Limb {
+            arm: Arm::new(i, arm_spec(v, i)),
+            rotor: Rotor::new(i, chi, v.rotor),
+            tendon: Tendon::new(
+                ServoSpec::from(v.servo).measured(&scenario.params, i),
+                TendonSpec::default(),
+            ),
+            skin: ArmSkin::new(i),
+            tip: ArmTip::new(i),
+            pressure: 0.0,
         };
         Self {
             body: Body::new(&v.body, v.coupled_arms),

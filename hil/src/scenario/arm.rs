@@ -9,8 +9,7 @@ use toml::de::DeTable;
 use super::error::{Place, ScenarioError};
 use super::read::{Result, Source, Value};
 use super::{Scenario, Vehicle};
-use crate::plant::GRAVITY;
-use crate::plant::arm::ArmSpec;
+use crate::plant::{GRAVITY, arm_spec};
 
 /// Least rise of the tilt without thrust, rad/N (0.1 deg/N): at 0.02 the bending mode of the lightest vehicle leaves
 /// what the plant's step of 0.5 ms can follow.
@@ -83,19 +82,11 @@ fn unbuilt(vehicle: &Vehicle) -> Option<String> {
     let v = vehicle;
     let slope = Slope::new(v.arm_coefficients, v.infill, v.gain_k, v.body.mass);
     let thrust_max = v.rotor.thrust_max;
-    v.arm_gain.iter().zip(&v.arm_offset).find_map(|(gain, offset)| {
+    v.arm_gain.iter().enumerate().find_map(|(arm, gain)| {
         if let Some(fault) = slope.fault(*gain) {
             return Some(fault);
         }
-        let spec = ArmSpec::with(
-            v.arm_coefficients,
-            v.infill,
-            v.gain_k,
-            *gain,
-            *offset,
-            v.arm_damping,
-        )
-        .level_at(v.arm_level_share * thrust_max);
+        let spec = arm_spec(v, arm);
         let tilt = [0.0, thrust_max].map(|thrust| spec.static_tilt(thrust));
         let far = tilt.into_iter().find(|t| t.is_nan() || t.abs() > LARGEST_TILT)?;
         Some(format!(
