@@ -154,7 +154,7 @@ impl Config {
         // The tendon's moment h F bends like the thrust F h/d; below level thrust the arm is linear.
         let compliance = math::clamp(ArmModel::from_params(p).slope(0.0), 1e-3, 10.0);
         let bend_per_force = compliance * p.tendon_lever / p.arm_d;
-        let limit = ForceLimit::from_params(p).force;
+        let limit = ForceLimit::from_params(p).asked;
         Self {
             p: p.clamp_p,
             i: p.clamp_i,

@@ -26,6 +26,13 @@ pub const RESIDUE: f32 = 0.5;
 const STALL_SHARE: f32 = 0.85;
 /// Share of the servo's speed that is asked of it, so that the commanded angle is the true one.
 const SLEW_SHARE: f32 = 0.9;
+/// Largest error of the tilt of an arm at rest, rad: half a degree of the sensor's mounting, 4 mrad of the attitude that
+/// it is measured against and of noise behind the filters.
+const TILT_ERROR: f32 = 0.0127;
+/// Largest error of a servo's angle at rest, rad: its dead band of 2 µs in a travel of 1900 µs for 270°.
+const SERVO_ERROR: f32 = 0.005;
+/// Share of the force limit that is asked for at least: tendons so stiff that less were left have no known force.
+const LEAST_SHARE: f32 = 0.5;
 /// Speed of paying out on release, rad/s: half the servo's, the arms spring back gently.
 const PAY_OUT: f32 = 3.0;
 /// Cut-off of each of the two low passes on the tilt, rad/s: a loop gain below 1 at the taut arm's mode
@@ -42,11 +49,14 @@ const ANGLE_MAX: f32 = 6.5;
 /// Tilts beyond this are not an arm's, rad.
 const TILT_MAX: f32 = 2.5;
 
-/// Largest force that the clamp loop may ask for.
+/// Largest force on a tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceLimit {
-    /// Force along the tendon, N.
+    /// Force along the tendon that is never passed, N.
     pub force: f32,
+    /// Force that the clamp loop may ask for, N: what is asked is wound by the arm's measured tilt, so the tendon
+    /// has more by what that is wrong.
+    pub asked: f32,
     /// The servo cannot give the torque that the parameters allow (`servo_torque_max`): its stall torque
     /// limits the force. To be reported at start-up.
     pub capped_by_servo: bool,
@@ -62,8 +72,11 @@ impl ForceLimit {
         } else {
             p.servo_torque_max
         };
+        let force = math::clamp(torque / p.reel_radius, 0.0, 1e4);
+        let wrong = p.tendon_stiffness * (p.tendon_lever * TILT_ERROR + p.reel_radius * SERVO_ERROR);
         Self {
-            force: math::clamp(torque / p.reel_radius, 0.0, 1e4),
+            force,
+            asked: math::clamp(force - wrong, LEAST_SHARE * force, force),
             capped_by_servo,
         }
     }
@@ -233,7 +246,7 @@ impl TendonDrive {
     /// Without a tilt the servo is held where it is, unless it is to pay out, which needs none.
     pub fn step(&mut self, reel: &Reel, force: f32, tilt: Option<f32>, dt: f32) -> Drive {
         let dt = math::clamp(dt, 0.0, 0.2);
-        let force = math::clamp(force, 0.0, reel.limit.force);
+        let force = math::clamp(force, 0.0, reel.limit.asked);
         let tilt = tilt.filter(|t| t.abs() <= TILT_MAX);
         self.see(tilt, dt);
         let pays_out = force <= 0.0;
@@ -320,6 +333,32 @@ mod tests {
 
     fn close(a: f32, b: f32, tolerance: f32) -> bool {
         (a - b).abs() <= tolerance
+    }
+
+    #[test]
+    fn a_tilt_that_is_wrong_leaves_the_force_within_the_limit() {
+        let p = params();
+        let limit = ForceLimit::from_params(&p);
+        // 2.452 N m on 15 mm are 163.47 N; 8000 N/m over 25 mm · 12.7 mrad and 15 mm · 5 mrad are 3.14 N.
+        assert!(
+            close(limit.force, 163.467, 1e-2) && close(limit.asked, 160.327, 1e-2),
+            "{limit:?}"
+        );
+        let reel = Reel::from_params(&p, 0);
+        let (tilt, mounting) = (-1.2, math::deg(0.5));
+        let mut drive = TendonDrive::new();
+        for _ in 0..400 {
+            drive.step(&reel, 1e4, Some(tilt - mounting), 0.02);
+        }
+        let force = reel.force(drive.angle(), tilt);
+        assert!((limit.asked..limit.force).contains(&force), "{force}");
+        // A stiff tendon keeps half.
+        let stiff = ForceLimit::from_params(&Params {
+            tendon_stiffness: 1e5,
+            servo_torque_max: 0.5,
+            ..p
+        });
+        assert!(close(stiff.asked, 0.5 * stiff.force, 1e-3), "{stiff:?}");
     }
 
     #[test]

@@ -166,7 +166,7 @@ impl Bench {
                 self.largest_force = self.largest_force.max(force);
             }
         }
-        let limit = ForceLimit::from_params(p).force;
+        let limit = ForceLimit::from_params(p).asked;
         assert!(self.largest_force <= limit, "{} N", self.largest_force);
     }
 
@@ -377,7 +377,7 @@ fn an_arm_that_cannot_reach_the_pressure_stops_at_the_limit() {
     b.arms[0].most = 600.0;
     b.command = Some(CLOSE);
     b.run(12.0);
-    let limit = ForceLimit::from_params(&b.links.params).force;
+    let limit = ForceLimit::from_params(&b.links.params).asked;
     assert_eq!(b.state(0), ArmState::ForceLimited, "{:?}", b.grip());
     assert!(b.largest_force > 0.9 * limit && b.largest_force <= limit);
     assert!(!b.grip().proven);

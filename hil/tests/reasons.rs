@@ -62,3 +62,31 @@ fn a_force_that_does_not_grip_is_told_with_the_force_that_would() {
         assert!(line.contains(words), "{words} is missing in: {line}");
     }
 }
+#[test]
+fn the_stack_stays_below_its_own_force_limit() {
+    for diameter in [0.2, 0.18, 0.25] {
+        for seed in 1..=4 {
+            let overrides = Overrides {
+                infill: Some(10.0),
+                seed: Some(seed),
+                ..Default::default()
+            };
+            let record = flown(&format!("[world]\npipe_diameter_m = {diameter}\n"), &overrides);
+            let most = record.samples.iter().flat_map(|s| s.tension).fold(0.0, f64::max);
+            let asked = record
+                .samples
+                .iter()
+                .flat_map(|s| s.tension_asked)
+                .fold(0.0, f64::max);
+            println!(
+                "{diameter} m, seed {seed}: {most:.3} N of {asked:.3} asked; {}",
+                record.outcome.reason
+            );
+            assert!(
+                !record.outcome.reason.contains("tendon"),
+                "{}",
+                record.outcome.reason
+            );
+        }
+    }
+}

@@ -100,17 +100,17 @@ impl Judge {
             PRESSURE_MAX
         };
         if let Some((arm, pressure)) = worst(plant.pressure()).filter(|(_, p)| *p > allowed) {
+            let (pressure, allowed) = told_apart(pressure, allowed);
             return Some(format!(
-                "pressure on arm {arm} reached {pressure:.0} N/m2, allowed {allowed:.0}"
+                "pressure on arm {arm} reached {pressure} N/m2, allowed {allowed}"
             ));
         }
         if let Some((arm, tension)) = worst(plant.tension())
             && tension * self.reel_radius > self.torque_max
         {
+            let (torque, allowed) = told_apart(tension * self.reel_radius, self.torque_max);
             return Some(format!(
-                "tendon {arm} pulled with {:.2} N m at the servo, allowed {:.2}",
-                tension * self.reel_radius,
-                self.torque_max
+                "tendon {arm} pulled with {torque} N m at the servo, allowed {allowed}"
             ));
         }
 
@@ -233,6 +233,16 @@ impl Judge {
     }
 }
 
+/// Two different numbers with as many digits as it takes to tell them apart, at least three that count.
+fn told_apart(value: f64, allowed: f64) -> (String, String) {
+    let least = if allowed < 100.0 { 2 } else { 0 };
+    let written = |digits: usize| (format!("{value:.digits$}"), format!("{allowed:.digits$}"));
+    let mut digits = least..9;
+    digits
+        .find(|digits| written(*digits).0 != written(*digits).1)
+        .map_or_else(|| written(9), written)
+}
+
 /// The largest of four values with its arm, 1 to 4.
 fn worst(values: PerArm<f64>) -> Option<(usize, f64)> {
     values
@@ -240,4 +250,25 @@ fn worst(values: PerArm<f64>) -> Option<(usize, f64)> {
         .enumerate()
         .map(|(i, v)| (i + 1, v))
         .max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::told_apart;
+
+    #[test]
+    fn a_value_and_its_limit_are_told_apart() {
+        for (value, allowed, words) in [
+            (2.4541, 2.452, ("2.454", "2.452")),
+            (3.1, 2.452, ("3.10", "2.45")),
+            (1500.2, 1500.0, ("1500.2", "1500.0")),
+            (1720.0, 1500.0, ("1720", "1500")),
+            (2.452_000_3, 2.452, ("2.4520003", "2.4520000")),
+        ] {
+            assert_eq!(
+                told_apart(value, allowed),
+                (words.0.to_owned(), words.1.to_owned())
+            );
+        }
+    }
 }
