@@ -17,6 +17,9 @@ use crate::params::Params;
 use crate::tendon::{ForceLimit, TILT_CUTOFF};
 use crate::wrench::PerArm;
 
+#[cfg(test)]
+mod force_tests;
+
 /// Pressure that counts as touching, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
 const TOUCH: f32 = 100.0;
 /// Time constant with which the reference approaches the target, s.

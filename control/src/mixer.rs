@@ -566,6 +566,43 @@ mod tests {
     }
 
     #[test]
+    fn the_rotor_that_yaw_moves_most_sets_its_share_whichever_it_is() {
+        let m = Mixer::new(Variant::Flexible, Configuration::B, &Params::default());
+        // 3 N asked of one rotor, 1.5 N allowed: a half. 1.2 N of 3 are within it: only the fade counts.
+        for worst in 0..4 {
+            for sign in [1.0, -1.0] {
+                let mut yaw = [0.5, -1.0, 0.25, -2.0];
+                yaw[worst] = 3.0 * sign;
+                assert!(
+                    m.yaw_share(&yaw, 1.0) == 0.5 && m.yaw_share(&yaw, 0.51) == 0.5,
+                    "{yaw:?}"
+                );
+                assert!(m.yaw_share(&yaw, 0.4) == 0.4, "{yaw:?}");
+            }
+        }
+        assert!(m.yaw_share(&[0.0; 4], 1.0) == 1.0 && m.yaw_share(&[0.0; 4], 0.3) == 0.3);
+    }
+
+    #[test]
+    fn yaw_keeps_within_its_limit_on_every_rotor_of_a_rolling_vehicle() {
+        // Arms that bend by different thrusts take different shares of a yaw command: the one that takes most is on
+        // the left or on the right.
+        let limit = Params::default().yaw_thrust_max;
+        for roll in [0.6, -0.6] {
+            let w = Wrench { roll, ..HOVER };
+            let (m, _) = settled(Variant::Flexible, w);
+            for yaw in [0.8, -0.8] {
+                let (mut a, mut b) = (m, m);
+                let still = a.mix(w, conditions());
+                let turning = b.mix(Wrench { yaw, ..w }, conditions());
+                let by = |i: usize| (turning.thrusts[i] - still.thrusts[i]).abs();
+                let most = (0..4).map(by).fold(0.0, f32::max);
+                assert!((most - limit).abs() < 0.02, "{roll} {yaw}: {most}");
+            }
+        }
+    }
+
+    #[test]
     fn a_sagging_battery_lowers_the_limit() {
         let mut m = Mixer::new(Variant::Flexible, Configuration::B, &Params::default());
         let sagged = Conditions {

@@ -113,3 +113,98 @@ pub enum ClampCommand {
     /// Nothing yet: no pulse to the servos, whose gears hold what they held when the power came on.
     Keep,
 }
+
+#[cfg(test)]
+impl Setpoint {
+    /// Every number in it, for checks that must not lean on [`Self::is_finite`]; 0 where it has fewer than four.
+    pub(crate) fn numbers(self) -> [f32; 4] {
+        match self {
+            Self::Stop | Self::Idle => [0.0; 4],
+            Self::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
+            } => [roll, pitch, yaw_rate, thrust],
+            Self::Rate { rate, thrust } => [rate.x, rate.y, rate.z, thrust],
+            Self::Direct { wrench } => [wrench.roll, wrench.pitch, wrench.yaw, wrench.thrust],
+            Self::Resting { roll, pitch, thrust } => [roll, pitch, 0.0, thrust],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each kind that has numbers, and how many of the first three places it uses; the fourth is the thrust.
+    fn kinds([a, b, c, thrust]: [f32; 4]) -> [(Setpoint, usize); 4] {
+        let angle = Setpoint::Angle {
+            roll: a,
+            pitch: b,
+            yaw_rate: c,
+            thrust,
+        };
+        let rate = Setpoint::Rate {
+            rate: Vec3::new(a, b, c),
+            thrust,
+        };
+        let direct = Setpoint::Direct {
+            wrench: Wrench {
+                thrust,
+                roll: a,
+                pitch: b,
+                yaw: c,
+            },
+        };
+        let resting = Setpoint::Resting {
+            roll: a,
+            pitch: b,
+            thrust,
+        };
+        [(angle, 3), (rate, 3), (direct, 3), (resting, 2)]
+    }
+
+    #[test]
+    fn one_number_that_is_none_spoils_a_setpoint_wherever_it_stands() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for place in 0..4 {
+                let mut numbers = [0.1, -0.2, 0.3, 17.7];
+                numbers[place] = bad;
+                for (setpoint, used) in kinds(numbers) {
+                    let spoilt = place < used || place == 3;
+                    assert_eq!(setpoint.is_finite(), !spoilt, "{setpoint:?}");
+                }
+            }
+            // Two of them do not cancel.
+            for (setpoint, _) in kinds([bad, -bad, 0.0, 17.7]) {
+                assert!(!setpoint.is_finite(), "{setpoint:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_setpoint_of_numbers_is_finite_however_large_small_or_opposed_they_are() {
+        for numbers in [
+            [0.0; 4],
+            [-0.6, 0.6, -3.0, 0.0],
+            [1e30, 1e30, 1e30, 1e30],
+            [-1e30, 1e30, -1e30, 1e30],
+            [1e-30; 4],
+        ] {
+            for (setpoint, _) in kinds(numbers) {
+                assert!(setpoint.is_finite(), "{setpoint:?}");
+            }
+        }
+        assert!(Setpoint::Stop.is_finite() && Setpoint::Idle.is_finite());
+    }
+
+    #[test]
+    fn the_thrust_is_the_one_that_was_put_in_and_only_stopped_rotors_stand() {
+        for (setpoint, _) in kinds([1.0, 2.0, 3.0, 4.0]) {
+            assert!(setpoint.thrust() == 4.0 && setpoint.spin(), "{setpoint:?}");
+        }
+        assert!(Setpoint::Stop.thrust() == 0.0 && Setpoint::Idle.thrust() == 0.0);
+        assert!(!Setpoint::Stop.spin() && Setpoint::Idle.spin());
+    }
+}

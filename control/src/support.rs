@@ -249,6 +249,37 @@ mod tests {
     }
 
     #[test]
+    fn what_no_longer_rests_must_not_rest_for_as_long_as_what_rests_must() {
+        let p = Params::default();
+        let mut s = Support::new(&p);
+        run(&mut s, -GRAVITY, 5.0, 1.0);
+        assert!(s.resting());
+        // 17.701 N of weight less 15.7 N: 2.0 N, too little to begin resting and too much to end it.
+        run(&mut s, -GRAVITY, 15.7, 5.0);
+        assert!((s.force() - 2.0).abs() < 0.01 && s.resting(), "{}", s.force());
+        // 0.2 N and back, before 0.3 s below 1.5 N are over: a bounce of the soft arms. Coming back takes the lags of
+        // motor and filter, 0.08 s.
+        let bounce = |s: &mut Support, steps: i32| {
+            let mut below = 0;
+            while below < steps {
+                run(s, -GRAVITY, 17.5, 0.011);
+                below += i32::from(s.force() < 1.5);
+                assert!(s.resting(), "given up after {below} steps of 10 ms");
+            }
+        };
+        bounce(&mut s, 15);
+        run(&mut s, -GRAVITY, 15.7, 1.0);
+        assert!(s.resting());
+        // The time starts over, and when it is full nothing rests any more.
+        bounce(&mut s, 28);
+        run(&mut s, -GRAVITY, 17.5, 0.041);
+        assert!(!s.resting());
+        // Nor does it rest again at 2 N.
+        run(&mut s, -GRAVITY, 15.7, 5.0);
+        assert!(!s.resting());
+    }
+
+    #[test]
     fn a_tumble_under_full_weight_is_not_the_ground() {
         let p = Params::default();
         let mut s = Support::new(&p);

@@ -245,6 +245,25 @@ mod tests {
         assert!(q.rotate(Vec3::new(1.0, 0.0, 0.0)).y > 0.29);
     }
 
+    #[test]
+    fn one_component_that_is_no_number_spoils_vector_and_quaternion() {
+        let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).is_finite();
+        let quaternion = |[x, y, z, w]: [f32; 4]| Quat { w, x, y, z }.is_finite();
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for place in 0..4 {
+                let mut parts = [0.5, -0.5, 0.5, -0.5];
+                parts[place] = bad;
+                assert_eq!(vector(parts), place == 3, "{parts:?}");
+                assert!(!quaternion(parts), "{parts:?}");
+            }
+            assert!(!vector([bad, -bad, 0.0, 0.0]) && !quaternion([0.0, 0.0, bad, -bad]));
+        }
+        // Large ones are numbers; a sum of three or four of these still is.
+        for parts in [[0.0; 4], [5e37; 4], [5e37, -5e37, 5e37, -5e37], [-1e-38; 4]] {
+            assert!(vector(parts) && quaternion(parts), "{parts:?}");
+        }
+    }
+
     proptest! {
         #[test]
         fn euler_angles_come_back(r in -3.0f32..3.0, p in -1.3f32..1.3, y in -3.0f32..3.0) {

@@ -51,3 +51,32 @@ impl Configuration {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_component_that_is_no_number_spoils_a_wrench() {
+        let finite = |[thrust, roll, pitch, yaw]: [f32; 4]| {
+            Wrench {
+                thrust,
+                roll,
+                pitch,
+                yaw,
+            }
+            .is_finite()
+        };
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for place in 0..4 {
+                let mut parts = [17.7, 0.3, -0.2, 0.04];
+                parts[place] = bad;
+                assert!(!finite(parts), "{parts:?}");
+            }
+            assert!(!finite([17.7, bad, -bad, 0.0]));
+        }
+        for parts in [[0.0; 4], [5e37; 4], [5e37, -5e37, 5e37, -5e37], [-1e-38; 4]] {
+            assert!(finite(parts), "{parts:?}");
+        }
+    }
+}

@@ -140,7 +140,7 @@ proptest! {
                 prop_assert!(mode != Mode::Perched || tendons != ClampCommand::Release);
                 prop_assert!(mode != Mode::Clamping || tendons != ClampCommand::Release);
                 prop_assert!(rotors != Setpoint::Stop || still || mode == Mode::Clamping, "{before:?} -> {mode:?}");
-                prop_assert!(rotors.is_finite());
+                prop_assert!(rotors.numbers().iter().all(|n| n.is_finite()), "{rotors:?}");
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.len() <= 40);

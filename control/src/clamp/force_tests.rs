@@ -1,0 +1,196 @@
+//! How fast the force of one arm may change, what it falls back to, and which way its terms act: every expected number
+//! is worked out from the constants' values, so that a changed law shows.
+
+use super::*;
+
+const DT: f32 = 0.01;
+
+/// One arm in a world that does as it is told.
+struct Bench {
+    cfg: Config,
+    arm: ArmClamp,
+    thrust: f32,
+    /// Tilt of an arm that no longer follows its tendon, rad.
+    stuck_at: Option<f32>,
+}
+
+impl Bench {
+    fn new(p: &Params) -> Self {
+        Self {
+            cfg: Config::from_params(p),
+            arm: ArmClamp::default(),
+            thrust: 0.0,
+            stuck_at: None,
+        }
+    }
+
+    /// Tilt of an arm that bends by 0.020152 rad/N (the paper's arm at 6.9 %), rad.
+    fn bent(&self) -> f32 {
+        -0.2 - 0.020_152 * self.arm.force
+    }
+
+    /// Closes for one step, the tendon having all that was asked, and gives the change of the force, N.
+    fn step(&mut self, pressure: f32) -> f32 {
+        let before = self.arm.force;
+        let input = ArmInput {
+            pressure: Pressure::Known(pressure),
+            thrust: self.thrust,
+            tension: Some(before),
+            tilt: Some(self.stuck_at.unwrap_or(self.bent())),
+        };
+        self.arm.step(&self.cfg, true, &input, DT).force - before
+    }
+
+    fn run(&mut self, pressure: f32, steps: u32) -> f32 {
+        for _ in 0..steps {
+            self.step(pressure);
+        }
+        self.arm.force
+    }
+
+    /// An arm that has felt 950 Pa for 1.5 s, after 1.5 s of closing.
+    fn holding(p: &Params) -> Self {
+        let mut bench = Self::new(p);
+        bench.run(0.0, 150);
+        bench.run(950.0, 150);
+        bench
+    }
+}
+
+fn near(a: f32, b: f32, tolerance: f32) -> bool {
+    (a - b).abs() <= tolerance
+}
+
+#[test]
+fn an_arm_that_lost_touch_pulls_harder_at_30_n_a_second() {
+    let mut bench = Bench::holding(&Params::default());
+    // From 950 to 50 Pa the filter (80 rad/s, so 4/9 of the way a step) is below 100 Pa after five steps: 900·(5/9)^5 is
+    // 48. From then on the integral alone wants 0.05·900 = 45 N/s, and 30 N/s is what it gets.
+    bench.run(50.0, 5);
+    for step in 0..40 {
+        let rise = bench.step(50.0);
+        assert!(near(rise, 0.30, 0.002), "step {step}: {rise} N");
+    }
+}
+
+#[test]
+fn an_arm_that_touches_follows_its_pressure_at_300_n_a_second_at_most() {
+    // 0.05 N/Pa on the 4/9·500 Pa that the filter shows in the first step wants 11 N at once; 3 N is what it gets.
+    let p = Params {
+        clamp_p: 0.05,
+        ..Params::default()
+    };
+    for (pressure, change) in [(450.0, 3.0), (1450.0, -3.0)] {
+        let mut bench = Bench::holding(&p);
+        let first = bench.step(pressure);
+        assert!(near(first, change, 1e-3), "{pressure} Pa: {first} N");
+    }
+}
+
+#[test]
+fn the_derivative_takes_force_away_while_the_pressure_rises() {
+    // The derivative alone: 0.002 N s/Pa · 1000 Pa/s = 2 N less while the pressure rises, 2 N more while it falls.
+    let p = Params {
+        clamp_p: 0.0,
+        clamp_i: 0.0,
+        clamp_d: 0.002,
+        ..Params::default()
+    };
+    let mut bench = Bench::new(&p);
+    bench.run(0.0, 150);
+    let still = bench.run(400.0, 100);
+    for (start, slope, change) in [(400.0, 10.0, -2.0), (800.0, -10.0, 2.0)] {
+        for step in 1..=40 {
+            bench.step(start + slope * step as f32);
+        }
+        assert!(
+            near(bench.arm.force - still, change, 0.02),
+            "{} {still}",
+            bench.arm.force
+        );
+        let end = start + slope * 40.0;
+        assert!(
+            near(bench.run(end, 100), still, 0.02),
+            "{} {still}",
+            bench.arm.force
+        );
+    }
+}
+
+#[test]
+fn a_touch_lost_for_good_falls_back_to_the_force_it_was_held_with() {
+    let mut bench = Bench::new(&Params::default());
+    bench.run(0.0, 150);
+    let touched = bench.arm.force;
+    // Too little pressure for 2 s: 0.05·350 is 17.5 N/s, some 30 N more. Then the pressure is right for 2 s.
+    bench.run(600.0, 200);
+    let usual = bench.run(950.0, 200);
+    assert!(usual > touched + 20.0, "{touched} {usual}");
+    // The sensor slips off the pipe, and the arm, which the pipe stops, bends no more.
+    bench.stuck_at = Some(bench.bent());
+    let most = (0..100).fold(0.0f32, |most, _| {
+        bench.step(50.0);
+        most.max(bench.arm.force)
+    });
+    assert!(bench.arm.fault() == Some(Fault::Unfelt));
+    assert!(
+        most > usual + 7.0 && near(bench.arm.force, usual, 1.0),
+        "{most} {}",
+        bench.arm.force
+    );
+}
+
+#[test]
+fn a_touch_lost_at_once_falls_back_to_the_tendons_own_force() {
+    // 2.5 N of thrust take 0.178/0.025·2.5 = 17.8 N of the tendon's: they are part of what it had.
+    let mut bench = Bench::new(&Params::default());
+    bench.thrust = 2.5;
+    let touched = bench.run(0.0, 150);
+    bench.run(150.0, 5);
+    bench.stuck_at = Some(bench.bent());
+    bench.run(50.0, 100);
+    assert!(bench.arm.fault() == Some(Fault::Unfelt));
+    assert!(
+        near(bench.arm.force, touched, 1.5),
+        "{touched} {}",
+        bench.arm.force
+    );
+}
+
+#[test]
+fn a_lead_that_breaks_is_a_pressure_that_vanishes_within_one_step() {
+    // Of 950 Pa: from more than 0.3 (285 Pa) to less than 0.02 (19 Pa).
+    for (from, to, broken) in [
+        (950.0, 0.0, true),
+        (295.0, 18.0, true),
+        (275.0, 0.0, false),
+        (950.0, 20.0, false),
+        (295.0, 20.0, false),
+    ] {
+        let mut bench = Bench::holding(&Params::default());
+        let before = bench.run(from, 50);
+        bench.step(to);
+        assert_eq!(bench.arm.fault() == Some(Fault::Sensor), broken, "{from} -> {to}");
+        if broken {
+            // The force is held, and the sensor is not believed again.
+            assert!(near(bench.run(950.0, 100), before, 1e-6));
+            assert!(bench.arm.fault() == Some(Fault::Sensor));
+        }
+    }
+    // An arm that lets go takes longer: two steps of 10 ms.
+    let mut bench = Bench::holding(&Params::default());
+    bench.step(200.0);
+    bench.step(0.0);
+    assert!(bench.arm.fault().is_none());
+}
+
+#[test]
+fn a_closed_arm_never_pays_out_below_one_newton() {
+    // 5000 Pa where 950 are wanted: the integral takes 200 N/s away, until 1 N is left, and does not go on below it.
+    let mut bench = Bench::holding(&Params::default());
+    assert!(near(bench.run(5000.0, 500), 1.0, 1e-6));
+    // Nothing was wound up: at 600 Pa the proportional term gives 0.0035·4400 = 15 N back, and the integral
+    // 0.05·350 = 17.5 N in the first second, less what the filters and the limit on the rise cost.
+    let force = bench.run(600.0, 100);
+    assert!((25.0..34.0).contains(&force), "{force}");
+}
