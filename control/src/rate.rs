@@ -201,6 +201,93 @@ mod tests {
     }
 
     #[test]
+    fn what_the_rate_exceeds_the_setpoint_by_is_taken_away() {
+        // (0.2 - 0.5) rad/s · 10 1/s · 0.021 kg·m².
+        let m = rate_loop().step(
+            Vec3::new(0.2, 0.0, 0.0),
+            Vec3::new(0.5, 0.0, 0.0),
+            FREE,
+            false,
+            1e-3,
+        );
+        assert!((m.x + 0.063).abs() < 1e-5, "{m:?}");
+    }
+
+    #[test]
+    fn an_integral_winds_up_is_added_and_unwinds_at_the_same_rate() {
+        let mut l = rate_loop();
+        let mut m = Vec3::ZERO;
+        for _ in 0..500 {
+            m = l.step(Vec3::new(1.0, 0.0, 0.4), Vec3::ZERO, FREE, true, 1e-3);
+        }
+        // 8 1/s² · 1 rad/s · 0.5 s and 1.5 1/s² · 0.4 rad/s · 0.5 s.
+        let sum = l.integral();
+        assert!(
+            (sum.x - 4.0).abs() < 0.01 && (sum.z - 0.3).abs() < 1e-3,
+            "{sum:?}"
+        );
+        assert!((m.x - 0.021 * (10.0 + 4.0)).abs() < 1e-3, "{m:?}");
+        for _ in 0..500 {
+            l.step(Vec3::new(-1.0, 0.0, -0.4), Vec3::ZERO, FREE, true, 1e-3);
+        }
+        let sum = l.integral();
+        assert!(sum.x.abs() < 0.01 && sum.z.abs() < 1e-3, "{sum:?}");
+    }
+
+    #[test]
+    fn a_thousandth_less_than_all_is_not_given() {
+        let wound = |roll_pitch, yaw| {
+            let mut l = rate_loop();
+            let feedback = Feedback {
+                roll_pitch,
+                yaw,
+                yaw_gated: false,
+            };
+            l.step(Vec3::new(1.0, 1.0, 0.4), Vec3::ZERO, feedback, true, 1e-3);
+            l.integral().to_array().map(|i| i > 0.0)
+        };
+        assert_eq!(wound(1.0, 1.0), [true; 3]);
+        assert_eq!(wound(0.999, 1.0), [false, false, true]);
+        assert_eq!(wound(1.0, 0.999), [true, true, false]);
+        assert_eq!(wound(0.9995, 0.9995), [true; 3]);
+    }
+
+    #[test]
+    fn a_reset_leaves_nothing_of_the_past() {
+        let p = Params {
+            rate_d: 0.1,
+            ..Params::default()
+        };
+        let mut l = RateLoop::new(&p, 1000.0);
+        for i in 0..200 {
+            let rate = Vec3::new(0.01, -0.02, 0.005) * i as f32;
+            l.step(Vec3::new(1.0, -1.0, 0.4), rate, FREE, true, 1e-3);
+        }
+        assert!(l.integral().norm() > 1.0);
+        l.reset();
+        assert!(l == RateLoop::new(&p, 1000.0));
+    }
+
+    #[test]
+    fn yaw_is_notched_at_the_arms_mode_and_the_notch_forgets_where_yaw_is_gated() {
+        // 4.75 Hz, 1 rad/s: 0.2/0.8 of 3 1/s · 0.063 kg·m² is left, 0.0473 N·m.
+        let mut l = rate_loop();
+        let mut peak = 0.0f32;
+        let sine = |i: i32| Vec3::new(0.0, 0.0, crate::math::sin(TAU * 4.75e-3 * (i % 4000) as f32));
+        for i in 0..4000 {
+            let m = l.step(sine(i), Vec3::ZERO, FREE, false, 1e-3);
+            peak = if i > 2000 { peak.max(m.z.abs()) } else { 0.0 };
+        }
+        assert!((peak - 0.0473).abs() < 0.003, "{peak}");
+        let gated = Feedback {
+            yaw_gated: true,
+            ..FREE
+        };
+        assert!(l.step(sine(50), Vec3::ZERO, gated, false, 1e-3) == Vec3::ZERO);
+        assert!(l.step(Vec3::ZERO, Vec3::ZERO, FREE, false, 1e-3) == Vec3::ZERO);
+    }
+
+    #[test]
     fn each_axis_has_a_derivative_of_its_own() {
         let p = Params {
             rate_d: 0.1,

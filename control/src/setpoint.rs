@@ -75,7 +75,7 @@ impl Setpoint {
         }
     }
 
-    /// True when every number in it is finite.
+    /// True when every number in it is finite. Their sum tells: false as well where that overflows.
     pub fn is_finite(self) -> bool {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,
@@ -197,6 +197,22 @@ mod tests {
             }
         }
         assert!(Setpoint::Stop.is_finite() && Setpoint::Idle.is_finite());
+    }
+
+    #[test]
+    fn a_sum_that_overflows_is_no_number_either() {
+        // 3.4e38 is the largest: two of these are beyond it, whichever two, and whatever the third.
+        const LARGE: f32 = 3e38;
+        for numbers in [[LARGE, LARGE, 0.0, 1.0], [LARGE, LARGE, LARGE, 1.0]] {
+            for (setpoint, _) in kinds(numbers) {
+                assert!(!setpoint.is_finite(), "{setpoint:?}");
+            }
+        }
+        for numbers in [[LARGE, 0.0, LARGE, 1.0], [0.0, LARGE, LARGE, 1.0]] {
+            for (setpoint, used) in kinds(numbers) {
+                assert_eq!(setpoint.is_finite(), used == 2, "{setpoint:?}");
+            }
+        }
     }
 
     #[test]

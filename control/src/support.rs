@@ -249,6 +249,14 @@ mod tests {
     }
 
     #[test]
+    fn the_support_follows_with_five_hertz() {
+        // 32 ms: a step of 10 ms goes 0.01/(0.01 + 0.0318) = 0.239 of the way, three of them 0.559 of 17.701 N.
+        let mut s = Support::new(&Params::default());
+        run(&mut s, -GRAVITY, 0.0, 0.031);
+        assert!((s.force() - 9.90).abs() < 0.03, "{}", s.force());
+    }
+
+    #[test]
     fn what_no_longer_rests_must_not_rest_for_as_long_as_what_rests_must() {
         let p = Params::default();
         let mut s = Support::new(&p);

@@ -258,6 +258,12 @@ mod tests {
             }
             assert!(!vector([bad, -bad, 0.0, 0.0]) && !quaternion([0.0, 0.0, bad, -bad]));
         }
+        // Any two that overflow together: no rate, force or rotation of this vehicle.
+        for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
+            let mut parts = [0.0; 4];
+            (parts[a], parts[b]) = (3e38, 3e38);
+            assert!(!quaternion(parts) && vector(parts) == (b == 3), "{parts:?}");
+        }
         // Large ones are numbers; a sum of three or four of these still is.
         for parts in [[0.0; 4], [5e37; 4], [5e37, -5e37, 5e37, -5e37], [-1e-38; 4]] {
             assert!(vector(parts) && quaternion(parts), "{parts:?}");

@@ -75,6 +75,11 @@ mod tests {
             }
             assert!(!finite([17.7, bad, -bad, 0.0]));
         }
+        for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
+            let mut parts = [0.0; 4];
+            (parts[a], parts[b]) = (3e38, 3e38);
+            assert!(!finite(parts), "{parts:?}");
+        }
         for parts in [[0.0; 4], [5e37; 4], [5e37, -5e37, 5e37, -5e37], [-1e-38; 4]] {
             assert!(finite(parts), "{parts:?}");
         }

@@ -2,7 +2,6 @@
 
 pub mod aim;
 pub mod board;
-pub mod clock;
 pub mod crsf;
 pub mod flight;
 pub mod pilot;
@@ -12,3 +11,5 @@ pub mod sbus;
 pub mod scenario;
 pub mod sensors;
 pub mod study;
+
+pub use sophie_clock as clock;

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use embassy_time::{Duration, Instant, Timer};
+use sophie_clock::VirtualTime;
 use sophie_control::params::Params;
-use sophie_hil::clock::VirtualTime;
 use sophie_tasks::deadline::{FixedRate, TaskId, Tick};
 use sophie_tasks::links::Links;
 

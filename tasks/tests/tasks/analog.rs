@@ -1,0 +1,95 @@
+//! The converter's counts as pressures, volts and amperes, at their rates, and its silence.
+
+use sophie_control::arming::Refusal;
+use sophie_tasks::analog;
+use sophie_tasks::ports::AnalogFrame;
+
+use crate::fakes::{Answer, FakeAnalog};
+use crate::rig::Rig;
+
+/// Light sensors, 16 V and 2.5 A: the fake's scales are 0.01 V and 0.01 A a count.
+const FRAME: AnalogFrame = AnalogFrame {
+    fsr: [0; 4],
+    battery_voltage: 1600,
+    battery_current: 250,
+};
+
+fn started() -> (Rig, FakeAnalog) {
+    let (rig, port) = (Rig::new(), FakeAnalog::default());
+    port.frame.set(FRAME);
+    rig.time.spawn(analog::run(rig.links, port.clone()));
+    (rig, port)
+}
+
+#[test]
+fn pressures_come_at_500_hz_and_the_battery_at_every_fifth_of_them() {
+    let (mut rig, _) = started();
+    rig.run(1);
+    let (mut contacts, mut batteries) = (Vec::new(), Vec::new());
+    rig.run_with(1000, |links, _| {
+        contacts.extend(links.contact.latest().map(|m| m.at.as_micros()));
+        batteries.extend(links.battery.latest().map(|m| m.at.as_micros()));
+    });
+    contacts.dedup();
+    batteries.dedup();
+    assert_eq!(contacts, (0..500).map(|i| 2000 * i).collect::<Vec<u64>>());
+    assert_eq!(
+        batteries,
+        (0..100).map(|i| 8000 + 10_000 * i).collect::<Vec<u64>>()
+    );
+}
+
+#[test]
+fn counts_become_volts_amperes_and_charge() {
+    let (mut rig, _) = started();
+    rig.run(20_000);
+    let battery = rig.links.battery.fresh().unwrap();
+    assert!((battery.voltage - 16.0).abs() < 1e-3 && (battery.current - 2.5).abs() < 1e-3);
+    // 2.5 A for 20 s, less the first reading's 10 ms.
+    assert!((battery.used - 50.0).abs() < 0.1, "{}", battery.used);
+    // 16 V over 14.8 V.
+    assert!((battery.ratio - 1.0811).abs() < 1e-3, "{}", battery.ratio);
+}
+
+#[test]
+fn each_sensor_has_its_own_pressure_and_fault_and_is_believed_again_after_a_fifth_of_a_second() {
+    let (mut rig, port) = started();
+    // x = 1000/4095: x/((1 - x)·10 kΩ) is 32.31 µS, over 100 µS/N and 1444 mm² that is 223.8 Pa. 4050 counts are a short.
+    let short = [1000, 4050, 0, 1000];
+    port.frame.set(AnalogFrame { fsr: short, ..FRAME });
+    rig.run(20);
+    let contact = rig.links.contact.fresh().unwrap();
+    assert_eq!(contact.fault, [false, true, false, false]);
+    for (pressure, expected) in contact.pressure.iter().zip([223.8, 0.0, 0.0, 223.8]) {
+        assert!((pressure - expected).abs() < 0.1, "{:?}", contact.pressure);
+    }
+    let sound = [1000, 1000, 0, 1000];
+    port.frame.set(AnalogFrame { fsr: sound, ..FRAME });
+    rig.run(195);
+    assert!(rig.links.contact.fresh().unwrap().fault[1]);
+    rig.run(10);
+    let contact = rig.links.contact.fresh().unwrap();
+    assert!(!contact.fault[1] && (contact.pressure[1] - 223.8).abs() < 0.1);
+}
+
+#[test]
+fn a_converter_silent_for_a_tenth_of_a_second_is_reported_until_it_converts() {
+    for answer in [Answer::Fails, Answer::Refuses, Answer::Hangs] {
+        let (mut rig, port) = started();
+        // The conversion that begins at 50 ms is the last good one.
+        rig.run(50);
+        port.part.answer.set(answer);
+        rig.run(99);
+        let silent = |rig: &Rig| rig.links.hardware().contains(Refusal::AnalogSilent);
+        assert!(!silent(&rig) && rig.links.contact.fresh().is_none(), "{answer:?}");
+        rig.run(2);
+        assert!(silent(&rig), "{answer:?}");
+        rig.run(1000);
+        assert!(silent(&rig), "{answer:?}");
+        if answer != Answer::Hangs {
+            port.part.answer.set(Answer::Sound);
+            rig.run(3);
+            assert!(!silent(&rig) && rig.links.contact.fresh().is_some(), "{answer:?}");
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! What the clamp task makes of commands and of inputs that are old.
+
+use embassy_time::Instant;
+use sophie_control::clamp::Fault;
+use sophie_control::grip::ArmState;
+use sophie_control::params::Params;
+use sophie_control::rc::ArmChoice;
+use sophie_control::warm::{Grasp, Warm};
+use sophie_control::wrench::PerArm;
+use sophie_tasks::clamp;
+use sophie_tasks::links::{ArmAngles, ClampCommand, Contact, Links, MixOutput};
+use sophie_tasks::start::{Cause, Start};
+
+use crate::rig::Rig;
+
+const CLOSE: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
+
+/// What the arms feel and do.
+#[derive(Clone, Copy)]
+struct World {
+    command: Option<ClampCommand>,
+    pressure: PerArm<f32>,
+    fault: PerArm<bool>,
+    /// Arms whose tilt is known.
+    seen: PerArm<bool>,
+    contact: bool,
+    mix: MixOutput,
+}
+
+impl World {
+    fn new(command: ClampCommand, pressure: f32) -> Self {
+        Self {
+            command: Some(command),
+            pressure: [pressure; 4],
+            fault: [false; 4],
+            seen: [true; 4],
+            contact: true,
+            mix: MixOutput::default(),
+        }
+    }
+
+    /// Arms that bend by 0.020152 rad/N, tendons that have what is asked.
+    fn speak(&self, links: &Links, at: Instant) {
+        let force = links.tendons.latest().map_or([0.0; 4], |m| m.value.force);
+        if let Some(command) = self.command {
+            links.clamp_command.send(at, command);
+        }
+        if self.contact {
+            let (pressure, fault) = (self.pressure, self.fault);
+            links.contact.send(at, Contact { pressure, fault });
+        }
+        let mut tilt = [None; 4];
+        for ((slot, force), seen) in tilt.iter_mut().zip(force).zip(self.seen) {
+            *slot = seen.then_some(-0.2 - 0.020_152 * force);
+        }
+        links.arms.send(at, ArmAngles { tilt });
+        links.tension.send(at, force);
+        links.mix.send(at, self.mix);
+    }
+}
+
+struct Bench(Rig);
+
+impl Bench {
+    fn new() -> Self {
+        let rig = Rig::new();
+        rig.time.spawn(clamp::run(rig.links));
+        Self(rig)
+    }
+
+    fn run(&mut self, ms: u64, world: &World) -> PerArm<f32> {
+        self.0.run_with(ms, |links, at| world.speak(links, at));
+        self.0.links.tendons.latest().map_or([-1.0; 4], |m| m.value.force)
+    }
+
+    fn states(&self) -> PerArm<ArmState> {
+        self.0.links.grip.fresh().unwrap().arms.map(|arm| arm.state)
+    }
+}
+
+#[test]
+fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
+    for (kept, command, found) in [
+        // 80 Pa is where an arm counts as pressing.
+        (&[500.0][..], ClampCommand::Release, true),
+        (&[500.0], CLOSE, true),
+        (&[85.0], ClampCommand::Release, true),
+        (&[75.0], ClampCommand::Release, false),
+        // Pulled off by hand before the command.
+        (&[500.0, 0.0], ClampCommand::Release, false),
+        // Never kept.
+        (&[], ClampCommand::Release, false),
+    ] {
+        let mut bench = Bench::new();
+        for pressure in kept {
+            bench.run(300, &World::new(ClampCommand::Keep, *pressure));
+            assert!(
+                bench.0.links.tendons.latest().is_none(),
+                "a pulse would open them"
+            );
+        }
+        bench.run(30, &World::new(command, 500.0));
+        assert_eq!(
+            bench.0.links.tendons.fresh().unwrap().found,
+            found,
+            "{kept:?} {command:?}"
+        );
+    }
+    // One arm is enough.
+    let mut bench = Bench::new();
+    let mut world = World::new(ClampCommand::Keep, 0.0);
+    world.pressure[2] = 300.0;
+    bench.run(300, &world);
+    world.command = Some(ClampCommand::Release);
+    bench.run(30, &world);
+    assert!(bench.0.links.tendons.fresh().unwrap().found);
+}
+
+#[test]
+fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
+    let mut bench = Bench::new();
+    let mut world = World::new(CLOSE, 0.0);
+    world.command = None;
+    bench.run(500, &world);
+    assert!(bench.0.links.tendons.latest().is_none() && bench.0.links.grip.latest().is_none());
+    // 34.74 N/s (0.7 rad/s of a bending of 0.020152 rad/N) from the least force of 1 N on: 101 steps in a second.
+    world.command = Some(CLOSE);
+    let force = bench.run(1000, &world);
+    assert!(force.iter().all(|f| (f - 34.74).abs() < 1.5), "{force:?}");
+    // The command is stale after 200 ms; from then on the forces stand still and are still told.
+    world.command = None;
+    let held = bench.run(210, &world);
+    assert_eq!(bench.run(1000, &world), held);
+    assert!(bench.0.links.tendons.fresh().is_some() && bench.0.links.grip.fresh().is_some());
+    // Released at 80 N/s: 20 N in a quarter of a second.
+    world.command = Some(ClampCommand::Release);
+    let force = bench.run(250, &world);
+    assert!((held[0] - force[0] - 20.0).abs() < 1.0, "{held:?} {force:?}");
+}
+
+#[test]
+fn what_is_missing_of_one_arm_holds_that_arm_alone() {
+    let mut bench = Bench::new();
+    let mut world = World::new(CLOSE, 0.0);
+    let before = bench.run(500, &world);
+    world.fault[1] = true;
+    world.seen[2] = false;
+    let after = bench.run(600, &world);
+    let rise = [0, 1, 2, 3].map(|i| after[i] - before[i]);
+    // 34.74 N/s for 0.6 s.
+    assert!(
+        (rise[0] - 20.8).abs() < 1.0 && (rise[3] - 20.8).abs() < 1.0,
+        "{rise:?}"
+    );
+    assert!(rise[1] == 0.0 && rise[2] == 0.0, "{rise:?}");
+    let grip = bench.0.links.grip.fresh().unwrap();
+    assert_eq!(
+        grip.arms.map(|arm| arm.fault),
+        [None, Some(Fault::Sensor), Some(Fault::Tilt), None]
+    );
+}
+
+#[test]
+fn pressures_older_than_20_ms_are_none() {
+    let mut bench = Bench::new();
+    let mut world = World::new(CLOSE, 0.0);
+    bench.run(300, &world);
+    world.contact = false;
+    let before = bench.run(40, &world);
+    assert_eq!(bench.run(200, &world), before);
+    assert!(bench.states() == [ArmState::Faulty; 4]);
+    world.contact = true;
+    let after = bench.run(100, &world);
+    assert!(after[0] > before[0] + 2.0 && bench.states() == [ArmState::Closing; 4]);
+}
+
+#[test]
+fn only_rotors_that_run_are_met_by_the_tendons() {
+    let mut bench = Bench::new();
+    let mut world = World::new(CLOSE, 0.0);
+    world.mix = MixOutput {
+        running: true,
+        thrusts: [2.5; 4],
+        ..MixOutput::default()
+    };
+    bench.run(2000, &world);
+    world.pressure = [950.0; 4];
+    let before = bench.run(3000, &world);
+    // What the mixer asked last is no thrust once the rotors stand: 0.178/0.025·2.5 N less, all else as it was.
+    world.mix.running = false;
+    let after = bench.run(1000, &world);
+    for (before, after) in before.iter().zip(after) {
+        assert!((before - after - 17.8).abs() < 0.5, "{before} {after}");
+    }
+    assert!(bench.states() == [ArmState::Holding; 4]);
+}
+
+#[test]
+fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothing() {
+    for (grasp, sent) in [
+        (Grasp::Closed(ArmChoice::All), true),
+        (Grasp::Kept(ArmChoice::All), false),
+        (Grasp::Open, false),
+    ] {
+        let warm = Warm {
+            grasp,
+            force: [50.0, 51.0, 52.0, 53.0],
+            ..Warm::default()
+        };
+        let start = Start {
+            cause: Cause::Watchdog,
+            warm: Some(warm),
+            sequence: 1,
+        };
+        let mut rig = Rig::starting(Params::default(), start);
+        rig.time.spawn(clamp::run(rig.links));
+        rig.run(1);
+        let forces = rig.links.tendons.fresh();
+        assert_eq!(forces.is_some(), sent, "{grasp:?}");
+        if let Some(forces) = forces {
+            assert_eq!((forces.force, forces.stay), (warm.force, [true; 4]));
+            assert!(!forces.found);
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! What the commander makes of the links: late deadlines, the rotors' lift, warnings.
+
+use embassy_time::{Duration, Instant};
+use sophie_control::arming::Refusal;
+use sophie_control::grip::GripState;
+use sophie_control::math::GRAVITY;
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+use sophie_control::rc::Sticks;
+use sophie_control::vector::Vec3;
+use sophie_tasks::commander;
+use sophie_tasks::deadline::TaskId;
+use sophie_tasks::links::{Attitude, Battery, Contact, Links, MixOutput, RcState};
+use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::timing::Run;
+
+use crate::rig::Rig;
+
+/// A vehicle that hangs still in the air, or stands: 1 g along its thrust axis.
+#[derive(Clone, Copy)]
+struct World {
+    sticks: Sticks,
+    mix: MixOutput,
+}
+
+impl World {
+    fn speak(&self, links: &Links, at: Instant) {
+        let attitude = Attitude {
+            accel: Vec3::new(0.0, 0.0, -GRAVITY),
+            calibrated: true,
+            ..Attitude::default()
+        };
+        links.attitude.send(at, attitude);
+        let (sticks, mut state) = (self.sticks, RcState::default());
+        state.sticks = sticks;
+        links.rc.send(at, state);
+        links.mix.send(at, self.mix);
+        links.contact.send(at, Contact::default());
+        let grip = GripState {
+            released: true,
+            ..GripState::default()
+        };
+        links.grip.send(at, grip);
+        let battery = Battery {
+            voltage: 16.0,
+            ratio: 1.0,
+            ..Battery::default()
+        };
+        links.battery.send(at, battery);
+    }
+}
+
+struct Bench {
+    rig: Rig,
+    world: World,
+}
+
+/// Rotors that run with `thrust` N each on arms tilted by `tilt` rad.
+fn running(thrust: f32, tilt: f32) -> MixOutput {
+    MixOutput {
+        running: true,
+        thrusts: [thrust; 4],
+        tilt: [tilt; 4],
+        ..MixOutput::default()
+    }
+}
+
+impl Bench {
+    /// On the ground, disarmed, with nothing against arming.
+    fn starting(params: Params, cause: Cause) -> Self {
+        let start = Start { cause, ..Start::COLD };
+        let rig = Rig::starting(params, start);
+        rig.time.spawn(commander::run(rig.links));
+        let world = World {
+            sticks: Sticks::default(),
+            mix: MixOutput::default(),
+        };
+        let mut bench = Self { rig, world };
+        bench.run(1500);
+        assert_eq!((bench.mode(), bench.refuses()), (Mode::Disarmed, vec![]));
+        bench
+    }
+
+    fn new() -> Self {
+        Self::starting(Params::default(), Cause::PowerOn)
+    }
+
+    fn run(&mut self, ms: u64) {
+        let world = self.world;
+        self.rig.run_with(ms, |links, at| world.speak(links, at));
+    }
+
+    fn mode(&self) -> Mode {
+        self.rig.links.status.fresh().unwrap().mode
+    }
+
+    fn refuses(&self) -> Vec<Refusal> {
+        self.rig.links.status.fresh().unwrap().refusals.iter().collect()
+    }
+
+    fn warning(&self) -> &'static str {
+        self.rig.links.status.fresh().unwrap().warning
+    }
+
+    /// The arming gesture for 1.2 s.
+    fn arms(&mut self) -> bool {
+        self.world.sticks.arm_switch = true;
+        self.world.sticks.yaw = 1.0;
+        self.run(1200);
+        self.world.sticks.yaw = 0.0;
+        self.mode() == Mode::Armed
+    }
+
+    fn flying() -> Self {
+        let mut bench = Self::new();
+        assert!(bench.arms());
+        // A quarter of 17.7 N on each rotor.
+        bench.world.mix = running(4.425, 0.0);
+        bench.world.sticks.throttle = 0.53;
+        bench.run(1500);
+        assert_eq!(bench.mode(), Mode::Flight);
+        bench
+    }
+
+    /// `misses` periods of `task` that passed without a run.
+    fn late(&self, task: TaskId, misses: u32) {
+        let now = Instant::now();
+        let run = Run {
+            released: now,
+            started: now,
+            ended: now,
+            deadline: Duration::from_micros(500),
+            skipped: misses,
+        };
+        self.rig.links.record(task, &run);
+    }
+}
+
+#[test]
+fn a_flight_level_that_misses_more_than_ten_deadlines_in_a_second_refuses_arming() {
+    for task in [
+        TaskId::Imu,
+        TaskId::Estimator,
+        TaskId::Control,
+        TaskId::Mixer,
+        TaskId::Motors,
+    ] {
+        let mut bench = Bench::new();
+        bench.late(task, 11);
+        bench.run(20);
+        assert_eq!(bench.refuses(), [Refusal::Overruns], "{task:?}");
+        assert!(!bench.arms(), "{task:?}");
+        assert_eq!(bench.mode(), Mode::Disarmed);
+        // A window of 1 s without any, whatever the window's phase: it may be armed again.
+        bench.world.sticks = Sticks::default();
+        bench.run(1000);
+        assert_eq!(bench.refuses(), []);
+        assert!(bench.arms(), "{task:?}");
+    }
+}
+
+#[test]
+fn ten_misses_in_a_second_and_any_number_below_the_flight_level_refuse_nothing() {
+    let mut bench = Bench::new();
+    for _ in 0..5 {
+        bench.late(TaskId::Motors, 4);
+        bench.late(TaskId::Imu, 4);
+        for task in [
+            TaskId::Analog,
+            TaskId::Clamp,
+            TaskId::Servos,
+            TaskId::Rc,
+            TaskId::Arms,
+        ] {
+            bench.late(task, 100);
+        }
+        for _ in 0..100 {
+            bench.run(10);
+            assert_eq!(bench.refuses(), []);
+        }
+    }
+    assert!(bench.arms());
+}
+
+#[test]
+fn a_flight_level_that_stays_late_stays_refused() {
+    let mut bench = Bench::new();
+    // 20 a second, spread evenly: after the first window there is no moment without.
+    for i in 0..100 {
+        bench.late(TaskId::Control, 1);
+        bench.run(50);
+        if i > 40 {
+            assert_eq!(bench.refuses(), [Refusal::Overruns], "{} ms", 50 * i);
+        }
+    }
+    // What was missed in flight is no matter there, and ends nothing.
+    let mut bench = Bench::flying();
+    bench.late(TaskId::Control, 1000);
+    bench.run(2000);
+    assert_eq!(bench.mode(), Mode::Flight);
+}
+
+#[test]
+fn what_the_rotors_lift_is_their_thrust_along_the_body_axis() {
+    // At 1 g the vehicle feels 17.7 N; what the rotors do not lift of it something else carries, and more than 3 N of
+    // that, with the perch switch on, is the pipe.
+    for (name, mix, touched) in [
+        ("4·4.425 N on level arms", running(4.425, 0.0), false),
+        ("4·5.109 N·cos 30° = 17.7 N", running(5.109, 0.5236), false),
+        ("4·4 N·cos 60° = 8 N", running(4.0, 1.0472), true),
+        ("the same, tips down", running(4.0, -1.0472), true),
+        ("4·2.5 N", running(2.5, 0.0), true),
+        (
+            "rotors that stand",
+            MixOutput {
+                running: false,
+                ..running(4.425, 0.0)
+            },
+            true,
+        ),
+    ] {
+        let mut bench = Bench::flying();
+        bench.world.sticks.throttle = 0.3;
+        bench.world.sticks.perch_switch = true;
+        bench.run(500);
+        assert_eq!(bench.mode(), Mode::Flight, "{name}");
+        bench.world.mix = mix;
+        bench.run(1000);
+        assert_eq!(
+            bench.mode() != Mode::Flight,
+            touched,
+            "{name}: {:?}",
+            bench.mode()
+        );
+    }
+}
+
+#[test]
+fn what_must_be_known_is_said_where_it_matters() {
+    let weak = Params {
+        servo_stall: 2.0,
+        ..Params::default()
+    };
+    let infill = |infill| Params {
+        infill,
+        ..Params::default()
+    };
+    for (params, cause, warning) in [
+        (Params::default(), Cause::PowerOn, ""),
+        (Params::default(), Cause::Asked, ""),
+        (Params::default(), Cause::Watchdog, "restarted by the watchdog"),
+        // 85 % of 2.0 N m are less than the 2.452 that are wanted.
+        (weak, Cause::PowerOn, "servo weaker than the force limit"),
+        (infill(5.9), Cause::PowerOn, "infill below what was flown"),
+        (infill(6.0), Cause::PowerOn, ""),
+        // The restart is the more urgent.
+        (infill(5.9), Cause::Fault, "restarted after a fault"),
+    ] {
+        let mut bench = Bench::starting(params, cause);
+        assert_eq!(bench.warning(), warning);
+        // In the air none of it matters.
+        assert!(bench.arms());
+        assert_eq!(bench.warning(), "");
+    }
+    let mut bench = Bench::flying();
+    for (running, tilt_fault, warning) in [
+        (true, false, ""),
+        (true, true, "arm tilt beyond its model"),
+        (false, true, ""),
+    ] {
+        bench.world.mix.running = running;
+        bench.world.mix.tilt_fault = tilt_fault;
+        bench.run(20);
+        assert_eq!(bench.warning(), warning, "{running} {tilt_fault}");
+    }
+}
+
+#[test]
+fn a_link_that_falls_silent_counts_as_none() {
+    let mut bench = Bench::new();
+    bench.rig.run(1000);
+    assert_eq!(
+        bench.refuses(),
+        [
+            Refusal::RcLost,
+            Refusal::ImuStale,
+            Refusal::NotCalibrated,
+            Refusal::BatteryLow,
+            Refusal::FsrFault
+        ]
+    );
+}

@@ -1,0 +1,290 @@
+//! What the console obeys and answers, typed line by line.
+
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+use embassy_time::{Duration, Instant};
+use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+use sophie_tasks::console;
+use sophie_tasks::deadline::TaskId;
+use sophie_tasks::links::{Battery, Links, RcState, Status};
+use sophie_tasks::ports::{Loaded, PortError, Restart, SerialOutput, Storage, StorageError};
+use sophie_tasks::timing::Run;
+
+use crate::fakes::FakeLine;
+use crate::rig::Rig;
+
+/// A screen that takes everything at once.
+#[derive(Clone, Default)]
+struct Screen(Rc<RefCell<String>>);
+
+impl SerialOutput for Screen {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        self.0.borrow_mut().push_str(str::from_utf8(bytes).unwrap());
+        Ok(())
+    }
+}
+
+/// Storage and restart that remember.
+#[derive(Clone, Default)]
+struct Board {
+    stored: Rc<Cell<Option<Params>>>,
+    restarts: Rc<Cell<u32>>,
+}
+
+impl Storage for Board {
+    async fn load(&mut self, _params: &mut Params) -> Loaded {
+        Loaded::default()
+    }
+
+    async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
+        self.stored.set(Some(*params));
+        Ok(())
+    }
+}
+
+impl Restart for Board {
+    fn restart(&mut self) {
+        self.restarts.set(self.restarts.get() + 1);
+    }
+}
+
+struct Bench {
+    rig: Rig,
+    line: FakeLine,
+    screen: Screen,
+    board: Board,
+    /// What the commander says at 100 Hz; `None`: nothing.
+    status: Option<Status>,
+}
+
+impl Bench {
+    fn in_mode(mode: Mode) -> Self {
+        let rig = Rig::new();
+        let (line, screen, board) = (FakeLine::default(), Screen::default(), Board::default());
+        rig.time.spawn(console::run(
+            rig.links,
+            line.clone(),
+            screen.clone(),
+            board.clone(),
+            board.clone(),
+        ));
+        let status = Status {
+            mode,
+            ..Status::default()
+        };
+        Self {
+            rig,
+            line,
+            screen,
+            board,
+            status: Some(status),
+        }
+    }
+
+    fn run(&mut self, ms: u64) {
+        let status = self.status;
+        let mut i = 0;
+        self.rig.run_with(ms, |links: &Links, at| {
+            if let (Some(status), 0) = (status, i % 10) {
+                links.status.send(at, status);
+            }
+            i += 1;
+        });
+    }
+
+    /// The lines of the answer, without what was typed and the prompt.
+    fn says(&mut self, text: &str) -> Vec<String> {
+        self.run(20);
+        self.screen.0.take();
+        self.line.put(format!("{text}\r").as_bytes());
+        self.run(600);
+        let screen = self.screen.0.take();
+        let answer = screen.strip_suffix("> ").expect("a prompt at the end");
+        answer
+            .split_terminator("\r\n")
+            .skip(1)
+            .map(String::from)
+            .collect()
+    }
+}
+
+#[test]
+fn nothing_is_restarted_or_stored_but_while_the_motors_stand() {
+    for mode in Mode::ALL {
+        let allowed = matches!(mode, Mode::Disarmed | Mode::Calibrating);
+        let mut bench = Bench::in_mode(mode);
+        let said = bench.says("restart");
+        assert_eq!(bench.board.restarts.get(), u32::from(allowed), "{mode:?}");
+        let refused = format!("while {}: disarm first", mode.name());
+        if allowed {
+            assert_eq!(said, ["restarting"]);
+        } else {
+            assert_eq!(said, [format!("not restarted {refused}")]);
+        }
+        let mut bench = Bench::in_mode(mode);
+        bench.says("set infill 8");
+        let said = bench.says("save");
+        let stored = bench.board.stored.take().map(|params| params.infill);
+        assert_eq!(stored, allowed.then_some(8.0), "{mode:?}");
+        assert_eq!(bench.board.restarts.get(), u32::from(allowed), "{mode:?}");
+        // After a save arming stays refused until the restart.
+        assert_eq!(bench.rig.links.hardware().contains(Refusal::Storing), allowed);
+        if !allowed {
+            assert_eq!(said, [format!("not saved {refused}")]);
+        }
+    }
+    // A commander that is silent may be flying.
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    bench.run(100);
+    bench.status = None;
+    bench.run(300);
+    assert_eq!(bench.says("restart"), ["not restarted: the commander is silent"]);
+    assert_eq!(bench.says("save"), ["not saved: the commander is silent"]);
+    assert!(bench.board.restarts.get() == 0 && bench.board.stored.get().is_none());
+}
+
+#[test]
+fn a_parameter_is_shown_changed_counted_and_put_back() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    assert_eq!(bench.says("changes"), ["no changes"]);
+    assert_eq!(
+        bench.says("set infill 8"),
+        ["infill 6.9 -> 8 %, in force after save"]
+    );
+    assert_eq!(
+        bench.says("changes"),
+        ["infill 6.9 -> 8 %", "1 change, in force after save"]
+    );
+    let row = &bench.says("get infill")[..2];
+    assert!(row[0].starts_with("* infill ") && row[0].contains(" 8 ") && row[0].ends_with("4 to 10 %"));
+    assert_eq!(row[1], "  default 6.9");
+    bench.says("set gain_k 5");
+    assert_eq!(
+        bench.says("changes").last().unwrap(),
+        "2 changes, in force after save"
+    );
+    assert_eq!(bench.says("reset infill"), ["infill 8 -> 6.9 %, as in force"]);
+    assert_eq!(bench.says("changes").len(), 2);
+    assert!(bench.says("get infill")[0].starts_with("  infill "));
+    assert_eq!(bench.says("defaults"), ["no changes"]);
+}
+
+#[test]
+fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    for (typed, said) in [
+        ("set infill 11", "infill cannot be 11; it takes 4 to 10 %"),
+        (
+            "set infill soft",
+            "'soft' is not a number; infill takes 4 to 10 %",
+        ),
+        ("set infil 8", "no parameter 'infil'; did you mean 'infill'?"),
+        ("get zzzzzzzz", "no parameter 'zzzzzzzz'; 'list' shows them all"),
+        ("list zzzz", "no parameter has 'zzzz' in its name"),
+        ("sav", "no command 'sav'; did you mean 'save'?"),
+        ("xyzzy", "no command 'xyzzy'; try 'help'"),
+        ("set infill", "say 'set NAME VALUE'"),
+    ] {
+        assert_eq!(bench.says(typed), [said], "{typed}");
+    }
+    assert_eq!(bench.says("changes"), ["no changes"]);
+    // Those with the name's part, and no others.
+    let listed = bench.says("list estimator_");
+    assert_eq!(listed.len(), 2);
+    assert!(listed[0].starts_with("  estimator_kp ") && listed[1].starts_with("  estimator_ki "));
+    assert_eq!(bench.says("list").len(), Params::TABLE.len());
+    assert_eq!(bench.says("help").len(), 11);
+}
+
+#[test]
+fn status_says_how_the_vehicle_is() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    // An hour, two minutes and three seconds, less what `says` takes.
+    bench.rig.run(3_723_000);
+    let silent = bench.says("status");
+    assert_eq!(
+        silent,
+        [
+            "DISARMED",
+            "nothing forbids arming",
+            "battery not measured",
+            "receiver silent since the start",
+            "up for 1:02:03"
+        ]
+    );
+    let links = bench.rig.links;
+    let state = RcState {
+        frames: 70,
+        errors: 3,
+        ..RcState::default()
+    };
+    links.rc.send(Instant::now(), state);
+    bench.run(600);
+    // 3600 A s are 1000 mAh.
+    let battery = Battery {
+        voltage: 15.678,
+        current: 2.46,
+        used: 3600.0,
+        ratio: 1.0,
+    };
+    let at = Instant::now() + Duration::from_millis(300);
+    links.battery.send(at, battery);
+    let refusals = Refusals::NONE.with(Refusal::BatteryLow).with(Refusal::RcLost);
+    bench.status = Some(Status {
+        mode: Mode::Disarmed,
+        reason: "radio lost",
+        warning: "infill below what was flown",
+        refusals,
+    });
+    bench.says("set infill 8");
+    links
+        .battery
+        .send(Instant::now() + Duration::from_millis(300), battery);
+    assert_eq!(
+        bench.says("status"),
+        [
+            "DISARMED: radio lost",
+            "warning: infill below what was flown",
+            "arming refused: radio lost",
+            "arming refused: battery low",
+            "battery 15.68 V, 2.5 A, 1000 mAh used",
+            "receiver 70 frames, 3 errors, silent now",
+            "up for 1:02:04",
+            "1 change is not saved"
+        ]
+    );
+    // Nothing forbids it in a mode that is armed, and nothing is said of it.
+    bench.status = Some(Status {
+        mode: Mode::Flight,
+        ..Status::default()
+    });
+    assert_eq!(bench.says("status")[..1], ["FLIGHT"]);
+    assert!(!bench.says("status").contains(&"nothing forbids arming".into()));
+    bench.status = None;
+    bench.run(300);
+    assert_eq!(bench.says("status")[0], "the commander is silent");
+}
+
+#[test]
+fn timing_has_a_line_for_every_task() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    bench.rig.run(4_980);
+    for _ in 0..500 {
+        let run = Run {
+            released: Instant::from_micros(0),
+            started: Instant::from_micros(30),
+            ended: Instant::from_micros(250),
+            deadline: Duration::from_micros(240),
+            skipped: 0,
+        };
+        bench.rig.links.record(TaskId::Clamp, &run);
+    }
+    // 500 runs in 5.00 s; every one late.
+    let said = bench.says("timing");
+    assert_eq!(said.len(), 1 + TaskId::COUNT);
+    let row: Vec<&str> = said[7].split_whitespace().collect();
+    assert_eq!(row, ["clamp", "100", "30", "250", "220", "500"]);
+}

@@ -1,0 +1,243 @@
+//! What the control task asks of the mixer for each kind of setpoint, by numbers.
+
+use embassy_time::Instant;
+use sophie_control::desaturation::Given;
+use sophie_control::vector::{Quat, Vec3};
+use sophie_control::wrench::Wrench;
+use sophie_tasks::control;
+use sophie_tasks::links::{Attitude, Demand, Links, MixOutput, Setpoint};
+
+use crate::rig::Rig;
+
+const LEVEL: Setpoint = Setpoint::Angle {
+    roll: 0.0,
+    pitch: 0.0,
+    yaw_rate: 0.0,
+    thrust: 17.7,
+};
+
+/// 0.5 rad/s of roll rate that is asked for and not there.
+const ROLLING: Setpoint = Setpoint::Rate {
+    rate: Vec3::new(0.5, 0.0, 0.0),
+    thrust: 10.0,
+};
+
+struct Bench {
+    rig: Rig,
+    q: Quat,
+    /// What the mixer says that it gave; `None`: nothing is heard of it.
+    mix: Option<MixOutput>,
+}
+
+fn all_given() -> MixOutput {
+    MixOutput {
+        running: true,
+        given: Given::ALL,
+        ..MixOutput::default()
+    }
+}
+
+impl Bench {
+    fn new() -> Self {
+        let rig = Rig::new();
+        rig.time.spawn(control::run(rig.links));
+        Self {
+            rig,
+            q: Quat::IDENTITY,
+            mix: Some(all_given()),
+        }
+    }
+
+    fn speak(&self, links: &Links, at: Instant) {
+        if let Some(mix) = self.mix {
+            links.mix.send(at, mix);
+        }
+        let estimate = Attitude {
+            q: self.q,
+            calibrated: true,
+            dt: 1e-3,
+            ..Attitude::default()
+        };
+        links.attitude.send(at, estimate);
+    }
+
+    fn demand(&self) -> Demand {
+        self.rig.links.demand.latest().unwrap().value
+    }
+
+    /// `ms` steps with a setpoint renewed in each.
+    fn run(&mut self, ms: u64, setpoint: Setpoint) -> Demand {
+        for _ in 0..ms {
+            let (links, at) = (self.rig.links, Instant::now());
+            links.setpoint.send(at, setpoint);
+            self.speak(links, at);
+            self.rig.run(1);
+        }
+        self.demand()
+    }
+
+    /// The wrench that comes of it; yaw is usable.
+    fn wrench(&mut self, ms: u64, setpoint: Setpoint) -> Wrench {
+        match self.run(ms, setpoint) {
+            Demand::Wrench { wrench, yaw: true } => wrench,
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+fn near(a: f32, b: f32) -> bool {
+    (a - b).abs() < 2e-3
+}
+
+#[test]
+fn a_setpoint_silent_for_50_ms_stops_the_rotors() {
+    let mut bench = Bench::new();
+    bench.run(1, LEVEL);
+    // 1 to 50 ms old.
+    for age in 1..60 {
+        let (links, at) = (bench.rig.links, Instant::now());
+        bench.speak(links, at);
+        bench.rig.run(1);
+        assert_eq!(bench.demand() == Demand::Stop, age > 50, "{age} ms");
+    }
+    let mut never = Bench::new();
+    never.speak(never.rig.links, Instant::now());
+    never.rig.run(1);
+    assert_eq!(never.demand(), Demand::Stop);
+}
+
+#[test]
+fn every_demand_carries_the_time_of_its_sample() {
+    let mut bench = Bench::new();
+    bench.run(5, LEVEL);
+    assert_eq!(bench.rig.links.demand.latest().unwrap().at.as_micros(), 4000);
+    assert_eq!(bench.rig.links.target.latest().unwrap().at.as_micros(), 4000);
+}
+
+#[test]
+fn stop_idle_and_a_wrench_pass_as_they_are() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.run(1, Setpoint::Stop), Demand::Stop);
+    assert_eq!(bench.run(1, Setpoint::Idle), Demand::Idle);
+    let wrench = Wrench {
+        thrust: 9.0,
+        roll: 0.1,
+        pitch: -0.2,
+        yaw: 0.03,
+    };
+    assert_eq!(
+        bench.run(1, Setpoint::Direct { wrench }),
+        Demand::Wrench { wrench, yaw: true }
+    );
+}
+
+#[test]
+fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given() {
+    // 10 1/s · 0.5 rad/s · 0.021 kg m² is 0.105 N m; a second of 8 1/s² adds 4 rad/s², 0.084 N m.
+    let mut bench = Bench::new();
+    assert!(near(bench.wrench(1, ROLLING).roll, 0.105));
+    let wrench = bench.wrench(999, ROLLING);
+    assert!(
+        near(wrench.roll, 0.189) && wrench.pitch == 0.0 && wrench.thrust == 10.0,
+        "{wrench:?}"
+    );
+    // A mixer that is not heard of, that gave nothing, or whose word is more than 10 ms old, gives nothing.
+    let nothing = MixOutput {
+        given: Given {
+            roll_pitch: 0.0,
+            thrust_shift: 0.0,
+            yaw: 0.0,
+        },
+        ..all_given()
+    };
+    for mix in [None, Some(nothing)] {
+        let mut bench = Bench::new();
+        bench.mix = mix;
+        assert!(near(bench.wrench(1000, ROLLING).roll, 0.105), "{mix:?}");
+    }
+    let mut bench = Bench::new();
+    bench.wrench(1, ROLLING);
+    bench.mix = None;
+    // 8 1/s² · 0.5 rad/s · 11 ms · 0.021 kg m² is less than 0.001 N m.
+    assert!(near(bench.wrench(999, ROLLING).roll, 0.105));
+}
+
+#[test]
+fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop() {
+    let idle = Setpoint::Idle;
+    let rest = Setpoint::Rate {
+        rate: Vec3::ZERO,
+        thrust: 10.0,
+    };
+    for (between, then, left) in [
+        (None, LEVEL, 0.084),
+        (None, rest, 0.084),
+        (Some(idle), rest, 0.0),
+        (Some(Setpoint::Stop), LEVEL, 0.0),
+        (
+            Some(Setpoint::Direct {
+                wrench: Wrench::default(),
+            }),
+            rest,
+            0.0,
+        ),
+    ] {
+        let mut bench = Bench::new();
+        bench.wrench(1000, ROLLING);
+        if let Some(between) = between {
+            bench.run(1, between);
+        }
+        let wrench = bench.wrench(1, then);
+        assert!(near(wrench.roll, left), "{between:?} {then:?}: {wrench:?}");
+    }
+}
+
+#[test]
+fn on_the_pipe_moments_fade_with_the_thrust_and_yaw_is_given_up() {
+    let mut bench = Bench::new();
+    let resting = |thrust| Setpoint::Resting {
+        roll: 0.3,
+        pitch: -0.3,
+        thrust,
+    };
+    // 0.4 of 2 N at 0.178 m. Unlimited it were 4.5 1/s · 0.3 rad · 10 1/s · 0.021 kg m² = 0.28 N m and twice that.
+    for (thrust, most) in [(2.0, 0.1424), (1.0, 0.0712), (0.0, 0.0)] {
+        let Demand::Wrench { wrench, yaw: false } = bench.run(500, resting(thrust)) else {
+            panic!("{:?}", bench.demand())
+        };
+        assert!(near(wrench.roll, most) && near(wrench.pitch, -most), "{wrench:?}");
+        assert!(wrench.thrust == thrust && wrench.yaw == 0.0);
+    }
+    // And nothing is integrated, for as long as the vehicle leans on something: 4.5·0.05·10·0.021 N m, and no more.
+    let lean = Setpoint::Resting {
+        roll: 0.05,
+        pitch: 0.0,
+        thrust: 17.7,
+    };
+    let mut bench = Bench::new();
+    let Demand::Wrench { wrench, .. } = bench.run(3000, lean) else {
+        panic!("{:?}", bench.demand())
+    };
+    assert!((wrench.roll - 0.04725).abs() < 1e-3, "{wrench:?}");
+}
+
+#[test]
+fn the_heading_is_let_go_while_yaw_is_gated_and_held_when_it_is_not() {
+    for gated in [true, false] {
+        let mut bench = Bench::new();
+        bench.wrench(500, LEVEL);
+        bench.mix = Some(MixOutput {
+            yaw_gated: gated,
+            ..all_given()
+        });
+        bench.q = Quat::from_euler(0.0, 0.0, 0.4);
+        bench.wrench(10, LEVEL);
+        bench.mix = Some(all_given());
+        // Turned by 0.4 rad to the right: 1.2 1/s · -0.4 rad · 3 1/s · 0.063 kg m² = -0.09 N m leads back.
+        let yaw = bench.wrench(500, LEVEL).yaw;
+        assert!(
+            if gated { yaw.abs() < 0.005 } else { yaw < -0.03 },
+            "{gated}: {yaw}"
+        );
+    }
+}

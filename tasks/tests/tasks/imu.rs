@@ -1,0 +1,197 @@
+//! From the inertial part's batches to samples of 1 kHz.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use embassy_time::{Instant, Timer};
+use heapless::Vec as Few;
+use sophie_control::arming::Refusal;
+use sophie_control::math::GRAVITY;
+use sophie_control::params::Params;
+use sophie_control::vector::Vec3;
+use sophie_tasks::deadline::TaskId;
+use sophie_tasks::imu;
+use sophie_tasks::ports::{IMU_BATCH, Imu, ImuReading, PortError};
+
+use crate::rig::Rig;
+
+/// Time that the transfer takes after data-ready, µs.
+const TRANSFER_US: u64 = 40;
+
+/// A part of `rate_hz` that is read `batch` samples at a time, and turns evenly about x.
+#[derive(Clone)]
+struct Part {
+    rate_hz: f32,
+    batch: u64,
+    /// What the next calls answer, while there are any.
+    errors: Rc<Cell<(u32, Option<PortError>)>>,
+    /// Time that the next call takes longer, µs.
+    gap: Rc<Cell<u64>>,
+    ready: Rc<Cell<u64>>,
+}
+
+impl Part {
+    fn new(rate_hz: f32, batch: u64) -> Self {
+        Self {
+            rate_hz,
+            batch,
+            errors: Rc::default(),
+            gap: Rc::default(),
+            ready: Rc::default(),
+        }
+    }
+}
+
+impl Imu for Part {
+    fn rate_hz(&self) -> f32 {
+        self.rate_hz
+    }
+
+    async fn read(&mut self) -> Result<Few<ImuReading, IMU_BATCH>, PortError> {
+        let (left, error) = self.errors.get();
+        if let (Some(error), true) = (error, left > 0) {
+            self.errors.set((left - 1, Some(error)));
+            return Err(error);
+        }
+        let ready = self
+            .ready
+            .get()
+            .max(Instant::now().as_micros() - TRANSFER_US.min(Instant::now().as_micros()));
+        let next = ready + self.gap.take() + (1e6 * self.batch as f32 / self.rate_hz) as u64;
+        Timer::at(Instant::from_micros(next + TRANSFER_US)).await;
+        self.ready.set(next);
+        let mut batch = Few::new();
+        for _ in 0..self.batch {
+            let _ = batch.push(ImuReading {
+                gyro: Vec3::new(0.5, 0.0, 0.0),
+                accel: Vec3::new(0.0, 0.0, -GRAVITY),
+            });
+        }
+        Ok(batch)
+    }
+
+    fn ready_at(&self) -> Instant {
+        Instant::from_micros(self.ready.get())
+    }
+}
+
+fn started(params: Params, part: &Part) -> Rig {
+    let rig = Rig::with(params);
+    rig.time.spawn(imu::run(rig.links, part.clone()));
+    rig
+}
+
+#[test]
+fn samples_come_at_1_khz_from_every_rate_and_batch_stamped_with_their_data_ready() {
+    for (rate_hz, batch) in [
+        (1000.0, 1),
+        (2000.0, 1),
+        (4000.0, 1),
+        (4000.0, 2),
+        (4000.0, 4),
+        (8000.0, 8),
+        (8000.0, 1),
+    ] {
+        let mut rig = started(Params::default(), &Part::new(rate_hz, batch));
+        rig.run(10);
+        let before = rig.links.timing(TaskId::Imu).runs;
+        rig.run_with(1000, |links, at| {
+            let sample = links.imu.latest().unwrap();
+            assert!(
+                (sample.value.dt - 1e-3).abs() < 1e-7,
+                "{rate_hz} {batch}: {sample:?}"
+            );
+            assert_eq!(sample.at.as_micros() % 1000, 0);
+            // The transfer of the last millisecond's sample has only begun.
+            assert_eq!((at - sample.at).as_micros(), 1000);
+        });
+        assert_eq!(
+            rig.links.timing(TaskId::Imu).runs - before,
+            1000,
+            "{rate_hz} {batch}"
+        );
+        let timing = rig.links.timing(TaskId::Imu);
+        assert_eq!(
+            (timing.worst_lateness_us, timing.overruns),
+            (TRANSFER_US as u32, 0)
+        );
+    }
+}
+
+#[test]
+fn the_accelerometers_bias_is_taken_off_and_the_gyro_is_left_to_the_estimator() {
+    let params = Params {
+        accel_bias_x: 0.3,
+        accel_bias_y: -0.2,
+        accel_bias_z: 0.1,
+        ..Params::default()
+    };
+    let mut rig = started(params, &Part::new(4000.0, 4));
+    rig.run(500);
+    let sample = rig.links.imu.fresh().unwrap();
+    let accel = Vec3::new(-0.3, 0.2, -9.806_65 - 0.1);
+    assert!((sample.accel - accel).norm() < 1e-3, "{sample:?}");
+    assert!(
+        (sample.gyro - Vec3::new(0.5, 0.0, 0.0)).norm() < 1e-3,
+        "{sample:?}"
+    );
+}
+
+#[test]
+fn the_time_since_the_sample_before_is_told_up_to_five_milliseconds() {
+    for (gap, dt) in [(0, 1e-3), (1000, 2e-3), (1500, 2.5e-3), (2500, 3.5e-3)] {
+        let part = Part::new(1000.0, 1);
+        let mut rig = started(Params::default(), &part);
+        rig.run(10);
+        part.gap.set(gap);
+        let mut longest = 0.0f32;
+        rig.run_with(20, |links, _| {
+            longest = longest.max(links.imu.latest().unwrap().value.dt)
+        });
+        // A part silent for 3 ms is asked again: 3 ms are lost with what it would have given.
+        assert!(
+            (longest - dt).abs() < 1e-5 || gap > 1500 && longest <= 5e-3,
+            "{gap}: {longest}"
+        );
+        assert!(gap == 0 || longest > 1.9e-3, "{gap}: {longest}");
+    }
+    // 100 errors with pauses of 1 ms: more than the limit.
+    let part = Part::new(1000.0, 1);
+    let mut rig = started(Params::default(), &part);
+    rig.run(10);
+    part.errors.set((100, Some(PortError::Timeout)));
+    let mut longest = 0.0f32;
+    rig.run_with(200, |links, _| {
+        longest = longest.max(links.imu.latest().unwrap().value.dt)
+    });
+    assert!((longest - 5e-3).abs() < 1e-7, "{longest}");
+}
+
+#[test]
+fn the_third_error_is_reported_and_taken_back_after_a_tenth_of_a_second_without() {
+    for (error, refusal) in [
+        (PortError::Absent, Some(Refusal::ImuAbsent)),
+        (PortError::WrongPart, Some(Refusal::ImuWrongPart)),
+        (PortError::Corrupt, Some(Refusal::ImuCorrupt)),
+        (PortError::Timeout, None),
+    ] {
+        let part = Part::new(1000.0, 1);
+        let mut rig = started(Params::default(), &part);
+        rig.run(10);
+        part.errors.set((2, Some(error)));
+        rig.run(20);
+        assert!(rig.links.hardware().is_empty(), "{error:?}");
+        // The third, less than 100 ms after the others.
+        part.errors.set((1, Some(error)));
+        rig.run(5);
+        assert!(rig.links.hardware().iter().eq(refusal), "{error:?}");
+        rig.run(90);
+        assert!(rig.links.hardware().iter().eq(refusal), "{error:?}");
+        rig.run(15);
+        assert!(rig.links.hardware().is_empty(), "{error:?}");
+        // Counted afresh: two are none again.
+        part.errors.set((2, Some(error)));
+        rig.run(20);
+        assert!(rig.links.hardware().is_empty(), "{error:?}");
+    }
+}

@@ -1,0 +1,46 @@
+//! Links, a virtual clock, and the world's part of every millisecond.
+
+use embassy_time::Instant;
+use sophie_clock::VirtualTime;
+use sophie_control::params::Params;
+use sophie_tasks::links::Links;
+use sophie_tasks::start::Start;
+
+/// The links of a task under test and its clock.
+pub struct Rig {
+    pub time: VirtualTime,
+    pub links: &'static Links,
+    ms: u64,
+}
+
+impl Rig {
+    pub fn new() -> Self {
+        Self::with(Params::default())
+    }
+
+    pub fn with(params: Params) -> Self {
+        Self::starting(params, Start::COLD)
+    }
+
+    pub fn starting(params: Params, start: Start) -> Self {
+        Self {
+            time: VirtualTime::new(),
+            links: Box::leak(Box::new(Links::starting(params, start))),
+            ms: 0,
+        }
+    }
+
+    /// Runs for `ms` milliseconds.
+    pub fn run(&mut self, ms: u64) {
+        self.ms += ms;
+        self.time.run_until(self.ms * 1000);
+    }
+
+    /// Runs for `ms` milliseconds; `each` speaks at the start of every one of them.
+    pub fn run_with(&mut self, ms: u64, mut each: impl FnMut(&Links, Instant)) {
+        for _ in 0..ms {
+            each(self.links, Instant::now());
+            self.run(1);
+        }
+    }
+}

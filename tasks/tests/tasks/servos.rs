@@ -1,0 +1,165 @@
+//! From forces to pulses: when there are none, how fast they move, and when they stand still.
+
+use embassy_time::Instant;
+use sophie_control::params::Params;
+use sophie_control::rc::ArmChoice;
+use sophie_control::warm::{Grasp, Warm};
+use sophie_control::wrench::PerArm;
+use sophie_tasks::links::{ArmAngles, Links, TendonForces};
+use sophie_tasks::servos;
+use sophie_tasks::start::{Cause, Start};
+
+use crate::fakes::FakeServos;
+use crate::rig::Rig;
+
+/// Tilt of a closed arm, rad.
+const CLOSED: f32 = -1.2;
+
+fn started(start: Start) -> (Rig, FakeServos) {
+    let (rig, port) = (Rig::starting(Params::default(), start), FakeServos::default());
+    rig.time.spawn(servos::run(rig.links, port.clone()));
+    (rig, port)
+}
+
+/// 550 to 2450 µs are 4.71 rad: the pulse of the angle `angle`, rad, µs.
+fn pulse(angle: f32) -> f32 {
+    550.0 + 1900.0 * angle / 4.71
+}
+
+fn speak(links: &Links, at: Instant, forces: Option<TendonForces>, tilt: f32) {
+    if let Some(forces) = forces {
+        links.tendons.send(at, forces);
+    }
+    let tilt = [Some(tilt); 4];
+    links.arms.send(at, ArmAngles { tilt });
+}
+
+fn forces(force: f32, found: bool) -> TendonForces {
+    TendonForces {
+        force: [force; 4],
+        found,
+        stay: [false; 4],
+    }
+}
+
+fn near(pulses: PerArm<f32>, expected: f32) -> bool {
+    pulses.iter().all(|p| (p - expected).abs() < 1.0)
+}
+
+#[test]
+fn frames_come_at_the_servos_rate() {
+    assert_eq!(servos::period(50.0).as_micros(), 20_000);
+    assert_eq!(servos::period(333.0).as_micros(), 3003);
+    let (mut rig, port) = started(Start::COLD);
+    rig.run(999);
+    assert_eq!(port.pulses.borrow().len(), 50);
+}
+
+#[test]
+fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
+    // Just taut at -1.2 rad: 25 mm/15 mm·(0.4 + 1.2) = 2.667 rad, 1626 µs. From there 3 rad/s, 0.06 rad a frame.
+    let (mut rig, port) = started(Start::COLD);
+    rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
+    assert!(
+        port.pulses.borrow().iter().all(|p| *p == [0.0; 4]),
+        "a pulse before it is told"
+    );
+    port.pulses.borrow_mut().clear();
+    rig.run_with(1200, |links, at| {
+        speak(links, at, Some(forces(0.0, true)), CLOSED)
+    });
+    let pulses = port.pulses.borrow();
+    for (frame, pulses) in pulses.iter().enumerate() {
+        let angle = (2.667 - 0.06 * (frame + 1) as f32).max(0.0);
+        assert!(
+            near(*pulses, pulse(angle)),
+            "frame {frame}: {pulses:?}, {}",
+            pulse(angle)
+        );
+    }
+    // 0.89 s of it, and then it is home for good, although it is still told that the arms were found.
+    assert!(pulses.len() == 60 && near(pulses[59], 550.0));
+}
+
+#[test]
+fn arms_not_found_wound_are_at_release_from_the_first_pulse_on() {
+    let (mut rig, port) = started(Start::COLD);
+    rig.run_with(200, |links, at| {
+        speak(links, at, Some(forces(0.0, false)), CLOSED)
+    });
+    let mut pulses = port.pulses.borrow().clone();
+    // Those before the first force are none.
+    pulses.retain(|p| *p != [0.0; 4]);
+    assert!(
+        pulses.len() >= 9 && pulses.iter().all(|p| near(*p, 550.0)),
+        "{pulses:?}"
+    );
+}
+
+#[test]
+fn forces_wind_at_nine_tenths_of_the_servos_speed_and_old_ones_hold() {
+    let (mut rig, port) = started(Start::COLD);
+    // At 0 N the servo makes 0.9·6.16 = 5.54 rad/s: 1.66 rad in 15 frames, when the tendon at -1.2 rad is slack still.
+    rig.run_with(301, |links, at| {
+        speak(links, at, Some(forces(60.0, false)), CLOSED)
+    });
+    let angle = rig.links.reel_angle.fresh().unwrap();
+    assert!(
+        angle.iter().all(|a| (a - 15.5 * 0.1109).abs() < 0.06),
+        "{angle:?}"
+    );
+    // It takes up 2.667 rad and stretches by 60 N/(8 kN/m)/15 mm = 0.5 rad.
+    rig.run_with(2000, |links, at| {
+        speak(links, at, Some(forces(60.0, false)), CLOSED)
+    });
+    assert!(near(port.now(), pulse(3.167)), "{:?}", port.now());
+    let tension = rig.links.tension.fresh().unwrap();
+    assert!(tension.iter().all(|t| (t - 60.0).abs() < 0.5), "{tension:?}");
+    // Silent for more than 200 ms: nothing moves, whatever the arms do.
+    rig.run_with(250, |links, at| speak(links, at, None, CLOSED));
+    let held = port.now();
+    rig.run_with(1000, |links, at| speak(links, at, None, -0.6));
+    assert_eq!(port.now(), held);
+    assert!(rig.links.tension.fresh().is_some());
+}
+
+#[test]
+fn an_arm_that_is_to_stay_stays_whatever_its_force() {
+    let (mut rig, port) = started(Start::COLD);
+    rig.run_with(2000, |links, at| {
+        speak(links, at, Some(forces(60.0, false)), CLOSED)
+    });
+    let mut order = forces(0.0, false);
+    order.stay = [false, true, false, true];
+    rig.run_with(2000, |links, at| speak(links, at, Some(order), CLOSED));
+    let [a, b, c, d] = port.now();
+    assert!(
+        near([a, c, a, c], 550.0) && near([b, d, b, d], pulse(3.167)),
+        "{:?}",
+        port.now()
+    );
+}
+
+#[test]
+fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know() {
+    for (grasp, first) in [
+        (Grasp::Closed(ArmChoice::All), pulse(2.0)),
+        (Grasp::Open, pulse(2.0)),
+        (Grasp::Kept(ArmChoice::All), 550.0),
+    ] {
+        let warm = Warm {
+            grasp,
+            angle: [2.0; 4],
+            ..Warm::default()
+        };
+        let (mut rig, port) = started(Start {
+            cause: Cause::Watchdog,
+            warm: Some(warm),
+            sequence: 1,
+        });
+        let mut order = forces(0.0, false);
+        order.stay = [true; 4];
+        rig.run_with(30, |links, at| speak(links, at, Some(order), CLOSED));
+        assert!(near(port.now(), first), "{grasp:?}: {:?}", port.now());
+    }
+}

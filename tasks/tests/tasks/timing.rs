@@ -1,0 +1,67 @@
+//! What is recorded of a run.
+
+use embassy_time::{Duration, Instant};
+use sophie_tasks::timing::{Quantity, Record, Run, Timing};
+
+/// A run released at 1 s, with its lateness and its end, µs.
+fn run(late: u64, end: u64, deadline: u64, skipped: u32) -> Run {
+    let at = |us: u64| Instant::from_micros(1_000_000 + us);
+    Run {
+        released: at(0),
+        started: at(late),
+        ended: at(end),
+        deadline: Duration::from_micros(deadline),
+        skipped,
+    }
+}
+
+#[test]
+fn totals_count_runs_and_misses_and_keep_the_worst() {
+    let mut record = Record::new();
+    assert_eq!(record.totals, Timing::default());
+    assert!(!record.add(&run(30, 130, 200, 0)));
+    // To the microsecond in time, and one beyond.
+    assert!(!record.add(&run(10, 200, 200, 0)));
+    assert!(record.add(&run(20, 201, 200, 0)));
+    // Three periods passed, and the run was late as well: four. Three alone.
+    assert!(record.add(&run(0, 500, 400, 3)));
+    assert!(record.add(&run(0, 100, 400, 3)));
+    assert_eq!(
+        record.totals,
+        Timing {
+            runs: 5,
+            overruns: 1 + 4 + 3,
+            worst_lateness_us: 30,
+            worst_response_us: 500,
+            worst_execution_us: 500,
+            deadline_us: 400,
+        }
+    );
+    // A clock that seems to go backwards makes no time of it.
+    assert!(!record.add(&Run {
+        started: Instant::from_micros(0),
+        ..run(0, 0, 100, 0)
+    }));
+    assert_eq!(record.totals.worst_lateness_us, 30);
+}
+
+#[test]
+fn each_quantity_has_its_own_histogram_and_taking_it_empties_it() {
+    let mut record = Record::default();
+    record.add(&run(3, 10, 200, 0));
+    record.add(&run(5, 25, 200, 0));
+    for (quantity, least, most) in [
+        (Quantity::Lateness, 3, 5),
+        (Quantity::Execution, 7, 20),
+        (Quantity::Response, 10, 25),
+    ] {
+        let taken = record.take(quantity);
+        assert_eq!(
+            (taken.count(), taken.min(), taken.max()),
+            (2, least, most),
+            "{quantity:?}"
+        );
+        assert_eq!(record.take(quantity).count(), 0, "{quantity:?}");
+    }
+    assert_eq!(record.totals.runs, 2);
+}
