@@ -206,9 +206,13 @@ fn what_the_rotors_lift_is_their_thrust_along_the_body_axis() {
     // that, with the perch switch on, is the pipe.
     for (name, mix, touched) in [
         ("4·4.425 N on level arms", running(4.425, 0.0), false),
-        ("4·5.109 N·cos 30° = 17.7 N", running(5.109, 0.5236), false),
-        ("4·4 N·cos 60° = 8 N", running(4.0, 1.0472), true),
-        ("the same, tips down", running(4.0, -1.0472), true),
+        (
+            "4·5.109 N·cos 30° = 17.7 N",
+            running(5.109, 30f32.to_radians()),
+            false,
+        ),
+        ("4·4 N·cos 60° = 8 N", running(4.0, 60f32.to_radians()), true),
+        ("the same, tips down", running(4.0, -60f32.to_radians()), true),
         ("4·2.5 N", running(2.5, 0.0), true),
         (
             "rotors that stand",
