@@ -268,6 +268,104 @@ mod tests {
     }
 
     #[test]
+    fn the_pull_towards_the_vertical_fades_with_what_is_not_gravity() {
+        // Believed level, truly rolled by 0.1 rad: 0.1 1/s of it are 0.01 rad in a second, half of that at 1.075 or
+        // 0.925 g, and nothing from 15 % on.
+        for (g, pulled) in [
+            (1.0, 0.0095),
+            (1.075, 0.0049),
+            (0.925, 0.0049),
+            (1.16, 0.0),
+            (0.84, 0.0),
+            (2.0, 0.0),
+        ] {
+            let mut e = calibrated(Vec3::ZERO, at_rest(0.0, 0.0));
+            for _ in 0..1000 {
+                e.step(Vec3::ZERO, at_rest(0.1, 0.0) * g, 1e-3);
+            }
+            let q = e.attitude();
+            // Twice the vector part, where micromath's arc tangent is too coarse.
+            assert!((2.0 * q.x - pulled).abs() < 2e-4, "{g}: {}", 2.0 * q.x);
+            assert!(q.y.abs() < 1e-5 && q.z.abs() < 1e-5, "{g}: {q:?}");
+            // 0.002 1/s² of an error of 0.095 rad on average: a bias of -0.0002 rad/s in a second.
+            assert!((e.bias().x + 0.02 * pulled).abs() < 2e-5, "{g}: {:?}", e.bias());
+        }
+    }
+
+    #[test]
+    fn no_bias_beyond_a_tenth_is_believed() {
+        let p = Params {
+            estimator_ki: 1.0,
+            ..Params::default()
+        };
+        for (roll, bias) in [(0.5, -0.1), (-0.5, 0.1)] {
+            let mut e = Estimator::new(&p);
+            for i in 0..4000 {
+                let truth = if i < 2500 { 0.0 } else { roll };
+                e.step(Vec3::ZERO, at_rest(truth, 0.0), 1e-3);
+            }
+            assert!(
+                e.calibrated() && (e.bias().x - bias).abs() < 1e-6,
+                "{:?}",
+                e.bias()
+            );
+        }
+    }
+
+    #[test]
+    fn calibration_takes_two_seconds_of_rest_and_starts_afresh_with_every_motion() {
+        let steps = |disturb: &dyn Fn(i32) -> Vec3| {
+            let mut e = Estimator::new(&Params::default());
+            (1..6000).find(|i| {
+                e.step(disturb(*i), at_rest(0.0, 0.0), 1e-3);
+                e.calibrated()
+            })
+        };
+        let within = |steps: Option<i32>, from: i32| steps.is_some_and(|s| (from - 2..from + 5).contains(&s));
+        assert!(within(steps(&|_| Vec3::ZERO), 2000));
+        // A bias of 0.14 rad/s is rest, on any axis; 0.16 rad/s is motion.
+        for turn in [
+            Vec3::new(1.0, 0.0, 0.0),
+            Vec3::new(0.0, -1.0, 0.0),
+            Vec3::new(0.0, 0.0, 1.0),
+        ] {
+            assert!(within(steps(&|_| turn * 0.14), 2000));
+            assert!(steps(&|_| turn * 0.16).is_none());
+            // One jolt after 1.5 s: two seconds from then on.
+            assert!(within(steps(&|i| turn * if i == 1500 { 1.0 } else { 0.0 }), 3500));
+            // 0.07 rad/s off the mean is a rocking, 0.09 rad/s is not, once 0.2 s have told the mean.
+            assert!(within(
+                steps(&|i| turn * if i == 1500 { 0.07 } else { 0.0 }),
+                2000
+            ));
+            assert!(within(
+                steps(&|i| turn * if i == 1500 { 0.09 } else { 0.0 }),
+                3500
+            ));
+            assert!(within(steps(&|i| turn * if i == 150 { 0.09 } else { 0.0 }), 2000));
+        }
+    }
+
+    #[test]
+    fn what_weighs_nothing_is_not_at_rest() {
+        for (g, rests) in [(0.45, false), (0.55, true)] {
+            let mut e = Estimator::new(&Params::default());
+            for _ in 0..3000 {
+                e.step(Vec3::ZERO, at_rest(0.0, 0.0) * g, 1e-3);
+            }
+            assert_eq!(e.calibrated(), rests, "{g}");
+        }
+        // After a restart gravity is what is within 30 % of it.
+        for (g, gravity) in [(0.68, false), (0.72, true), (1.28, true), (1.32, false)] {
+            let mut e = Estimator::resume(&Params::default(), Vec3::ZERO);
+            for _ in 0..600 {
+                e.step(Vec3::ZERO, at_rest(0.0, 0.0) * g, 1e-3);
+            }
+            assert_eq!(e.calibrated(), gravity, "{g}");
+        }
+    }
+
+    #[test]
     fn a_drifting_bias_is_found_in_roll() {
         let p = Params {
             estimator_ki: 0.02,

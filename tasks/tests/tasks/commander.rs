@@ -163,8 +163,8 @@ fn a_flight_level_that_misses_more_than_ten_deadlines_in_a_second_refuses_arming
 fn ten_misses_in_a_second_and_any_number_below_the_flight_level_refuse_nothing() {
     let mut bench = Bench::new();
     for _ in 0..5 {
-        bench.late(TaskId::Motors, 4);
-        bench.late(TaskId::Imu, 4);
+        bench.late(TaskId::Motors, 5);
+        bench.late(TaskId::Imu, 5);
         for task in [
             TaskId::Analog,
             TaskId::Clamp,
