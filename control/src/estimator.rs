@@ -151,7 +151,12 @@ impl Estimator {
         let limit = |v: Vec3, l: f32| v.to_array().iter().all(|x| (-l..=l).contains(x));
         let still =
             limit(gyro, REST_RATE) && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
-        if !still || self.rest_time <= 0.0 {
+        if !still {
+            // What is no rest is no part of its mean either.
+            self.rest_time = 0.0;
+            return;
+        }
+        if self.rest_time <= 0.0 {
             self.rest_time = dt;
             self.rest_gyro = gyro;
             self.rest_accel = accel;
@@ -344,6 +349,16 @@ mod tests {
             ));
             assert!(within(steps(&|i| turn * if i == 150 { 0.09 } else { 0.0 }), 2000));
         }
+    }
+
+    #[test]
+    fn a_jolt_that_ends_the_rest_is_no_part_of_the_bias() {
+        let mut e = Estimator::new(&Params::default());
+        for i in 0..4000 {
+            let turn = if i == 1500 { 10.0 } else { 0.0 };
+            e.step(Vec3::new(turn, 0.0, 0.0), at_rest(0.0, 0.0), 1e-3);
+        }
+        assert!(e.calibrated() && e.bias().norm() < 1e-6, "{:?}", e.bias());
     }
 
     #[test]
