@@ -125,6 +125,12 @@ impl Setpoint {
                 pitch,
                 yaw_rate,
                 thrust,
+            }
+            | Self::Escape {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
             } => [roll, pitch, yaw_rate, thrust],
             Self::Rate { rate, thrust } => [rate.x, rate.y, rate.z, thrust],
             Self::Direct { wrench } => [wrench.roll, wrench.pitch, wrench.yaw, wrench.thrust],
@@ -138,8 +144,14 @@ mod tests {
     use super::*;
 
     /// Each kind that has numbers, and how many of the first three places it uses; the fourth is the thrust.
-    fn kinds([a, b, c, thrust]: [f32; 4]) -> [(Setpoint, usize); 4] {
+    fn kinds([a, b, c, thrust]: [f32; 4]) -> [(Setpoint, usize); 5] {
         let angle = Setpoint::Angle {
+            roll: a,
+            pitch: b,
+            yaw_rate: c,
+            thrust,
+        };
+        let escape = Setpoint::Escape {
             roll: a,
             pitch: b,
             yaw_rate: c,
@@ -162,7 +174,7 @@ mod tests {
             pitch: b,
             thrust,
         };
-        [(angle, 3), (rate, 3), (direct, 3), (resting, 2)]
+        [(angle, 3), (escape, 3), (rate, 3), (direct, 3), (resting, 2)]
     }
 
     #[test]
