@@ -278,6 +278,113 @@ fn an_arm_from_the_bench_is_fitted_and_flies() {
     );
 }
 
+/// The example of docs/paper.md with every point changed: infill (%), thrust (N), tilt (°) and power ratio.
+fn example(change: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> String {
+    let mut lines = "infill_percent,thrust_n,tilt_deg,power_ratio\n".to_owned();
+    for line in include_str!("../docs/arm-bench.csv").lines() {
+        let numbers: Vec<f64> = line.split(',').filter_map(|cell| cell.parse().ok()).collect();
+        if let Some([rho, thrust, tilt, power]) = numbers.try_into().ok().and_then(&change) {
+            lines += &format!("{rho},{thrust:.4},{tilt:.4},{power}\n");
+        }
+    }
+    lines
+}
+
+#[test]
+fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
+    let temp = Temp::new("units");
+    let write = |name: &str, content: String| fs::write(temp.0.join(name), content).unwrap();
+    write(
+        "rad.csv",
+        example(|[rho, t, a, p]| Some([rho, t, a.to_radians(), p])),
+    );
+    let line = refused(&temp, &["fit-arm", "rad.csv"]);
+    assert_eq!(
+        line,
+        "sophie: rad.csv: tilt_deg spans 0.72 over thrusts of 0 to 7.7 N, as an arm in radians does: allowed are degrees, \
+         over more than 1.58"
+    );
+    let kgf = |[rho, t, a, p]: [f64; 4]| [rho, t / 9.806_65, a, p];
+    for (name, data) in [
+        ("kgf.csv", example(|x| Some(kgf(x)))),
+        ("kgf-one.csv", example(|x| (x[0] == 6.9).then(|| kgf(x)))),
+    ] {
+        write(name, data);
+        let line = refused(&temp, &["fit-arm", name]);
+        assert!(
+            line.starts_with(&format!("sophie: {name}: the fitted arm is out of range: A"))
+                && line.contains(
+                    "deg/N, allowed -10 to 30 deg/N: thrust_n ends at 0.79 N, as thrusts in kgf do"
+                )
+                && !line.contains("arm.toml"),
+            "{line}"
+        );
+    }
+    // An arm as stiff as the literal Table I stays within what the stack takes: it is told on stderr and on the page.
+    let stiff = |[rho, t, a, p]: [f64; 4]| (rho == 6.9).then(|| kgf([rho, t, a / 7.75, p]));
+    write("stiff.csv", example(stiff));
+    let output = sophie(&temp.0, &["fit-arm", "stiff.csv"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let warning = "thrust_n ends at 0.79 N, less than half of the 8.3 N that a rotor gives: above it the fit is a guess";
+    assert!(
+        told.lines()
+            .any(|l| l.starts_with("sophie: warning: stiff.csv: ") && l.contains(warning)),
+        "{told}"
+    );
+    assert!(
+        fs::read_to_string(temp.0.join("out/fit.html"))
+            .unwrap()
+            .contains(warning)
+    );
+}
+
+#[test]
+fn a_coefficient_that_may_be_none_is_told() {
+    let temp = Temp::new("interval");
+    // Without errors of their own the example's coefficients are all told from 0.
+    fs::write(temp.0.join("good.csv"), example(Some)).unwrap();
+    let output = sophie(&temp.0, &["fit-arm", "good.csv"]);
+    assert_eq!(
+        (output.status.code(), text(&output.stderr).as_str()),
+        (Some(0), "")
+    );
+    // A potentiometer that is 3 degrees out, up and down in turn, with a pattern that no thrust follows.
+    let at = std::cell::Cell::new(0);
+    let rough = example(|[rho, t, a, p]| {
+        at.set(at.get() + 1);
+        Some([rho, t, a + 3.0 * f64::from(at.get() * at.get() % 7 - 3), p])
+    });
+    fs::write(temp.0.join("rough.csv"), rough).unwrap();
+    let output = sophie(&temp.0, &["fit-arm", "rough.csv", "--json"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let results: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names = column(&results, "fit", "Coefficients", 0);
+    let (from, to) = (
+        column(&results, "fit", "Coefficients", 3),
+        column(&results, "fit", "Coefficients", 4),
+    );
+    let page = fs::read_to_string(temp.0.join("out/fit.html")).unwrap();
+    let mut crossing = 0;
+    for (i, name) in names.iter().enumerate() {
+        let name = name.as_str().unwrap();
+        let warning = format!("the 95 % interval of {name} holds 0");
+        let crosses = from[i].as_f64().unwrap() <= 0.0 && to[i].as_f64().unwrap() >= 0.0;
+        // A level arm at rest is an arm like any other; K is not written anywhere.
+        let told_of = crosses && !["α0", "K"].contains(&name);
+        crossing += usize::from(told_of);
+        let lines: Vec<&str> = told.lines().filter(|l| l.starts_with("sophie: ")).collect();
+        assert_eq!(
+            lines.iter().any(|l| l.contains(&warning)),
+            told_of,
+            "{name}: {told}"
+        );
+        assert_eq!(page.contains(&warning), told_of, "{name}");
+    }
+    assert!(crossing > 0, "{told}");
+}
+
 #[test]
 fn wrong_input_is_told_in_one_line() {
     let temp = Temp::new("wrong");
@@ -293,6 +400,14 @@ fn wrong_input_is_told_in_one_line() {
         "infill_percent,thrust_n,tilt_deg\n6,0,9\n6,1,7\n6,2,6\n6,3,4\n6,4,2\n6,5,1\n6,6,-2\n",
     );
     write("empty.csv", "");
+    write("bare.csv", "# to be measured\ninfill_percent,thrust_n,tilt_deg\n");
+    write(
+        "semicolons.csv",
+        "infill_percent;thrust_n;tilt_deg\n6,0;1,5;2,5\n",
+    );
+    write("tabs.csv", "infill_percent\tthrust_n\ttilt_deg\n6\t1\t2\n");
+    write("mixed.csv", "infill_percent,thrust_n,tilt_deg\n6;1;2\n");
+    write("headless.csv", "6,1,2\n6,2,3\n");
     fs::write(temp.0.join("bytes.csv"), [0xff, 0xfe, 0x00]).unwrap();
     for (args, told) in [
         (&["paper", "x"][..], "unexpected argument 'x': allowed is no file"),
@@ -318,6 +433,26 @@ fn wrong_input_is_told_in_one_line() {
             "down.csv: the fitted arm does not rise with thrust",
         ),
         (&["fit-arm", "empty.csv"], "empty.csv: holds no line"),
+        (
+            &["fit-arm", "bare.csv"],
+            "bare.csv:2: no row stands below the header: allowed are at least 6",
+        ),
+        (
+            &["fit-arm", "semicolons.csv"],
+            "semicolons.csv:1: ';' between the columns: allowed is ',', and '.' within numbers",
+        ),
+        (
+            &["fit-arm", "tabs.csv"],
+            "tabs.csv:1: a tab between the columns: allowed is ',', and '.' within numbers",
+        ),
+        (
+            &["fit-arm", "mixed.csv"],
+            "mixed.csv:2: ';' between the columns: allowed is ','",
+        ),
+        (
+            &["fit-arm", "headless.csv"],
+            "headless.csv:1: a row of numbers where the header should be: allowed is a header with infill_percent",
+        ),
         (&["fit-arm", "bytes.csv"], "bytes.csv: is not text"),
     ] {
         let line = refused(&temp, args);

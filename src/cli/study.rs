@@ -2,9 +2,11 @@
 
 use std::time::Instant;
 
+use sophie_report::terminal::complain;
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::output::OutDir;
 
+use super::PROGRAM;
 use super::args::{FitArgs, PaperArgs};
 use crate::paper::printed::Printed;
 use crate::paper::{self, bench_data, fit, fit_report, json, page, text};
@@ -53,6 +55,7 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     let points = bench_data::load(&args.bench)?;
     let t = Printed::read().table_1;
     let fitted = fit::fit(&points, [t.a1, t.a2, t.b1, t.b2]).map_err(|why| format!("{file}: {why}"))?;
+    fit_report::check_units(&points).map_err(|why| format!("{file}: {why}"))?;
     let parameters =
         fit_report::parameters(&points, &fitted, &file).map_err(|why| format!("{file}: {why}"))?;
     let out = OutDir::prepare(&args.out, &FIT_FILES)?;
@@ -73,6 +76,9 @@ pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     let written = out.write(&FIT_FILES.into_iter().zip(files).collect::<Vec<_>>())?;
     console.say("");
     console.say(&format!("written: {}", written.join("  ")));
+    for warning in fit_report::warnings(&points, &fitted) {
+        complain(PROGRAM, &format!("warning: {file}: {warning}"));
+    }
     if args.json {
         console::print(results.trim_end())?;
     }

@@ -2,12 +2,14 @@
 //!
 //! The first line names the columns, in any order: `infill_percent` (%), `thrust_n` (N) and `tilt_deg` (degrees, tip up
 //! positive) must be there; `power_ratio` (P/P0, 1 where it is missing) may. Blank lines and what follows a `#` are
-//! skipped.
+//! skipped. Commas part the columns.
 
 use std::path::Path;
 
 /// Largest file that is read, bytes.
 const MAX_BYTES: u64 = 16 << 20;
+/// Fewest rows that any fit takes: three more than the unknowns of a single infill.
+pub const MIN_ROWS: usize = 6;
 
 /// A measured point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +73,15 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
             names()
         ));
     };
+    commas(&header).map_err(|why| format!("{file}:{number}: {why}"))?;
+    let header_line = number;
     let header: Vec<&str> = header.split(',').map(str::trim).collect();
+    if header.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+        return Err(format!(
+            "{file}:{number}: a row of numbers where the header should be: allowed is a header with {}",
+            names()
+        ));
+    }
     let mut order = vec![];
     for name in &header {
         let Some(column) = COLUMNS.iter().position(|c| c.0 == *name) else {
@@ -102,6 +112,11 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
         }
     }
     let Some((number, why)) = bad.first() else {
+        if points.is_empty() {
+            return Err(format!(
+                "{file}:{header_line}: no row stands below the header: allowed are at least {MIN_ROWS}"
+            ));
+        }
         return Ok(points);
     };
     let others: Vec<String> = bad.iter().skip(1).take(8).map(|(n, _)| n.to_string()).collect();
@@ -118,7 +133,22 @@ fn names() -> String {
     "infill_percent, thrust_n, tilt_deg and, if wanted, power_ratio".to_owned()
 }
 
+/// Refuses a line whose columns something else than a comma parts: what spreadsheets write where the comma is the
+/// decimal point.
+fn commas(line: &str) -> Result<(), String> {
+    let other = [(';', "';'"), ('\t', "a tab")];
+    other
+        .into_iter()
+        .find(|(sign, _)| line.contains(*sign))
+        .map_or(Ok(()), |(_, name)| {
+            Err(format!(
+                "{name} between the columns: allowed is ',', and '.' within numbers"
+            ))
+        })
+}
+
 fn row(line: &str, order: &[usize]) -> Result<Point, String> {
+    commas(line)?;
     let cells: Vec<&str> = line.split(',').map(str::trim).collect();
     if cells.len() != order.len() {
         return Err(format!(

@@ -7,15 +7,84 @@ use super::bench_data::Point;
 use super::fit::{Fit, Fitted};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
+/// Largest span of tilts that is taken for one in radians: a quarter turn, with a hundredth for the rounding. The
+/// stiffest arm of Table I (10 %, K = 1) bends 2.8 degrees up to the largest thrust.
+const RADIANS: f64 = 1.58;
+/// Share of a rotor's largest thrust that the data must reach, or the fit is a guess where the vehicle hovers.
+const REACH: f64 = 0.5;
+/// Coefficients that may well be 0: an arm may be level at rest, and K is written nowhere.
+const MAY_BE_NONE: [&str; 2] = ["α0", "K"];
+
+fn span(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
+    points
+        .iter()
+        .map(of)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        })
+}
+
+/// Refuses tilts that cannot be degrees.
+///
+/// # Errors
+/// One line: the span of the tilts and what is allowed.
+pub fn check_units(points: &[Point]) -> Result<(), String> {
+    let ((low, high), (from, to)) = (span(points, |p| p.tilt), span(points, |p| p.thrust));
+    if high - low > RADIANS {
+        return Ok(());
+    }
+    Err(format!(
+        "tilt_deg spans {:.2} over thrusts of {from} to {to} N, as an arm in radians does: allowed are degrees, over more \
+         than {RADIANS}",
+        high - low
+    ))
+}
+
+/// Where the data end, N, with what may be wrong there.
+fn reach(points: &[Point]) -> Option<(f64, f64)> {
+    let (most, top) = (span(points, |p| p.thrust).1, thrust_max());
+    (most < REACH * top).then_some((most, top))
+}
+
+/// Largest thrust of a rotor as the stack has it, N.
+fn thrust_max() -> f64 {
+    // A float's 8.3 has seven digits.
+    (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4
+}
+
+/// What a user must know before flying the fit, a line each.
+pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
+    let mut lines = vec![];
+    if let Some((most, top)) = reach(points) {
+        lines.push(format!(
+            "thrust_n ends at {most:.2} N, less than half of the {top} N that a rotor gives: above it the fit is a guess \
+             (thrusts in kgf are 9.81 times too small)"
+        ));
+    }
+    for f in fit
+        .fitted
+        .iter()
+        .filter(|f| !MAY_BE_NONE.contains(&f.name) && f.value.abs() <= f.half)
+    {
+        lines.push(
+            format!(
+                "the 95 % interval of {} holds 0 ({:.4} to {:.4} {}): these data do not tell whether it is there",
+                f.name,
+                f.value - f.half,
+                f.value + f.half,
+                f.unit
+            )
+            .replace(" )", ")"),
+        );
+    }
+    lines
+}
+
 /// Infill that the vehicle is to have, %: the only one measured, or the stack's within those measured.
 pub fn infill(points: &[Point]) -> f64 {
     // A float's 6.9 has seven digits.
     let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
-    let (low, high) = points
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
-            (l.min(p.infill), h.max(p.infill))
-        });
+    let (low, high) = span(points, |p| p.infill);
     default.clamp(low, high.max(low))
 }
 
@@ -55,6 +124,9 @@ pub fn section(points: &[Point], fit: &Fit) -> Section {
          C_P without an interval was not measured (no power ratio below 0.95) and is assumed.",
         fit.residual
     ));
+    for warning in warnings(points, fit) {
+        s.text(format!("Warning: {warning}."));
+    }
     let mut infills: Vec<f64> = points.iter().map(|p| p.infill).collect();
     infills.sort_by(f64::total_cmp);
     infills.dedup_by(|a, b| (*a - *b).abs() < 0.05);
@@ -133,6 +205,7 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
             fit.offset
         ));
     }
+    in_range(points, fit)?;
     // An arm of a single infill is the same whatever the infill says: it is put in the range that the stack knows.
     let [a1, a2, b1, b2] = fit.coefficients;
     let rho = rho.clamp(4.0, 10.0);
@@ -150,8 +223,39 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
     );
     // Only what the reader takes is written.
     Scenario::parse(&text, "arm.toml", &Default::default())
-        .map_err(|e| format!("the fitted arm is out of range: {e}"))?;
+        .map_err(|e| format!("the fitted arm is out of range; as arm.toml, which is not written: {e}"))?;
     Ok(text)
+}
+
+/// Refuses coefficients that the stack cannot take, by their own names.
+fn in_range(points: &[Point], fit: &Fit) -> Result<(), String> {
+    let one = fit.coefficients[1] == 0.0 && fit.coefficients[3] == 0.0;
+    let names = if one {
+        ["A", "", "B", ""]
+    } else {
+        ["A1", "A2", "B1", "B2"]
+    };
+    for ((name, value), key) in names
+        .into_iter()
+        .zip(fit.coefficients)
+        .zip(["arm_a1", "arm_a2", "arm_b1", "arm_b2"])
+    {
+        let Some(row) = Params::TABLE.iter().find(|row| row.name == key) else {
+            continue;
+        };
+        if (f64::from(row.min)..=f64::from(row.max)).contains(&value) {
+            continue;
+        }
+        let unit = row.unit;
+        let hint = reach(points).map_or_else(String::new, |(most, _)| {
+            format!(": thrust_n ends at {most:.2} N, as thrusts in kgf do (1 kgf is 9.81 N)")
+        });
+        return Err(format!(
+            "the fitted arm is out of range: {name} = {value:.4} {unit}, allowed {} to {} {unit}{hint}",
+            row.min, row.max
+        ));
+    }
+    Ok(())
 }
 
 #[cfg(test)]
