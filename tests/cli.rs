@@ -207,6 +207,103 @@ fn help_and_version_are_on_stdout() {
     }
 }
 
+/// What stands on stdout, exit status 0, nothing on stderr.
+fn shown(temp: &Temp, args: &[&str]) -> String {
+    let output = sophie(temp, args);
+    let complaints = text(&output.stderr);
+    assert!(
+        output.status.success() && complaints.is_empty(),
+        "{args:?}: {complaints}"
+    );
+    text(&output.stdout)
+}
+
+#[test]
+fn help_is_a_word_and_an_option_everywhere() {
+    let temp = Temp::new("help-words");
+    let whole = shown(&temp, &["--help"]);
+    assert_eq!(shown(&temp, &["help"]), whole);
+    for (verb, part) in [
+        ("fly", "--infill"),
+        ("paper", "paper.html"),
+        ("fit-arm", "tilt_deg"),
+        ("timing", "--analyse"),
+    ] {
+        assert!(whole.contains(verb), "{verb}: {whole}");
+        let long = shown(&temp, &[verb, "--help"]);
+        assert!(
+            long.contains(part) && long.contains("Exit status: 0"),
+            "{verb}: {long}"
+        );
+        assert_eq!(shown(&temp, &["help", verb]), long);
+        assert!(!shown(&temp, &[verb, "-h"]).is_empty());
+    }
+    for args in [
+        &["help", "perch"][..],
+        &["help", "fly", "now"],
+        &["help", "--rho"],
+    ] {
+        let line = refused(&temp, args);
+        assert!(
+            line.starts_with("sophie: ") && line.contains(args.last().unwrap()) && !line.contains("Usage"),
+            "{line}"
+        );
+    }
+    assert_eq!(
+        refused(&temp, &["help", "perch"]),
+        "sophie: no help on 'perch': allowed are fly, paper, fit-arm, timing"
+    );
+}
+
+/// What is under `path`, with directories, however deep.
+fn below(path: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(path)
+        .into_iter()
+        .flatten()
+        .map(|e| e.unwrap().path());
+    entries
+        .flat_map(|p| [vec![p.clone()], below(&p)].concat())
+        .collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_nothing_behind() {
+    let temp = Temp::new("interrupt");
+    let long =
+        b"steps = [{ do = 'arm' }, { do = 'take-off', height_m = 1 }, { do = 'hover', seconds = 600 }]\n\
+                 time_limit_s = 3000\n";
+    let long = temp.file("long.toml", long);
+    for args in [
+        &["fly", &*long, "--out", "deep/out"][..],
+        &["paper", "--out", "deep/out"],
+    ] {
+        let mut child = command(&temp.0, args)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut first = String::new();
+        let mut lines = BufReader::new(child.stdout.take().unwrap());
+        while first.trim().is_empty() {
+            assert!(lines.read_line(&mut first).unwrap() > 0, "{args:?} said nothing");
+        }
+        let status = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status()
+            .unwrap();
+        assert!(status.success());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(
+            output.status.code(),
+            None,
+            "{args:?} was not interrupted: {}",
+            text(&output.stderr)
+        );
+        assert_eq!(below(&temp.0), [PathBuf::from(&long)], "{args:?}");
+    }
+}
+
 #[test]
 fn a_flight_writes_three_files_and_says_where() {
     let temp = Temp::new("hop");

@@ -14,18 +14,16 @@ use sophie_report::terminal::console;
 
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
-#[command(
-    name = "sophie",
-    version,
-    args_conflicts_with_subcommands = true,
-    disable_help_subcommand = true
-)]
+#[command(name = "sophie", version, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
     fly: FlyArgs,
 }
+
+/// The subcommands, as messages name them.
+const VERBS: [&str; 4] = ["fly", "paper", "fit-arm", "timing"];
 
 #[derive(Subcommand)]
 enum Command {
@@ -164,6 +162,12 @@ impl Message {
 
     /// clap's message without its usage and hints at help, as one line.
     fn line(&self) -> String {
+        // Only behind `help` may no file stand in a subcommand's place.
+        if self.0.kind() == ErrorKind::InvalidSubcommand
+            && let Some(ContextValue::String(topic)) = self.0.get(ContextKind::InvalidSubcommand)
+        {
+            return format!("no help on '{topic}': allowed are {}", VERBS.join(", "));
+        }
         // clap takes a second file for a subcommand where one could stand.
         let extra = match self.0.kind() {
             ErrorKind::UnknownArgument => self.0.get(ContextKind::InvalidArg),
@@ -172,7 +176,7 @@ impl Message {
         };
         if let Some(ContextValue::String(extra)) = extra
             && !extra.starts_with('-')
-            && !["fly", "paper", "fit-arm", "timing"].contains(&extra.as_str())
+            && !VERBS.contains(&extra.as_str())
         {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper") => "no file",

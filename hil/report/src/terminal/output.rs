@@ -1,16 +1,18 @@
-//! The output directory: checked before the flight, written so that no file is ever half there.
+//! The output directory: checked before the flight, made when there is something to write, and written so that no file
+//! is ever half there.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A directory that can be written to.
+/// A directory that could be written to when it was looked at.
 pub struct OutDir {
     path: PathBuf,
 }
 
 impl OutDir {
-    /// Makes the directory if needed and tries whether files called `names` can be made in it.
+    /// Tries whether files called `names` can be made in the directory, and leaves everything as it was: a run that is
+    /// interrupted leaves nothing behind.
     ///
     /// # Errors
     /// One line that names the directory, the reason and what is allowed.
@@ -18,16 +20,25 @@ impl OutDir {
         let out = Self {
             path: path.to_owned(),
         };
+        let made: Vec<PathBuf> = path
+            .ancestors()
+            .take_while(|p| !p.as_os_str().is_empty() && !p.exists())
+            .map(Path::to_owned)
+            .collect();
         let probe = out.partial("probe");
-        fs::create_dir_all(path)
+        let tried = fs::create_dir_all(path)
             .and_then(|()| fs::write(&probe, b""))
-            .and_then(|()| fs::remove_file(&probe))
-            .map_err(|error| {
-                format!(
-                    "--out {}: cannot be written: {error}: allowed is a writable directory",
-                    path.display()
-                )
-            })?;
+            .and_then(|()| fs::remove_file(&probe));
+        for directory in &made {
+            // From the innermost outwards; one that somebody else has put something into meanwhile stays.
+            let _ = fs::remove_dir(directory);
+        }
+        tried.map_err(|error| {
+            format!(
+                "--out {}: cannot be written: {error}: allowed is a writable directory",
+                path.display()
+            )
+        })?;
         match names.iter().map(|name| path.join(name)).find(|p| p.is_dir()) {
             Some(taken) => Err(format!(
                 "--out {}: cannot be written: it is a directory: allowed is a file or nothing",
@@ -37,7 +48,7 @@ impl OutDir {
         }
     }
 
-    /// Writes all files under temporary names, then gives them their names. Gives their paths.
+    /// Makes the directory if needed, writes all files under temporary names, then gives them their names. Gives their paths.
     ///
     /// # Errors
     /// One line that names the file and the reason; the temporary files are gone then.
@@ -59,6 +70,7 @@ impl OutDir {
                 self.path.join(name).display()
             )
         };
+        fs::create_dir_all(&self.path).map_err(|error| told("", error))?;
         for (name, content) in files {
             let name = name.as_ref();
             fs::write(self.partial(name), content).map_err(|error| told(name, error))?;
@@ -100,7 +112,10 @@ mod tests {
     fn files_appear_whole_and_nothing_else_stays() {
         let path = temp("good").join("deep");
         let out = OutDir::prepare(&path, &["a", "b"]).unwrap();
-        assert!(names(&path).is_empty());
+        assert!(
+            !temp("good").exists(),
+            "nothing is made before there is something to write"
+        );
         out.write(&[("a", b"1".to_vec()), ("b", b"2".to_vec())]).unwrap();
         out.write(&[("a", b"3".to_vec())]).unwrap();
         assert_eq!(names(&path), ["a", "b"]);
