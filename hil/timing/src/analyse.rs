@@ -53,7 +53,8 @@ pub fn analyse(capture: &Capture, replay: &Replay) -> String {
         measured.0, "task", "level", "period", "execution", "deadline"
     );
     for (board, _) in BOARDS {
-        let _ = write!(text, " {board:>18}");
+        let scaled = if board == measured.0 { "" } else { ", scaled" };
+        let _ = write!(text, " {:>18}", format!("{board}{scaled}"));
     }
     text.push('\n');
     for &(index, deadline) in &set.deadlines {
@@ -86,6 +87,10 @@ pub fn analyse(capture: &Capture, replay: &Replay) -> String {
             100.0 * utilisation(&loads)
         );
     }
+    let _ = writeln!(
+        text,
+        "scaled: by the clock and the control path's instructions, which is coarse: a board's own trace bounds it more closely"
+    );
     let bound = rate_monotonic_bound(set.loads.len());
     let _ = writeln!(
         text,

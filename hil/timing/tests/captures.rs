@@ -63,6 +63,66 @@ fn a_trace_becomes_tables_a_timeline_and_a_sheet() {
     assert!(sheet.lines().all(|l| l.split(',').count() == 8));
 }
 
+/// The rows of a table: cells, without their ticks.
+fn rows(lines: &[&str]) -> Vec<Vec<String>> {
+    let cell = |c: &str| c.trim().replace(['`', ','], "");
+    lines
+        .iter()
+        .map(|l| l.trim_matches('|').split('|').map(cell).collect())
+        .collect()
+}
+
+#[test]
+fn the_page_s_bounds_are_those_of_the_traces_beside_it() {
+    let page = std::fs::read_to_string(capture("../timing.md")).unwrap();
+    let (_, section) = page.split_once("## Would every deadline hold?").unwrap();
+    let table: Vec<&str> = section
+        .lines()
+        .skip_while(|l| !l.starts_with("| task"))
+        .take_while(|l| l.starts_with('|'))
+        .collect();
+    let table = rows(&table);
+    let (head, body) = (&table[0], &table[2..]);
+    assert_eq!(head[..2], ["task", "deadline us"]);
+    assert!(head.len() > 2 && body.len() > 5);
+    for (column, title) in head.iter().enumerate().skip(2) {
+        // Such as `f405` of `trace-f405.txt`.
+        let (board, trace) = title
+            .split_once(" of ")
+            .unwrap_or_else(|| panic!("of which trace is {title}?"));
+        let log = Capture::read(&capture(trace), None).unwrap();
+        let told = analyse(&log, &Replay::of(&log.trace));
+        let boards = told.lines().find(|l| l.starts_with("task ")).unwrap();
+        // Each board's column ends where its title does; "scaled" belongs to the title.
+        let boards = boards.replace(", scaled", "--scaled");
+        let titles: Vec<&str> = boards.split_whitespace().skip(5).collect();
+        let at = titles
+            .iter()
+            .position(|t| t.trim_end_matches("--scaled") == board.trim_end_matches(" scaled"))
+            .unwrap();
+        assert_eq!(
+            titles[at].ends_with("--scaled"),
+            board.ends_with(" scaled"),
+            "{title}"
+        );
+        for row in body {
+            let line = told
+                .lines()
+                .find(|l| l.split_whitespace().next() == Some(&*row[0]))
+                .unwrap();
+            assert_eq!(line.split_whitespace().nth(4), Some(&*row[1]), "{line}");
+            // Bounds behind the five columns: `226 (-13 %)` or `none`.
+            let bounds: Vec<&str> = line
+                .split("  ")
+                .map(str::trim)
+                .filter(|c| !c.is_empty())
+                .collect();
+            let bound = bounds[bounds.len() - titles.len() + at].replace('+', "");
+            assert_eq!(row[column].replace('\u{2212}', "-"), bound, "{title}, {}", row[0]);
+        }
+    }
+}
+
 #[test]
 fn a_capture_that_is_cut_off_is_read_as_far_as_it_goes() {
     for name in ["perch-short.txt", "trace.txt"] {
