@@ -1,6 +1,7 @@
 //! What is kept of a flight on disk (a page to read, a log to plot, a summary for programs), and what is told of it on
 //! a terminal.
 
+mod attitude_error;
 mod bands;
 mod drawing;
 mod figures;

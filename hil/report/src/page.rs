@@ -4,6 +4,7 @@ use sophie_control::mode::Mode;
 use sophie_hil::record::FlightRecord;
 use sophie_hil::scenario::keys;
 
+use super::attitude_error::{Worst, attitude_errors};
 use super::drawing::draw;
 use super::figures::{self, Figure};
 use super::moments::{Moment, key_moments};
@@ -26,7 +27,9 @@ pub fn html(record: &FlightRecord) -> String {
     page += &headline(record);
     page += &key_figures(record);
     page += &scenes(record);
-    page += &section("Steps", "", &tables::phases(record));
+    let note = "Attitude error: largest angle between true and aimed-at roll or pitch, with the lag behind what the step \
+                commands.";
+    page += &section("Steps", note, &tables::phases(record));
     page += "<div class=\"pair\">";
     page += &section("Grip", "When it was proven.", &tables::grip(record));
     page += &section("Events", "", &tables::events(record));
@@ -67,12 +70,20 @@ fn headline(record: &FlightRecord) -> String {
 }
 
 fn key_figures(record: &FlightRecord) -> String {
-    let worst = |f: fn(&sophie_hil::record::Phase) -> f64| record.phases.iter().map(f).fold(0.0, f64::max);
     let most = |f: fn(&sophie_hil::record::Grip) -> f64| record.grip.iter().map(f).reduce(f64::max);
     let done = record.phases.iter().filter(|p| p.done).count();
     let or_dash = |v: Option<f64>, digits: usize| v.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
     let end = record.samples.last().map(|s| s.battery_voltage);
-    let speed = record.sim_seconds / record.wall_seconds.max(1e-6);
+    let errors = attitude_errors(record);
+    let angle = |w: Option<Worst<'_>>| or_dash(w.map(|w| deg(w.angle)), 1);
+    let held = errors.held.map_or_else(
+        || "attitude error, setpoint held".to_owned(),
+        |w| format!("{} error, setpoint held{}", w.axis, step(w)),
+    );
+    let following = errors.following.map_or_else(
+        || "lag behind a command".to_owned(),
+        |w| format!("lag behind commanded {}{}", w.axis, step(w)),
+    );
     let mut out = String::from("<div class=\"keys\">");
     for (value, unit, name) in [
         (
@@ -81,12 +92,8 @@ fn key_figures(record: &FlightRecord) -> String {
             "steps done",
         ),
         (format!("{:.1}", record.sim_seconds), "s", "flown"),
-        (format!("{speed:.0}"), "×", "real time"),
-        (
-            format!("{:.1}", deg(worst(|p| p.worst_attitude_error))),
-            "°",
-            "worst attitude error",
-        ),
+        (angle(errors.held), "°", &*held),
+        (angle(errors.following), "°", &*following),
         (or_dash(most(|g| g.closure), 2), "s", "slowest closure"),
         (
             or_dash(most(|g| kgcm(g.torque)), 1),
@@ -100,6 +107,13 @@ fn key_figures(record: &FlightRecord) -> String {
         out += &format!("<div><b>{value} <i>{unit}</i></b><small>{name}</small></div>");
     }
     out + "</div>"
+}
+
+/// The step in which an error was.
+fn step(worst: Worst<'_>) -> String {
+    worst
+        .step
+        .map_or_else(String::new, |(n, name)| format!(" ({n} {})", escape(name)))
 }
 
 fn scenes(record: &FlightRecord) -> String {
@@ -248,6 +262,33 @@ pub(super) mod tests {
             page.contains("&lt;&amp;&quot;&gt;"),
             "texts of events are escaped"
         );
+    }
+
+    #[test]
+    fn the_lag_of_a_commanded_roll_is_not_shown_as_an_error() {
+        let mut record = synthetic::record();
+        let roll = record.phases.iter().position(|p| p.name == "roll").unwrap();
+        let (start, end) = (record.phases[roll].start, record.phases[roll].end);
+        for s in &mut record.samples {
+            let commanded = (start + 1.0..end - 0.5).contains(&s.t);
+            s.thrust_asked = [4.0; 4];
+            s.attitude_setpoint = [if commanded { 0.5 } else { 0.0 }, 0.0, 0.0];
+            // 0.2 s behind, and never more than 0.02 rad off once it is there.
+            let late = (start + 1.2..end - 0.3).contains(&s.t);
+            s.attitude = [if late { 0.52 } else { 0.02 }, 0.0, 0.0];
+        }
+        let page = html(&record);
+        let tiles = &page[page.find("<div class=\"keys\">").unwrap()..page.find("<section>").unwrap()];
+        for tile in [
+            format!(
+                "<b>29.8 <i>°</i></b><small>lag behind commanded roll ({} roll)</small>",
+                roll + 1
+            ),
+            "<b>1.1 <i>°</i></b><small>roll error, setpoint held (".to_owned(),
+        ] {
+            assert!(tiles.contains(&tile), "{tile} not in {tiles}");
+        }
+        assert!(!tiles.contains("worst attitude error"), "{tiles}");
     }
 
     #[test]
