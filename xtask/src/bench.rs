@@ -10,36 +10,93 @@ use crate::{Error, build};
 /// Boards that can be emulated.
 const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
-/// The board that `words`, the arguments behind the verb, begin with, if it can be emulated.
-///
-/// # Errors
-/// One line: the board and what is allowed.
-pub fn board(words: &[&str]) -> Result<&'static Board, String> {
-    let allowed = EMULATED.join(", ");
-    let name = words
-        .first()
-        .ok_or_else(|| format!("bench: name the board first: allowed is {allowed}"))?;
-    if !EMULATED.contains(name) {
-        return Err(format!(
-            "bench: no board called `{name}` is emulated: allowed is {allowed}"
-        ));
-    }
-    boards::find(name).ok_or_else(|| format!("no board is called `{name}`; there are {}", boards::names()))
+/// What is said before the emulator is built: its code generator takes long.
+const FIRST_BUILD: &str = "building the emulated board: minutes the first time, seconds from then on";
+
+/// Options of the emulator's own that stand alone, and those with a value and its name.
+const ALONE: [&str; 1] = ["--json"];
+const WITH_VALUE: [(&str, &str); 5] = [
+    ("--seed", "N"),
+    ("--out", "DIR"),
+    ("--speed", "SHARE"),
+    ("--console", "PORT"),
+    ("--telemetry", "PORT"),
+];
+
+/// What is asked for.
+pub struct Bench<'a> {
+    /// The board.
+    pub board: &'static Board,
+    trace: Trace,
+    /// Goes to the emulator.
+    rest: Vec<&'a str>,
 }
 
-/// Builds and flies; the exit status is the bench's own.
-///
-/// # Errors
-/// The firmware does not build.
-pub fn fly(board: &Board, rest: &[&str]) -> Result<ExitCode, Error> {
-    let (trace, rest): (Vec<&str>, Vec<&str>) = rest.iter().partition(|word| **word == "--trace");
-    let trace = if trace.is_empty() { Trace::Off } else { Trace::On };
-    let (elf, _) = crate::firmware(board, trace)?;
-    emulator(
-        "sophie-bench",
-        [OsStr::new(board.name), "--elf".as_ref(), elf.as_os_str()],
-        &rest,
-    )
+impl<'a> Bench<'a> {
+    /// What `words`, the arguments behind the verb, ask for. Looked at before the minutes of building; what values may
+    /// be the emulator knows.
+    ///
+    /// # Errors
+    /// One line: what is wrong and what is allowed.
+    pub fn parse(words: &[&'a str]) -> Result<Self, String> {
+        let allowed = EMULATED.join(", ");
+        let (name, rest) = match words {
+            [name, rest @ ..] if !name.starts_with('-') => (*name, rest),
+            _ => return Err(format!("bench: name the board first: allowed is {allowed}")),
+        };
+        let board = EMULATED.contains(&name).then(|| boards::find(name)).flatten();
+        let board = board
+            .ok_or_else(|| format!("bench: no board called `{name}` is emulated: allowed is {allowed}"))?;
+        let mut bench = Self {
+            board,
+            trace: Trace::Off,
+            rest: Vec::new(),
+        };
+        let mut scenario = false;
+        let mut words = rest.iter().copied();
+        while let Some(word) = words.next() {
+            let option = word.split('=').next().unwrap_or(word);
+            if word == "--trace" {
+                bench.trace = Trace::On;
+                continue;
+            }
+            bench.rest.push(word);
+            if let Some((_, value)) = WITH_VALUE.iter().find(|(name, _)| *name == option) {
+                if option == word {
+                    let given = words.next().filter(|next| !next.starts_with("--"));
+                    bench
+                        .rest
+                        .push(given.ok_or_else(|| format!("bench: `{word}` lacks its {value}"))?);
+                }
+            } else if word.starts_with('-') && !ALONE.contains(&word) {
+                let values: Vec<String> = WITH_VALUE
+                    .iter()
+                    .map(|(name, value)| format!("{name} {value}"))
+                    .collect();
+                return Err(format!(
+                    "bench: `{word}` is not understood: allowed are a scenario, --trace, {}, {}",
+                    values.join(", "),
+                    ALONE.join(", ")
+                ));
+            } else if !word.starts_with('-') && std::mem::replace(&mut scenario, true) {
+                return Err(format!("bench: `{word}` is a second scenario: allowed is one"));
+            }
+        }
+        Ok(bench)
+    }
+
+    /// Builds and flies; the exit status is the emulator's own.
+    ///
+    /// # Errors
+    /// The firmware does not build.
+    pub fn fly(&self) -> Result<ExitCode, Error> {
+        let (elf, _) = crate::firmware(self.board, self.trace)?;
+        emulator(
+            "sophie-bench",
+            [OsStr::new(self.board.name), "--elf".as_ref(), elf.as_os_str()],
+            &self.rest,
+        )
+    }
 }
 
 /// Builds the emulator and runs its binary `name` with `arguments` and what the caller adds; the exit status is its own.
@@ -51,11 +108,22 @@ pub fn emulator<'a>(
     arguments: impl IntoIterator<Item = &'a OsStr>,
     rest: &[&str],
 ) -> Result<ExitCode, Error> {
+    let mut command = run(name);
+    command.args(arguments).args(rest);
+    eprintln!("{FIRST_BUILD}");
+    eprintln!("{}", build::shown(&command));
+    let status = command.status()?;
+    Ok(ExitCode::from(
+        u8::try_from(status.code().unwrap_or(1)).unwrap_or(1),
+    ))
+}
+
+/// Builds and runs the emulator's binary `name`, with cargo's progress on stderr.
+fn run(name: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // The emulator declares a newer Rust than it needs.
     command.args([
         "run",
-        "--quiet",
         "--profile",
         "emulator",
         "--locked",
@@ -66,10 +134,50 @@ pub fn emulator<'a>(
         .arg("--manifest-path")
         .arg(build::root().join("Cargo.toml"));
     command.args(["--package", "sophie-bench", "--bin", name, "--"]);
-    command.args(arguments).args(rest);
-    eprintln!("{}", build::shown(&command));
-    let status = command.status()?;
-    Ok(ExitCode::from(
-        u8::try_from(status.code().unwrap_or(1)).unwrap_or(1),
-    ))
+    command
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_minutes_of_the_first_build_are_not_silent() {
+        let command = run("sophie-bench");
+        let words: Vec<_> = command
+            .get_args()
+            .map(|word| word.to_string_lossy().into_owned())
+            .collect();
+        assert!(
+            !words.iter().any(|w| ["--quiet", "-q"].contains(&w.as_str())),
+            "{words:?}"
+        );
+        assert!(FIRST_BUILD.contains("minutes") && FIRST_BUILD.contains("emulat"));
+    }
+
+    #[test]
+    fn what_the_emulator_takes_is_passed_on() {
+        let words = [
+            "f405",
+            "a.toml",
+            "--seed",
+            "3",
+            "--trace",
+            "--speed=0.5",
+            "--out",
+            "x",
+            "--json",
+        ];
+        let bench = Bench::parse(&words).ok().unwrap();
+        assert!(bench.board.name == "f405" && bench.trace == Trace::On);
+        assert_eq!(
+            bench.rest,
+            ["a.toml", "--seed", "3", "--speed=0.5", "--out", "x", "--json"]
+        );
+        let complaint = Bench::parse(&["cuav-v5"]).err().unwrap();
+        assert_eq!(
+            complaint,
+            "bench: no board called `cuav-v5` is emulated: allowed is matek-h743, f405"
+        );
+    }
 }

@@ -51,38 +51,99 @@ variables: PROBE_RS_* as probe-rs knows them; RUSTFLAGS is kept and added to
 exit status: 0 done, 1 failed, 2 not understood";
 
 /// What is to be done.
-enum Verb {
+enum Verb<'a> {
     Firmware(&'static Board, Trace),
     Flash(&'static Board, Trace),
+    Bench(bench::Bench<'a>),
+    Rig(rig::Rig<'a>),
     Sizes { tighten: bool },
     Cost(cost::Then),
     Conformance,
     Help,
 }
 
-impl Verb {
+/// Every verb, in the order of [`USAGE`].
+const VERBS: [&str; 7] = [
+    "firmware",
+    "flash",
+    "bench",
+    "rig",
+    "sizes",
+    "cost",
+    "conformance",
+];
+
+impl<'a> Verb<'a> {
     /// What `words` ask for; else why they are not understood.
-    fn parse(words: &[&str]) -> Result<Self, String> {
-        let one_board = |names: &[&str]| match names {
-            [name, trace @ ..] if trace.is_empty() || trace == ["--trace"] => boards::find(name)
-                .map(|board| (board, if trace.is_empty() { Trace::Off } else { Trace::On }))
-                .ok_or_else(|| format!("no board is called `{name}`; there are {}", boards::names())),
-            _ => Err(format!("name exactly one board: {}", boards::names())),
+    fn parse(words: &[&'a str]) -> Result<Self, String> {
+        let (verb, rest) = match words {
+            [] | ["help" | "-h" | "--help"] => return Ok(Self::Help),
+            ["help", verb] => (*verb, &["--help"][..]),
+            [verb, rest @ ..] => (*verb, rest),
         };
-        match words {
-            [] | ["help" | "-h" | "--help"] => Ok(Self::Help),
-            ["firmware", names @ ..] => one_board(names).map(|(board, trace)| Self::Firmware(board, trace)),
-            ["flash", names @ ..] => one_board(names).map(|(board, trace)| Self::Flash(board, trace)),
-            ["sizes"] => Ok(Self::Sizes { tighten: false }),
-            ["sizes", "--tighten"] => Ok(Self::Sizes { tighten: true }),
-            ["conformance"] => Ok(Self::Conformance),
-            ["cost"] => Ok(Self::Cost(cost::Then::Compare)),
-            ["cost", "--json"] => Ok(Self::Cost(cost::Then::Json)),
-            ["cost", "--tighten"] => Ok(Self::Cost(cost::Then::Tighten)),
-            _ => Err(format!(
-                "`{}` is not understood; `cargo xtask help` shows what is",
-                words.join(" ")
-            )),
+        if !VERBS.contains(&verb) {
+            return Err(format!(
+                "`{verb}` is not understood: allowed are {}, help",
+                VERBS.join(", ")
+            ));
+        }
+        if rest.iter().any(|word| ["-h", "--help"].contains(word)) {
+            return Ok(Self::Help);
+        }
+        Ok(match verb {
+            "firmware" => board(verb, rest).map(|(board, trace)| Self::Firmware(board, trace))?,
+            "flash" => board(verb, rest).map(|(board, trace)| Self::Flash(board, trace))?,
+            "bench" => Self::Bench(bench::Bench::parse(rest)?),
+            "rig" => Self::Rig(rig::Rig::parse(rest)?),
+            "sizes" => Self::Sizes {
+                tighten: one_of(verb, rest, &["--tighten"])?.is_some(),
+            },
+            "cost" => Self::Cost(match one_of(verb, rest, &["--tighten", "--json"])? {
+                Some("--tighten") => cost::Then::Tighten,
+                Some(_) => cost::Then::Json,
+                None => cost::Then::Compare,
+            }),
+            _ => {
+                one_of(verb, rest, &[])?;
+                Self::Conformance
+            }
+        })
+    }
+}
+
+/// One board, with or without `--trace`.
+fn board(verb: &str, words: &[&str]) -> Result<(&'static Board, Trace), String> {
+    let (options, names): (Vec<&str>, Vec<&str>) = words.iter().partition(|word| word.starts_with('-'));
+    let trace = one_of(verb, &options, &["--trace"])?;
+    let [name] = names[..] else {
+        return Err(format!("{verb}: name exactly one board: {}", boards::names()));
+    };
+    let board = boards::find(name).ok_or_else(|| {
+        format!(
+            "{verb}: no board is called `{name}`; there are {}",
+            boards::names()
+        )
+    })?;
+    Ok((board, trace.map_or(Trace::Off, |_| Trace::On)))
+}
+
+/// The one of `options` that `words` hold, if any; anything else is refused by its name.
+fn one_of<'a>(verb: &str, words: &[&'a str], options: &[&str]) -> Result<Option<&'a str>, String> {
+    let allowed = match options {
+        [] => "nothing behind it".to_string(),
+        _ => options.join(" or "),
+    };
+    match words {
+        [] => Ok(None),
+        [word] if options.contains(word) => Ok(Some(word)),
+        [first, second, ..] if options.contains(first) && options.contains(second) => Err(format!(
+            "{verb}: `{first} {second}` is not understood: allowed is {allowed}"
+        )),
+        _ => {
+            let word = words.iter().find(|word| !options.contains(word)).unwrap_or(&"");
+            Err(format!(
+                "{verb}: `{word}` is not understood: allowed is {allowed}"
+            ))
         }
     }
 }
@@ -90,11 +151,6 @@ impl Verb {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    match words.as_slice() {
-        ["bench", rest @ ..] => return bench(rest),
-        ["rig", rest @ ..] => return rig(rest),
-        _ => {}
-    }
     let verb = match Verb::parse(&words) {
         Ok(verb) => verb,
         Err(complaint) => {
@@ -105,6 +161,8 @@ fn main() -> ExitCode {
     let done = match verb {
         Verb::Firmware(board, trace) => firmware(board, trace).map(|(elf, _)| println!("{}", elf.display())),
         Verb::Flash(board, trace) => flash(board, trace),
+        Verb::Bench(bench) => return ended(bench.board, bench.fly()),
+        Verb::Rig(rig) => return ended(rig.board, rig.run()),
         Verb::Sizes { tighten } => all_sizes(tighten),
         Verb::Cost(then) => cost::cost(then),
         Verb::Conformance => conformance::conformance(),
@@ -122,30 +180,10 @@ fn main() -> ExitCode {
     }
 }
 
-fn bench(words: &[&str]) -> ExitCode {
-    let (board, status) = match bench::board(words) {
-        Ok(board) => (board, bench::fly(board, words.get(1..).unwrap_or_default())),
-        Err(complaint) => {
-            eprintln!("{complaint}");
-            return ExitCode::from(2);
-        }
-    };
+/// The exit status of a verb that has one of its own.
+fn ended(board: &Board, status: Result<ExitCode, Error>) -> ExitCode {
     status.unwrap_or_else(|error| {
         eprintln!("{}: {error}", board.name);
-        ExitCode::FAILURE
-    })
-}
-
-fn rig(words: &[&str]) -> ExitCode {
-    let rig = match rig::Rig::parse(words) {
-        Ok(rig) => rig,
-        Err(complaint) => {
-            eprintln!("{complaint}");
-            return ExitCode::from(2);
-        }
-    };
-    rig.run().unwrap_or_else(|error| {
-        eprintln!("{}: {error}", rig.board.name);
         ExitCode::FAILURE
     })
 }
@@ -229,5 +267,79 @@ mod tests {
             let complaint = Verb::parse(words).err().unwrap_or_default();
             assert!(!complaint.is_empty() && !complaint.contains('\n'), "{words:?}");
         }
+    }
+
+    #[test]
+    fn an_unknown_option_is_named_and_not_blamed_on_the_board() {
+        for words in [
+            &["firmware", "matek-h743", "--dry"] as &[&str],
+            &["firmware", "--dry", "matek-h743", "--trace"],
+            &["flash", "matek-h743", "--dry"],
+            &["flash", "--dry"],
+            &["bench", "matek-h743", "--dry"],
+            &[
+                "bench",
+                "f405",
+                "tests/scenarios/perch-short.toml",
+                "--seed",
+                "3",
+                "--dry",
+            ],
+            &["rig", "matek-h743", "--dry"],
+            &["sizes", "--dry"],
+            &["sizes", "--tighten", "--dry"],
+            &["cost", "--dry"],
+            &["conformance", "--dry"],
+        ] {
+            let complaint = Verb::parse(words).err().unwrap_or_default();
+            let expected = format!("{}: `--dry` is not understood: allowed ", words[0]);
+            assert!(
+                complaint.starts_with(&expected) && !complaint.contains('\n'),
+                "{words:?}: {complaint}"
+            );
+        }
+        for (words, told) in [
+            (
+                &["bench", "f405", "--seed"] as &[&str],
+                "bench: `--seed` lacks its N",
+            ),
+            (
+                &["bench", "f405", "--out", "--json"],
+                "bench: `--out` lacks its DIR",
+            ),
+            (
+                &["bench", "f405", "a.toml", "b.toml"],
+                "bench: `b.toml` is a second scenario: allowed is one",
+            ),
+            (
+                &["bench", "--json"],
+                "bench: name the board first: allowed is matek-h743, f405",
+            ),
+            (
+                &["cost", "--tighten", "--json"],
+                "cost: `--tighten --json` is not understood: allowed is --tighten or --json",
+            ),
+            (
+                &["fly"],
+                "`fly` is not understood: allowed are firmware, flash, bench, rig, sizes, cost, conformance, help",
+            ),
+        ] {
+            assert_eq!(Verb::parse(words).err().as_deref(), Some(told), "{words:?}");
+        }
+    }
+
+    #[test]
+    fn every_verb_has_help() {
+        for verb in VERBS {
+            assert!(USAGE.contains(&format!("\n  {verb} ")), "{verb}");
+            for words in [
+                &["help", verb][..],
+                &[verb, "--help"],
+                &[verb, "matek-h743", "-h"],
+            ] {
+                assert!(matches!(Verb::parse(words), Ok(Verb::Help)), "{words:?}");
+            }
+        }
+        assert!(Verb::parse(&["help", "fly"]).is_err());
     }
 }
