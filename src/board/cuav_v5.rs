@@ -21,10 +21,11 @@ use assign_resources::assign_resources;
 use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{AnyPin, Level, Output, Pull, Speed};
+use embassy_stm32::gpio::{Level, Pull};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
+use embassy_time::{Duration, Timer};
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
@@ -37,7 +38,8 @@ use super::Board;
 use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
-    ReadyLine, ReadyStamp, Selected, ServoPairs, Tone, console_lines, pull_low, receiver_line, spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoPairs, Tone, console_lines, hold, pull_low, receiver_line,
+    spi_config,
 };
 
 /// Name in the log.
@@ -183,7 +185,7 @@ pub async fn take() -> Board {
     stop_motors();
     enable_instruction_cache();
     let parts = split_resources!(p);
-    rails(parts.rails);
+    rails(parts.rails).await;
     let mut storage = storage(parts.storage);
     let (params, loaded) = super::load(&mut storage).await;
     let r = parts.receiver;
@@ -238,16 +240,19 @@ fn clocks() -> embassy_stm32::Config {
     config
 }
 
-/// Switches the supplies on, and keeps the other chips on the sensor's bus from answering. For good: the pins are
-/// leaked, since a pin that is dropped floats again.
-fn rails(p: RailParts) {
-    let hold = |pin: Peri<'static, AnyPin>, level| core::mem::forget(Output::new(pin, level, Speed::Low));
+/// From the sensors' supply to a sensor that answers (ICM-20689 datasheet, start-up time for register access from
+/// power-up: 100 ms at the most).
+const SENSORS_START: Duration = Duration::from_millis(100);
+
+/// Switches the supplies on, keeps the other chips on the sensor's bus from answering, and waits for the sensors.
+async fn rails(p: RailParts) {
     hold(p.other_imu.into(), Level::High);
     hold(p.other_gyro.into(), Level::High);
     hold(p.other_accel.into(), Level::High);
     hold(p.sensors.into(), Level::High);
     hold(p.peripherals_off.into(), Level::Low);
     hold(p.high_power_off.into(), Level::Low);
+    Timer::after(SENSORS_START).await;
 }
 
 fn imu(p: ImuParts, params: &Params) -> ImuPort {

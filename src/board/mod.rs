@@ -1,24 +1,18 @@
 //! The boards. Everything that is specific to a chip, and every line of unsafe code, is in here.
 //!
 //! A board is one file: clocks, pins, DMA streams and timers, claimed with `assign_resources`, and [`Board`]'s ports
-//! built from them. [`stm32`] has what several boards share, [`cortex_m`] what all do. The memory maps are in
-//! `memory/`. Nothing outside names a chip.
+//! built from them. [`stm32`] has what several boards share, [`cortex_m`] what all do: both go by the chip's family and
+//! never by the board. The memory maps are in `memory/`. Nothing outside names a chip.
 
 #![allow(
     unsafe_code,
     reason = "registers, vectors and linker symbols; each use has its reason beside it"
 )]
 
-#[cfg(not(any(
-    all(feature = "matek-h743", not(feature = "cuav-v5"), not(feature = "f405")),
-    all(feature = "cuav-v5", not(feature = "matek-h743"), not(feature = "f405")),
-    all(feature = "f405", not(feature = "matek-h743"), not(feature = "cuav-v5")),
-)))]
-compile_error!("choose exactly one board: --features matek-h743, --features cuav-v5 or --features f405");
-
 pub mod cortex_m;
 pub mod stm32;
 
+// One line a board. Exactly one holds: the build script has seen to it (selection.rs).
 #[cfg_attr(feature = "matek-h743", path = "matek_h743.rs")]
 #[cfg_attr(feature = "cuav-v5", path = "cuav_v5.rs")]
 #[cfg_attr(feature = "f405", path = "f405.rs")]

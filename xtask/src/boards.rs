@@ -1,6 +1,7 @@
 //! The boards, as far as a build has to know them.
 
 /// One board.
+#[derive(Clone, Copy)]
 pub struct Board {
     /// Name, which is also its cargo feature.
     pub name: &'static str,

@@ -51,11 +51,30 @@ pub fn image(
     core: &str,
     kept: &str,
 ) -> Result<PathBuf, Error> {
+    image_in(root(), package, arguments, variables, core, kept)
+}
+
+/// [`image`] of the workspace in `folder`.
+///
+/// # Errors
+/// As there.
+pub fn image_in(
+    folder: &Path,
+    package: &str,
+    arguments: &[&str],
+    variables: &[(&str, &str)],
+    core: &str,
+    kept: &str,
+) -> Result<PathBuf, Error> {
     let toolchain = toolchain::find()?;
     eprintln!("{kept}: {}", toolchain.name);
 
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.current_dir(root());
+    command.current_dir(folder);
+    if folder != root() {
+        // What does not lie in the folder is built once for both.
+        command.env("CARGO_TARGET_DIR", target_dir());
+    }
     command.args([
         "build",
         "--profile",
@@ -104,6 +123,11 @@ pub fn image(
 pub fn root() -> &'static Path {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap_or(here)
+}
+
+/// Where cargo builds.
+pub fn target_dir() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
 /// The command as one would type it.

@@ -6,7 +6,9 @@ mod build;
 mod conformance;
 mod cost;
 mod dma;
+mod guard;
 mod image;
+mod own_board;
 mod params;
 mod rig;
 mod sizes;
@@ -43,6 +45,8 @@ usage: cargo xtask VERB
                      count the instructions of every control stage under QEMU, print them beside targets and peers,
                      compare with hil/cost/baseline.toml; --tighten takes what is counted now as the baseline and
                      writes the table of docs/cost.md
+  own-board          build a copy of the reference board as docs/boards.md says for a board of one's own, and check its
+                     image
   conformance        run one image of exceptions, floats and control laws on QEMU and on the emulated core of the bench;
                      their logs must be equal
 
@@ -58,18 +62,20 @@ enum Verb<'a> {
     Rig(rig::Rig<'a>),
     Sizes { tighten: bool },
     Cost(cost::Then),
+    OwnBoard,
     Conformance,
     Help,
 }
 
 /// Every verb, in the order of [`USAGE`].
-const VERBS: [&str; 7] = [
+const VERBS: [&str; 8] = [
     "firmware",
     "flash",
     "bench",
     "rig",
     "sizes",
     "cost",
+    "own-board",
     "conformance",
 ];
 
@@ -105,7 +111,11 @@ impl<'a> Verb<'a> {
             }),
             _ => {
                 one_of(verb, rest, &[])?;
-                Self::Conformance
+                if verb == "own-board" {
+                    Self::OwnBoard
+                } else {
+                    Self::Conformance
+                }
             }
         })
     }
@@ -165,6 +175,7 @@ fn main() -> ExitCode {
         Verb::Rig(rig) => return ended(rig.board, rig.run()),
         Verb::Sizes { tighten } => all_sizes(tighten),
         Verb::Cost(then) => cost::cost(then),
+        Verb::OwnBoard => own_board::own_board(),
         Verb::Conformance => conformance::conformance(),
         Verb::Help => {
             println!("{USAGE}");
@@ -203,6 +214,9 @@ fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
     eprintln!("vector table: {vectors} handlers, levels and reset in place");
     let kept = params::check(&image)?;
     eprintln!("DMA: {buffers} buffers and task futures, all where their DMA reaches");
+    if guard::check(board, &image)? {
+        eprintln!("flash: read behind the guard against damaged words");
+    }
     if kept > 0 {
         eprintln!("parameters: {kept} bytes of flash kept, nothing loaded there");
     }
@@ -290,6 +304,7 @@ mod tests {
             &["sizes", "--tighten", "--dry"],
             &["cost", "--dry"],
             &["conformance", "--dry"],
+            &["own-board", "--dry"],
         ] {
             let complaint = Verb::parse(words).err().unwrap_or_default();
             let expected = format!("{}: `--dry` is not understood: allowed ", words[0]);
@@ -321,7 +336,7 @@ mod tests {
             ),
             (
                 &["fly"],
-                "`fly` is not understood: allowed are firmware, flash, bench, rig, sizes, cost, conformance, help",
+                "`fly` is not understood: allowed are firmware, flash, bench, rig, sizes, cost, own-board, conformance, help",
             ),
         ] {
             assert_eq!(Verb::parse(words).err().as_deref(), Some(told), "{words:?}");

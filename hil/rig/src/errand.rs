@@ -91,8 +91,8 @@ pub fn leave(errand: Errand) {
 
 /// The watchdog stands still while the probe has halted the core: the probe reads a test's verdict then.
 fn stop_watchdog_with_core() {
-    #[cfg(feature = "matek-h743")]
+    #[cfg(family = "h7")]
     DBGMCU.apb4fzr1().modify(|w| w.set_iwdg1(true));
-    #[cfg(not(feature = "matek-h743"))]
+    #[cfg(not(family = "h7"))]
     DBGMCU.apb1fzr().modify(|w| w.set_iwdg(true));
 }

@@ -1,6 +1,6 @@
 //! What every Cortex-M board does the same way: levels, stack, caches, restarts, the end of a run and what outlives it.
 
-#[cfg(not(feature = "f405"))]
+#[cfg(not(family = "f4"))]
 mod cache;
 mod fault;
 mod levels;
@@ -10,7 +10,7 @@ pub mod stack;
 #[cfg(feature = "trace")]
 pub mod trace;
 
-#[cfg(not(feature = "f405"))]
+#[cfg(not(family = "f4"))]
 pub use cache::enable_instruction_cache;
 pub use levels::{FLIGHT, STEADY};
 pub use restart::Restarter;

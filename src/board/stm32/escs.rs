@@ -1,12 +1,13 @@
-//! The motors' speed controllers: four channels of one timer, as DShot frames or as pulses.
+//! The motors' speed controllers, as DShot frames or as pulses: on the channels of one timer in any order, or of two.
 
+use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
 use embassy_stm32::interrupt::typelevel::Binding;
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::vals::Moder;
 use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
-use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, Channel, GeneralInstance4Channel, TimerPin, UpDma};
+use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin, UpDma};
 use embassy_stm32::{Peri, rcc};
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::wrench::PerArm;
@@ -19,8 +20,6 @@ use static_cell::ConstStaticCell;
 
 use super::Aligned;
 
-/// The channels in the order of the motors.
-const MOTORS: [Channel; 4] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
 /// The slowest frame takes 120 µs; one that takes this long never ends.
 const LONGEST_FRAME: Duration = Duration::from_micros(500);
 /// Length of a OneShot125 period, µs: the longest pulse and a moment of rest before it.
@@ -32,6 +31,9 @@ type EscBurst = Aligned<[u16; dshot::BURST + dshot::MOTORS]>;
 
 static DMA_MOTORS: ConstStaticCell<EscBurst> =
     ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
+/// That of a second timer, where there is one.
+static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> =
+    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
 
 /// How commands become compare values.
 #[derive(Clone, Copy)]
@@ -42,44 +44,67 @@ enum Timing {
     Off,
 }
 
-/// Four speed controllers on the channels 1 to 4 of a 16-bit timer.
+/// Speed controllers on channels of a 16-bit timer.
 pub struct EscTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
     timer: Timer<'static, T>,
+    /// The channel of each motor that is on this timer.
+    channels: PerArm<Option<Channel>>,
     /// Kept, so that the pins stay the timer's.
-    _pins: [Flex<'static>; 4],
+    pins: PerArm<Option<Flex<'static>>>,
     dma: Peri<'static, D>,
     irqs: I,
     burst: &'static mut EscBurst,
     timing: Timing,
 }
 
-/// Makes `pin` the output of its timer.
-macro_rules! timer_output {
-    ($pin:expr) => {{
-        let pin = $pin;
-        let function = pin.af_num();
-        let mut output = Flex::new(pin);
-        output.set_as_af_unchecked(function, AfType::output(OutputType::PushPull, Speed::High));
-        output
-    }};
-}
-
 impl<T: GeneralInstance4Channel, D: UpDma<T>, I> EscTimer<T, D, I>
 where
     u16: Into<T::Word>,
 {
-    /// The controllers on these pins, which stay low until the first command. Called once.
-    pub fn new(
+    /// Motors 1 to 4 on these pins, which stay low until the first command. The pins say the channels, in any order: two
+    /// of one channel do not build. Called once.
+    pub fn new<C1: TimerChannel, C2: TimerChannel, C3: TimerChannel, C4: TimerChannel>(
         timer: Peri<'static, T>,
         (one, two, three, four): (
-            Peri<'static, impl TimerPin<T, Ch1>>,
-            Peri<'static, impl TimerPin<T, Ch2>>,
-            Peri<'static, impl TimerPin<T, Ch3>>,
-            Peri<'static, impl TimerPin<T, Ch4>>,
+            Peri<'static, impl TimerPin<T, C1>>,
+            Peri<'static, impl TimerPin<T, C2>>,
+            Peri<'static, impl TimerPin<T, C3>>,
+            Peri<'static, impl TimerPin<T, C4>>,
         ),
         dma: Peri<'static, D>,
         irqs: I,
         protocol: Protocol,
+    ) -> Self {
+        const {
+            let bits = 1 << C1::CHANNEL as u32
+                | 1 << C2::CHANNEL as u32
+                | 1 << C3::CHANNEL as u32
+                | 1 << C4::CHANNEL as u32;
+            assert!(bits == 0b1111, "two motors are on one channel of the timer");
+        }
+        Self::first(timer, dma, irqs, protocol)
+            .motor(0, one)
+            .motor(1, two)
+            .motor(2, three)
+            .motor(3, four)
+    }
+
+    /// The first of two timers, without motors yet. Called once.
+    pub fn first(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: Protocol) -> Self {
+        Self::bare(timer, dma, irqs, protocol, DMA_MOTORS.take())
+    }
+
+    /// The second of two timers, without motors yet. Called once.
+    pub fn second(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: Protocol) -> Self {
+        Self::bare(timer, dma, irqs, protocol, DMA_MORE_MOTORS.take())
+    }
+
+    fn bare(
+        timer: Peri<'static, T>,
+        dma: Peri<'static, D>,
+        irqs: I,
+        protocol: Protocol,
+        burst: &'static mut EscBurst,
     ) -> Self {
         let timing = timing(protocol, rcc::frequency::<T>().0);
         let timer = Timer::new(timer);
@@ -91,42 +116,59 @@ where
         timer.regs_core().psc().write_value(prescaler);
         // `PwmTiming` and `BitTiming` are made for 16 bits: period - 1 always fits.
         timer.set_max_compare_value((period.wrapping_sub(1) as u16).into());
-        // A OneShot pulse ends with the period: a counter that stops at zero must leave the pin low.
         let one_shot = matches!(timing, Timing::OneShot(_));
+        timer.regs_core().cr1().modify(|w| w.set_opm(one_shot));
+        Self {
+            timer,
+            channels: [None; 4],
+            pins: [const { None }; 4],
+            dma,
+            irqs,
+            burst,
+            timing,
+        }
+    }
+
+    /// Adds motor `index`, 0 to 3, on its pin, which stays low until the first command.
+    pub fn motor<C: TimerChannel>(mut self, index: usize, pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
+        // A OneShot pulse ends with the period: a counter that stops at zero must leave the pin low.
+        let one_shot = matches!(self.timing, Timing::OneShot(_));
         let mode = if one_shot {
             OutputCompareMode::PwmMode2
         } else {
             OutputCompareMode::PwmMode1
         };
-        timer.regs_core().cr1().modify(|w| w.set_opm(one_shot));
-        for channel in MOTORS {
-            timer.set_output_compare_mode(channel, mode);
-            timer.set_output_compare_preload(channel, true);
-            timer.set_compare_value(channel, if one_shot { u16::MAX } else { 0 }.into());
-            timer.enable_channel(channel, true);
+        let channel = C::CHANNEL;
+        self.timer.set_output_compare_mode(channel, mode);
+        self.timer.set_output_compare_preload(channel, true);
+        self.timer
+            .set_compare_value(channel, if one_shot { u16::MAX } else { 0 }.into());
+        self.timer.enable_channel(channel, true);
+        // Takes prescaler, period and compare values over while the pin is not yet the timer's.
+        self.timer.generate_update_event();
+        self.timer.enable_outputs();
+        let function = pin.af_num();
+        let mut output = Flex::new(pin);
+        output.set_as_af_unchecked(function, AfType::output(OutputType::PushPull, Speed::High));
+        if let (Some(of), Some(kept)) = (self.channels.get_mut(index), self.pins.get_mut(index)) {
+            *of = Some(channel);
+            *kept = Some(output);
         }
-        // Takes prescaler, period and compare values over while the outputs are still off.
-        timer.generate_update_event();
-        timer.enable_outputs();
-        let pins = [
-            timer_output!(one),
-            timer_output!(two),
-            timer_output!(three),
-            timer_output!(four),
-        ];
-        Self {
-            timer,
-            _pins: pins,
-            dma,
-            irqs,
-            burst: DMA_MOTORS.take(),
-            timing,
-        }
+        self
     }
 
-    /// One pulse to all four, of a timer that runs on by itself.
+    /// Channels with the values of their motors.
+    fn on_channels<V: Copy>(
+        &self,
+        motors: PerArm<V>,
+    ) -> impl Iterator<Item = (Channel, V)> + use<T, D, I, V> {
+        let pairs = self.channels.into_iter().zip(motors);
+        pairs.filter_map(|(channel, value)| Some((channel?, value)))
+    }
+
+    /// One pulse to all motors, of a timer that runs on by itself.
     fn set_pulses(&mut self, t: PwmTiming, commands: PerArm<f32>) {
-        for (channel, command) in MOTORS.into_iter().zip(commands) {
+        for (channel, command) in self.on_channels(commands) {
             let counts = EscPulse::Standard.compare(&t, command);
             // Preloaded: takes effect with the next pulse, never within one.
             self.timer.set_compare_value(channel, (counts as u16).into());
@@ -134,10 +176,10 @@ where
         self.timer.start();
     }
 
-    /// One pulse to all four, now.
+    /// One pulse to all motors, now.
     fn shoot(&mut self, t: PwmTiming, commands: PerArm<f32>) {
         self.timer.stop();
-        for (channel, command) in MOTORS.into_iter().zip(commands) {
+        for (channel, command) in self.on_channels(commands) {
             let counts = EscPulse::OneShot125.compare(&t, command);
             let low = t.period.saturating_sub(counts);
             self.timer.set_compare_value(channel, (low as u16).into());
@@ -146,7 +188,7 @@ where
         self.timer.start();
     }
 
-    /// One frame to all four, over when this returns; gives its beginning.
+    /// One frame to all motors, over when this returns; gives its beginning.
     ///
     /// The order matters: counter stopped, DMA armed, request enabled, counter started. With the request enabled first,
     /// an update that comes before the stream is armed is lost, and with it the frame's first bit.
@@ -154,7 +196,14 @@ where
     where
         I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
     {
-        fill_burst(&mut self.burst.0, commands.map(Frame::from_command), bit);
+        // In the order of the channels, as the timer takes them. A channel without a motor has no pin.
+        let mut frames = [Frame::from_command(0.0); 4];
+        for (channel, command) in self.on_channels(commands) {
+            if let Some(frame) = frames.get_mut(channel.index()) {
+                *frame = Frame::from_command(command);
+            }
+        }
+        fill_burst(&mut self.burst.0, frames, bit);
         self.timer.stop();
         self.timer.enable_update_dma(false);
         self.timer.reset();
@@ -190,6 +239,36 @@ where
             Timing::Off => {}
         }
         Instant::now()
+    }
+}
+
+/// The motors on two timers, each with a stream of its own.
+pub struct EscTimers<A, B>(A, B);
+
+impl<T, D, I, U, E, J> EscTimers<EscTimer<T, D, I>, EscTimer<U, E, J>>
+where
+    T: GeneralInstance4Channel,
+    D: UpDma<T>,
+    U: GeneralInstance4Channel,
+    E: UpDma<U>,
+{
+    /// Two timers with their motors.
+    ///
+    /// # Panics
+    /// If a motor is on none or on both: a board with such a table never starts, so it is found at the bench.
+    pub fn new(first: EscTimer<T, D, I>, second: EscTimer<U, E, J>) -> Self {
+        for (a, b) in first.channels.iter().zip(&second.channels) {
+            assert!(a.is_some() != b.is_some(), "each motor is on one timer");
+        }
+        Self(first, second)
+    }
+}
+
+impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
+    /// The frames begin within some microseconds of each other.
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
+        let (first, second) = join(self.0.write(commands), self.1.write(commands)).await;
+        first.min(second)
     }
 }
 

@@ -9,7 +9,7 @@ use embassy_stm32::flash::{Blocking, Error, FLASH_BASE, Flash, WRITE_SIZE};
 use embassy_stm32::peripherals::FLASH;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 
-#[cfg(feature = "matek-h743")]
+#[cfg(family = "h7")]
 use super::flash_ecc as ecc;
 
 /// The parameters' flash, in sectors of `SECTOR` bytes.
@@ -65,9 +65,9 @@ impl<const SECTOR: usize> ReadNorFlash for ParamFlash<SECTOR> {
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), NorFlashErrorKind> {
         let place = self.place(offset, bytes.len())?;
         let read = || self.flash.blocking_read(place, bytes);
-        #[cfg(feature = "matek-h743")]
+        #[cfg(family = "h7")]
         let done = ecc::read(read).ok_or(NorFlashErrorKind::Other)?;
-        #[cfg(not(feature = "matek-h743"))]
+        #[cfg(not(family = "h7"))]
         let done = { read }();
         done.map_err(kind)
     }
@@ -84,14 +84,14 @@ impl<const SECTOR: usize> NorFlash for ParamFlash<SECTOR> {
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), NorFlashErrorKind> {
         let length = to.checked_sub(from).ok_or(NorFlashErrorKind::OutOfBounds)?;
         let place = self.place(from, length as usize)?;
-        #[cfg(feature = "matek-h743")]
+        #[cfg(family = "h7")]
         ecc::forget_errors();
         self.flash.blocking_erase(place, place + length).map_err(kind)
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), NorFlashErrorKind> {
         let place = self.place(offset, bytes.len())?;
-        #[cfg(feature = "matek-h743")]
+        #[cfg(family = "h7")]
         ecc::forget_errors();
         self.flash.blocking_write(place, bytes).map_err(kind)
     }

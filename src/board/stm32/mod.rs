@@ -1,51 +1,57 @@
 //! What the STM32 boards share: the ports of `sophie_tasks` over embassy-stm32's drivers, generic over the instance.
+//!
+//! What differs between chips goes by `family`, which the build script takes from the chip that a board's feature names,
+//! never by the board: a second board with the same chip gets all that the first one has.
 
-#[cfg_attr(feature = "matek-h743", path = "adc_h7.rs")]
-#[cfg_attr(not(feature = "matek-h743"), path = "adc_f4.rs")]
+#![allow(
+    dead_code,
+    unused_imports,
+    reason = "each board takes the ports that its parts need"
+)]
+
+#[cfg(not(any(family = "f4", family = "f7", family = "h7")))]
+compile_error!(
+    "the ports have been written for the families f4, f7 and h7: see what goes by `family` in src/board"
+);
+
+#[cfg_attr(family = "h7", path = "adc_h7.rs")]
+#[cfg_attr(not(family = "h7"), path = "adc_f4.rs")]
 mod adc;
 mod analog;
 mod clock;
 mod data_ready;
 mod escs;
-#[cfg(not(feature = "cuav-v5"))]
 mod flash;
-#[cfg(feature = "matek-h743")]
+#[cfg(family = "h7")]
 mod flash_ecc;
 mod i2c_bus;
 mod lights;
+mod rails;
 mod reset;
 mod serial;
-#[cfg(feature = "cuav-v5")]
 mod servo_pairs;
-#[cfg(not(feature = "cuav-v5"))]
 mod servos;
-#[cfg(feature = "cuav-v5")]
 mod small_timer;
 mod spi;
 mod storage;
-#[cfg(feature = "cuav-v5")]
 mod tone;
 mod watchdog;
 
 pub use analog::{AnalogInputs, BatteryScale};
 pub use clock::start;
 pub use data_ready::{ReadyLine, ReadyStamp};
-pub use escs::{EscTimer, pull_low};
-#[cfg(not(feature = "cuav-v5"))]
+pub use escs::{EscTimer, EscTimers, pull_low};
 pub use flash::ParamFlash;
 pub use i2c_bus::{ArmBus, BusParts, i2c_config};
 pub use lights::{Lamp, Lights};
+pub use rails::hold;
 pub use reset::take_reset_cause;
 pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, console_lines, receiver_line};
-#[cfg(feature = "cuav-v5")]
 pub use servo_pairs::ServoPairs;
-#[cfg(not(feature = "cuav-v5"))]
 pub use servos::ServoTimer;
-#[cfg(feature = "cuav-v5")]
 pub use spi::PlainChip;
 pub use spi::{DmaChip, Selected, spi_config};
 pub use storage::BoardStorage;
-#[cfg(feature = "cuav-v5")]
 pub use tone::Tone;
 pub use watchdog::Dog;
 

@@ -8,7 +8,7 @@ use crate::board::cortex_m::retained::ResetCause;
 ///
 /// Every reset also pulls the reset pin, so the pin only counts when nothing else is told; and a power-on sets the
 /// brown-out bit too.
-#[cfg(feature = "matek-h743")]
+#[cfg(family = "h7")]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.rsr().read();
     RCC.rsr().modify(|w| w.set_rmvf(true));
@@ -25,7 +25,7 @@ pub fn take_reset_cause() -> ResetCause {
 ///
 /// Every reset also pulls the reset pin, so the pin only counts when nothing else is told; and a power-on sets the
 /// brown-out bit too.
-#[cfg(not(feature = "matek-h743"))]
+#[cfg(not(family = "h7"))]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.csr().read();
     RCC.csr().modify(|w| w.set_rmvf(true));

@@ -39,11 +39,11 @@ fn receiver_config(protocol: Protocol) -> Config {
             config.parity = Parity::ParityEven;
             config.stop_bits = StopBits::STOP2;
             // The F4's ports cannot invert: an inverter on the board makes the line idle high there.
-            #[cfg(feature = "f405")]
+            #[cfg(family = "f4")]
             {
                 config.rx_pull = Pull::Up;
             }
-            #[cfg(not(feature = "f405"))]
+            #[cfg(not(family = "f4"))]
             {
                 config.invert_rx = true;
                 config.rx_pull = Pull::Down;

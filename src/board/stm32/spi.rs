@@ -37,7 +37,6 @@ impl<B> Selected<B> {
 pub type DmaChip = Selected<Spi<'static, embassy_stm32::mode::Async, Master>>;
 
 /// A chip whose bus is moved by the processor, which waits meanwhile.
-#[cfg(feature = "cuav-v5")]
 pub type PlainChip = Selected<
     embassy_embedded_hal::adapter::BlockingAsync<Spi<'static, embassy_stm32::mode::Blocking, Master>>,
 >;

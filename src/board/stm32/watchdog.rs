@@ -1,9 +1,9 @@
 //! The independent watchdog.
 
 use embassy_stm32::Peri;
-#[cfg(not(feature = "matek-h743"))]
+#[cfg(not(family = "h7"))]
 use embassy_stm32::pac::IWDG;
-#[cfg(feature = "matek-h743")]
+#[cfg(family = "h7")]
 use embassy_stm32::pac::IWDG1 as IWDG;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_stm32::wdg::{IndependentWatchdog, Instance};

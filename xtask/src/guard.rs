@@ -1,0 +1,79 @@
+//! The guard against damaged words in the flash of an H7.
+//!
+//! Power that fails while a parameter is stored leaves a word that this family's error correction cannot mend, and
+//! reading it is a bus fault at every start from then on. `src/board/stm32/flash_ecc.rs` stands between; an image that
+//! reads its parameters without it builds and flies until that day.
+
+use crate::Error;
+use crate::boards::Board;
+use crate::image::Image;
+
+/// Where the guard begins: parts of the mangled name of a function that is never inlined.
+const GUARD: [&str; 2] = ["flash_ecc", "begin_guard"];
+
+/// Whether the image needs the guard, which it then has.
+///
+/// # Errors
+/// It needs the guard and has none.
+pub fn check(board: &Board, image: &Image) -> Result<bool, Error> {
+    let in_flash = image.symbols.contains_key("_params_start");
+    if !(in_flash && board.probe_rs_chip.starts_with("STM32H7")) {
+        return Ok(false);
+    }
+    if image
+        .symbols
+        .keys()
+        .any(|name| GUARD.iter().all(|part| name.contains(part)))
+    {
+        return Ok(true);
+    }
+    Err(format!(
+        "{} ({}) reads its parameters without the guard against damaged flash (src/board/stm32/flash_ecc.rs): a word that \
+         power failed in would end every start",
+        board.name, board.probe_rs_chip
+    )
+    .into())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+    use crate::boards::BOARDS;
+
+    fn image(symbols: &[&str]) -> Image {
+        Image {
+            entry: 0,
+            sections: Vec::new(),
+            loads: Vec::new(),
+            statics: Vec::new(),
+            symbols: symbols
+                .iter()
+                .map(|name| (name.to_string(), 0))
+                .collect::<HashMap<_, _>>(),
+            vectors: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn an_h7_that_stores_in_flash_is_refused_without_the_guard() {
+        let guard = "_ZN6sophie5board5stm329flash_ecc11begin_guard17h0123456789abcdefE";
+        for board in &BOARDS {
+            let h7 = board.name == "matek-h743";
+            assert_eq!(
+                check(board, &image(&["_params_start"])).is_err(),
+                h7,
+                "{}",
+                board.name
+            );
+            assert_eq!(
+                check(board, &image(&["_params_start", guard])).unwrap(),
+                h7,
+                "{}",
+                board.name
+            );
+            assert!(!check(board, &image(&["main"])).unwrap(), "{}", board.name);
+        }
+    }
+}

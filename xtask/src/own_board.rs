@@ -1,0 +1,172 @@
+//! A board of one's own, as docs/boards.md says: a copy of the reference board in a scratch folder, built and checked.
+//!
+//! It shows that such a board touches the files named there and no other, that what the boards share goes by the chip,
+//! and what the named boards do not need: motors on two timers in an order of their own, a pin that switches the
+//! sensors' supply. Its firmware is not for any real board.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+use crate::boards::{self, Board};
+use crate::toolchain::{self, TARGET};
+use crate::{Error, build};
+
+/// The copy's name.
+const NAME: &str = "own-h743";
+/// The same board with a feature that forgets the chip: it must not build.
+const CHIPLESS: &str = "chipless-h743";
+/// What is copied.
+const ORIGINAL: &str = "matek-h743";
+
+/// What the copy changes in its board file: old and new.
+const CHANGES: [(&str, &str); 9] = [
+    (
+        "pub const NAME: &str = \"matek-h743\"",
+        "pub const NAME: &str = \"own-h743\"",
+    ),
+    (
+        "EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>;",
+        "EscTimers<EscTimer<peripherals::TIM4, peripherals::DMA1_CH0, Irqs>, \
+         EscTimer<peripherals::TIM3, peripherals::DMA1_CH5, Irqs>>;",
+    ),
+    ("Dog, EscTimer, Lamp,", "Dog, EscTimer, EscTimers, hold, Lamp,"),
+    (
+        "        DMA2_STREAM0 =>",
+        "        DMA1_STREAM5 => dma::InterruptHandler<peripherals::DMA1_CH5>;\n        DMA2_STREAM0 =>",
+    ),
+    (
+        "        timer: TIM4,\n        motor_1: PD12,\n        motor_2: PD13,\n        motor_3: PD14,\n        motor_4: PD15,\n",
+        "        timer: TIM4,\n        motor_1: PD15,\n        motor_4: PD12,\n        second: TIM3,\n        motor_2: PB1,\n        \
+         motor_3: PB0,\n        more_dma: DMA1_CH5,\n",
+    ),
+    (
+        "    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);\n    \
+         EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))\n",
+        "    let protocol = Protocol::from_params(params);\n    EscTimers::new(\n        \
+         EscTimer::first(p.timer, p.dma, Irqs, protocol).motor(0, p.motor_1).motor(3, p.motor_4),\n        \
+         EscTimer::second(p.second, p.more_dma, Irqs, protocol).motor(1, p.motor_2).motor(2, p.motor_3),\n    )\n",
+    ),
+    (
+        "    pull_low(pac::GPIOD, [12, 13, 14, 15]);\n",
+        "    pull_low(pac::GPIOD, [12, 15, 15, 15]);\n    pull_low(pac::GPIOB, [0, 1, 1, 1]);\n",
+    ),
+    (
+        "    motors: MotorParts {",
+        "    supply: SupplyParts {\n        sensors: PE5,\n    }\n    motors: MotorParts {",
+    ),
+    (
+        "    let mut storage = storage(parts.storage);\n",
+        "    hold(parts.supply.sensors.into(), Level::High);\n    embassy_time::Timer::after_millis(100).await;\n    \
+         let mut storage = storage(parts.storage);\n",
+    ),
+];
+
+/// Builds and checks the copy, and sees that one without chip is refused.
+///
+/// # Errors
+/// The copy does not build, its image is wrong, or a board that names no chip builds.
+pub fn own_board() -> Result<(), Error> {
+    let scratch = build::root().join("target/own-board");
+    copy(build::root(), &scratch)?;
+    write(&scratch)?;
+
+    let original = boards::find(ORIGINAL).ok_or("no reference board")?;
+    let board = Board {
+        name: NAME,
+        ..*original
+    };
+    let elf = build::image_in(&scratch, "sophie", &["--features", NAME], &[], board.core, NAME)?;
+    crate::check(&board, &elf)?;
+
+    let toolchain = toolchain::find()?;
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo
+        .current_dir(&scratch)
+        .args(["check", "--locked", "--package", "sophie", "--target", TARGET]);
+    cargo
+        .args(["--profile", "firmware", "--features", CHIPLESS])
+        .args(toolchain.arguments);
+    cargo
+        .envs(toolchain.variables)
+        .env("CARGO_TARGET_DIR", build::target_dir());
+    let output = cargo.output()?;
+    let told = String::from_utf8_lossy(&output.stderr);
+    let wanted = format!("the feature {CHIPLESS} of Cargo.toml names 0 chips");
+    if output.status.success() || !told.contains(&wanted) {
+        return Err(format!("a board whose feature names no chip is not refused for that:\n{told}").into());
+    }
+    eprintln!("{NAME}: builds with what its chip needs; a board that names no chip does not");
+    Ok(())
+}
+
+/// Writes the files of docs/boards.md, `A board of one's own`, into the copy of the workspace.
+fn write(scratch: &Path) -> Result<(), Error> {
+    let folder = scratch.join("src/board");
+    let mut file = fs::read_to_string(folder.join("matek_h743.rs"))?;
+    for (old, new) in CHANGES {
+        replace(&mut file, old, new)?;
+    }
+    let map = fs::read(folder.join(format!("memory/{ORIGINAL}.x")))?;
+    let mut features = fs::read_to_string(scratch.join("Cargo.toml"))?;
+    let mut list = fs::read_to_string(folder.join("mod.rs"))?;
+    for (name, chip) in [(NAME, "stm32h743vi"), (CHIPLESS, "embassy-stm32/stm32h743vi")] {
+        put(
+            &folder.join(format!("{}.rs", name.replace('-', "_"))),
+            file.as_bytes(),
+        )?;
+        put(&folder.join(format!("memory/{name}.x")), &map)?;
+        let anchor = "# Every event of the executors";
+        let line = format!(
+            "{name} = [\"board-matek-h743?/and-another\", \"board-cuav-v5?/and-another\", \"dep:embassy-stm32\", \"{chip}\", \
+             \"embassy-stm32/time-driver-tim2\"]\n{anchor}"
+        );
+        replace(&mut features, anchor, &line)?;
+        let anchor = "#[cfg_attr(feature = \"f405\"";
+        let path = name.replace('-', "_");
+        let line = format!("#[cfg_attr(feature = \"{name}\", path = \"{path}.rs\")]\n{anchor}");
+        replace(&mut list, anchor, &line)?;
+    }
+    put(&scratch.join("Cargo.toml"), features.as_bytes())?;
+    put(&folder.join("mod.rs"), list.as_bytes())?;
+    Ok(())
+}
+
+fn replace(text: &mut String, old: &str, new: &str) -> Result<(), Error> {
+    if text.matches(old).count() != 1 {
+        return Err(
+            format!("the copy of a board looks for this once and does not find it so:\n{old}").into(),
+        );
+    }
+    *text = text.replace(old, new);
+    Ok(())
+}
+
+/// Copies the workspace without what is built and what is hidden. A file that is the same stays, and with it what was
+/// built of it.
+fn copy(from: &Path, to: &Path) -> Result<(), Error> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        if name == "target" || name.to_string_lossy().starts_with('.') {
+            continue;
+        }
+        let target: PathBuf = to.join(&name);
+        if entry.file_type()?.is_dir() {
+            copy(&entry.path(), &target)?;
+        } else {
+            put(&target, &fs::read(entry.path())?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes what is not there already.
+fn put(path: &Path, content: &[u8]) -> Result<(), Error> {
+    if fs::read(path).is_ok_and(|old| old == content) {
+        return Ok(());
+    }
+    fs::write(path, content)?;
+    Ok(())
+}
