@@ -19,6 +19,8 @@ mod decide;
 mod demand;
 mod escape;
 mod failsafe;
+#[cfg(test)]
+mod hand_over;
 mod hold;
 mod lean;
 #[cfg(test)]
