@@ -12,8 +12,9 @@ const LEVELLING_RATE: f32 = 0.2;
 /// Lean beyond which arms that close do not hold any more, rad: they need 1.3 s to touch, a slide from here takes 0.35 s
 /// to the flank.
 const HOPELESS_LEAN: f32 = deg(25.0);
-/// Lean from which on a growing one counts, rad, and its rate, rad/s: rocking on the pads stays below.
-const GROWING_LEAN: f32 = deg(13.0);
+/// Lean from which on a growing one counts, rad, and its rate, rad/s. A touch 30 mm beside the crown drifts out to 14 to 18°
+/// before it sits, and is held.
+const GROWING_LEAN: f32 = deg(18.0);
 const GROWING_RATE: f32 = 0.3;
 /// Time for which any of it must last, s: three steps.
 const SLIDE_TIME: f32 = 0.03;
