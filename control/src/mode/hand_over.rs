@@ -48,6 +48,23 @@ fn a_radio_that_comes_back_in_direct_mode_takes_the_collective_over_without_a_st
 }
 
 #[test]
+fn on_the_pipe_the_throttle_is_the_pilots_until_the_grip_is_proven_and_then_none() {
+    let mut r = Rig::touched();
+    r.run(0.2);
+    assert!(
+        (r.out.rotors.thrust() - 0.3 * FULL).abs() < 1.5,
+        "still handed over: {}",
+        r.out.rotors.thrust()
+    );
+    let mut r = Rig::clamping();
+    r.run(1.0);
+    assert!((r.out.rotors.thrust() - 0.3 * FULL).abs() < 1e-3);
+    r.grip(true, false, ArmState::Holding, 950.0);
+    r.expect(SPOOL_TIME + 0.05, Mode::Clamping);
+    assert_eq!(r.out.rotors, Setpoint::Stop, "not a thrust of zero");
+}
+
+#[test]
 fn the_pilot_takes_over_by_roll_or_pitch_to_either_side() {
     for (roll, pitch, taken) in [
         (0.31, 0.0, true),

@@ -225,6 +225,12 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
         r.out.rotors.thrust() <= 0.42 * 33.2 + 0.1,
         "the pipe carries the rest"
     );
+    // On a release as well they are told of.
+    let mut r = Rig::releasing();
+    r.expect(9.8, Mode::Releasing);
+    assert_eq!(r.out.reason, "");
+    r.expect(0.3, Mode::Releasing);
+    assert_eq!(r.out.reason, "arms do not come free");
     // What the sensors call closed may be free all the same: in the air it flies.
     let mut r = Rig::escaping();
     r.leans(0.0, 0.0);
@@ -276,7 +282,12 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     let mut r = Rig::releasing();
     r.run(1.0);
     r.leans(18.0, 0.0);
-    r.expect(0.6, Mode::Clamping);
+    r.expect(0.3, Mode::Releasing);
+    for _ in 0..30 {
+        r.step();
+        assert!(r.out.tendons != ClampCommand::Release, "not for one step");
+    }
+    assert_eq!(r.out.mode, Mode::Clamping);
     assert_eq!(
         (r.out.reason, r.out.tendons),
         (LEANS, ClampCommand::Close { arms: ArmChoice::All })
