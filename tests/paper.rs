@@ -320,16 +320,24 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
             "{line}"
         );
     }
-    // An arm as stiff as the literal Table I stays within what the stack takes: it is told on stderr and on the page.
+    // An arm as stiff as the literal Table I has coefficients in range, but far above its data it turns down.
     let stiff = |[rho, t, a, p]: [f64; 4]| (rho == 6.9).then(|| kgf([rho, t, a / 7.75, p]));
     write("stiff.csv", example(stiff));
-    let output = sophie(&temp.0, &["fit-arm", "stiff.csv"]);
+    let line = refused(&temp, &["fit-arm", "stiff.csv"]);
+    assert!(
+        line.contains("thrust_n ends at 0.79 N, as thrusts in kgf do")
+            && line.contains("still rises at hover"),
+        "{line}"
+    );
+    // Thrusts in newtons that end early are fitted, and that is told on stderr and on the page.
+    write("short.csv", example(|x| (x[0] == 6.9 && x[1] < 3.6).then_some(x)));
+    let output = sophie(&temp.0, &["fit-arm", "short.csv"]);
     let told = text(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{told}");
-    let warning = "thrust_n ends at 0.79 N, less than half of the 8.3 N that a rotor gives: above it the fit is a guess";
+    let warning = "thrust_n ends at 3.50 N, less than half of the 8.3 N that a rotor gives: above it the fit is a guess";
     assert!(
         told.lines()
-            .any(|l| l.starts_with("sophie: warning: stiff.csv: ") && l.contains(warning)),
+            .any(|l| l.starts_with("sophie: warning: short.csv: ") && l.contains(warning)),
         "{told}"
     );
     assert!(

@@ -222,9 +222,18 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
         fit.exponent.clamp(1.0, 2.5)
     );
     // Only what the reader takes is written.
-    Scenario::parse(&text, "arm.toml", &Default::default())
-        .map_err(|e| format!("the fitted arm is out of range; as arm.toml, which is not written: {e}"))?;
+    Scenario::parse(&text, "arm.toml", &Default::default()).map_err(|e| {
+        let hint = unit_hint(points);
+        format!("the fitted arm is out of range{hint}; as arm.toml, which is not written: {e}")
+    })?;
     Ok(text)
+}
+
+/// What may be wrong with thrusts that end early; empty when they do not.
+fn unit_hint(points: &[Point]) -> String {
+    reach(points).map_or_else(String::new, |(most, _)| {
+        format!(": thrust_n ends at {most:.2} N, as thrusts in kgf do (1 kgf is 9.81 N)")
+    })
 }
 
 /// Refuses coefficients that the stack cannot take, by their own names.
@@ -247,9 +256,7 @@ fn in_range(points: &[Point], fit: &Fit) -> Result<(), String> {
             continue;
         }
         let unit = row.unit;
-        let hint = reach(points).map_or_else(String::new, |(most, _)| {
-            format!(": thrust_n ends at {most:.2} N, as thrusts in kgf do (1 kgf is 9.81 N)")
-        });
+        let hint = unit_hint(points);
         return Err(format!(
             "the fitted arm is out of range: {name} = {value:.4} {unit}, allowed {} to {} {unit}{hint}",
             row.min, row.max
