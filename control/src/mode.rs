@@ -32,6 +32,8 @@ mod losses;
 #[cfg(test)]
 mod random;
 #[cfg(test)]
+mod reasons;
+#[cfg(test)]
 mod restart;
 #[cfg(test)]
 mod rig;

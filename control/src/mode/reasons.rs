@@ -1,0 +1,77 @@
+//! What the pilot reads beside the state, and which of two reasons comes first.
+
+use super::rig::Rig;
+use super::*;
+use crate::arming::Refusal;
+
+#[test]
+fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
+    let broken = Refusals::default().with(Refusal::ImuAbsent);
+    // Calibrating: the sensor that is silent, what is broken, or that it must be left alone.
+    let mut r = Rig::new();
+    r.expect(0.1, Mode::Calibrating);
+    assert_eq!(r.out.reason, "keep still");
+    r.inputs.hardware = broken;
+    r.step();
+    assert_eq!(r.out.reason, Refusal::ImuAbsent.text());
+    r.inputs.hardware = Refusals::default();
+    r.inputs.motion = None;
+    r.step();
+    assert_eq!(r.out.reason, Refusal::ImuStale.text());
+
+    // Disarmed: what is broken at once, everything else when the pilot tries.
+    let mut r = Rig::armed();
+    r.sticks().yaw = -1.0;
+    r.expect(1.1, Mode::Disarmed);
+    *r.sticks() = Sticks::default();
+    r.run(0.1);
+    r.inputs.battery = Some(13.0);
+    r.step();
+    assert_eq!(r.out.reason, "", "nobody tries to arm");
+    r.inputs.hardware = broken;
+    r.step();
+    assert_eq!(r.out.reason, Refusal::ImuAbsent.text());
+    r.inputs.hardware = Refusals::default();
+    r.sticks().arm_switch = true;
+    r.step();
+    assert_eq!(r.out.reason, "battery low");
+    r.inputs.sticks = None;
+    r.step();
+    assert_eq!(
+        r.out.reason, "",
+        "the radio is nothing to a vehicle on the ground"
+    );
+}
+
+#[test]
+fn what_just_happened_comes_before_what_keeps_from_arming() {
+    let mut r = Rig::flying();
+    r.inputs.sticks = None;
+    r.run(20.0);
+    r.carried = true;
+    r.expect(10.0, Mode::Disarmed);
+    r.inputs.sticks = Some(Sticks {
+        arm_switch: true,
+        throttle: 0.5,
+        ..Sticks::default()
+    });
+    r.run(0.1);
+    assert_eq!(r.out.reason, "radio lost");
+    r.run(10.0);
+    assert_eq!(r.out.reason, r.out.refusals.first().map_or("", Refusal::text));
+    assert!(!r.out.reason.is_empty());
+}
+
+#[test]
+fn a_vehicle_on_the_pipe_says_what_is_lost() {
+    let mut r = Rig::clamping();
+    r.inputs.sticks = None;
+    r.step();
+    assert_eq!(r.out.reason, "radio lost");
+    let mut r = Rig::clamping();
+    r.inputs.battery = Some(12.0);
+    r.run(0.9);
+    assert_eq!(r.out.reason, "");
+    r.run(0.2);
+    assert_eq!(r.out.reason, "battery critical");
+}
