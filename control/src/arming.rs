@@ -6,6 +6,7 @@ pub use self::gesture::{GESTURE_TIME, Gesture, GestureWatch};
 use crate::math::cos;
 use crate::params::Params;
 use crate::rc::Sticks;
+use crate::wrench::PerArm;
 
 /// Largest tilt at which the rotors may start, rad (25°).
 pub const TILT_MAX: f32 = crate::math::deg(25.0);
@@ -62,11 +63,19 @@ pub enum Refusal {
     Storing,
     /// The supply broke down and the board restarted.
     BrownOut,
+    /// What the pressure sensor of arm 1 can read ends too near the grip pressure.
+    FsrRange1,
+    /// What the pressure sensor of arm 2 can read ends too near the grip pressure.
+    FsrRange2,
+    /// What the pressure sensor of arm 3 can read ends too near the grip pressure.
+    FsrRange3,
+    /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
+    FsrRange4,
 }
 
 impl Refusal {
     /// Every reason, the most basic first.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 28] = [
         Self::BrownOut,
         Self::Storing,
         Self::StorageUnreadable,
@@ -86,12 +95,19 @@ impl Refusal {
         Self::BatteryLow,
         Self::AnalogSilent,
         Self::FsrFault,
+        Self::FsrRange1,
+        Self::FsrRange2,
+        Self::FsrRange3,
+        Self::FsrRange4,
         Self::ArmSensor1,
         Self::ArmSensor2,
         Self::ArmSensor3,
         Self::ArmSensor4,
         Self::Overruns,
     ];
+
+    /// The pressure sensors' ranges, arm by arm.
+    pub const FSR_RANGE: PerArm<Self> = [Self::FsrRange1, Self::FsrRange2, Self::FsrRange3, Self::FsrRange4];
 
     /// For the pilot's display.
     pub const fn text(self) -> &'static str {
@@ -120,6 +136,10 @@ impl Refusal {
             Self::StorageFull => "parameter storage full",
             Self::Storing => "storing parameters",
             Self::BrownOut => "supply broke down",
+            Self::FsrRange1 => "pressure sensor 1: range too small",
+            Self::FsrRange2 => "pressure sensor 2: range too small",
+            Self::FsrRange3 => "pressure sensor 3: range too small",
+            Self::FsrRange4 => "pressure sensor 4: range too small",
         }
     }
 
@@ -249,6 +269,17 @@ mod tests {
             switch_seen_off: true,
             battery: Some(16.0),
             ..Default::default()
+        }
+    }
+
+    #[test]
+    fn every_reason_has_a_bit_and_a_short_text_of_its_own() {
+        for (i, a) in Refusal::ALL.into_iter().enumerate() {
+            assert!(Refusals::NONE.with(a).iter().eq([a]), "{a:?}");
+            assert!(!a.text().is_empty() && a.text().len() <= 40, "{a:?}");
+            for b in Refusal::ALL.into_iter().skip(i + 1) {
+                assert!(a != b && a.text() != b.text(), "{a:?} {b:?}");
+            }
         }
     }
 

@@ -9,6 +9,9 @@
 //! arm's rotor bends it away from the pipe with arm_d T, which the tendon meets with arm_d/h T. So the
 //! pressure hardly moves when the rotors stop.
 
+mod ceiling;
+
+use self::ceiling::CeilingWatch;
 use crate::deflection::ArmModel;
 use crate::filter::LowPass;
 use crate::grip::{ArmGrip, ArmState, Demand, FreeProof, HoldProof};
@@ -75,6 +78,9 @@ pub enum Fault {
     Sensor,
     /// The arm met something that its sensor does not feel; stays until release.
     Unfelt,
+    /// The force rose and the pressure, below that of a grip, did not follow: the sensor cannot read it; stays until
+    /// release.
+    Ceiling,
     /// The arm's tilt is missing; over when it is back.
     Tilt,
     /// A number is not finite; over when it is.
@@ -84,7 +90,7 @@ pub enum Fault {
 impl Fault {
     /// It stays until the arm is released.
     pub const fn is_latched(self) -> bool {
-        matches!(self, Self::Sensor | Self::Unfelt)
+        matches!(self, Self::Sensor | Self::Unfelt | Self::Ceiling)
     }
 
     /// Text for the pilot.
@@ -93,6 +99,7 @@ impl Fault {
             Self::Stale => "pressure reading lost",
             Self::Sensor => "pressure sensor fault",
             Self::Unfelt => "arm stopped, no pressure felt",
+            Self::Ceiling => "pressure sensor at its ceiling",
             Self::Tilt => "arm tilt lost",
             Self::NotFinite => "reading is no number",
         }
@@ -271,6 +278,7 @@ pub struct ArmClamp {
     pressure: Option<LowPass>,
     thrust: Option<LowPass>,
     watch: Option<BendWatch>,
+    ceiling: CeilingWatch,
     fault: Option<Fault>,
     tilt_missing: f32,
     at_limit: f32,
@@ -371,6 +379,7 @@ impl ArmClamp {
         }
         self.fault = None;
         self.watch = None;
+        self.ceiling = CeilingWatch::default();
         self.at_limit = 0.0;
         self.tilt_missing = 0.0;
         self.force = math::slew(self.force, 0.0, cfg.release * dt);
@@ -442,6 +451,7 @@ impl ArmClamp {
                 _ => {}
             }
             self.watch = None;
+            self.ceiling.pause();
             return;
         };
         let has = tension.unwrap_or(self.force);
@@ -470,7 +480,15 @@ impl ArmClamp {
         }
         if pressure > TOUCH {
             self.watch = None;
+            let forward = cfg.per_thrust * thrust;
+            if self
+                .ceiling
+                .step(cfg, pressure, has - forward, self.force - forward, dt)
+            {
+                self.fault = Some(Fault::Ceiling);
+            }
         } else {
+            self.ceiling.pause();
             let watch = self.watch.get_or_insert(BendWatch::new(tilt, has));
             if let Some(before) = watch.step(cfg, tilt, has, self.force, dt) {
                 self.fault = Some(Fault::Unfelt);
@@ -741,7 +759,7 @@ mod tests {
     #[test]
     fn a_fault_that_stays_until_release_outlives_a_restart() {
         let cfg = config();
-        for fault in [Fault::Sensor, Fault::Unfelt] {
+        for fault in [Fault::Sensor, Fault::Unfelt, Fault::Ceiling] {
             let mut arm = ArmClamp::resume(50.0, Some(fault));
             let grip = run(&mut arm, &cfg, 0.0, 3.0);
             assert!(grip.force == 50.0 && grip.fault == Some(fault), "{grip:?}");
@@ -796,14 +814,90 @@ mod tests {
         let cfg = config();
         let mut arm = ArmClamp::default();
         run(&mut arm, &cfg, 0.0, 1.5);
-        // 300 Pa whatever the force: the limit is reached and reported.
-        let grip = run(&mut arm, &cfg, 300.0, 30.0);
+        // 6.2 Pa/N, 830 Pa at the limit: that is reached and reported.
+        let mut grip = ArmGrip::default();
+        for _ in 0..3000 {
+            let pressure = 150.0 + 6.2 * math::clamp(arm.force - 52.0, 0.0, 1e3);
+            grip = run(&mut arm, &cfg, pressure, DT);
+        }
         assert!(
             grip.state == ArmState::ForceLimited && close(grip.force, cfg.limit, 1e-2),
             "{grip:?}"
         );
         // And left at once when the pressure comes, not after unwinding 30 s.
         assert!(run(&mut arm, &cfg, 1200.0, 0.3).force < cfg.limit - 2.0);
+    }
+
+    /// What a sensor reads of `pressure` on a pad of which the converter sees a `part` of the voltage, Pa: with
+    /// P = pressure / 692.5 Pa the pad has P / (1 + P) of the supply.
+    fn behind(part: f32, pressure: f32) -> f32 {
+        let x = part * pressure / (692.5 + pressure);
+        692.5 * x / (1.0 - x)
+    }
+
+    /// Closes an arm on a skin of 70 Pa/N that it meets at 52 N, its sensor read through `sensor`.
+    fn closing_on_a_skin(sensor: impl Fn(f32) -> f32) -> (ArmClamp, ArmGrip) {
+        let cfg = config();
+        let mut arm = ArmClamp::default();
+        let mut grip = ArmGrip::default();
+        for _ in 0..1500 {
+            let pressure = 70.0 * math::clamp(arm.force - 52.0, 0.0, 1e3);
+            grip = run(&mut arm, &cfg, sensor(pressure), DT);
+        }
+        (arm, grip)
+    }
+
+    #[test]
+    fn a_sensor_that_cannot_read_the_grip_pressure_stops_the_winding() {
+        let (_, grip) = closing_on_a_skin(|pressure| pressure);
+        assert!(grip.state == ArmState::Holding, "{grip:?}");
+        // Behind 1:2 the reading ends at 692 Pa. By 40 N of tension on the skin it rises by less than 6 Pa/N.
+        let (mut arm, grip) = closing_on_a_skin(|pressure| behind(0.5, pressure));
+        assert!(
+            grip.fault == Some(Fault::Ceiling) && grip.force < 52.0 + 50.0,
+            "{grip:?}"
+        );
+        assert!(grip.state == ArmState::Faulty && grip.pressure < 692.5);
+        // It stays, and the force with it, until the arm is released.
+        let cfg = config();
+        let later = run(&mut arm, &cfg, 950.0, 3.0);
+        assert!(later.fault == Some(Fault::Ceiling) && later.force == grip.force);
+        arm.step(&cfg, false, &input(&cfg, &arm, 500.0), DT);
+        assert!(arm.fault().is_none());
+        // Whatever sits still, wherever.
+        for ceiling in [150.0, 400.0, 800.0] {
+            let (_, grip) = closing_on_a_skin(|pressure| math::clamp(pressure, 0.0, ceiling));
+            assert!(grip.fault == Some(Fault::Ceiling), "{ceiling}: {grip:?}");
+            assert!(grip.force < 52.0 + 35.0, "{ceiling}: {grip:?}");
+        }
+    }
+
+    #[test]
+    fn a_sensor_that_has_read_the_grip_pressure_has_the_range() {
+        let cfg = config();
+        let mut arm = holding(&cfg);
+        let force = arm.force;
+        // The load pulls the arm away from the pipe as fast as the tendon pulls it back.
+        let grip = run(&mut arm, &cfg, 700.0, 3.0);
+        assert!(grip.force > force + 20.0 && grip.fault.is_none(), "{grip:?}");
+    }
+
+    #[test]
+    fn a_rotor_that_starts_is_no_ceiling() {
+        let cfg = config();
+        let mut arm = ArmClamp::default();
+        let mut grip = ArmGrip::default();
+        for step in 0..1500 {
+            // 0.1 s after the touch the rotor asks for 5 N, 35.6 N of the tendon's: the skin feels none of them.
+            let thrust = if step > 160 { 5.0 } else { 0.0 };
+            let pressure = 70.0 * math::clamp(arm.force - cfg.per_thrust * thrust - 52.0, 0.0, 1e3);
+            let i = ArmInput {
+                thrust,
+                ..input(&cfg, &arm, if step > 150 { pressure + 120.0 } else { pressure })
+            };
+            grip = arm.step(&cfg, true, &i, DT);
+        }
+        assert!(grip.state == ArmState::Holding, "{grip:?}");
     }
 
     #[test]
@@ -969,7 +1063,7 @@ mod tests {
         };
         for (pressures, proven) in [
             ([0.0; 4], false),
-            ([950.0, 0.0, 700.0, 0.0], false),
+            ([950.0, 0.0, 880.0, 0.0], false),
             ([950.0, 0.0, 950.0, 0.0], true),
         ] {
             out = drive(&mut clamp, front, pressures, 1.5);
@@ -990,7 +1084,7 @@ mod tests {
         let mut clamp = Clamp::default();
         for (pressures, proven) in [
             ([0.0; 4], false),
-            ([950.0, 0.0, 700.0, 0.0], false),
+            ([950.0, 0.0, 880.0, 0.0], false),
             ([1020.0, 0.0, 950.0, 0.0], false),
             ([960.0, 0.0, 950.0, 0.0], true),
             ([1020.0, 0.0, 950.0, 0.0], true),

@@ -1,55 +1,91 @@
 //! Contact pressure from the counts of a force-sensing resistor's divider.
 //!
-//! The resistor hangs between the supply and the converter's pin, a fixed resistor between the pin and
-//! ground: x = counts / full scale = R_d / (R_d + R), so the conductance is x / ((1 - x) R_d). It grows in
-//! proportion to the force (Interlink integration guide), and the force over the sensor's area is the
-//! pressure. An unloaded sensor conducts nothing, so an open lead looks like no pressure at all: only the clamp
+//! The resistor hangs between the supply and a pad, a fixed resistor between the pad and ground: the pad has the
+//! share x = R_d / (R_d + R) of the supply, so the conductance is x / ((1 - x) R_d). It grows in proportion to the
+//! force (Interlink integration guide), and the force over the sensor's area is the pressure. The converter is at full
+//! scale where the pad has the share s: x = s counts / full scale. On a bare pad s is 1; what sees no more than a part
+//! of x reads no more than s / ((1 - s) R_d): 692 Pa for a half, 69 Pa for an eleventh. An unloaded sensor conducts nothing, so an open lead looks like no pressure at all: only the clamp
 //! loop, which knows what it pulls, can tell ([`crate::clamp::Fault::Unfelt`]).
 
 use crate::math;
 use crate::params::Params;
+use crate::wrench::PerArm;
 
 /// Full scale of the 12-bit converter.
 pub const FULL_SCALE: f32 = 4095.0;
 
-/// Counts beyond which the sensor must be shorted: below 240 Ω with a 10 kΩ divider, 40 N on the sensor.
-const SHORT_COUNTS: u16 = 4000;
+/// Counts of a bare pad beyond which the sensor must be shorted: below 240 Ω with a 10 kΩ divider, 40 N on the sensor.
+const SHORT_COUNTS: f32 = 4000.0;
+/// What a sensor must be able to read, over the grip pressure: a grip overshoots and is pushed.
+const RANGE_MARGIN: f32 = 1.2;
 /// Time of plausible counts after which a fault is over, s.
 const RECOVERY_TIME: f32 = 0.2;
 
 /// What is wrong with a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FsrFault {
-    /// It conducts more than the largest force would make it.
+    /// It conducts more than the largest force would make it, or than its pad can show.
     Short,
     /// The converter gave more counts than it has.
     Converter,
 }
 
-/// Scale of a sensor and its divider.
+/// Scale of a sensor, its divider and its pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FsrScale {
     pascal_per_siemens: f32,
     divider: f32,
+    /// Counts at which the pad would have the whole supply.
+    full: f32,
+    /// Largest counts of a sound sensor.
+    most: f32,
 }
 
 impl FsrScale {
-    /// The sensor that the parameters describe.
-    pub fn from_params(p: &Params) -> Self {
+    /// The sensor of the arm `arm` (0 to 3) that the parameters describe.
+    pub fn from_params(p: &Params, arm: usize) -> Self {
+        let scale = match arm {
+            0 => p.fsr_scale_1,
+            1 => p.fsr_scale_2,
+            2 => p.fsr_scale_3,
+            _ => p.fsr_scale_4,
+        };
         Self {
             pascal_per_siemens: 1.0 / (p.fsr_gain * p.fsr_area),
             divider: p.fsr_divider,
+            full: FULL_SCALE / scale,
+            // A pin that sees a part of the range only is at its own end first.
+            most: if scale > 1.0 {
+                SHORT_COUNTS / scale
+            } else {
+                SHORT_COUNTS
+            },
         }
+    }
+
+    /// Those of all four arms.
+    pub fn all(p: &Params) -> PerArm<Self> {
+        [0, 1, 2, 3].map(|arm| Self::from_params(p, arm))
     }
 
     /// Pressure (Pa) for the counts `counts`, which are limited to what a sound sensor gives.
     pub fn pressure(&self, counts: u16) -> f32 {
-        let counts = if counts > SHORT_COUNTS {
-            SHORT_COUNTS
-        } else {
-            counts
-        };
-        let x = f32::from(counts) / FULL_SCALE;
+        self.pressure_of(f32::from(counts))
+    }
+
+    /// Largest pressure that can be read, Pa.
+    pub fn largest(&self) -> f32 {
+        self.pressure_of(self.most)
+    }
+
+    /// A grip at the pressure that the parameters ask for can be read, with a fifth to spare.
+    pub fn reaches_grip(&self, p: &Params) -> bool {
+        self.largest() >= RANGE_MARGIN * p.grip_pressure
+    }
+
+    fn pressure_of(&self, counts: f32) -> f32 {
+        let counts = if counts > self.most { self.most } else { counts };
+        let x = counts / self.full;
         x / ((1.0 - x) * self.divider) * self.pascal_per_siemens
     }
 }
@@ -67,9 +103,9 @@ impl Fsr {
     /// # Errors
     /// The fault, until the counts have been plausible for 0.2 s.
     pub fn step(&mut self, scale: &FsrScale, counts: u16, dt: f32) -> Result<f32, FsrFault> {
-        let now = match counts {
-            0..=SHORT_COUNTS => None,
-            c if f32::from(c) <= FULL_SCALE => Some(FsrFault::Short),
+        let now = match f32::from(counts) {
+            c if c <= scale.most => None,
+            c if c <= FULL_SCALE => Some(FsrFault::Short),
             _ => Some(FsrFault::Converter),
         };
         if let Some(fault) = now {
@@ -96,13 +132,29 @@ mod tests {
 
     use super::*;
 
-    fn scale() -> FsrScale {
-        FsrScale::from_params(&Params {
+    fn params() -> Params {
+        Params {
             fsr_gain: 1e-4,
             fsr_area: 0.001_444,
             fsr_divider: 10_000.0,
+            grip_pressure: 950.0,
             ..Params::default()
-        })
+        }
+    }
+
+    fn scale() -> FsrScale {
+        FsrScale::from_params(&params(), 0)
+    }
+
+    /// The scale of a sensor with `fsr_scale` of `full_scale`.
+    fn scaled(full_scale: f32) -> FsrScale {
+        FsrScale::from_params(
+            &Params {
+                fsr_scale_1: full_scale,
+                ..params()
+            },
+            0,
+        )
     }
 
     const DT: f32 = 0.002;
@@ -114,6 +166,65 @@ mod tests {
         // Half scale: R = R_d = 10 kΩ, 1 N, 692.5 Pa.
         assert!((scale().pressure(2047) - 692.5).abs() < 1.0);
         assert!(scale().pressure(0) == 0.0);
+    }
+
+    #[test]
+    fn a_pad_with_a_divider_reads_as_a_bare_one_once_its_full_scale_is_set() {
+        // 950 Pa are the share 0.57838 of the supply: 2368.5 counts bare, 1184.2 behind 1:2, 215.3 behind 1:11.
+        assert!((scaled(2.0).pressure(1184) - 950.0).abs() < 1.5);
+        // A count is 11 Pa there.
+        assert!((scaled(11.0).pressure(215) - 950.0).abs() < 6.0);
+        // Not set, even the whole supply at the pad reads as a half and an eleventh of it: x / (1 - x) is 1 and 0.1,
+        // times 692.52 Pa.
+        assert!((scale().pressure(2047) - 692.5).abs() < 1.0);
+        assert!((scale().pressure(372) - 69.25).abs() < 0.2);
+    }
+
+    #[test]
+    fn a_range_must_reach_a_fifth_beyond_the_grip_pressure() {
+        // The largest share that is believed is 4000/4095; x / (1 - x) is 42.105, times 692.52 Pa.
+        for full_scale in [1.0, 2.0, 11.0] {
+            let scale = scaled(full_scale);
+            assert!(
+                (scale.largest() - 29_159.0).abs() < 20.0,
+                "{full_scale}: {}",
+                scale.largest()
+            );
+            assert!(scale.reaches_grip(&params()));
+        }
+        // A half and an eleventh of it: 0.95460 and 0.097464 times 692.52 Pa.
+        for (full_scale, largest) in [(0.5, 661.1), (1.0 / 11.0, 67.50)] {
+            let scale = scaled(full_scale);
+            assert!((scale.largest() - largest).abs() < 0.1, "{}", scale.largest());
+            assert!(!scale.reaches_grip(&params()));
+        }
+        // 1140 Pa are the share 0.62209: 0.63687 of the supply at 4095 counts.
+        assert!(scaled(0.638).reaches_grip(&params()) && !scaled(0.636).reaches_grip(&params()));
+        assert!(!scaled(f32::NAN).reaches_grip(&params()));
+    }
+
+    #[test]
+    fn every_sensor_has_its_own_full_scale() {
+        let p = Params {
+            fsr_scale_1: 1.0,
+            fsr_scale_2: 2.0,
+            fsr_scale_3: 4.0,
+            fsr_scale_4: 8.0,
+            ..params()
+        };
+        let read = FsrScale::all(&p).map(|scale| scale.pressure(400));
+        for (read, full_scale) in read.into_iter().zip([1.0, 2.0, 4.0, 8.0]) {
+            let x = full_scale * 400.0 / 4095.0;
+            assert!((read - x / (1.0 - x) * 692.52).abs() < 0.5, "{read}");
+        }
+    }
+
+    #[test]
+    fn a_short_behind_a_divider_is_seen() {
+        for (full_scale, counts) in [(2.0, 2047), (11.0, 372), (0.5, 4095)] {
+            let mut f = Fsr::default();
+            assert!(f.step(&scaled(full_scale), counts, DT) == Err(FsrFault::Short));
+        }
     }
 
     #[test]

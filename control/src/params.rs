@@ -349,6 +349,15 @@ params! {
     fsr_gain = 0.0001, "S/N", 0.00001 ..= 0.01;
     /// Resistor of the FSR's divider, to ground.
     fsr_divider = 10000.0, "Ohm", 1000.0 ..= 100000.0;
+    /// Voltage between the FSR of arm 1 and `fsr_divider` at which the converter is at full scale, over the FSR's supply:
+    /// 1 on a bare pad and 3.3 V, 2 on a pad with a divider 1:2.
+    fsr_scale_1 = 1.0, "1", 0.05 ..= 20.0;
+    /// Full scale of the FSR of arm 2.
+    fsr_scale_2 = 1.0, "1", 0.05 ..= 20.0;
+    /// Full scale of the FSR of arm 3.
+    fsr_scale_3 = 1.0, "1", 0.05 ..= 20.0;
+    /// Full scale of the FSR of arm 4.
+    fsr_scale_4 = 1.0, "1", 0.05 ..= 20.0;
 
     /// Battery voltage of full thrust: the curve is normalised to it (4S nominal).
     battery_nominal = 14.8, "V", 6.0 ..= 52.0;

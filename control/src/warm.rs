@@ -16,7 +16,9 @@ pub const WORDS: usize = 16;
 pub type Words = [u32; WORDS];
 
 /// Marks a copy ("WARM") of this layout; another layout takes another number.
-const MAGIC: u32 = 0x5741_524D + 1;
+const MAGIC: u32 = 0x5741_524D + 2;
+/// Bits of the code of one arm's fault.
+const FAULT_BITS: u32 = 4;
 /// Largest servo angle believed, rad: beyond any servo's travel.
 const ANGLE_MAX: f32 = 6.5;
 /// Largest tendon force believed, N: beyond what any parameters allow.
@@ -75,7 +77,7 @@ impl Warm {
         let faults = self
             .fault
             .iter()
-            .fold(0, |word, &fault| word << 2 | fault_code(fault));
+            .fold(0, |word, &fault| word << FAULT_BITS | fault_code(fault));
         let bias = self.gyro_bias.unwrap_or_default();
         let [angle_1, angle_2, angle_3, angle_4] = self.angle.map(f32::to_bits);
         let [force_1, force_2, force_3, force_4] = self.force.map(f32::to_bits);
@@ -126,7 +128,7 @@ impl Warm {
             bias_z,
             sum,
         ] = *words;
-        if magic != MAGIC || sum != checksum(words) || state >> 17 != 0 || faults >> 8 != 0 {
+        if magic != MAGIC || sum != checksum(words) || state >> 17 != 0 || faults >> (4 * FAULT_BITS) != 0 {
             return None;
         }
         let arms = arm_choice(state >> 8 & 0xFF)?;
@@ -137,8 +139,8 @@ impl Warm {
             _ => return None,
         };
         let mut fault = [None; 4];
-        for (slot, shift) in fault.iter_mut().zip([6, 4, 2, 0]) {
-            *slot = fault_of(faults >> shift & 3)?;
+        for (slot, arm) in fault.iter_mut().rev().zip(0..) {
+            *slot = fault_of(faults >> (arm * FAULT_BITS) & ((1 << FAULT_BITS) - 1))?;
         }
         let warm = Self {
             grasp,
@@ -203,6 +205,7 @@ fn fault_code(fault: Option<Fault>) -> u32 {
     match fault {
         Some(Fault::Sensor) => 1,
         Some(Fault::Unfelt) => 2,
+        Some(Fault::Ceiling) => 3,
         _ => 0,
     }
 }
@@ -213,6 +216,7 @@ fn fault_of(code: u32) -> Option<Option<Fault>> {
         0 => Some(None),
         1 => Some(Some(Fault::Sensor)),
         2 => Some(Some(Fault::Unfelt)),
+        3 => Some(Some(Fault::Ceiling)),
         _ => None,
     }
 }
@@ -241,7 +245,12 @@ mod tests {
             grasp: Grasp::Closed(ArmChoice::Rear),
             angle: [0.0, 2.5, 0.0, 2.75],
             force: [0.0, 53.5, 0.0, 61.25],
-            fault: [None, Some(Fault::Sensor), None, Some(Fault::Unfelt)],
+            fault: [
+                None,
+                Some(Fault::Sensor),
+                Some(Fault::Ceiling),
+                Some(Fault::Unfelt),
+            ],
             gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
         }
     }
@@ -388,8 +397,8 @@ mod tests {
             (11, 1e9f32.to_bits()),
             (2, 4),
             (2, 0x0302),
-            (3, 3),
-            (3, 0x100),
+            (3, 4),
+            (3, 0x10000),
         ] {
             let mut forged = words(held(), 3);
             forged[word] = value;

@@ -34,6 +34,8 @@ struct Bench {
     pose: Pose,
     pipe: Pipe,
     sensor: FsrSensor,
+    /// Voltage at the sensor's pad over that at the converter's pin.
+    pad: f64,
     tilts: VecDeque<f64>,
     tilt_offset: f64,
     steps: u64,
@@ -119,6 +121,7 @@ impl Bench {
                 friction: 0.6,
             },
             sensor,
+            pad: 1.0,
             tilts: VecDeque::new(),
             tilt_offset,
             steps: 0,
@@ -132,7 +135,7 @@ impl Bench {
             tilt_alive: true,
             analog_alive: true,
             config: Config::from_params(&params),
-            scale: FsrScale::from_params(&params),
+            scale: FsrScale::from_params(&params, 0),
             fsr: Fsr::default(),
             sensed: Pressure::Stale,
             measured_tilt: None,
@@ -166,6 +169,7 @@ impl Bench {
         self.steps += 1;
         if self.steps.is_multiple_of(4) {
             let counts = self.sensor.sample(self.load.pressure, 0.002, &mut self.rng);
+            let counts = (f64::from(counts) / self.pad).round() as u16;
             if self.analog_alive {
                 self.sensed = match self.fsr.step(&self.scale, counts, 0.002) {
                     Ok(p) => Pressure::Known(p),
@@ -485,6 +489,51 @@ fn a_lead_that_breaks_while_holding_does_not_run_away() {
                 b.tendon.tension() - tension
             );
         }
+    }
+}
+
+#[test]
+fn a_sensor_behind_a_divider_that_nobody_told_of_stops_the_closing() {
+    for infill in [6.0, 6.9, 8.0] {
+        for seed in 1..=4 {
+            // Behind 1:2 it reads 692 Pa at most; behind 1:11 69 Pa, which is no touch.
+            for (pad, fault) in [(2.0, Fault::Ceiling), (11.0, Fault::Unfelt)] {
+                let mut b = Bench::new(infill, 0.30, seed, ServoProfile::Paper);
+                b.pad = pad;
+                b.close = true;
+                b.run(8.0);
+                let what = format!("{infill} {seed} 1:{pad} {:?}, {} Pa", b.grip, b.peak);
+                assert!(b.clamp.fault() == Some(fault), "{what}");
+                assert!(
+                    b.grip.state == ArmState::Faulty && b.grip.force < 0.75 * b.config.limit(),
+                    "{what}"
+                );
+                assert!(b.peak < 10_000.0, "{what}");
+                // It lets go as any other.
+                b.close = false;
+                assert!(b.run_until(ArmState::Free, 8.0), "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sensor_behind_a_divider_grips_once_its_full_scale_is_set() {
+    for (pad, error) in [(2.0, 150.0), (11.0, 170.0)] {
+        let params = Params {
+            fsr_scale_1: pad as f32,
+            ..Params::default()
+        };
+        let mut b = Bench::with(params, 6.9, 0.30, 1, ServoProfile::Paper);
+        b.pad = pad;
+        b.close = true;
+        assert!(b.run_until(ArmState::Holding, 8.0), "1:{pad} {:?}", b.grip);
+        b.run(1.0);
+        assert!(
+            (b.load.pressure - 950.0).abs() < error,
+            "1:{pad} {}",
+            b.load.pressure
+        );
     }
 }
 

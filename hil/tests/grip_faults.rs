@@ -5,6 +5,7 @@ mod fakes;
 
 use embassy_time::Instant;
 use fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
+use sophie_control::clamp::Fault;
 use sophie_control::deflection::ArmModel;
 use sophie_control::grip::{ArmState, GripState};
 use sophie_control::params::Params;
@@ -372,9 +373,26 @@ fn all_tilts_stale_stop_all_servos_within_a_tenth_of_a_second() {
 }
 
 #[test]
-fn an_arm_that_cannot_reach_the_pressure_stops_at_the_limit() {
+fn an_arm_whose_pressure_does_not_rise_any_more_stops_and_says_so() {
     let mut b = Bench::new();
     b.arms[0].most = 600.0;
+    b.command = Some(CLOSE);
+    b.run(12.0);
+    let grip = b.grip();
+    assert_eq!(b.state(0), ArmState::Faulty, "{grip:?}");
+    assert_eq!(grip.arms[0].fault, Some(Fault::Ceiling));
+    // Not much beyond what a sound arm takes: the others hold.
+    assert!(grip.arms[0].force < grip.arms[1].force + 30.0, "{grip:?}");
+    assert!((1..4).all(|arm| b.state(arm) == ArmState::Holding) && !grip.proven);
+}
+
+#[test]
+fn an_arm_that_cannot_reach_the_pressure_stops_at_the_limit() {
+    // 46 N at 15 mm, where these arms take 54 N.
+    let mut b = Bench::with(Params {
+        servo_torque_max: 0.7,
+        ..Params::default()
+    });
     b.command = Some(CLOSE);
     b.run(12.0);
     let limit = ForceLimit::from_params(&b.links.params).asked;

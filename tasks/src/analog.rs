@@ -2,7 +2,8 @@
 //!
 //! Steady level. Pressures at 500 Hz, the battery at every fifth conversion; a conversion must be over before
 //! the next. A converter that fails publishes nothing: its links go stale, and their readers know what to do.
-//! After 100 ms without a conversion it is reported against arming.
+//! After 100 ms without a conversion it is reported against arming, and from the start on a sensor that cannot read
+//! the grip pressure.
 
 use core::pin::pin;
 
@@ -26,7 +27,10 @@ const BATTERY_EVERY: u8 = 5;
 /// Serves the analog inputs for ever.
 pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Analog, PERIOD, PERIOD);
-    let scale = FsrScale::from_params(&links.params);
+    let scales = FsrScale::all(&links.params);
+    for (scale, reason) in scales.iter().zip(Refusal::FSR_RANGE) {
+        links.report(reason, !scale.reaches_grip(&links.params));
+    }
     let mut sensors = [Fsr::default(); 4];
     let mut battery = Monitor::default();
     let mut battery_dt = 0.0;
@@ -63,8 +67,9 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
 
         let mut contact = Contact::default();
         let slots = contact.pressure.iter_mut().zip(contact.fault.iter_mut());
-        for ((sensor, counts), (pressure, fault)) in sensors.iter_mut().zip(frame.fsr).zip(slots) {
-            match sensor.step(&scale, counts, sensor_dt) {
+        let readings = sensors.iter_mut().zip(&scales).zip(frame.fsr);
+        for (((sensor, scale), counts), (pressure, fault)) in readings.zip(slots) {
+            match sensor.step(scale, counts, sensor_dt) {
                 Ok(p) => *pressure = p,
                 Err(_) => *fault = true,
             }

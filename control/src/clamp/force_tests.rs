@@ -122,8 +122,10 @@ fn a_touch_lost_for_good_falls_back_to_the_force_it_was_held_with() {
     let mut bench = Bench::new(&Params::default());
     bench.run(0.0, 150);
     let touched = bench.arm.force;
-    // Too little pressure for 2 s: 0.05·350 is 17.5 N/s, some 30 N more. Then the pressure is right for 2 s.
-    bench.run(600.0, 200);
+    // Too little pressure for 2 s, 400 Pa on average: 0.05·400 is 20 N/s, some 30 N more. Then it is right for 2 s.
+    for step in 0..200 {
+        bench.step(300.0 + 2.5 * step as f32);
+    }
     let usual = bench.run(950.0, 200);
     assert!(usual > touched + 20.0, "{touched} {usual}");
     // The sensor slips off the pipe, and the arm, which the pipe stops, bends no more.

@@ -29,6 +29,12 @@ impl ModeLogic {
             arms_closed: grasp != Grasp::Open && !held,
         }
         .refusals(&self.params);
+        // The range of a sensor that nobody needs.
+        let refusals = Refusal::FSR_RANGE
+            .into_iter()
+            .zip(chosen)
+            .filter(|(_, chosen)| !chosen)
+            .fold(refusals, |all, (range, _)| all.without(range));
         if grasp.arms().is_some() {
             // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms are
             // opened; and no one can reach the battery there to put a broken supply right.

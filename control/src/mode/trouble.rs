@@ -5,7 +5,7 @@ use super::failsafe::{BATTERY_TIME, IMU_LOST_TIME, RESUME_TIME, TIPPED_TIME};
 use super::logic::CONTACT_TIME;
 use super::rig::Rig;
 use super::*;
-use crate::arming::Refusal;
+use crate::arming::{Refusal, Refusals};
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
 use crate::rc::ArmChoice;
@@ -53,6 +53,16 @@ fn arming_is_refused_with_a_reason_that_can_be_read() {
     r.sticks().arms = ArmChoice::Front;
     r.run(0.1);
     assert!(r.out.refusals.is_empty(), "a sensor that nobody needs");
+    // The range of a rear sensor, then of a front one: arms 2 and 4 are the rear ones.
+    r.inputs.hardware = Refusals::NONE.with(Refusal::FsrRange2).with(Refusal::FsrRange4);
+    r.run(0.1);
+    assert!(r.out.refusals.is_empty(), "a range that nobody needs");
+    r.inputs.hardware = r.inputs.hardware.with(Refusal::FsrRange3);
+    r.run(0.1);
+    assert!(r.out.refusals.iter().eq([Refusal::FsrRange3]));
+    assert_eq!(r.out.reason, "pressure sensor 3: range too small");
+    r.inputs.hardware = Refusals::NONE;
+    r.run(0.1);
     r.sticks().yaw = 0.0;
     r.run(0.1);
     r.sticks().yaw = 1.0;

@@ -206,10 +206,12 @@ impl<'a> Bench<'a> {
     }
 
     fn pressure(&self) -> PerArm<f64> {
-        let scale = FsrScale::from_params(&self.params);
-        self.sensors
-            .pressure_counts
-            .map(|counts| f64::from(scale.pressure(counts)))
+        let mut pressure = [0.0; 4];
+        let scales = FsrScale::all(&self.params);
+        for ((slot, scale), counts) in pressure.iter_mut().zip(scales).zip(self.sensors.pressure_counts) {
+            *slot = f64::from(scale.pressure(counts));
+        }
+        pressure
     }
 
     /// Thrust of each rotor (N) that its motor's command asks for.

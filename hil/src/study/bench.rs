@@ -108,7 +108,7 @@ pub fn close(what: &Closing) -> Closed {
     };
     let (config, scale, reel) = (
         Config::from_params(&params),
-        FsrScale::from_params(&params),
+        FsrScale::from_params(&params, 0),
         Reel::from_params(&params, 0),
     );
     let (mut fsr, mut clamp, mut drive) = (Fsr::default(), ArmClamp::default(), TendonDrive::new());

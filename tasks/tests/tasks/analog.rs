@@ -1,6 +1,7 @@
 //! The converter's counts as pressures, volts and amperes, at their rates, and its silence.
 
-use sophie_control::arming::Refusal;
+use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::params::Params;
 use sophie_tasks::analog;
 use sophie_tasks::ports::AnalogFrame;
 
@@ -91,5 +92,27 @@ fn a_converter_silent_for_a_tenth_of_a_second_is_reported_until_it_converts() {
             rig.run(3);
             assert!(!silent(&rig) && rig.links.contact.fresh().is_some(), "{answer:?}");
         }
+    }
+}
+
+#[test]
+fn a_sensor_whose_range_ends_below_the_grip_is_reported_from_the_start() {
+    let params = Params {
+        fsr_scale_2: 2.0,
+        fsr_scale_3: 0.5,
+        ..Params::default()
+    };
+    let (mut rig, port) = (Rig::with(params), FakeAnalog::default());
+    // 1000 counts are 223.8 Pa bare (x = 0.2442); behind 1:2 x is 0.4884, 661.1 Pa; with a half of the range 0.1221, 96.3 Pa.
+    port.frame.set(AnalogFrame {
+        fsr: [1000; 4],
+        ..FRAME
+    });
+    rig.time.spawn(analog::run(rig.links, port));
+    rig.run(20);
+    assert_eq!(rig.links.hardware(), Refusals::NONE.with(Refusal::FsrRange3));
+    let contact = rig.links.contact.fresh().unwrap();
+    for (pressure, expected) in contact.pressure.iter().zip([223.8, 661.1, 96.3, 223.8]) {
+        assert!((pressure - expected).abs() < 0.1, "{:?}", contact.pressure);
     }
 }
