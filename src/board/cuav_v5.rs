@@ -6,7 +6,7 @@
 //! | motors 1 to 4 | TIM1 | DMA2 5 | AUX 4, 3, 2, 1 |
 //! | servos 1 and 2, 3 and 4 | TIM4, TIM12 | none | AUX 5 and 6, 7 and 8 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | GPS, I2C2 |
-//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4, PA4), RSSI (PB0), POWER2 current (PA3); POWER1 |
+//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4), CAP1 (PA5), RSSI (PB0), POWER2 current (PA3); POWER1 |
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
 //! | console | USART2 | none | TELEM1 |
 //! | parameters, FRAM | SPI2 | none | on board |
@@ -142,7 +142,7 @@ assign_resources! {
     analog: AnalogParts {
         adc: ADC1,
         fsr_1: PC4,
-        fsr_2: PA4,
+        fsr_2: PA5,
         fsr_3: PB0,
         fsr_4: PA3,
         battery_voltage: PA0,

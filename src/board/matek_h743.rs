@@ -6,7 +6,7 @@
 //! | motors 1 to 4 | TIM4 | DMA1 0 | S7, S8, S9, S10 |
 //! | servos 1 to 4 | TIM5 | none | S3, S4, S5, S6 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 1 to 4 | CL1 DA1, CL2 DA2 |
-//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | AirS, RSSI, VB2, CU2; on board |
+//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | S1, S2, RSSI, CU2; on board |
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
 //! | console | UART7 | none | RX7, TX7 |
 //! | parameters | flash | none | sectors 6 and 7 of bank 2 |
@@ -126,9 +126,9 @@ assign_resources! {
     }
     analog: AnalogParts {
         adc: ADC1,
-        fsr_1: PC4,
-        fsr_2: PC5,
-        fsr_3: PA4,
+        fsr_1: PB0,
+        fsr_2: PB1,
+        fsr_3: PC5,
         fsr_4: PA7,
         battery_voltage: PC0,
         battery_current: PC1,

@@ -43,7 +43,7 @@ pub const WIRING: Wiring = Wiring {
     motor: [pad("S7 (PD12)", pac::GPIOD, 12), pad("S5 (PA2)", pac::GPIOA, 2)],
     servo: [pad("S3 (PA0)", pac::GPIOA, 0), pad("S6 (PA3)", pac::GPIOA, 3)],
     receiver: [pad("TX6 (PC6)", pac::GPIOC, 6), pad("RX6 (PC7)", pac::GPIOC, 7)],
-    divider: (pad("RSSI (PC5)", pac::GPIOC, 5), 1),
+    divider: (pad("RSSI (PC5)", pac::GPIOC, 5), 2),
 };
 
 /// The wiring of the board that was built.

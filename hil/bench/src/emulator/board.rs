@@ -84,12 +84,10 @@ impl<C: Chip> Wired<C> {
         self.chip.brown_out();
     }
 
-    /// Puts volts on the analog inputs: pressure 1 to 4, battery voltage, battery current.
+    /// Puts volts on the analog inputs: the pads of pressure 1 to 4, the pins of battery voltage and current.
     pub fn set_analog(&mut self, volts: [f64; 6]) {
-        for (channel, volts) in self.pads.analog.into_iter().zip(volts) {
-            // The emulator takes whole millivolts: 1.2 counts of 12 bits.
-            self.chip
-                .set_input(channel, (volts * 1e3).round().max(0.0) as u32);
+        for (channel, millivolts) in self.pads.analog(volts) {
+            self.chip.set_input(channel, millivolts);
         }
     }
 

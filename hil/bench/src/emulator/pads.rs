@@ -21,6 +21,38 @@ pub struct TimerPins {
     pub function: u8,
 }
 
+/// A pad that leads to the converter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnalogPad {
+    /// The processor's pin.
+    pub pin: At,
+    /// Channel of the converter.
+    pub channel: u8,
+    /// Voltage at the pad over that at the pin: 1 without a divider on the board.
+    pub divider: f64,
+}
+
+impl AnalogPad {
+    /// A pad that is the pin itself.
+    pub const fn bare(pin: At, channel: u8) -> Self {
+        Self::divided(pin, channel, 1.0)
+    }
+
+    /// A pad with a divider of 1:`divider` before the pin.
+    pub const fn divided(pin: At, channel: u8, divider: f64) -> Self {
+        Self {
+            pin,
+            channel,
+            divider,
+        }
+    }
+
+    /// Whole millivolts at the pin, which is what the emulator takes, where the pad has `volts`: 1.2 counts of 12 bits.
+    pub fn millivolts(&self, volts: f64) -> u32 {
+        (volts / self.divider * 1e3).round().max(0.0) as u32
+    }
+}
+
 /// What hangs on a board's pads, as `docs/boards.md` wires them. Interfaces are counted as the emulator counts them.
 #[derive(Debug)]
 pub struct Pads {
@@ -40,8 +72,10 @@ pub struct Pads {
     pub imu_axes: fn([f64; 3]) -> [f64; 3],
     /// Bus and address of the arms' sensors 1 to 4.
     pub arms: [(usize, u8); 4],
-    /// Converter channels of pressure 1 to 4, battery voltage, battery current.
-    pub analog: [u8; 6],
+    /// The pads of pressure 1 to 4, as the board is made.
+    pub pressure: [AnalogPad; 4],
+    /// Converter channels of battery voltage and current, whose dividers are the sensors'.
+    pub battery: [u8; 2],
     /// Serial port of the receiver.
     pub receiver: usize,
     /// Where the port sends to the receiver, with its alternate function; SBUS leaves it alone.
@@ -62,6 +96,16 @@ pub struct Pads {
 }
 
 impl Pads {
+    /// Channels of the converter and the millivolts at their pins, for volts at the pads of pressure 1 to 4 and at the
+    /// pins of battery voltage and current.
+    pub fn analog(&self, volts: [f64; 6]) -> impl Iterator<Item = (u8, u32)> {
+        let battery = self.battery.map(|channel| AnalogPad::bare(At(0, 0), channel));
+        let inputs = self.pressure.into_iter().chain(battery);
+        inputs
+            .zip(volts)
+            .map(|(pad, volts)| (pad.channel, pad.millivolts(volts)))
+    }
+
     /// Every pin that must carry an alternate function, with its number; `answers` the receiver both ways.
     pub fn functions(&self, answers: bool) -> impl Iterator<Item = (At, u8)> {
         let timers = [self.motors, self.servos];

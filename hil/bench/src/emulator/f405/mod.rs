@@ -34,7 +34,7 @@ use super::chip::{Chip, same_on_this_part};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
-use super::pads::{At, Pads, TimerPins};
+use super::pads::{AnalogPad, At, Pads, TimerPins};
 use super::serial::Setup;
 use super::stretched::Stretched;
 use super::tap::{Edge, Tap};
@@ -63,7 +63,13 @@ pub static PADS: Pads = Pads {
     // Marking up, x forward: the chip's y points left and its z up.
     imu_axes: |[x, y, z]| [x, -y, -z],
     arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
-    analog: [10, 11, 12, 13, 0, 1],
+    pressure: [
+        AnalogPad::bare(At(2, 0), 10),
+        AnalogPad::bare(At(2, 1), 11),
+        AnalogPad::bare(At(2, 2), 12),
+        AnalogPad::bare(At(2, 3), 13),
+    ],
+    battery: [0, 1],
     receiver: 0,
     receiver_out: (At(0, 9), 7),
     console: 1,

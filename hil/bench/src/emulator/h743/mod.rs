@@ -23,7 +23,7 @@ use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::deaf::Deaf;
-use super::pads::{At, Pads, TimerPins};
+use super::pads::{AnalogPad, At, Pads, TimerPins};
 use super::serial::Setup;
 use super::stretched::Stretched;
 use super::tap::{Edge, Tap};
@@ -46,6 +46,16 @@ const TIME_TIMER: usize = 0;
 const MOTOR_TIMER: usize = 2;
 const SERVO_TIMER: usize = 3;
 
+/// The Matek's pads that lead to the converter, with what ArduPilot (`MatekH743`) and PX4 (`matek/h743-slim`) say of
+/// their dividers.
+const S1: AnalogPad = AnalogPad::bare(At(1, 0), 9);
+/// Bare as S1.
+const S2: AnalogPad = AnalogPad::bare(At(1, 1), 5);
+/// For a receiver's signal strength, 0 to 3.3 V.
+const RSSI: AnalogPad = AnalogPad::bare(At(2, 5), 8);
+/// For the current of a second battery, 0 to 3.3 V.
+const CU2: AnalogPad = AnalogPad::bare(At(0, 7), 7);
+
 /// The pads of the Matek H743, as `docs/boards.md` wires them.
 pub static MATEK: Pads = Pads {
     name: "matek-h743",
@@ -57,7 +67,8 @@ pub static MATEK: Pads = Pads {
     // On the underside, turned by half a turn about the vertical (ArduPilot's `hwdef.dat`: ROTATION_YAW_180).
     imu_axes: |[x, y, z]| [-x, -y, z],
     arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
-    analog: [4, 8, 18, 7, 10, 11],
+    pressure: [S1, S2, RSSI, CU2],
+    battery: [10, 11],
     receiver: 5,
     receiver_out: (At(2, 6), 7),
     console: 6,
@@ -290,5 +301,76 @@ impl Mcu for H743 {
             return (self.inner.bus_mut(), None);
         }
         self.inner.split(slot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sophie_control::fsr::FsrScale;
+    use sophie_control::params::Params;
+
+    use super::*;
+
+    /// For an airspeed sensor of 5 V.
+    const AIRS: AnalogPad = AnalogPad::divided(At(2, 4), 4, 2.0);
+    /// For the voltage of a second battery.
+    const VB2: AnalogPad = AnalogPad::divided(At(0, 4), 18, 11.0);
+
+    /// What the flight stack reads (Pa), through the pads `pads`, of sensors that feel `pressure` (Pa).
+    fn read(pads: [AnalogPad; 4], params: &Params, pressure: f64) -> [f64; 4] {
+        // R_d / (R_d + R) of 3.3 V, with 10 kΩ and 100 µS/N over 1444 mm².
+        let load = pressure * 0.001_444 * 1e-4 * 10e3;
+        let volts = 3.3 * load / (1.0 + load);
+        let mut seen = [0.0; 4];
+        let wired = Pads {
+            pressure: pads,
+            ..MATEK
+        };
+        let inputs = wired.analog([volts, volts, volts, volts, 1.5, 0.1]);
+        for ((seen, scale), (_, millivolts)) in seen.iter_mut().zip(FsrScale::all(params)).zip(inputs) {
+            *seen = f64::from(scale.pressure((f64::from(millivolts) / 3300.0 * 4095.0).round() as u16));
+        }
+        seen
+    }
+
+    #[test]
+    fn the_pads_of_the_pressure_sensors_read_the_grip_pressure() {
+        for pressure in [100.0, 950.0, 1140.0, 3000.0] {
+            for seen in read(MATEK.pressure, &Params::default(), pressure) {
+                assert!((seen - pressure).abs() < 0.01 * pressure, "{pressure}: {seen}");
+            }
+        }
+        let channels: Vec<u8> = MATEK.analog([0.0; 6]).map(|(channel, _)| channel).collect();
+        assert_eq!(channels, [9, 5, 8, 7, 10, 11]);
+    }
+
+    #[test]
+    fn pads_with_dividers_would_end_below_the_grip_pressure() {
+        // Behind 1:2 and 1:11 even a million newtons per square metre read as 692 and 69.
+        let [airs, rssi, vb2, cu2] = read([AIRS, RSSI, VB2, CU2], &Params::default(), 950.0);
+        assert!(
+            (airs - 281.8).abs() < 2.0 && (vb2 - 38.4).abs() < 1.0,
+            "{airs} {vb2}"
+        );
+        assert!(
+            (rssi - 950.0).abs() < 5.0 && (cu2 - 950.0).abs() < 5.0,
+            "{rssi} {cu2}"
+        );
+        let [airs, _, vb2, _] = read([AIRS, RSSI, VB2, CU2], &Params::default(), 1e6);
+        assert!(
+            (690.0..693.0).contains(&airs) && (68.5..70.0).contains(&vb2),
+            "{airs} {vb2}"
+        );
+        // Told of their dividers they read as the others.
+        let told = Params {
+            fsr_scale_1: 2.0,
+            fsr_scale_3: 11.0,
+            ..Params::default()
+        };
+        let [airs, _, vb2, _] = read([AIRS, RSSI, VB2, CU2], &told, 950.0);
+        assert!(
+            (airs - 950.0).abs() < 5.0 && (vb2 - 950.0).abs() < 10.0,
+            "{airs} {vb2}"
+        );
     }
 }
