@@ -9,8 +9,6 @@ use crate::wrench::Wrench;
 
 /// Time over which the collective goes from one state's to the next one's, s.
 pub const HAND_OVER_TIME: f32 = 0.5;
-/// The same when the vehicle slides off the pipe, s: its lean grows e-fold in 0.16 s.
-pub const ESCAPE_TIME: f32 = 0.15;
 
 /// What the pilot asks for in free flight.
 pub fn from_sticks(s: &Sticks, p: &Params) -> Setpoint {

@@ -5,6 +5,7 @@
 //! here until the throttle stick says hover; a pilot who never moves it is brought down by the failsafe.
 
 use super::failsafe::Cause;
+use super::lean::SLIDES;
 use super::logic::{ModeLogic, State};
 use super::{Inputs, Setpoint};
 use crate::math::{clamp, clamp_abs, deg};
@@ -20,15 +21,21 @@ const LEAST_SHARE: f32 = 0.9;
 const CLIMB_GAIN: f32 = 0.7;
 /// Climb rate aimed at until the vehicle is clear, m/s; later the height is kept.
 const CLIMB_RATE: f32 = 0.5;
-/// Time in which it comes clear of the pipe, s: the sticks do not steer before.
-const CLEAR_TIME: f32 = 0.8;
+/// Time over which the collective rises when the vehicle slides, s: its lean grows e-fold in 0.16 s.
+pub(super) const SLIDE_RAMP: f32 = 0.15;
+/// When it stands it rises later and slower, s: the rotors pull at the tendons with 7 times their thrust, and tendons at
+/// their limit must have paid out before.
+const STAND_DELAY: f32 = 0.25;
+const STAND_RAMP: f32 = 0.5;
+/// Time from then on in which it comes clear of the pipe, s: the sticks do not steer before.
+const CLEAR_TIME: f32 = 0.65;
 /// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank,
 /// and a lean across the crown throws it under the pipe.
 const AWAY_LEAN: f32 = deg(8.0);
 /// Time in which arms that open come free, s. Arms that do not hold the vehicle on the pipe: then pulling is no use.
-const FREE_MAX: f32 = 3.0;
+pub(super) const FREE_MAX: f32 = 5.0;
 /// Time in which the pilot must have taken the throttle over, s.
-const TAKE_OVER_TIME: f32 = 5.0;
+pub(super) const TAKE_OVER_TIME: f32 = 7.0;
 /// Thrust of the stick by which he takes it over, share of the weight.
 pub(super) const TAKE_OVER_SHARE: f32 = 0.9;
 
@@ -39,6 +46,8 @@ pub struct Escape {
     pub grasp: Grasp,
     /// Roll held until the vehicle is clear, rad.
     roll: f32,
+    /// Collective from which it rises slowly, N; `None` on a slide.
+    from: Option<f32>,
     /// Climb rate since the escape began, m/s.
     climb: f32,
     /// The tendons are paying out.
@@ -54,6 +63,7 @@ impl ModeLogic {
         State::Escaping(Escape {
             grasp,
             roll: clamp_abs(lean, AWAY_LEAN),
+            from: (why != SLIDES).then(|| self.collective.now().max(self.release_thrust())),
             climb: 0.0,
             opening: grasp == Grasp::Open,
         })
@@ -87,7 +97,8 @@ impl ModeLogic {
 
     /// The arms are free, and there was time to leave the pipe.
     fn clear(&self, escape: Escape) -> bool {
-        self.since >= CLEAR_TIME && escape.grasp == Grasp::Open
+        let ramp = escape.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
+        self.since >= ramp + CLEAR_TIME && escape.grasp == Grasp::Open
     }
 
     /// The throttle stick carries the vehicle.
@@ -104,6 +115,11 @@ impl ModeLogic {
             LEAST_SHARE,
             LIFT_SHARE,
         );
+        let goal = share * self.support.weight();
+        let thrust = escape.from.map_or(goal, |from| {
+            let risen = clamp((self.since - STAND_DELAY) / STAND_RAMP, 0.0, 1.0);
+            from + (goal - from) * risen
+        });
         let steer = sticks.filter(|_| clear).unwrap_or_default();
         Setpoint::Escape {
             roll: if clear {
@@ -113,7 +129,7 @@ impl ModeLogic {
             },
             pitch: steer.pitch * self.params.stick_angle,
             yaw_rate: steer.yaw * self.params.stick_yaw_rate,
-            thrust: share * self.support.weight(),
+            thrust,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Leaving the pipe by itself: what starts an escape, what it does, who ends it; and when the arms do not let go.
 
-use super::escape::TAKE_OVER_SHARE;
+use super::escape::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
 use super::lean::{LEANS, SLIDES};
 use super::rig::{DT, Rig};
 use super::*;
@@ -161,7 +161,7 @@ fn nobody_on_the_throttle_is_brought_down_and_may_still_take_over() {
     r.grip(false, true, ArmState::Free, 0.0);
     r.carried = false;
     r.leans(0.0, 0.0);
-    r.expect(4.8, Mode::Escaping);
+    r.expect(TAKE_OVER_TIME - 0.2, Mode::Escaping);
     r.expect(0.3, Mode::Failsafe);
     assert_eq!(r.out.reason, "throttle not taken over");
     r.run(1.0);
@@ -214,7 +214,7 @@ fn a_release_that_nothing_carries_is_an_escape() {
 fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
     let mut r = Rig::escaping();
     r.leans(0.0, 0.0);
-    r.expect(2.8, Mode::Escaping);
+    r.expect(FREE_MAX - 0.2, Mode::Escaping);
     r.expect(0.3, Mode::Releasing);
     assert_eq!(
         (r.out.reason, r.out.tendons),
@@ -236,7 +236,7 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
     r.leans(0.0, 0.0);
     r.carried = false;
     r.sticks().throttle = 0.55;
-    r.expect(2.8, Mode::Escaping);
+    r.expect(FREE_MAX - 0.2, Mode::Escaping);
     r.expect(0.3, Mode::Flight);
 }
 

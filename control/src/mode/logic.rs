@@ -1,6 +1,6 @@
 //! The state machine: one step takes what is seen and gives what is to be done.
 
-use super::escape::Escape;
+use super::escape::{Escape, SLIDE_RAMP};
 use super::failsafe::{Cause, Dangers};
 use super::hold::{Hold, Spool};
 use super::lean::{Lean, SLIDES};
@@ -173,7 +173,7 @@ impl ModeLogic {
         if next.mode() != self.state.mode() {
             self.since = 0.0;
             self.collective.hand_over(match next {
-                State::Escaping(_) => demand::ESCAPE_TIME,
+                State::Escaping(_) => SLIDE_RAMP,
                 _ => demand::HAND_OVER_TIME,
             });
             if next.mode() == Mode::Armed {
