@@ -84,11 +84,11 @@ impl Collective {
         }
         self.left = clamp(self.left - dt, 0.0, self.time);
         let rest = if self.left > 0.0 {
-            self.left / self.time
+            self.offset * self.left / self.time
         } else {
             0.0
         };
-        let thrust = clamp(target + self.offset * rest, 0.0, full);
+        let thrust = clamp(target + rest, 0.0, full);
         self.last = Some(thrust);
         with_thrust(wish, thrust)
     }

@@ -16,6 +16,13 @@ const LEVEL: Setpoint = Setpoint::Angle {
     thrust: 17.7,
 };
 
+const ESCAPE: Setpoint = Setpoint::Escape {
+    roll: 0.0,
+    pitch: 0.0,
+    yaw_rate: 0.0,
+    thrust: 24.0,
+};
+
 /// 0.5 rad/s of roll rate that is asked for and not there.
 const ROLLING: Setpoint = Setpoint::Rate {
     rate: Vec3::new(0.5, 0.0, 0.0),
@@ -163,7 +170,7 @@ fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given()
 }
 
 #[test]
-fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop() {
+fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop_or_escape() {
     let idle = Setpoint::Idle;
     let rest = Setpoint::Rate {
         rate: Vec3::ZERO,
@@ -172,6 +179,9 @@ fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop() {
     for (between, then, left) in [
         (None, LEVEL, 0.084),
         (None, rest, 0.084),
+        // What was wound up against the pipe would throw the vehicle to that side.
+        (None, ESCAPE, 0.0),
+        (Some(ESCAPE), LEVEL, 0.0),
         (Some(idle), rest, 0.0),
         (Some(Setpoint::Stop), LEVEL, 0.0),
         (
