@@ -4,8 +4,9 @@
 //! share x = R_d / (R_d + R) of the supply, so the conductance is x / ((1 - x) R_d). It grows in proportion to the
 //! force (Interlink integration guide), and the force over the sensor's area is the pressure. The converter is at full
 //! scale where the pad has the share s: x = s counts / full scale. On a bare pad s is 1; what sees no more than a part
-//! of x reads no more than s / ((1 - s) R_d): 692 Pa for a half, 69 Pa for an eleventh. An unloaded sensor conducts nothing, so an open lead looks like no pressure at all: only the clamp
-//! loop, which knows what it pulls, can tell ([`crate::clamp::Fault::Unfelt`]).
+//! of x reads no more than s / ((1 - s) R_d): 692 Pa for a half, 69 Pa for an eleventh. An unloaded sensor conducts
+//! nothing, so an open lead looks like no pressure at all: only the clamp loop, which knows what it pulls, can tell
+//! ([`crate::clamp::Fault::Unfelt`]).
 
 use crate::math;
 use crate::params::Params;

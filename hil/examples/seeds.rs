@@ -10,6 +10,7 @@ use sophie_control::rc::ArmChoice;
 use sophie_hil::flight::fly;
 use sophie_hil::record::{FlightRecord, Silent};
 use sophie_hil::scenario::Scenario;
+use sophie_hil::study::parallel;
 
 /// What is kept of a flight.
 struct Flown {
@@ -42,30 +43,13 @@ fn main() {
     if of(4, 4.0) < 4.0 {
         scenario.arms = ArmChoice::Front;
     }
-    let workers = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u64;
-    let mut flights: Vec<Flown> = std::thread::scope(|scope| {
-        let scenario = &scenario;
-        let threads: Vec<_> = (0..workers)
-            .map(|worker| {
-                scope.spawn(move || {
-                    let seeds = (first..first + count).filter(|seed| seed % workers == worker);
-                    seeds
-                        .map(|seed| {
-                            flown(&Scenario {
-                                seed,
-                                ..scenario.clone()
-                            })
-                        })
-                        .collect::<Vec<_>>()
-                })
-            })
-            .collect();
-        threads
-            .into_iter()
-            .flat_map(|t| t.join().expect("no panic"))
-            .collect()
+    let seeds: Vec<u64> = (first..first + count).collect();
+    let flights = parallel::each(&seeds, |&seed| {
+        flown(&Scenario {
+            seed,
+            ..scenario.clone()
+        })
     });
-    flights.sort_by_key(|f| f.seed);
     for flight in &flights {
         if let Some(why) = &flight.failure {
             println!("seed {}: {why} ({} escapes)", flight.seed, flight.escapes);

@@ -4,6 +4,7 @@
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
+use sophie_hil::study::parallel;
 use sophie_hil::study::touch::{End, Touch, Touched, fly};
 
 fn main() {
@@ -12,25 +13,10 @@ fn main() {
         .map(|a| a.parse::<u64>().expect("a number"));
     let first = args.next().unwrap_or(1);
     let count = args.next().unwrap_or(1000);
-    let workers = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u64;
-    let flown: Vec<(Touch, Touched)> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..workers)
-            .map(|worker| {
-                scope.spawn(move || {
-                    (first..first + count)
-                        .filter(|seed| seed % workers == worker)
-                        .filter_map(|seed| {
-                            let touch = Touch::random(seed);
-                            fly(&touch).map(|touched| (touch, touched))
-                        })
-                        .collect::<Vec<_>>()
-                })
-            })
-            .collect();
-        threads
-            .into_iter()
-            .flat_map(|t| t.join().expect("no panic"))
-            .collect()
+    let seeds: Vec<u64> = (first..first + count).collect();
+    let flown: Vec<(Touch, Touched)> = parallel::each(&seeds, |&seed| {
+        let touch = Touch::random(seed);
+        (touch, fly(&touch).expect("the vehicle arms"))
     });
     for end in [End::Perched, End::Released, End::Away, End::Lost] {
         let of: Vec<_> = flown.iter().filter(|(_, t)| t.end == end).collect();

@@ -2,6 +2,7 @@
 //! none ends on the ground.
 
 use sophie_control::mode::Mode;
+use sophie_hil::study::parallel;
 use sophie_hil::study::touch::{End, Touch, Touched, fly};
 
 /// Touches flown; docs/results.md has a longer run.
@@ -11,25 +12,10 @@ const DROP_MAX: f64 = 0.5;
 
 #[test]
 fn no_touch_ends_on_the_ground() {
-    let workers = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u64;
-    let flown: Vec<(Touch, Touched)> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..workers)
-            .map(|worker| {
-                scope.spawn(move || {
-                    let seeds = (1..=COUNT).filter(|seed| seed % workers == worker);
-                    seeds
-                        .map(|seed| {
-                            let touch = Touch::random(seed);
-                            (touch, fly(&touch).expect("the vehicle arms"))
-                        })
-                        .collect::<Vec<_>>()
-                })
-            })
-            .collect();
-        threads
-            .into_iter()
-            .flat_map(|t| t.join().expect("no panic"))
-            .collect()
+    let seeds: Vec<u64> = (1..=COUNT).collect();
+    let flown: Vec<(Touch, Touched)> = parallel::each(&seeds, |&seed| {
+        let touch = Touch::random(seed);
+        (touch, fly(&touch).expect("the vehicle arms"))
     });
     for (touch, touched) in &flown {
         assert!(touched.end != End::Lost, "{touch:?}\n{touched:?}");

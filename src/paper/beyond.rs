@@ -10,9 +10,9 @@ use sophie_hil::study::rig::{Flown, Wish, fly};
 
 use super::flights::{BOTH, curve, error, in_gusts, lost_when, named, or_lost, vehicle};
 use super::model::{Axis, Chart, Look, Section, Series, Table, Tile, num};
-use super::parallel;
 use super::printed::Printed;
 use super::statics::AtThrust;
+use sophie_hil::study::parallel;
 
 /// The mixers that are compared.
 const MIXERS: [(&str, Variant, Option<Studied>); 5] = [

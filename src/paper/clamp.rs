@@ -10,8 +10,8 @@ use sophie_hil::scenario::{Scenario, ServoProfile};
 use sophie_hil::study::bench::{Closed, Closing, close};
 
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
-use super::parallel;
 use super::printed::Printed;
+use sophie_hil::study::parallel;
 use sophie_report::units::kgcm;
 
 /// Infills (%) and diameters (m) that are tried.

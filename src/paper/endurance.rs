@@ -9,9 +9,9 @@ use sophie_hil::scenario::ServoProfile;
 
 use super::clamp::{bench, closing_thrust};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
-use super::parallel;
 use super::printed::Printed;
 use super::statics::root;
+use sophie_hil::study::parallel;
 
 /// Density of air, kg/m³, and radius of a 10-inch propeller, m.
 const AIR: f64 = 1.225;

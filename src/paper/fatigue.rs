@@ -7,8 +7,8 @@ use sophie_hil::study::rig::{Flown, Moment, Wish, fly};
 
 use super::flights::{error, in_gusts, lost_when, or_lost, vehicle};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
-use super::parallel;
 use super::printed::Printed;
+use sophie_hil::study::parallel;
 
 /// Compliance of arm 1 over the new arm's.
 const WORN: [f64; 6] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];

@@ -13,9 +13,9 @@ use sophie_hil::study::rig::{Flown, Wish, fly};
 
 use super::flights::{curve, error, in_gusts, lost_when, named, or_lost, swing, vehicle};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
-use super::parallel;
 use super::printed::Printed;
 use super::statics::{AtThrust, frozen_bound, root};
+use sophie_hil::study::parallel;
 
 /// Rows f_z, τ_φ, τ_θ, τ_ψ of a mixer matrix over C_T.
 type Matrix = [[f64; 4]; 4];

@@ -17,7 +17,6 @@ pub mod mass;
 pub mod mixer;
 pub mod model;
 pub mod page;
-pub mod parallel;
 pub mod printed;
 pub mod roll;
 pub mod stability;

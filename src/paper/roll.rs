@@ -7,8 +7,8 @@ use sophie_hil::study::rig::{Flown, Moment, Wish, fly};
 
 use super::flights::{curve, delta_alpha, delta_thrust, lost_when, vehicle};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
-use super::parallel;
 use super::printed::{Printed, Roll};
+use sophie_hil::study::parallel;
 
 /// How long the roll is held, s.
 const HELD: f64 = 1.2;

@@ -11,9 +11,9 @@ use sophie_hil::study::rig::{Flown, Wish, fly};
 
 use super::flights::{BOTH, curve, named, vehicle};
 use super::model::{Axis, Chart, Look, Section, Series, Table, Tile, num};
-use super::parallel;
 use super::printed::Printed;
 use super::statics::{AtThrust, root};
+use sophie_hil::study::parallel;
 
 /// Step of the perturbation, N.
 const STEP: f64 = 0.05;

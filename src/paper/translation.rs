@@ -8,9 +8,9 @@ use sophie_hil::study::rig::{Flown, Moment, Wish, fly};
 
 use super::flights::vehicle;
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
-use super::parallel;
 use super::printed::Printed;
 use super::roll::sideways;
+use sophie_hil::study::parallel;
 
 /// Linear air drag of the plant, N·s/m; known here so that only the equations differ.
 const DRAG: f64 = 0.3;

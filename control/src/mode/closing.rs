@@ -2,7 +2,7 @@
 
 use super::Inputs;
 use super::hold::{Hold, Spool, held, hopeless};
-use super::lean::{LEANS, SLIDES};
+use super::lean::LEANS;
 use super::logic::{ModeLogic, State};
 use crate::math::clamp;
 use crate::rc::{ArmChoice, Sticks};
@@ -39,7 +39,7 @@ impl ModeLogic {
         let proven = i.grip.is_some_and(|g| g.proven);
         let holds = held(i.grip, hold.arms, &self.params);
         if !holds && self.slides() {
-            return self.leave(i, Grasp::Closed(hold.arms), SLIDES);
+            return self.slide_off(i, Grasp::Closed(hold.arms));
         }
 
         // Without the radio nobody could fly away: a poor grip is then better than none.
@@ -73,7 +73,7 @@ impl ModeLogic {
                         kept: false,
                     };
                 }
-                Some(why) => return self.leave(i, Grasp::Closed(hold.arms), why),
+                Some(why) => return self.give_up(i, Grasp::Closed(hold.arms), why),
                 None => {}
             }
         }
@@ -208,7 +208,7 @@ impl ModeLogic {
         }
         let holds = held(i.grip, hold.arms, &self.params);
         if !holds && self.slides() || opening && self.falls() {
-            return self.leave(i, Grasp::Closed(hold.arms), SLIDES);
+            return self.slide_off(i, Grasp::Closed(hold.arms));
         }
         let again = sticks.is_none_or(|s| s.perch_switch && self.perch_seen_off);
         if again && kept && !opening {

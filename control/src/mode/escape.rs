@@ -55,15 +55,25 @@ pub struct Escape {
 }
 
 impl ModeLogic {
-    /// Leaves the pipe for `why` with the arms of `grasp` closed or closing.
-    pub(super) fn leave(&mut self, i: &Inputs, grasp: Grasp, why: &'static str) -> State {
+    /// Leaves the pipe from which the vehicle slides or falls, with the arms of `grasp` closed or closing.
+    pub(super) fn slide_off(&mut self, i: &Inputs, grasp: Grasp) -> State {
+        self.leave(i, grasp, SLIDES, None)
+    }
+
+    /// Leaves the pipe on which the vehicle stands, because its closing is given up for `why`.
+    pub(super) fn give_up(&mut self, i: &Inputs, grasp: Grasp, why: &'static str) -> State {
+        let from = self.collective.now().max(self.release_thrust());
+        self.leave(i, grasp, why, Some(from))
+    }
+
+    fn leave(&mut self, i: &Inputs, grasp: Grasp, why: &'static str, from: Option<f32>) -> State {
         self.note(why);
         self.perch_seen_off = false;
         let lean = i.motion.map_or(0.0, |m| m.q.to_euler().0);
         State::Escaping(Escape {
             grasp,
             roll: clamp_abs(lean, AWAY_LEAN),
-            from: (why != SLIDES).then(|| self.collective.now().max(self.release_thrust())),
+            from,
             climb: 0.0,
             opening: grasp == Grasp::Open,
         })

@@ -12,14 +12,14 @@ const LEVELLING_RATE: f32 = 0.2;
 /// Lean beyond which arms that close do not hold any more, rad: they need 1.3 s to touch, a slide from here takes 0.35 s
 /// to the flank.
 const HOPELESS_LEAN: f32 = deg(25.0);
-/// Lean from which on a growing one counts, rad, and its rate, rad/s. A touch 30 mm beside the crown drifts out to 14 to 18°
-/// before it sits, and is held.
+/// Lean from which on a growing one counts, rad, and its rate, rad/s. A touch 30 mm beside the crown drifts out to 14
+/// to 18° before it sits, and is held.
 const GROWING_LEAN: f32 = deg(18.0);
 const GROWING_RATE: f32 = 0.3;
 /// Time for which any of it must last, s: three steps.
 const SLIDE_TIME: f32 = 0.03;
 /// Largest lean at which the arms let go, rad: beyond, the belly slides down the flank before the rotors carry.
-pub const RELEASE_LEAN_MAX: f32 = deg(17.0);
+const RELEASE_LEAN_MAX: f32 = deg(17.0);
 /// Time for which next to nothing may carry a vehicle, s, whose collective is below this share of its weight.
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;

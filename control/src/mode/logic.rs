@@ -3,7 +3,7 @@
 use super::escape::{Escape, SLIDE_RAMP};
 use super::failsafe::{Cause, Dangers};
 use super::hold::{Hold, Spool};
-use super::lean::{Lean, SLIDES};
+use super::lean::Lean;
 use super::look::Look;
 use super::{Inputs, Mode, Outputs, demand};
 use crate::arming::{Gesture, GestureWatch};
@@ -289,7 +289,7 @@ impl ModeLogic {
         let motion = i.motion?;
         let wanted = s.perch_switch && s.throttle <= self.params.perch_throttle_max;
         if wanted && self.perch_seen_off && self.slides_at_touch() {
-            return Some(self.leave(i, Grasp::Open, SLIDES));
+            return Some(self.slide_off(i, Grasp::Open));
         }
         if !(wanted && self.support.resting()) {
             return None;
@@ -318,7 +318,7 @@ impl ModeLogic {
             return State::Flight;
         }
         if self.slides() {
-            return self.leave(i, Grasp::Open, SLIDES);
+            return self.slide_off(i, Grasp::Open);
         }
         if !self.support.resting() {
             // Lost the pipe, or the inertial sensor for a moment: back to where the pilot steers.

@@ -5,6 +5,7 @@
 
 pub mod allocation;
 pub mod bench;
+pub mod parallel;
 pub mod perturbation;
 pub mod rig;
 pub mod touch;
