@@ -37,8 +37,8 @@ const CHANGES: [(&str, &str); 9] = [
     ),
     (
         "        timer: TIM4,\n        motor_1: PD12,\n        motor_2: PD13,\n        motor_3: PD14,\n        motor_4: PD15,\n",
-        "        timer: TIM4,\n        motor_1: PD15,\n        motor_4: PD12,\n        second: TIM3,\n        motor_2: PB1,\n        \
-         motor_3: PB0,\n        more_dma: DMA1_CH5,\n",
+        "        timer: TIM4,\n        motor_1: PD15,\n        motor_4: PD12,\n        second: TIM3,\n        motor_2: PC9,\n        \
+         motor_3: PC8,\n        more_dma: DMA1_CH5,\n",
     ),
     (
         "    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);\n    \
@@ -49,7 +49,7 @@ const CHANGES: [(&str, &str); 9] = [
     ),
     (
         "    pull_low(pac::GPIOD, [12, 13, 14, 15]);\n",
-        "    pull_low(pac::GPIOD, [12, 15, 15, 15]);\n    pull_low(pac::GPIOB, [0, 1, 1, 1]);\n",
+        "    pull_low(pac::GPIOD, [12, 15, 15, 15]);\n    pull_low(pac::GPIOC, [8, 9, 9, 9]);\n",
     ),
     (
         "    motors: MotorParts {",
