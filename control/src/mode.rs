@@ -75,12 +75,12 @@ pub enum Mode {
     Perched,
     /// Rotors spooled up again, tendons paying out until every arm is proven free.
     Releasing,
-    /// Leaving the pipe by itself after a slide or a closing that was given up, until the pilot takes the throttle.
-    Escaping,
     /// On the ground again, rotors idle, about to disarm.
     Landed,
     /// The pilot is lost or the battery empty: descend, stop on whatever carries.
     Failsafe,
+    /// Leaving the pipe by itself after a slide or a closing that was given up, until the pilot takes the throttle.
+    Escaping,
 }
 
 impl Mode {
