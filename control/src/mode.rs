@@ -157,8 +157,8 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// What is no number has not come: it must not stay in a filter or an attitude that is held. An arm switch that is
-    /// off still counts.
+    /// Drops every message with a non-finite value, as if it were stale: NaN must not stay in a filter or in the attitude
+    /// held on the pipe. An arm switch that is off still stops the rotors.
     fn finite(self) -> Self {
         let sane = |m: &Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
         let steady = |s: &Sticks| (s.roll + s.pitch + s.yaw + s.throttle).is_finite();

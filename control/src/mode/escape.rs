@@ -27,12 +27,12 @@ pub(super) const SLIDE_RAMP: f32 = 0.15;
 /// their limit must have paid out before.
 const STAND_DELAY: f32 = 0.25;
 const STAND_RAMP: f32 = 0.5;
-/// Time from then on in which it comes clear of the pipe, s: the sticks do not steer before.
+/// Time after the rise in which the vehicle comes clear of the pipe, s; the sticks do not steer before.
 const CLEAR_TIME: f32 = 0.65;
 /// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank,
 /// and a lean across the crown throws it under the pipe.
 const AWAY_LEAN: f32 = deg(8.0);
-/// Time in which arms that open come free, s. Arms that do not hold the vehicle on the pipe: then pulling is no use.
+/// Time in which arms that open come free, s. Later ones are stuck on the pipe, and the rotors must not pull at them.
 pub(super) const FREE_MAX: f32 = 5.0;
 /// Time in which the pilot must have taken the throttle over, s.
 pub(super) const TAKE_OVER_TIME: f32 = 7.0;
@@ -46,7 +46,7 @@ pub struct Escape {
     pub grasp: Grasp,
     /// Roll held until the vehicle is clear, rad.
     roll: f32,
-    /// Collective from which it rises slowly, N; `None` on a slide.
+    /// Collective from which the slow rise starts, N; `None` on a slide, which lifts at once.
     from: Option<f32>,
     /// Climb rate since the escape began, m/s.
     climb: f32,
@@ -81,7 +81,7 @@ impl ModeLogic {
 
     pub(super) fn escaping(&mut self, i: &Inputs, mut escape: Escape, dt: f32) -> State {
         escape.climb -= self.sinking * dt;
-        // Until the rotors carry the least throttle, the arms are all that does.
+        // Below the least throttle of a release only the arms keep the vehicle on the pipe.
         escape.opening |= self.collective.now() >= self.release_thrust();
         if escape.opening && i.grip.is_some_and(|g| g.released) {
             escape.grasp = Grasp::Open;
@@ -90,7 +90,7 @@ impl ModeLogic {
             if self.support.force() < -HINT_FORCE {
                 return self.stuck(i, arms);
             }
-            // Nothing holds the vehicle: whatever the sensors say of an arm, it flies.
+            // Nothing pulls the vehicle down: it flies, whatever an arm's sensors say.
             escape.grasp = Grasp::Open;
         }
         if !self.clear(escape) {

@@ -1,5 +1,5 @@
-//! A radio or a number lost at any step of any state: no rotor stops in the air, nothing opens before the rotors carry,
-//! and what is over leaves no trace.
+//! Radio lost, or one non-finite message, at any step of any state: no rotor stops in the air, no arm opens before the
+//! rotors carry, and the state afterwards is that of an undisturbed vehicle.
 
 use super::closing::{FREE_TIME, HOPELESS_TIME, RELEASE_THROTTLE_MIN};
 use super::rig::Rig;
