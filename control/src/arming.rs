@@ -71,13 +71,22 @@ pub enum Refusal {
     FsrRange3,
     /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
     FsrRange4,
+    /// The chip would go on executing, and executing garbage, when its supply breaks down.
+    BrownOutLevel,
+    /// The start-up found something in the chip that the firmware is not made for.
+    Silicon,
+    /// The memory for parameters holds another firmware's data: the defaults are in force.
+    StorageForeign,
 }
 
 impl Refusal {
     /// Every reason, the most basic first.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 31] = [
         Self::BrownOut,
+        Self::BrownOutLevel,
+        Self::Silicon,
         Self::Storing,
+        Self::StorageForeign,
         Self::StorageUnreadable,
         Self::StorageFull,
         Self::ImuAbsent,
@@ -140,17 +149,20 @@ impl Refusal {
             Self::FsrRange2 => "pressure sensor 2: range too small",
             Self::FsrRange3 => "pressure sensor 3: range too small",
             Self::FsrRange4 => "pressure sensor 4: range too small",
+            Self::BrownOutLevel => "brown-out level not set",
+            Self::Silicon => "chip not as expected",
+            Self::StorageForeign => "storage holds another firmware's data",
         }
     }
 
-    const fn bit(self) -> u32 {
+    const fn bit(self) -> u64 {
         1 << self as u8
     }
 }
 
 /// The reasons that hold now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Refusals(u32);
+pub struct Refusals(u64);
 
 impl Refusals {
     /// No reason.

@@ -10,6 +10,7 @@
 //!
 //! Memory: one buffer of [`BUFFER`] bytes in the future of the call, none in between.
 
+mod foreign;
 mod guard;
 mod set;
 
@@ -98,6 +99,22 @@ impl<F: NorFlash> ParamStore<F> {
         }
     }
 
+    /// Whose data lie in a page, where they are another firmware's.
+    async fn foreign(&mut self) -> Option<&'static str> {
+        self.config::<&mut F>()?;
+        let mut page = self.range.start;
+        while page < self.range.end {
+            let mut head = [0; foreign::HEAD];
+            if self.flash.read(page, &mut head).await.is_ok()
+                && let Some(owner) = foreign::owner(&head)
+            {
+                return Some(owner);
+            }
+            page = page.saturating_add(F::ERASE_SIZE as u32);
+        }
+        None
+    }
+
     async fn append(&mut self, params: &Params, buffer: &mut [u8; BUFFER]) -> Result<(), StorageError> {
         let config = self.config().ok_or(StorageError::Broken)?;
         // The place of the one key is remembered, or moving a page's items would search it once for each of them.
@@ -118,8 +135,10 @@ impl<F: NorFlash> Storage for ParamStore<F> {
         let mut buffer = [0; BUFFER];
         let found = self.find(&mut buffer).await;
         let Some(set) = found.set else {
+            let foreign = if found.damaged { self.foreign().await } else { None };
             return Loaded {
                 unreadable: found.damaged,
+                foreign,
                 ..Loaded::default()
             };
         };
@@ -128,6 +147,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
             taken: set.taken,
             refused: set.refused,
             unreadable: found.damaged,
+            foreign: None,
         }
     }
 

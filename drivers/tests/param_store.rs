@@ -196,12 +196,44 @@ fn what_firmware_with_other_parameters_stored_is_read_as_far_as_it_is_known() {
     let loaded = Loaded {
         taken: 2,
         refused: 4,
-        unreadable: false,
+        ..Loaded::default()
     };
     assert_eq!(load(&flash), (known, loaded));
     // A save leaves nothing of what was refused.
     assert_eq!(save(&flash, known), Ok(()));
     assert_eq!(load(&flash), (known, sound(2)));
+}
+
+/// A flash of an F405's sectors that another stack has used: the second page begins with `head`, the rest is full.
+fn used_before(head: &[u8]) -> Flash<4, 0x4000> {
+    let mut bytes: Vec<u8> = (0..0x8000)
+        .map(|n: u32| (n.wrapping_mul(2_654_435_761) >> 24) as u8)
+        .collect();
+    bytes[0x4000..0x4000 + head.len()].copy_from_slice(head);
+    Flash::holding(bytes)
+}
+
+#[test]
+fn what_another_flight_stack_left_is_named_and_a_save_takes_its_place() {
+    let left: [(&[u8], Option<&str>); 3] = [
+        (&[0xFC, 0x5B, 0x68, 0x51, 0, 0], Some("ArduPilot")),
+        (&[0xB0, 0xBE, 0x2A, 0x00, 0x0B, 0x00], Some("Betaflight")),
+        (b"noise", None),
+    ];
+    for (head, owner) in left {
+        let flash = used_before(head);
+        let before = flash.0.borrow().bytes.clone();
+        let (params, loaded) = load(&flash);
+        let wanted = Loaded {
+            unreadable: true,
+            foreign: owner,
+            ..Loaded::default()
+        };
+        assert_eq!((params, loaded), (Params::default(), wanted), "{owner:?}");
+        assert!(flash.0.borrow().bytes == before, "a load wrote");
+        assert_eq!(save(&flash, Params::default()), Ok(()));
+        assert_eq!(load(&flash), (Params::default(), Loaded::default()), "{owner:?}");
+    }
 }
 
 #[test]

@@ -19,7 +19,9 @@ use sophie_drivers::param_store::ParamStore;
 use sophie_hil::clock::VirtualTime;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
-use sophie_tasks::ports::{AnalogFrame, Loaded, PortError, Restart, SerialOutput, Storage, StorageError};
+use sophie_tasks::ports::{
+    AnalogFrame, Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError,
+};
 use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters};
 
 /// A terminal's screen at 115,200 baud, or one that takes nothing.
@@ -40,13 +42,67 @@ impl SerialOutput for Screen {
     }
 }
 
-/// A restart that is counted.
-#[derive(Clone, Default)]
-struct Restarts(Rc<Cell<u32>>);
+/// What a start-up looked at, the brown-out level at `level` of 3.
+fn looks(level: u8) -> [Look; 2] {
+    let look = |name, read: String, expected, ok, refuses| Look {
+        name,
+        read: read.as_str().try_into().unwrap(),
+        expected,
+        ok,
+        refuses,
+    };
+    [
+        look("flash wait states", "5".into(), "5", true, Some(Refusal::Silicon)),
+        look(
+            "brown-out level",
+            level.to_string(),
+            "3",
+            level == 3,
+            Some(Refusal::BrownOutLevel),
+        ),
+    ]
+}
 
-impl Restart for Restarts {
+/// A chip whose restarts are counted and whose brown-out level can be set, unless it `refuses`.
+#[derive(Clone)]
+struct FakeChip {
+    restarts: Rc<Cell<u32>>,
+    level: Rc<Cell<u8>>,
+    refuses: bool,
+    looks: [Look; 2],
+}
+
+impl FakeChip {
+    /// A chip that started with its level at `level`.
+    fn at(level: u8) -> Self {
+        Self {
+            restarts: Rc::default(),
+            level: Rc::new(Cell::new(level)),
+            refuses: false,
+            looks: looks(level),
+        }
+    }
+}
+
+impl Chip for FakeChip {
     fn restart(&mut self) {
-        self.0.set(self.0.get() + 1);
+        self.restarts.set(self.restarts.get() + 1);
+    }
+
+    fn looks(&self) -> &[Look] {
+        &self.looks
+    }
+
+    fn brown_out_volts(&self) -> f32 {
+        2.7
+    }
+
+    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
+        if self.refuses {
+            return Err(NotSet);
+        }
+        self.level.set(3);
+        Ok(())
     }
 }
 
@@ -83,7 +139,7 @@ struct Bench {
     links: &'static Links,
     line: FakeLine,
     screen: Screen,
-    restarts: Restarts,
+    chip: FakeChip,
     ms: u64,
 }
 
@@ -94,7 +150,7 @@ impl Bench {
             links: Box::leak(Box::new(Links::new(params))),
             line: FakeLine::default(),
             screen: Screen::default(),
-            restarts: Restarts::default(),
+            chip: FakeChip::at(3),
             ms: 0,
         }
     }
@@ -103,7 +159,7 @@ impl Bench {
     fn console(self, storage: impl Storage + 'static) -> Self {
         let (links, line, screen) = (self.links, self.line.clone(), self.screen.clone());
         self.time
-            .spawn(console::run(links, line, screen, storage, self.restarts.clone()));
+            .spawn(console::run(links, line, screen, storage, self.chip.clone()));
         self
     }
 
@@ -197,7 +253,7 @@ fn a_parameter_is_found_changed_saved_and_in_force_after_the_restart() {
     .concat();
     println!("{session}");
     assert_eq!(session, include_str!("console/change.txt"));
-    assert_eq!(bench.restarts.0.get(), 1);
+    assert_eq!(bench.chip.restarts.get(), 1);
 
     let (mut bench, loaded) = start(&flash);
     assert_eq!((loaded.taken, loaded.refused, loaded.unreadable), (2, 0, false));
@@ -286,7 +342,7 @@ fn nothing_is_stored_or_restarted_while_rotors_may_turn() {
         let stopped = matches!(mode, Mode::Disarmed | Mode::Calibrating);
         let (answer, mut bench, storage) = saves_in(mode, mode);
         assert_eq!(storage.saves.borrow().len(), usize::from(stopped), "{mode:?}");
-        assert_eq!(bench.restarts.0.get(), u32::from(stopped), "{mode:?}");
+        assert_eq!(bench.chip.restarts.get(), u32::from(stopped), "{mode:?}");
         assert_eq!(
             bench.links.hardware().contains(Refusal::Storing),
             stopped,
@@ -299,13 +355,13 @@ fn nothing_is_stored_or_restarted_while_rotors_may_turn() {
                 bench.types("restart\r"),
                 format!("restart\nnot restarted while {name}: disarm first\n> ")
             );
-            assert_eq!(bench.restarts.0.get(), 0, "{mode:?}");
+            assert_eq!(bench.chip.restarts.get(), 0, "{mode:?}");
         }
     }
     // The pilot was faster: armed by the time the commander hears of it.
     let (answer, bench, storage) = saves_in(Mode::Disarmed, Mode::Armed);
     assert_eq!(answer, "save\nnot saved while ARMED: disarm first\n> ");
-    assert!(storage.saves.borrow().is_empty() && bench.restarts.0.get() == 0);
+    assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
     assert!(bench.links.hardware().is_empty());
 }
 
@@ -340,7 +396,7 @@ fn without_a_commander_nothing_is_stored() {
         bench.types("save\r"),
         "save\nnot saved: the commander is silent\n> "
     );
-    assert!(storage.saves.borrow().is_empty() && bench.restarts.0.get() == 0);
+    assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
     assert!(bench.links.hardware().is_empty());
 }
 
@@ -382,7 +438,7 @@ fn a_storage_that_fails_is_named_and_the_changes_stay() {
             bench.screen.text.take(),
             format!("save\r\nnot saved: {words}; your changes are kept until a restart\r\n> ")
         );
-        assert_eq!(bench.restarts.0.get(), 0);
+        assert_eq!(bench.chip.restarts.get(), 0);
         assert!(bench.links.hardware().iter().eq([refusal]));
         assert!(bench.types("changes\r").contains("infill 6.9 -> 8 %"));
     }
@@ -452,7 +508,7 @@ fn a_line_of_noise_does_nothing_and_starves_nobody() {
     });
     bench.run(12_000);
     assert_eq!(turns.get(), 10_000);
-    assert!(storage.saves.borrow().is_empty() && bench.restarts.0.get() == 0);
+    assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
     // The noise may have ended in the middle of a line.
     let _ = bench.types("\r");
     assert_eq!(bench.types("changes\r"), "changes\nno changes\n> ");
@@ -487,7 +543,7 @@ fn a_broken_or_empty_line_costs_no_time() {
             BrokenLine(part.clone()),
             screen,
             storage,
-            bench.restarts.clone(),
+            bench.chip.clone(),
         ));
         bench.run(1000);
         assert!(!part.spun.get(), "{answer:?}");
@@ -546,4 +602,85 @@ fn the_whole_list_fits_its_lines_and_misspelt_commands_are_helped() {
         screen.lines().nth(1),
         Some("line too long: 80 characters at most")
     );
+}
+
+#[test]
+fn what_the_start_looked_at_is_a_table() {
+    let mut bench = Bench::new(Params::default());
+    bench.chip = FakeChip::at(0);
+    let mut bench = bench.fake_storage(Ok(())).0;
+    assert_eq!(
+        bench.types("silicon\r"),
+        "silicon\n  flash wait states    5                            expected: 5\n\
+         * brown-out level      0                            expected: 3\n> "
+    );
+}
+
+#[test]
+fn the_brown_out_level_is_set_on_purpose_after_what_it_does_was_said() {
+    let mut bench = Bench::new(Params::default()).commander(Mode::Disarmed, Mode::Disarmed);
+    bench.chip = FakeChip::at(0);
+    let mut bench = bench.fake_storage(Ok(())).0;
+    bench.run(100);
+    let said = bench.types("brownout\r");
+    for words in [
+        "level 0, expected 3",
+        "'brownout set' writes",
+        "below about 2.7 V",
+        "restarts",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert!(said.lines().all(|line| line.len() <= 100), "{said}");
+    assert_eq!((bench.chip.level.get(), bench.chip.restarts.get()), (0, 0));
+    assert_eq!(bench.types("brownout set\r"), "brownout set\nset; restarting\n> ");
+    assert_eq!((bench.chip.level.get(), bench.chip.restarts.get()), (3, 1));
+    // Until the restart nobody arms.
+    assert!(bench.links.hardware().iter().eq([Refusal::Storing]));
+}
+
+#[test]
+fn a_level_that_is_set_is_left_alone() {
+    let mut bench = Bench::new(Params::default()).commander(Mode::Disarmed, Mode::Disarmed);
+    bench.chip = FakeChip::at(3);
+    let mut bench = bench.fake_storage(Ok(())).0;
+    bench.run(100);
+    assert_eq!(
+        bench.types("brownout\r"),
+        "brownout\nbrown-out level 3, expected 3\nnothing to do\n> "
+    );
+    assert_eq!(
+        bench.types("brownout set\r"),
+        "brownout set\nnot set: nothing to do\n> "
+    );
+    assert_eq!(bench.chip.restarts.get(), 0);
+}
+
+#[test]
+fn the_brown_out_level_is_not_set_while_rotors_may_turn_nor_where_the_chip_refuses() {
+    for (mode, then) in [(Mode::Armed, Mode::Armed), (Mode::Disarmed, Mode::Armed)] {
+        let mut bench = Bench::new(Params::default()).commander(mode, then);
+        bench.chip = FakeChip::at(0);
+        let mut bench = bench.fake_storage(Ok(())).0;
+        bench.run(100);
+        assert_eq!(
+            bench.types("brownout set\r"),
+            "brownout set\nnot set while ARMED: disarm first\n> "
+        );
+        assert_eq!((bench.chip.level.get(), bench.chip.restarts.get()), (0, 0));
+        assert!(bench.links.hardware().is_empty());
+    }
+    let mut bench = Bench::new(Params::default()).commander(Mode::Disarmed, Mode::Disarmed);
+    bench.chip = FakeChip {
+        refuses: true,
+        ..FakeChip::at(0)
+    };
+    let mut bench = bench.fake_storage(Ok(())).0;
+    bench.run(100);
+    assert_eq!(
+        bench.types("brownout set\r"),
+        "brownout set\nnot set: the chip's option bytes did not take it\n> "
+    );
+    assert_eq!(bench.chip.restarts.get(), 0);
+    assert!(bench.links.hardware().is_empty());
 }

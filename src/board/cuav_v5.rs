@@ -33,17 +33,23 @@ use sophie_drivers::esc_protocol::Protocol;
 use sophie_drivers::fram::Fram;
 use sophie_drivers::icm20689::{self, Icm20689};
 use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_tasks::parameters;
 
 use super::Board;
-use super::cortex_m::enable_instruction_cache;
+use super::cortex_m::{enable_data_cache, enable_instruction_cache};
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
-    ReadyLine, ReadyStamp, Selected, ServoPairs, Tone, console_lines, hold, pull_low, receiver_line,
-    spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, Tone, console_lines, hold, look, pull_low,
+    receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "cuav-v5";
+
+/// Flash sectors that hold parameters: none, an FRAM does.
+const PARAM_SECTORS: u32 = 0;
+/// The data cache is on: all RAM that is used is DTCM, which is never cached.
+pub const DATA_CACHE: bool = true;
 
 /// The vehicle's inertial sensor.
 pub type ImuPort = Icm20689<DmaChip, ReadyLine>;
@@ -181,13 +187,14 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = super::stm32::start(clocks(), pac::TIM5);
-    stop_motors();
+    let p = super::stm32::start(clocks(), pac::TIM5, stop_motors);
     enable_instruction_cache();
+    enable_data_cache();
     let parts = split_resources!(p);
     rails(parts.rails).await;
     let mut storage = storage(parts.storage);
-    let (params, loaded) = super::load(&mut storage).await;
+    let (params, loaded) = parameters::load(&mut storage).await;
+    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
     let r = parts.receiver;
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
@@ -211,6 +218,7 @@ pub async fn take() -> Board {
         storage,
         params,
         loaded,
+        chip,
     }
 }
 

@@ -34,16 +34,20 @@ use sophie_drivers::icm20689 as part;
 use sophie_drivers::icm42688p as part;
 use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_drivers::spi_imu::SpiImu;
+use sophie_tasks::parameters;
 
 use super::Board;
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    ReadyLine, ReadyStamp, Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, accelerator, console_lines, look, pull_low,
+    receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "f405";
 
+/// Flash sectors that hold parameters, a bit each.
+const PARAM_SECTORS: u32 = 1 << 1 | 1 << 2;
 /// The vehicle's inertial sensor.
 pub type ImuPort = SpiImu<part::Config, DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
@@ -166,11 +170,12 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = super::stm32::start(clocks(), pac::TIM5);
-    stop_motors();
+    let p = super::stm32::start(clocks(), pac::TIM5, stop_motors);
+    accelerator::enable();
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
-    let (params, loaded) = super::load(&mut storage).await;
+    let (params, loaded) = parameters::load(&mut storage).await;
+    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
     let r = parts.receiver;
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
@@ -194,6 +199,7 @@ pub async fn take() -> Board {
         storage,
         params,
         loaded,
+        chip,
     }
 }
 

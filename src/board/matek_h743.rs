@@ -28,16 +28,23 @@ use sophie_drivers::bno055;
 use sophie_drivers::esc_protocol::Protocol;
 use sophie_drivers::icm42688p::{self, Icm42688p};
 use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_tasks::parameters;
 
 use super::Board;
 use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    ReadyLine, ReadyStamp, Selected, ServoTimer, console_lines, pull_low, receiver_line, spi_config,
+    ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, console_lines, look, pull_low, receiver_line,
+    spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "matek-h743";
+
+/// Flash sectors that hold parameters, a bit each: sectors 6 and 7 of bank 2.
+const PARAM_SECTORS: u32 = 1 << 14 | 1 << 15;
+/// The data cache stays off: statics lie where DMA writes, and that memory is cached where nobody says otherwise.
+pub const DATA_CACHE: bool = false;
 
 /// The vehicle's inertial sensor.
 pub type ImuPort = Icm42688p<DmaChip, ReadyLine>;
@@ -161,12 +168,12 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = super::stm32::start(clocks(), pac::TIM2);
-    stop_motors();
+    let p = super::stm32::start(clocks(), pac::TIM2, stop_motors);
     enable_instruction_cache();
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
-    let (params, loaded) = super::load(&mut storage).await;
+    let (params, loaded) = parameters::load(&mut storage).await;
+    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
     let r = parts.receiver;
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
@@ -190,6 +197,7 @@ pub async fn take() -> Board {
         storage,
         params,
         loaded,
+        chip,
     }
 }
 
@@ -210,13 +218,13 @@ fn clocks() -> embassy_stm32::Config {
         source: PllSource::HSE,
         prediv: PllPreDiv::DIV1,
         fracn: None,
-        mul: PllMul::MUL50,
-        divp: Some(PllDiv::DIV8),
+        // 800 MHz: above a reference of 2 MHz the range of 150 to 420 MHz is not allowed (RM0433 §8.7.12).
+        mul: PllMul::MUL100,
+        divp: Some(PllDiv::DIV16),
         divq: None,
         divr: None,
     };
     rcc.pll1 = Some(Pll {
-        mul: PllMul::MUL100,
         divp: Some(PllDiv::DIV2),
         divq: Some(PllDiv::DIV8),
         ..pll

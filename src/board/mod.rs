@@ -18,15 +18,16 @@ pub mod stm32;
 #[cfg_attr(feature = "f405", path = "f405.rs")]
 mod chosen;
 
+#[cfg(not(family = "f4"))]
+pub use chosen::DATA_CACHE;
 pub use chosen::{
     AnalogPort, ArmsPort, ImuPort, LightsPort, MotorsPort, NAME, ServosPort, StoragePort, WatchdogPort,
     start_levels, stop_motors, take,
 };
-pub use cortex_m::Restarter;
 pub use cortex_m::retained::ResetCause;
 use sophie_control::params::Params;
-use sophie_tasks::ports::{Loaded, Storage};
-pub use stm32::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, take_reset_cause};
+use sophie_tasks::ports::Loaded;
+pub use stm32::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, ThisChip, take_reset_cause};
 
 /// What a board hands to the tasks.
 pub struct Board {
@@ -58,12 +59,6 @@ pub struct Board {
     pub params: Params,
     /// What reading them gave.
     pub loaded: Loaded,
-}
-
-/// The defaults with what is stored in their place. The first thing that a board does: the ports are built by it, and
-/// the motors' pins are held low until then.
-async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
-    let mut params = Params::default();
-    let loaded = storage.load(&mut params).await;
-    (params, loaded)
+    /// The chip itself.
+    pub chip: ThisChip,
 }

@@ -12,11 +12,11 @@ mod timing;
 pub mod trace;
 
 pub use end::end_of_run;
-use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_control::warm::Grasp;
 use sophie_tasks::links::Links;
-use sophie_tasks::ports::Loaded;
+use sophie_tasks::parameters;
+use sophie_tasks::ports::{Loaded, Look};
 use sophie_tasks::start::Start;
 use static_cell::StaticCell;
 
@@ -96,8 +96,24 @@ pub fn loaded(links: &Links, loaded: Loaded) {
             loaded.refused
         );
     }
-    if loaded.unreadable {
-        defmt::error!("parameters: storage unreadable");
+    match loaded {
+        Loaded {
+            foreign: Some(other), ..
+        } => defmt::error!(
+            "parameters: the storage holds {=str}'s data; 'save' at the console replaces them",
+            other
+        ),
+        Loaded { unreadable: true, .. } => defmt::error!("parameters: storage unreadable"),
+        _ => {}
     }
-    links.report(Refusal::StorageUnreadable, loaded.unreadable);
+    parameters::report(links, loaded);
+}
+
+/// Refuses arming for what the start-up found in the chip and cannot be flown with.
+pub fn looked(links: &Links, looks: &[Look]) {
+    for look in looks {
+        if let (Some(refusal), false) = (look.refuses, look.ok) {
+            links.report(refusal, true);
+        }
+    }
 }

@@ -2,12 +2,13 @@
 //!
 //! A line when the state, its reason or the warning changes, for each arm of a proven grip, and for each thing of the
 //! hardware that begins or ceases to speak against arming; each second the timing of every task, and missed deadlines
-//! ([`super::timing`]); every ten seconds the depth of the stack. The first line says how long the start took.
+//! ([`super::timing`]); at the start what was looked at in the chip; every ten seconds the depth of the stack. The first line says how long the start took.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
 use sophie_control::arming::{Refusal, Refusals};
 use sophie_tasks::links::{Links, Status};
+use sophie_tasks::ports::Look;
 
 use super::grip::GripReport;
 use super::timing::TimingReport;
@@ -21,7 +22,7 @@ const SECOND: u32 = 20;
 const STACK_EVERY: u32 = 200;
 
 /// Reports for ever.
-pub async fn run(links: &Links) -> ! {
+pub async fn run(links: &Links, looks: &[Look]) -> ! {
     // The clock starts when the chip's clocks are up, some milliseconds after the reset.
     defmt::info!("started in {=u64} ms", Instant::now().as_millis());
     let mut ticker = Ticker::every(PERIOD);
@@ -29,14 +30,18 @@ pub async fn run(links: &Links) -> ! {
     let mut blocking = Refusals::NONE;
     let mut timing = TimingReport::default();
     let mut grip = GripReport::default();
-    let mut looks = 0u32;
+    let mut round = 0u32;
     loop {
         // A missed deadline of the flight level does not wait for the next look, but only one in each look.
         if let Either::Second(()) = select(ticker.next(), links.missed.wait()).await {
             timing.missed(links);
             ticker.next().await;
         }
-        looks = looks.wrapping_add(1);
+        // One a round: the log's buffer is short.
+        if let Some(look) = looks.get(round as usize) {
+            silicon(look);
+        }
+        round = round.saturating_add(1);
         if let Some(status) = links.status.latest().map(|m| m.value)
             && shown != Some(status)
         {
@@ -45,8 +50,8 @@ pub async fn run(links: &Links) -> ! {
         }
         grip.look(links);
         hardware(links, &mut blocking);
-        timing.second(links, looks % SECOND);
-        if looks.is_multiple_of(STACK_EVERY) {
+        timing.second(links, round % SECOND);
+        if round.is_multiple_of(STACK_EVERY) {
             let (size, free) = stack::size_and_free();
             defmt::info!(
                 "stack: {=usize} of {=usize} bytes used at most",
@@ -64,6 +69,27 @@ fn state(now: Status, before: Option<Status>) {
     }
     if before.is_none_or(|b| b.warning != now.warning) && !now.warning.is_empty() {
         defmt::warn!("warning: {=str}", now.warning);
+    }
+}
+
+/// One thing that the start-up looked at in the chip.
+fn silicon(look: &Look) {
+    let read = look.read.as_str();
+    let Look { name, expected, .. } = look;
+    if look.ok {
+        defmt::info!(
+            "silicon: {=str}: {=str}, expected {=str}: ok",
+            name,
+            read,
+            expected
+        );
+    } else {
+        defmt::warn!(
+            "silicon: {=str}: {=str}, expected {=str}: not ok",
+            name,
+            read,
+            expected
+        );
     }
 }
 

@@ -4,6 +4,7 @@ use sophie_control::arming::Refusal;
 use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::Links;
+use sophie_tasks::ports::Look;
 
 use crate::board;
 use crate::board::cortex_m::retained::Memory;
@@ -110,8 +111,9 @@ pub async fn console(
     input: board::ConsoleInput,
     output: board::ConsoleOutput,
     storage: board::StoragePort,
+    chip: board::ThisChip,
 ) -> ! {
-    sophie_tasks::console::run(links, input, output, storage, board::Restarter).await
+    sophie_tasks::console::run(links, input, output, storage, chip).await
 }
 
 /// Background: lights and buzzer.
@@ -122,6 +124,6 @@ pub async fn lights(links: &'static Links, lights: board::LightsPort) -> ! {
 
 /// Background: the log.
 #[embassy_executor::task]
-pub async fn report(links: &'static Links) -> ! {
-    super::report::run(links).await
+pub async fn report(links: &'static Links, looks: &'static [Look]) -> ! {
+    super::report::run(links, looks).await
 }

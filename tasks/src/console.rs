@@ -4,6 +4,7 @@
 //! stores and a restart puts in force. A terminal that takes nothing loses its text and delays nobody else; a line that
 //! carries noise is read as lines that mean nothing.
 
+mod chip;
 mod command;
 mod line;
 mod nearest;
@@ -21,7 +22,7 @@ use self::command::{Command, HELP, parse};
 use self::line::{CHUNK, Echo, Line, LineError};
 use self::output::Output;
 use crate::links::{Links, Status};
-use crate::ports::{Restart, SerialInput, SerialOutput, Storage};
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
@@ -34,13 +35,13 @@ pub async fn run(
     mut input: impl SerialInput,
     output: impl SerialOutput,
     storage: impl Storage,
-    restart: impl Restart,
+    chip: impl Chip,
 ) -> ! {
     let mut console = Console {
         links,
         out: Output::new(output),
         storage,
-        restart,
+        chip,
         params: links.params,
     };
     let mut line = Line::default();
@@ -70,16 +71,16 @@ pub async fn run(
     }
 }
 
-struct Console<'a, O, S, R> {
+struct Console<'a, O, S, C> {
     links: &'a Links,
     out: Output<O>,
     storage: S,
-    restart: R,
+    chip: C,
     /// The working copy.
     params: Params,
 }
 
-impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
+impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     async fn obey(&mut self, line: Result<&str, &LineError>) {
         self.out.line(format_args!("")).await;
         match line.map(parse) {
@@ -100,6 +101,9 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
             }
             Command::Status => self.status().await,
             Command::Timing => self.timing().await,
+            Command::Silicon => self.silicon().await,
+            Command::BrownOut => self.brown_out().await,
+            Command::SetBrownOut => self.set_brown_out().await,
             Command::List(part) => self.list(part).await,
             Command::Get(name) => self.get(name).await,
             Command::Set(name, value) => self.set(name, value).await,
@@ -113,7 +117,7 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
             Command::Restart => match self.stopped() {
                 Ok(()) => {
                     self.out.line(format_args!("restarting")).await;
-                    self.restart.restart();
+                    self.chip.restart();
                 }
                 Err(status) => self.refuse("not restarted", status).await,
             },

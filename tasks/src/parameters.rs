@@ -15,5 +15,7 @@ pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
 
 /// Refuses arming when the storage could not be read. Values that were refused do not: their defaults are sound.
 pub fn report(links: &Links, loaded: Loaded) {
-    links.report(Refusal::StorageUnreadable, loaded.unreadable);
+    let foreign = loaded.foreign.is_some();
+    links.report(Refusal::StorageUnreadable, loaded.unreadable && !foreign);
+    links.report(Refusal::StorageForeign, foreign);
 }

@@ -1,7 +1,8 @@
 //! What a board implements. Every unit is SI unless said otherwise.
 
 use embassy_time::Instant;
-use heapless::Vec;
+use heapless::{String, Vec};
+use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::warm::Words;
@@ -134,6 +135,8 @@ pub struct Loaded {
     pub refused: u16,
     /// The storage is damaged, or does not answer: what could not be read keeps its default.
     pub unreadable: bool,
+    /// Whose data lie there instead of parameters, where that is another firmware; the defaults are in force.
+    pub foreign: Option<&'static str>,
 }
 
 /// Why parameters were not stored.
@@ -158,8 +161,48 @@ pub trait Storage {
     async fn save(&mut self, params: &Params) -> Result<(), StorageError>;
 }
 
-/// Starts the board afresh.
-pub trait Restart {
+/// Longest text of what was read, bytes.
+pub const READ: usize = 28;
+
+/// One thing that the start-up looked at in the chip.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// What.
+    pub name: &'static str,
+    /// What was read.
+    pub read: String<READ>,
+    /// What the firmware is made for.
+    pub expected: &'static str,
+    /// They go together.
+    pub ok: bool,
+    /// What this refuses where they do not; `None` where it can be flown with.
+    pub refuses: Option<Refusal>,
+}
+
+/// Most things that a start-up looks at.
+pub const LOOKS: usize = 12;
+/// What a start-up looked at.
+pub type Looks = Vec<Look, LOOKS>;
+
+/// The brown-out level could not be set: the chip keeps what it had.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotSet;
+
+/// The chip itself, as the console sees it.
+pub trait Chip {
     /// Restarts, motors stopped first. Does not return on a board.
     fn restart(&mut self);
+
+    /// What the start-up looked at.
+    fn looks(&self) -> &[Look];
+
+    /// The supply voltage below which the chip is held in reset, V, once [`Self::set_brown_out`] has been done.
+    fn brown_out_volts(&self) -> f32;
+
+    /// Sets the brown-out level for good: it outlives power and every firmware. In force from the next start on. May
+    /// stall the processor for a second: only while the motors stand still.
+    ///
+    /// # Errors
+    /// The chip did not take it.
+    async fn set_brown_out(&mut self) -> Result<(), NotSet>;
 }

@@ -14,7 +14,7 @@ const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 const FIRST_BUILD: &str = "building the emulated board: minutes the first time, seconds from then on";
 
 /// Options of the emulator's own that stand alone, and those with a value and its name.
-const ALONE: [&str; 1] = ["--json"];
+const ALONE: [&str; 2] = ["--json", "--factory"];
 const WITH_VALUE: [(&str, &str); 5] = [
     ("--seed", "N"),
     ("--out", "DIR"),

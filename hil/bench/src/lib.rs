@@ -21,6 +21,7 @@ pub mod gaps;
 pub mod log;
 pub mod plan;
 pub mod sensors;
+pub mod silicon;
 pub mod stored;
 pub mod suite;
 pub mod terminal;

@@ -13,8 +13,10 @@ use sophie_bench::compare;
 use sophie_bench::elf::Firmware;
 use sophie_bench::flight::{self, Flight};
 use sophie_bench::flyable;
-use sophie_bench::plan::Plan;
+use sophie_bench::plan::{Plan, Trouble};
+use sophie_bench::silicon;
 use sophie_bench::terminal::{Sockets, Terminal};
+use sophie_bench::wires::Fault;
 use sophie_hil::record::Silent;
 use sophie_hil::scenario::{Overrides, Scenario};
 use sophie_report::terminal::console::{self, Console};
@@ -62,6 +64,9 @@ struct Args {
     /// Put what the board sends to its receiver on this port of 127.0.0.1.
     #[arg(long, value_name = "PORT")]
     telemetry: Option<u16>,
+    /// Start with the option bytes of a new chip, whose brown-out level nobody has set.
+    #[arg(long)]
+    factory: bool,
     /// Print the result as JSON on stdout, everything else on stderr.
     #[arg(long)]
     json: bool,
@@ -126,11 +131,13 @@ fn run(args: &Args) -> Result<bool, String> {
         args.board,
         args.speed
     ));
+    let factory = args.factory.then_some((0, Trouble::Board(Fault::FactoryOptions)));
+    let plan = Plan::new(factory);
     let flight = flight::fly(
         &firmware,
         &scenario,
         args.speed,
-        Plan::default(),
+        plan,
         sockets,
         |line| {
             if !EACH_SECOND.iter().any(|begin| line.text.starts_with(begin)) {
@@ -196,6 +203,7 @@ fn told(args: &Args, flight: &Flight) -> serde_json::Value {
         "overruns": board.overruns,
         "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
         "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
+        "silicon": board.lines.iter().filter_map(|line| silicon::told(&line.text)).collect::<Vec<_>>(),
         "log_lines": board.lines.len(),
         "log_malformed": board.malformed,
         "gaps_allowed": run.gaps.len() - flight.gaps.len(),

@@ -41,6 +41,16 @@ pub enum Fault {
     TaskHung(&'static str),
     /// The flash that is kept for parameters is overwritten, as a program of another maker would.
     CorruptParameters,
+    /// The flash that is kept for parameters begins as ArduPilot leaves it.
+    ForeignParameters,
+    /// The option bytes are those of a new chip: no brown-out level. To be done before the first instruction.
+    FactoryOptions,
+    /// The processor is one of the first revision.
+    FirstRevision,
+    /// The crystal does not start. To be done before the first instruction.
+    NoCrystal,
+    /// The core's PLL never locks. To be done before the first instruction.
+    NoPll,
     /// The processor stands still (true) or goes on: only the watchdog is left.
     Hang(bool),
     /// The reset pin is pulled, once.

@@ -4,15 +4,16 @@
 mod cache;
 mod fault;
 mod levels;
-mod restart;
 pub mod retained;
 pub mod stack;
 #[cfg(feature = "trace")]
 pub mod trace;
 
 #[cfg(not(family = "f4"))]
-pub use cache::enable_instruction_cache;
+#[allow(unused_imports, reason = "each board has its own caches")]
+pub use cache::enable_data_cache;
+#[cfg(not(family = "f4"))]
+pub use cache::{enable_instruction_cache, enabled as caches, forget_cached, protected};
 pub use levels::{FLIGHT, STEADY};
-pub use restart::Restarter;
 
-defmt::timestamp!("{=u64:us}", embassy_time::Instant::now().as_micros());
+defmt::timestamp!("{=u64:us}", super::stm32::micros());

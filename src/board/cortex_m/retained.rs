@@ -218,6 +218,12 @@ pub fn leave(message: fmt::Arguments<'_>) {
     });
 }
 
+/// Takes the message back: what it was left for did not happen. Called before any task runs.
+pub fn forget() {
+    let block = load();
+    store(Block { length: 0, ..block });
+}
+
 /// Text packed into words.
 struct Ascii {
     words: [u32; WORDS],

@@ -1,16 +1,75 @@
-//! Starts the chip's clocks and the clock of embassy-time on top of them.
+//! From the reset to running clocks: motors low and watchdog first, so that nothing spins and nothing hangs while the
+//! chip waits for its crystal and its PLLs.
 
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use embassy_stm32::pac::RCC;
 use embassy_stm32::pac::timer::{TimGp32, regs::SrGp16};
-use embassy_stm32::{Config, Peripherals};
+use embassy_stm32::{Config, Peripherals, rcc};
 
-/// Starts the clocks as `config` says. `timer` is the one that embassy-time counts with. Called once.
-pub fn start(config: Config, timer: TimGp32) -> Peripherals {
-    critical_section::with(|_| {
+use super::watchdog;
+use crate::board::cortex_m::retained;
+
+/// Looks at a crystal until it must have started, at ten cycles or more each of the internal oscillator (64 MHz on the H7,
+/// 16 MHz else): 30 ms at least. Datasheets: 2 ms, for a crystal that suits the pins.
+const LOOKS: u32 = if cfg!(family = "h7") { 200_000 } else { 50_000 };
+/// What the next start tells of one that never came out of starting its clocks.
+const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
+
+/// The clock of embassy-time counts: before it does, its registers must not be read.
+static COUNTING: AtomicBool = AtomicBool::new(false);
+
+/// Clock of the bus that the flash is on, Hz; 0 before the clocks run.
+static BUS: AtomicU32 = AtomicU32::new(0);
+
+/// Clock of the bus that the flash is on, Hz.
+pub fn bus_hz() -> u32 {
+    BUS.load(Ordering::Relaxed)
+}
+
+/// Time since the clocks run, µs; 0 before.
+pub fn micros() -> u64 {
+    if COUNTING.load(Ordering::Relaxed) {
+        embassy_time::Instant::now().as_micros()
+    } else {
+        0
+    }
+}
+
+/// Drives the motors' pins low and starts the watchdog, then the clocks as `config` says. `timer` is the one that
+/// embassy-time counts with. A PLL that never locks ends by the watchdog, and the next start says so. Called once.
+///
+/// # Panics
+/// If the crystal does not start: the next start says so.
+pub fn start(config: Config, timer: TimGp32, stop_motors: fn()) -> Peripherals {
+    stop_motors();
+    watchdog::start();
+    if let Some(crystal) = config.rcc.hse {
+        start_crystal(crystal.freq.0 / 1_000_000);
+    }
+    retained::leave(format_args!("{STUCK}"));
+    let peripherals = critical_section::with(|_| {
         let peripherals = embassy_stm32::init(config);
         // embassy-stm32 loads the timer by an update event while counter and compare values are all zero, at which the
         // compare flags rise. Its interrupt would count half a turn of 65.5 ms that never was; from then on, an instant
         // asked for between each half turn and its interrupt would lie 65.5 ms before the one asked for just before.
         timer.sr().write_value(SrGp16(0));
         peripherals
-    })
+    });
+    let bus = rcc::clocks(&peripherals.RCC).hclk1.to_hertz();
+    BUS.store(bus.map_or(0, |hz| hz.0), Ordering::Relaxed);
+    COUNTING.store(true, Ordering::Relaxed);
+    retained::forget();
+    peripherals
+}
+
+/// Starts the crystal of `mhz` MHz, for which embassy-stm32 would wait without end and without a word.
+fn start_crystal(mhz: u32) {
+    RCC.cr().modify(|w| w.set_hseon(true));
+    for _ in 0..LOOKS {
+        if RCC.cr().read().hserdy() {
+            return;
+        }
+    }
+    panic!("the {mhz} MHz crystal does not start");
 }

@@ -4,6 +4,7 @@ use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
 use embassy_stm32::interrupt::typelevel::Binding;
+use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::vals::Moder;
 use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
@@ -22,6 +23,8 @@ use super::Aligned;
 
 /// The slowest frame takes 120 µs; one that takes this long never ends.
 const LONGEST_FRAME: Duration = Duration::from_micros(500);
+/// Ports A to H in the clock controller.
+const PORTS: u32 = 0xFF;
 /// Length of a OneShot125 period, µs: the longest pulse and a moment of rest before it.
 const ONESHOT_US: u32 = 260;
 
@@ -292,10 +295,24 @@ fn timing(protocol: Protocol, clock_hz: u32) -> Timing {
     }
 }
 
-/// Makes pins of a port outputs at low level, whatever drove them: the last resort of a fault handler.
+/// Makes pins of a port outputs at low level, whatever drove them: the first act of a start and the last resort of a
+/// fault handler.
 pub fn pull_low(port: Gpio, pins: [usize; 4]) {
+    clock_ports();
     for pin in pins {
         port.bsrr().write(|w| w.set_br(pin, true));
         port.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));
     }
+}
+
+/// Gives every port its clock, which a port that is written to before the start has none of.
+fn clock_ports() {
+    let bus = pac::RCC;
+    #[cfg(family = "h7")]
+    let clocks = bus.ahb4enr();
+    #[cfg(not(family = "h7"))]
+    let clocks = bus.ahb1enr();
+    clocks.modify(|w| w.0 |= PORTS);
+    // The clock is there two cycles after the write (RM0090 §7.2.14, RM0433 §8.5.10): this read takes them.
+    let _ = clocks.read();
 }

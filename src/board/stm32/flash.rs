@@ -47,6 +47,20 @@ impl<const SECTOR: usize> ParamFlash<SECTOR> {
     }
 }
 
+/// Does `change`, which writes or erases `length` bytes at `place` of the flash, so that no cache keeps what was there.
+#[cfg(family = "f4")]
+fn uncached<T>(_place: u32, _length: usize, change: impl FnOnce() -> T) -> T {
+    super::accelerator::uncached(change)
+}
+
+/// Does `change`, which writes or erases `length` bytes at `place` of the flash, so that no cache keeps what was there.
+#[cfg(not(family = "f4"))]
+fn uncached<T>(place: u32, length: usize, change: impl FnOnce() -> T) -> T {
+    let result = change();
+    crate::board::cortex_m::forget_cached(FLASH_BASE + place as usize, length);
+    result
+}
+
 fn kind(error: Error) -> NorFlashErrorKind {
     match error {
         Error::Size => NorFlashErrorKind::OutOfBounds,
@@ -86,13 +100,16 @@ impl<const SECTOR: usize> NorFlash for ParamFlash<SECTOR> {
         let place = self.place(from, length as usize)?;
         #[cfg(family = "h7")]
         ecc::forget_errors();
-        self.flash.blocking_erase(place, place + length).map_err(kind)
+        uncached(place, length as usize, || {
+            self.flash.blocking_erase(place, place + length)
+        })
+        .map_err(kind)
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), NorFlashErrorKind> {
         let place = self.place(offset, bytes.len())?;
         #[cfg(family = "h7")]
         ecc::forget_errors();
-        self.flash.blocking_write(place, bytes).map_err(kind)
+        uncached(place, bytes.len(), || self.flash.blocking_write(place, bytes)).map_err(kind)
     }
 }

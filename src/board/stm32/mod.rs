@@ -14,10 +14,13 @@ compile_error!(
     "the ports have been written for the families f4, f7 and h7: see what goes by `family` in src/board"
 );
 
+#[cfg(family = "f4")]
+pub mod accelerator;
 #[cfg_attr(family = "h7", path = "adc_h7.rs")]
 #[cfg_attr(not(family = "h7"), path = "adc_f4.rs")]
 mod adc;
 mod analog;
+mod chip;
 mod clock;
 mod data_ready;
 mod escs;
@@ -26,11 +29,15 @@ mod flash;
 mod flash_ecc;
 mod i2c_bus;
 mod lights;
+#[cfg_attr(family = "h7", path = "options_h7.rs")]
+#[cfg_attr(not(family = "h7"), path = "options_f4.rs")]
+mod options;
 mod rails;
 mod reset;
 mod serial;
 mod servo_pairs;
 mod servos;
+mod silicon;
 mod small_timer;
 mod spi;
 mod storage;
@@ -38,7 +45,8 @@ mod tone;
 mod watchdog;
 
 pub use analog::{AnalogInputs, BatteryScale};
-pub use clock::start;
+pub use chip::ThisChip;
+pub use clock::{micros, start};
 pub use data_ready::{ReadyLine, ReadyStamp};
 pub use escs::{EscTimer, EscTimers, pull_low};
 pub use flash::ParamFlash;
@@ -49,6 +57,7 @@ pub use reset::take_reset_cause;
 pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, console_lines, receiver_line};
 pub use servo_pairs::ServoPairs;
 pub use servos::ServoTimer;
+pub use silicon::look;
 pub use spi::PlainChip;
 pub use spi::{DmaChip, Selected, spi_config};
 pub use storage::BoardStorage;

@@ -18,10 +18,13 @@ pub(super) enum Command<'a> {
     Save,
     Restart,
     Timing,
+    Silicon,
+    BrownOut,
+    SetBrownOut,
 }
 
 /// Name and arguments, and what it does.
-pub(super) const HELP: [(&str, &str); 11] = [
+pub(super) const HELP: [(&str, &str); 13] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
     (
@@ -36,6 +39,11 @@ pub(super) const HELP: [(&str, &str); 11] = [
     ("save", "stores the parameters and restarts; only while disarmed"),
     ("restart", "restarts without storing; only while disarmed"),
     ("timing", "rate and worst times of every task"),
+    ("silicon", "what the start looked at in the chip"),
+    (
+        "brownout [set]",
+        "the level below which the chip stops, and what set does",
+    ),
 ];
 
 /// A line not understood.
@@ -83,6 +91,9 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("save", [None, ..]) => Command::Save,
         ("restart", [None, ..]) => Command::Restart,
         ("timing", [None, ..]) => Command::Timing,
+        ("silicon", [None, ..]) => Command::Silicon,
+        ("brownout", [None, ..]) => Command::BrownOut,
+        ("brownout", [Some("set"), None, _]) => Command::SetBrownOut,
         _ => {
             let usage = HELP.iter().find(|(usage, _)| name(usage) == word);
             return Some(Err(usage.map_or(Misunderstood::Unknown(word), |(usage, _)| {
@@ -105,6 +116,8 @@ mod tests {
         }
         assert_eq!(parse("  set\tinfill  8 "), Some(Ok(Command::Set("infill", "8"))));
         assert_eq!(parse("list"), Some(Ok(Command::List(""))));
+        assert_eq!(parse("brownout"), Some(Ok(Command::BrownOut)));
+        assert_eq!(parse("brownout set"), Some(Ok(Command::SetBrownOut)));
         assert_eq!(parse("   "), None);
     }
 
@@ -117,6 +130,9 @@ mod tests {
             "get",
             "list a b",
             "restart 5",
+            "brownout reset",
+            "brownout set now",
+            "silicon all",
         ] {
             assert!(
                 matches!(parse(line), Some(Err(Misunderstood::Arguments(_)))),

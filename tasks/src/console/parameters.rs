@@ -7,9 +7,9 @@ use sophie_control::params::{ParamError, ParamInfo, Params};
 
 use super::Console;
 use super::nearest::nearest;
-use crate::ports::{Restart, SerialOutput, Storage};
+use crate::ports::{Chip, SerialOutput, Storage};
 
-impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
+impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     pub(super) async fn list(&mut self, part: &str) {
         let mut count = 0;
         for row in Params::TABLE.iter().filter(|row| row.name.contains(part)) {

@@ -6,9 +6,9 @@ use sophie_control::mode::Mode;
 
 use super::Console;
 use crate::deadline::TaskId;
-use crate::ports::{Restart, SerialOutput, Storage};
+use crate::ports::{Chip, SerialOutput, Storage};
 
-impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
+impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     pub(super) async fn status(&mut self) {
         match self.links.status.fresh() {
             None => self.out.line(format_args!("the commander is silent")).await,

@@ -4,7 +4,8 @@ use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::Refusal;
 
 use super::Console;
-use crate::ports::{Restart, SerialOutput, Storage, StorageError};
+use crate::links::Status;
+use crate::ports::{Chip, SerialOutput, Storage, StorageError};
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);
@@ -13,20 +14,10 @@ const LOOK: Duration = Duration::from_millis(5);
 /// Longest save: an erase takes 4 s at worst (STM32F7 datasheet, 256 KiB), and two of them may be needed.
 const LONGEST: Duration = Duration::from_secs(10);
 
-impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
+impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     /// Stores the working copy and restarts. Arming is refused meanwhile: storing may stall the processor.
     pub(super) async fn save(&mut self) {
-        if let Err(status) = self.stopped() {
-            return self.refuse("not saved", status).await;
-        }
-        self.links.report(Refusal::Storing, true);
-        // The pilot may have armed just before: what counts is what the commander says after it has seen the report.
-        if with_timeout(COMMANDER, self.next_status()).await.is_err() {
-            self.links.report(Refusal::Storing, false);
-            return self.refuse("not saved", None).await;
-        }
-        if let Err(status) = self.stopped() {
-            self.links.report(Refusal::Storing, false);
+        if let Err(status) = self.hold_arming().await {
             return self.refuse("not saved", status).await;
         }
         let saved = with_timeout(LONGEST, self.storage.save(&self.params))
@@ -36,9 +27,10 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
             Ok(()) => {
                 self.links.report(Refusal::StorageFull, false);
                 self.links.report(Refusal::StorageUnreadable, false);
+                self.links.report(Refusal::StorageForeign, false);
                 self.out.line(format_args!("saved; restarting")).await;
                 // Arming stays refused: the parameters in force are no longer those that are stored.
-                self.restart.restart();
+                self.chip.restart();
             }
             Err(error) => {
                 let (reason, text) = match error {
@@ -57,6 +49,19 @@ impl<O: SerialOutput, S: Storage, R: Restart> Console<'_, O, S, R> {
                     .await;
             }
         }
+    }
+
+    /// Refuses arming from here on, unless the motors may turn; what the commander says then.
+    pub(super) async fn hold_arming(&self) -> Result<(), Option<Status>> {
+        self.stopped()?;
+        self.links.report(Refusal::Storing, true);
+        // The pilot may have armed just before: what counts is what the commander says after it has seen the report.
+        let seen = with_timeout(COMMANDER, self.next_status()).await;
+        let held = seen.map_err(|_| None).and_then(|()| self.stopped());
+        if held.is_err() {
+            self.links.report(Refusal::Storing, false);
+        }
+        held
     }
 
     /// Waits for a status that was decided from now on.

@@ -10,7 +10,7 @@ use sophie_control::params::Params;
 use sophie_tasks::console;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Battery, Links, RcState, Status};
-use sophie_tasks::ports::{Loaded, PortError, Restart, SerialOutput, Storage, StorageError};
+use sophie_tasks::ports::{Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError};
 use sophie_tasks::timing::Run;
 
 use crate::fakes::FakeLine;
@@ -45,9 +45,21 @@ impl Storage for Board {
     }
 }
 
-impl Restart for Board {
+impl Chip for Board {
     fn restart(&mut self) {
         self.restarts.set(self.restarts.get() + 1);
+    }
+
+    fn looks(&self) -> &[Look] {
+        &[]
+    }
+
+    fn brown_out_volts(&self) -> f32 {
+        2.7
+    }
+
+    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
+        Err(NotSet)
     }
 }
 

@@ -6,7 +6,7 @@ use rigless::mcu::Mcu;
 use rigless::snapshot::{Error, Reader, Store, Writer};
 use rigless::time::VirtualNanos;
 
-use super::chip::Chip;
+use super::chip::{Chip, Options};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
@@ -30,6 +30,7 @@ impl<C: Chip> Wired<C> {
     /// The emulator cannot make it.
     pub fn new(mut chip: C, pads: &'static Pads, speed: f64) -> Result<Self, String> {
         chip.attach(pads);
+        chip.set_options(Options::BrownOut);
         let core = chip.core(speed)?;
         Ok(Self { chip, pads, core })
     }
@@ -129,9 +130,9 @@ impl<C: Chip> Wired<C> {
         self.pads.signals.map(|pin| self.chip.is_high(now, pin))
     }
 
-    /// First address of the flash sector that a write of `value` to `address` begins to erase.
-    pub fn erased(&self, address: u64, value: u64) -> Option<u64> {
-        self.chip.erased(address, value)
+    /// The first words that ArduPilot leaves in the sectors of this board's parameters.
+    pub fn foreign(&self) -> &'static [u64] {
+        self.pads.foreign
     }
 
     /// Pins that do not carry what is wired to them, with what they carry, and a receiver's port that is not set up as

@@ -16,6 +16,28 @@ use super::pads::{At, Pads};
 use super::serial::Setup;
 use super::tap::Edge;
 
+/// What the option bytes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Options {
+    /// As the chip leaves its maker.
+    Factory,
+    /// With the brown-out level that the firmware wants.
+    BrownOut,
+}
+
+/// A clock that does not come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// The crystal.
+    Crystal,
+    /// The core's PLL.
+    Pll,
+}
+
+/// The bit in the clocks' control register that says that the core's PLL is locked, on every part here (RM0090 §7.3.1,
+/// RM0433 §8.7.2).
+pub const PLL_LOCKED: u64 = 1 << 25;
+
 /// A processor with the bench's parts on its interfaces.
 pub trait Chip: Mcu + Debug + Send + 'static {
     /// Puts the parts where `pads` says.
@@ -50,6 +72,14 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn brown_out(&mut self);
     /// How a serial port is set up.
     fn serial_setup(&self, port: usize) -> Setup;
+    /// Puts option bytes in, as a probe would.
+    fn set_options(&mut self, options: Options);
+    /// Makes it one of the first revision.
+    fn age(&mut self);
+    /// Keeps a clock from coming, from the next reset of the clocks on.
+    fn stop_clock(&mut self, clock: Clock);
+    /// A write of `value` to `address` changes the flash while its data cache is on: what is read back is what was there.
+    fn changes_cached_flash(&self, address: u64, value: u64) -> bool;
     /// First address of the flash sector that a write of `value` to `address` begins to erase.
     fn erased(&self, address: u64, value: u64) -> Option<u64>;
     /// Core, ready to run `speed` instructions for each cycle of its clock.
@@ -142,6 +172,13 @@ macro_rules! same_on_this_part {
                     port.level(number, file) == Level::High
                 })
             })
+        }
+
+        fn stop_clock(&mut self, clock: Clock) {
+            match clock {
+                Clock::Crystal => self.inner.rcc.attach_crystals(0, 0),
+                Clock::Pll => self.unlocked = true,
+            }
         }
 
         fn brown_out(&mut self) {

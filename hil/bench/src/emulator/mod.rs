@@ -32,7 +32,7 @@ use sophie_control::wrench::PerArm;
 use sophie_tasks::rc::Protocol;
 
 use self::board::Wired;
-use self::chip::Chip;
+use self::chip::{Chip, Clock, Options};
 use self::chips::icm42688p::Sample;
 use self::chips::line::Line;
 use self::f405::F405;
@@ -101,6 +101,7 @@ impl Emulator {
             params: firmware.params,
             receiver,
             erases: BTreeMap::new(),
+            cached: 0,
             tasks: firmware.tasks.clone(),
             impossible: Vec::new(),
             dark: false,
@@ -199,6 +200,13 @@ fn run<C: Chip>(
         at: "fault".to_owned(),
         what: format!("this part cannot have {fault:?}"),
     }));
+    if world.cached > 0 {
+        gaps.push(Gap {
+            kind: "told",
+            at: "FLASH".to_owned(),
+            what: format!("{} writes and erases begun with the data cache on", world.cached),
+        });
+    }
     Ok(Run {
         gaps,
         instructions,
@@ -267,6 +275,8 @@ struct World {
     /// How the receiver's port must be set up.
     receiver: serial::Setup,
     erases: BTreeMap<u64, u32>,
+    /// Writes to the flash with its data cache on.
+    cached: u32,
     /// Addresses of the tasks.
     tasks: BTreeMap<String, u64>,
     /// Faults that this part cannot have.
@@ -381,6 +391,15 @@ impl World {
                 let mut words = (first..end).step_by(4);
                 return words.all(|at| host.program(at, Width::W32, at ^ NOISE).is_ok());
             }
+            Fault::ForeignParameters => {
+                let (first, _) = self.params;
+                let mut words = board.foreign().iter().zip((first..).step_by(4));
+                return words.all(|(word, at)| host.program(at, Width::W32, *word).is_ok());
+            }
+            Fault::FactoryOptions => board.chip.set_options(Options::Factory),
+            Fault::FirstRevision => board.chip.age(),
+            Fault::NoCrystal => board.chip.stop_clock(Clock::Crystal),
+            Fault::NoPll => board.chip.stop_clock(Clock::Pll),
             Fault::Hang(still) => host.hold(still),
             Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
         }
@@ -455,9 +474,14 @@ impl<C: Chip> Driver<Wired<C>> for World {
     fn on_settled(&mut self, session: &mut Session<Wired<C>>, _: &mut dyn Host, settled: Settled) {
         if let Settled::Access { access, .. } = settled
             && access.kind == AccessKind::Write
-            && let Some(sector) = session.board().erased(access.address, access.value)
         {
-            *self.erases.entry(sector).or_default() += 1;
+            let chip = &session.board().chip;
+            if let Some(sector) = chip.erased(access.address, access.value) {
+                *self.erases.entry(sector).or_default() += 1;
+            }
+            if chip.changes_cached_flash(access.address, access.value) {
+                self.cached += 1;
+            }
         }
     }
 

@@ -58,6 +58,8 @@ impl AnalogPad {
 pub struct Pads {
     /// Name of the board.
     pub name: &'static str,
+    /// The first words that ArduPilot leaves in the sectors of the parameters (AP_FlashStorage: state and signature).
+    pub foreign: &'static [u64],
     /// Name of the emulator's part.
     pub part: &'static str,
     /// Crystal, Hz.

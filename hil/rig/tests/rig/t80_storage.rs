@@ -71,7 +71,7 @@ mod tests {
     use sophie_control::params::Params;
     use sophie_rig::errand::{Errand, leave};
     use sophie_rig::{board, keep_alive};
-    use sophie_tasks::ports::Restart;
+    use sophie_tasks::ports::Chip;
 
     #[test]
     async fn a_parameter_outlives_a_reset() {
@@ -84,6 +84,6 @@ mod tests {
         };
         super::store(&mut board.storage, &changed).await;
         leave(Errand::Stored(original.servo_trim_4));
-        board::Restarter.restart();
+        board.chip.restart();
     }
 }

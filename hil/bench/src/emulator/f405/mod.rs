@@ -16,7 +16,9 @@ use rigless::device::{Device, ErasedDevice, Level, ResetCause};
 use rigless::emulator::CoreSpec;
 use rigless::machine::armv7m;
 use rigless::mcu::{Mcu, Operate};
+use rigless::soc::stm32f427::generated::dbg::Register as Debug;
 use rigless::soc::stm32f427::generated::dma2::Register as DmaRegister;
+use rigless::soc::stm32f427::generated::flash::Register as Flash;
 use rigless::soc::stm32f427::generated::rcc::Register as Clocks;
 use rigless::soc::stm32f427::generated::usart6::Register as Serial;
 use rigless::soc::stm32f427::peripherals::dma::{Dma, Wire};
@@ -30,7 +32,7 @@ use rigless::time::VirtualNanos;
 
 use self::exti::{Exti, Syscfg, routed_to};
 use self::i2c::DmaI2c;
-use super::chip::{Chip, same_on_this_part};
+use super::chip::{Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
@@ -51,6 +53,11 @@ const SERVO_TIMER: usize = 1;
 const MOTOR_TIMER: &str = "TIM8";
 /// What the streams that read the arms' buses have still to take: DMA1 streams 0 and 2.
 const BUS_COUNTS: [DmaRegister; 2] = [DmaRegister::S0ndtr, DmaRegister::S2ndtr];
+
+/// Bits of the flash's control register that program and that start an erase, and that of its access register that has the
+/// data cache on (RM0090 §3.9.8, §3.9.2).
+const CHANGES: u64 = 1 << 16 | 1;
+const DATA_CACHE: u64 = 1 << 10;
 
 /// The pads of `docs/boards.md`.
 pub static PADS: Pads = Pads {
@@ -95,6 +102,7 @@ pub static PADS: Pads = Pads {
     ],
     resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10), At(0, 3)],
     signals: [At(2, 10), At(2, 11), At(2, 12)],
+    foreign: &[0x5168_5BFC],
 };
 
 /// Instances that no firmware of ours uses, or that the F405 lacks. Whoever reaches one all the same finds it listed as
@@ -171,12 +179,18 @@ pub struct F405 {
     pulses: u64,
     /// The next reset is by a supply that broke down.
     browned_out: bool,
+    /// The core's PLL never locks.
+    unlocked: bool,
+    /// What the identity register tells.
+    revision: u64,
 }
 
 #[derive(Debug)]
 struct Slots {
     motors: usize,
     clocks: usize,
+    debug: usize,
+    flash: usize,
     dma: usize,
     buses: [usize; 2],
     exti: usize,
@@ -200,6 +214,8 @@ impl F405 {
         let slots = Slots {
             motors: slot(MOTOR_TIMER)?,
             clocks: slot("RCC")?,
+            debug: slot("DBG")?,
+            flash: slot("FLASH")?,
             dma: slot(CONTROLLERS[1].instance)?,
             buses: [slot("I2C1")?, slot("I2C2")?],
             exti: slot("EXTI")?,
@@ -211,7 +227,7 @@ impl F405 {
             // Its place is taken by `Mcu::split`.
             Stretched::new(DmaI2c::new(I2c::with_clock(HSI_HZ), count))
         });
-        Ok(Self {
+        let mut part = Self {
             inner,
             motors: Tap::new(motor_timer),
             dma: controller(),
@@ -221,7 +237,18 @@ impl F405 {
             slots,
             pulses: 0,
             browned_out: false,
-        })
+            unlocked: false,
+            // The last one (RM0090 §38.6.1).
+            revision: 0x101F,
+        };
+        part.mark_revision();
+        Ok(part)
+    }
+
+    /// Puts an F405's identity into the register that tells it.
+    fn mark_revision(&mut self) {
+        let file = self.inner.bus_mut().slot_mut(self.slots.debug).registers_mut();
+        file.set(Debug::DbgmcuIdcode, 0x413 | self.revision << 16);
     }
 
     /// The interface of a bus.
@@ -263,6 +290,29 @@ impl Chip for F405 {
         let values = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.map_or(0, |file| file.get(r)));
         let [brr, cr1, cr2] = values;
         Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+    }
+
+    fn set_options(&mut self, options: Options) {
+        let (flash, file) = self.inner.program();
+        let (optcr, optcr1) = flash.committed_options();
+        let level = match options {
+            Options::Factory => 3 << 2,
+            // Level 3: two bits that count downwards (RM0090 §3.9.10).
+            Options::BrownOut => 0,
+        };
+        flash.keep_options(optcr & !(3 << 2) | level, optcr1, file);
+    }
+
+    fn age(&mut self) {
+        // Revision A (RM0090 §38.6.1).
+        self.revision = 0x1000;
+        self.mark_revision();
+    }
+
+    fn changes_cached_flash(&self, address: u64, value: u64) -> bool {
+        let control = generated::FLASH.base + u64::from(Flash::Cr.spec().offset);
+        let file = self.inner.bus().slots()[self.slots.flash].registers();
+        address == control && value & CHANGES != 0 && file.get(Flash::Acr) & DATA_CACHE != 0
     }
 
     // The emulator does not let this part erase.
@@ -310,6 +360,7 @@ impl Mcu for F405 {
             Device::reset(own);
         }
         self.motors.restart(at);
+        self.mark_revision();
         if std::mem::take(&mut self.browned_out) {
             // The emulator knows no brown-out: its flag is set beside the pin's (RM0090 §7.3.21).
             let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();
@@ -325,6 +376,10 @@ impl Mcu for F405 {
     }
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        if self.unlocked && slot == self.slots.clocks {
+            let file = self.inner.bus_mut().slot_mut(slot).registers_mut();
+            file.set(Clocks::Cr, file.get(Clocks::Cr) & !PLL_LOCKED);
+        }
         let own: &mut dyn ErasedDevice = if slot == self.slots.motors {
             &mut self.motors
         } else if slot == self.slots.dma {

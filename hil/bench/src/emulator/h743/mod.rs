@@ -10,15 +10,17 @@ use rigless::machine::matekh743::MatekH743;
 use rigless::mcu::Mcu;
 use rigless::soc::Bus;
 use rigless::soc::stm32h743::Stm32h743;
+use rigless::soc::stm32h743::generated::dbgmcu::Register as Debug;
 use rigless::soc::stm32h743::generated::rcc::Register as Clocks;
 use rigless::soc::stm32h743::generated::usart1::Register as Serial;
+use rigless::soc::stm32h743::peripherals::flash::OptionBytes;
 use rigless::soc::stm32h743::peripherals::i2c::I2c;
 use rigless::soc::stm32h743::peripherals::rcc::HSI_HZ;
 use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
 use rigless::time::VirtualNanos;
 
 use self::watchdog::Watchdog;
-use super::chip::{Chip, same_on_this_part};
+use super::chip::{Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
@@ -94,6 +96,7 @@ pub static MATEK: Pads = Pads {
     ],
     resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7), At(4, 7)],
     signals: [At(4, 4), At(4, 3), At(0, 15)],
+    foreign: &[0x210D_99F1, 0x5168_5B62],
 };
 
 /// Instances that no firmware of ours uses. Asking their models costs half the speed; whoever reaches one all the same
@@ -124,6 +127,10 @@ pub struct H743 {
     pulses: u64,
     /// The next reset is by a supply that broke down.
     browned_out: bool,
+    /// The core's PLL never locks.
+    unlocked: bool,
+    /// What the identity register tells.
+    revision: u64,
 }
 
 #[derive(Debug)]
@@ -132,6 +139,7 @@ struct Slots {
     time: usize,
     motors: usize,
     clocks: usize,
+    debug: usize,
     buses: [usize; 2],
     serial: Vec<usize>,
     unused: Vec<bool>,
@@ -156,6 +164,7 @@ impl H743 {
             time: slot("TIM2")?,
             motors: slot("TIM4")?,
             clocks: slot("RCC")?,
+            debug: slot("DBGMCU")?,
             buses: [slot("I2C1")?, slot("I2C2")?],
             serial: SERIAL.into_iter().map(slot).collect::<Result<_, _>>()?,
             unused,
@@ -170,6 +179,9 @@ impl H743 {
             slots,
             pulses: 0,
             browned_out: false,
+            unlocked: false,
+            // Revision V, as the emulator's part is.
+            revision: 0x2003,
         })
     }
 
@@ -192,6 +204,12 @@ impl H743 {
     pub fn first_servo_is_high(&mut self) -> bool {
         let (timer, file) = self.inner.timer(SERVO_TIMER);
         Channel::new(1).and_then(|c| timer.output(c, file)) == Some(Level::High)
+    }
+
+    /// Puts the revision into the identity register.
+    fn mark_revision(&mut self) {
+        let file = self.inner.bus_mut().slot_mut(self.slots.debug).registers_mut();
+        file.set(Debug::Idc, 0x450 | self.revision << 16);
     }
 
     /// The interface of a bus.
@@ -224,6 +242,29 @@ impl Chip for H743 {
         let file = self.inner.bus().slots()[self.slots.serial[port]].registers();
         let [brr, cr1, cr2] = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.get(r));
         Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+    }
+
+    fn set_options(&mut self, options: Options) {
+        let (flash, file) = self.inner.program();
+        let level = match options {
+            Options::Factory => 0,
+            // Level 3: two bits that count upwards (RM0433 §4.9.8).
+            Options::BrownOut => 3 << 2,
+        };
+        let factory = OptionBytes::FACTORY;
+        let optsr = factory.optsr & !(3 << 2) | level;
+        flash.keep_options(OptionBytes { optsr, ..factory }, file);
+    }
+
+    fn age(&mut self) {
+        // Revision Y (RM0433 §60.5.8).
+        self.revision = 0x1003;
+        self.mark_revision();
+    }
+
+    fn changes_cached_flash(&self, _: u64, _: u64) -> bool {
+        // Bank 2 is never cached: the core's data cache is off.
+        false
     }
 
     fn erased(&self, address: u64, value: u64) -> Option<u64> {
@@ -264,6 +305,7 @@ impl Mcu for H743 {
         self.watchdog = Watchdog::default();
         self.time = Deaf(Tim::new(TIMERS[TIME_TIMER]));
         self.motors.restart(at);
+        self.mark_revision();
         if std::mem::take(&mut self.browned_out) {
             // The emulator knows no brown-out: its flag is set beside the pin's (RM0433 §8.7.37).
             let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();
@@ -285,6 +327,10 @@ impl Mcu for H743 {
     }
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        if self.unlocked && slot == self.slots.clocks {
+            let file = self.inner.bus_mut().slot_mut(slot).registers_mut();
+            file.set(Clocks::Cr, file.get(Clocks::Cr) & !PLL_LOCKED);
+        }
         if slot == self.slots.watchdog {
             return (self.inner.bus_mut(), Some(&mut self.watchdog));
         }

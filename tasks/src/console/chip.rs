@@ -1,0 +1,86 @@
+//! The chip itself: what the start-up looked at, and the one thing of it that is set here.
+
+use sophie_control::arming::Refusal;
+use sophie_control::decimal::Decimal;
+
+use super::Console;
+use crate::ports::{Chip, Look, SerialOutput, Storage};
+
+impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
+    /// What the start-up looked at: name, what was read, what is expected.
+    pub(super) async fn silicon(&mut self) {
+        for Look {
+            name,
+            read,
+            expected,
+            ok,
+            ..
+        } in self.chip.looks()
+        {
+            let mark = if *ok { ' ' } else { '*' };
+            self.out
+                .line(format_args!("{mark} {name:20} {read:28} expected: {expected}"))
+                .await;
+        }
+    }
+
+    /// The level, as the start-up read it.
+    fn brown_out_level(&self) -> Option<&Look> {
+        let mut looks = self.chip.looks().iter();
+        looks.find(|look| look.refuses == Some(Refusal::BrownOutLevel))
+    }
+
+    /// What the level is and what setting it does, before anyone sets it.
+    pub(super) async fn brown_out(&mut self) {
+        let volts = Decimal(self.chip.brown_out_volts());
+        let Some(Look {
+            read, expected, ok, ..
+        }) = self.brown_out_level()
+        else {
+            return self.out.line(format_args!("this chip has no level to set")).await;
+        };
+        let (read, expected, ok) = (read.clone(), *expected, *ok);
+        self.out
+            .line(format_args!("brown-out level {read}, expected {expected}"))
+            .await;
+        if ok {
+            return self.out.line(format_args!("nothing to do")).await;
+        }
+        for text in [
+            format_args!("Until it is set, a supply that breaks down lets the chip execute garbage."),
+            format_args!(
+                "'brownout set' writes it into the chip's option bytes and restarts. From then on the chip"
+            ),
+            format_args!(
+                "stands in reset below about {volts:.1} V, with this firmware and every other, until a tool for"
+            ),
+            format_args!(
+                "option bytes takes it back. Do it once, on a steady supply; nothing else is changed."
+            ),
+        ] {
+            self.out.line(text).await;
+        }
+    }
+
+    /// Sets the level and restarts. Arming is refused meanwhile: the write may stall the processor.
+    pub(super) async fn set_brown_out(&mut self) {
+        if self.brown_out_level().is_none_or(|look| look.ok) {
+            return self.out.line(format_args!("not set: nothing to do")).await;
+        }
+        if let Err(status) = self.hold_arming().await {
+            return self.refuse("not set", status).await;
+        }
+        match self.chip.set_brown_out().await {
+            Ok(()) => {
+                self.out.line(format_args!("set; restarting")).await;
+                self.chip.restart();
+            }
+            Err(_) => {
+                self.links.report(Refusal::Storing, false);
+                self.out
+                    .line(format_args!("not set: the chip's option bytes did not take it"))
+                    .await;
+            }
+        }
+    }
+}
