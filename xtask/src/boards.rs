@@ -1,5 +1,26 @@
 //! The boards, as far as a build has to know them.
 
+/// First address of the flash, all chips.
+pub const FLASH: u64 = 0x0800_0000;
+
+/// Equal sectors of a flash, one behind the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Sectors {
+    /// How many.
+    pub count: u64,
+    /// Bytes of each.
+    pub size: u64,
+}
+
+/// The USB loader that a chip has from its maker.
+#[derive(Clone, Copy)]
+pub enum UsbLoader {
+    /// How it is entered.
+    Enter(&'static str),
+    /// Nobody can enter it on this board: why.
+    OutOfReach(&'static str),
+}
+
 /// One board.
 #[derive(Clone, Copy)]
 pub struct Board {
@@ -13,6 +34,10 @@ pub struct Board {
     pub interrupts: usize,
     /// Vectors of the flight and the steady level.
     pub levels: [&'static str; 2],
+    /// The flash, from [`FLASH`] on: what is erased at once.
+    pub flash: &'static [Sectors],
+    /// The chip's own loader, for those without a probe.
+    pub usb_loader: UsbLoader,
     /// Memories that DMA1 and DMA2 reach: first address, and first one beyond.
     pub dma_reaches: &'static [(u64, u64)],
 }
@@ -25,6 +50,10 @@ pub const BOARDS: [Board; 3] = [
         core: "cortex-m7",
         interrupts: 150,
         levels: ["SAI3", "SAI4"],
+        // Two banks (RM0433 §4.3.4).
+        flash: &[sectors(16, 128)],
+        // BOOT0 has a button, USB is on PA11 and PA12, which the loader uses (AN2606).
+        usb_loader: UsbLoader::Enter("hold its button BOOT while plugging USB in"),
         // AXI SRAM, SRAM1 to SRAM3 (RM0433 §2.1); not the tightly coupled memories.
         dma_reaches: &[(0x2400_0000, 0x2408_0000), (0x3000_0000, 0x3004_8000)],
     },
@@ -34,6 +63,10 @@ pub const BOARDS: [Board; 3] = [
         core: "cortex-m7",
         interrupts: 110,
         levels: ["SAI1", "SAI2"],
+        // One bank (RM0410 §3.3.2), as in `memory/cuav-v5.x`.
+        flash: &[sectors(4, 32), sectors(1, 128), sectors(7, 256)],
+        // FMUv5 is flashed over USB by a loader that itself lies in the flash.
+        usb_loader: UsbLoader::OutOfReach("it has no button for BOOT0, and its case leads the pin nowhere"),
         // DTCM, SRAM1 and SRAM2 (RM0410 §2.1).
         dma_reaches: &[(0x2000_0000, 0x2008_0000)],
     },
@@ -43,10 +76,28 @@ pub const BOARDS: [Board; 3] = [
         core: "cortex-m4",
         interrupts: 82,
         levels: ["CAN1_TX", "CAN2_TX"],
+        // RM0090 §3.3.
+        flash: &[sectors(4, 16), sectors(1, 64), sectors(7, 128)],
+        // PA11 and PA12 are free for a USB connector, and so the chip's pin BOOT0 for a button.
+        usb_loader: UsbLoader::Enter("take BOOT0 to 3.3 V while plugging USB (PA11, PA12) in"),
         // SRAM1 and SRAM2 (RM0090 §2.1); not the core-coupled memory.
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
     },
 ];
+
+const fn sectors(count: u64, kib: u64) -> Sectors {
+    Sectors {
+        count,
+        size: kib * 1024,
+    }
+}
+
+impl Board {
+    /// Bytes of the flash.
+    pub fn flash_size(&self) -> u64 {
+        self.flash.iter().map(|equal| equal.count * equal.size).sum()
+    }
+}
 
 /// The board called `name`; `None` when there is none.
 pub fn find(name: &str) -> Option<&'static Board> {
@@ -56,4 +107,16 @@ pub fn find(name: &str) -> Option<&'static Board> {
 /// The boards' names, for a sentence.
 pub fn names() -> String {
     BOARDS.map(|b| b.name).join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flash_is_as_large_as_its_chip_is_called() {
+        for (name, kib) in [("matek-h743", 2048), ("cuav-v5", 2048), ("f405", 1024)] {
+            assert_eq!(find(name).map(Board::flash_size), Some(kib * 1024), "{name}");
+        }
+    }
 }

@@ -130,6 +130,11 @@ pub fn target_dir() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
+/// A path as one would type it in the workspace's folder.
+pub fn typed(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap_or(path).display().to_string()
+}
+
 /// The command as one would type it.
 pub fn shown(command: &Command) -> String {
     let mut words = Vec::new();

@@ -48,6 +48,7 @@ mod tests {
             sections: Vec::new(),
             loads: Vec::new(),
             statics: Vec::new(),
+            functions: Vec::new(),
             symbols: symbols
                 .iter()
                 .map(|name| (name.to_string(), 0))

@@ -26,11 +26,18 @@ pub struct Section {
 pub struct Load {
     /// Where they are written to.
     pub address: u64,
-    /// How many.
-    pub size: u64,
+    /// The bytes.
+    pub bytes: Vec<u8>,
 }
 
-/// A static.
+impl Load {
+    /// How many.
+    pub fn size(&self) -> u64 {
+        self.bytes.len() as u64
+    }
+}
+
+/// A static, or a function.
 pub struct Static {
     /// Mangled name.
     pub name: String,
@@ -50,6 +57,8 @@ pub struct Image {
     pub loads: Vec<Load>,
     /// Statics.
     pub statics: Vec<Static>,
+    /// Functions.
+    pub functions: Vec<Static>,
     /// Addresses of all named symbols.
     pub symbols: HashMap<String, u64>,
     /// Contents of the vector table, word by word.
@@ -85,16 +94,20 @@ impl Image {
                 writable: sh_flags & u64::from(object::elf::SHF_WRITE) != 0,
             });
         }
-        let loads = file
-            .elf_program_headers()
-            .iter()
-            .filter(|h| h.p_type(endian) == object::elf::PT_LOAD && h.p_filesz(endian) > 0)
-            .map(|h| Load {
-                address: h.p_paddr(endian).into(),
-                size: h.p_filesz(endian).into(),
-            })
-            .collect();
+        let mut loads = Vec::new();
+        for header in file.elf_program_headers() {
+            if header.p_type(endian) == object::elf::PT_LOAD && header.p_filesz(endian) > 0 {
+                let bytes = header
+                    .data(endian, &*bytes)
+                    .map_err(|()| "the image is cut short")?;
+                loads.push(Load {
+                    address: header.p_paddr(endian).into(),
+                    bytes: bytes.to_vec(),
+                });
+            }
+        }
         let mut statics = Vec::new();
+        let mut functions = Vec::new();
         let mut symbols = HashMap::new();
         for symbol in file.symbols() {
             let Ok(name) = symbol.name() else { continue };
@@ -107,6 +120,14 @@ impl Image {
                     size: symbol.size(),
                 });
             }
+            if symbol.kind() == SymbolKind::Text {
+                functions.push(Static {
+                    name: name.into(),
+                    // Without the bit that says Thumb.
+                    address: symbol.address() & !1,
+                    size: symbol.size(),
+                });
+            }
             symbols.insert(name.to_string(), symbol.address());
         }
         Ok(Self {
@@ -114,8 +135,18 @@ impl Image {
             sections,
             loads,
             statics,
+            functions,
             symbols,
             vectors: words.iter().map(|word| u32::from_le_bytes(*word)).collect(),
+        })
+    }
+
+    /// The word that flashing writes to `address`.
+    pub fn word(&self, address: u64) -> Option<u32> {
+        self.loads.iter().find_map(|load| {
+            let offset = usize::try_from(address.checked_sub(load.address)?).ok()?;
+            let bytes = load.bytes.get(offset..offset + 4)?;
+            Some(u32::from_le_bytes(bytes.try_into().ok()?))
         })
     }
 

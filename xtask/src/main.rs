@@ -1,11 +1,15 @@
 //! Developer verbs that need more than cargo. `cargo xtask` without a verb prints them.
 
+mod backup;
 mod bench;
 mod boards;
 mod build;
 mod conformance;
 mod cost;
+mod crates;
+mod dfu;
 mod dma;
+mod flash;
 mod guard;
 mod image;
 mod own_board;
@@ -13,10 +17,11 @@ mod params;
 mod rig;
 mod sizes;
 mod toolchain;
+mod tools;
 mod vectors;
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use boards::{BOARDS, Board};
 use build::Trace;
@@ -24,14 +29,32 @@ use build::Trace;
 /// Anything that ends a verb, as a sentence.
 type Error = Box<dyn std::error::Error>;
 
+/// What is refused for what the user asks or brings: exit status 2.
+#[derive(Debug)]
+struct Refused(String);
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Refused {}
+
 const USAGE: &str = "\
 usage: cargo xtask VERB
 
   firmware BOARD [--trace]
                      build the firmware and check its image; the last line is the path of the ELF. --trace: one that logs
                      every event of the executors, for `sophie timing` (docs/timing.md)
-  flash BOARD [--trace]
-                     build, flash through probe-rs and show the log
+  flash BOARD [--dfu] [--trace|--elf ELF] [--backup FILE|--no-backup] [--dry]
+                     build and flash: through probe-rs, which then shows the log, or with --dfu through dfu-util and the USB
+                     loader of the chip (matek-h743, f405); stored parameters stay. --elf: flash this image, build none.
+                     cuav-v5 is not flashed before its backup is there. --dry: only show the commands
+  backup BOARD [FILE] [--dry]
+                     read the whole flash through probe-rs, twice, into FILE (backups/BOARD.bin), which must not exist
+  restore BOARD FILE [--dry]
+                     write a backup over the whole flash through probe-rs
   bench BOARD [SCENARIO.toml] [--trace] [--seed N] [--out DIR] [--speed SHARE] [--console PORT]
         [--telemetry PORT] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
@@ -39,7 +62,7 @@ usage: cargo xtask VERB
   rig BOARD [--build|--emulated] [--wired] [NAME...]
                      build the tests of a board and run them on it through probe-rs, or on the emulated board (matek-h743);
                      --wired fails what the wiring of hil/README.md lacks; names, or parts of them, choose tests
-  sizes [--tighten]  build every board, print what it takes of flash and RAM, compare with xtask/ceilings.toml and with
+  sizes [--tighten]  build every board, print what it and each crate takes of flash, and of RAM, compare with xtask/ceilings.toml and with
                      the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
   cost [--tighten|--json]
                      count the instructions of every control stage under QEMU, print them beside targets and peers,
@@ -57,7 +80,9 @@ exit status: 0 done, 1 failed, 2 not understood";
 /// What is to be done.
 enum Verb<'a> {
     Firmware(&'static Board, Trace),
-    Flash(&'static Board, Trace),
+    Flash(flash::Flash<'a>),
+    Backup(backup::Backup<'a>),
+    Restore(backup::Backup<'a>),
     Bench(bench::Bench<'a>),
     Rig(rig::Rig<'a>),
     Sizes { tighten: bool },
@@ -68,9 +93,11 @@ enum Verb<'a> {
 }
 
 /// Every verb, in the order of [`USAGE`].
-const VERBS: [&str; 8] = [
+const VERBS: [&str; 10] = [
     "firmware",
     "flash",
+    "backup",
+    "restore",
     "bench",
     "rig",
     "sizes",
@@ -98,7 +125,9 @@ impl<'a> Verb<'a> {
         }
         Ok(match verb {
             "firmware" => board(verb, rest).map(|(board, trace)| Self::Firmware(board, trace))?,
-            "flash" => board(verb, rest).map(|(board, trace)| Self::Flash(board, trace))?,
+            "flash" => Self::Flash(flash::Flash::parse(rest)?),
+            "backup" => Self::Backup(backup::Backup::parse(verb, rest)?),
+            "restore" => Self::Restore(backup::Backup::parse(verb, rest)?),
             "bench" => Self::Bench(bench::Bench::parse(rest)?),
             "rig" => Self::Rig(rig::Rig::parse(rest)?),
             "sizes" => Self::Sizes {
@@ -170,7 +199,9 @@ fn main() -> ExitCode {
     };
     let done = match verb {
         Verb::Firmware(board, trace) => firmware(board, trace).map(|(elf, _)| println!("{}", elf.display())),
-        Verb::Flash(board, trace) => flash(board, trace),
+        Verb::Flash(flash) => flash.run(),
+        Verb::Backup(backup) => backup.save(),
+        Verb::Restore(backup) => backup.restore(),
         Verb::Bench(bench) => return ended(bench.board, bench.fly()),
         Verb::Rig(rig) => return ended(rig.board, rig.run()),
         Verb::Sizes { tighten } => all_sizes(tighten),
@@ -186,7 +217,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");
-            ExitCode::FAILURE
+            ExitCode::from(if error.is::<Refused>() { 2 } else { 1 })
         }
     }
 }
@@ -212,7 +243,7 @@ fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
     let vectors = vectors::check(board, &image)?;
     let buffers = dma::check(board, &image)?;
     eprintln!("vector table: {vectors} handlers, levels and reset in place");
-    let kept = params::check(&image)?;
+    let kept = params::check(board, &image)?;
     eprintln!("DMA: {buffers} buffers and task futures, all where their DMA reaches");
     if guard::check(board, &image)? {
         eprintln!("flash: read behind the guard against damaged words");
@@ -223,38 +254,16 @@ fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
     Ok(image)
 }
 
-fn flash(board: &Board, trace: Trace) -> Result<(), Error> {
-    let (elf, _) = firmware(board, trace)?;
-    let mut command = Command::new("probe-rs");
-    // The firmware drops log lines rather than wait for a probe; the probe must not make it wait either.
-    command
-        .args([
-            "run",
-            "--chip",
-            board.probe_rs_chip,
-            "--rtt-channel-mode",
-            "no-block-trim",
-        ])
-        .arg(&elf);
-    eprintln!("{}", build::shown(&command));
-    let status = command.status().map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => {
-            "probe-rs is not installed; see https://probe.rs/docs/getting-started/installation".to_string()
-        }
-        _ => e.to_string(),
-    })?;
-    if status.success() {
-        Ok(())
-    } else {
-        Err("probe-rs failed".into())
-    }
-}
-
 fn all_sizes(tighten: bool) -> Result<(), Error> {
-    let mut rows = Vec::new();
+    let (mut rows, mut shares) = (Vec::new(), Vec::new());
     for board in &BOARDS {
-        rows.push((board, sizes::Sizes::of(&firmware(board, Trace::Off)?.1)?));
+        let (_, image) = firmware(board, Trace::Off)?;
+        let sizes = sizes::Sizes::of(&image)?;
+        shares.push((board, crates::shares(&image, &sizes)?));
+        rows.push((board, sizes));
     }
+    crates::print(&shares);
+    println!();
     sizes::print(&rows);
     sizes::compare(&rows, tighten)
 }
@@ -288,8 +297,6 @@ mod tests {
         for words in [
             &["firmware", "matek-h743", "--dry"] as &[&str],
             &["firmware", "--dry", "matek-h743", "--trace"],
-            &["flash", "matek-h743", "--dry"],
-            &["flash", "--dry"],
             &["bench", "matek-h743", "--dry"],
             &[
                 "bench",
@@ -315,6 +322,22 @@ mod tests {
         }
         for (words, told) in [
             (
+                &["flash", "f405", "--wet"] as &[&str],
+                "flash: `--wet` is not understood: allowed are --dfu, --trace, --elf FILE, --backup FILE, --no-backup, --dry",
+            ),
+            (
+                &["backup", "f405", "--wet"],
+                "backup: `--wet` is not understood: allowed are a FILE and --dry",
+            ),
+            (
+                &["backup", "f405", "a.bin", "b.bin"],
+                "backup: `b.bin` is a second file: allowed is one",
+            ),
+            (
+                &["restore", "f405"],
+                "restore: name the FILE that `cargo xtask backup f405` wrote",
+            ),
+            (
                 &["bench", "f405", "--seed"] as &[&str],
                 "bench: `--seed` lacks its N",
             ),
@@ -336,7 +359,7 @@ mod tests {
             ),
             (
                 &["fly"],
-                "`fly` is not understood: allowed are firmware, flash, bench, rig, sizes, cost, own-board, conformance, help",
+                "`fly` is not understood: allowed are firmware, flash, backup, restore, bench, rig, sizes, cost, own-board, conformance, help",
             ),
         ] {
             assert_eq!(Verb::parse(words).err().as_deref(), Some(told), "{words:?}");

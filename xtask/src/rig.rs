@@ -1,9 +1,10 @@
 //! The tests of a board: built, and run on it through a probe, or on the emulated board.
 
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use crate::boards::{self, Board};
+use crate::tools::{self, PROBE_RS};
 use crate::{Error, build};
 
 /// The board whose tests the emulator can run.
@@ -93,44 +94,11 @@ impl<'a> Rig<'a> {
     }
 
     fn probe(&self, elf: &Path) -> Result<ExitCode, Error> {
-        let listed = Command::new("probe-rs")
-            .arg("list")
-            .output()
-            .map_err(no_probe_rs)?;
-        if !names_a_probe(&String::from_utf8_lossy(&listed.stdout)) {
-            return Err(format!(
-                "`probe-rs list` shows no probe. Connect an ST-Link or a CMSIS-DAP probe to SWDIO, SWCLK, ground and the \
-                 3.3 V reference of the {}, and power the board; on Linux install probe-rs's udev rules. Jumpers: hil/README.md",
-                self.board.name
-            )
-            .into());
-        }
-        let mut command = Command::new("probe-rs");
-        command.args(["run", "--chip", self.board.probe_rs_chip]);
-        command.arg(elf).args(&self.names);
-        eprintln!("{}", build::shown(&command));
-        let status = command.status().map_err(no_probe_rs)?;
-        Ok(if status.success() {
-            ExitCode::SUCCESS
-        } else {
-            ExitCode::FAILURE
-        })
+        tools::probe(self.board)?;
+        let mut command = PROBE_RS.command(&["run", "--chip", self.board.probe_rs_chip]);
+        PROBE_RS.run(command.arg(elf).args(&self.names))?;
+        Ok(ExitCode::SUCCESS)
     }
-}
-
-/// Why probe-rs does not start.
-fn no_probe_rs(error: std::io::Error) -> String {
-    match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            "probe-rs is not installed; see https://probe.rs/docs/getting-started/installation".to_string()
-        }
-        _ => format!("probe-rs: {error}"),
-    }
-}
-
-/// `probe-rs list` numbers the probes: `[0]: STLink V3 -- …`.
-fn names_a_probe(listed: &str) -> bool {
-    listed.lines().any(|line| line.trim_start().starts_with('['))
 }
 
 #[cfg(test)]
@@ -158,13 +126,5 @@ mod tests {
                 "{words:?}"
             );
         }
-    }
-
-    #[test]
-    fn a_probe_is_told_from_none() {
-        assert!(names_a_probe(
-            "The following debug probes were found:\n[0]: STLink V3 -- 0483:374e:0030 (ST-LINK)\n"
-        ));
-        assert!(!names_a_probe("No debug probes were found.\n"));
     }
 }

@@ -10,7 +10,7 @@ use crate::image::Image;
 use crate::{Error, build};
 
 /// Most flash on any board, bytes.
-const FLASH_LIMIT: u64 = 256 * 1024;
+const FLASH_LIMIT: u64 = 400 * 1024;
 /// Most static RAM on any board, bytes.
 const RAM_LIMIT: u64 = 64 * 1024;
 

@@ -7,6 +7,11 @@ use crate::image::Image;
 /// Words of the table before the first interrupt: stack pointer and fifteen exceptions.
 const EXCEPTIONS: usize = 16;
 
+/// Register of the core with the address of the table (ARMv7-M, B3.2.5).
+const VTOR: u32 = 0xE000_ED08;
+/// Bytes of start-up code in which it must be written: before anything that may take an exception.
+const AT_ONCE: u64 = 16;
+
 /// Checks the table; returns how many of its interrupts have a handler of their own.
 ///
 /// # Errors
@@ -47,6 +52,14 @@ pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
         }
     }
 
+    if !takes_its_own(image)? {
+        return Err(
+            "start-up does not take the image's vector table (feature `set-vtor` of cortex-m-rt): left by the chip's USB \
+             loader, it would go on with the loader's"
+                .into(),
+        );
+    }
+
     let default = image.symbol("DefaultHandler")? as u32 | 1;
     let interrupts = table.get(EXCEPTIONS..).unwrap_or_default();
     for level in board.levels {
@@ -58,10 +71,85 @@ pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     Ok(interrupts.iter().filter(|&&v| v != 0 && v != default).count())
 }
 
+/// Start-up begins with a store of the table's address to [`VTOR`]: `ldr rA, =VTOR; ldr rB, =table; str rB, [rA]`.
+fn takes_its_own(image: &Image) -> Result<bool, Error> {
+    let reset = image.symbol("Reset")? & !1;
+    let table = image.symbol("__vector_table")? as u32;
+    let half = |at: u64| {
+        let word = image.word(at & !3)?;
+        Some(if at & 2 == 0 { word & 0xFFFF } else { word >> 16 })
+    };
+    // Register and word of a load from behind the code (encoding T1, ARMv7-M A7.7.44).
+    let load = |at: u64| {
+        let code = half(at).filter(|code| code >> 11 == 0b01001)?;
+        let word = image.word(((at + 4) & !3) + 4 * u64::from(code & 0xFF))?;
+        Some((code >> 8 & 7, word))
+    };
+    // Register stored and register with the address (encoding T1 without offset, A7.7.161).
+    let store =
+        |at: u64| Some(half(at).filter(|code| code >> 6 == 0b01_1000_0000)?).map(|c| (c & 7, c >> 3 & 7));
+    let found = (reset..reset + AT_ONCE).step_by(2).any(|at| {
+        let (Some(first), Some(second), Some((value, address))) = (load(at), load(at + 2), store(at + 4))
+        else {
+            return false;
+        };
+        first == (address, VTOR) && second == (value, table)
+    });
+    Ok(found)
+}
+
 fn expect(what: &str, found: Option<&u32>, expected: u64) -> Result<(), Error> {
     match found {
         Some(&found) if u64::from(found) == expected => Ok(()),
         Some(found) => Err(format!("{what}: {found:#010x} instead of {expected:#010x}").into()),
         None => Err(format!("{what}: missing").into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+    use crate::image::Load;
+
+    /// An image that starts with `code` at 0x0800_0102, its words behind it.
+    fn starting_with(code: &[u16], words: &[u32]) -> Image {
+        let halves = code.iter().flat_map(|half| half.to_le_bytes());
+        let bytes = [0; 2].into_iter().chain(halves);
+        let bytes = bytes
+            .chain(words.iter().flat_map(|word| word.to_le_bytes()))
+            .collect();
+        let address = 0x0800_0100;
+        Image {
+            entry: 0,
+            sections: Vec::new(),
+            loads: vec![Load { address, bytes }],
+            statics: Vec::new(),
+            functions: Vec::new(),
+            symbols: HashMap::from([
+                ("Reset".to_string(), 0x0800_0103),
+                ("__vector_table".to_string(), 0x0800_0000),
+            ]),
+            vectors: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn start_up_that_leaves_the_table_of_another_is_found() {
+        // ldr r0, [pc, #8]; ldr r1, [pc, #8]; str r1, [r0]; nop; nop; the words from 0x0800_010C on.
+        let code = [0x4802, 0x4902, 0x6001, 0xBF00, 0xBF00];
+        let own = [VTOR, 0x0800_0000];
+        assert!(takes_its_own(&starting_with(&code, &own)).unwrap());
+        assert!(!takes_its_own(&starting_with(&code, &[VTOR, 0x1FFF_0000])).unwrap());
+        assert!(!takes_its_own(&starting_with(&code, &[0xE000_ED88, 0x0800_0000])).unwrap());
+        // Stored the other way round, loaded and never stored, nothing of all that.
+        for code in [
+            [0x4802, 0x4902, 0x6008, 0xBF00, 0xBF00],
+            [0x4802, 0x4902, 0xBF00, 0xBF00, 0xBF00],
+            [0xBF00; 5],
+        ] {
+            assert!(!takes_its_own(&starting_with(&code, &own)).unwrap(), "{code:x?}");
+        }
     }
 }

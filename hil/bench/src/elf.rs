@@ -7,6 +7,7 @@ use defmt_decoder::Table;
 use object::{Architecture, Object, ObjectSection, ObjectSymbol};
 
 use crate::boards::EmulatedBoard;
+use crate::loader::Loader;
 
 /// A firmware image.
 pub struct Firmware {
@@ -24,6 +25,8 @@ pub struct Firmware {
     pub table: Table,
     /// The board that it is for.
     pub board: &'static EmulatedBoard,
+    /// What the chip starts in before it; `None`: nothing.
+    pub loader: Option<Loader>,
 }
 
 impl Firmware {
@@ -115,6 +118,7 @@ impl Firmware {
             table,
             bytes,
             board,
+            loader: None,
         })
     }
 }

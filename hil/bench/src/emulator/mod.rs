@@ -88,7 +88,11 @@ impl Emulator {
         let stored = stored::sectors(kind, (end - first) as usize, &settings.params)?;
         let stored =
             Image::new(Path::new("parameters"), stored, Some(first)).map_err(|e| format!("emulator: {e}"))?;
-        let images = [image, stored];
+        let mut images = vec![image, stored];
+        if let Some(loader) = firmware.loader.clone() {
+            let loader = Image::new(Path::new("loader"), loader.bytes, Some(loader.at));
+            images.push(loader.map_err(|e| format!("emulator: {e}"))?);
+        }
         let line = esc::Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
         let receiver = serial::Setup::of(Protocol::from_params(&settings.params), kind);
         let (wires, wires_in) = sync_channel(1);
@@ -169,7 +173,7 @@ fn run<C: Chip>(
     chip: C,
     pads: &'static Pads,
     speed: f64,
-    images: &[Image; 2],
+    images: &[Image],
     driver: World,
 ) -> Result<Run, String> {
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");

@@ -59,3 +59,20 @@ fn an_image_of_another_board_is_refused() {
         "{told}"
     );
 }
+
+#[test]
+fn an_image_that_a_loader_jumps_to_takes_its_vectors_from_its_own_table() {
+    for (path, board) in [(image(), "matek-h743"), (small_image(), "f405")] {
+        let mut firmware = Firmware::read(path, boards::find(board).unwrap()).unwrap();
+        firmware.behind_a_loader().unwrap();
+        let flight = fly_image(&firmware, &hover(5.0), 1.0, &[]);
+        let log = log(&flight);
+        // Interrupts are served: time runs, the sensor answers, every task keeps its rate.
+        assert!(told(&flight, 0.0, "DISARMED").is_some(), "{board}\n{log}");
+        assert!(
+            flight.board.resets.is_empty(),
+            "{board}: {:?}\n{log}",
+            flight.board.resets
+        );
+    }
+}

@@ -1,0 +1,49 @@
+//! A loader that jumps to the firmware with the vector table still its own, as the chip's USB loader does when it is left.
+
+use object::{Object, ObjectSection};
+
+use crate::elf::Firmware;
+
+/// Where the loader lies: flash of every emulated chip that no firmware and no parameter takes.
+const AT: u32 = 0x080E_0000;
+/// Length of its vector table, words: a power of two, and more than any chip has vectors.
+const VECTORS: u32 = 256;
+/// Where the core looks for its vectors (ARMv7-M, B3.2.5).
+const VTOR: u32 = 0xE000_ED08;
+
+/// Bytes that lie in the flash beside the firmware.
+#[derive(Clone, Debug)]
+pub struct Loader {
+    /// Where.
+    pub at: u64,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+impl Firmware {
+    /// Puts a loader before the firmware: the chip starts in it, it takes every vector to a loop without end, and jumps
+    /// to the firmware.
+    ///
+    /// # Errors
+    /// One line: the image has no vector table.
+    pub fn behind_a_loader(&mut self) -> Result<(), String> {
+        let file = object::File::parse(&*self.bytes).map_err(|e| e.to_string())?;
+        let table = file.section_by_name(".vector_table").and_then(|s| s.file_range());
+        let (offset, _) = table.ok_or("the image has no vector table")?;
+        let reset = offset as usize + 4..offset as usize + 8;
+        let vector = self.bytes.get_mut(reset).ok_or("the image is cut short")?;
+        let firmware = u32::from_le_bytes(std::array::from_fn(|n| vector[n]));
+
+        let trap = AT + 4 * VECTORS;
+        // Thumb bit of a vector.
+        let [looping, entry] = [trap | 1, (trap + 4) | 1];
+        vector.copy_from_slice(&entry.to_le_bytes());
+        let mut bytes: Vec<u8> = (0..VECTORS).flat_map(|_| looping.to_le_bytes()).collect();
+        // b .; nop; ldr r0, =VTOR; ldr r1, =AT; str r1, [r0]; ldr r0, =firmware; bx r0; nop
+        let code: [u16; 8] = [0xE7FE, 0xBF00, 0x4802, 0x4903, 0x6001, 0x4803, 0x4700, 0xBF00];
+        bytes.extend(code.iter().flat_map(|half| half.to_le_bytes()));
+        bytes.extend([VTOR, AT, firmware].iter().flat_map(|word| word.to_le_bytes()));
+        self.loader = Some(Loader { at: AT.into(), bytes });
+        Ok(())
+    }
+}

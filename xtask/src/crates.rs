@@ -1,0 +1,244 @@
+//! What each crate takes of an image's flash, by its symbols.
+//!
+//! A function counts for the crate that its name begins with: what one crate makes of another's generics is the other's.
+//! What has no name of a crate is shown apart, so that a column adds up to the image.
+
+use std::collections::BTreeMap;
+
+use crate::Error;
+use crate::boards::Board;
+use crate::image::{Image, Section, Static};
+use crate::sizes::Sizes;
+
+/// Crates that take less than this on every board are added up, bytes.
+const SMALL: u64 = 2048;
+/// Constants that the compiler gives no name of a crate.
+const NAMELESS: &str = "constants without a name";
+/// What no symbol covers, or one without a crate.
+const REST: &str = "rest: vectors, assembly, C names, padding";
+
+/// Bytes of flash by crate.
+pub type Shares = BTreeMap<String, u64>;
+
+/// The shares of `image`.
+///
+/// # Errors
+/// They do not add up to the image.
+pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
+    let symbols = image.functions.iter().chain(&image.statics);
+    let mut symbols: Vec<&Static> = symbols.filter(|symbol| symbol.size > 0).collect();
+    // Where two lie at one address, the longer counts.
+    symbols.sort_by_key(|symbol| (symbol.address, std::cmp::Reverse(symbol.size)));
+    let mut shares = Shares::new();
+    for section in image.sections.iter().filter(|section| section.in_image) {
+        share(section, &symbols, &mut shares);
+    }
+    let sum: u64 = shares.values().sum();
+    if sum == sizes.flash {
+        Ok(shares)
+    } else {
+        Err(format!(
+            "the crates' shares add up to {sum} bytes, the image has {}",
+            sizes.flash
+        )
+        .into())
+    }
+}
+
+/// Gives every byte of `section` to one owner.
+fn share(section: &Section, symbols: &[&Static], shares: &mut Shares) {
+    let mut give = |owner: String, bytes: u64| {
+        if bytes > 0 {
+            *shares.entry(owner).or_default() += bytes;
+        }
+    };
+    let (mut next, end) = (section.address, section.address + section.size);
+    for symbol in symbols {
+        let first = symbol.address.clamp(next, end);
+        let beyond = (symbol.address + symbol.size).clamp(first, end);
+        if symbol.address >= section.address && beyond > first {
+            give(REST.into(), first - next);
+            give(owner(&symbol.name), beyond - first);
+            next = beyond;
+        }
+    }
+    give(REST.into(), end - next);
+}
+
+/// The crate that a symbol's name begins with.
+fn owner(symbol: &str) -> String {
+    if symbol.starts_with(".Lanon.") || symbol.starts_with("anon.") {
+        return NAMELESS.into();
+    }
+    let name = rustc_demangle::try_demangle(symbol).map(|name| format!("{name:#}"));
+    let owner = name.ok().and_then(|name| first_crate(&name).map(str::to_string));
+    owner.unwrap_or_else(|| REST.into())
+}
+
+/// `<alpha::Type as beta::Trait>::function` is alpha's, `<u32 as beta::Trait>::function` is beta's.
+fn first_crate(path: &str) -> Option<&str> {
+    let mut rest = path;
+    loop {
+        rest = rest.trim_start_matches(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let length = rest
+            .bytes()
+            .take_while(|b| b.is_ascii_alphanumeric() || *b == b'_')
+            .count();
+        let (word, behind) = rest.split_at(length);
+        match word {
+            "" => return None,
+            "mut" | "const" | "dyn" | "as" => rest = behind,
+            _ if behind.starts_with("::") => return Some(word),
+            // A type that is no crate's own.
+            _ => rest = behind,
+        }
+    }
+}
+
+/// Prints the shares of every board as a table, the largest crate first.
+pub fn print(boards: &[(&Board, Shares)]) {
+    println!("{}", table(boards));
+}
+
+fn table(boards: &[(&Board, Shares)]) -> String {
+    let mut crates: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
+    for (nth, (_, shares)) in boards.iter().enumerate() {
+        for (name, bytes) in shares {
+            crates.entry(name).or_insert_with(|| vec![0; boards.len()])[nth] = *bytes;
+        }
+    }
+    let last = [NAMELESS, REST].map(|name| (name.to_string(), crates.remove(name)));
+    let mut rows: Vec<(String, Vec<u64>)> = Vec::new();
+    let (mut small, mut sum) = (0, vec![0; boards.len()]);
+    for (name, bytes) in crates {
+        if bytes.iter().any(|b| *b >= SMALL) {
+            rows.push((name.into(), bytes));
+        } else {
+            small += 1;
+            sum.iter_mut().zip(&bytes).for_each(|(sum, b)| *sum += b);
+        }
+    }
+    rows.sort_by_key(|(_, bytes)| std::cmp::Reverse(bytes.iter().copied().max()));
+    rows.push((format!("{small} smaller crates"), sum));
+    rows.extend(last.into_iter().filter_map(|(name, bytes)| Some((name, bytes?))));
+    let total = (0..boards.len()).map(|nth| rows.iter().filter_map(|(_, bytes)| bytes.get(nth)).sum());
+    rows.push(("image".into(), total.collect()));
+
+    let names = boards.iter().map(|(board, _)| format!(" {} |", board.name));
+    let mut table = format!("| flash by crate, bytes |{}\n|---|", names.collect::<String>());
+    table += &"---:|".repeat(boards.len());
+    for (name, bytes) in rows {
+        let cells: String = bytes.iter().map(|bytes| format!(" {bytes} |")).collect();
+        table += &format!("\n| {name} |{cells}");
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+    use crate::boards::BOARDS;
+
+    #[test]
+    fn a_name_belongs_to_the_crate_that_it_begins_with() {
+        for (name, owner) in [
+            ("sophie_tasks::imu::run::{closure#0}", Some("sophie_tasks")),
+            ("<sophie_control::mixer::Mixer>::mix", Some("sophie_control")),
+            (
+                "<&mut embassy_sync::Watch<u32> as core::future::Future>::poll",
+                Some("embassy_sync"),
+            ),
+            ("<u32 as core::fmt::Display>::fmt", Some("core")),
+            ("<[u8; 4] as heapless::View>::view", Some("heapless")),
+            ("core::ptr::drop_in_place::<sophie::Board>", Some("core")),
+            ("<dyn core::fmt::Write>::write_str", Some("core")),
+            ("Reset", None),
+            ("", None),
+        ] {
+            assert_eq!(first_crate(name), owner, "{name}");
+        }
+        assert_eq!(owner("_ZN6sophie5board5start17h0123456789abcdefE"), "sophie");
+        assert_eq!(owner("_RNvNtCs1234_7mycrate3foo3bar"), "mycrate");
+        assert_eq!(owner(".Lanon.a78e62bea.1"), NAMELESS);
+        assert_eq!(owner("memcpy"), REST);
+    }
+
+    /// An image with code at 0x100 and constants at 0x200, 64 bytes each, and RAM.
+    fn image() -> Image {
+        let section = |name: &str, address, in_image| Section {
+            name: name.into(),
+            address,
+            size: 64,
+            in_image,
+            writable: !in_image,
+        };
+        let symbol = |name: &str, address, size| Static {
+            name: name.into(),
+            address,
+            size,
+        };
+        Image {
+            entry: 0,
+            sections: vec![
+                section(".text", 0x100, true),
+                section(".rodata", 0x200, true),
+                section(".bss", 0x2000_0000, false),
+            ],
+            loads: Vec::new(),
+            statics: vec![
+                symbol(".Lanon.a78e62bea.1", 0x200, 24),
+                symbol("_ZN5alpha4NAME17h0123456789abcdefE", 0x210, 24),
+                symbol("_ZN4beta4POOL17h0123456789abcdefE", 0x2000_0000, 64),
+            ],
+            functions: vec![
+                symbol("_ZN5alpha3run17h0123456789abcdefE", 0x104, 20),
+                symbol("_ZN4beta5twice17h0123456789abcdefE", 0x104, 20),
+                symbol("_ZN4beta3run17h0123456789abcdefE", 0x130, 32),
+            ],
+            symbols: HashMap::new(),
+            vectors: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn every_byte_has_one_owner() {
+        let sizes = |flash| Sizes {
+            flash,
+            ram: 0,
+            stack: 0,
+        };
+        let shares = shares(&image(), &sizes(128)).unwrap();
+        // 4 before, 24 between, 16 where the section ends before the symbol does; constants overlap by 8.
+        let expected = [
+            ("alpha", 20 + 16),
+            ("beta", 16),
+            (NAMELESS, 24),
+            (REST, 4 + 24 + 24),
+        ];
+        assert_eq!(
+            shares,
+            expected.map(|(name, bytes)| (name.to_string(), bytes)).into()
+        );
+        assert!(super::shares(&image(), &sizes(127)).is_err());
+    }
+
+    #[test]
+    fn small_crates_are_one_row_and_columns_add_up() {
+        let shares = |list: &[(&str, u64)]| list.iter().map(|(n, b)| (n.to_string(), *b)).collect();
+        let one = shares(&[("tiny", 7), ("big", 5000), ("wee", SMALL - 1), (REST, 3)]);
+        let other = shares(&[("tiny", 1), ("bigger", 9000), (NAMELESS, 4)]);
+        let table = table(&[(&BOARDS[0], one), (&BOARDS[2], other)]);
+        let expected = "\
+| flash by crate, bytes | matek-h743 | f405 |
+|---|---:|---:|
+| bigger | 0 | 9000 |
+| big | 5000 | 0 |
+| 2 smaller crates | 2054 | 1 |
+| constants without a name | 0 | 4 |
+| rest: vectors, assembly, C names, padding | 3 | 0 |
+| image | 7057 | 9005 |";
+        assert_eq!(table, expected);
+    }
+}

@@ -1,0 +1,186 @@
+//! Flashes a board: by a probe, or through the chip's own USB loader.
+
+use std::path::{Path, PathBuf};
+
+use crate::boards::{self, Board, UsbLoader};
+use crate::build::{self, Trace};
+use crate::tools::{self, PROBE_RS};
+use crate::{Error, Refused, backup, dfu};
+
+/// How the firmware gets there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum By {
+    Probe,
+    Usb,
+}
+
+/// What must be kept of a board before it is flashed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Before<'a> {
+    /// A backup where it usually lies.
+    Usual,
+    /// A backup in this file.
+    File(&'a str),
+    /// Nothing: the user wants it so.
+    Nothing,
+}
+
+/// What is asked for.
+pub struct Flash<'a> {
+    /// The board.
+    pub board: &'static Board,
+    by: By,
+    trace: Trace,
+    /// The image, if it is not to be built.
+    elf: Option<&'a str>,
+    before: Before<'a>,
+    dry: bool,
+}
+
+impl<'a> Flash<'a> {
+    /// What `words`, the arguments behind the verb, ask for.
+    ///
+    /// # Errors
+    /// One line: what is wrong and what is allowed.
+    pub fn parse(words: &[&'a str]) -> Result<Self, String> {
+        let mut names = Vec::new();
+        let (mut by, mut trace, mut elf) = (By::Probe, Trace::Off, None);
+        let (mut before, mut dry) = (Before::Usual, false);
+        let mut rest = words.iter().copied();
+        while let Some(word) = rest.next() {
+            let mut file = || {
+                let value = rest.next().filter(|value| !value.starts_with('-'));
+                value.ok_or_else(|| format!("flash: `{word}` lacks its FILE"))
+            };
+            match word {
+                "--dfu" => by = By::Usb,
+                "--trace" => trace = Trace::On,
+                "--elf" => elf = Some(file()?),
+                "--backup" => before = Before::File(file()?),
+                "--no-backup" => before = Before::Nothing,
+                "--dry" => dry = true,
+                _ if word.starts_with('-') => {
+                    return Err(format!(
+                        "flash: `{word}` is not understood: allowed are --dfu, --trace, --elf FILE, --backup FILE, \
+                         --no-backup, --dry"
+                    ));
+                }
+                _ => names.push(word),
+            }
+        }
+        let [name] = names[..] else {
+            return Err(format!("flash: name exactly one board: {}", boards::names()));
+        };
+        let board = boards::find(name).ok_or_else(|| {
+            format!(
+                "flash: no board is called `{name}`; there are {}",
+                boards::names()
+            )
+        })?;
+        if elf.is_some() && trace == Trace::On {
+            return Err(
+                "flash: --elf and --trace exclude each other: the image is built or it is given".into(),
+            );
+        }
+        Ok(Self {
+            board,
+            by,
+            trace,
+            elf,
+            before,
+            dry,
+        })
+    }
+
+    /// Builds or reads the image, checks it and flashes it.
+    ///
+    /// # Errors
+    /// The board must be backed up first or cannot be reached in this way; a check of the image, the probe, the chip's
+    /// loader or a program fails.
+    pub fn run(&self) -> Result<(), Error> {
+        if self.by == By::Usb {
+            dfu::enter(self.board)?;
+        }
+        if !self.dry {
+            self.backed_up()?;
+        }
+        let elf = match self.elf {
+            Some(given) => PathBuf::from(given),
+            None => build::firmware(self.board, self.trace)?,
+        };
+        let image = crate::check(self.board, &elf).map_err(|e| match self.elf {
+            Some(given) => Error::from(Refused(format!(
+                "flash: {given}: {e}; wanted is what `cargo xtask firmware {}` builds",
+                self.board.name
+            ))),
+            None => e,
+        })?;
+        match self.by {
+            By::Probe => self.by_probe(&elf),
+            By::Usb => dfu::flash(self.board, &image, self.dry),
+        }
+    }
+
+    /// Where the chip's own loader cannot be entered, the loader in the flash is the only way to the firmware that the
+    /// board came with, and flashing overwrites it.
+    fn backed_up(&self) -> Result<(), Refused> {
+        if self.before == Before::Nothing || matches!(self.board.usb_loader, UsbLoader::Enter(_)) {
+            return Ok(());
+        }
+        let usual = backup::usual(self.board);
+        let file = match self.before {
+            Before::File(file) => Path::new(file),
+            _ => &usual,
+        };
+        backup::sound(self.board, file).map_err(|why| {
+            Refused(format!(
+                "flash: this overwrites the only loader of the {}: {why}; say --backup FILE for another file, or \
+                 --no-backup to do without",
+                self.board.name
+            ))
+        })
+    }
+
+    fn by_probe(&self, elf: &Path) -> Result<(), Error> {
+        let mut command = PROBE_RS.command(&["run", "--chip", self.board.probe_rs_chip]);
+        // The firmware drops log lines rather than wait for a probe; the probe must not make it wait either.
+        command.args(["--rtt-channel-mode", "no-block-trim"]).arg(elf);
+        if self.dry {
+            println!("{}", build::shown(&command));
+            return Ok(());
+        }
+        tools::probe(self.board)?;
+        PROBE_RS.run(&mut command)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_asked_for_is_understood() {
+        let flash = Flash::parse(&["f405"]).ok().unwrap();
+        assert_eq!((flash.by, flash.trace, flash.dry), (By::Probe, Trace::Off, false));
+        assert_eq!((flash.elf, flash.before), (None, Before::Usual));
+        let flash = Flash::parse(&["--dfu", "--elf", "a.elf", "f405", "--backup", "b.bin", "--dry"]);
+        let flash = flash.ok().unwrap();
+        assert_eq!((flash.by, flash.elf, flash.dry), (By::Usb, Some("a.elf"), true));
+        assert_eq!(flash.before, Before::File("b.bin"));
+        for words in [
+            &[] as &[&str],
+            &["matek"],
+            &["f405", "matek-h743"],
+            &["f405", "--elf"],
+            &["f405", "--elf", "--dfu"],
+            &["f405", "--elf", "a.elf", "--trace"],
+            &["f405", "--dfuse"],
+        ] {
+            let complaint = Flash::parse(words).err().unwrap_or_default();
+            assert!(
+                complaint.starts_with("flash: ") && !complaint.contains('\n'),
+                "{words:?}"
+            );
+        }
+    }
+}
