@@ -8,6 +8,9 @@ mod cost;
 mod dma;
 mod guard;
 mod image;
+#[cfg(test)]
+#[path = "../../src/board/output_pins.rs"]
+mod output_pins;
 mod own_board;
 mod params;
 mod rig;

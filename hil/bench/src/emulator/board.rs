@@ -116,10 +116,9 @@ impl<C: Chip> Wired<C> {
 
     /// High time and period of each servo's pulse, ns; `None` without pulses.
     pub fn servo_pulses(&mut self, now: VirtualNanos) -> [Option<(u64, u64)>; 4] {
-        let servos = self.pads.servos;
-        std::array::from_fn(|nth| {
-            let driven = self.chip.function(now, servos.pins[nth]) == Some(servos.function);
-            let pulse = self.chip.servo_pulse(nth)?;
+        self.pads.servos.map(|servo| {
+            let driven = self.chip.function(now, servo.pin) == Some(servo.function);
+            let pulse = self.chip.servo_pulse(servo)?;
             (driven && pulse.0 > 0).then_some(pulse)
         })
     }

@@ -12,7 +12,7 @@ use rigless::time::VirtualNanos;
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
-use super::pads::{At, Pads};
+use super::pads::{At, Pads, ServoPin};
 use super::serial::Setup;
 use super::tap::Edge;
 
@@ -42,8 +42,8 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool;
     /// Takes the edges at the motor timer's outputs, oldest first.
     fn motor_edges(&mut self) -> Vec<Edge>;
-    /// High time and period of the pulse at a channel (0 to 3) of the servos' timer, ns; `None` without pulses.
-    fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)>;
+    /// High time and period of the pulses that a servo's timer makes, ns; `None` without pulses.
+    fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)>;
     /// Makes the chips on a bus hold the clock for `hold` ns after each byte; false where the emulator cannot.
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool;
     /// Makes the next reset one by a supply that broke down.
@@ -150,13 +150,6 @@ macro_rules! same_on_this_part {
 
         fn motor_edges(&mut self) -> Vec<Edge> {
             std::mem::take(&mut self.motors.edges)
-        }
-
-        fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)> {
-            let number = rigless::soc::$soc::peripherals::tim::Channel::new(channel as u8 + 1)?;
-            let (timer, file) = self.inner.timer(SERVO_TIMER);
-            let pulse = timer.pulse(number, file)?;
-            Some((pulse.width.0, pulse.period.0))
         }
     };
 }
