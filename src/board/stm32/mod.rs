@@ -42,7 +42,7 @@ pub use clock::start;
 pub use data_ready::{ReadyLine, ReadyStamp};
 pub use escs::{EscTimer, EscTimers, pull_low};
 pub use flash::ParamFlash;
-pub use i2c_bus::{ArmBus, BusParts, i2c_config};
+pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
 pub use lights::{Lamp, Lights};
 pub use rails::hold;
 pub use reset::take_reset_cause;

@@ -9,6 +9,8 @@ mod determinism;
 mod faults;
 mod images;
 mod missions;
+mod outputs;
+
 mod parameters;
 
 use std::path::{Path, PathBuf};

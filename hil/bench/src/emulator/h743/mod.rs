@@ -1,5 +1,6 @@
 //! The STM32H743 with what the emulator's own part lacks, and without what the board does not use.
 
+mod bus_times;
 mod watchdog;
 
 use std::num::NonZeroU64;
@@ -10,6 +11,7 @@ use rigless::machine::matekh743::MatekH743;
 use rigless::mcu::Mcu;
 use rigless::soc::Bus;
 use rigless::soc::stm32h743::Stm32h743;
+use rigless::soc::stm32h743::generated::i2c1::Register as BusRegister;
 use rigless::soc::stm32h743::generated::rcc::Register as Clocks;
 use rigless::soc::stm32h743::generated::usart1::Register as Serial;
 use rigless::soc::stm32h743::peripherals::i2c::I2c;
@@ -34,6 +36,8 @@ const SUPPLY: u32 = 3300;
 const CLOCK: f64 = 400e6;
 /// Clock of the receiver's port, Hz.
 const SERIAL_CLOCK: f64 = 100e6;
+/// Clock of the arms' buses, Hz.
+const BUS_CLOCK: f64 = 100e6;
 /// Control registers of the flash's banks, and in them the bits that erase a sector.
 const BANK_CONTROLS: [u64; 2] = [0x5200_200C, 0x5200_210C];
 const ERASE: u64 = 1 << 2 | 1 << 7;
@@ -229,6 +233,11 @@ impl Chip for H743 {
         let (timer, file) = self.servo_timer(servo)?;
         let pulse = timer.pulse(Channel::new(servo.channel)?, file)?;
         Some((pulse.width.0, pulse.period.0))
+    }
+
+    fn bus_times(&self, bus: usize) -> Option<String> {
+        let file = self.inner.bus().slots()[self.slots.buses[bus]].registers();
+        bus_times::wrong(file.get(BusRegister::Timingr), BUS_CLOCK)
     }
 
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool {
