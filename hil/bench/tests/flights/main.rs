@@ -11,6 +11,7 @@ mod images;
 mod missions;
 mod outputs;
 
+mod pads;
 mod parameters;
 
 use std::path::{Path, PathBuf};
