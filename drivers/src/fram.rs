@@ -1,5 +1,7 @@
-//! Cypress (Ramtron) FM25V02A and compatible FRAM on SPI, up to 40 MHz, mode 0 or 3: 32 KiB that need no erase and no
-//! waiting. Facts are those of datasheet 001-90865.
+//! FRAM on SPI with 32 KiB or more under addresses of two bytes, up to 20 MHz, mode 0 or 3: no erase and no waiting. The
+//! parts are Cypress (Ramtron) FM25V02, FM25V02A, FM25V05 and Fujitsu MB85RS256B, MB85RS256TY, MB85RS512T, which differ
+//! in their identities alone. Facts are those of Cypress' datasheet 001-90865 and of the tables of ArduPilot
+//! (`AP_RAMTRON`) and Betaflight's family.
 //!
 //! It serves as NOR flash, so that the parameter store is the same on every board: an erase fills a page with 0xFF.
 
@@ -12,7 +14,7 @@ use embedded_storage_async::nor_flash::{
 
 use crate::fault::{Fault, report};
 
-/// Bytes of the part.
+/// Bytes that are used: those of the smallest part.
 pub const CAPACITY: u32 = 32 * 1024;
 /// Bytes of a page. The part has none: eight of them let the store go round.
 pub const PAGE: usize = 4096;
@@ -33,8 +35,15 @@ const READ: u8 = 0x03;
 const WRITE: u8 = 0x02;
 /// Reads the identity.
 const RDID: u8 = 0x9F;
-/// The identity but for the revision: JEDEC continuation codes, Ramtron, F-RAM of the V family with 256 Kbit.
-const IDENTITY: [u8; 8] = [0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0xC2, 0x22];
+/// How the identity of a Ramtron, today Cypress, begins: JEDEC continuation codes and the maker. Then the product, then
+/// its revision.
+const RAMTRON: [u8; 7] = [0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0xC2];
+/// Its products: F-RAM of the V family with 256 and 512 Kbit. Larger ones want an address of three bytes.
+const RAMTRON_PARTS: [u8; 2] = [0x22, 0x23];
+/// How that of a Fujitsu begins: the maker and a continuation code. Then the product, in two bytes.
+const FUJITSU: [u8; 2] = [0x04, 0x7F];
+/// Its products: MB85RS256TY, MB85RS256B, MB85RS512T.
+const FUJITSU_PARTS: [[u8; 2]; 3] = [[0x25, 0x03], [0x05, 0x09], [0x26, 0x03]];
 /// Write protection in the status register: pin enable and both block bits.
 const PROTECTION: u8 = 0x8C;
 
@@ -109,13 +118,8 @@ impl<S: SpiDevice> Fram<S> {
     }
 
     async fn bring_up(&mut self) -> Result<(), Fault> {
-        let [_, c0, c1, c2, c3, c4, c5, maker, density, _] =
-            self.exchange([RDID, 0, 0, 0, 0, 0, 0, 0, 0, 0]).await?;
-        let answer = [c0, c1, c2, c3, c4, c5, maker, density];
-        let mut pairs = IDENTITY.into_iter().zip(answer);
-        if let Some((expected, found)) = pairs.find(|(expected, found)| expected != found) {
-            return Err(Fault::Identity { expected, found });
-        }
+        let [_, answer @ ..] = self.exchange([RDID, 0, 0, 0, 0, 0, 0, 0, 0, 0]).await?;
+        identify(answer)?;
         if self.protection().await? != 0 {
             self.exchange([WREN]).await?;
             self.exchange([WRSR, 0]).await?;
@@ -216,6 +220,31 @@ impl<S: SpiDevice> NorFlash for Fram<S> {
         }
         Ok(())
     }
+}
+
+/// Sees that an identity is that of a part with which this driver works.
+fn identify(answer: [u8; 9]) -> Result<(), Fault> {
+    let agree = |expected: &[u8], found: &[u8]| {
+        let mut pairs = expected.iter().copied().zip(found.iter().copied());
+        match pairs.find(|(expected, found)| expected != found) {
+            Some((expected, found)) => Err(Fault::Identity { expected, found }),
+            None => Ok(()),
+        }
+    };
+    let [maker, code, first, second, ..] = answer;
+    if maker == FUJITSU[0] {
+        agree(&FUJITSU, &[maker, code])?;
+        if FUJITSU_PARTS.contains(&[first, second]) {
+            return Ok(());
+        }
+        return agree(&FUJITSU_PARTS[0], &[first, second]);
+    }
+    agree(&RAMTRON, &answer)?;
+    let [.., product, _] = answer;
+    if RAMTRON_PARTS.contains(&product) {
+        return Ok(());
+    }
+    agree(&RAMTRON_PARTS, &[product])
 }
 
 /// The part of `buffer` for a transfer of `length` data bytes, with opcode and address at its start.

@@ -35,6 +35,7 @@ pub mod esc_pwm;
 pub mod fault;
 pub mod fram;
 pub mod i2c_lines;
+pub mod i2c_timing;
 pub mod icm20689;
 pub mod icm42688p;
 pub mod mounting;

@@ -124,9 +124,19 @@ fn another_chip_or_none_is_named() {
         assert_eq!(first_read(&chip), Err(FramFault::Chip(fault)));
         assert_eq!(fault.what(), "no answer");
     }
-    // Another maker, and the part of twice the size.
-    for (index, expected, found) in [(6, 0xC2, 0x04), (7, 0x22, 0x23)] {
+    // Another maker, a part of half the size, and one whose addresses have three bytes; the same of the other maker.
+    let ramtron = Chip::new().borrow().identity;
+    let fujitsu = [0x04, 0x7F, 0x25, 0x03, 0, 0, 0, 0, 0];
+    for (identity, index, expected, found) in [
+        (ramtron, 6, 0xC2, 0x01),
+        (ramtron, 7, 0x22, 0x21),
+        (ramtron, 7, 0x22, 0x24),
+        (fujitsu, 1, 0x7F, 0x01),
+        (fujitsu, 2, 0x25, 0x24),
+        (fujitsu, 2, 0x25, 0x27),
+    ] {
         let chip = Chip::new();
+        chip.borrow_mut().identity = identity;
         chip.borrow_mut().identity[index] = found;
         let fault = Fault::Identity { expected, found };
         assert_eq!(first_read(&chip), Err(FramFault::Chip(fault)));
@@ -140,6 +150,32 @@ fn another_chip_or_none_is_named() {
     let chip = Chip::new();
     chip.borrow_mut().identity[8] = 0x10;
     assert_eq!(first_read(&chip), Ok(()));
+}
+
+#[test]
+fn every_part_that_boards_of_this_kind_carry_is_taken() {
+    let ramtron = |product, revision| [0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0xC2, product, revision];
+    let fujitsu = |first, second, rest| [0x04, 0x7F, first, second, rest, rest, rest, rest, rest];
+    for identity in [
+        // FM25V02, FM25V02A, FM25V05.
+        ramtron(0x22, 0x00),
+        ramtron(0x22, 0x08),
+        ramtron(0x23, 0x00),
+        // MB85RS256B, MB85RS256TY, MB85RS512T; what comes after their four bytes is not theirs.
+        fujitsu(0x05, 0x09, 0x00),
+        fujitsu(0x25, 0x03, 0xFF),
+        fujitsu(0x26, 0x03, 0x04),
+    ] {
+        let chip = Chip::new();
+        chip.borrow_mut().identity = identity;
+        let mut params = Params::default();
+        params.set("infill", 8.0).unwrap();
+        assert_eq!(
+            store(&chip, params),
+            (Loaded::default(), Ok(()), params),
+            "{identity:02X?}"
+        );
+    }
 }
 
 #[test]

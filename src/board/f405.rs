@@ -5,12 +5,12 @@
 //! |---|---|---|---|
 //! | inertial sensor | SPI1, EXTI4 | DMA2 2 and 3 | PA5 clock, PA6 in, PA7 out, PA4 select, PC4 data ready |
 //! | motors 1 to 4 | TIM8 | DMA2 1 | PC6, PC7, PC8, PC9 |
-//! | servos 1 to 4 | TIM3 | none | PB4, PB5, PB0, PB1 |
+//! | servos 1 and 2, 3 and 4 | TIM4, TIM12 | none | PB6, PB7; PB14, PB15 |
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | PB8 PB9, PB10 PB11 |
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | PC0 to PC3; PA0 voltage, PA1 current |
 //! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
 //! | console | USART2 | none | PA3 in, PA2 out |
-//! | lights, buzzer | | none | PC10 state, PC11 fault, PC12 |
+//! | lights, buzzer | | none | PB12 state, PB13 fault, PA8 |
 //! | parameters | flash | none | sectors 1 and 2 |
 //! | time | TIM5 | none | |
 //!
@@ -39,7 +39,7 @@ use sophie_tasks::parameters;
 use super::Board;
 use super::stm32::{
     AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, accelerator, console_lines, look, pull_low,
+    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, accelerator, console_lines, look, pull_low,
     receiver_line, spi_config,
 };
 
@@ -57,7 +57,7 @@ pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
 /// The motors.
 pub type MotorsPort = EscTimer<peripherals::TIM8, peripherals::DMA2_CH1, Irqs>;
 /// The tendon servos.
-pub type ServosPort = ServoTimer<peripherals::TIM3>;
+pub type ServosPort = ServoPairs<peripherals::TIM4, peripherals::TIM12>;
 /// The watchdog.
 pub type WatchdogPort = Dog<peripherals::IWDG>;
 /// Where parameters are stored.
@@ -113,11 +113,12 @@ assign_resources! {
         dma: DMA2_CH1,
     }
     servos: ServoParts {
-        timer: TIM3,
-        servo_1: PB4,
-        servo_2: PB5,
-        servo_3: PB0,
-        servo_4: PB1,
+        first: TIM4,
+        servo_1: PB6,
+        servo_2: PB7,
+        second: TIM12,
+        servo_3: PB14,
+        servo_4: PB15,
     }
     left_arms: LeftArms {
         bus: I2C1,
@@ -159,9 +160,9 @@ assign_resources! {
         flash: FLASH,
     }
     lights: LightParts {
-        state: PC10,
-        fault: PC11,
-        buzzer: PC12,
+        state: PB12,
+        fault: PB13,
+        buzzer: PA8,
     }
     watchdog: WatchdogParts {
         dog: IWDG,
@@ -262,7 +263,13 @@ pub fn stop_motors() {
 }
 
 fn servos(p: ServoParts, params: &Params) -> ServosPort {
-    ServoTimer::new(p.timer, (p.servo_1, p.servo_2, p.servo_3, p.servo_4), params)
+    ServoPairs::new(
+        p.first,
+        (p.servo_1, p.servo_2),
+        p.second,
+        (p.servo_3, p.servo_4),
+        params,
+    )
 }
 
 fn analog(p: AnalogParts) -> AnalogPort {

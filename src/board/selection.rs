@@ -1,5 +1,8 @@
 //! Which board and which chip cargo's features name: for the build scripts of the firmware and of a board's tests.
 
+#[path = "output_pins.rs"]
+mod output_pins;
+
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
@@ -20,10 +23,12 @@ pub fn declare() {
     println!("cargo:rustc-check-cfg=cfg(family, values({values}))");
 }
 
-/// The board and the chip of this build. Boards are the memory maps in `maps`; chips are features called `stm32…`.
+/// The board and the chip of this build. Boards are the memory maps in `maps`, their files beside that folder; chips are
+/// features called `stm32…`.
 ///
 /// # Errors
-/// One line: no board or several, no chip or several, or one of a family without shared code.
+/// One line: no board or several, no chip or several, or one of a family without shared code; a motor or a servo on a
+/// pin that the chip pulls up by itself.
 pub fn selection(maps: &Path) -> Result<Selection, String> {
     let told = |error: io::Error| format!("{}: {error}", maps.display());
     let mut boards: Vec<String> = Vec::new();
@@ -67,6 +72,10 @@ pub fn selection(maps: &Path) -> Result<Selection, String> {
                 FAMILIES.join(", ")
             )
         })?;
+    let file = maps.with_file_name(format!("{}.rs", board.replace('-', "_")));
+    println!("cargo:rerun-if-changed={}", file.display());
+    let table = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    output_pins::check(&table).map_err(|line| format!("{} {line}", file.display()))?;
     Ok(Selection {
         map: maps.join(format!("{board}.x")),
         family,

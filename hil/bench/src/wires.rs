@@ -31,6 +31,8 @@ pub enum Fault {
     ImuUnplugged(bool),
     /// Bits flipped in the next word that the inertial sensor answers.
     ImuWord(u8),
+    /// The pad that this pressure sensor, 0 to 3, hangs on has a divider of one to so many before its pin.
+    PadDivider(usize, u32),
     /// The sensor of this arm, 0 to 3, is unplugged (true) or plugged in again.
     ArmUnplugged(usize, bool),
     /// The chips on this bus of the arms, 0 or 1, hold the clock low for so many µs after each byte; 0 is none.
@@ -91,8 +93,37 @@ pub struct Run {
     pub latency_us: Latency,
     /// Erases of each flash sector, by its first address.
     pub erases: BTreeMap<u64, u32>,
+    /// What resets did to the outputs.
+    pub outputs: Vec<Output>,
+    /// Pulse of each servo at the end, µs; 0 is none.
+    pub servos: PerArm<f64>,
     /// Digest of every edge at the motors' pins, every servo pulse and every telemetry byte.
     pub pins_digest: u64,
+}
+
+/// An output of the board around its resets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// What hangs on it.
+    pub what: String,
+    /// The processor's pin.
+    pub pin: String,
+    /// The processor itself pulls it up until the firmware drives it.
+    pub pulled_up: bool,
+    /// From each start of the processor until the firmware drives it, µs; `None` if it never did.
+    pub after_us: Vec<Option<f64>>,
+}
+
+impl Output {
+    /// The output at the first start.
+    pub fn new(what: String, pin: impl std::fmt::Display) -> Self {
+        Self {
+            what,
+            pin: pin.to_string(),
+            pulled_up: false,
+            after_us: vec![None],
+        }
+    }
 }
 
 /// Statistics of a latency.

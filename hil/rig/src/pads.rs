@@ -69,8 +69,8 @@ pub const WIRING: Wiring = Wiring {
 #[cfg(feature = "f405")]
 pub const WIRING: Wiring = Wiring {
     core_hz: 168_000_000,
-    motor: [pad("PC6", pac::GPIOC, 6), pad("PB0", pac::GPIOB, 0)],
-    servo: [pad("PB4", pac::GPIOB, 4), pad("PB1", pac::GPIOB, 1)],
+    motor: [pad("PC6", pac::GPIOC, 6), pad("PB14", pac::GPIOB, 14)],
+    servo: [pad("PB6", pac::GPIOB, 6), pad("PB15", pac::GPIOB, 15)],
     receiver: [pad("PA9", pac::GPIOA, 9), pad("PA10", pac::GPIOA, 10)],
     divider: (pad("PC1", pac::GPIOC, 1), 1),
 };

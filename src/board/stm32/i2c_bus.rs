@@ -8,6 +8,8 @@ use embassy_stm32::time::Hertz;
 use embassy_time::Duration;
 use embedded_hal_async::i2c::{ErrorType, Operation};
 use sophie_drivers::i2c_lines::{Lines, free};
+#[cfg(any(family = "f7", family = "h7"))]
+use sophie_drivers::i2c_timing::I2cTiming;
 
 /// What a bus is made of: the board's pins and peripheral, from which it can be built again and again.
 pub trait BusParts {
@@ -52,7 +54,7 @@ macro_rules! i2c_bus {
                 embassy_stm32::i2c::mode::Master,
             > {
                 // SAFETY: these parts own the peripherals, and the caller sees to it that only one bus uses them.
-                unsafe {
+                let bus = unsafe {
                     embassy_stm32::i2c::I2c::new(
                         self.bus.clone_unchecked(),
                         self.clock.clone_unchecked(),
@@ -62,7 +64,9 @@ macro_rules! i2c_bus {
                         $irqs,
                         $crate::board::stm32::i2c_config(),
                     )
-                }
+                };
+                $crate::board::stm32::set_fast_mode(&self.bus);
+                bus
             }
         }
     };
@@ -76,6 +80,58 @@ pub fn i2c_config() -> Config {
     config.timeout = Duration::from_millis(3);
     config
 }
+
+/// An I2C whose times are in a register `TIMINGR`.
+#[cfg(any(family = "f7", family = "h7"))]
+pub trait TimedBus: embassy_stm32::PeripheralType + embassy_stm32::rcc::RccPeripheral {
+    /// Its registers.
+    fn registers() -> embassy_stm32::pac::i2c::I2c;
+}
+
+#[cfg(any(family = "f7", family = "h7"))]
+macro_rules! timed {
+    ($($bus:ident),*) => {
+        $(impl TimedBus for embassy_stm32::peripherals::$bus {
+            fn registers() -> embassy_stm32::pac::i2c::I2c {
+                embassy_stm32::pac::$bus
+            }
+        })*
+    };
+}
+
+#[cfg(any(family = "f7", family = "h7"))]
+timed!(I2C1, I2C2, I2C3);
+// Not every F7 has it.
+#[cfg(family = "h7")]
+timed!(I2C4);
+
+/// Gives the bus the times of fast mode, in place of embassy-stm32's, whose upper bits do not fit the register. Called
+/// while nothing is on its way.
+///
+/// # Panics
+/// If the clock cannot make them: a board with such a clock never starts, so it is found at the bench.
+#[cfg(any(family = "f7", family = "h7"))]
+pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
+    let clock = embassy_stm32::rcc::frequency::<T>().0;
+    let Some(timing) = I2cTiming::fast_mode(clock) else {
+        panic!("an I2C cannot make 400 kHz from {clock} Hz")
+    };
+    let registers = T::registers();
+    // The register is taken only while the peripheral is off.
+    registers.cr1().modify(|w| w.set_pe(false));
+    registers.timingr().write(|w| {
+        w.set_presc(timing.prescaler);
+        w.set_scldel(timing.set_up);
+        w.set_sdadel(timing.hold);
+        w.set_sclh(timing.high);
+        w.set_scll(timing.low);
+    });
+    registers.cr1().modify(|w| w.set_pe(true));
+}
+
+/// The older I2C has other registers, and embassy-stm32 gives it the right times: nothing to do.
+#[cfg(family = "f4")]
+pub fn set_fast_mode<T: embassy_stm32::PeripheralType>(_bus: &embassy_stm32::Peri<'static, T>) {}
 
 /// A bus that is taken apart when it fails: the lines are clocked free, then the peripheral starts from its reset.
 ///

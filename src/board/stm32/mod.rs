@@ -32,13 +32,13 @@ mod lights;
 #[cfg_attr(family = "h7", path = "options_h7.rs")]
 #[cfg_attr(not(family = "h7"), path = "options_f4.rs")]
 mod options;
+mod pulse_timer;
 mod rails;
 mod reset;
 mod serial;
 mod servo_pairs;
 mod servos;
 mod silicon;
-mod small_timer;
 mod spi;
 mod storage;
 mod tone;
@@ -50,7 +50,7 @@ pub use clock::{micros, start};
 pub use data_ready::{ReadyLine, ReadyStamp};
 pub use escs::{EscTimer, EscTimers, pull_low};
 pub use flash::ParamFlash;
-pub use i2c_bus::{ArmBus, BusParts, i2c_config};
+pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
 pub use lights::{Lamp, Lights};
 pub use rails::hold;
 pub use reset::take_reset_cause;

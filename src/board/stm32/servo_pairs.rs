@@ -1,9 +1,7 @@
 //! The tendon servos where no timer has four free channels: two on one timer, two on another.
 
-use embassy_stm32::gpio::{Flex, OutputType};
-use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
-use embassy_stm32::timer::{Ch1, Ch2, Ch3, Channel, GeneralInstance4Channel, TimerPin};
+use embassy_stm32::gpio::Flex;
+use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin};
 use embassy_stm32::{Peri, rcc};
 use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
@@ -11,79 +9,88 @@ use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_drivers::servo_pulse;
 use sophie_tasks::ports::Servos;
 
-use super::small_timer::SmallTimer;
+use super::pulse_timer::PulseTimer;
 
-/// Servos 1 and 2 on the channels 2 and 3 of one timer, servos 3 and 4 on the channels 1 and 2 of a small one.
-pub struct ServoPairs<A: GeneralInstance4Channel, B: GeneralInstance4Channel> {
-    first: SimplePwm<'static, A>,
-    first_timing: PwmTiming,
-    second: SmallTimer<B>,
-    second_timing: PwmTiming,
+/// Two servos on two channels of a timer.
+struct Pair<T: GeneralInstance4Channel> {
+    timer: PulseTimer<T>,
+    timing: PwmTiming,
+    channels: [Channel; 2],
     /// Kept, so that the pins stay the timer's.
     _pins: [Flex<'static>; 2],
 }
 
+impl<T: GeneralInstance4Channel> Pair<T> {
+    fn new<C1: TimerChannel, C2: TimerChannel>(
+        timer: Peri<'static, T>,
+        (one, two): (
+            Peri<'static, impl TimerPin<T, C1>>,
+            Peri<'static, impl TimerPin<T, C2>>,
+        ),
+        frame_hz: u32,
+    ) -> Self {
+        const {
+            assert!(
+                C1::CHANNEL as u32 != C2::CHANNEL as u32,
+                "two servos are on one channel of a timer"
+            );
+        }
+        let Some(timing) = servo_pulse::timing(rcc::frequency::<T>().0, frame_hz) else {
+            panic!("a timer of the servos cannot make {frame_hz} Hz")
+        };
+        let mut timer = PulseTimer::new(timer, timing);
+        let pins = [timer.output(one), timer.output(two)];
+        Self {
+            timer,
+            timing,
+            channels: [C1::CHANNEL, C2::CHANNEL],
+            _pins: pins,
+        }
+    }
+
+    fn set(&mut self, pulses_us: [f32; 2]) {
+        for (channel, pulse) in self.channels.into_iter().zip(pulses_us) {
+            self.timer.set(channel, servo_pulse::compare(&self.timing, pulse));
+        }
+    }
+}
+
+/// Servos 1 and 2 on channels of one timer, servos 3 and 4 on channels of another.
+pub struct ServoPairs<A: GeneralInstance4Channel, B: GeneralInstance4Channel> {
+    first: Pair<A>,
+    second: Pair<B>,
+}
+
 impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
-    /// Servos on these pins without pulses, with the frames of the parameter `servo_frame_rate`.
+    /// Servos on these pins without pulses, with the frames of the parameter `servo_frame_rate`. The pins say the
+    /// channels, in any order: two of one channel do not build.
     ///
     /// # Panics
-    /// If the clock cannot make the frames: a board with such a clock never starts, so it is found at the bench.
-    pub fn new(
+    /// If a clock cannot make the frames: a board with such a clock never starts, so it is found at the bench.
+    pub fn new<C1: TimerChannel, C2: TimerChannel, C3: TimerChannel, C4: TimerChannel>(
         first: Peri<'static, A>,
-        (one, two): (
-            Peri<'static, impl TimerPin<A, Ch2>>,
-            Peri<'static, impl TimerPin<A, Ch3>>,
+        one_two: (
+            Peri<'static, impl TimerPin<A, C1>>,
+            Peri<'static, impl TimerPin<A, C2>>,
         ),
         second: Peri<'static, B>,
-        (three, four): (
-            Peri<'static, impl TimerPin<B, Ch1>>,
-            Peri<'static, impl TimerPin<B, Ch2>>,
+        three_four: (
+            Peri<'static, impl TimerPin<B, C3>>,
+            Peri<'static, impl TimerPin<B, C4>>,
         ),
         params: &Params,
     ) -> Self {
         let frame_hz = (params.servo_frame_rate + 0.5) as u32;
-        let mut first = SimplePwm::new(
-            first,
-            None,
-            Some(PwmPin::new(one, OutputType::PushPull)),
-            Some(PwmPin::new(two, OutputType::PushPull)),
-            None,
-            Hertz(frame_hz),
-            Default::default(),
-        );
-        for channel in [Channel::Ch2, Channel::Ch3] {
-            let mut output = first.channel(channel);
-            output.set_duty_cycle(0);
-            output.enable();
-        }
-        let first_timing = PwmTiming::given(first.max_duty_cycle(), first.get_frequency().0 as f32);
-
-        let Some(second_timing) = servo_pulse::timing(rcc::frequency::<B>().0, frame_hz) else {
-            panic!("the servos' timer cannot make {frame_hz} Hz")
-        };
-        let mut second = SmallTimer::new(second, second_timing);
-        let pins = [second.output(three), second.output(four)];
         Self {
-            first,
-            first_timing,
-            second,
-            second_timing,
-            _pins: pins,
+            first: Pair::new(first, one_two, frame_hz),
+            second: Pair::new(second, three_four, frame_hz),
         }
     }
 }
 
 impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> Servos for ServoPairs<A, B> {
     async fn write(&mut self, [one, two, three, four]: PerArm<f32>) {
-        // All preloaded: a new width takes effect with the next frame, never within a pulse.
-        for (channel, pulse) in [(Channel::Ch2, one), (Channel::Ch3, two)] {
-            self.first
-                .channel(channel)
-                .set_duty_cycle(servo_pulse::compare(&self.first_timing, pulse));
-        }
-        for (channel, pulse) in [(Channel::Ch1, three), (Channel::Ch2, four)] {
-            self.second
-                .set(channel, servo_pulse::compare(&self.second_timing, pulse));
-        }
+        self.first.set([one, two]);
+        self.second.set([three, four]);
     }
 }

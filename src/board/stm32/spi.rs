@@ -25,10 +25,14 @@ pub struct Selected<B> {
 
 impl<B> Selected<B> {
     /// The chip on `bus` that `select` addresses.
+    ///
+    /// The line's edges are slow, some tens of nanoseconds, less than a chip is given before the first clock. The select
+    /// of the Matek needs it: PC13 to PC15 hang on the supply of the clock's domain, and drive no more than 2 MHz and
+    /// 30 pF, one at a time (STM32H743 datasheet, pin table).
     pub fn new(bus: B, select: Peri<'static, impl Pin>) -> Self {
         Self {
             bus,
-            select: Output::new(select, Level::High, Speed::VeryHigh),
+            select: Output::new(select, Level::High, Speed::Low),
         }
     }
 }

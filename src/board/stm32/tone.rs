@@ -6,14 +6,14 @@ use embassy_stm32::{Peri, rcc};
 use sophie_drivers::pwm_timing::PwmTiming;
 
 use super::lights::Switch;
-use super::small_timer::SmallTimer;
+use super::pulse_timer::PulseTimer;
 
 /// Pitch, Hz: about where such sounders are loudest.
 const PITCH_HZ: u32 = 2700;
 
 /// A sounder on the first channel of a timer.
 pub struct Tone<T: GeneralInstance4Channel> {
-    timer: SmallTimer<T>,
+    timer: PulseTimer<T>,
     /// Counts of half a wave.
     half: u32,
     /// Kept, so that the pin stays the timer's.
@@ -29,7 +29,7 @@ impl<T: GeneralInstance4Channel> Tone<T> {
         let Some(timing) = PwmTiming::new(rcc::frequency::<T>().0, PITCH_HZ) else {
             panic!("the sounder's timer cannot make {PITCH_HZ} Hz")
         };
-        let mut timer = SmallTimer::new(timer, timing);
+        let mut timer = PulseTimer::new(timer, timing);
         let pin = timer.output(pin);
         Self {
             timer,

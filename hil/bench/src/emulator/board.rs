@@ -10,7 +10,7 @@ use super::chip::{Chip, Options};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
-use super::pads::Pads;
+use super::pads::{At, Pads};
 use super::serial::Setup;
 use super::tap::Edge;
 
@@ -21,6 +21,8 @@ pub struct Wired<C> {
     pub(super) chip: C,
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
+    /// Dividers at the pads of the pressure sensors besides the board's own.
+    dividers: [f64; 4],
 }
 
 impl<C: Chip> Wired<C> {
@@ -32,7 +34,12 @@ impl<C: Chip> Wired<C> {
         chip.attach(pads);
         chip.set_options(Options::BrownOut);
         let core = chip.core(speed)?;
-        Ok(Self { chip, pads, core })
+        Ok(Self {
+            chip,
+            pads,
+            core,
+            dividers: [1.0; 4],
+        })
     }
 
     /// Power comes up: lines take the level at which they rest.
@@ -87,9 +94,49 @@ impl<C: Chip> Wired<C> {
 
     /// Puts volts on the analog inputs: the pads of pressure 1 to 4, the pins of battery voltage and current.
     pub fn set_analog(&mut self, volts: [f64; 6]) {
+        let mut volts = volts;
+        for (pad, divider) in volts.iter_mut().zip(self.dividers) {
+            *pad /= divider;
+        }
         for (channel, millivolts) in self.pads.analog(volts) {
             self.chip.set_input(channel, millivolts);
         }
+    }
+
+    /// Puts a divider of 1:`divider` before the pin of pressure sensor `sensor`, 0 to 3.
+    pub fn divide(&mut self, sensor: usize, divider: u32) {
+        if let Some(own) = self.dividers.get_mut(sensor) {
+            *own = f64::from(divider.max(1));
+        }
+    }
+
+    /// What the board's outputs lead to, and their pins.
+    pub fn outputs(&self) -> Vec<(String, At)> {
+        let (port, pin) = self.pads.imu_select;
+        let select = At(usize::from(port.as_bytes()[port.len() - 1] - b'A'), pin);
+        let [state, fault, buzzer] = self.pads.signals;
+        let motors = (1..).zip(self.pads.motors.pins);
+        let servos = (1..).zip(self.pads.servos);
+        motors
+            .map(|(n, pin)| (format!("motor {n}"), pin))
+            .chain(servos.map(|(n, servo)| (format!("servo {n}"), servo.pin)))
+            .chain([
+                ("state light".to_owned(), state),
+                ("fault light".to_owned(), fault),
+                ("buzzer".to_owned(), buzzer),
+                ("select of the inertial sensor".to_owned(), select),
+            ])
+            .collect()
+    }
+
+    /// The firmware drives the pin.
+    pub fn drives(&mut self, now: VirtualNanos, pin: At) -> bool {
+        self.chip.drives(now, pin)
+    }
+
+    /// The processor pulls the pin up.
+    pub fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool {
+        self.chip.pulls_up(now, pin)
     }
 
     /// The receiver's line.
@@ -117,10 +164,9 @@ impl<C: Chip> Wired<C> {
 
     /// High time and period of each servo's pulse, ns; `None` without pulses.
     pub fn servo_pulses(&mut self, now: VirtualNanos) -> [Option<(u64, u64)>; 4] {
-        let servos = self.pads.servos;
-        std::array::from_fn(|nth| {
-            let driven = self.chip.function(now, servos.pins[nth]) == Some(servos.function);
-            let pulse = self.chip.servo_pulse(nth)?;
+        self.pads.servos.map(|servo| {
+            let driven = self.chip.function(now, servo.pin) == Some(servo.function);
+            let pulse = self.chip.servo_pulse(servo)?;
             (driven && pulse.0 > 0).then_some(pulse)
         })
     }
@@ -142,6 +188,11 @@ impl<C: Chip> Wired<C> {
         let port = self.chip.serial_setup(self.pads.receiver);
         if !receiver.fits(&port) {
             found.push(("receiver".to_owned(), format!("is {port}, wired for {receiver}")));
+        }
+        for bus in 0..2 {
+            if let Some(wrong) = self.chip.bus_times(bus) {
+                found.push((format!("I2C{}", bus + 1), wrong));
+            }
         }
         for (pin, wanted) in self.pads.functions(!receiver.parity) {
             let function = self.chip.function(now, pin);

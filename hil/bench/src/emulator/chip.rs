@@ -12,7 +12,7 @@ use rigless::time::VirtualNanos;
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
-use super::pads::{At, Pads};
+use super::pads::{At, Pads, ServoPin};
 use super::serial::Setup;
 use super::tap::Edge;
 
@@ -60,12 +60,22 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8>;
     /// Drives a pin from outside.
     fn drive(&mut self, now: VirtualNanos, pin: At, level: Level);
+    /// The firmware drives the pin: it is an output, or a peripheral's other than the debug port's.
+    fn drives(&mut self, now: VirtualNanos, pin: At) -> bool;
+    /// The pin's own pull-up is on.
+    fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool;
     /// The pin is high.
     fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool;
     /// Takes the edges at the motor timer's outputs, oldest first.
     fn motor_edges(&mut self) -> Vec<Edge>;
-    /// High time and period of the pulse at a channel (0 to 3) of the servos' timer, ns; `None` without pulses.
-    fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)>;
+    /// High time and period of the pulses that a servo's timer makes, ns; `None` without pulses.
+    fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)>;
+    /// What of the times that a bus of the arms is set to is not what the bus wants; nothing where they are not in a
+    /// register of their own.
+    fn bus_times(&self, bus: usize) -> Option<String> {
+        let _ = bus;
+        None
+    }
     /// Makes the chips on a bus hold the clock for `hold` ns after each byte; false where the emulator cannot.
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool;
     /// Makes the next reset one by a supply that broke down.
@@ -181,19 +191,30 @@ macro_rules! same_on_this_part {
             }
         }
 
+        fn drives(&mut self, now: VirtualNanos, pin: At) -> bool {
+            use rigless::soc::$soc::generated::gpioa::Register;
+
+            let mode = self.inner.drive_port(now, pin.0, |_, file, _| {
+                file.get(Register::Moder) >> (2 * pin.1) & 3
+            });
+            // RM0090 §8.4.1, RM0433 §11.4.1: output, alternate function. The debug port's function is 0.
+            mode == 1 || mode == 2 && self.function(now, pin) != Some(0)
+        }
+
+        fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool {
+            use rigless::soc::$soc::generated::gpioa::Register;
+
+            self.inner.drive_port(now, pin.0, |_, file, _| {
+                file.get(Register::Pupdr) >> (2 * pin.1) & 3 == 1
+            })
+        }
+
         fn brown_out(&mut self) {
             self.browned_out = true;
         }
 
         fn motor_edges(&mut self) -> Vec<Edge> {
             std::mem::take(&mut self.motors.edges)
-        }
-
-        fn servo_pulse(&mut self, channel: usize) -> Option<(u64, u64)> {
-            let number = rigless::soc::$soc::peripherals::tim::Channel::new(channel as u8 + 1)?;
-            let (timer, file) = self.inner.timer(SERVO_TIMER);
-            let pulse = timer.pulse(number, file)?;
-            Some((pulse.width.0, pulse.period.0))
         }
     };
 }

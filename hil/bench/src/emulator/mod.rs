@@ -10,6 +10,7 @@ pub mod conformance;
 mod deaf;
 mod f405;
 mod h743;
+mod outputs;
 mod pads;
 pub mod rig;
 mod rtt;
@@ -37,6 +38,7 @@ use self::chips::icm42688p::Sample;
 use self::chips::line::Line;
 use self::f405::F405;
 use self::h743::H743;
+use self::outputs::Outputs;
 use self::pads::Pads;
 use self::rtt::Rtt;
 use crate::boards::Kind;
@@ -46,6 +48,8 @@ use crate::stored;
 use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
+/// Registers of all ports of either processor: first address, and first one beyond (RM0433 table 8, RM0090 table 1).
+const PORTS: [std::ops::Range<u64>; 2] = [0x5802_0000..0x5802_2C00, 0x4002_0000..0x4002_2C00];
 /// From a start of the processor until every pin must be what it is wired to, ns: the arms' buses wait for their chips.
 const START_UP: u64 = 1000 * MS;
 /// Longest time from data-ready to motor frame that can be told from a lost sample: the time between two samples, ns.
@@ -115,6 +119,7 @@ impl Emulator {
             latency: Latency::default(),
             digest: Digest::default(),
             pulses: Vec::new(),
+            outputs: Outputs::default(),
         };
         let thread = std::thread::Builder::new()
             .name("emulator".to_owned())
@@ -217,6 +222,8 @@ fn run<C: Chip>(
         escs: world.escs.map(|esc| esc.stats),
         latency_us: world.latency,
         erases: world.erases,
+        outputs: world.outputs.found,
+        servos: world.servos,
         pins_digest: world.digest.0,
     })
 }
@@ -294,6 +301,8 @@ struct World {
     digest: Digest,
     /// Data-ready pulses of the last milliseconds, ns.
     pulses: Vec<u64>,
+    /// The outputs since each start.
+    outputs: Outputs,
 }
 
 impl World {
@@ -377,6 +386,7 @@ impl World {
         match fault {
             Fault::ImuUnplugged(out) => board.silence_imu(out),
             Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
+            Fault::PadDivider(sensor, divider) => board.divide(sensor, divider),
             Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
             Fault::ClockHeld(bus, us) => return board.hold_clock(bus, us),
             Fault::Supply(false) => {
@@ -485,6 +495,9 @@ impl<C: Chip> Driver<Wired<C>> for World {
             }
             if chip.changes_cached_flash(access.address, access.value) {
                 self.cached += 1;
+            }
+            if PORTS.iter().any(|ports| ports.contains(&access.address)) {
+                self.outputs.look(session, access.virtual_time);
             }
         }
     }

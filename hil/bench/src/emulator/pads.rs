@@ -21,6 +21,31 @@ pub struct TimerPins {
     pub function: u8,
 }
 
+/// A servo's pin, and the timer whose pulses it gets.
+#[derive(Clone, Copy, Debug)]
+pub struct ServoPin {
+    /// The processor's pin.
+    pub pin: At,
+    /// Number of the alternate function that makes it the timer's.
+    pub function: u8,
+    /// The timer's name.
+    pub timer: &'static str,
+    /// Its channel, 1 to 4.
+    pub channel: u8,
+}
+
+impl ServoPin {
+    /// The pin of `channel` of `timer`.
+    pub const fn new(pin: At, function: u8, timer: &'static str, channel: u8) -> Self {
+        Self {
+            pin,
+            function,
+            timer,
+            channel,
+        }
+    }
+}
+
 /// A pad that leads to the converter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalogPad {
@@ -86,8 +111,8 @@ pub struct Pads {
     pub console: usize,
     /// The motors.
     pub motors: TimerPins,
-    /// The servos.
-    pub servos: TimerPins,
+    /// Servos 1 to 4.
+    pub servos: [ServoPin; 4],
     /// Pins of the buses with their alternate functions. The emulator's interfaces are not wired to pins: a firmware
     /// that forgot one would still talk.
     pub buses: &'static [(At, u8)],
@@ -110,10 +135,11 @@ impl Pads {
 
     /// Every pin that must carry an alternate function, with its number; `answers` the receiver both ways.
     pub fn functions(&self, answers: bool) -> impl Iterator<Item = (At, u8)> {
-        let timers = [self.motors, self.servos];
-        timers
+        let motors = self.motors.pins.map(|pin| (pin, self.motors.function));
+        let servos = self.servos.map(|servo| (servo.pin, servo.function));
+        motors
             .into_iter()
-            .flat_map(|timer| timer.pins.map(|pin| (pin, timer.function)))
+            .chain(servos)
             .chain(self.buses.iter().copied())
             .chain(answers.then_some(self.receiver_out))
     }

@@ -46,8 +46,8 @@ const G: i32 = 1_000_000;
 const UP: [f64; 3] = [0.0, 0.0, 9.806_65];
 
 /// What the jumpers join: motor 1 with servo 3, servo 1 with servo 4, the receiver's output with its input.
-static MOTOR: [At; 2] = [MATEK.motors.pins[0], MATEK.servos.pins[2]];
-static SERVO: [At; 2] = [MATEK.servos.pins[0], MATEK.servos.pins[3]];
+static MOTOR: [At; 2] = [MATEK.motors.pins[0], MATEK.servos[2].pin];
+static SERVO: [At; 2] = [MATEK.servos[0].pin, MATEK.servos[3].pin];
 const RECEIVER: [At; 2] = [At(2, 6), At(2, 7)];
 /// Alternate function of the receiver's output.
 const PORT_FUNCTION: u8 = 7;
@@ -187,7 +187,7 @@ impl Rig {
         // A serial line rests high; its bytes go their own way.
         for ([from, to], function, peripheral) in [
             (MOTOR, MATEK.motors.function, motor),
-            (SERVO, MATEK.servos.function, servo),
+            (SERVO, MATEK.servos[0].function, servo),
             (RECEIVER, PORT_FUNCTION, true),
         ] {
             let high = match board.chip.function(now, from) {

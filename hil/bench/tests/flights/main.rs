@@ -9,6 +9,9 @@ mod determinism;
 mod faults;
 mod images;
 mod missions;
+mod outputs;
+
+mod pads;
 mod parameters;
 mod silicon;
 

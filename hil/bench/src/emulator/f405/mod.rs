@@ -1,5 +1,5 @@
 //! The STM32F405, by the emulator's STM32F427 and what that lacks: external interrupts, the routing of pins to them, the
-//! timers' DMA requests, the end of an I2C read by DMA.
+//! timers' DMA requests, the end of an I2C read by DMA, the two-channel timer.
 //!
 //! The F427 has everything that the F405 has, under the same addresses, and more: twice the flash, a third more RAM, an
 //! over-drive for 180 MHz, more ports and timers. The image is held to the F405's memory when it is read. The emulator
@@ -7,6 +7,7 @@
 
 mod exti;
 mod i2c;
+mod small_timer;
 
 use std::num::{NonZeroU32, NonZeroU64};
 use std::sync::LazyLock;
@@ -24,19 +25,21 @@ use rigless::soc::stm32f427::generated::usart6::Register as Serial;
 use rigless::soc::stm32f427::peripherals::dma::{Dma, Wire};
 use rigless::soc::stm32f427::peripherals::i2c::I2c;
 use rigless::soc::stm32f427::peripherals::rcc::HSI_HZ;
-use rigless::soc::stm32f427::peripherals::tim::{Advanced, Counter, Tim, UPDATE_REQUEST};
-use rigless::soc::stm32f427::peripherals::{CONTROLLERS, SERIAL_PORTS};
+use rigless::soc::stm32f427::peripherals::tim::{Advanced, Channel, Counter, Tim, UPDATE_REQUEST};
+use rigless::soc::stm32f427::peripherals::{CONTROLLERS, SERIAL_PORTS, TIMERS};
 use rigless::soc::stm32f427::{Stm32f427, generated};
 use rigless::soc::{Bus, Layout};
 use rigless::time::VirtualNanos;
 
 use self::exti::{Exti, Syscfg, routed_to};
 use self::i2c::DmaI2c;
+use self::small_timer::{TwoChannels, tim12};
 use super::chip::{Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
-use super::pads::{AnalogPad, At, Pads, TimerPins};
+use super::deaf::Deaf;
+use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
 use super::stretched::Stretched;
 use super::tap::{Edge, Tap};
@@ -47,8 +50,8 @@ const SUPPLY: u32 = 3300;
 const CLOCK: f64 = 168e6;
 /// Clock of the receiver's port, Hz.
 const SERIAL_CLOCK: f64 = 84e6;
-/// General-purpose timer of the servos: TIM3.
-const SERVO_TIMER: usize = 1;
+/// The servos' timer that has two channels.
+const SMALL_TIMER: &str = "TIM12";
 /// The motors' timer, and the one whose DMA request moves their frames (RM0090 table 43).
 const MOTOR_TIMER: &str = "TIM8";
 /// What the streams that read the arms' buses have still to take: DMA1 streams 0 and 2.
@@ -84,10 +87,12 @@ pub static PADS: Pads = Pads {
         pins: [At(2, 6), At(2, 7), At(2, 8), At(2, 9)],
         function: 3,
     },
-    servos: TimerPins {
-        pins: [At(1, 4), At(1, 5), At(1, 0), At(1, 1)],
-        function: 2,
-    },
+    servos: [
+        ServoPin::new(At(1, 6), 2, "TIM4", 1),
+        ServoPin::new(At(1, 7), 2, "TIM4", 2),
+        ServoPin::new(At(1, 14), 9, SMALL_TIMER, 1),
+        ServoPin::new(At(1, 15), 9, SMALL_TIMER, 2),
+    ],
     buses: &[
         (At(0, 5), 5),
         (At(0, 6), 5),
@@ -101,7 +106,7 @@ pub static PADS: Pads = Pads {
         (At(0, 3), 7),
     ],
     resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10), At(0, 3)],
-    signals: [At(2, 10), At(2, 11), At(2, 12)],
+    signals: [At(1, 12), At(1, 13), At(0, 8)],
     foreign: &[0x5168_5BFC],
 };
 
@@ -110,7 +115,7 @@ pub static PADS: Pads = Pads {
 const UNUSED: [&str; 27] = [
     "TIM1",
     "TIM2",
-    "TIM4",
+    "TIM3",
     "SPI2",
     "SPI3",
     "SPI4",
@@ -171,6 +176,7 @@ fn motor_timer() -> Tim<Advanced> {
 pub struct F405 {
     inner: Stm32f427,
     motors: Tap<Advanced>,
+    servos: Deaf<TwoChannels>,
     dma: Dma,
     buses: [Stretched<DmaI2c>; 2],
     exti: Exti,
@@ -188,6 +194,7 @@ pub struct F405 {
 #[derive(Debug)]
 struct Slots {
     motors: usize,
+    servos: usize,
     clocks: usize,
     debug: usize,
     flash: usize,
@@ -213,6 +220,7 @@ impl F405 {
         }
         let slots = Slots {
             motors: slot(MOTOR_TIMER)?,
+            servos: slot(SMALL_TIMER)?,
             clocks: slot("RCC")?,
             debug: slot("DBG")?,
             flash: slot("FLASH")?,
@@ -230,6 +238,7 @@ impl F405 {
         let mut part = Self {
             inner,
             motors: Tap::new(motor_timer),
+            servos: Deaf(tim12()),
             dma: controller(),
             buses,
             exti: Exti::default(),
@@ -279,6 +288,21 @@ impl F405 {
 
 impl Chip for F405 {
     same_on_this_part!(stm32f427);
+
+    fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)> {
+        let number = Channel::new(servo.channel)?;
+        let pulse = if servo.timer == SMALL_TIMER {
+            let slots = self.inner.bus().slots();
+            let clocks = slots[self.slots.clocks].registers().get(Clocks::Apb1enr);
+            let file = slots[self.slots.servos].registers();
+            (clocks & small_timer::ENABLED != 0).then(|| self.servos.0.pulse(number, file))??
+        } else {
+            let nth = TIMERS.iter().position(|timer| timer.instance == servo.timer)?;
+            let (timer, file) = self.inner.timer(nth);
+            timer.pulse(number, file)?
+        };
+        Some((pulse.width.0, pulse.period.0))
+    }
 
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool {
         self.buses[bus].hold = hold;
@@ -361,6 +385,7 @@ impl Mcu for F405 {
         }
         self.motors.restart(at);
         self.mark_revision();
+        self.servos = Deaf(tim12());
         if std::mem::take(&mut self.browned_out) {
             // The emulator knows no brown-out: its flag is set beside the pin's (RM0090 §7.3.21).
             let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();
@@ -382,6 +407,8 @@ impl Mcu for F405 {
         }
         let own: &mut dyn ErasedDevice = if slot == self.slots.motors {
             &mut self.motors
+        } else if slot == self.slots.servos {
+            &mut self.servos
         } else if slot == self.slots.dma {
             &mut self.dma
         } else if let Some(nth) = self.slots.buses.iter().position(|bus| *bus == slot) {

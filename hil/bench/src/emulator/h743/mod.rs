@@ -1,16 +1,18 @@
 //! The STM32H743 with what the emulator's own part lacks, and without what the board does not use.
 
+mod bus_times;
 mod watchdog;
 
 use std::num::NonZeroU64;
 
-use rigless::device::{Device, ErasedDevice, Level, ResetCause};
+use rigless::device::{Device, ErasedDevice, Level, RegisterFile, ResetCause};
 use rigless::emulator::CoreSpec;
 use rigless::machine::matekh743::MatekH743;
 use rigless::mcu::Mcu;
 use rigless::soc::Bus;
 use rigless::soc::stm32h743::Stm32h743;
 use rigless::soc::stm32h743::generated::dbgmcu::Register as Debug;
+use rigless::soc::stm32h743::generated::i2c1::Register as BusRegister;
 use rigless::soc::stm32h743::generated::rcc::Register as Clocks;
 use rigless::soc::stm32h743::generated::usart1::Register as Serial;
 use rigless::soc::stm32h743::peripherals::flash::OptionBytes;
@@ -25,7 +27,7 @@ use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
 use super::deaf::Deaf;
-use super::pads::{AnalogPad, At, Pads, TimerPins};
+use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
 use super::stretched::Stretched;
 use super::tap::{Edge, Tap};
@@ -36,6 +38,8 @@ const SUPPLY: u32 = 3300;
 const CLOCK: f64 = 400e6;
 /// Clock of the receiver's port, Hz.
 const SERIAL_CLOCK: f64 = 100e6;
+/// Clock of the arms' buses, Hz.
+const BUS_CLOCK: f64 = 100e6;
 /// Control registers of the flash's banks, and in them the bits that erase a sector.
 const BANK_CONTROLS: [u64; 2] = [0x5200_200C, 0x5200_210C];
 const ERASE: u64 = 1 << 2 | 1 << 7;
@@ -43,10 +47,9 @@ const ERASE: u64 = 1 << 2 | 1 << 7;
 const FLASH: u64 = 0x0800_0000;
 const BANK: u64 = 0x10_0000;
 const SECTOR: u64 = 0x2_0000;
-/// General-purpose timers of the clock, the motors and the servos: TIM2, TIM4, TIM5.
+/// General-purpose timers of the clock and the motors: TIM2, TIM4.
 const TIME_TIMER: usize = 0;
 const MOTOR_TIMER: usize = 2;
-const SERVO_TIMER: usize = 3;
 
 /// The Matek's pads that lead to the converter, with what ArduPilot (`MatekH743`) and PX4 (`matek/h743-slim`) say of
 /// their dividers.
@@ -78,10 +81,12 @@ pub static MATEK: Pads = Pads {
         pins: [At(3, 12), At(3, 13), At(3, 14), At(3, 15)],
         function: 2,
     },
-    servos: TimerPins {
-        pins: [At(0, 0), At(0, 1), At(0, 2), At(0, 3)],
-        function: 2,
-    },
+    servos: [
+        ServoPin::new(At(0, 0), 2, "TIM5", 1),
+        ServoPin::new(At(0, 1), 2, "TIM5", 2),
+        ServoPin::new(At(0, 2), 2, "TIM5", 3),
+        ServoPin::new(At(0, 3), 2, "TIM5", 4),
+    ],
     buses: &[
         (At(0, 5), 5),
         (At(0, 6), 5),
@@ -202,8 +207,17 @@ impl H743 {
 
     /// Level of servo 1's output.
     pub fn first_servo_is_high(&mut self) -> bool {
-        let (timer, file) = self.inner.timer(SERVO_TIMER);
-        Channel::new(1).and_then(|c| timer.output(c, file)) == Some(Level::High)
+        let [servo, ..] = MATEK.servos;
+        let Some((number, (timer, file))) = Channel::new(servo.channel).zip(self.servo_timer(servo)) else {
+            return false;
+        };
+        timer.output(number, file) == Some(Level::High)
+    }
+
+    /// The timer that makes a servo's pulses, and its registers.
+    fn servo_timer(&mut self, servo: ServoPin) -> Option<(&mut Tim<General>, &mut RegisterFile)> {
+        let nth = TIMERS.iter().position(|timer| timer.instance == servo.timer)?;
+        Some(self.inner.timer(nth))
     }
 
     /// Puts the revision into the identity register.
@@ -232,6 +246,17 @@ impl H743 {
 
 impl Chip for H743 {
     same_on_this_part!(stm32h743);
+
+    fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)> {
+        let (timer, file) = self.servo_timer(servo)?;
+        let pulse = timer.pulse(Channel::new(servo.channel)?, file)?;
+        Some((pulse.width.0, pulse.period.0))
+    }
+
+    fn bus_times(&self, bus: usize) -> Option<String> {
+        let file = self.inner.bus().slots()[self.slots.buses[bus]].registers();
+        bus_times::wrong(file.get(BusRegister::Timingr), BUS_CLOCK)
+    }
 
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool {
         self.buses[bus].hold = hold;

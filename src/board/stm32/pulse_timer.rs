@@ -1,42 +1,40 @@
-//! Pulses from a timer with only two channels. embassy-stm32's `SimplePwm` wants four.
+//! Pulses from some of a timer's channels. embassy-stm32's `SimplePwm` wants a timer with four of them.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
-use embassy_stm32::pac::timer::vals::Ocm;
-use embassy_stm32::timer::low_level::Timer;
+use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin};
 use sophie_drivers::pwm_timing::PwmTiming;
 
-/// A timer with up to two channels, running; its outputs are low until they are set.
-pub struct SmallTimer<T: GeneralInstance4Channel> {
+/// A running timer; its outputs are low until they are set. Channels that have no pin are left alone.
+pub struct PulseTimer<T: GeneralInstance4Channel> {
     timer: Timer<'static, T>,
 }
 
-impl<T: GeneralInstance4Channel> SmallTimer<T> {
+impl<T: GeneralInstance4Channel> PulseTimer<T> {
     /// The timer with the frame of `timing`.
     pub fn new(timer: Peri<'static, T>, timing: PwmTiming) -> Self {
         let timer = Timer::new(timer);
-        let registers = timer.regs_2ch();
+        let registers = timer.regs_gp16();
         registers.psc().write_value(timing.prescaler);
         // `PwmTiming` is made for 16 bits: period - 1 always fits.
         registers.arr().write(|w| w.set_arr((timing.period - 1) as u16));
         // Takes prescaler and period over.
         timer.generate_update_event();
+        timer.enable_outputs();
         timer.start();
         Self { timer }
     }
 
     /// Makes `pin` the output of its channel. The pin is the timer's as long as what is returned lives.
     pub fn output<C: TimerChannel>(&mut self, pin: Peri<'static, impl TimerPin<T, C>>) -> Flex<'static> {
-        let registers = self.timer.regs_2ch();
-        let channel = C::CHANNEL.index();
-        registers.ccr(channel).write(|w| w.set_ccr(0));
-        registers.ccmr_output(0).modify(|w| {
-            w.set_ocm(channel, Ocm::PWM_MODE1);
-            // Preloaded: a new width takes effect with the next frame, never within a pulse.
-            w.set_ocpe(channel, true);
-        });
-        registers.ccer().modify(|w| w.set_cce(channel, true));
+        let channel = C::CHANNEL;
+        self.set(channel, 0);
+        self.timer
+            .set_output_compare_mode(channel, OutputCompareMode::PwmMode1);
+        // Preloaded: a new width takes effect with the next frame, never within a pulse.
+        self.timer.set_output_compare_preload(channel, true);
+        self.timer.enable_channel(channel, true);
         let function = pin.af_num();
         let mut pin = Flex::new(pin);
         pin.set_as_af_unchecked(function, AfType::output(OutputType::PushPull, Speed::Low));
@@ -45,7 +43,7 @@ impl<T: GeneralInstance4Channel> SmallTimer<T> {
 
     /// Sets the pulses of a channel to `counts`; 0 for none.
     pub fn set(&mut self, channel: Channel, counts: u32) {
-        let registers = self.timer.regs_2ch();
+        let registers = self.timer.regs_gp16();
         registers.ccr(channel.index()).write(|w| w.set_ccr(counts as u16));
     }
 }

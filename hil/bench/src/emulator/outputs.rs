@@ -1,0 +1,59 @@
+//! How long after a reset each output of the board is not the firmware's yet, and whether the chip pulls it up meanwhile.
+
+use rigless::session::Session;
+use rigless::time::VirtualNanos;
+
+use super::board::Wired;
+use super::chip::Chip;
+use crate::wires::Output;
+
+/// The outputs, looked at whenever the firmware has written a register of a port.
+#[derive(Debug, Default)]
+pub struct Outputs {
+    /// Starts of the processor that have been seen, the one at power-on among them, and when the last one was, ns.
+    starts: usize,
+    since: u64,
+    /// Outputs that the firmware does not drive yet.
+    open: usize,
+    /// What has been found.
+    pub found: Vec<Output>,
+}
+
+impl Outputs {
+    /// Looks at what the firmware drives at `now`.
+    pub fn look<C: Chip>(&mut self, session: &mut Session<Wired<C>>, now: VirtualNanos) {
+        let starts = session.resets().len() + 1;
+        if starts != self.starts {
+            self.starts = starts;
+            self.since = session.resets().last().map_or(0, |reset| reset.at.0);
+            self.open = session.board_mut().outputs().len();
+            for output in &mut self.found {
+                output.after_us.push(None);
+            }
+        }
+        if self.open == 0 {
+            return;
+        }
+        let board = session.board_mut();
+        if self.found.is_empty() {
+            self.found = board
+                .outputs()
+                .into_iter()
+                .map(|(what, pin)| Output::new(what, pin))
+                .collect();
+        }
+        self.open = 0;
+        let pins = board.outputs();
+        for (output, (_, pin)) in self.found.iter_mut().zip(pins) {
+            let Some(after @ None) = output.after_us.last_mut() else {
+                continue;
+            };
+            if board.drives(now, pin) {
+                *after = Some((now.0 - self.since) as f64 * 1e-3);
+            } else {
+                self.open += 1;
+                output.pulled_up |= board.pulls_up(now, pin);
+            }
+        }
+    }
+}
