@@ -79,10 +79,21 @@ pub struct Run {
     pub escs: PerArm<EscStats>,
     /// From data-ready to the first edge of the motor frame: count, mean and largest, µs.
     pub latency_us: Latency,
+    /// What the motors' pins did when the processor stood still last.
+    pub hung: Option<Hung>,
     /// Erases of each flash sector, by its first address.
     pub erases: BTreeMap<u64, u32>,
     /// Digest of every edge at the motors' pins, every servo pulse and every telemetry byte.
     pub pins_digest: u64,
+}
+
+/// The motors' pins while the processor stands still.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hung {
+    /// From its stop to the last rising edge at any of them, µs; 0 without one.
+    pub last_rise_us: f64,
+    /// The pins that are high at the end.
+    pub high: PerArm<bool>,
 }
 
 /// Statistics of a latency.

@@ -43,7 +43,7 @@ use crate::boards::Kind;
 use crate::elf::Firmware;
 use crate::esc::{self, Esc};
 use crate::stored;
-use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
+use crate::wires::{Digest, Fault, Gap, Hung, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
 /// From a start of the processor until every pin must be what it is wired to, ns: the arms' buses wait for their chips.
@@ -107,6 +107,9 @@ impl Emulator {
             escs: std::array::from_fn(|_| Esc::new(line)),
             servos: [0.0; 4],
             resets: 0,
+            high: [false; 4],
+            still: None,
+            hung: None,
             latency: Latency::default(),
             digest: Digest::default(),
             pulses: Vec::new(),
@@ -204,6 +207,7 @@ fn run<C: Chip>(
         instructions,
         escs: world.escs.map(|esc| esc.stats),
         latency_us: world.latency,
+        hung: world.hung,
         erases: world.erases,
         pins_digest: world.digest.0,
     })
@@ -276,6 +280,11 @@ struct World {
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
+    /// Levels of the motors' pins.
+    high: PerArm<bool>,
+    /// Since when the processor stands still, ns.
+    still: Option<u64>,
+    hung: Option<Hung>,
     latency: Latency,
     digest: Digest,
     /// Data-ready pulses of the last milliseconds, ns.
@@ -303,7 +312,7 @@ impl World {
         if let Some(imu) = board.imu() {
             self.pulses.append(&mut imu.pulsed);
         }
-        self.motors(board, now);
+        self.motors(board, now, resets.first().map_or(u64::MAX, |(at, _)| *at));
         let servos = board
             .servo_pulses(now)
             .map(|pulse| pulse.map_or(0.0, |(width, _)| width as f64 * 1e-3));
@@ -326,14 +335,25 @@ impl World {
         }
     }
 
-    fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos) {
+    /// Takes the motors' edges until `now`, in a millisecond in which the processor was reset at `reset`.
+    fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos, reset: u64) {
         let driven = board.motors_driven(now);
         for edge in board.motor_edges() {
             self.digest
                 .word(edge.at << 3 | (edge.channel as u64) << 1 | u64::from(edge.high));
+            if edge.at >= reset {
+                self.started();
+            }
             // A pin that is not the timer's does not show what the timer does.
             if !driven[edge.channel] {
                 continue;
+            }
+            self.high[edge.channel] = edge.high;
+            if let (Some(since), Some(hung)) = (self.still, &mut self.hung) {
+                hung.high = self.high;
+                if edge.high {
+                    hung.last_rise_us = edge.at.saturating_sub(since) as f64 * 1e-3;
+                }
             }
             let Some(began) = self.escs[edge.channel].edge(edge.at, edge.high) else {
                 continue;
@@ -349,6 +369,15 @@ impl World {
             }
         }
         self.pulses.retain(|at| at + MS > now.0);
+        if reset <= now.0 {
+            self.started();
+        }
+    }
+
+    /// The processor was reset: its pins float, and it stands still no more.
+    fn started(&mut self) {
+        self.still = None;
+        self.high = [false; 4];
     }
 
     /// Breaks or mends something; false where the emulator cannot.
@@ -381,7 +410,14 @@ impl World {
                 let mut words = (first..end).step_by(4);
                 return words.all(|at| host.program(at, Width::W32, at ^ NOISE).is_ok());
             }
-            Fault::Hang(still) => host.hold(still),
+            Fault::Hang(still) => {
+                host.hold(still);
+                self.still = still.then_some(stop.at.0);
+                self.hung = still.then_some(Hung {
+                    last_rise_us: 0.0,
+                    high: self.high,
+                });
+            }
             Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
         }
         true

@@ -10,6 +10,7 @@ mod faults;
 mod images;
 mod missions;
 mod parameters;
+mod pulses;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
