@@ -39,6 +39,8 @@ pub enum Fault {
     Supply(bool),
     /// The task of this name in `src/firmware/tasks.rs` is never run again: it hangs in what it awaits.
     TaskHung(&'static str),
+    /// The task of this name calls itself without end as soon as it runs.
+    StackOverflow(&'static str),
     /// The flash that is kept for parameters is overwritten, as a program of another maker would.
     CorruptParameters,
     /// The processor stands still (true) or goes on: only the watchdog is left.

@@ -1,4 +1,4 @@
-//! A restart on command.
+//! A restart of the chip, on command or at the end of a run.
 
 use cortex_m::peripheral::SCB;
 use sophie_tasks::ports::Restart;
@@ -11,6 +11,11 @@ pub struct Restarter;
 impl Restart for Restarter {
     fn restart(&mut self) {
         board::stop_motors();
-        SCB::sys_reset()
+        reset()
     }
+}
+
+/// Resets the chip, whatever its motors do.
+pub fn reset() -> ! {
+    SCB::sys_reset()
 }

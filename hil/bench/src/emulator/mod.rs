@@ -59,6 +59,11 @@ const HEADER: u64 = 64;
 const SPAWNED: u64 = 1;
 const QUEUED: u64 = 1 << 8;
 
+/// Code that fills the stack: `push {r0-r7, lr}`, over and over.
+const RECURSION: u64 = 0xE7FD_B5FF;
+/// Where it is put: bytes before the end of the RAM, where no image has statics.
+const SPARE: u64 = 0x1000;
+
 /// How the board is emulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
@@ -102,6 +107,8 @@ impl Emulator {
             receiver,
             erases: BTreeMap::new(),
             tasks: firmware.tasks.clone(),
+            flash: firmware.board.flash,
+            spare: firmware.board.ram.last().map_or(0, |(_, end)| end - SPARE),
             impossible: Vec::new(),
             dark: false,
             escs: std::array::from_fn(|_| Esc::new(line)),
@@ -273,6 +280,10 @@ struct World {
     erases: BTreeMap<u64, u32>,
     /// Addresses of the tasks.
     tasks: BTreeMap<String, u64>,
+    /// Flash: first address, and first one beyond.
+    flash: (u64, u64),
+    /// A word of RAM that no image uses.
+    spare: u64,
     /// Faults that this part cannot have.
     impossible: Vec<Fault>,
     /// The supply is down.
@@ -405,6 +416,7 @@ impl World {
                 host.hold(false);
             }
             Fault::TaskHung(name) => return self.hang(name, host),
+            Fault::StackOverflow(name) => return self.overflow(name, host),
             Fault::CorruptParameters => {
                 let (first, end) = self.params;
                 let mut words = (first..end).step_by(4);
@@ -437,6 +449,22 @@ impl World {
             return false;
         };
         host.write(task + state, Width::W32, SPAWNED | QUEUED).is_ok()
+    }
+
+    /// Makes the function that runs a task one that fills the stack.
+    fn overflow(&self, name: &str, host: &mut dyn Host) -> bool {
+        let Some(task) = self.tasks.get(name) else {
+            return false;
+        };
+        // The only address of code in the executor's header.
+        let (first, end) = self.flash;
+        let code = |word: u64| word & 1 == 1 && (first..end).contains(&word);
+        let mut places = (0..HEADER).step_by(4).map(|place| task + place);
+        let place = places.find(|at| host.read(*at, Width::W32).is_ok_and(code));
+        place.is_some_and(|at| {
+            host.write(self.spare, Width::W32, RECURSION).is_ok()
+                && host.write(at, Width::W32, self.spare | 1).is_ok()
+        })
     }
 
     /// Puts the world's side on the wires.
