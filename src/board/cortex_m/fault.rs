@@ -1,5 +1,5 @@
-//! What else ends a run: a panic, an interrupt that nobody serves. How it ends is up to the image (`crate::end_of_run`):
-//! the firmware restarts, a test reports.
+//! What else ends a run: a panic, an interrupt that nobody serves. How it ends is up to the image
+//! (`crate::end_of_run`): the firmware restarts, a test reports.
 
 use core::panic::PanicInfo;
 

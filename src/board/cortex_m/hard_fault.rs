@@ -10,7 +10,7 @@ use crate::end_of_run;
 
 /// Bytes of a frame that the processor stacks without floats.
 const FRAME: u32 = 32;
-/// In the fault status: what was to be stacked could not be, by the memory protection and by the bus (ARMv7-M, B3.2.15).
+/// In the fault status: what was to be stacked could not be, by memory protection and by the bus (ARMv7-M, B3.2.15).
 const STACKING: u32 = 1 << 4 | 1 << 12;
 
 /// The address that a memory fault tells is valid, and that of a bus fault.
@@ -28,7 +28,7 @@ const BUS_ADDRESS: u32 = 1 << 15;
 #[allow(non_snake_case, reason = "the name that the vector table wants")]
 unsafe extern "C" fn HardFault() -> ! {
     naked_asm!(
-        // Float registers are still to be saved on the old stack, by the next float instruction: called off (FPCCR.LSPACT).
+        // The next float instruction would save float registers on the old stack: called off (FPCCR.LSPACT).
         "movw r3, #0xEF34",
         "movt r3, #0xE000",
         "ldr r2, [r3]",

@@ -1,5 +1,6 @@
-//! Runs that end: a stack that overflows, an address where nothing is, a fault while one is told. The very handlers that
-//! fly (`src/board/cortex_m/`) are called; where the firmware restarts the chip, the image goes on with the next line.
+//! Runs that end: a stack that overflows, an address where nothing is, a fault while one is told. The very handlers
+//! that fly (`src/board/cortex_m/`) are called; where the firmware restarts the chip, the image goes on with the next
+//! line.
 
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments, Write};
@@ -96,8 +97,8 @@ impl fmt::Display for Left {
 pub fn go_on() -> ! {
     end::ENDING.store(false, Relaxed);
     let stack = CONFORMANCE_STACK.load(Relaxed) as *mut u32;
-    // SAFETY: `conformance_try` left its registers above that, and what it called will not go on. In a handler the frame
-    // makes the processor return there; in thread mode the same place is jumped to.
+    // SAFETY: `conformance_try` left its registers above that, and what it called will not go on. In a handler the
+    // frame makes the processor return there; in thread mode the same place is jumped to.
     unsafe {
         if cortex_m::peripheral::SCB::vect_active() == cortex_m::peripheral::scb::VectActive::ThreadMode {
             asm!(
