@@ -180,8 +180,8 @@ params! {
     /// Share of the thrust that grows with the square of the command; the rest is linear (assumed).
     thrust_curve = 0.75, "1", 0.0 ..= 1.0;
 
-    /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses at 400 Hz, 125 for OneShot125. Read by the board at
-    /// start-up; the paper's controllers take 400.
+    /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses of 1 to 2 ms, at most 400 a second, 125 for OneShot125.
+    /// Read by the board at start-up; the paper's controllers take 400.
     motor_protocol = 300.0, "1", 125.0 ..= 600.0 of [125.0, 150.0, 300.0, 400.0, 600.0];
     /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.
     receiver_protocol = 0.0, "1", 0.0 ..= 1.0 of [0.0, 1.0];

@@ -7,19 +7,21 @@ use crate::pwm_timing::PwmTiming;
 /// Protocol of a motor controller that takes pulses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EscPulse {
-    /// 1000 to 2000 µs, 400 frames a second: what a DJI 430 Lite takes.
+    /// 1000 to 2000 µs, at most 400 a second: what a DJI 430 Lite takes.
     #[default]
     Standard,
-    /// 125 to 250 µs, 1000 frames a second: one for each mix.
+    /// 125 to 250 µs, one for each mix.
     OneShot125,
 }
 
 impl EscPulse {
-    /// Frames a second.
-    pub const fn frame_hz(self) -> u32 {
+    /// Time that a pulse and the rest after it take, µs: no other begins before.
+    pub const fn period_us(self) -> u32 {
         match self {
-            Self::Standard => 400,
-            Self::OneShot125 => 1000,
+            // Controllers on standard pulses take 400 a second (PX4 sends them so many), some no more.
+            Self::Standard => 2500,
+            // The length of its pulses is all that OneShot125 is; two must not run into one.
+            Self::OneShot125 => 260,
         }
     }
 
@@ -33,7 +35,7 @@ impl EscPulse {
 
     /// Timer values for a timer clocked at `clock_hz`.
     pub fn timing(self, clock_hz: u32) -> Option<PwmTiming> {
-        PwmTiming::new(clock_hz, self.frame_hz())
+        PwmTiming::new(clock_hz, 1_000_000 / self.period_us())
     }
 
     /// Pulse of a motor command, µs: the stop pulse for 0 and for anything that is not a positive number,
@@ -72,8 +74,28 @@ mod tests {
                 let counted = protocol.compare(&t, command) as f32 * t.count_us();
                 assert!((counted - us).abs() < 0.05, "{protocol:?} {command}: {counted}");
             }
-            // A full pulse leaves room before the next one.
-            assert!(high < 1e6 / protocol.frame_hz() as f32 - 100.0);
+        }
+    }
+
+    #[test]
+    fn a_full_pulse_ends_before_its_period_and_the_period_before_a_command_of_1_khz() {
+        // The third command after a standard pulse, the next one after a short pulse.
+        for (protocol, high, commands) in [
+            (EscPulse::Standard, 2000.0, 2..3),
+            (EscPulse::OneShot125, 250.0, 0..1),
+        ] {
+            for clock in [84_000_000, 168_000_000, 200_000_000, 216_000_000] {
+                let t = protocol.timing(clock).unwrap();
+                let period = t.period as f32 * t.count_us();
+                assert!(high + 9.0 < period, "{protocol:?} {clock}: {period}");
+                let ms = (period * 1e-3) as u32;
+                // A command that comes a quarter of a millisecond early or late changes nothing.
+                let margin = (period * 1e-3).fract();
+                assert!(
+                    commands.contains(&ms) && (0.25..0.75).contains(&margin),
+                    "{clock}: {period}"
+                );
+            }
         }
     }
 

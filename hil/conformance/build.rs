@@ -4,14 +4,19 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-/// Memory that QEMU's mps2-an386 and mps2-an500 have; the emulated core is given the same. The file is called board.x
-/// because the workspace's memory.x, which the linker finds first, includes that.
+/// Memory that QEMU's mps2-an386 and mps2-an500 have; the emulated core is given the same. As on the boards the stack
+/// lies at the bottom, above addresses where nothing is. The file is called board.x because the workspace's memory.x,
+/// which the linker finds first, includes that.
 const MEMORY: &str = "\
 MEMORY
 {
   FLASH : ORIGIN = 0x00000000, LENGTH = 4M
-  RAM   : ORIGIN = 0x20000000, LENGTH = 4M
+  STACK : ORIGIN = 0x20000000, LENGTH = 32K
+  RAM   : ORIGIN = 0x20008000, LENGTH = 4064K
 }
+
+_stack_start = ORIGIN(STACK) + LENGTH(STACK);
+_stack_end = ORIGIN(STACK);
 ";
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -2,7 +2,6 @@
 //!
 //! Nothing here knows the chip; that is [`crate::board`]'s.
 
-mod end;
 mod grip;
 mod lights;
 mod report;
@@ -11,7 +10,6 @@ mod timing;
 #[cfg(feature = "trace")]
 pub mod trace;
 
-pub use end::end_of_run;
 use sophie_control::params::Params;
 use sophie_control::warm::Grasp;
 use sophie_tasks::links::Links;
@@ -21,6 +19,8 @@ use sophie_tasks::start::Start;
 use static_cell::StaticCell;
 
 use crate::board;
+/// How the firmware's runs end.
+pub use crate::board::cortex_m::end::stop_and_restart as end_of_run;
 use crate::board::cortex_m::retained::{self, Kept, Memory, ResetCause};
 
 #[cfg(feature = "trace")]

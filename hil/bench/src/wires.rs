@@ -41,6 +41,8 @@ pub enum Fault {
     Supply(bool),
     /// The task of this name in `src/firmware/tasks.rs` is never run again: it hangs in what it awaits.
     TaskHung(&'static str),
+    /// The task of this name calls itself without end as soon as it runs.
+    StackOverflow(&'static str),
     /// The flash that is kept for parameters is overwritten, as a program of another maker would.
     CorruptParameters,
     /// The flash that is kept for parameters begins as ArduPilot leaves it.
@@ -91,6 +93,8 @@ pub struct Run {
     pub escs: PerArm<EscStats>,
     /// From data-ready to the first edge of the motor frame: count, mean and largest, µs.
     pub latency_us: Latency,
+    /// What the motors' pins did when the processor stood still last.
+    pub hung: Option<Hung>,
     /// Erases of each flash sector, by its first address.
     pub erases: BTreeMap<u64, u32>,
     /// What resets did to the outputs.
@@ -124,6 +128,15 @@ impl Output {
             after_us: vec![None],
         }
     }
+}
+
+/// The motors' pins while the processor stands still.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hung {
+    /// From its stop to the last rising edge at any of them, µs; 0 without one.
+    pub last_rise_us: f64,
+    /// The pins that are high at the end.
+    pub high: PerArm<bool>,
 }
 
 /// Statistics of a latency.

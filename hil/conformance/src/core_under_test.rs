@@ -6,6 +6,7 @@
 )]
 
 mod exceptions;
+pub mod faults;
 mod float;
 
 use core::fmt::Arguments;

@@ -10,6 +10,8 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
+mod board;
+#[cfg(target_os = "none")]
 mod core_under_test;
 mod laws;
 
@@ -26,10 +28,16 @@ fn main() -> ! {
     let mut print = |line: core::fmt::Arguments<'_>| hprintln!("{}", line);
     laws::run(&mut print);
     core_under_test::run(&mut print);
-    loop {
-        debug::exit(debug::EXIT_SUCCESS);
-    }
+    core_under_test::faults::run(&mut print, || {
+        loop {
+            debug::exit(debug::EXIT_SUCCESS);
+        }
+    })
 }
+
+/// How a run ends, as in the firmware.
+#[cfg(target_os = "none")]
+use board::cortex_m::end::stop_and_restart as end_of_run;
 
 #[cfg(target_os = "none")]
 #[panic_handler]

@@ -2,7 +2,9 @@
 
 #[cfg(not(family = "f4"))]
 mod cache;
+pub mod end;
 mod fault;
+mod hard_fault;
 mod levels;
 pub mod retained;
 pub mod stack;

@@ -1,4 +1,7 @@
 //! The motors' speed controllers, as DShot frames or as pulses: on the channels of one timer in any order, or of two.
+//!
+//! A frame or pulse is sent for a command and ends by itself with the pins low: without software there is none, and a
+//! controller stops its motor. The last rows of a DShot frame are zeros, and the timer stops after a pulse.
 
 use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
@@ -25,8 +28,6 @@ use super::Aligned;
 const LONGEST_FRAME: Duration = Duration::from_micros(500);
 /// Ports A to H in the clock controller.
 const PORTS: u32 = 0xFF;
-/// Length of a OneShot125 period, µs: the longest pulse and a moment of rest before it.
-const ONESHOT_US: u32 = 260;
 
 /// Rows of compare values that DMA writes into the timer: one for each bit of a frame, and two of zeros. The first of
 /// those is in force when the second has been moved, so the pins are low at the end of the transfer.
@@ -42,8 +43,7 @@ static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> =
 #[derive(Clone, Copy)]
 enum Timing {
     DShot(BitTiming),
-    Pulse(PwmTiming),
-    OneShot(PwmTiming),
+    Pulse(EscPulse, PwmTiming),
     Off,
 }
 
@@ -113,14 +113,12 @@ where
         let timer = Timer::new(timer);
         let (prescaler, period) = match timing {
             Timing::DShot(bit) => (0, u32::from(bit.period)),
-            Timing::Pulse(t) | Timing::OneShot(t) => (t.prescaler, t.period),
+            Timing::Pulse(_, t) => (t.prescaler, t.period),
             Timing::Off => (0, 1),
         };
         timer.regs_core().psc().write_value(prescaler);
         // `PwmTiming` and `BitTiming` are made for 16 bits: period - 1 always fits.
         timer.set_max_compare_value((period.wrapping_sub(1) as u16).into());
-        let one_shot = matches!(timing, Timing::OneShot(_));
-        timer.regs_core().cr1().modify(|w| w.set_opm(one_shot));
         Self {
             timer,
             channels: [None; 4],
@@ -134,18 +132,11 @@ where
 
     /// Adds motor `index`, 0 to 3, on its pin, which stays low until the first command.
     pub fn motor<C: TimerChannel>(mut self, index: usize, pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
-        // A OneShot pulse ends with the period: a counter that stops at zero must leave the pin low.
-        let one_shot = matches!(self.timing, Timing::OneShot(_));
-        let mode = if one_shot {
-            OutputCompareMode::PwmMode2
-        } else {
-            OutputCompareMode::PwmMode1
-        };
         let channel = C::CHANNEL;
-        self.timer.set_output_compare_mode(channel, mode);
-        self.timer.set_output_compare_preload(channel, true);
         self.timer
-            .set_compare_value(channel, if one_shot { u16::MAX } else { 0 }.into());
+            .set_output_compare_mode(channel, OutputCompareMode::PwmMode1);
+        self.timer.set_output_compare_preload(channel, true);
+        self.timer.set_compare_value(channel, 0.into());
         self.timer.enable_channel(channel, true);
         // Takes prescaler, period and compare values over while the pin is not yet the timer's.
         self.timer.generate_update_event();
@@ -169,26 +160,30 @@ where
         pairs.filter_map(|(channel, value)| Some((channel?, value)))
     }
 
-    /// One pulse to all motors, of a timer that runs on by itself.
-    fn set_pulses(&mut self, t: PwmTiming, commands: PerArm<f32>) {
+    /// One pulse to all motors, now. A command that comes before the last pulse's period is over is passed over, since it
+    /// must neither cut a pulse nor lengthen it: the next one is younger.
+    fn shoot(&mut self, pulse: EscPulse, t: PwmTiming, commands: PerArm<f32>) {
+        let registers = self.timer.regs_core();
+        // In one-pulse mode the counter stops by itself.
+        if registers.cr1().read().cen() {
+            return;
+        }
         for (channel, command) in self.on_channels(commands) {
-            let counts = EscPulse::Standard.compare(&t, command);
-            // Preloaded: takes effect with the next pulse, never within one.
+            let counts = pulse.compare(&t, command);
             self.timer.set_compare_value(channel, (counts as u16).into());
         }
-        self.timer.start();
-    }
-
-    /// One pulse to all motors, now.
-    fn shoot(&mut self, t: PwmTiming, commands: PerArm<f32>) {
-        self.timer.stop();
-        for (channel, command) in self.on_channels(commands) {
-            let counts = EscPulse::OneShot125.compare(&t, command);
-            let low = t.period.saturating_sub(counts);
-            self.timer.set_compare_value(channel, (low as u16).into());
-        }
-        self.timer.generate_update_event();
-        self.timer.start();
+        // The pins rise with the first line and the pulse is timed from the last one: less than half a microsecond.
+        critical_section::with(|_| {
+            registers.egr().write(|w| w.set_ug(true));
+            // In force from the end of the period on, when the counter stops at zero: the pins stay low.
+            for (channel, _) in self.on_channels(commands) {
+                self.timer.set_compare_value(channel, 0.into());
+            }
+            registers.cr1().write(|w| {
+                w.set_opm(true);
+                w.set_cen(true);
+            });
+        });
     }
 
     /// One frame to all motors, over when this returns; gives its beginning.
@@ -237,8 +232,7 @@ where
     async fn write(&mut self, commands: PerArm<f32>) -> Instant {
         match self.timing {
             Timing::DShot(bit) => return self.send_frame(bit, commands).await,
-            Timing::Pulse(t) => self.set_pulses(t, commands),
-            Timing::OneShot(t) => self.shoot(t, commands),
+            Timing::Pulse(pulse, t) => self.shoot(pulse, t, commands),
             Timing::Off => {}
         }
         Instant::now()
@@ -282,11 +276,7 @@ impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
 fn timing(protocol: Protocol, clock_hz: u32) -> Timing {
     let found = match protocol {
         Protocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(Timing::DShot),
-        Protocol::Pulse(EscPulse::Standard) => EscPulse::Standard.timing(clock_hz).map(Timing::Pulse),
-        // The length of its pulses is all that OneShot125 is: its rate is that of the commands.
-        Protocol::Pulse(EscPulse::OneShot125) => {
-            PwmTiming::new(clock_hz, 1_000_000 / ONESHOT_US).map(Timing::OneShot)
-        }
+        Protocol::Pulse(pulse) => pulse.timing(clock_hz).map(|t| Timing::Pulse(pulse, t)),
         Protocol::Off => Some(Timing::Off),
     };
     match found {

@@ -45,7 +45,7 @@ use crate::boards::Kind;
 use crate::elf::Firmware;
 use crate::esc::{self, Esc};
 use crate::stored;
-use crate::wires::{Digest, Fault, Gap, Latency, Pins, Run, Wires};
+use crate::wires::{Digest, Fault, Gap, Hung, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
 /// Registers of all ports of either processor: first address, and first one beyond (RM0433 table 8, RM0090 table 1).
@@ -62,6 +62,11 @@ const NOISE: u64 = 0x5A5A_5A5A;
 const HEADER: u64 = 64;
 const SPAWNED: u64 = 1;
 const QUEUED: u64 = 1 << 8;
+
+/// Code that fills the stack: `push {r0-r7, lr}`, over and over.
+const RECURSION: u64 = 0xE7FD_B5FF;
+/// Where it is put: bytes before the end of the RAM, where no image has statics.
+const SPARE: u64 = 0x1000;
 
 /// How the board is emulated.
 #[derive(Clone, Copy, Debug)]
@@ -111,11 +116,16 @@ impl Emulator {
             erases: BTreeMap::new(),
             cached: 0,
             tasks: firmware.tasks.clone(),
+            flash: firmware.board.flash,
+            spare: firmware.board.ram.last().map_or(0, |(_, end)| end - SPARE),
             impossible: Vec::new(),
             dark: false,
             escs: std::array::from_fn(|_| Esc::new(line)),
             servos: [0.0; 4],
             resets: 0,
+            high: [false; 4],
+            still: None,
+            hung: None,
             latency: Latency::default(),
             digest: Digest::default(),
             pulses: Vec::new(),
@@ -221,6 +231,7 @@ fn run<C: Chip>(
         instructions,
         escs: world.escs.map(|esc| esc.stats),
         latency_us: world.latency,
+        hung: world.hung,
         erases: world.erases,
         outputs: world.outputs.found,
         servos: world.servos,
@@ -290,6 +301,10 @@ struct World {
     cached: u32,
     /// Addresses of the tasks.
     tasks: BTreeMap<String, u64>,
+    /// Flash: first address, and first one beyond.
+    flash: (u64, u64),
+    /// A word of RAM that no image uses.
+    spare: u64,
     /// Faults that this part cannot have.
     impossible: Vec<Fault>,
     /// The supply is down.
@@ -297,6 +312,11 @@ struct World {
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
+    /// Levels of the motors' pins.
+    high: PerArm<bool>,
+    /// Since when the processor stands still, ns.
+    still: Option<u64>,
+    hung: Option<Hung>,
     latency: Latency,
     digest: Digest,
     /// Data-ready pulses of the last milliseconds, ns.
@@ -326,7 +346,7 @@ impl World {
         if let Some(imu) = board.imu() {
             self.pulses.append(&mut imu.pulsed);
         }
-        self.motors(board, now);
+        self.motors(board, now, resets.first().map_or(u64::MAX, |(at, _)| *at));
         let servos = board
             .servo_pulses(now)
             .map(|pulse| pulse.map_or(0.0, |(width, _)| width as f64 * 1e-3));
@@ -349,14 +369,25 @@ impl World {
         }
     }
 
-    fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos) {
+    /// Takes the motors' edges until `now`, in a millisecond in which the processor was reset at `reset`.
+    fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos, reset: u64) {
         let driven = board.motors_driven(now);
         for edge in board.motor_edges() {
             self.digest
                 .word(edge.at << 3 | (edge.channel as u64) << 1 | u64::from(edge.high));
+            if edge.at >= reset {
+                self.started();
+            }
             // A pin that is not the timer's does not show what the timer does.
             if !driven[edge.channel] {
                 continue;
+            }
+            self.high[edge.channel] = edge.high;
+            if let (Some(since), Some(hung)) = (self.still, &mut self.hung) {
+                hung.high = self.high;
+                if edge.high {
+                    hung.last_rise_us = edge.at.saturating_sub(since) as f64 * 1e-3;
+                }
             }
             let Some(began) = self.escs[edge.channel].edge(edge.at, edge.high) else {
                 continue;
@@ -372,6 +403,15 @@ impl World {
             }
         }
         self.pulses.retain(|at| at + MS > now.0);
+        if reset <= now.0 {
+            self.started();
+        }
+    }
+
+    /// The processor was reset: its pins float, and it stands still no more.
+    fn started(&mut self) {
+        self.still = None;
+        self.high = [false; 4];
     }
 
     /// Breaks or mends something; false where the emulator cannot.
@@ -400,6 +440,7 @@ impl World {
                 host.hold(false);
             }
             Fault::TaskHung(name) => return self.hang(name, host),
+            Fault::StackOverflow(name) => return self.overflow(name, host),
             Fault::CorruptParameters => {
                 let (first, end) = self.params;
                 let mut words = (first..end).step_by(4);
@@ -414,7 +455,14 @@ impl World {
             Fault::FirstRevision => board.chip.age(),
             Fault::NoCrystal => board.chip.stop_clock(Clock::Crystal),
             Fault::NoPll => board.chip.stop_clock(Clock::Pll),
-            Fault::Hang(still) => host.hold(still),
+            Fault::Hang(still) => {
+                host.hold(still);
+                self.still = still.then_some(stop.at.0);
+                self.hung = still.then_some(Hung {
+                    last_rise_us: 0.0,
+                    high: self.high,
+                });
+            }
             Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
         }
         true
@@ -434,6 +482,22 @@ impl World {
             return false;
         };
         host.write(task + state, Width::W32, SPAWNED | QUEUED).is_ok()
+    }
+
+    /// Makes the function that runs a task one that fills the stack.
+    fn overflow(&self, name: &str, host: &mut dyn Host) -> bool {
+        let Some(task) = self.tasks.get(name) else {
+            return false;
+        };
+        // The only address of code in the executor's header.
+        let (first, end) = self.flash;
+        let code = |word: u64| word & 1 == 1 && (first..end).contains(&word);
+        let mut places = (0..HEADER).step_by(4).map(|place| task + place);
+        let place = places.find(|at| host.read(*at, Width::W32).is_ok_and(code));
+        place.is_some_and(|at| {
+            host.write(self.spare, Width::W32, RECURSION).is_ok()
+                && host.write(at, Width::W32, self.spare | 1).is_ok()
+        })
     }
 
     /// Puts the world's side on the wires.

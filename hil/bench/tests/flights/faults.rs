@@ -165,6 +165,58 @@ fn a_task_that_hangs_ends_in_a_reset_by_the_watchdog_with_the_motors_stopped() {
     );
 }
 
+/// In a hover a task's stack overflows: the motors stop, and the next start tells why.
+fn overflows(task: &'static str, small: bool) {
+    let trouble = Trouble::Board(Fault::StackOverflow(task));
+    let troubles = [(AIRBORNE, trouble)];
+    let scenario = hover(AIRBORNE + 0.6);
+    let flight = if small {
+        fly_small(&scenario, &troubles)
+    } else {
+        fly(&scenario, 1.0, &troubles)
+    };
+    assert!(running(&flight, AIRBORNE - 1.0, AIRBORNE), "{}", log(&flight));
+    let [(ms, cause)] = &flight.board.resets[..] else {
+        panic!("{:?}\n{}", flight.board.resets, log(&flight))
+    };
+    // At once: the watchdog would have taken 0.2 s.
+    let after = ms * 1e-3 - AIRBORNE;
+    assert!((0.0..0.1).contains(&after), "{after} {cause}");
+    for text in [
+        "start after Software",
+        "the run before ended with: stack overflow",
+        "restarted after a fault",
+    ] {
+        assert!(
+            told(&flight, AIRBORNE, text).is_some(),
+            "{text}\n{}",
+            log(&flight)
+        );
+    }
+    assert!(
+        stopped(&flight, AIRBORNE + after + 0.1, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+    // The emulator lets accesses to nothing pass and lists them, so the fault comes when a return address is read there.
+    let bottom = if small { 0x1000_0000 } else { 0x2000_0000 };
+    let below = |gap: &&sophie_bench::wires::Gap| {
+        let at = u64::from_str_radix(gap.at.trim_start_matches("0x"), 16).unwrap_or_default();
+        gap.kind == "unmapped" && (bottom - (16 << 20)..bottom).contains(&at)
+    };
+    assert_eq!(flight.gaps.iter().find(|gap| !below(gap)), None);
+}
+
+#[test]
+fn a_stack_that_overflows_stops_the_motors_and_is_told_at_the_next_start() {
+    overflows("control", false);
+}
+
+#[test]
+fn so_does_one_of_the_background_on_the_small_board() {
+    overflows("report", true);
+}
+
 #[test]
 fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() {
     let troubles = [

@@ -10,9 +10,9 @@ mod faults;
 mod images;
 mod missions;
 mod outputs;
-
 mod pads;
 mod parameters;
+mod pulses;
 mod silicon;
 
 use std::path::{Path, PathBuf};

@@ -1,0 +1,88 @@
+//! The handler of a hard fault, which everything ends in that the processor cannot do: an address where nothing is, an
+//! undefined instruction, a stack that has overflowed.
+//!
+//! It trusts no stack. One that overflows has left its memory, and a handler that went on there would fault itself, at
+//! the highest priority: the processor then locks up, without a message and with the motors as they are.
+
+use core::arch::naked_asm;
+
+use crate::end_of_run;
+
+/// Bytes of a frame that the processor stacks without floats.
+const FRAME: u32 = 32;
+/// In the fault status: what was to be stacked could not be, by memory protection and by the bus (ARMv7-M, B3.2.15).
+const STACKING: u32 = 1 << 4 | 1 << 12;
+
+/// The address that a memory fault tells is valid, and that of a bus fault.
+const MEMORY_ADDRESS: u32 = 1 << 7;
+const BUS_ADDRESS: u32 = 1 << 15;
+
+/// The entry in the vector table: takes what it can from the frame, and begins the whole stack anew.
+///
+/// Nobody returns to what is on it. The frame's own words are read first, and only where the stack is.
+///
+/// # Safety
+/// Only the processor calls it.
+#[unsafe(no_mangle)]
+#[unsafe(naked)]
+#[allow(non_snake_case, reason = "the name that the vector table wants")]
+unsafe extern "C" fn HardFault() -> ! {
+    naked_asm!(
+        // The next float instruction would save float registers on the old stack: called off (FPCCR.LSPACT).
+        "movw r3, #0xEF34",
+        "movt r3, #0xE000",
+        "ldr r2, [r3]",
+        "bic r2, #1",
+        "str r2, [r3]",
+        "mrs r0, msp",
+        "movs r1, #0",
+        "movs r2, #0",
+        "movw r3, #:lower16:_stack_end",
+        "movt r3, #:upper16:_stack_end",
+        "cmp r0, r3",
+        "blo 2f",
+        "movw r3, #:lower16:_stack_start",
+        "movt r3, #:upper16:_stack_start",
+        "subs r3, {frame}",
+        "cmp r0, r3",
+        "bhi 2f",
+        "ldr r1, [r0, #24]",
+        "ldr r2, [r0, #20]",
+        "2:",
+        "movw r3, #:lower16:_stack_start",
+        "movt r3, #:upper16:_stack_start",
+        "msr msp, r3",
+        "b {told}",
+        frame = const FRAME,
+        told = sym told,
+    )
+}
+
+/// Ends the run. `stacked` is where the frame lies, `pc` and `lr` are what it says of the fault, if it can be read.
+extern "C" fn told(stacked: u32, pc: u32, lr: u32) -> ! {
+    unsafe extern "C" {
+        static _stack_start: u32;
+        static _stack_end: u32;
+    }
+    let (end, start) = (&raw const _stack_end as u32, &raw const _stack_start as u32);
+    // Configurable fault status, HardFault status, and the addresses that memory and bus faults tell (ARMv7-M, B3.2).
+    let [cfsr, hfsr, mmfar, bfar] =
+        [0xE000_ED28, 0xE000_ED2C, 0xE000_ED34, 0xE000_ED38_usize].map(|address| {
+            // SAFETY: registers of the core, always there and readable without side effects.
+            unsafe { (address as *const u32).read_volatile() }
+        });
+    if cfsr & STACKING != 0 || !(end..=start - FRAME).contains(&stacked) {
+        end_of_run(format_args!(
+            "stack overflow: it ends at {end:#010x} and has {} bytes",
+            start - end
+        ))
+    }
+    let address = match cfsr {
+        _ if cfsr & BUS_ADDRESS != 0 => bfar,
+        _ if cfsr & MEMORY_ADDRESS != 0 => mmfar,
+        _ => 0,
+    };
+    end_of_run(format_args!(
+        "hard fault at {pc:#010x}, called from {lr:#010x}: CFSR {cfsr:#010x} HFSR {hfsr:#010x} address {address:#010x}"
+    ))
+}
