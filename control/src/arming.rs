@@ -71,11 +71,13 @@ pub enum Refusal {
     FsrRange3,
     /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
     FsrRange4,
+    /// The data-ready line of the vehicle's inertial sensor is silent; the part is read by the clock.
+    ImuLineSilent,
 }
 
 impl Refusal {
     /// Every reason, the most basic first.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::BrownOut,
         Self::Storing,
         Self::StorageUnreadable,
@@ -84,6 +86,7 @@ impl Refusal {
         Self::ImuWrongPart,
         Self::ImuSelfTest,
         Self::ImuCorrupt,
+        Self::ImuLineSilent,
         Self::RcLost,
         Self::ImuStale,
         Self::NotCalibrated,
@@ -126,6 +129,7 @@ impl Refusal {
             Self::ImuAbsent => "inertial sensor absent",
             Self::ImuWrongPart => "inertial sensor: wrong chip",
             Self::ImuCorrupt => "inertial sensor garbled",
+            Self::ImuLineSilent => "inertial sensor: data-ready line silent",
             Self::ImuSelfTest => "inertial sensor: self-test failed",
             Self::ArmSensor1 => "arm sensor 1 silent",
             Self::ArmSensor2 => "arm sensor 2 silent",

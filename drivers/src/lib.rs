@@ -37,6 +37,7 @@ pub mod fram;
 pub mod i2c_lines;
 pub mod icm20689;
 pub mod icm42688p;
+pub mod line_watch;
 pub mod mounting;
 pub mod param_store;
 pub mod pwm_timing;

@@ -44,8 +44,15 @@ pub trait Imu {
     /// A silent or garbled sensor.
     async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError>;
 
-    /// When the newest sample that was read was ready in the part: its data-ready, not the end of the transfer.
+    /// When the newest sample that was read was ready in the part: its data-ready, not the end of the transfer. While the
+    /// line is silent, when the part was asked for it.
     fn ready_at(&self) -> Instant;
+
+    /// The data-ready line is silent for good, or again and again, and samples are read by the clock. A port without such
+    /// a line has none that could be silent.
+    fn line_silent(&self) -> bool {
+        false
+    }
 }
 
 /// The four inertial sensors at the arm tips, one BNO055 each.

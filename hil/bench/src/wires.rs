@@ -29,6 +29,8 @@ pub struct Wires {
 pub enum Fault {
     /// The inertial sensor is unplugged (true) or plugged in again.
     ImuUnplugged(bool),
+    /// The data-ready line of the inertial sensor is cut (true) or joined again; its bus is sound.
+    DataReadyCut(bool),
     /// Bits flipped in the next word that the inertial sensor answers.
     ImuWord(u8),
     /// The sensor of this arm, 0 to 3, is unplugged (true) or plugged in again.

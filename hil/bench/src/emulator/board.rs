@@ -56,6 +56,13 @@ impl<C: Chip> Wired<C> {
         self.chip.silence_imu(self.pads.imu, silent);
     }
 
+    /// Cuts the inertial sensor's data-ready line, or joins it.
+    pub fn cut_data_ready(&mut self, cut: bool) {
+        if let Some(imu) = self.imu() {
+            imu.line_cut = cut;
+        }
+    }
+
     /// Flips `mask` in the next word that the inertial sensor answers.
     pub fn flip_imu_word(&mut self, mask: u64) {
         self.chip.flip_imu_word(self.pads.imu, mask);
