@@ -63,7 +63,7 @@ pub struct Board {
 /// The defaults with what is stored in their place. The first thing that a board does: the ports are built by it, and
 /// the motors' pins are held low until then.
 async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
-    let mut params = Params::default();
+    let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
     (params, loaded)
 }

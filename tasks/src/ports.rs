@@ -70,18 +70,16 @@ pub trait ArmImus {
 pub struct AnalogFrame {
     /// Dividers of the four pressure sensors.
     pub fsr: PerArm<u16>,
-    /// Divider of the battery voltage.
+    /// Pin of the battery voltage.
     pub battery_voltage: u16,
-    /// Output of the current sensor.
+    /// Pin of the current sensor.
     pub battery_current: u16,
 }
 
 /// The analog inputs.
 pub trait Analog {
-    /// Scale of the battery voltage input, V per count.
+    /// Voltage at a pin for each count, V. What it means of the battery, the parameters say.
     fn volts_per_count(&self) -> f32;
-    /// Scale of the battery current input, A per count.
-    fn amps_per_count(&self) -> f32;
 
     /// Converts all inputs once.
     ///
@@ -154,6 +152,11 @@ pub enum StorageError {
 
 /// Where parameters outlive power.
 pub trait Storage {
+    /// The parameters of this board when nothing is stored.
+    fn defaults(&self) -> &'static Params {
+        &Params::DEFAULT
+    }
+
     /// Puts what is stored into `params`, which holds the defaults. Blank storage changes nothing and is no fault.
     async fn load(&mut self, params: &mut Params) -> Loaded;
 

@@ -14,7 +14,7 @@ pub struct Wires {
     pub imu: Vec<([f64; 3], [f64; 3])>,
     /// Gravity at each arm's sensor, m/s², in the arm's axes: forward, right, down.
     pub arms: PerArm<[f64; 3]>,
-    /// Volts at the pads of pressure 1 to 4, and at the pins of battery voltage and battery current.
+    /// Volts at the pads of pressure 1 to 4, the battery's voltage (V) and its current (A).
     pub analog: [f64; 6],
     /// Words from the radio's receiver, the parity on top where its line has one.
     pub receiver: Vec<u16>,

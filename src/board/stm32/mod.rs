@@ -37,7 +37,7 @@ mod storage;
 mod tone;
 mod watchdog;
 
-pub use analog::{AnalogInputs, BatteryScale};
+pub use analog::AnalogInputs;
 pub use clock::start;
 pub use data_ready::{ReadyLine, ReadyStamp};
 pub use escs::{EscTimer, EscTimers, pull_low};

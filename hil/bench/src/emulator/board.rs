@@ -91,9 +91,9 @@ impl<C: Chip> Wired<C> {
         self.chip.brown_out();
     }
 
-    /// Puts volts on the analog inputs: the pads of pressure 1 to 4, the pins of battery voltage and current.
-    pub fn set_analog(&mut self, volts: [f64; 6]) {
-        for (channel, millivolts) in self.pads.analog(volts) {
+    /// Puts the pads of pressure 1 to 4 on so many volts, and the battery's voltage and current on its own.
+    pub fn set_analog(&mut self, values: [f64; 6]) {
+        for (channel, millivolts) in self.pads.analog(values) {
             self.chip.set_input(channel, millivolts);
         }
     }
