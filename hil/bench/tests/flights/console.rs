@@ -21,11 +21,16 @@ fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     said
 }
 
-/// The battery's voltage in what `status` said.
-fn volts(said: &str) -> f64 {
-    let (_, rest) = said.split_once("battery ").unwrap_or_else(|| panic!("{said}"));
-    let (volts, _) = rest.split_once(" V").unwrap_or_else(|| panic!("{said}"));
-    volts.parse().unwrap_or_else(|_| panic!("{said}"))
+/// The battery's voltage by `status`, once it has been measured.
+fn volts(user: &mut TcpStream) -> f64 {
+    loop {
+        let said = type_in(user, "status\r", "up for");
+        if let Some((_, rest)) = said.split_once("\nbattery ")
+            && let Some((volts, _)) = rest.split_once(" V, ")
+        {
+            return volts.parse().unwrap_or_else(|_| panic!("{said}"));
+        }
+    }
 }
 
 /// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
@@ -58,13 +63,13 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     let user = std::thread::spawn(move || {
         let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
         wake(&mut user);
-        let before = volts(&type_in(&mut user, "status\r", "up for"));
+        let before = volts(&mut user);
         type_in(&mut user, "set infill 8\r", "in force after save");
         type_in(&mut user, "set battery_divider 22\r", "in force after save");
         type_in(&mut user, "save\r", "save\r\n");
         // The board restarts: what is typed meanwhile is lost.
         wake(&mut user);
-        let after = volts(&type_in(&mut user, "status\r", "up for"));
+        let after = volts(&mut user);
         (type_in(&mut user, "list infill\r", "4 to 10 %"), before, after)
     });
     let scenario = Scenario {
