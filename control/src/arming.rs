@@ -77,11 +77,13 @@ pub enum Refusal {
     Silicon,
     /// The memory for parameters holds another firmware's data: the defaults are in force.
     StorageForeign,
+    /// The data-ready line of the vehicle's inertial sensor is silent; the part is read by the clock.
+    ImuLineSilent,
 }
 
 impl Refusal {
     /// Every reason, the most basic first.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::BrownOut,
         Self::BrownOutLevel,
         Self::Silicon,
@@ -93,6 +95,7 @@ impl Refusal {
         Self::ImuWrongPart,
         Self::ImuSelfTest,
         Self::ImuCorrupt,
+        Self::ImuLineSilent,
         Self::RcLost,
         Self::ImuStale,
         Self::NotCalibrated,
@@ -135,6 +138,7 @@ impl Refusal {
             Self::ImuAbsent => "inertial sensor absent",
             Self::ImuWrongPart => "inertial sensor: wrong chip",
             Self::ImuCorrupt => "inertial sensor garbled",
+            Self::ImuLineSilent => "inertial sensor: data-ready line silent",
             Self::ImuSelfTest => "inertial sensor: self-test failed",
             Self::ArmSensor1 => "arm sensor 1 silent",
             Self::ArmSensor2 => "arm sensor 2 silent",

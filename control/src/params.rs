@@ -17,7 +17,7 @@ pub struct ParamInfo {
     pub max: f32,
     /// The only values allowed; empty where every value of the range is.
     pub choices: &'static [f32],
-    /// Value of a fresh board.
+    /// Value of a fresh board, where the board itself has no other.
     pub default: f32,
     /// What it is and where the default comes from.
     pub doc: &'static str,
@@ -82,7 +82,7 @@ macro_rules! params {
 
         impl Default for Params {
             fn default() -> Self {
-                Self { $( $name: $default, )+ }
+                Self::DEFAULT
             }
         }
 
@@ -96,6 +96,9 @@ macro_rules! params {
         ];
 
         impl Params {
+            /// The table's defaults; a board may have others for what is soldered to it.
+            pub const DEFAULT: Self = Self { $( $name: $default, )+ };
+
             /// The whole table, in the order of the fields.
             pub const TABLE: &'static [ParamInfo] = &ROWS;
 
@@ -359,6 +362,10 @@ params! {
     /// Full scale of the FSR of arm 4.
     fsr_scale_4 = 1.0, "1", 0.05 ..= 20.0;
 
+    /// Battery voltage over the voltage at its pin; the default is the board's own (docs/boards.md).
+    battery_divider = 11.0, "1", 1.0 ..= 60.0;
+    /// Battery current for each volt at the current sensor's pin; the default is the board's own (docs/boards.md).
+    battery_a_per_v = 40.0, "A/V", 1.0 ..= 1000.0;
     /// Battery voltage of full thrust: the curve is normalised to it (4S nominal).
     battery_nominal = 14.8, "V", 6.0 ..= 52.0;
     /// Usable charge of a fresh flight battery (paper, 1800 mAh).

@@ -35,7 +35,7 @@ pub enum Fault {
         /// What it holds, in the bits that matter.
         found: u8,
     },
-    /// Data-ready stopped although the registers are well: the interrupt line, or a part that hangs.
+    /// No sample is ready, neither by the line nor by the part's own status, although its registers are well.
     Silent,
     /// A sample of nothing but zeros or ones, or the mark of "no sample yet".
     Garbled,

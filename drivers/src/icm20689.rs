@@ -26,6 +26,7 @@ mod reg {
     pub const FIFO_EN: u8 = 0x23;
     pub const INT_PIN_CFG: u8 = 0x37;
     pub const INT_ENABLE: u8 = 0x38;
+    pub const INT_STATUS: u8 = 0x3A;
     pub const ACCEL_XOUT_H: u8 = 0x3B;
     pub const USER_CTRL: u8 = 0x6A;
     pub const PWR_MGMT_1: u8 = 0x6B;
@@ -163,6 +164,9 @@ impl Chip for Config {
     // Accelerometer, temperature, gyroscope lie together.
     const DATA: u8 = reg::ACCEL_XOUT_H;
     const WATCH_FROM: u8 = reg::SMPLRT_DIV;
+    // Set with each sample, cleared by reading it: INT_RD_CLEAR is 0.
+    const SAMPLE_READY: Setting = Setting::bits(0, reg::INT_STATUS, 0x01, 0x01);
+    const LINE: &'static [u8] = &[reg::INT_PIN_CFG, reg::INT_ENABLE];
     const RESET: &'static [Setting] = &[Setting::all(reg::PWR_MGMT_1, 0x80)];
     // Up to 100 ms from power to register access; PX4 gives a reset as much.
     const RESET_TIME: Duration = Duration::from_millis(100);

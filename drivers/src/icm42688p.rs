@@ -20,6 +20,7 @@ mod reg {
     pub const INT_CONFIG: u8 = 0x14;
     pub const FIFO_CONFIG: u8 = 0x16;
     pub const TEMP_DATA1: u8 = 0x1D;
+    pub const INT_STATUS: u8 = 0x2D;
     pub const INTF_CONFIG0: u8 = 0x4C;
     pub const INTF_CONFIG1: u8 = 0x4D;
     pub const PWR_MGMT0: u8 = 0x4E;
@@ -226,6 +227,9 @@ impl Chip for Config {
     // Temperature, accelerometer, gyroscope lie together (§13.1).
     const DATA: u8 = reg::TEMP_DATA1;
     const WATCH_FROM: u8 = reg::PWR_MGMT0;
+    // Set with each sample, cleared by reading it: INT_CONFIG0 is left at its reset value (§14.21, §14.49).
+    const SAMPLE_READY: Setting = Setting::bits(0, reg::INT_STATUS, 0x08, 0x08);
+    const LINE: &'static [u8] = &[reg::INT_CONFIG, reg::INT_CONFIG1, reg::INT_SOURCE0];
     const RESET: &'static [Setting] = &[Setting::all(reg::DEVICE_CONFIG, 0x01)];
     // 1 ms (§14.1), doubled.
     const RESET_TIME: Duration = Duration::from_millis(2);

@@ -6,6 +6,7 @@
 //! | module | part or protocol | port |
 //! |---|---|---|
 //! | [`icm42688p`], [`icm20689`] over [`spi_imu`] | inertial sensor of the vehicle, SPI | `Imu` |
+//! | [`line_watch`] | a data-ready line that falls silent | used by [`spi_imu`] |
 //! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
 //! | [`i2c_lines`] | a held I2C bus is freed | used by the board's buses |
 //! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
@@ -38,6 +39,7 @@ pub mod i2c_lines;
 pub mod i2c_timing;
 pub mod icm20689;
 pub mod icm42688p;
+pub mod line_watch;
 pub mod mounting;
 pub mod param_store;
 pub mod pwm_timing;

@@ -2,7 +2,7 @@
 //!
 //! One item of a `sequential_storage` map holds the whole set, so that a save that power cuts short leaves either the
 //! old set or the new one, never a mixture. An item is a tag and one record of eight bytes for each parameter that
-//! differs from its default: the FNV-1a hash of its name and the bits of its value. Firmware with other parameters
+//! differs from the board's default: the FNV-1a hash of its name and the bits of its value. Firmware with other parameters
 //! still reads those that it knows.
 //!
 //! Saves are appended; a page is erased when the log comes round to it. Loading never writes and never erases, whatever
@@ -35,6 +35,7 @@ pub const BUFFER: usize = LONGEST.next_multiple_of(32);
 pub struct ParamStore<F> {
     flash: F,
     range: Range<u32>,
+    defaults: &'static Params,
 }
 
 /// What was found in the flash.
@@ -45,11 +46,11 @@ struct Found {
 }
 
 impl Found {
-    /// True when this is just what a save of `params` leaves.
-    fn holds(&self, params: &Params) -> bool {
+    /// True when this is just what a save of `params` leaves where they would else be `defaults`.
+    fn holds(&self, params: &Params, defaults: &Params) -> bool {
         let same = match &self.set {
-            Some(set) => set.refused == 0 && set.params == *params,
-            None => *params == Params::default(),
+            Some(set) => set.refused == 0 && set.over(defaults) == *params,
+            None => params == defaults,
         };
         same && !self.damaged
     }
@@ -60,7 +61,16 @@ impl<F: NorFlash> ParamStore<F> {
     ///
     /// A range that does not suit shows as a storage that cannot be read or written.
     pub const fn new(flash: F, range: Range<u32>) -> Self {
-        Self { flash, range }
+        Self {
+            flash,
+            range,
+            defaults: &Params::DEFAULT,
+        }
+    }
+
+    /// The same for a board with these defaults: what is like them is not stored.
+    pub fn with_defaults(self, defaults: &'static Params) -> Self {
+        Self { defaults, ..self }
     }
 
     /// Gives the flash back.
@@ -120,7 +130,7 @@ impl<F: NorFlash> ParamStore<F> {
         // The place of the one key is remembered, or moving a page's items would search it once for each of them.
         let cache = Cache::new(Uncached, Uncached, ArrayKeyPointers::<(), 1>::new());
         let mut map = MapStorage::<(), _, _>::new(&mut self.flash, config, cache);
-        map.store_item(buffer, &(), &Set::of(*params))
+        map.store_item(buffer, &(), &Set::of(*params, self.defaults))
             .await
             .map_err(|e| match e {
                 // A log that is full makes room for one set by itself, or its flash does not hold the marks.
@@ -131,6 +141,10 @@ impl<F: NorFlash> ParamStore<F> {
 }
 
 impl<F: NorFlash> Storage for ParamStore<F> {
+    fn defaults(&self) -> &'static Params {
+        self.defaults
+    }
+
     async fn load(&mut self, params: &mut Params) -> Loaded {
         let mut buffer = [0; BUFFER];
         let found = self.find(&mut buffer).await;
@@ -142,7 +156,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
                 ..Loaded::default()
             };
         };
-        *params = set.params;
+        *params = set.over(self.defaults);
         Loaded {
             taken: set.taken,
             refused: set.refused,
@@ -154,13 +168,13 @@ impl<F: NorFlash> Storage for ParamStore<F> {
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
         let mut buffer = [0; BUFFER];
         let found = self.find(&mut buffer).await;
-        if found.holds(params) {
+        if found.holds(params, self.defaults) {
             return Ok(());
         }
         // Appending keeps the old set until the new one is complete; where no old one can be read there is none to keep.
         if found.set.is_some() || !found.damaged {
             match self.append(params, &mut buffer).await {
-                Ok(()) if self.find(&mut buffer).await.holds(params) => return Ok(()),
+                Ok(()) if self.find(&mut buffer).await.holds(params, self.defaults) => return Ok(()),
                 Err(StorageError::Full) => return Err(StorageError::Full),
                 // What was there is in the way.
                 Ok(()) | Err(StorageError::Broken) => (),
@@ -172,7 +186,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
             .await
             .map_err(|_| StorageError::Broken)?;
         self.append(params, &mut buffer).await?;
-        if self.find(&mut buffer).await.holds(params) {
+        if self.find(&mut buffer).await.holds(params, self.defaults) {
             Ok(())
         } else {
             Err(StorageError::Broken)

@@ -397,3 +397,39 @@ proptest! {
         prop_assert!(params == Params::default() || (0..saves).any(|i| params == at(i)));
     }
 }
+
+#[test]
+fn a_board_with_defaults_of_its_own_stores_what_differs_from_those() {
+    static CUAV: Params = Params {
+        battery_divider: 18.0,
+        battery_a_per_v: 24.0,
+        ..Params::DEFAULT
+    };
+    let flash = Flash::<4, 4096>::blank(2);
+    let (bytes, range) = (flash.clone(), flash.range());
+    run(async move {
+        let mut store = ParamStore::new(bytes.clone(), range).with_defaults(&CUAV);
+        assert_eq!(*store.defaults(), CUAV);
+        let mut params = CUAV;
+        // Blank, and saved as it is: nothing is written, the board's own stay.
+        assert_eq!(store.load(&mut params).await, sound(0));
+        assert_eq!(params, CUAV);
+        assert_eq!(store.save(&CUAV).await, Ok(()));
+        assert_eq!(bytes.0.borrow().steps, 0);
+        // The table's defaults differ from the board's: they are kept.
+        let other = Params {
+            infill: 8.0,
+            battery_a_per_v: 40.0,
+            ..CUAV
+        };
+        assert_eq!(store.save(&other).await, Ok(()));
+        assert_eq!(store.load(&mut params).await, sound(2));
+        assert_eq!(params, other);
+        let steps = bytes.0.borrow().steps;
+        assert_eq!(store.save(&other).await, Ok(()));
+        assert_eq!(bytes.0.borrow().steps, steps, "the same again costs nothing");
+        assert_eq!(store.save(&CUAV).await, Ok(()));
+        assert_eq!(store.load(&mut params).await, sound(0));
+        assert_eq!(params, CUAV);
+    });
+}

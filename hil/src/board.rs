@@ -19,7 +19,7 @@ use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
 
 use crate::plant::{Actuators, Plant, STEP};
-use crate::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
+use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::Imu;
@@ -212,11 +212,7 @@ impl ports::ArmImus for Port {
 
 impl ports::Analog for Port {
     fn volts_per_count(&self) -> f32 {
-        VOLTS_PER_COUNT as f32
-    }
-
-    fn amps_per_count(&self) -> f32 {
-        AMPS_PER_COUNT as f32
+        PIN_VOLTS_PER_COUNT as f32
     }
 
     async fn read(&mut self) -> Result<AnalogFrame, PortError> {

@@ -312,6 +312,7 @@ fn what_breaks_in_flight_does_not_end_it() {
 fn whatever_start_up_and_storage_report_refuses_arming_while_it_holds() {
     for reason in [
         Refusal::ImuSelfTest,
+        Refusal::ImuLineSilent,
         Refusal::BrownOut,
         Refusal::StorageUnreadable,
         Refusal::StorageFull,
@@ -325,4 +326,25 @@ fn whatever_start_up_and_storage_report_refuses_arming_while_it_holds() {
         v.links.report(reason, false);
         assert!(tries_to_arm(&mut v), "{reason:?}: {}", v.reason());
     }
+}
+
+#[test]
+fn a_silent_data_ready_line_refuses_arming_and_brings_a_flight_down_with_its_rotors_turning() {
+    let text = Refusal::ImuLineSilent.text();
+    let mut v = ready();
+    v.imu.1.set(true);
+    v.run(20);
+    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, text));
+    assert!(!tries_to_arm(&mut v));
+    v.imu.1.set(false);
+    v.run(20);
+    assert_eq!(v.reason(), "");
+    assert!(tries_to_arm(&mut v), "{}", v.reason());
+
+    let mut v = Vehicle::flying();
+    v.imu.1.set(true);
+    let took = v.until(30, |v| v.mode() == Mode::Failsafe);
+    assert!(took <= 12, "{took} ms");
+    assert_eq!(v.reason(), text);
+    assert!(v.motors_run() && v.fed_over(10) == 1);
 }

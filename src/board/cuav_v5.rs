@@ -38,9 +38,9 @@ use sophie_tasks::parameters;
 use super::Board;
 use super::cortex_m::{enable_data_cache, enable_instruction_cache};
 use super::stm32::{
-    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip,
-    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, Tone, console_lines, hold, look, pull_low,
-    receiver_line, spi_config,
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, ReadyLine,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, console_lines, hold, look, pull_low, receiver_line,
+    spi_config,
 };
 
 /// Name in the log.
@@ -50,6 +50,13 @@ pub const NAME: &str = "cuav-v5";
 const PARAM_SECTORS: u32 = 0;
 /// The data cache is on: all RAM that is used is DTCM, which is never cached.
 pub const DATA_CACHE: bool = true;
+/// The parameters' defaults of this board: divider and current sensor of the power module that CUAV sells with it
+/// (ArduPilot `fmuv5`: 18.0 and 24.0).
+static DEFAULTS: Params = Params {
+    battery_divider: 18.0,
+    battery_a_per_v: 24.0,
+    ..Params::DEFAULT
+};
 
 /// The vehicle's inertial sensor.
 pub type ImuPort = Icm20689<DmaChip, ReadyLine>;
@@ -310,18 +317,14 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
     ];
-    // Divider and current sensor of the power module, as PX4 measured them.
-    let scale = BatteryScale {
-        divider: 18.1,
-        amps_per_volt: 36.37,
-    };
-    AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
 }
 
 fn storage(p: StorageParts) -> StoragePort {
     // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
     let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, spi_config(20_000_000));
-    BoardStorage::new(Fram::new(Selected::new(BlockingAsync::new(bus), p.select)))
+    let memory = Fram::new(Selected::new(BlockingAsync::new(bus), p.select));
+    BoardStorage::new(memory, &DEFAULTS)
 }
 
 fn lights(p: LightParts) -> LightsPort {

@@ -38,9 +38,9 @@ use sophie_tasks::parameters;
 
 use super::Board;
 use super::stm32::{
-    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    ReadyLine, ReadyStamp, Selected, ServoPairs, ThisChip, accelerator, console_lines, look, pull_low,
-    receiver_line, spi_config,
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
+    ReadyStamp, Selected, ServoPairs, ThisChip, accelerator, console_lines, look, pull_low, receiver_line,
+    spi_config,
 };
 
 /// Name in the log.
@@ -48,6 +48,13 @@ pub const NAME: &str = "f405";
 
 /// Flash sectors that hold parameters, a bit each.
 const PARAM_SECTORS: u32 = 1 << 1 | 1 << 2;
+/// The parameters' defaults of this board: 1:11 and 40 A/V, as on most boards of this kind.
+static DEFAULTS: Params = Params {
+    battery_divider: 11.0,
+    battery_a_per_v: 40.0,
+    ..Params::DEFAULT
+};
+
 /// The vehicle's inertial sensor.
 pub type ImuPort = SpiImu<part::Config, DmaChip, ReadyLine>;
 /// The arms' inertial sensors.
@@ -281,16 +288,11 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
     ];
-    // Divider 1:11 and 40 A/V, as on most boards of this kind.
-    let scale = BatteryScale {
-        divider: 11.0,
-        amps_per_volt: 40.0,
-    };
-    AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
 }
 
 fn storage(p: StorageParts) -> StoragePort {
-    BoardStorage::new(ParamFlash::new(p.flash))
+    BoardStorage::new(ParamFlash::new(p.flash), &DEFAULTS)
 }
 
 fn lights(p: LightParts) -> LightsPort {

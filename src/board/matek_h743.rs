@@ -33,9 +33,8 @@ use sophie_tasks::parameters;
 use super::Board;
 use super::cortex_m::enable_instruction_cache;
 use super::stm32::{
-    AnalogInputs, ArmBus, BatteryScale, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash,
-    ReadyLine, ReadyStamp, Selected, ServoTimer, ThisChip, console_lines, look, pull_low, receiver_line,
-    spi_config,
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
+    ReadyStamp, Selected, ServoTimer, ThisChip, console_lines, look, pull_low, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -45,6 +44,12 @@ pub const NAME: &str = "matek-h743";
 const PARAM_SECTORS: u32 = 1 << 14 | 1 << 15;
 /// The data cache stays off: statics lie where DMA writes, and that memory is cached where nobody says otherwise.
 pub const DATA_CACHE: bool = false;
+/// The parameters' defaults of this board: its divider of 1:11 and its sensor of 40 A/V, as the maker states.
+static DEFAULTS: Params = Params {
+    battery_divider: 11.0,
+    battery_a_per_v: 40.0,
+    ..Params::DEFAULT
+};
 
 /// The vehicle's inertial sensor.
 pub type ImuPort = Icm42688p<DmaChip, ReadyLine>;
@@ -285,16 +290,11 @@ fn analog(p: AnalogParts) -> AnalogPort {
         p.battery_voltage.degrade_adc(),
         p.battery_current.degrade_adc(),
     ];
-    // Divider 1:11 and 40 A/V as the maker states.
-    let scale = BatteryScale {
-        divider: 11.0,
-        amps_per_volt: 40.0,
-    };
-    AnalogInputs::new(p.adc, channels, p.dma, Irqs, scale)
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
 }
 
 fn storage(p: StorageParts) -> StoragePort {
-    BoardStorage::new(ParamFlash::new(p.flash))
+    BoardStorage::new(ParamFlash::new(p.flash), &DEFAULTS)
 }
 
 fn lights(p: LightParts) -> LightsPort {

@@ -82,9 +82,10 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
             continue;
         }
         until_battery = BATTERY_EVERY;
-        let voltage = f32::from(frame.battery_voltage) * port.volts_per_count();
-        let current = f32::from(frame.battery_current) * port.amps_per_count();
-        if let Some(r) = battery.step(&links.params, voltage, current, battery_dt) {
+        let (params, volts) = (&links.params, port.volts_per_count());
+        let voltage = f32::from(frame.battery_voltage) * (volts * params.battery_divider);
+        let current = f32::from(frame.battery_current) * (volts * params.battery_a_per_v);
+        if let Some(r) = battery.step(params, voltage, current, battery_dt) {
             let message = Battery {
                 voltage: r.voltage,
                 current: r.current,

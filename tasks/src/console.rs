@@ -109,7 +109,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
             Command::Set(name, value) => self.set(name, value).await,
             Command::Reset(name) => self.reset(name).await,
             Command::Defaults => {
-                self.params = Params::default();
+                self.params = *self.storage.defaults();
                 self.changes().await;
             }
             Command::Changes => self.changes().await,

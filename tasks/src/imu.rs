@@ -28,7 +28,8 @@ const ERRORS: u8 = 3;
 const CLEAN: Duration = Duration::from_millis(100);
 
 /// Serves the inertial sensor for ever. A failed or silent read sends nothing: readers see the age. What the part
-/// answers in place of samples is reported against arming; that it says nothing at all shows as age.
+/// answers in place of samples is reported against arming, and a data-ready line that its port does without; that it
+/// says nothing at all shows as age.
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let rate_hz = port.rate_hz();
     let mut filter = ImuFilter::new(links.params.gyro_cutoff, rate_hz);
@@ -54,7 +55,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         };
         let started = Instant::now();
         let released = port.ready_at();
-        faults.good(links, started);
+        faults.good(links, started, port.line_silent());
         let filtered = filter.batch(batch.iter().map(|reading| (reading.gyro, reading.accel - bias)));
         newest = filtered.newest.unwrap_or(newest);
         collected += f32::from(filtered.count);
@@ -85,6 +86,8 @@ struct Faults {
     /// When the last error came, and how many have been counted.
     errors: Option<(Instant, u8)>,
     reported: Option<Refusal>,
+    /// The data-ready line was reported as silent.
+    line_silent: bool,
 }
 
 impl Faults {
@@ -107,7 +110,11 @@ impl Faults {
 
     /// Every sound batch comes here, and mostly there is nothing to do.
     #[inline]
-    fn good(&mut self, links: &Links, at: Instant) {
+    fn good(&mut self, links: &Links, at: Instant, line_silent: bool) {
+        if line_silent != self.line_silent {
+            self.line_silent = line_silent;
+            links.report(Refusal::ImuLineSilent, line_silent);
+        }
         if let Some((last, _)) = self.errors
             && at.saturating_duration_since(last) >= CLEAN
         {

@@ -8,7 +8,7 @@ use crate::ports::{Loaded, Storage};
 
 /// The parameters to fly with, and what reading them gave. Called once, before [`Links::new`].
 pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
-    let mut params = Params::default();
+    let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
     (params, loaded)
 }

@@ -45,8 +45,15 @@ pub trait Imu {
     /// A silent or garbled sensor.
     async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError>;
 
-    /// When the newest sample that was read was ready in the part: its data-ready, not the end of the transfer.
+    /// When the newest sample that was read was ready in the part: its data-ready, not the end of the transfer. While the
+    /// line is silent, when the part was asked for it.
     fn ready_at(&self) -> Instant;
+
+    /// The data-ready line is silent for good, or again and again, and samples are read by the clock. A port without such
+    /// a line has none that could be silent.
+    fn line_silent(&self) -> bool {
+        false
+    }
 }
 
 /// The four inertial sensors at the arm tips, one BNO055 each.
@@ -64,18 +71,16 @@ pub trait ArmImus {
 pub struct AnalogFrame {
     /// Dividers of the four pressure sensors.
     pub fsr: PerArm<u16>,
-    /// Divider of the battery voltage.
+    /// Pin of the battery voltage.
     pub battery_voltage: u16,
-    /// Output of the current sensor.
+    /// Pin of the current sensor.
     pub battery_current: u16,
 }
 
 /// The analog inputs.
 pub trait Analog {
-    /// Scale of the battery voltage input, V per count.
+    /// Voltage at a pin for each count, V. What it means of the battery, the parameters say.
     fn volts_per_count(&self) -> f32;
-    /// Scale of the battery current input, A per count.
-    fn amps_per_count(&self) -> f32;
 
     /// Converts all inputs once.
     ///
@@ -150,6 +155,11 @@ pub enum StorageError {
 
 /// Where parameters outlive power.
 pub trait Storage {
+    /// The parameters of this board when nothing is stored.
+    fn defaults(&self) -> &'static Params {
+        &Params::DEFAULT
+    }
+
     /// Puts what is stored into `params`, which holds the defaults. Blank storage changes nothing and is no fault.
     async fn load(&mut self, params: &mut Params) -> Loaded;
 

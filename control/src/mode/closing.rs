@@ -1,6 +1,7 @@
 //! On the pipe: closing, proof of grip, spooling down, holding, spooling up, opening.
 
 use super::Inputs;
+use super::failsafe::Cause;
 use super::hold::{Hold, Spool, held, hopeless};
 use super::lean::LEANS;
 use super::logic::{ModeLogic, State};
@@ -61,6 +62,8 @@ impl ModeLogic {
             match lost {
                 // Held where the belly alone would not stay: a poor grip is then better than none.
                 Some(_) if holds && self.leans_too_far() => self.note(LEANS),
+                // A vehicle that may not fly stays where its arms hold it.
+                Some(_) if holds && self.dangers.line_silent() => self.note(Cause::LineSilent.text()),
                 // The arms carry and the rotors may stand: these spool up first, as on a release.
                 Some(why) if holds && spool.down => {
                     self.note(why);
@@ -132,7 +135,7 @@ impl ModeLogic {
         let throttle_set = (RELEASE_THROTTLE_MIN..=self.params.perch_throttle_max).contains(&s.throttle);
         let asked = !s.perch_switch && self.perch_seen_on && throttle_set;
         match i.motion {
-            Some(m) if asked && !self.dangers.battery_critical() && !self.leans_too_far() => {
+            Some(m) if asked && self.dangers.landing().is_none() && !self.leans_too_far() => {
                 let (roll, pitch, _) = m.q.to_euler();
                 let hold = Hold { roll, pitch, arms };
                 State::Releasing {
@@ -178,8 +181,8 @@ impl ModeLogic {
             Some("radio lost")
         } else if i.motion.is_none() {
             Some("inertial sensor silent")
-        } else if self.dangers.battery_critical() {
-            Some("battery critical")
+        } else if let Some(landing) = self.dangers.landing() {
+            Some(landing.text())
         } else if asked && !self.perch_seen_on {
             Some("turn perch switch on first")
         } else if asked && i.sticks.is_some_and(|s| !s.arm_switch) {
@@ -211,7 +214,8 @@ impl ModeLogic {
             return self.slide_off(i, Grasp::Closed(hold.arms));
         }
         let again = sticks.is_none_or(|s| s.perch_switch && self.perch_seen_off);
-        if again && kept && !opening {
+        let grounded = !opening && self.dangers.line_silent();
+        if (again || grounded) && kept && !opening {
             // The gears hold what they held all along; the loops could only close from where the drives are not.
             return State::Perched {
                 grasp: Grasp::Kept(hold.arms),
@@ -219,10 +223,11 @@ impl ModeLogic {
         }
         let share = clamp(share + dt / SPOOL_TIME, 0.0, 1.0);
         // The lean may have grown since the rotors began to lift: the arms stay closed.
-        let refused = !opening && share >= 1.0 && self.leans_too_far();
-        if refused {
+        let leans = !opening && share >= 1.0 && self.leans_too_far();
+        if leans {
             self.note(LEANS);
         }
+        let refused = leans || grounded;
         if (again || refused) && !released {
             // Radio lost: hold on. A later release takes a new turn of the switch.
             self.perch_seen_on = again && sticks.is_some();

@@ -131,6 +131,7 @@ impl ModeLogic {
             State::Failsafe(cause) => cause.text(),
             _ if self.dangers.battery_critical() => Cause::BatteryCritical.text(),
             _ if i.sticks.is_none() && self.state.mode() != Mode::Disarmed => "radio lost",
+            _ if note.is_empty() && self.dangers.line_silent() => Cause::LineSilent.text(),
             _ => note,
         }
     }

@@ -96,12 +96,12 @@ impl ModeLogic {
         if !self.clear(escape) {
             return State::Escaping(escape);
         }
-        match i.sticks {
-            None => State::Failsafe(Cause::RadioLost),
-            Some(_) if self.dangers.battery_critical() => State::Failsafe(Cause::BatteryCritical),
-            Some(s) if self.takes_over(&s) => State::Flight,
-            Some(_) if self.since >= TAKE_OVER_TIME => State::Failsafe(Cause::NotTakenOver),
-            Some(_) => State::Escaping(escape),
+        match (i.sticks, self.dangers.landing()) {
+            (None, _) => State::Failsafe(Cause::RadioLost),
+            (Some(_), Some(landing)) => State::Failsafe(landing),
+            (Some(s), _) if self.takes_over(&s) => State::Flight,
+            (Some(_), _) if self.since >= TAKE_OVER_TIME => State::Failsafe(Cause::NotTakenOver),
+            (Some(_), _) => State::Escaping(escape),
         }
     }
 

@@ -7,9 +7,11 @@
 //! | inertial sensor silent | stop | stop | stop, arms stay closed |
 //! | tipped over | stop | stop | stop, arms stay closed |
 //! | battery critical | - | sink, the pilot still steers | told; release refused |
+//! | data-ready line silent | stop | sink, the pilot still steers | told; release refused |
 
 use super::logic::{ModeLogic, State};
 use super::{Inputs, Setpoint, demand};
+use crate::arming::Refusal;
 use crate::math::{clamp, deg};
 use crate::params::Params;
 use crate::rc::{StickMode, Sticks};
@@ -44,6 +46,8 @@ pub enum Cause {
     RadioLost,
     /// The battery is at its end.
     BatteryCritical,
+    /// The inertial sensor is read by the clock, its data-ready line being silent.
+    LineSilent,
     /// The vehicle has left the pipe by itself and nobody has taken the throttle since.
     NotTakenOver,
 }
@@ -54,6 +58,7 @@ impl Cause {
         match self {
             Self::RadioLost => "radio lost",
             Self::BatteryCritical => "battery critical",
+            Self::LineSilent => Refusal::ImuLineSilent.text(),
             Self::NotTakenOver => "throttle not taken over",
         }
     }
@@ -65,6 +70,8 @@ pub struct Dangers {
     imu: Held,
     tipped: Held,
     battery: Held,
+    /// The inertial sensor's data-ready line is silent; the port has waited long enough before it said so.
+    line_silent: bool,
     /// Share of the weight taken away to see whether something carries it, 0..1.
     probe: f32,
 }
@@ -78,10 +85,26 @@ impl Dangers {
         self.tipped.step(tipped, dt);
         self.battery
             .step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
+        self.line_silent = i.hardware.contains(Refusal::ImuLineSilent);
     }
 
     pub(super) fn battery_critical(&self) -> bool {
         self.battery.time() >= BATTERY_TIME
+    }
+
+    pub(super) fn line_silent(&self) -> bool {
+        self.line_silent
+    }
+
+    /// Why the vehicle must come down while the pilot still steers, and may not leave a pipe: the more pressing first.
+    pub(super) fn landing(&self) -> Option<Cause> {
+        if self.battery_critical() {
+            Some(Cause::BatteryCritical)
+        } else if self.line_silent {
+            Some(Cause::LineSilent)
+        } else {
+            None
+        }
     }
 
     fn stop(&self, sticks: Option<Sticks>) -> Option<&'static str> {
@@ -146,8 +169,10 @@ impl ModeLogic {
             return self.stop(cause.text());
         }
         match (cause, sticks) {
-            (Cause::RadioLost | Cause::NotTakenOver, Some(_)) if self.dangers.battery_critical() => {
-                State::Failsafe(Cause::BatteryCritical)
+            (Cause::RadioLost | Cause::NotTakenOver, Some(_))
+                if let Some(landing) = self.dangers.landing() =>
+            {
+                State::Failsafe(landing)
             }
             (Cause::NotTakenOver, Some(s)) if self.takes_over(&s) => State::Flight,
             (Cause::NotTakenOver, None) => State::Failsafe(Cause::RadioLost),

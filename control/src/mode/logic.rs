@@ -230,12 +230,15 @@ impl ModeLogic {
             }
             (State::Disarmed { grasp }, Some(s)) => self.disarmed(i, s, grasp),
             (State::Armed | State::Landed, None) => self.stop("radio lost"),
+            (State::Armed | State::Landed, _) if self.dangers.line_silent() => {
+                self.stop(Cause::LineSilent.text())
+            }
             (State::Armed | State::Landed, Some(_)) if self.gesture == Some(Gesture::Disarm) => self.stop(""),
             (State::Armed | State::Landed, Some(s)) if !low(&s) => State::Flight,
             (State::Armed, Some(_)) if self.since >= IDLE_MAX => self.stop("idle for too long"),
             (State::Landed, Some(_)) if self.since >= LANDED_TIME => self.stop(""),
-            (State::Flight, Some(_)) if self.dangers.battery_critical() => {
-                State::Failsafe(Cause::BatteryCritical)
+            (State::Flight, Some(_)) if let Some(landing) = self.dangers.landing() => {
+                State::Failsafe(landing)
             }
             (State::Flight, Some(s)) if low(&s) && self.support.grounded() => State::Landed,
             (State::Flight, Some(s)) => self.touch(i, s).unwrap_or(State::Flight),

@@ -272,3 +272,137 @@ fn an_empty_battery_lands_under_the_pilots_sticks() {
     r.carried = true;
     r.expect(6.0, Mode::Disarmed);
 }
+
+impl Rig {
+    /// The data-ready line of the inertial sensor falls silent, or comes back.
+    fn line_silent(&mut self, silent: bool) {
+        let reason = Refusal::ImuLineSilent;
+        let hardware = self.inputs.hardware;
+        self.inputs.hardware = if silent {
+            hardware.with(reason)
+        } else {
+            hardware.without(reason)
+        };
+    }
+}
+
+const LINE_SILENT: &str = "inertial sensor: data-ready line silent";
+
+#[test]
+fn a_silent_data_ready_line_refuses_arming_and_stops_rotors_that_idle() {
+    let mut r = Rig::armed();
+    r.line_silent(true);
+    r.step();
+    assert_eq!(
+        (r.out.mode, r.out.rotors, r.out.reason),
+        (Mode::Disarmed, Setpoint::Stop, LINE_SILENT)
+    );
+    r.run(0.5);
+    r.sticks().yaw = 1.0;
+    r.expect(12.0, Mode::Disarmed);
+    assert_eq!(r.out.reason, LINE_SILENT);
+    assert!(r.out.refusals.iter().eq([Refusal::ImuLineSilent]));
+    // Back again, it takes a new gesture.
+    r.line_silent(false);
+    r.expect(0.5, Mode::Disarmed);
+    assert_eq!(r.out.reason, "");
+    r.sticks().yaw = 0.0;
+    r.run(0.1);
+    r.sticks().yaw = 1.0;
+    r.expect(1.1, Mode::Armed);
+}
+
+#[test]
+fn a_silent_data_ready_line_lands_under_the_pilots_sticks_even_if_it_comes_back() {
+    for comes_back in [false, true] {
+        let mut r = Rig::flying();
+        r.line_silent(true);
+        r.expect(0.02, Mode::Failsafe);
+        assert_eq!(r.out.reason, LINE_SILENT);
+        assert!(r.out.rotors.spin());
+        r.line_silent(!comes_back);
+        r.sticks().roll = 0.5;
+        r.run(1.0);
+        assert!(matches!(r.out.rotors, Setpoint::Angle { roll, .. } if roll > 0.3));
+        let share = r.out.rotors.thrust() / (r.params.mass * GRAVITY);
+        assert!((0.84..1.0).contains(&share), "{share}");
+        r.expect(5.0, Mode::Failsafe);
+        r.carried = true;
+        r.expect(6.0, Mode::Disarmed);
+        assert_eq!(r.out.reason, LINE_SILENT);
+    }
+    // The radio is lost as well, and comes back: down all the same.
+    let mut r = Rig::flying();
+    let sticks = r.inputs.sticks.take();
+    r.expect(0.5, Mode::Failsafe);
+    r.line_silent(true);
+    r.inputs.sticks = sticks;
+    r.expect(0.5, Mode::Failsafe);
+    assert_eq!(r.out.reason, LINE_SILENT);
+    // An empty battery is the more pressing.
+    let mut r = Rig::flying();
+    r.inputs.battery = Some(12.0);
+    r.expect(BATTERY_TIME + 0.1, Mode::Failsafe);
+    r.line_silent(true);
+    r.expect(0.5, Mode::Failsafe);
+    assert_eq!(r.out.reason, "battery critical");
+}
+
+#[test]
+fn a_silent_data_ready_line_on_the_pipe_stays_there() {
+    // Touched or closing: the grip is finished, and the rotors stop on it.
+    for make in [Rig::touched as fn() -> Rig, Rig::clamping] {
+        let mut r = make();
+        r.line_silent(true);
+        r.expect(CONTACT_TIME + 0.05, Mode::Clamping);
+        assert_eq!(r.out.reason, LINE_SILENT);
+        r.grip(true, false, ArmState::Holding, 950.0);
+        r.run(0.5);
+        // Called off when the arms hold already: no.
+        r.sticks().perch_switch = false;
+        r.expect(3.0, Mode::Perched);
+        assert_eq!((r.out.reason, r.out.rotors), (LINE_SILENT, Setpoint::Stop));
+    }
+    // Perched: no spool-up.
+    let mut r = Rig::perched();
+    r.line_silent(true);
+    r.sticks().perch_switch = false;
+    r.sticks().throttle = 0.3;
+    for _ in 0..1000 {
+        r.step();
+        assert_eq!((r.out.mode, r.out.rotors), (Mode::Perched, Setpoint::Stop));
+        assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
+    }
+    assert_eq!(r.out.reason, LINE_SILENT);
+    // The line is back, the wish still stands.
+    r.line_silent(false);
+    r.expect(0.1, Mode::Releasing);
+    // Spooling up with the arms still closed: back onto the grip, until the switch is turned again.
+    r.run(0.5);
+    assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
+    r.line_silent(true);
+    r.expect(0.1, Mode::Clamping);
+    r.expect(4.0, Mode::Perched);
+    assert_eq!(r.out.reason, LINE_SILENT);
+    // Arms that open already are let go of: the rotors carry, and the failsafe brings the vehicle down.
+    let mut r = Rig::releasing();
+    r.run(2.0);
+    assert_eq!(r.out.tendons, ClampCommand::Release);
+    r.line_silent(true);
+    r.grip(false, true, ArmState::Free, 0.0);
+    r.carried = false;
+    for _ in 0..100 {
+        r.step();
+        assert!(r.out.rotors.spin());
+    }
+    assert_eq!((r.out.mode, r.out.reason), (Mode::Failsafe, LINE_SILENT));
+    // A closing without grip is given up as ever, and ends in the failsafe.
+    let mut r = Rig::clamping();
+    r.line_silent(true);
+    r.grip(false, false, ArmState::ForceLimited, 500.0);
+    r.expect(HOPELESS_TIME + 0.1, Mode::Escaping);
+    r.grip(false, true, ArmState::Free, 0.0);
+    r.carried = false;
+    r.expect(3.0, Mode::Failsafe);
+    assert_eq!(r.out.reason, LINE_SILENT);
+}

@@ -30,7 +30,11 @@ pub const fn hash(name: &str) -> u32 {
 
 /// A set of parameters.
 pub(super) struct Set {
-    pub params: Params,
+    params: Params,
+    /// What was written as a set: the parameters that differ from these.
+    defaults: &'static Params,
+    /// What was read as a set: the rows of the table that had a record.
+    given: Rows,
     /// Records taken over.
     pub taken: u16,
     /// Records of unknown names, or of values that are not allowed.
@@ -38,14 +42,34 @@ pub(super) struct Set {
 }
 
 impl Set {
-    pub(super) const fn of(params: Params) -> Self {
+    pub(super) const fn of(params: Params, defaults: &'static Params) -> Self {
         Self {
             params,
+            defaults,
+            given: 0,
             taken: 0,
             refused: 0,
         }
     }
+
+    /// What was read, and for everything else the defaults.
+    pub(super) fn over(&self, defaults: &Params) -> Params {
+        let mut params = *defaults;
+        for (at, row) in (0u32..).zip(Params::TABLE) {
+            if self.given >> at & 1 != 0
+                && let Some(value) = self.params.get(row.name)
+            {
+                // Allowed: it was set in the same way when it was read.
+                let _ = params.set(row.name, value);
+            }
+        }
+        params
+    }
 }
+
+/// A bit for each row of the table.
+type Rows = u128;
+const _: () = assert!(Params::TABLE.len() <= Rows::BITS as usize, "a row has no bit");
 
 impl<'a> Value<'a> for Set {
     /// Writes the tag and a record for each parameter that differs from its default.
@@ -55,8 +79,9 @@ impl<'a> Value<'a> for Set {
         *tag = TAG;
         let mut length = TAG.len();
         for row in Params::TABLE {
-            let value = self.params.get(row.name).unwrap_or(row.default);
-            if value.to_bits() == row.default.to_bits() {
+            let [value, default] =
+                [&self.params, self.defaults].map(|set| set.get(row.name).unwrap_or(row.default));
+            if value.to_bits() == default.to_bits() {
                 continue;
             }
             let (name, tail) = rest.split_first_chunk_mut().ok_or(SHORT)?;
@@ -77,17 +102,19 @@ impl<'a> Value<'a> for Set {
         else {
             return Err(SerializationError::InvalidFormat);
         };
-        let mut set = Self::of(Params::default());
+        let mut set = Self::of(Params::DEFAULT, &Params::DEFAULT);
         for &[h0, h1, h2, h3, v0, v1, v2, v3] in records {
             let (name, value) = (
                 u32::from_le_bytes([h0, h1, h2, h3]),
                 f32::from_le_bytes([v0, v1, v2, v3]),
             );
-            let row = Params::TABLE.iter().find(|row| hash(row.name) == name);
-            if row.is_some_and(|row| set.params.set(row.name, value).is_ok()) {
-                set.taken += 1;
-            } else {
-                set.refused += 1;
+            let mut rows = (0u32..).zip(Params::TABLE);
+            match rows.find(|(_, row)| hash(row.name) == name) {
+                Some((at, row)) if set.params.set(row.name, value).is_ok() => {
+                    set.given |= 1 << at;
+                    set.taken += 1;
+                }
+                _ => set.refused += 1,
             }
         }
         Ok((set, buffer.len()))

@@ -26,8 +26,10 @@ pub enum Failure {
     Ones,
     /// The bus peripheral reports an error.
     Bus,
-    /// Data-ready says nothing.
+    /// No sample is ready, whoever is asked.
     Mute,
+    /// The data-ready line is cut; the part samples on.
+    LineCut,
     /// The sample registers stand still.
     Frozen,
 }
@@ -52,6 +54,12 @@ pub struct Part {
     /// Response to the self-test over the factory's, per axis: gyro, then accel.
     pub health: [f32; 6],
     noise: u32,
+    /// What the part's clock makes each period longer, µs.
+    pub skew: i64,
+    /// When the status was read last, µs; a sample since then sets its bit.
+    status_read: u64,
+    /// Samples that were read, by the number of the period in which they were ready.
+    pub samples: Vec<u64>,
     powered_at: Instant,
     busy_until: Instant,
 }
@@ -74,6 +82,9 @@ impl Part {
             accel: [0.0, 0.0, 1.0],
             health: [1.0; 6],
             noise: 1,
+            skew: 0,
+            status_read: 0,
+            samples: Vec::new(),
             powered_at: Instant::from_ticks(0),
             busy_until: Instant::from_ticks(0),
         };
@@ -132,13 +143,34 @@ impl Part {
         }
     }
 
+    /// Number of the period under way: that of the newest sample.
+    fn newest(&self) -> Option<u64> {
+        self.period().map(|period| Instant::now().as_micros() / period)
+    }
+
+    /// The status register, which clears when it is read.
+    fn status(&mut self) -> u8 {
+        let now = Instant::now().as_micros();
+        let last = std::mem::replace(&mut self.status_read, now);
+        let ready = self.period().is_some_and(|period| now / period > last / period);
+        match self.kind {
+            Kind::Icm42688p => u8::from(ready) << 3,
+            Kind::Icm20689 => u8::from(ready),
+        }
+    }
+
     /// Time between two pulses of data-ready, µs; `None` while there are none.
-    fn period(&self) -> Option<u64> {
+    fn pulses(&self) -> Option<u64> {
+        self.period().filter(|_| self.failure != Failure::LineCut)
+    }
+
+    /// Time between two samples, µs; `None` while there are none.
+    pub fn period(&self) -> Option<u64> {
         let b0 = &self.banks[0];
         if !self.on() || self.failure == Failure::Mute {
             return None;
         }
-        match self.kind {
+        let nominal: Option<u64> = match self.kind {
             Kind::Icm42688p if b0[0x65] & 0x08 != 0 => match b0[0x4F] & 0x0F {
                 3 => Some(125),
                 4 => Some(250),
@@ -151,7 +183,8 @@ impl Part {
                 _ => Some(1000 * (1 + u64::from(b0[0x19]))),
             },
             _ => None,
-        }
+        };
+        nominal?.checked_add_signed(self.skew)
     }
 
     /// Fresh counts in the sample registers.
@@ -209,6 +242,10 @@ impl Part {
 
     fn read(&mut self, register: u8) -> u8 {
         let bank = if register == 0x76 { 0 } else { self.bank };
+        let status = if self.kind == Kind::Icm42688p { 0x2D } else { 0x3A };
+        if (bank, register) == (0, status) {
+            return self.status();
+        }
         self.banks[usize::from(bank)][usize::from(register)]
     }
 
@@ -305,6 +342,8 @@ impl SpiDevice for Bus {
                 None => {
                     if byte & 0x7F == if part.kind == Kind::Icm42688p { 0x1D } else { 0x3B } {
                         part.convert();
+                        let newest = part.newest();
+                        part.samples.extend(newest);
                     }
                     address = Some(byte);
                     0
@@ -344,7 +383,7 @@ impl SpiDevice for Bus {
 impl data_ready::DataReady for DataReady {
     async fn next(&mut self) -> Instant {
         loop {
-            let period = self.0.borrow().period();
+            let period = self.0.borrow().pulses();
             let Some(period) = period else {
                 Timer::after_micros(100).await;
                 continue;
@@ -352,7 +391,7 @@ impl data_ready::DataReady for DataReady {
             let now = Instant::now().as_micros();
             let at = Instant::from_micros((now / period + 1) * period);
             Timer::at(at).await;
-            if self.0.borrow().period().is_some() {
+            if self.0.borrow().pulses().is_some() {
                 return at;
             }
         }

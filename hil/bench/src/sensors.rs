@@ -7,7 +7,7 @@ use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_hil::plant::{Plant, STEP};
-use sophie_hil::sensors::analog::{AMPS_PER_COUNT, BatteryInputs};
+use sophie_hil::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
 use sophie_hil::sensors::arm_imu::{self, ArmImu};
 use sophie_hil::sensors::fsr::{FsrBreak, FsrSensor};
 use sophie_hil::sensors::imu::Imu;
@@ -17,8 +17,6 @@ use crate::wires::Wires;
 /// Reference of the converter, V, and its full scale in the counts that the models speak.
 const REFERENCE: f64 = 3.3;
 const FULL_SCALE: f64 = 4095.0;
-/// Current sensor of the Matek H743, A/V.
-const AMPS_PER_VOLT: f64 = 40.0;
 /// Plant steps in a millisecond.
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
 
@@ -111,9 +109,9 @@ impl Sensors {
             *volt = volts(*counts);
         }
         let voltage = plant.battery_voltage() * self.battery_share;
-        let voltage = volts(self.battery.voltage(voltage, &mut self.rng));
+        let voltage = f64::from(self.battery.voltage(voltage, &mut self.rng)) * VOLTS_PER_COUNT;
         let amps = f64::from(self.battery.current(plant.battery_current(), &mut self.rng)) * AMPS_PER_COUNT;
         let [.., v, i] = &mut wires.analog;
-        (*v, *i) = (voltage, amps / AMPS_PER_VOLT);
+        (*v, *i) = (voltage, amps);
     }
 }

@@ -14,7 +14,7 @@ pub struct Wires {
     pub imu: Vec<([f64; 3], [f64; 3])>,
     /// Gravity at each arm's sensor, m/s², in the arm's axes: forward, right, down.
     pub arms: PerArm<[f64; 3]>,
-    /// Volts at the pads of pressure 1 to 4, and at the pins of battery voltage and battery current.
+    /// Volts at the pads of pressure 1 to 4, the battery's voltage (V) and its current (A).
     pub analog: [f64; 6],
     /// Words from the radio's receiver, the parity on top where its line has one.
     pub receiver: Vec<u16>,
@@ -29,6 +29,8 @@ pub struct Wires {
 pub enum Fault {
     /// The inertial sensor is unplugged (true) or plugged in again.
     ImuUnplugged(bool),
+    /// The data-ready line of the inertial sensor is cut (true) or joined again; its bus is sound.
+    DataReadyCut(bool),
     /// Bits flipped in the next word that the inertial sensor answers.
     ImuWord(u8),
     /// The pad that this pressure sensor, 0 to 3, hangs on has a divider of one to so many before its pin.

@@ -5,10 +5,12 @@ use rand_distr::{Distribution, StandardNormal, Uniform};
 
 /// Reference of the converter, V.
 const REFERENCE: f64 = 3.3;
+/// Volts at a pin per count.
+pub const PIN_VOLTS_PER_COUNT: f64 = REFERENCE / 4095.0;
 /// Ratio of the voltage divider (reference board: 10 kΩ over 1 kΩ).
 const DIVIDER: f64 = 11.0;
-/// Current of the sensor's full scale, A (reference board: 66.7 A/V).
-const FULL_CURRENT: f64 = 220.0;
+/// Current for each volt of the sensor, A/V (reference board).
+const AMPS_PER_VOLT: f64 = 40.0;
 /// Largest error of the divider and of the current sensor's gain.
 const GAIN_ERROR: (f64, f64) = (0.01, 0.03);
 /// Largest offset of the current sensor, A.
@@ -17,9 +19,9 @@ const OFFSET: f64 = 0.3;
 const NOISE: f64 = 2.0;
 
 /// Volts of battery per count.
-pub const VOLTS_PER_COUNT: f64 = REFERENCE * DIVIDER / 4095.0;
+pub const VOLTS_PER_COUNT: f64 = PIN_VOLTS_PER_COUNT * DIVIDER;
 /// Amperes per count.
-pub const AMPS_PER_COUNT: f64 = FULL_CURRENT / 4095.0;
+pub const AMPS_PER_COUNT: f64 = PIN_VOLTS_PER_COUNT * AMPS_PER_VOLT;
 
 /// The battery inputs of one board.
 #[derive(Clone, Debug)]

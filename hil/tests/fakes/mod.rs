@@ -90,9 +90,9 @@ impl Part {
     }
 }
 
-/// An inertial sensor of 1 kHz at rest, level.
+/// An inertial sensor of 1 kHz at rest, level; its data-ready line may be silent.
 #[derive(Clone, Default)]
-pub struct FakeImu(pub Part);
+pub struct FakeImu(pub Part, pub Rc<Cell<bool>>);
 
 impl Imu for FakeImu {
     fn rate_hz(&self) -> f32 {
@@ -111,6 +111,10 @@ impl Imu for FakeImu {
 
     fn ready_at(&self) -> Instant {
         Instant::now()
+    }
+
+    fn line_silent(&self) -> bool {
+        self.1.get()
     }
 }
 
@@ -133,16 +137,12 @@ pub struct FakeAnalog {
     pub frame: Rc<Cell<AnalogFrame>>,
 }
 
-/// Scale of the fake battery input, V per count.
+/// Battery voltage for each count by the parameters' default divider, V.
 pub const VOLTS_PER_COUNT: f32 = 0.01;
 
 impl Analog for FakeAnalog {
     fn volts_per_count(&self) -> f32 {
-        VOLTS_PER_COUNT
-    }
-
-    fn amps_per_count(&self) -> f32 {
-        0.01
+        VOLTS_PER_COUNT / Params::DEFAULT.battery_divider
     }
 
     async fn read(&mut self) -> Result<AnalogFrame, PortError> {

@@ -24,19 +24,9 @@ pub trait Scan {
     async fn scan(&mut self) -> Result<[u16; CHANNELS], PortError>;
 }
 
-/// What the battery's inputs mean.
-#[derive(Clone, Copy)]
-pub struct BatteryScale {
-    /// Battery voltage over the voltage at its pin.
-    pub divider: f32,
-    /// Battery current for each volt at its pin, A/V.
-    pub amps_per_volt: f32,
-}
-
 /// The analog inputs of a board.
 pub struct AnalogInputs<D: RxDma<ADC1>, I> {
     converter: Converter<D, I>,
-    scale: BatteryScale,
 }
 
 impl<D, I> AnalogInputs<D, I>
@@ -50,11 +40,9 @@ where
         channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],
         dma: Peri<'static, D>,
         irqs: I,
-        scale: BatteryScale,
     ) -> Self {
         Self {
             converter: Converter::new(adc, channels, dma, irqs, DMA_ANALOG.take()),
-            scale,
         }
     }
 }
@@ -65,11 +53,7 @@ where
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
 {
     fn volts_per_count(&self) -> f32 {
-        VOLTS_PER_COUNT * self.scale.divider
-    }
-
-    fn amps_per_count(&self) -> f32 {
-        VOLTS_PER_COUNT * self.scale.amps_per_volt
+        VOLTS_PER_COUNT
     }
 
     async fn read(&mut self) -> Result<AnalogFrame, PortError> {

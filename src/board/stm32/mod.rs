@@ -44,7 +44,7 @@ mod storage;
 mod tone;
 mod watchdog;
 
-pub use analog::{AnalogInputs, BatteryScale};
+pub use analog::AnalogInputs;
 pub use chip::ThisChip;
 pub use clock::{micros, start};
 pub use data_ready::{ReadyLine, ReadyStamp};

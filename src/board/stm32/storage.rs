@@ -11,15 +11,19 @@ use super::watchdog;
 pub struct BoardStorage<F>(ParamStore<F>);
 
 impl<F: NorFlash> BoardStorage<F> {
-    /// The storage that fills `memory`.
-    pub fn new(memory: F) -> Self {
+    /// The storage that fills `memory`, on a board with these defaults.
+    pub fn new(memory: F, defaults: &'static Params) -> Self {
         // Every memory here is shorter than 4 GiB.
         let all = 0..memory.capacity() as u32;
-        Self(ParamStore::new(memory, all))
+        Self(ParamStore::new(memory, all).with_defaults(defaults))
     }
 }
 
 impl<F: NorFlash> Storage for BoardStorage<F> {
+    fn defaults(&self) -> &'static Params {
+        self.0.defaults()
+    }
+
     async fn load(&mut self, params: &mut Params) -> Loaded {
         self.0.load(params).await
     }

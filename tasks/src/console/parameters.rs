@@ -26,7 +26,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     /// One parameter: mark, name, value, what is allowed.
     async fn row(&mut self, row: &ParamInfo) {
         let value = self.value(row);
-        let mark = if same(value, row.default) { ' ' } else { '*' };
+        let mark = if same(value, self.default(row)) { ' ' } else { '*' };
         let (name, value, allowed) = (row.name, Decimal(value), Allowed(row));
         self.out
             .line(format_args!("{mark} {name:19} {value:<9} {allowed}"))
@@ -36,7 +36,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     pub(super) async fn get(&mut self, name: &str) {
         let Some(row) = self.find(name).await else { return };
         self.row(row).await;
-        let default = Decimal(row.default);
+        let default = Decimal(self.default(row));
         self.out.line(format_args!("  default {default}")).await;
         self.out.bytes(b"  ").await;
         self.out.bytes(row.doc.trim().as_bytes()).await;
@@ -57,7 +57,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
 
     pub(super) async fn reset(&mut self, name: &str) {
         let Some(row) = self.find(name).await else { return };
-        self.put(row, row.default).await;
+        self.put(row, self.default(row)).await;
     }
 
     async fn put(&mut self, row: &ParamInfo, value: f32) {
@@ -113,6 +113,11 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         let force = |row: &ParamInfo| self.links.params.get(row.name).unwrap_or(row.default);
         let differs = |row: &&ParamInfo| !same(force(row), self.value(row));
         Params::TABLE.iter().filter(differs).count()
+    }
+
+    /// What it is on this board when nothing is stored.
+    fn default(&self, row: &ParamInfo) -> f32 {
+        self.storage.defaults().get(row.name).unwrap_or(row.default)
     }
 
     fn value(&self, row: &ParamInfo) -> f32 {

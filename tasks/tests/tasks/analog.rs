@@ -8,7 +8,7 @@ use sophie_tasks::ports::AnalogFrame;
 use crate::fakes::{Answer, FakeAnalog};
 use crate::rig::Rig;
 
-/// Light sensors, 16 V and 2.5 A: the fake's scales are 0.01 V and 0.01 A a count.
+/// Light sensors, 16 V and 9.09 A: by the default scales 0.01 V and 0.01 A · 40/11 a count.
 const FRAME: AnalogFrame = AnalogFrame {
     fsr: [0; 4],
     battery_voltage: 1600,
@@ -45,11 +45,38 @@ fn counts_become_volts_amperes_and_charge() {
     let (mut rig, _) = started();
     rig.run(20_000);
     let battery = rig.links.battery.fresh().unwrap();
-    assert!((battery.voltage - 16.0).abs() < 1e-3 && (battery.current - 2.5).abs() < 1e-3);
-    // 2.5 A for 20 s, less the first reading's 10 ms.
-    assert!((battery.used - 50.0).abs() < 0.1, "{}", battery.used);
+    assert!((battery.voltage - 16.0).abs() < 1e-3 && (battery.current - 9.0909).abs() < 1e-3);
+    // 9.09 A for 20 s, less the first reading's 10 ms.
+    assert!((battery.used - 181.8).abs() < 0.2, "{}", battery.used);
     // 16 V over 14.8 V.
     assert!((battery.ratio - 1.0811).abs() < 1e-3, "{}", battery.ratio);
+}
+
+#[test]
+fn the_batterys_scales_are_the_parameters() {
+    // What CUAV's power module has, in place of 11 and 40.
+    let params = Params {
+        battery_divider: 18.0,
+        battery_a_per_v: 24.0,
+        ..Params::default()
+    };
+    let (mut rig, port) = (Rig::with(params), FakeAnalog::default());
+    port.frame.set(FRAME);
+    rig.time.spawn(analog::run(rig.links, port.clone()));
+    rig.run(2000);
+    let battery = rig.links.battery.fresh().unwrap();
+    // The pins have 16 V / 11 and, by the counts, 250 / 1600 of it.
+    let volts = 16.0 / 11.0;
+    assert!(
+        (battery.voltage - 18.0 * volts).abs() < 1e-3,
+        "{}",
+        battery.voltage
+    );
+    assert!(
+        (battery.current - 24.0 * volts * 250.0 / 1600.0).abs() < 1e-3,
+        "{}",
+        battery.current
+    );
 }
 
 #[test]

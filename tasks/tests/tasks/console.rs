@@ -32,9 +32,15 @@ impl SerialOutput for Screen {
 struct Board {
     stored: Rc<Cell<Option<Params>>>,
     restarts: Rc<Cell<u32>>,
+    /// What the board's own defaults are; the table's without.
+    defaults: Option<&'static Params>,
 }
 
 impl Storage for Board {
+    fn defaults(&self) -> &'static Params {
+        self.defaults.unwrap_or(&Params::DEFAULT)
+    }
+
     async fn load(&mut self, _params: &mut Params) -> Loaded {
         Loaded::default()
     }
@@ -74,8 +80,12 @@ struct Bench {
 
 impl Bench {
     fn in_mode(mode: Mode) -> Self {
-        let rig = Rig::new();
-        let (line, screen, board) = (FakeLine::default(), Screen::default(), Board::default());
+        Self::of(mode, Board::default(), Params::DEFAULT)
+    }
+
+    fn of(mode: Mode, board: Board, params: Params) -> Self {
+        let rig = Rig::with(params);
+        let (line, screen) = (FakeLine::default(), Screen::default());
         rig.time.spawn(console::run(
             rig.links,
             line.clone(),
@@ -299,4 +309,42 @@ fn timing_has_a_line_for_every_task() {
     assert_eq!(said.len(), 1 + TaskId::COUNT);
     let row: Vec<&str> = said[7].split_whitespace().collect();
     assert_eq!(row, ["clamp", "100", "30", "250", "220", "500"]);
+}
+
+#[test]
+fn a_boards_own_defaults_are_its_defaults_on_every_command() {
+    static CUAV: Params = Params {
+        battery_divider: 18.0,
+        battery_a_per_v: 24.0,
+        ..Params::DEFAULT
+    };
+    let board = Board {
+        defaults: Some(&CUAV),
+        ..Board::default()
+    };
+    let mut bench = Bench::of(Mode::Disarmed, board, CUAV);
+    assert_eq!(
+        bench.says("list battery_a"),
+        ["  battery_a_per_v     24        1 to 1000 A/V"]
+    );
+    // The table's default is a value like any other here.
+    let changed = "battery_a_per_v 24 -> 40 A/V, in force after save";
+    assert_eq!(bench.says("set battery_a_per_v 40"), [changed]);
+    let said = bench.says("get battery_a_per_v");
+    assert_eq!(
+        said[..2],
+        ["* battery_a_per_v     40        1 to 1000 A/V", "  default 24"]
+    );
+    assert_eq!(
+        bench.says("reset battery_a_per_v"),
+        ["battery_a_per_v 40 -> 24 A/V, as in force"]
+    );
+    bench.says("set battery_divider 11");
+    bench.says("set infill 8");
+    assert_eq!(bench.says("defaults"), ["no changes"]);
+    for nonsense in ["0", "-18", "0.5", "61", "NaN", "inf"] {
+        let said = bench.says(&format!("set battery_divider {nonsense}"));
+        assert!(said[0].contains("1 to 60"), "{said:?}");
+    }
+    assert_eq!(bench.says("changes"), ["no changes"]);
 }

@@ -64,6 +64,13 @@ impl<C: Chip> Wired<C> {
         self.chip.silence_imu(self.pads.imu, silent);
     }
 
+    /// Cuts the inertial sensor's data-ready line, or joins it.
+    pub fn cut_data_ready(&mut self, cut: bool) {
+        if let Some(imu) = self.imu() {
+            imu.line_cut = cut;
+        }
+    }
+
     /// Flips `mask` in the next word that the inertial sensor answers.
     pub fn flip_imu_word(&mut self, mask: u64) {
         self.chip.flip_imu_word(self.pads.imu, mask);
@@ -92,13 +99,13 @@ impl<C: Chip> Wired<C> {
         self.chip.brown_out();
     }
 
-    /// Puts volts on the analog inputs: the pads of pressure 1 to 4, the pins of battery voltage and current.
-    pub fn set_analog(&mut self, volts: [f64; 6]) {
-        let mut volts = volts;
-        for (pad, divider) in volts.iter_mut().zip(self.dividers) {
+    /// Puts the pads of pressure 1 to 4 on so many volts, and the battery's voltage and current on its own.
+    pub fn set_analog(&mut self, values: [f64; 6]) {
+        let mut values = values;
+        for (pad, divider) in values.iter_mut().zip(self.dividers) {
             *pad /= divider;
         }
-        for (channel, millivolts) in self.pads.analog(volts) {
+        for (channel, millivolts) in self.pads.analog(values) {
             self.chip.set_input(channel, millivolts);
         }
     }

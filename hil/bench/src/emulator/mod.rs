@@ -425,6 +425,7 @@ impl World {
         let board = session.board_mut();
         match fault {
             Fault::ImuUnplugged(out) => board.silence_imu(out),
+            Fault::DataReadyCut(cut) => board.cut_data_ready(cut),
             Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
             Fault::PadDivider(sensor, divider) => board.divide(sensor, divider),
             Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),

@@ -101,8 +101,10 @@ pub struct Pads {
     pub arms: [(usize, u8); 4],
     /// The pads of pressure 1 to 4, as the board is made.
     pub pressure: [AnalogPad; 4],
-    /// Converter channels of battery voltage and current, whose dividers are the sensors'.
-    pub battery: [u8; 2],
+    /// The pad of the battery's voltage.
+    pub battery: AnalogPad,
+    /// The pin of the battery's current sensor: a volt is so many amperes.
+    pub current: AnalogPad,
     /// Serial port of the receiver.
     pub receiver: usize,
     /// Where the port sends to the receiver, with its alternate function; SBUS leaves it alone.
@@ -123,13 +125,12 @@ pub struct Pads {
 }
 
 impl Pads {
-    /// Channels of the converter and the millivolts at their pins, for volts at the pads of pressure 1 to 4 and at the
-    /// pins of battery voltage and current.
-    pub fn analog(&self, volts: [f64; 6]) -> impl Iterator<Item = (u8, u32)> {
-        let battery = self.battery.map(|channel| AnalogPad::bare(At(0, 0), channel));
-        let inputs = self.pressure.into_iter().chain(battery);
+    /// Channels of the converter and the millivolts at their pins, for volts at the pads of pressure 1 to 4, the battery's
+    /// voltage (V) and its current (A).
+    pub fn analog(&self, values: [f64; 6]) -> impl Iterator<Item = (u8, u32)> {
+        let inputs = self.pressure.into_iter().chain([self.battery, self.current]);
         inputs
-            .zip(volts)
+            .zip(values)
             .map(|(pad, volts)| (pad.channel, pad.millivolts(volts)))
     }
 

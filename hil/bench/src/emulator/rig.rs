@@ -150,7 +150,9 @@ impl Rig {
         } else {
             HALF
         };
-        board.set_analog([half; 6]);
+        // No battery.
+        let [battery, current] = [0.0; 2];
+        board.set_analog([half, half, half, half, battery, current]);
         for arm in 0..4 {
             if let Some(sensor) = board.arm(arm) {
                 sensor.up = UP;

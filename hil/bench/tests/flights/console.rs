@@ -21,6 +21,18 @@ fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     said
 }
 
+/// The battery's voltage by `status`, once it has been measured.
+fn volts(user: &mut TcpStream) -> f64 {
+    loop {
+        let said = type_in(user, "status\r", "up for");
+        if let Some((_, rest)) = said.split_once("\nbattery ")
+            && let Some((volts, _)) = rest.split_once(" V, ")
+        {
+            return volts.parse().unwrap_or_else(|_| panic!("{said}"));
+        }
+    }
+}
+
 /// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
 fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
@@ -51,12 +63,14 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     let user = std::thread::spawn(move || {
         let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
         wake(&mut user);
-        type_in(&mut user, "status\r", "up for");
+        let before = volts(&mut user);
         type_in(&mut user, "set infill 8\r", "in force after save");
+        type_in(&mut user, "set battery_divider 22\r", "in force after save");
         type_in(&mut user, "save\r", "save\r\n");
         // The board restarts: what is typed meanwhile is lost.
         wake(&mut user);
-        type_in(&mut user, "list infill\r", "4 to 10 %")
+        let after = volts(&mut user);
+        (type_in(&mut user, "list infill\r", "4 to 10 %"), before, after)
     });
     let scenario = Scenario {
         // Nobody arms: the board has the time that the session needs.
@@ -67,7 +81,7 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
     let told_to = |_: &sophie_bench::log::Line| ();
     let flight = flight::fly(&firmware, &scenario, 1.0, plan, sockets, told_to, &mut Silent).unwrap();
-    let listed = user.join().unwrap();
+    let (listed, before, after) = user.join().unwrap();
     // CRSF frames, one of them with the mode, marked as one that does not arm.
     let mut telemetry = Vec::new();
     listener.read_to_end(&mut telemetry).unwrap();
@@ -75,14 +89,17 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     let said = String::from_utf8_lossy(&telemetry);
     assert!(said.contains("!DISARMED"), "{said}");
     assert!(listed.contains("* infill") && listed.contains(" 8 "), "{listed}");
-    // One more than the calibration.
+    // A full battery behind 1:11, and by a divider that is believed to be twice as large.
+    assert!((16.0..17.0).contains(&before), "{before} V");
+    assert!((after / before - 2.0).abs() < 0.01, "{before} V, then {after} V");
+    // Two more than the calibration.
     assert!(
         told(&flight, 0.0, "parameters: 3 from storage").is_some(),
         "{}",
         log(&flight)
     );
     assert!(
-        told(&flight, 0.0, "parameters: 4 from storage").is_some(),
+        told(&flight, 0.0, "parameters: 5 from storage").is_some(),
         "{}",
         log(&flight)
     );

@@ -42,6 +42,66 @@ fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board
     );
 }
 
+/// Cuts the data-ready line of the inertial sensor.
+const CUT: Trouble = Trouble::Board(Fault::DataReadyCut(true));
+/// Joins it again.
+const JOINED: Trouble = Trouble::Board(Fault::DataReadyCut(false));
+/// What the mode then says.
+const LINE: &str = "inertial sensor: data-ready line silent";
+
+/// The line was cut in hover at [`AIRBORNE`]: the vehicle lands as one that flies, and says why.
+fn lands_without_data_ready(flight: &Flight) {
+    let t = told(flight, AIRBORNE, &format!("FAILSAFE: {LINE}"));
+    assert!(t.is_some_and(|t| t < AIRBORNE + 0.4), "{}", log(flight));
+    let down =
+        told(flight, AIRBORNE, &format!("DISARMED: {LINE}")).unwrap_or_else(|| panic!("{}", log(flight)));
+    assert!(running(flight, AIRBORNE - 1.0, down - 0.1), "{}", log(flight));
+    // No faster than a descent, no further than 10 degrees from level, and down from 3 m.
+    for s in samples(flight, AIRBORNE, down) {
+        let [.., sink] = s.velocity;
+        let [roll, pitch, _] = s.attitude.map(f64::to_degrees);
+        assert!(sink < 1.3 && roll.abs() < 10.0 && pitch.abs() < 10.0, "{s:?}");
+    }
+    let last = samples(flight, 0.0, down).last().unwrap();
+    assert!(last.position[2] > -0.3, "{last:?}");
+    for task in FLIGHT_LEVEL {
+        assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(flight));
+    }
+    // 87 us with the line on the small board; a quarter of a period of 250 us more, and the status' transfer.
+    let latency = flight.board.run.latency_us;
+    assert!(latency.worst < 170.0, "{latency:?}");
+    assert!(flight.board.resets.is_empty(), "{:?}", flight.board.resets);
+    assert_eq!(flight.gaps, []);
+}
+
+#[test]
+fn a_cut_data_ready_line_is_named_and_the_vehicle_lands_on_timed_reads() {
+    lands_without_data_ready(&with(CUT, AIRBORNE + 15.0));
+}
+
+#[test]
+fn a_cut_data_ready_line_is_landed_with_on_the_small_board() {
+    lands_without_data_ready(&fly_small(&hover(AIRBORNE + 15.0), &[(AIRBORNE, CUT)]));
+}
+
+#[test]
+fn a_data_ready_line_that_is_cut_from_the_start_refuses_arming_until_it_is_joined() {
+    let flight = fly(&hover(22.0), 1.0, &[(0.0, CUT), (8.0, JOINED)]);
+    let refused = told(&flight, 0.0, &format!("DISARMED: {LINE}"));
+    assert!(refused.is_some_and(|t| t < 6.0), "{}", log(&flight));
+    assert!(
+        told(&flight, 0.0, "self-test passed").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(stopped(&flight, 0.0, 8.0), "{}", log(&flight));
+    let freed = told(&flight, 8.0, &format!("no longer blocked: {LINE}"));
+    assert!(freed.is_some_and(|t| t < 9.0), "{}", log(&flight));
+    assert!(told(&flight, 8.0, "FLIGHT").is_some(), "{}", log(&flight));
+    assert_eq!(flight.board.overruns.get("imu"), None, "{}", log(&flight));
+    assert_eq!(flight.gaps, []);
+}
+
 #[test]
 fn a_flipped_word_of_the_inertial_sensor_now_and_then_is_flown_through() {
     let words = (0..40).map(|n| {

@@ -9,7 +9,7 @@ use static_cell::StaticCell;
 
 /// What is stored; it must be readable to the last value.
 async fn stored(storage: &mut impl Storage) -> Params {
-    let mut params = Params::default();
+    let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
     assert!(!loaded.unreadable && loaded.refused == 0, "{loaded:?}");
     params

@@ -53,9 +53,11 @@ pub struct Sample {
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Imu {
     inner: Icm42688p,
-    /// Data-ready pulses given since power-on.
+    /// Data-ready pulses that have reached the far end of their line since power-on.
     pub pulses: u64,
-    /// When those were given that have not been taken yet, ns.
+    /// The line is cut: the part goes on sampling, and no pulse arrives.
+    pub line_cut: bool,
+    /// When the samples were ready that have not been taken yet, ns.
     pub pulsed: Vec<u64>,
     samples: VecDeque<Sample>,
     now: Sample,
@@ -83,6 +85,7 @@ impl Default for Imu {
         Self {
             inner: Icm42688p::new(),
             pulses: 0,
+            line_cut: false,
             pulsed: Vec::new(),
             samples: VecDeque::new(),
             now: Sample {
@@ -233,7 +236,7 @@ impl spi::Peer for Imu {
             && id == event
         {
             self.measure(at.0);
-            self.pulses += 1;
+            self.pulses += u64::from(!self.line_cut);
             self.pulsed.push(at.0);
             self.schedule(at, c);
         }

@@ -79,7 +79,9 @@ pub static PADS: Pads = Pads {
         AnalogPad::bare(At(2, 2), 12),
         AnalogPad::bare(At(2, 3), 13),
     ],
-    battery: [0, 1],
+    // 1:11 and 40 A/V.
+    battery: AnalogPad::divided(At(0, 0), 0, 11.0),
+    current: AnalogPad::divided(At(0, 1), 1, 40.0),
     receiver: 0,
     receiver_out: (At(0, 9), 7),
     console: 1,

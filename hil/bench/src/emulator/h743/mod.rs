@@ -73,7 +73,9 @@ pub static MATEK: Pads = Pads {
     imu_axes: |[x, y, z]| [-x, -y, z],
     arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
     pressure: [S1, S2, RSSI, CU2],
-    battery: [10, 11],
+    // 1:11 and 40 A/V.
+    battery: AnalogPad::divided(At(2, 0), 10, 11.0),
+    current: AnalogPad::divided(At(2, 1), 11, 40.0),
     receiver: 5,
     receiver_out: (At(2, 6), 7),
     console: 6,

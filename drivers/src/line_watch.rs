@@ -1,0 +1,235 @@
+//! Whether the data-ready line of a part can be relied on, and when samples are read by the clock in its place.
+//!
+//! A line that has been silent is taken up again when its pulses and the part's own status have agreed for a while;
+//! how long, doubles with each silence, so that a loose contact does not have the driver change sides for ever. One
+//! short silence is nothing; a line that stays silent, or falls silent again and again, is reported.
+
+use embassy_time::{Duration, Instant};
+
+/// Time for which samples must have been read by the clock before the line is reported as silent: one short silence,
+/// which ends within the first of [`BACK_AFTER`], is no reason to land.
+pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
+/// First and longest time for which line and status must agree before the line is used again.
+const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];
+/// Time on the line after which an earlier silence is forgotten.
+const FORGOTTEN_AFTER: Duration = Duration::from_secs(10);
+/// Time between two samples, µs, times the rate, Hz: 1.5 % shorter than the part's. Its own clock, locked to the
+/// gyroscope, is off by about 1 %: as good as none of its samples is missed, and the filters' rate is met within 2 %.
+const PERIOD_BY_RATE: f32 = 0.985e6;
+/// A sample that is not there yet is asked for again after this part of the period: what it may come late by.
+const AGAIN: u32 = 4;
+
+/// State of the line.
+#[derive(Clone, Copy, Debug)]
+pub struct LineWatch {
+    clock: Option<Clock>,
+    back_after: Duration,
+    /// When the line was taken up again.
+    back_at: Option<Instant>,
+}
+
+/// Samples are read by the clock.
+#[derive(Clone, Copy, Debug)]
+struct Clock {
+    since: Instant,
+    /// When the part is to be asked next, and the time between two samples.
+    due: Instant,
+    period: Duration,
+    /// Samples with a pulse less those without, never below 0, and how many make the line sound.
+    agreeing: u32,
+    sound: u32,
+    reported: bool,
+}
+
+impl Clock {
+    /// The part is to be asked again after `time`: from when it was due, or what the processor takes would make the
+    /// period longer than the part's; after a stall from `now` on, without a burst.
+    fn go_on(&mut self, now: Instant, time: Duration) {
+        let late = now.saturating_duration_since(self.due) > time;
+        self.due = if late { now } else { self.due } + time;
+    }
+}
+
+impl Default for LineWatch {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl LineWatch {
+    /// A line that nothing is known against.
+    pub const fn new() -> Self {
+        let [back_after, _] = BACK_AFTER;
+        Self {
+            clock: None,
+            back_after,
+            back_at: None,
+        }
+    }
+
+    /// When the part is to be asked; `None` while its line says when.
+    pub fn due(&self) -> Option<Instant> {
+        self.clock.map(|clock| clock.due)
+    }
+
+    /// The line is silent for good, or again and again.
+    pub fn reported(&self) -> bool {
+        self.clock.is_some_and(|clock| clock.reported)
+    }
+
+    /// The line has fallen silent at `now` although the part is well; samples come at `rate_hz`.
+    pub fn silent(&mut self, now: Instant, rate_hz: f32) {
+        let [first, longest] = BACK_AFTER;
+        self.back_after = match self.back_at {
+            Some(at) if now.saturating_duration_since(at) < FORGOTTEN_AFTER => {
+                (self.back_after * 2).min(longest)
+            }
+            _ => first,
+        };
+        // No part samples below 100 Hz.
+        let period = Duration::from_micros((PERIOD_BY_RATE / rate_hz.max(100.0)) as u64);
+        self.clock = Some(Clock {
+            since: now,
+            due: now + period / AGAIN,
+            period,
+            agreeing: 0,
+            sound: (self.back_after.as_ticks() / period.as_ticks().max(1)) as u32,
+            reported: false,
+        });
+    }
+
+    /// The part had no sample when it was asked at `now`.
+    pub fn not_yet(&mut self, now: Instant) {
+        if let Some(clock) = &mut self.clock {
+            clock.go_on(now, clock.period / AGAIN);
+        }
+    }
+
+    /// The part had a sample at `now`, which the line had announced or not.
+    pub fn sample(&mut self, now: Instant, announced: bool) {
+        let Some(clock) = &mut self.clock else { return };
+        clock.go_on(now, clock.period);
+        clock.reported |= now.saturating_duration_since(clock.since) >= REPORTED_AFTER;
+        clock.agreeing = if announced {
+            clock.agreeing.saturating_add(1)
+        } else {
+            clock.agreeing.saturating_sub(1)
+        };
+        if clock.agreeing > clock.sound {
+            self.clock = None;
+            self.back_at = Some(now);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: u64 = 1000;
+
+    fn at(us: u64) -> Instant {
+        Instant::from_micros(us)
+    }
+
+    /// Samples of 4 kHz from `from` on, announced or not, until the line is used again or `to`; gives the time then.
+    fn run(line: &mut LineWatch, from: u64, to: u64, announced: impl Fn(u64) -> bool) -> u64 {
+        let mut now = from;
+        while now < to && line.due().is_some() {
+            now += 250;
+            line.sample(at(now), announced(now));
+        }
+        now
+    }
+
+    #[test]
+    fn a_dead_line_is_reported_once_and_stays_so() {
+        let mut line = LineWatch::new();
+        assert!(line.due().is_none() && !line.reported());
+        line.silent(at(0), 4000.0);
+        run(&mut line, 0, 199 * MS, |_| false);
+        assert!(!line.reported());
+        run(&mut line, 199 * MS, 201 * MS, |_| false);
+        assert!(line.reported());
+        assert_eq!(run(&mut line, 201 * MS, 5000 * MS, |_| false), 5000 * MS);
+        assert!(line.reported());
+    }
+
+    #[test]
+    fn a_line_that_comes_back_is_used_again_when_it_has_agreed_for_long_enough() {
+        let mut line = LineWatch::new();
+        line.silent(at(0), 4000.0);
+        let back = run(&mut line, 0, 1000 * MS, |_| true);
+        assert!((50 * MS..53 * MS).contains(&back), "{back}");
+        assert!(!line.reported(), "one short silence is nothing");
+        // A third of the pulses is missed while the part is being asked: longer, and still.
+        line.silent(at(20_000 * MS), 4000.0);
+        let back = run(&mut line, 20_000 * MS, 21_000 * MS, |us| us % 750 != 0) - 20_000 * MS;
+        assert!((140 * MS..160 * MS).contains(&back), "{back}");
+        // Pulses that have nothing to do with the samples are no line.
+        line.silent(at(40_000 * MS), 4000.0);
+        let back = run(&mut line, 40_000 * MS, 45_000 * MS, |us| us % 500 == 0);
+        assert_eq!(back, 45_000 * MS);
+        assert!(line.reported());
+    }
+
+    #[test]
+    fn a_loose_contact_is_reported_and_used_less_and_less_until_it_is_forgotten() {
+        let mut line = LineWatch::new();
+        let mut now = 0;
+        let mut waits = [0; 9];
+        let mut reported = 0;
+        for wait in &mut waits {
+            line.silent(at(now), 4000.0);
+            let from = now;
+            let mut told = false;
+            while line.due().is_some() {
+                now += 250;
+                line.sample(at(now), true);
+                told |= line.reported();
+            }
+            *wait = (now - from) / MS;
+            reported += u32::from(told);
+            now += 5000 * MS;
+        }
+        for (wait, patience) in waits
+            .into_iter()
+            .zip([50, 100, 200, 400, 800, 1600, 3200, 3200, 3200])
+        {
+            assert!(
+                (patience..=patience + patience / 50 + 1).contains(&wait),
+                "{waits:?}"
+            );
+        }
+        assert_eq!(reported, 7);
+        now += 10_000 * MS;
+        line.silent(at(now), 4000.0);
+        assert!(run(&mut line, now, now + 1000 * MS, |_| true) - now < 55 * MS);
+    }
+
+    #[test]
+    fn the_part_is_asked_a_little_faster_than_it_samples_and_a_quarter_later_again() {
+        for (rate, period) in [(1000.0, 985), (4000.0, 246), (8000.0, 123)] {
+            let mut line = LineWatch::new();
+            line.silent(at(1000), rate);
+            assert_eq!(line.due(), Some(at(1000 + period / 4)));
+            line.sample(at(1000 + period / 4 + 30), false);
+            assert_eq!(
+                line.due(),
+                Some(at(1000 + period / 4 + period)),
+                "from when it was due"
+            );
+            line.not_yet(at(1000 + period / 4 + period + 30));
+            assert_eq!(line.due(), Some(at(1000 + 2 * (period / 4) + period)));
+            // After a stall the phase starts afresh: no burst.
+            line.sample(at(50_000), false);
+            assert_eq!(line.due(), Some(at(50_000 + period)));
+            line.not_yet(at(90_000));
+            assert_eq!(line.due(), Some(at(90_000 + period / 4)));
+        }
+        // A rate that is no number does not stop the clock.
+        let mut line = LineWatch::new();
+        line.silent(at(0), f32::NAN);
+        assert_eq!(line.due(), Some(at(9850 / 4)));
+    }
+}
