@@ -6,6 +6,7 @@ pub mod end;
 mod fault;
 mod hard_fault;
 mod levels;
+pub mod restart;
 pub mod retained;
 pub mod stack;
 #[cfg(feature = "trace")]

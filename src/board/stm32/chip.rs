@@ -1,12 +1,12 @@
 //! The chip itself: its restart, its option bytes, and what the start-up looked at.
 
-use cortex_m::peripheral::SCB;
 use sophie_tasks::ports::{Chip, Look, Looks, NotSet};
 use static_cell::StaticCell;
 
 use super::options;
 use super::watchdog;
 use crate::board;
+use crate::board::cortex_m::restart::reset;
 
 static LOOKS: StaticCell<Looks> = StaticCell::new();
 
@@ -28,7 +28,7 @@ impl ThisChip {
 impl Chip for ThisChip {
     fn restart(&mut self) {
         board::stop_motors();
-        SCB::sys_reset()
+        reset()
     }
 
     fn looks(&self) -> &[Look] {
