@@ -106,13 +106,18 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
 
     #[test]
     fn every_command_in_the_help_is_understood() {
         for (usage, _) in HELP {
-            let line = usage.trim_matches(['[', ']']);
-            assert!(matches!(parse(line), Some(Ok(_))), "{usage}");
+            // With what may be left out, and without.
+            let whole: std::string::String = usage.chars().filter(|c| !"[]".contains(*c)).collect();
+            assert!(matches!(parse(&whole), Some(Ok(_))), "{usage}");
+            let (needed, _) = usage.split_once(" [").unwrap_or((usage, ""));
+            assert!(matches!(parse(needed), Some(Ok(_))), "{usage}");
         }
         assert_eq!(parse("  set\tinfill  8 "), Some(Ok(Command::Set("infill", "8"))));
         assert_eq!(parse("list"), Some(Ok(Command::List(""))));
