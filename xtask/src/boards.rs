@@ -67,8 +67,9 @@ pub const BOARDS: [Board; 3] = [
         flash: &[sectors(4, 32), sectors(1, 128), sectors(7, 256)],
         // FMUv5 is flashed over USB by a loader that itself lies in the flash.
         usb_loader: UsbLoader::OutOfReach("it has no button for BOOT0, and its case leads the pin nowhere"),
-        // DTCM, SRAM1 and SRAM2 (RM0410 §2.1).
-        dma_reaches: &[(0x2000_0000, 0x2008_0000)],
+        // DTCM, which is never cached: the data cache is on, and the DMA's other memories, SRAM1 and SRAM2 (RM0410
+        // §2.1), are behind it.
+        dma_reaches: &[(0x2000_0000, 0x2002_0000)],
     },
     Board {
         name: "f405",
