@@ -7,7 +7,7 @@
 use embassy_time::{Duration, Instant};
 
 /// Time for which samples must have been read by the clock before the line is reported as silent: one short silence,
-/// which ends within the first of [`BACK_AFTER`], is no reason to land.
+/// which ends within the first of `BACK_AFTER`, is no reason to land.
 pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
 /// First and longest time for which line and status must agree before the line is used again.
 const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];
