@@ -10,9 +10,6 @@ use embassy_stm32::{Config, Peripherals, rcc};
 use super::watchdog;
 use crate::board::cortex_m::retained;
 
-/// Looks at a crystal until it must have started, at ten cycles or more each of the internal oscillator (64 MHz on the H7,
-/// 16 MHz else): 30 ms at least. Datasheets: 2 ms, for a crystal that suits the pins.
-const LOOKS: u32 = if cfg!(family = "h7") { 200_000 } else { 50_000 };
 /// What the next start tells of one that never came out of starting its clocks.
 const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
 
@@ -37,10 +34,8 @@ pub fn micros() -> u64 {
 }
 
 /// Drives the motors' pins low and starts the watchdog, then the clocks as `config` says. `timer` is the one that
-/// embassy-time counts with. A PLL that never locks ends by the watchdog, and the next start says so. Called once.
-///
-/// # Panics
-/// If the crystal does not start: the next start says so.
+/// embassy-time counts with. A crystal that never starts and a PLL that never locks end by the watchdog, and the next start
+/// says which. Called once.
 pub fn start(config: Config, timer: TimGp32, stop_motors: fn()) -> Peripherals {
     stop_motors();
     watchdog::start();
@@ -63,13 +58,9 @@ pub fn start(config: Config, timer: TimGp32, stop_motors: fn()) -> Peripherals {
     peripherals
 }
 
-/// Starts the crystal of `mhz` MHz, for which embassy-stm32 would wait without end and without a word.
+/// Starts the crystal of `mhz` MHz, before embassy-stm32 does it without a word. The watchdog bounds the wait.
 fn start_crystal(mhz: u32) {
+    retained::leave(format_args!("the {mhz} MHz crystal does not start"));
     RCC.cr().modify(|w| w.set_hseon(true));
-    for _ in 0..LOOKS {
-        if RCC.cr().read().hserdy() {
-            return;
-        }
-    }
-    panic!("the {mhz} MHz crystal does not start");
+    while !RCC.cr().read().hserdy() {}
 }

@@ -129,8 +129,8 @@ fn never_starts(board: &str, fault: Fault, message: &str, by: &str) {
 
 #[test]
 fn a_crystal_that_does_not_start_is_told_and_resets_the_board() {
-    let message = "MHz crystal does not start";
-    never_starts("matek-h743", Fault::NoCrystal, message, "Software");
+    let message = "the run before ended with: the 8 MHz crystal does not start";
+    never_starts("f405", Fault::NoCrystal, message, "IWDG");
 }
 
 #[test]

@@ -34,7 +34,7 @@ use rigless::time::VirtualNanos;
 use self::exti::{Exti, Syscfg, routed_to};
 use self::i2c::DmaI2c;
 use self::small_timer::{TwoChannels, tim12};
-use super::chip::{Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
+use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
@@ -187,8 +187,8 @@ pub struct F405 {
     pulses: u64,
     /// The next reset is by a supply that broke down.
     browned_out: bool,
-    /// The core's PLL never locks.
-    unlocked: bool,
+    /// Bits of the clocks' control register that never rise.
+    missing: u64,
     /// What the identity register tells.
     revision: u64,
 }
@@ -248,7 +248,7 @@ impl F405 {
             slots,
             pulses: 0,
             browned_out: false,
-            unlocked: false,
+            missing: 0,
             // The last one (RM0090 §38.6.1).
             revision: 0x101F,
         };
@@ -403,9 +403,9 @@ impl Mcu for F405 {
     }
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
-        if self.unlocked && slot == self.slots.clocks {
+        if self.missing != 0 && slot == self.slots.clocks {
             let file = self.inner.bus_mut().slot_mut(slot).registers_mut();
-            file.set(Clocks::Cr, file.get(Clocks::Cr) & !PLL_LOCKED);
+            file.set(Clocks::Cr, file.get(Clocks::Cr) & !self.missing);
         }
         let own: &mut dyn ErasedDevice = if slot == self.slots.motors {
             &mut self.motors

@@ -22,7 +22,7 @@ use rigless::soc::stm32h743::peripherals::tim::{Channel, General, TIMERS, Tim};
 use rigless::time::VirtualNanos;
 
 use self::watchdog::Watchdog;
-use super::chip::{Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
+use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
@@ -134,8 +134,8 @@ pub struct H743 {
     pulses: u64,
     /// The next reset is by a supply that broke down.
     browned_out: bool,
-    /// The core's PLL never locks.
-    unlocked: bool,
+    /// Bits of the clocks' control register that never rise.
+    missing: u64,
     /// What the identity register tells.
     revision: u64,
 }
@@ -186,7 +186,7 @@ impl H743 {
             slots,
             pulses: 0,
             browned_out: false,
-            unlocked: false,
+            missing: 0,
             // Revision V, as the emulator's part is.
             revision: 0x2003,
         })
@@ -354,9 +354,9 @@ impl Mcu for H743 {
     }
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
-        if self.unlocked && slot == self.slots.clocks {
+        if self.missing != 0 && slot == self.slots.clocks {
             let file = self.inner.bus_mut().slot_mut(slot).registers_mut();
-            file.set(Clocks::Cr, file.get(Clocks::Cr) & !PLL_LOCKED);
+            file.set(Clocks::Cr, file.get(Clocks::Cr) & !self.missing);
         }
         if slot == self.slots.watchdog {
             return (self.inner.bus_mut(), Some(&mut self.watchdog));
