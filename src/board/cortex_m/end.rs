@@ -22,7 +22,7 @@ pub static ENDING: AtomicBool = AtomicBool::new(false);
 /// Stops the motors, keeps `message` for the next start and restarts the chip.
 pub fn stop_and_restart(message: fmt::Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
-    // Plain writes to two registers: nothing that can fault stands before them.
+    // Clock and pins, by plain accesses to registers: nothing that can fault stands before them.
     board::stop_motors();
     if !ENDING.load(Ordering::Relaxed) {
         ENDING.store(true, Ordering::Relaxed);
