@@ -36,10 +36,10 @@ use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_tasks::parameters;
 
 use super::Board;
-use super::cortex_m::{enable_data_cache, enable_instruction_cache};
+use super::cortex_m::enable_caches;
 use super::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, console_lines, hold, look, pull_low, receiver_line,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, console_lines, drive, hold, look, receiver_line,
     spi_config,
 };
 
@@ -48,7 +48,7 @@ pub const NAME: &str = "cuav-v5";
 
 /// Flash sectors that hold parameters: none, an FRAM does.
 const PARAM_SECTORS: u32 = 0;
-/// The data cache is on: all RAM that is used is DTCM, which is never cached.
+/// The data cache is on: all RAM that is used is DTCM, which no cache is before.
 pub const DATA_CACHE: bool = true;
 /// The parameters' defaults of this board: divider and current sensor of the power module that CUAV sells with it
 /// (ArduPilot `fmuv5`: 18.0 and 24.0).
@@ -194,9 +194,8 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = super::stm32::start(clocks(), pac::TIM5, stop_motors);
-    enable_instruction_cache();
-    enable_data_cache();
+    let p = super::stm32::start(clocks(), pac::TIM5, first_levels);
+    enable_caches(DATA_CACHE);
     let parts = split_resources!(p);
     rails(parts.rails).await;
     let mut storage = storage(parts.storage);
@@ -292,10 +291,24 @@ fn motors(p: MotorParts, params: &Params) -> MotorsPort {
     EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))
 }
 
-/// The motors' pins low, whatever drives them: from the start on, and the last resort of a fault handler.
+/// The motors' pins low, whatever drives them: the last resort of a fault handler.
 pub fn stop_motors() {
-    pull_low(pac::GPIOE, [9, 11, 14, 14]);
-    pull_low(pac::GPIOA, [10; 4]);
+    drive(pac::GPIOE, &[9, 11, 14], Level::Low);
+    drive(pac::GPIOA, &[10], Level::Low);
+}
+
+/// What the outputs are until their ports take them: motors, servos and sounder low, no chip selected, every supply on,
+/// as they were before a restart.
+fn first_levels() {
+    stop_motors();
+    drive(pac::GPIOD, &[13, 14], Level::Low);
+    drive(pac::GPIOH, &[6, 9], Level::Low);
+    drive(pac::GPIOE, &[5], Level::Low);
+    drive(pac::GPIOF, &[2, 3, 4, 5], Level::High);
+    drive(pac::GPIOG, &[10], Level::High);
+    drive(pac::GPIOE, &[3], Level::High);
+    drive(pac::GPIOG, &[4], Level::Low);
+    drive(pac::GPIOF, &[12], Level::Low);
 }
 
 fn servos(p: ServoParts, params: &Params) -> ServosPort {

@@ -39,7 +39,7 @@ use sophie_tasks::parameters;
 use super::Board;
 use super::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, accelerator, console_lines, look, pull_low, receiver_line,
+    ReadyStamp, Selected, ServoPairs, ThisChip, accelerator, console_lines, drive, look, receiver_line,
     spi_config,
 };
 
@@ -178,7 +178,7 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = super::stm32::start(clocks(), pac::TIM5, stop_motors);
+    let p = super::stm32::start(clocks(), pac::TIM5, first_levels);
     accelerator::enable();
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
@@ -264,9 +264,17 @@ fn motors(p: MotorParts, params: &Params) -> MotorsPort {
     EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))
 }
 
-/// The motors' pins low, whatever drives them: from the start on, and the last resort of a fault handler.
+/// The motors' pins low, whatever drives them: the last resort of a fault handler.
 pub fn stop_motors() {
-    pull_low(pac::GPIOC, [6, 7, 8, 9]);
+    drive(pac::GPIOC, &[6, 7, 8, 9], Level::Low);
+}
+
+/// What the outputs are until their ports take them: motors, servos and buzzer low, the inertial sensor not selected.
+fn first_levels() {
+    stop_motors();
+    drive(pac::GPIOB, &[6, 7, 14, 15], Level::Low);
+    drive(pac::GPIOA, &[8], Level::Low);
+    drive(pac::GPIOA, &[4], Level::High);
 }
 
 fn servos(p: ServoParts, params: &Params) -> ServosPort {

@@ -31,10 +31,10 @@ use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_tasks::parameters;
 
 use super::Board;
-use super::cortex_m::enable_instruction_cache;
+use super::cortex_m::enable_caches;
 use super::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoTimer, ThisChip, console_lines, look, pull_low, receiver_line, spi_config,
+    ReadyStamp, Selected, ServoTimer, ThisChip, console_lines, drive, look, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -42,8 +42,9 @@ pub const NAME: &str = "matek-h743";
 
 /// Flash sectors that hold parameters, a bit each: sectors 6 and 7 of bank 2.
 const PARAM_SECTORS: u32 = 1 << 14 | 1 << 15;
-/// The data cache stays off: statics lie where DMA writes, and that memory is cached where nobody says otherwise.
-pub const DATA_CACHE: bool = false;
+/// The data cache is off until a board has passed its rig with it: what DMA writes is never cached by the memory
+/// protection's word alone, which no emulator checks.
+pub const DATA_CACHE: bool = cfg!(feature = "data-cache");
 /// The parameters' defaults of this board: its divider of 1:11 and its sensor of 40 A/V, as the maker states.
 static DEFAULTS: Params = Params {
     battery_divider: 11.0,
@@ -173,8 +174,8 @@ assign_resources! {
 
 /// Starts the clocks, loads the parameters and builds every port as they say. Called once.
 pub async fn take() -> Board {
-    let p = super::stm32::start(clocks(), pac::TIM2, stop_motors);
-    enable_instruction_cache();
+    let p = super::stm32::start(clocks(), pac::TIM2, first_levels);
+    enable_caches(DATA_CACHE);
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
     let (params, loaded) = parameters::load(&mut storage).await;
@@ -272,9 +273,16 @@ fn motors(p: MotorParts, params: &Params) -> MotorsPort {
     EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))
 }
 
-/// The motors' pins low, whatever drives them: from the start on, and the last resort of a fault handler.
+/// The motors' pins low, whatever drives them: the last resort of a fault handler.
 pub fn stop_motors() {
-    pull_low(pac::GPIOD, [12, 13, 14, 15]);
+    drive(pac::GPIOD, &[12, 13, 14, 15], Level::Low);
+}
+
+/// What the outputs are until their ports take them: motors, servos and buzzer low, the inertial sensor not selected.
+fn first_levels() {
+    stop_motors();
+    drive(pac::GPIOA, &[0, 1, 2, 3, 15], Level::Low);
+    drive(pac::GPIOC, &[15], Level::High);
 }
 
 fn servos(p: ServoParts, params: &Params) -> ServosPort {

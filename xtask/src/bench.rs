@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::process::{Command, ExitCode};
 
 use crate::boards::{self, Board};
-use crate::build::Trace;
+use crate::build::Variant;
 use crate::{Error, build};
 
 /// Boards that can be emulated.
@@ -27,7 +27,7 @@ const WITH_VALUE: [(&str, &str); 5] = [
 pub struct Bench<'a> {
     /// The board.
     pub board: &'static Board,
-    trace: Trace,
+    variant: Variant,
     /// Goes to the emulator.
     rest: Vec<&'a str>,
 }
@@ -49,7 +49,7 @@ impl<'a> Bench<'a> {
             .ok_or_else(|| format!("bench: no board called `{name}` is emulated: allowed is {allowed}"))?;
         let mut bench = Self {
             board,
-            trace: Trace::Off,
+            variant: Variant::Plain,
             rest: Vec::new(),
         };
         let mut scenario = false;
@@ -57,7 +57,7 @@ impl<'a> Bench<'a> {
         while let Some(word) = words.next() {
             let option = word.split('=').next().unwrap_or(word);
             if word == "--trace" {
-                bench.trace = Trace::On;
+                bench.variant = Variant::Trace;
                 continue;
             }
             bench.rest.push(word);
@@ -90,7 +90,7 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// The firmware does not build.
     pub fn fly(&self) -> Result<ExitCode, Error> {
-        let (elf, _) = crate::firmware(self.board, self.trace)?;
+        let (elf, _) = crate::firmware(self.board, self.variant)?;
         emulator(
             "sophie-bench",
             [OsStr::new(self.board.name), "--elf".as_ref(), elf.as_os_str()],
@@ -169,7 +169,7 @@ mod tests {
             "--json",
         ];
         let bench = Bench::parse(&words).ok().unwrap();
-        assert!(bench.board.name == "f405" && bench.trace == Trace::On);
+        assert!(bench.board.name == "f405" && bench.variant == Variant::Trace);
         assert_eq!(
             bench.rest,
             ["a.toml", "--seed", "3", "--speed=0.5", "--out", "x", "--json"]

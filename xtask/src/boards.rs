@@ -40,6 +40,10 @@ pub struct Board {
     pub usb_loader: UsbLoader,
     /// Memories that DMA1 and DMA2 reach: first address, and first one beyond.
     pub dma_reaches: &'static [(u64, u64)],
+    /// Memory that keeps what outlives a reset: the first address, and the first one beyond.
+    pub retained: (u64, u64),
+    /// It flies with the data cache off, and there is an image with the cache on.
+    pub data_cache_is_optional: bool,
 }
 
 /// Every board, the reference board first.
@@ -56,6 +60,9 @@ pub const BOARDS: [Board; 3] = [
         usb_loader: UsbLoader::Enter("hold its button BOOT while plugging USB in"),
         // AXI SRAM, SRAM1 to SRAM3 (RM0433 §2.1); not the tightly coupled memories.
         dma_reaches: &[(0x2400_0000, 0x2408_0000), (0x3000_0000, 0x3004_8000)],
+        // DTCM: its error correction works on words of 32 bits, as they are written.
+        retained: (0x2001_FC00, 0x2002_0000),
+        data_cache_is_optional: true,
     },
     Board {
         name: "cuav-v5",
@@ -70,6 +77,9 @@ pub const BOARDS: [Board; 3] = [
         // DTCM, which is never cached: the data cache is on, and the DMA's other memories, SRAM1 and SRAM2 (RM0410
         // §2.1), are behind it.
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
+        // DTCM.
+        retained: (0x2001_FC00, 0x2002_0000),
+        data_cache_is_optional: false,
     },
     Board {
         name: "f405",
@@ -83,6 +93,9 @@ pub const BOARDS: [Board; 3] = [
         usb_loader: UsbLoader::Enter("take BOOT0 to 3.3 V while plugging USB (PA11, PA12) in"),
         // SRAM1 and SRAM2 (RM0090 §2.1); not the core-coupled memory.
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
+        // SRAM2's end.
+        retained: (0x2001_FC00, 0x2002_0000),
+        data_cache_is_optional: false,
     },
 ];
 

@@ -13,30 +13,59 @@ use crate::toolchain::{self, TARGET};
 /// Bytes of the log's buffer in a build with trace: 2 ms of events and their frames, where a probe may be slow.
 const TRACE_BUFFER: &str = "8192";
 
-/// Whether every event of the executors is logged.
+/// Which of a board's images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trace {
-    /// The image that flies.
-    Off,
-    /// One that tells of every event (docs/timing.md).
-    On,
+pub enum Variant {
+    /// The one that flies.
+    Plain,
+    /// One that tells of every event of the executors (docs/timing.md).
+    Trace,
+    /// One with the data cache on, for a board that flies without (docs/boards.md).
+    DataCache,
+}
+
+impl Variant {
+    /// The variant that an option of the command line asks for.
+    pub fn asked(option: &str) -> Option<Self> {
+        match option {
+            "--trace" => Some(Self::Trace),
+            "--data-cache" => Some(Self::DataCache),
+            _ => None,
+        }
+    }
+
+    /// The same, for `board`.
+    ///
+    /// # Errors
+    /// One line: the board has no such image.
+    pub fn of(self, board: &Board) -> Result<Self, String> {
+        if self == Self::DataCache && !board.data_cache_is_optional {
+            return Err(format!(
+                "--data-cache: {} has none to choose: allowed is matek-h743",
+                board.name
+            ));
+        }
+        Ok(self)
+    }
 }
 
 /// Builds the firmware of `board`; returns the path of its ELF.
 ///
 /// # Errors
 /// No toolchain, or the build failed (and said why).
-pub fn firmware(board: &Board, trace: Trace) -> Result<PathBuf, Error> {
-    match trace {
-        Trace::Off => image("sophie", &["--features", board.name], &[], board.core, board.name),
-        Trace::On => image(
-            "sophie",
-            &["--features", &format!("{},trace", board.name)],
-            &[("DEFMT_RTT_BUFFER_SIZE", TRACE_BUFFER)],
-            board.core,
-            &format!("{}-trace", board.name),
-        ),
-    }
+pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
+    let (feature, variables): (_, &[_]) = match variant {
+        Variant::Plain => return image("sophie", &["--features", board.name], &[], board.core, board.name),
+        Variant::Trace => ("trace", &[("DEFMT_RTT_BUFFER_SIZE", TRACE_BUFFER)]),
+        Variant::DataCache => ("data-cache", &[]),
+    };
+    image(
+        "sophie",
+        &["--features", &format!("{},{feature}", board.name)],
+        variables,
+        board.core,
+        &format!("{}-{feature}", board.name),
+    )
 }
 
 /// Builds the image of `package` for a `core`, with the profile and the flags that all images have; returns the path of

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::boards::{self, Board, UsbLoader};
-use crate::build::{self, Trace};
+use crate::build::{self, Variant};
 use crate::tools::{self, PROBE_RS};
 use crate::{Error, Refused, backup, dfu};
 
@@ -30,7 +30,7 @@ pub struct Flash<'a> {
     /// The board.
     pub board: &'static Board,
     by: By,
-    trace: Trace,
+    variant: Variant,
     /// The image, if it is not to be built.
     elf: Option<&'a str>,
     before: Before<'a>,
@@ -44,7 +44,7 @@ impl<'a> Flash<'a> {
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let mut names = Vec::new();
-        let (mut by, mut trace, mut elf) = (By::Probe, Trace::Off, None);
+        let (mut by, mut variant, mut elf) = (By::Probe, Variant::Plain, None);
         let (mut before, mut dry) = (Before::Usual, false);
         let mut rest = words.iter().copied();
         while let Some(word) = rest.next() {
@@ -54,14 +54,21 @@ impl<'a> Flash<'a> {
             };
             match word {
                 "--dfu" => by = By::Usb,
-                "--trace" => trace = Trace::On,
                 "--elf" => elf = Some(file()?),
                 "--backup" => before = Before::File(file()?),
                 "--no-backup" => before = Before::Nothing,
                 "--dry" => dry = true,
+                _ if Variant::asked(word).is_some() => {
+                    let asked = Variant::asked(word).unwrap_or(Variant::Plain);
+                    if std::mem::replace(&mut variant, asked) != Variant::Plain {
+                        return Err(format!(
+                            "flash: `{word}` is a second kind of image: allowed is one"
+                        ));
+                    }
+                }
                 _ if word.starts_with('-') => {
                     return Err(format!(
-                        "flash: `{word}` is not understood: allowed are --dfu, --trace, --elf FILE, --backup FILE, \
+                        "flash: `{word}` is not understood: allowed are --dfu, --trace, --data-cache, --elf FILE, --backup FILE, \
                          --no-backup, --dry"
                     ));
                 }
@@ -77,15 +84,15 @@ impl<'a> Flash<'a> {
                 boards::names()
             )
         })?;
-        if elf.is_some() && trace == Trace::On {
+        if elf.is_some() && variant != Variant::Plain {
             return Err(
-                "flash: --elf and --trace exclude each other: the image is built or it is given".into(),
+                "flash: --elf excludes --trace and --data-cache: the image is built or it is given".into(),
             );
         }
         Ok(Self {
             board,
             by,
-            trace,
+            variant: variant.of(board).map_err(|e| format!("flash: {e}"))?,
             elf,
             before,
             dry,
@@ -106,7 +113,7 @@ impl<'a> Flash<'a> {
         }
         let elf = match self.elf {
             Some(given) => PathBuf::from(given),
-            None => build::firmware(self.board, self.trace)?,
+            None => build::firmware(self.board, self.variant)?,
         };
         let image = crate::check(self.board, &elf).map_err(|e| match self.elf {
             Some(given) => Error::from(Refused(format!(
@@ -161,7 +168,10 @@ mod tests {
     #[test]
     fn what_is_asked_for_is_understood() {
         let flash = Flash::parse(&["f405"]).ok().unwrap();
-        assert_eq!((flash.by, flash.trace, flash.dry), (By::Probe, Trace::Off, false));
+        assert_eq!(
+            (flash.by, flash.variant, flash.dry),
+            (By::Probe, Variant::Plain, false)
+        );
         assert_eq!((flash.elf, flash.before), (None, Before::Usual));
         let flash = Flash::parse(&["--dfu", "--elf", "a.elf", "f405", "--backup", "b.bin", "--dry"]);
         let flash = flash.ok().unwrap();

@@ -17,6 +17,7 @@ mod image;
 mod output_pins;
 mod own_board;
 mod params;
+mod retained;
 mod rig;
 mod sizes;
 mod toolchain;
@@ -27,7 +28,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use boards::{BOARDS, Board};
-use build::Trace;
+use build::Variant;
 
 /// Anything that ends a verb, as a sentence.
 type Error = Box<dyn std::error::Error>;
@@ -47,10 +48,11 @@ impl std::error::Error for Refused {}
 const USAGE: &str = "\
 usage: cargo xtask VERB
 
-  firmware BOARD [--trace]
+  firmware BOARD [--trace|--data-cache]
                      build the firmware and check its image; the last line is the path of the ELF. --trace: one that logs
-                     every event of the executors, for `sophie timing` (docs/timing.md)
-  flash BOARD [--dfu] [--trace|--elf ELF] [--backup FILE|--no-backup] [--dry]
+                     every event of the executors, for `sophie timing` (docs/timing.md); --data-cache: one with the data
+                     cache on, which matek-h743 flies without (docs/boards.md)
+  flash BOARD [--dfu] [--trace|--data-cache|--elf ELF] [--backup FILE|--no-backup] [--dry]
                      build and flash: through probe-rs, which then shows the log, or with --dfu through dfu-util and the USB
                      loader of the chip (matek-h743, f405); stored parameters stay. --elf: flash this image, build none.
                      cuav-v5 is not flashed before its backup is there. --dry: only show the commands
@@ -62,15 +64,15 @@ usage: cargo xtask VERB
         [--telemetry PORT] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
                      input
-  rig BOARD [--build|--emulated] [--wired] [NAME...]
+  rig BOARD [--build|--emulated] [--wired] [--data-cache] [NAME...]
                      build the tests of a board and run them on it through probe-rs, or on the emulated board (matek-h743);
                      --wired fails what the wiring of hil/README.md lacks; names, or parts of them, choose tests
   sizes [--tighten]  build every board, print what it and each crate takes of flash, and of RAM, compare with xtask/ceilings.toml and with
                      the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
-  cost [--tighten|--json]
+  cost [--tighten|--json|--cycles]
                      count the instructions of every control stage under QEMU, print them beside targets and peers,
                      compare with hil/cost/baseline.toml; --tighten takes what is counted now as the baseline and
-                     writes the table of docs/cost.md
+                     writes the table of docs/cost.md; --cycles bounds the cycles on an M4F instead
   own-board          build a copy of the reference board as docs/boards.md says for a board of one's own, and check its
                      image
   conformance        run one image of exceptions, floats and control laws on QEMU and on the emulated core of the bench;
@@ -82,7 +84,7 @@ exit status: 0 done, 1 failed, 2 not understood";
 
 /// What is to be done.
 enum Verb<'a> {
-    Firmware(&'static Board, Trace),
+    Firmware(&'static Board, Variant),
     Flash(flash::Flash<'a>),
     Backup(backup::Backup<'a>),
     Restore(backup::Backup<'a>),
@@ -127,7 +129,7 @@ impl<'a> Verb<'a> {
             return Ok(Self::Help);
         }
         Ok(match verb {
-            "firmware" => board(verb, rest).map(|(board, trace)| Self::Firmware(board, trace))?,
+            "firmware" => board(verb, rest).map(|(board, variant)| Self::Firmware(board, variant))?,
             "flash" => Self::Flash(flash::Flash::parse(rest)?),
             "backup" => Self::Backup(backup::Backup::parse(verb, rest)?),
             "restore" => Self::Restore(backup::Backup::parse(verb, rest)?),
@@ -136,8 +138,9 @@ impl<'a> Verb<'a> {
             "sizes" => Self::Sizes {
                 tighten: one_of(verb, rest, &["--tighten"])?.is_some(),
             },
-            "cost" => Self::Cost(match one_of(verb, rest, &["--tighten", "--json"])? {
+            "cost" => Self::Cost(match one_of(verb, rest, &["--tighten", "--json", "--cycles"])? {
                 Some("--tighten") => cost::Then::Tighten,
+                Some("--cycles") => cost::Then::Cycles,
                 Some(_) => cost::Then::Json,
                 None => cost::Then::Compare,
             }),
@@ -153,10 +156,10 @@ impl<'a> Verb<'a> {
     }
 }
 
-/// One board, with or without `--trace`.
-fn board(verb: &str, words: &[&str]) -> Result<(&'static Board, Trace), String> {
+/// One board, and which of its images.
+fn board(verb: &str, words: &[&str]) -> Result<(&'static Board, Variant), String> {
     let (options, names): (Vec<&str>, Vec<&str>) = words.iter().partition(|word| word.starts_with('-'));
-    let trace = one_of(verb, &options, &["--trace"])?;
+    let variant = one_of(verb, &options, &["--trace", "--data-cache"])?;
     let [name] = names[..] else {
         return Err(format!("{verb}: name exactly one board: {}", boards::names()));
     };
@@ -166,7 +169,9 @@ fn board(verb: &str, words: &[&str]) -> Result<(&'static Board, Trace), String> 
             boards::names()
         )
     })?;
-    Ok((board, trace.map_or(Trace::Off, |_| Trace::On)))
+    let variant = variant.and_then(Variant::asked).unwrap_or(Variant::Plain);
+    let variant = variant.of(board).map_err(|e| format!("{verb}: {e}"))?;
+    Ok((board, variant))
 }
 
 /// The one of `options` that `words` hold, if any; anything else is refused by its name.
@@ -201,7 +206,9 @@ fn main() -> ExitCode {
         }
     };
     let done = match verb {
-        Verb::Firmware(board, trace) => firmware(board, trace).map(|(elf, _)| println!("{}", elf.display())),
+        Verb::Firmware(board, variant) => {
+            firmware(board, variant).map(|(elf, _)| println!("{}", elf.display()))
+        }
         Verb::Flash(flash) => flash.run(),
         Verb::Backup(backup) => backup.save(),
         Verb::Restore(backup) => backup.restore(),
@@ -234,8 +241,8 @@ fn ended(board: &Board, status: Result<ExitCode, Error>) -> ExitCode {
 }
 
 /// Builds one board's firmware and checks its image.
-fn firmware(board: &Board, trace: Trace) -> Result<(PathBuf, image::Image), Error> {
-    let elf = build::firmware(board, trace)?;
+fn firmware(board: &Board, variant: Variant) -> Result<(PathBuf, image::Image), Error> {
+    let elf = build::firmware(board, variant)?;
     let image = check(board, &elf)?;
     Ok((elf, image))
 }
@@ -246,8 +253,10 @@ fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
     let vectors = vectors::check(board, &image)?;
     let buffers = dma::check(board, &image)?;
     eprintln!("vector table: {vectors} handlers, levels and reset in place");
+    let outlives = retained::check(board, &image)?;
     let kept = params::check(board, &image)?;
     eprintln!("DMA: {buffers} buffers and task futures, all where their DMA reaches");
+    eprintln!("retained: {outlives} bytes outlive a reset, where nothing else writes");
     if guard::check(board, &image)? {
         eprintln!("flash: read behind the guard against damaged words");
     }
@@ -260,7 +269,7 @@ fn check(board: &Board, elf: &Path) -> Result<image::Image, Error> {
 fn all_sizes(tighten: bool) -> Result<(), Error> {
     let (mut rows, mut shares) = (Vec::new(), Vec::new());
     for board in &BOARDS {
-        let (_, image) = firmware(board, Trace::Off)?;
+        let (_, image) = firmware(board, Variant::Plain)?;
         let sizes = sizes::Sizes::of(&image)?;
         shares.push((board, crates::shares(&image, &sizes)?));
         rows.push((board, sizes));
@@ -279,7 +288,7 @@ mod tests {
     fn exactly_one_board_that_exists_is_built() {
         for board in &BOARDS {
             assert!(
-                matches!(Verb::parse(&["firmware", board.name]), Ok(Verb::Firmware(b, Trace::Off)) if b.name == board.name)
+                matches!(Verb::parse(&["firmware", board.name]), Ok(Verb::Firmware(b, Variant::Plain)) if b.name == board.name)
             );
         }
         for words in [
@@ -326,7 +335,7 @@ mod tests {
         for (words, told) in [
             (
                 &["flash", "f405", "--wet"] as &[&str],
-                "flash: `--wet` is not understood: allowed are --dfu, --trace, --elf FILE, --backup FILE, --no-backup, --dry",
+                "flash: `--wet` is not understood: allowed are --dfu, --trace, --data-cache, --elf FILE, --backup FILE, --no-backup, --dry",
             ),
             (
                 &["backup", "f405", "--wet"],
@@ -358,7 +367,7 @@ mod tests {
             ),
             (
                 &["cost", "--tighten", "--json"],
-                "cost: `--tighten --json` is not understood: allowed is --tighten or --json",
+                "cost: `--tighten --json` is not understood: allowed is --tighten or --json or --cycles",
             ),
             (
                 &["fly"],

@@ -16,6 +16,9 @@ use crate::{Error, build};
 const NAME: &str = "own-h743";
 /// The same board with a feature that forgets the chip: it must not build.
 const CHIPLESS: &str = "chipless-h743";
+/// The workspace's version, without the quote behind it, and what the copy adds.
+const VERSION: &str = concat!("version = \"", env!("CARGO_PKG_VERSION"));
+const OF_THE_COPY: &str = "-copy";
 /// What is copied.
 const ORIGINAL: &str = "matek-h743";
 
@@ -48,8 +51,8 @@ const CHANGES: [(&str, &str); 9] = [
          EscTimer::second(p.second, p.more_dma, Irqs, protocol).motor(1, p.motor_2).motor(2, p.motor_3),\n    )\n",
     ),
     (
-        "    pull_low(pac::GPIOD, [12, 13, 14, 15]);\n",
-        "    pull_low(pac::GPIOD, [12, 15, 15, 15]);\n    pull_low(pac::GPIOC, [8, 9, 9, 9]);\n",
+        "    drive(pac::GPIOD, &[12, 13, 14, 15], Level::Low);\n",
+        "    drive(pac::GPIOD, &[12, 15], Level::Low);\n    drive(pac::GPIOC, &[8, 9], Level::Low);\n",
     ),
     (
         "    motors: MotorParts {",
@@ -127,9 +130,25 @@ fn write(scratch: &Path) -> Result<(), Error> {
         let line = format!("#[cfg_attr(feature = \"{name}\", path = \"{path}.rs\")]\n{anchor}");
         replace(&mut list, anchor, &line)?;
     }
+    // A version of its own, or cargo would take what was built of the copy for what is to be built of the original: both
+    // build into one folder, for the crates of others.
+    replace(&mut features, VERSION, &format!("{VERSION}{OF_THE_COPY}"))?;
+    let lock = fs::read_to_string(scratch.join("Cargo.lock"))?;
+    put(&scratch.join("Cargo.lock"), locked(&lock).as_bytes())?;
     put(&scratch.join("Cargo.toml"), features.as_bytes())?;
     put(&folder.join("mod.rs"), list.as_bytes())?;
     Ok(())
+}
+
+/// The lock file with the copy's version at every package of the workspace, which alone have no source.
+fn locked(lock: &str) -> String {
+    let packages = lock.split("\n\n").map(|package| {
+        if package.contains("\nsource = ") {
+            return package.to_string();
+        }
+        package.replace(VERSION, &format!("{VERSION}{OF_THE_COPY}"))
+    });
+    packages.collect::<Vec<_>>().join("\n\n")
 }
 
 fn replace(text: &mut String, old: &str, new: &str) -> Result<(), Error> {
@@ -169,4 +188,22 @@ fn put(path: &Path, content: &[u8]) -> Result<(), Error> {
     }
     fs::write(path, content)?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_package_of_the_copy_and_no_other_has_the_copys_version() {
+        let lock = fs::read_to_string(build::root().join("Cargo.lock")).unwrap();
+        let ours = |text: &str| text.matches(&format!("{VERSION}{OF_THE_COPY}\"")).count();
+        let crates = lock.split("\n\n").filter(|package| {
+            !package.contains("\nsource = ") && package.contains(&format!("\n{VERSION}\""))
+        });
+        let count = crates.count();
+        assert!(count > 10 && ours(&lock) == 0 && ours(&locked(&lock)) == count);
+        // Nothing else is changed.
+        assert_eq!(locked(&lock).replace(OF_THE_COPY, ""), lock);
+    }
 }

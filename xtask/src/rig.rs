@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use crate::boards::{self, Board};
+use crate::build::Variant;
 use crate::tools::{self, PROBE_RS};
 use crate::{Error, build};
 
@@ -27,6 +28,7 @@ pub struct Rig<'a> {
     pub board: &'static Board,
     on: Where,
     wired: bool,
+    variant: Variant,
     /// Goes to the runner: parts of the names of the tests to run.
     names: Vec<&'a str>,
 }
@@ -46,6 +48,7 @@ impl<'a> Rig<'a> {
             board,
             on: Where::Probe,
             wired: false,
+            variant: Variant::Plain,
             names: Vec::new(),
         };
         for &word in rest {
@@ -53,10 +56,13 @@ impl<'a> Rig<'a> {
                 ("--build", Where::Probe) => rig.on = Where::Built,
                 ("--emulated", Where::Probe) => rig.on = Where::Emulated,
                 ("--wired", _) => rig.wired = true,
+                ("--data-cache", _) => {
+                    rig.variant = Variant::DataCache.of(board).map_err(|e| format!("rig: {e}"))?;
+                }
                 (name, _) if !name.starts_with('-') => rig.names.push(name),
                 _ => {
                     return Err(format!(
-                        "rig: `{word}` is not understood: allowed are --build or --emulated, --wired, and parts of names of tests"
+                        "rig: `{word}` is not understood: allowed are --build or --emulated, --wired, --data-cache, and parts of names of tests"
                     ));
                 }
             }
@@ -74,13 +80,19 @@ impl<'a> Rig<'a> {
     pub fn run(&self) -> Result<ExitCode, Error> {
         // On the emulated board every jumper is in place.
         let wired = self.wired || self.on == Where::Emulated;
-        let features = format!("{}{}", self.board.name, if wired { ",wired" } else { "" });
+        let cached = self.variant == Variant::DataCache;
+        let features = format!(
+            "{}{}{}",
+            self.board.name,
+            if wired { ",wired" } else { "" },
+            if cached { ",data-cache" } else { "" }
+        );
         let elf = build::image(
             "sophie-rig",
             &["--test", "rig", "--features", &features],
             &[],
             self.board.core,
-            self.board.name,
+            &format!("{}{}", self.board.name, if cached { "-data-cache" } else { "" }),
         )?;
         crate::check(self.board, &elf)?;
         match self.on {

@@ -45,6 +45,9 @@ pub enum Fault {
     TaskHung(&'static str),
     /// The task of this name calls itself without end as soon as it runs.
     StackOverflow(&'static str),
+    /// The task of this name faults, as soon as it runs, at the priority of the hard fault's handler: the processor locks
+    /// up (ARMv7-M B1.5.15), as by a fault within that handler.
+    LockUp(&'static str),
     /// The flash that is kept for parameters is overwritten, as a program of another maker would.
     CorruptParameters,
     /// The flash that is kept for parameters begins as ArduPilot leaves it.

@@ -6,11 +6,11 @@
 use core::cell::RefCell;
 
 use critical_section::Mutex;
-use embassy_stm32::pac::DBGMCU;
 use sophie_control::warm::{WORDS, Words};
 use sophie_tasks::ports::Retain;
 
 use crate::board::cortex_m::retained::{self, Memory};
+use crate::board::stm32::stop_with_core;
 use crate::board::{ResetCause, take_reset_cause};
 use crate::cycles;
 
@@ -66,7 +66,8 @@ impl Errand {
 /// If the watchdog interrupted a test that feeds it.
 pub fn begin() -> (Errand, ResetCause) {
     cycles::start();
-    stop_watchdog_with_core();
+    // The probe reads a test's verdict while the core is halted.
+    stop_with_core();
     let cause = take_reset_cause();
     let (kept, memory) = retained::start(cause);
     critical_section::with(|cs| MEMORY.borrow(cs).replace(Some(memory)));
@@ -87,12 +88,4 @@ pub fn leave(errand: Errand) {
             memory.keep(false, &errand.words());
         }
     });
-}
-
-/// The watchdog stands still while the probe has halted the core: the probe reads a test's verdict then.
-fn stop_watchdog_with_core() {
-    #[cfg(family = "h7")]
-    DBGMCU.apb4fzr1().modify(|w| w.set_iwdg1(true));
-    #[cfg(not(family = "h7"))]
-    DBGMCU.apb1fzr().modify(|w| w.set_iwdg(true));
 }

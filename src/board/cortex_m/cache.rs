@@ -2,42 +2,59 @@
 
 use cortex_m::peripheral::{MPU, Peripherals, SCB};
 
-/// Region 0 of the memory protection: all addresses, of which the eighths below 0x6000_0000 and from 0xE000_0000 on are
-/// left out; no access, not even by a speculative read (ARMv7-M B3.5.9).
-const EXTERNAL: u32 = 1 << 28 | 0x87 << 8 | 31 << 1 | 1;
-/// Protection on; the default map where no region is.
+/// Regions of the memory protection, each with its base, memory type and access (ARMv7-M B3.5.8, B3.5.9): the default
+/// map (B3.1) written out, but for external memories, to which there is no access, not even by a speculative read, and
+/// for data memories, which are never cached. The background map, which is for privileged code only, would do for the
+/// rest, but the emulator checks it at each access.
+const MAP: [(u32, u32); 4] = [
+    // All addresses without the eighths below 0x6000_0000 and from 0xE000_0000 on.
+    (0, NEVER_EXECUTED | 0x87 << 8 | SIZE_4_GB | ENABLED),
+    (CODE, FULL_ACCESS | WRITTEN_THROUGH | SIZE_512_MB | ENABLED),
+    (DATA, FULL_ACCESS | NEVER_CACHED | SIZE_512_MB | ENABLED),
+    (PERIPHERALS, FULL_ACCESS | DEVICE | SIZE_512_MB | ENABLED),
+];
+/// Flash, and memory of instructions.
+const CODE: u32 = 0x0000_0000;
+/// The tightly coupled memory, which no cache is between, and those that DMA reaches.
+const DATA: u32 = 0x2000_0000;
+const PERIPHERALS: u32 = 0x4000_0000;
+const NEVER_EXECUTED: u32 = 1 << 28;
+const FULL_ACCESS: u32 = 0b011 << 24;
+const WRITTEN_THROUGH: u32 = 1 << 17;
+const NEVER_CACHED: u32 = 0b001 << 19;
+const DEVICE: u32 = NEVER_EXECUTED | 1 << 16;
+const SIZE_4_GB: u32 = 31 << 1;
+const SIZE_512_MB: u32 = 28 << 1;
+const ENABLED: u32 = 1;
+/// Protection on; the default map where no region is, which is the system's own space.
 const ON: u32 = 1 << 2 | 1;
 
-/// Switches the instruction cache on, and keeps the core from reading ahead at the addresses of external memories, where
-/// a controller that was never set up may stall it for ever. Called once, at the start.
-pub fn enable_instruction_cache() {
+/// Switches the instruction cache on, and with `data` the data cache, for what is read from flash; and keeps the core
+/// from reading ahead at the addresses of external memories, where a controller that was never set up may stall it for
+/// ever. Called once, at the start.
+pub fn enable_caches(data: bool) {
     // SAFETY: nothing else uses the core's cache control and memory protection, and nothing else runs yet.
     let mut core = unsafe { Peripherals::steal() };
-    protect(&core.MPU, 0, 0, EXTERNAL);
+    protect(&core.MPU);
     core.SCB.enable_icache();
-}
-
-/// Switches the data cache on too. Called once, behind [`enable_instruction_cache`].
-///
-/// Only for boards where everything that DMA moves lies in memory that is never cached: what DMA writes behind the cache
-/// would have to be invalidated by hand. `cargo xtask firmware` checks where it lies.
-#[allow(dead_code, reason = "each board has its own caches")]
-pub fn enable_data_cache() {
-    // SAFETY: as above.
-    let mut core = unsafe { Peripherals::steal() };
-    core.SCB.enable_dcache(&mut core.CPUID);
-}
-
-/// Makes `attributes` those of region `number` at `base`, and switches the protection on.
-fn protect(mpu: &MPU, number: u32, base: u32, attributes: u32) {
-    cortex_m::asm::dmb();
-    // SAFETY: the registers are the core's own; the region is switched on with its attributes, in one write.
-    unsafe {
-        mpu.rnr.write(number);
-        mpu.rbar.write(base);
-        mpu.rasr.write(attributes);
-        mpu.ctrl.write(ON);
+    if data {
+        core.SCB.enable_dcache(&mut core.CPUID);
     }
+}
+
+/// Sets the regions and switches the protection on.
+fn protect(mpu: &MPU) {
+    cortex_m::asm::dmb();
+    for (number, (base, attributes)) in (0..).zip(MAP) {
+        // SAFETY: the registers are the core's own; a region is switched on with its attributes, in one write.
+        unsafe {
+            mpu.rnr.write(number);
+            mpu.rbar.write(base);
+            mpu.rasr.write(attributes);
+        }
+    }
+    // SAFETY: as above; every address that the firmware uses is in a region, with the type that it had before.
+    unsafe { mpu.ctrl.write(ON) };
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
 }
@@ -52,10 +69,16 @@ pub fn forget_cached(address: usize, length: usize) {
     }
 }
 
-/// The core does not read ahead at external memories.
+/// The core does not read ahead at external memories: every region is as it was set.
 pub fn protected() -> bool {
-    // SAFETY: reading these registers changes nothing.
-    unsafe { (*MPU::PTR).ctrl.read() & ON == ON && (*MPU::PTR).rasr.read() == EXTERNAL }
+    // SAFETY: this only selects the region that is read, and nothing else uses the protection's registers.
+    let mpu = unsafe { &*MPU::PTR };
+    let regions = (0..).zip(MAP).all(|(number, (base, attributes))| {
+        // SAFETY: as above.
+        unsafe { mpu.rnr.write(number) };
+        mpu.rbar.read() & !0x1F == base && mpu.rasr.read() == attributes
+    });
+    regions && mpu.ctrl.read() & ON == ON
 }
 
 /// Instruction cache and data cache are on.

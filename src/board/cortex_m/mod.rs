@@ -13,10 +13,7 @@ pub mod stack;
 pub mod trace;
 
 #[cfg(not(family = "f4"))]
-#[allow(unused_imports, reason = "each board has its own caches")]
-pub use cache::enable_data_cache;
-#[cfg(not(family = "f4"))]
-pub use cache::{enable_instruction_cache, enabled as caches, forget_cached, protected};
+pub use cache::{enable_caches, enabled as caches, forget_cached, protected};
 pub use levels::{FLIGHT, STEADY};
 
 defmt::timestamp!("{=u64:us}", super::stm32::micros());

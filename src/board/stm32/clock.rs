@@ -1,4 +1,4 @@
-//! From the reset to running clocks: motors low and watchdog first, so that nothing spins and nothing hangs while the
+//! From the reset to running clocks: outputs and watchdog first, so that nothing spins and nothing hangs while the
 //! chip waits for its crystal and its PLLs.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -33,11 +33,11 @@ pub fn micros() -> u64 {
     }
 }
 
-/// Drives the motors' pins low and starts the watchdog, then the clocks as `config` says. `timer` is the one that
+/// Gives the outputs their first levels and starts the watchdog, then the clocks as `config` says. `timer` is the one that
 /// embassy-time counts with. A crystal that never starts and a PLL that never locks end by the watchdog, and the next start
 /// says which. Called once.
-pub fn start(config: Config, timer: TimGp32, stop_motors: fn()) -> Peripherals {
-    stop_motors();
+pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals {
+    first_levels();
     watchdog::start();
     if let Some(crystal) = config.rcc.hse {
         start_crystal(crystal.freq.0 / 1_000_000);

@@ -26,8 +26,6 @@ use super::Aligned;
 
 /// The slowest frame takes 120 µs; one that takes this long never ends.
 const LONGEST_FRAME: Duration = Duration::from_micros(500);
-/// Ports A to H in the clock controller.
-const PORTS: u32 = 0xFF;
 
 /// Rows of compare values that DMA writes into the timer: one for each bit of a frame, and two of zeros. The first of
 /// those is in force when the second has been moved, so the pins are low at the end of the transfer.
@@ -283,26 +281,4 @@ fn timing(protocol: Protocol, clock_hz: u32) -> Timing {
         Some(timing) => timing,
         None => panic!("the motors' timer cannot make the protocol from {clock_hz} Hz"),
     }
-}
-
-/// Makes pins of a port outputs at low level, whatever drove them: the first act of a start and the last resort of a
-/// fault handler.
-pub fn pull_low(port: Gpio, pins: [usize; 4]) {
-    clock_ports();
-    for pin in pins {
-        port.bsrr().write(|w| w.set_br(pin, true));
-        port.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));
-    }
-}
-
-/// Gives every port its clock, which a port that is written to before the start has none of.
-fn clock_ports() {
-    let bus = pac::RCC;
-    #[cfg(family = "h7")]
-    let clocks = bus.ahb4enr();
-    #[cfg(not(family = "h7"))]
-    let clocks = bus.ahb1enr();
-    clocks.modify(|w| w.0 |= PORTS);
-    // The clock is there two cycles after the write (RM0090 §7.2.14, RM0433 §8.5.10): this read takes them.
-    let _ = clocks.read();
 }

@@ -48,11 +48,11 @@ pub use analog::AnalogInputs;
 pub use chip::ThisChip;
 pub use clock::{micros, start};
 pub use data_ready::{ReadyLine, ReadyStamp};
-pub use escs::{EscTimer, EscTimers, pull_low};
+pub use escs::{EscTimer, EscTimers};
 pub use flash::ParamFlash;
 pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
 pub use lights::{Lamp, Lights};
-pub use rails::hold;
+pub use rails::{drive, hold};
 pub use reset::take_reset_cause;
 pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, console_lines, receiver_line};
 pub use servo_pairs::ServoPairs;
@@ -62,7 +62,7 @@ pub use spi::PlainChip;
 pub use spi::{DmaChip, Selected, spi_config};
 pub use storage::BoardStorage;
 pub use tone::Tone;
-pub use watchdog::Dog;
+pub use watchdog::{Dog, stop_with_core};
 
 /// A buffer that DMA moves in bursts of up to 16 bytes: a burst must not cross a 1 KiB boundary.
 #[repr(C, align(32))]

@@ -1,6 +1,7 @@
 //! The independent watchdog.
 
 use embassy_stm32::Peri;
+use embassy_stm32::pac::DBGMCU;
 #[cfg(not(family = "h7"))]
 use embassy_stm32::pac::IWDG;
 #[cfg(family = "h7")]
@@ -22,8 +23,21 @@ const LONG: (Pr, u16) = (Pr::DIVIDE_BY256, 0xFFF);
 
 /// Starts the watchdog with what it has after a reset, its longest count at its fastest clock: 0.35 to 0.96 s. For the
 /// start itself; [`Dog`]'s first food gives it its period.
+///
+/// In an image for development a debugger that halts the core halts the watchdog too. In one that flies it does not: a
+/// halted core stops the motors' frames, and the watchdog the rest.
 pub fn start() {
+    #[cfg(feature = "trace")]
+    stop_with_core();
     IWDG.kr().write(|w| w.set_key(Key::START));
+}
+
+/// The watchdog stands still while a probe has halted the core.
+pub fn stop_with_core() {
+    #[cfg(family = "h7")]
+    DBGMCU.apb4fzr1().modify(|w| w.set_iwdg1(true));
+    #[cfg(not(family = "h7"))]
+    DBGMCU.apb1fzr().modify(|w| w.set_iwdg(true));
 }
 
 /// The watchdog, running.

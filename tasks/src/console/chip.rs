@@ -72,7 +72,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         }
         match self.chip.set_brown_out().await {
             Ok(()) => {
-                self.out.line(format_args!("set; restarting")).await;
+                self.out.last(format_args!("set; restarting")).await;
                 self.chip.restart();
             }
             Err(_) => {

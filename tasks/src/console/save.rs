@@ -28,7 +28,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                 self.links.report(Refusal::StorageFull, false);
                 self.links.report(Refusal::StorageUnreadable, false);
                 self.links.report(Refusal::StorageForeign, false);
-                self.out.line(format_args!("saved; restarting")).await;
+                self.out.last(format_args!("saved; restarting")).await;
                 // Arming stays refused: the parameters in force are no longer those that are stored.
                 self.chip.restart();
             }

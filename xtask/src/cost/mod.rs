@@ -1,6 +1,8 @@
 //! Instructions of every stage of the control path, counted under QEMU.
 
 mod baseline;
+mod cycles;
+mod instruction;
 mod qemu;
 mod stages;
 mod table;
@@ -42,6 +44,8 @@ pub enum Then {
     Json,
     /// Print them and make them the baseline.
     Tighten,
+    /// Print the cycles that an M4F takes at least and at most, instead.
+    Cycles,
 }
 
 /// Counts of one stage on one core; instructions.
@@ -66,6 +70,9 @@ pub struct Count {
 /// # Errors
 /// No toolchain or no QEMU, the cores disagree on the motor commands, or a stage has become dearer.
 pub fn cost(then: Then) -> Result<(), Error> {
+    if then == Then::Cycles {
+        return cycles::cycles();
+    }
     let mut counts = Vec::new();
     let mut commands = Vec::new();
     for core in &CORES {

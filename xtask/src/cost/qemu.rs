@@ -1,7 +1,7 @@
 //! Runs the counting image and reads what it prints.
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use super::{Core, Count};
 use crate::{Error, build};
@@ -14,23 +14,39 @@ pub struct Run {
     pub commands: Vec<String>,
 }
 
+/// QEMU with `elf` on `core`.
+pub fn command(core: &Core, elf: &Path) -> Command {
+    let mut command = Command::new("qemu-system-arm");
+    // An instruction lasts 2^7 ns, some ticks of the machine's timer: what the image counts with.
+    command.args(["-machine", core.machine, "-nographic", "-icount", "shift=7"]);
+    command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
+    command.arg(elf).stdin(Stdio::null());
+    command
+}
+
+/// Starts QEMU.
+///
+/// # Errors
+/// It is not installed, or does not start.
+pub fn started(command: &mut Command) -> Result<Child, Error> {
+    let started = command.spawn();
+    started.map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            "qemu-system-arm is not installed (Debian, Ubuntu: apt-get install qemu-system-arm)".into()
+        }
+        _ => e.into(),
+    })
+}
+
 /// Runs `elf` on `core`.
 ///
 /// # Errors
 /// No QEMU, or the image did not end well.
 pub fn run(core: &Core, elf: &Path) -> Result<Run, Error> {
-    let mut command = Command::new("qemu-system-arm");
-    // An instruction lasts 2^7 ns, some ticks of the machine's timer: what the image counts with.
-    command.args(["-machine", core.machine, "-nographic", "-icount", "shift=7"]);
-    command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
-    command.arg(elf).stdin(Stdio::null()).stderr(Stdio::inherit());
+    let mut command = command(core, elf);
+    command.stdout(Stdio::piped()).stderr(Stdio::inherit());
     eprintln!("{}", build::shown(&command));
-    let output = command.output().map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => {
-            "qemu-system-arm is not installed (Debian, Ubuntu: apt-get install qemu-system-arm)".to_string()
-        }
-        _ => e.to_string(),
-    })?;
+    let output = started(&mut command)?.wait_with_output()?;
     let text = String::from_utf8(output.stdout)?;
     if !output.status.success() {
         return Err(format!("the image failed on {}:\n{text}", core.name).into());

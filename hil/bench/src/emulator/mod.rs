@@ -65,6 +65,8 @@ const QUEUED: u64 = 1 << 8;
 
 /// Code that fills the stack: `push {r0-r7, lr}`, over and over.
 const RECURSION: u64 = 0xE7FD_B5FF;
+/// Code that locks the processor up: `cpsid f`, which takes the priority of a hard fault, and `udf`.
+const LOCK_UP: u64 = 0xDE00_B671;
 /// Where it is put: bytes before the end of the RAM, where no image has statics.
 const SPARE: u64 = 0x1000;
 
@@ -441,7 +443,8 @@ impl World {
                 host.hold(false);
             }
             Fault::TaskHung(name) => return self.hang(name, host),
-            Fault::StackOverflow(name) => return self.overflow(name, host),
+            Fault::StackOverflow(name) => return self.replace(name, RECURSION, host),
+            Fault::LockUp(name) => return self.replace(name, LOCK_UP, host),
             Fault::CorruptParameters => {
                 let (first, end) = self.params;
                 let mut words = (first..end).step_by(4);
@@ -485,18 +488,18 @@ impl World {
         host.write(task + state, Width::W32, SPAWNED | QUEUED).is_ok()
     }
 
-    /// Makes the function that runs a task one that fills the stack.
-    fn overflow(&self, name: &str, host: &mut dyn Host) -> bool {
+    /// Makes the function that runs a task the two instructions `code`.
+    fn replace(&self, name: &str, code: u64, host: &mut dyn Host) -> bool {
         let Some(task) = self.tasks.get(name) else {
             return false;
         };
         // The only address of code in the executor's header.
         let (first, end) = self.flash;
-        let code = |word: u64| word & 1 == 1 && (first..end).contains(&word);
+        let in_flash = |word: u64| word & 1 == 1 && (first..end).contains(&word);
         let mut places = (0..HEADER).step_by(4).map(|place| task + place);
-        let place = places.find(|at| host.read(*at, Width::W32).is_ok_and(code));
+        let place = places.find(|at| host.read(*at, Width::W32).is_ok_and(in_flash));
         place.is_some_and(|at| {
-            host.write(self.spare, Width::W32, RECURSION).is_ok()
+            host.write(self.spare, Width::W32, code).is_ok()
                 && host.write(at, Width::W32, self.spare | 1).is_ok()
         })
     }

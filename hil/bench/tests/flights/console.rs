@@ -5,6 +5,7 @@ use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::Duration;
 
 use sophie_bench::terminal::{Sockets, Terminal};
+use sophie_bench::wires::Fault;
 
 use super::*;
 
@@ -33,6 +34,44 @@ fn volts(user: &mut TcpStream) -> f64 {
     }
 }
 
+/// A port that nobody listens at, with a listener of the board's there.
+fn terminal(option: &'static str) -> (u16, Terminal) {
+    let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let port = free.local_addr().unwrap().port();
+    drop(free);
+    (port, Terminal::listen(option, port).unwrap())
+}
+
+/// What somebody does at the console of a board on which nobody arms, for at most `seconds` s of its time: the flight, and
+/// what `session` gives.
+fn at_the_console<T: Send + 'static>(
+    firmware: &Firmware,
+    seconds: f64,
+    fault: Option<Fault>,
+    telemetry: Option<Terminal>,
+    session: impl FnOnce(&mut TcpStream) -> T + Send + 'static,
+) -> (Flight, T) {
+    let (port, console) = terminal("--console");
+    let user = std::thread::spawn(move || {
+        let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
+        wake(&mut user);
+        session(&mut user)
+    });
+    let scenario = Scenario {
+        time_limit: seconds,
+        ..scenario("hover.toml")
+    };
+    let faults = fault.map(|fault| (0, Trouble::Board(fault)));
+    let plan = Plan::new(faults.into_iter().chain([(0, Trouble::RadioSilent(true))]));
+    let sockets = Sockets {
+        console: Some(console),
+        telemetry,
+    };
+    let flight = flight::fly(firmware, &scenario, 1.0, plan, sockets, |_| (), &mut Silent).unwrap();
+    let given = user.join().unwrap_or_else(|_| panic!("{}", log(&flight)));
+    (flight, given)
+}
+
 /// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
 fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
@@ -51,37 +90,20 @@ fn wake(user: &mut TcpStream) {
 
 #[test]
 fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
-    let [port, heard_at] = [(); 2].map(|()| {
-        let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-        free.local_addr().unwrap().port()
-    });
-    let sockets = Sockets {
-        console: Some(Terminal::listen("--console", port).unwrap()),
-        telemetry: Some(Terminal::listen("--telemetry", heard_at).unwrap()),
-    };
+    let (heard_at, telemetry) = terminal("--telemetry");
     let mut listener = TcpStream::connect((Ipv4Addr::LOCALHOST, heard_at)).unwrap();
-    let user = std::thread::spawn(move || {
-        let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
-        wake(&mut user);
-        let before = volts(&mut user);
-        type_in(&mut user, "set infill 8\r", "in force after save");
-        type_in(&mut user, "set battery_divider 22\r", "in force after save");
-        type_in(&mut user, "save\r", "save\r\n");
-        // The board restarts: what is typed meanwhile is lost.
-        wake(&mut user);
-        let after = volts(&mut user);
-        (type_in(&mut user, "list infill\r", "4 to 10 %"), before, after)
-    });
-    let scenario = Scenario {
-        // Nobody arms: the board has the time that the session needs.
-        time_limit: 20.0,
-        ..scenario("hover.toml")
-    };
-    let plan = Plan::new([(0, Trouble::RadioSilent(true))]);
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
-    let told_to = |_: &sophie_bench::log::Line| ();
-    let flight = flight::fly(&firmware, &scenario, 1.0, plan, sockets, told_to, &mut Silent).unwrap();
-    let (listed, before, after) = user.join().unwrap();
+    let session = |user: &mut TcpStream| {
+        let before = volts(user);
+        type_in(user, "set infill 8\r", "in force after save");
+        type_in(user, "set battery_divider 22\r", "in force after save");
+        type_in(user, "save\r", "saved; restarting");
+        // The board restarts: what is typed meanwhile is lost.
+        wake(user);
+        let after = volts(user);
+        (type_in(user, "list infill\r", "4 to 10 %"), before, after)
+    };
+    let (flight, (listed, before, after)) = at_the_console(&firmware, 16.0, None, Some(telemetry), session);
     // CRSF frames, one of them with the mode, marked as one that does not arm.
     let mut telemetry = Vec::new();
     listener.read_to_end(&mut telemetry).unwrap();
@@ -107,4 +129,51 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     // The set was appended: no sector is worn by a save.
     assert!(flight.board.run.erases.is_empty());
     assert_eq!(flight.gaps, []);
+}
+
+/// On a new chip the level is set at the console, once; the next start finds it.
+fn the_brown_out_level_is_set(image: &Path, board: &str) {
+    let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let session = |user: &mut TcpStream| {
+        let before = type_in(user, "brownout\r", "nothing else is changed");
+        type_in(user, "brownout set\r", "restarting");
+        wake(user);
+        let after = type_in(user, "brownout\r", "nothing to do");
+        (
+            before,
+            after,
+            type_in(user, "brownout set\r", "not set: nothing to do"),
+        )
+    };
+    let (flight, (before, after, _)) =
+        at_the_console(&firmware, 8.0, Some(Fault::FactoryOptions), None, session);
+    assert!(
+        before.contains("brown-out level 0, expected 3"),
+        "{board}: {before}"
+    );
+    assert!(
+        after.contains("brown-out level 3, expected 3"),
+        "{board}: {after}"
+    );
+    // Refused before, and no more after.
+    let refused = told(&flight, 0.0, "arming blocked: brown-out level not set");
+    assert!(refused.is_some(), "{board}: {}", log(&flight));
+    let [(ms, _)] = &flight.board.resets[..] else {
+        panic!("{board}: {:?}\n{}", flight.board.resets, log(&flight))
+    };
+    let restarted = told(&flight, *ms * 1e-3, "start after Software");
+    assert!(restarted.is_some(), "{board}: {}", log(&flight));
+    let again = told(&flight, *ms * 1e-3, "brown-out level not set");
+    assert_eq!(again, None, "{board}: {}", log(&flight));
+    assert_eq!(flight.gaps, [], "{board}");
+}
+
+#[test]
+fn the_brown_out_level_of_a_new_chip_is_set_at_the_console() {
+    the_brown_out_level_is_set(image(), "matek-h743");
+}
+
+#[test]
+fn so_is_that_of_the_small_board_whose_encoding_is_the_opposite() {
+    the_brown_out_level_is_set(small_image(), "f405");
 }

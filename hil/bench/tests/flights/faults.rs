@@ -5,15 +5,24 @@ use sophie_hil::sensors::fsr::FsrBreak;
 
 use super::*;
 
-/// A flight of the hover of at most `seconds` s with a trouble in the air.
+/// A flight of the hover of at most `seconds` s with a trouble in the air, on the reference board.
 fn with(trouble: Trouble, seconds: f64) -> Flight {
-    let flight = fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]);
+    sound_before(fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]))
+}
+
+/// The same on the small board.
+fn with_small(trouble: Trouble, seconds: f64) -> Flight {
+    sound_before(fly_small(&hover(seconds), &[(AIRBORNE, trouble)]))
+}
+
+/// The flight, which was in the air before its trouble came.
+fn sound_before(flight: Flight) -> Flight {
     assert!(
         told(&flight, 0.0, "FLIGHT").is_some_and(|t| t < AIRBORNE),
         "{}",
         log(&flight)
     );
-    assert!(running(&flight, AIRBORNE - 1.0, AIRBORNE));
+    assert!(running(&flight, AIRBORNE - 0.5, AIRBORNE));
     assert_eq!(flight.gaps, [], "{}", log(&flight));
     flight
 }
@@ -55,7 +64,7 @@ fn lands_without_data_ready(flight: &Flight) {
     assert!(t.is_some_and(|t| t < AIRBORNE + 0.4), "{}", log(flight));
     let down =
         told(flight, AIRBORNE, &format!("DISARMED: {LINE}")).unwrap_or_else(|| panic!("{}", log(flight)));
-    assert!(running(flight, AIRBORNE - 1.0, down - 0.1), "{}", log(flight));
+    assert!(running(flight, AIRBORNE - 0.5, down - 0.1), "{}", log(flight));
     // No faster than a descent, no further than 10 degrees from level, and down from 3 m.
     for s in samples(flight, AIRBORNE, down) {
         let [.., sink] = s.velocity;
@@ -111,7 +120,7 @@ fn a_flipped_word_of_the_inertial_sensor_now_and_then_is_flown_through() {
         )
     });
     let troubles: Vec<_> = words.collect();
-    let flight = fly(&scenario("hover.toml"), 1.0, &troubles);
+    let flight = fly_small(&hop(), &troubles);
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
@@ -121,31 +130,27 @@ fn a_silenced_arm_sensor_is_named_and_flown_without() {
         (AIRBORNE, Trouble::Board(Fault::ArmUnplugged(2, true))),
         (AIRBORNE + 3.0, Trouble::Board(Fault::ArmUnplugged(2, false))),
     ];
-    let flight = fly(&scenario("hover.toml"), 1.0, &troubles);
+    let flight = fly_small(&hop(), &troubles);
     assert!(told(&flight, AIRBORNE, "BNO055").is_some(), "{}", log(&flight));
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
 #[test]
 fn a_silent_receiver_ends_in_the_failsafe() {
-    let flight = with(Trouble::RadioSilent(true), AIRBORNE + 3.0);
+    let flight = with_small(Trouble::RadioSilent(true), AIRBORNE + 3.0);
     let t = told(&flight, AIRBORNE, "FAILSAFE: radio lost");
     assert!(t.is_some_and(|t| t < AIRBORNE + 2.0), "{}", log(&flight));
 }
 
 #[test]
 fn flipped_bits_on_the_receivers_line_are_flown_through() {
-    let flight = fly(
-        &scenario("hover.toml"),
-        1.0,
-        &[(AIRBORNE, Trouble::RadioBits(97))],
-    );
+    let flight = fly_small(&hop(), &[(AIRBORNE, Trouble::RadioBits(97))]);
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
 #[test]
 fn a_sagging_battery_ends_in_the_failsafe() {
-    let flight = with(Trouble::BatteryShare(0.75), AIRBORNE + 10.0);
+    let flight = with_small(Trouble::BatteryShare(0.75), AIRBORNE + 10.0);
     assert!(told(&flight, AIRBORNE, "battery").is_some(), "{}", log(&flight));
 }
 
@@ -172,7 +177,7 @@ fn a_processor_that_stands_still_is_reset_by_its_watchdog_with_the_motors_stoppe
 
 #[test]
 fn a_pulled_reset_pin_is_told_as_such() {
-    let flight = with(Trouble::Board(Fault::ResetPin), AIRBORNE + 2.0);
+    let flight = with_small(Trouble::Board(Fault::ResetPin), AIRBORNE + 2.0);
     assert!(
         told(&flight, AIRBORNE, "start after Pin").is_some(),
         "{}",
@@ -191,7 +196,7 @@ fn a_bus_whose_clock_is_held_keeps_the_background_only() {
     let troubles = [(AIRBORNE, Trouble::Board(Fault::ClockHeld(0, 300)))];
     let flight = fly(&hover(AIRBORNE + 3.0), 1.0, &troubles);
     assert!(
-        running(&flight, AIRBORNE - 1.0, f64::INFINITY),
+        running(&flight, AIRBORNE - 0.5, f64::INFINITY),
         "{}",
         log(&flight)
     );
@@ -235,7 +240,7 @@ fn overflows(task: &'static str, small: bool) {
     } else {
         fly(&scenario, 1.0, &troubles)
     };
-    assert!(running(&flight, AIRBORNE - 1.0, AIRBORNE), "{}", log(&flight));
+    assert!(running(&flight, AIRBORNE - 0.5, AIRBORNE), "{}", log(&flight));
     let [(ms, cause)] = &flight.board.resets[..] else {
         panic!("{:?}\n{}", flight.board.resets, log(&flight))
     };
@@ -278,6 +283,28 @@ fn so_does_one_of_the_background_on_the_small_board() {
 }
 
 #[test]
+fn a_fault_within_a_fault_locks_up_and_ends_by_the_watchdog_with_the_motors_stopped() {
+    let flight = with_small(Trouble::Board(Fault::LockUp("control")), AIRBORNE + 1.2);
+    let [(ms, cause)] = &flight.board.resets[..] else {
+        panic!("{:?}\n{}", flight.board.resets, log(&flight))
+    };
+    assert!(cause.contains("IWDG"), "{cause}");
+    let after = ms * 1e-3 - AIRBORNE;
+    assert!((0.2..0.6).contains(&after), "{after}");
+    assert!(
+        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
+        "{}",
+        log(&flight)
+    );
+    // No frame goes on without software; the controllers stop by themselves.
+    assert!(
+        stopped(&flight, AIRBORNE + 0.4, f64::INFINITY),
+        "{}",
+        log(&flight)
+    );
+}
+
+#[test]
 fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() {
     let troubles = [
         (AIRBORNE, Trouble::BatteryShare(0.4)),
@@ -286,7 +313,7 @@ fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() 
         (AIRBORNE + 0.1, Trouble::BatteryShare(1.0)),
     ];
     let flight = fly(&hover(AIRBORNE + 2.5), 1.0, &troubles);
-    assert!(running(&flight, AIRBORNE - 1.0, AIRBORNE), "{}", log(&flight));
+    assert!(running(&flight, AIRBORNE - 0.5, AIRBORNE), "{}", log(&flight));
     assert!(
         told(&flight, AIRBORNE, "start after BrownOut").is_some(),
         "{}",
@@ -303,7 +330,7 @@ fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() 
 #[test]
 fn a_shorted_pressure_sensor_speaks_before_the_arms_close() {
     let troubles = [(2.0, Trouble::Fsr(1, Some(FsrBreak::Short)))];
-    let flight = fly(&hover(6.0), 1.0, &troubles);
+    let flight = fly_small(&hover(4.0), &troubles);
     assert!(told(&flight, 2.0, "pressure").is_some(), "{}", log(&flight));
 }
 
@@ -315,7 +342,7 @@ fn a_cut_pressure_sensor_proves_no_grip_and_the_rotors_keep_turning() {
         ..scenario("perch-short.toml")
     };
     (scenario.world.gust_force, scenario.world.gust_moment) = (0.0, 0.0);
-    let flight = fly(&scenario, 1.0, &[(20.0, Trouble::Fsr(1, Some(FsrBreak::Open)))]);
+    let flight = fly_small(&scenario, &[(20.0, Trouble::Fsr(1, Some(FsrBreak::Open)))]);
     let closing = told(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
     // A sound grip is proven four seconds later.
     for never in ["grip proven", "PERCHED"] {

@@ -5,7 +5,7 @@ use sophie_bench::wires::Fault;
 use super::*;
 
 /// Where the processor stands still, off the ground; and the end of the flight, before its watchdog has bitten.
-const STILL: f64 = AIRBORNE - 2.0;
+const STILL: f64 = AIRBORNE - 0.5;
 const END: f64 = STILL + 0.18;
 
 /// The hover with controllers that speak `protocol`, until the processor stands still.

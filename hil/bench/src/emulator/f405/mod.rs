@@ -379,7 +379,13 @@ impl Mcu for F405 {
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
             stock.inherit(&mut own.inner.inner);
         }
+        // What the outside drives stays, which it forgets.
+        let mut ports = std::mem::take(&mut self.inner.gpio);
         self.inner.reset(at, cause);
+        for (fresh, old) in self.inner.gpio.iter_mut().zip(&mut ports) {
+            *fresh = std::mem::take(old);
+            Device::reset(fresh);
+        }
         for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
             own.inner.inner = I2c::with_clock(HSI_HZ);
             own.inner.inner.inherit(stock);
