@@ -196,6 +196,9 @@ impl<C: Chip> Wired<C> {
         if !receiver.fits(&port) {
             found.push(("receiver".to_owned(), format!("is {port}, wired for {receiver}")));
         }
+        if let Some(wrong) = self.chip.pll_ranges() {
+            found.push(("RCC".to_owned(), wrong));
+        }
         for bus in 0..2 {
             if let Some(wrong) = self.chip.bus_times(bus) {
                 found.push((format!("I2C{}", bus + 1), wrong));

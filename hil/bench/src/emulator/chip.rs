@@ -72,6 +72,10 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn motor_edges(&mut self) -> Vec<Edge>;
     /// High time and period of the pulses that a servo's timer makes, ns; `None` without pulses.
     fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)>;
+    /// What of the PLLs is set to a range that it is not in; nothing where they have none to choose.
+    fn pll_ranges(&self) -> Option<String> {
+        None
+    }
     /// What of the times that a bus of the arms is set to is not what the bus wants; nothing where they are not in a
     /// register of their own.
     fn bus_times(&self, bus: usize) -> Option<String> {

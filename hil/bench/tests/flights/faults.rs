@@ -51,6 +51,28 @@ fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board
     );
 }
 
+/// The watchdog resets the processor, which tells so, within `within` s; no motor runs from `stopped_by` s after the
+/// trouble on. No frame goes on without software: the controllers stop by themselves.
+fn ended_by_the_watchdog(flight: &Flight, within: f64, stopped_by: f64) {
+    let [(ms, cause)] = &flight.board.resets[..] else {
+        panic!("{:?}\n{}", flight.board.resets, log(flight))
+    };
+    assert!(cause.contains("IWDG"), "{cause}");
+    let after = ms * 1e-3 - AIRBORNE;
+    assert!((0.2..within).contains(&after), "{after}");
+    assert!(
+        told(flight, AIRBORNE, "start after Watchdog").is_some(),
+        "{}",
+        log(flight)
+    );
+    let still = stopped_by.max(after + 0.05);
+    assert!(
+        stopped(flight, AIRBORNE + still, f64::INFINITY),
+        "{}",
+        log(flight)
+    );
+}
+
 /// Cuts the data-ready line of the inertial sensor.
 const CUT: Trouble = Trouble::Board(Fault::DataReadyCut(true));
 /// Joins it again.
@@ -156,23 +178,8 @@ fn a_sagging_battery_ends_in_the_failsafe() {
 
 #[test]
 fn a_processor_that_stands_still_is_reset_by_its_watchdog_with_the_motors_stopped() {
-    let flight = with(Trouble::Board(Fault::Hang(true)), AIRBORNE + 3.0);
-    let [(ms, cause)] = &flight.board.resets[..] else {
-        panic!("{:?}", flight.board.resets)
-    };
-    assert!(cause.contains("IWDG"), "{cause}");
-    let after = ms * 1e-3 - AIRBORNE;
-    assert!((0.2..0.5).contains(&after), "{after}");
-    assert!(
-        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
-        "{}",
-        log(&flight)
-    );
-    assert!(
-        stopped(&flight, AIRBORNE + 0.4, f64::INFINITY),
-        "{}",
-        log(&flight)
-    );
+    let flight = with(Trouble::Board(Fault::Hang(true)), AIRBORNE + 1.5);
+    ended_by_the_watchdog(&flight, 0.5, 0.4);
 }
 
 #[test]
@@ -212,22 +219,7 @@ fn a_bus_whose_clock_is_held_keeps_the_background_only() {
 #[test]
 fn a_task_that_hangs_ends_in_a_reset_by_the_watchdog_with_the_motors_stopped() {
     let flight = with(Trouble::Board(Fault::TaskHung("commander")), AIRBORNE + 2.0);
-    let [(ms, cause)] = &flight.board.resets[..] else {
-        panic!("{:?}\n{}", flight.board.resets, log(&flight))
-    };
-    assert!(cause.contains("IWDG"), "{cause}");
-    let after = ms * 1e-3 - AIRBORNE;
-    assert!((0.2..1.0).contains(&after), "{after}");
-    assert!(
-        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
-        "{}",
-        log(&flight)
-    );
-    assert!(
-        stopped(&flight, AIRBORNE + after + 0.05, f64::INFINITY),
-        "{}",
-        log(&flight)
-    );
+    ended_by_the_watchdog(&flight, 1.0, 0.2);
 }
 
 /// In a hover a task's stack overflows: the motors stop, and the next start tells why.
@@ -285,23 +277,7 @@ fn so_does_one_of_the_background_on_the_small_board() {
 #[test]
 fn a_fault_within_a_fault_locks_up_and_ends_by_the_watchdog_with_the_motors_stopped() {
     let flight = with_small(Trouble::Board(Fault::LockUp("control")), AIRBORNE + 1.2);
-    let [(ms, cause)] = &flight.board.resets[..] else {
-        panic!("{:?}\n{}", flight.board.resets, log(&flight))
-    };
-    assert!(cause.contains("IWDG"), "{cause}");
-    let after = ms * 1e-3 - AIRBORNE;
-    assert!((0.2..0.6).contains(&after), "{after}");
-    assert!(
-        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
-        "{}",
-        log(&flight)
-    );
-    // No frame goes on without software; the controllers stop by themselves.
-    assert!(
-        stopped(&flight, AIRBORNE + 0.4, f64::INFINITY),
-        "{}",
-        log(&flight)
-    );
+    ended_by_the_watchdog(&flight, 0.6, 0.4);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The STM32H743 with what the emulator's own part lacks, and without what the board does not use.
 
 mod bus_times;
+mod pll_ranges;
 mod watchdog;
 
 use std::num::NonZeroU64;
@@ -253,6 +254,18 @@ impl Chip for H743 {
         let (timer, file) = self.servo_timer(servo)?;
         let pulse = timer.pulse(Channel::new(servo.channel)?, file)?;
         Some((pulse.width.0, pulse.period.0))
+    }
+
+    fn pll_ranges(&self) -> Option<String> {
+        let file = self.inner.bus().slots()[self.slots.clocks].registers();
+        let settings = pll_ranges::Settings {
+            control: file.get(Clocks::Cr),
+            dividers: file.get(Clocks::Pllckselr),
+            ranges: file.get(Clocks::Pllcfgr),
+            multipliers: [Clocks::Pll1divr, Clocks::Pll2divr, Clocks::Pll3divr]
+                .map(|register| file.get(register)),
+        };
+        pll_ranges::wrong(&settings, MATEK.crystal as f64)
     }
 
     fn bus_times(&self, bus: usize) -> Option<String> {
