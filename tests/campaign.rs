@@ -3,9 +3,9 @@
 mod common;
 
 use sophie_control::rc::ArmChoice::{self, All, Front, Rear};
-use sophie_hil::flight::fly;
-use sophie_hil::record::Silent;
-use sophie_hil::scenario::Scenario;
+use sophie_sim::flight::fly;
+use sophie_sim::record::Silent;
+use sophie_sim::scenario::Scenario;
 
 /// Seeds flown in each cell.
 const SEEDS: u64 = 20;

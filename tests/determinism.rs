@@ -2,9 +2,9 @@
 
 use std::thread;
 
-use sophie_hil::flight::fly;
-use sophie_hil::record::Silent;
-use sophie_hil::scenario::{Scenario, Step};
+use sophie_sim::flight::fly;
+use sophie_sim::record::Silent;
+use sophie_sim::scenario::{Scenario, Step};
 
 /// A short flight, so that several fit into a test.
 fn hop(seed: u64) -> Scenario {

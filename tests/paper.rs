@@ -1,5 +1,5 @@
 //! `sophie paper` and `sophie fit-arm` as a researcher meets them: what is calibrated holds to 3 %, what is predicted
-//! has the paper's signs and orders, and wrong input is told in one line.
+//! has the paper's signs and orders, and wrong input is refused in one line.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -329,7 +329,7 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
             && line.contains("still rises at hover"),
         "{line}"
     );
-    // Thrusts in newtons that end early are fitted, and that is told on stderr and on the page.
+    // Thrusts in newtons that end early are fitted, with a warning on stderr and on the page.
     write("short.csv", example(|x| (x[0] == 6.9 && x[1] < 3.6).then_some(x)));
     let output = sophie(&temp.0, &["fit-arm", "short.csv"]);
     let told = text(&output.stderr);
@@ -350,7 +350,7 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
 #[test]
 fn a_coefficient_that_may_be_none_is_told() {
     let temp = Temp::new("interval");
-    // Without errors of their own the example's coefficients are all told from 0.
+    // Without errors of their own the example's coefficients all differ from 0.
     fs::write(temp.0.join("good.csv"), example(Some)).unwrap();
     let output = sophie(&temp.0, &["fit-arm", "good.csv"]);
     assert_eq!(

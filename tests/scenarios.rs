@@ -6,9 +6,9 @@ use std::error::Error;
 use std::path::Path;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sophie_hil::flight::fly;
-use sophie_hil::record::{FlightRecord, Silent};
-use sophie_hil::scenario::{Expect, Overrides, Scenario};
+use sophie_sim::flight::fly;
+use sophie_sim::record::{FlightRecord, Silent};
+use sophie_sim::scenario::{Expect, Overrides, Scenario};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::from_args();

@@ -100,7 +100,7 @@ impl AttitudeLoop {
         }
     }
 
-    /// Starts afresh from the attitude `q` (unit, body to world): wanted is where the vehicle is until something else is,
+    /// Restarts from the attitude `q` (unit, body to world): wanted is where the vehicle is until something else is,
     /// and the first step does not jump.
     pub fn reset(&mut self, q: Quat) {
         self.wanted = q.down_in_body();
@@ -408,7 +408,7 @@ mod tests {
                 prop_assert!(r.x.abs() <= p.rate_max && r.y.abs() <= p.rate_max, "{r:?}");
                 prop_assert!(r.z.abs() <= 2.01 * p.yaw_slew, "{r:?}");
             }
-            // A vehicle that does what it is told comes back to level and to rest, from wherever it was left.
+            // A vehicle that follows its commands comes back to level and to rest, from wherever it was left.
             const DT: f32 = 4e-3;
             let mut r = Vec3::ZERO;
             a.aim(AttitudeSetpoint::default());

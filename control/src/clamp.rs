@@ -444,7 +444,7 @@ impl ArmClamp {
             Pressure::Known(_) => None,
         };
         let (Some(pressure), Some(thrust), Some(tilt), None) = (pressure, thrust, tilt, self.fault) else {
-            // The force is held, and the loop starts afresh from it: no wind-up, no kick.
+            // The force is held, and the loop restarts from it: no wind-up, no kick.
             match self.phase {
                 Phase::Grip(_) => self.phase = Phase::Approach,
                 Phase::Resume(_) => self.phase = Phase::Resume(0.0),

@@ -171,7 +171,7 @@ mod tests {
         );
         assert!((degrees(a.angle(3.9, 1.0)) - 39.0).abs() < 1e-3);
         assert!(a.angle(4.1, 1.0).abs() < 1e-9);
-        // One-sided: the other way it goes on.
+        // One-sided: the other direction stays open.
         assert!((degrees(a.angle(-4.1, 1.0)) + 41.0).abs() < 1e-3);
         // A weak battery bends less: 0.8^1.7 = 0.68432.
         assert!((degrees(a.angle(3.0, 0.8)) - 30.0 * 0.684_32).abs() < 1e-2);

@@ -17,7 +17,7 @@ const REST_RATE: f32 = 0.15;
 const REST_DEVIATION: f32 = 0.08;
 /// Specific force error at which the accelerometer's pull has faded to nothing, as a share of gravity.
 const ACCEL_FADE: f32 = 0.15;
-/// Largest gyro bias believed, rad/s.
+/// Largest gyro bias accepted, rad/s.
 const BIAS_MAX: f32 = 0.1;
 /// Time over which the accelerometer gives the attitude where the gyro's bias is known, s: a pipe sways.
 pub const RESUME_TIME: f32 = 0.5;
@@ -90,7 +90,7 @@ impl Estimator {
             return Vec3::ZERO;
         }
         let rate = gyro - self.bias;
-        // Down as measured (minus the specific force) against down as believed.
+        // Down as measured (minus the specific force) against down as estimated.
         let norm2 = accel.norm_squared();
         // No number of no force at all: the weight and the check below take care of both.
         let inv = math::inv_sqrt_normal(norm2);
@@ -130,7 +130,7 @@ impl Estimator {
         self.q = if q.is_finite() { q } else { self.q };
     }
 
-    /// Collects rest; any motion starts it afresh. With a known bias it need only stay upright, or fall no more.
+    /// Collects rest; any motion restarts it. With a known bias it need only stay upright, or fall no more.
     #[cold]
     #[inline(never)]
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
@@ -338,7 +338,7 @@ mod tests {
             assert!(steps(&|_| turn * 0.16).is_none());
             // One jolt after 1.5 s: two seconds from then on.
             assert!(within(steps(&|i| turn * if i == 1500 { 1.0 } else { 0.0 }), 3500));
-            // 0.07 rad/s off the mean is a rocking, 0.09 rad/s is not, once 0.2 s have told the mean.
+            // 0.07 rad/s off the mean is a rocking, 0.09 rad/s is not, once 0.2 s have given the mean.
             assert!(within(
                 steps(&|i| turn * if i == 1500 { 0.07 } else { 0.0 }),
                 2000

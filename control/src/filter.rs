@@ -9,7 +9,7 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// A filter that has been at `value` for ever.
+    /// A filter that has settled at `value`.
     pub const fn at(value: f32) -> Self {
         Self { value }
     }

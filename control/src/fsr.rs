@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_range_must_reach_a_fifth_beyond_the_grip_pressure() {
-        // The largest share that is believed is 4000/4095; x / (1 - x) is 42.105, times 692.52 Pa.
+        // The largest share that is accepted is 4000/4095; x / (1 - x) is 42.105, times 692.52 Pa.
         for full_scale in [1.0, 2.0, 11.0] {
             let scale = scaled(full_scale);
             assert!(

@@ -36,7 +36,6 @@ pub mod params;
 pub mod rate;
 pub mod rc;
 pub mod setpoint;
-pub mod stability;
 pub mod support;
 pub mod tendon;
 pub mod thrust_curve;

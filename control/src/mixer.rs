@@ -170,7 +170,7 @@ impl Mixer {
         mix
     }
 
-    /// First half of [`Self::mix`]: the thrusts, with the arms where they are believed to be.
+    /// First half of [`Self::mix`]: the thrusts, at the estimated tilt of the arms.
     // On its own: inlined into a caller that is built for size, its loops would not be unrolled and cost twice as much.
     #[inline(never)]
     pub fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
@@ -258,7 +258,7 @@ impl Mixer {
         });
         let [t1, t2, t3, t4] = thrusts;
         let (c1, c2, c3, c4) = (t1 + c1, t2 + c2, t3 + c3, t4 + c4);
-        // The collective goes on from the last thrusts. Where yaw is given up nothing corrects what they have
+        // The collective continues from the last thrusts. Where yaw is given up nothing corrects what they have
         // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
         let left = (0.25 - 0.25 * fade) * (c1 - c2 - c3 + c4);
         let patterns = Patterns {
@@ -450,7 +450,13 @@ mod tests {
         let model = crate::deflection::ArmModel::from_params(&p);
         let g = Geometry::from_params(&p, Configuration::B);
         let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
-        let c = crate::stability::yaw_derivative(&g, &model, 4.425);
+        // C = 1 - (dM/dδ) / (dM₀/dδ), along the yaw pattern about hover, with the arms following and without.
+        let yaw = |step: f32, tilt: &dyn Fn(f32) -> f32| {
+            let thrusts = YAW.map(|sign| 4.425 + step * sign);
+            g.wrench(&thrusts, &thrusts.map(tilt)).yaw
+        };
+        let slope = |tilt: &dyn Fn(f32) -> f32| yaw(0.5, tilt) - yaw(-0.5, tilt);
+        let c = 1.0 - slope(&|t| model.angle(t)) / slope(&|_| 0.0);
         assert!(
             (got.yaw / w.yaw - (1.0 - c)).abs() < 0.15,
             "{} {c}",

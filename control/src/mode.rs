@@ -12,7 +12,7 @@
 //! ```
 //!
 //! From Flight with the perch switch on, Contact, Clamping and Releasing a slide, a closing that is given up or a fall leads
-//! to Escaping, and from there to Flight when the throttle carries, to Failsafe when nobody moves it.
+//! to Escaping, and from there to Flight when the throttle carries, to Failsafe when the throttle is not moved.
 //!
 //! A vehicle that is disarmed with its arms closed (by a person, by a danger, or because the board restarted on the
 //! pipe) becomes Perched by the arming gesture.

@@ -217,7 +217,7 @@ params! {
     tilt_cutoff = 5.0, "Hz", 0.2 ..= 30.0;
     /// Gain of the arms' IMUs on the tilt bias, each 10 ms.
     tilt_bias_gain = 0.02, "1", 0.0 ..= 0.05;
-    /// Largest tilt bias believed.
+    /// Largest tilt bias accepted.
     tilt_bias_max = 0.2, "rad", 0.0 ..= 0.5;
 
     /// Accelerometer bias along body x, measured on a level bench: what it reads beyond gravity.

@@ -25,7 +25,7 @@ pub const RAW_LOW: u16 = 172;
 pub const RAW_CENTRE: u16 = 992;
 /// Counts at the high end.
 pub const RAW_HIGH: u16 = 1811;
-/// Lowest and highest count believed: 885 and 2115 µs. A receiver that has lost its transmitter sends less.
+/// Lowest and highest count accepted: 885 and 2115 µs. A receiver that has lost its transmitter sends less.
 const RAW_VALID: core::ops::RangeInclusive<u16> = 8..=1976;
 /// Half the travel of a centred stick, counts.
 const RAW_HALF: f32 = 819.5;
@@ -106,7 +106,7 @@ impl Sticks {
     /// The meaning of one frame of channels.
     ///
     /// # Errors
-    /// A used channel outside the range believed: the frame must be dropped as if it had not come.
+    /// A used channel outside the accepted range: the frame must be dropped as if it had not come.
     pub fn from_channels(channels: &[u16; CHANNELS]) -> Result<Self, ChannelError> {
         for (channel, &raw) in (1..).zip(channels.iter().take(USED)) {
             if !RAW_VALID.contains(&raw) {

@@ -75,7 +75,7 @@ impl Setpoint {
         }
     }
 
-    /// True when every number in it is finite. Their sum tells: false as well where that overflows.
+    /// True when every number in it is finite. Tests their sum: false as well where that overflows.
     pub fn is_finite(self) -> bool {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,

@@ -30,7 +30,7 @@ const CUTOFF: f32 = 5.0;
 const SILENCE_MAX: f32 = 0.05;
 /// Time over which the sink rate forgets, s: what an accelerometer's bias may add up to.
 const SINK_MEMORY: f32 = 20.0;
-/// Largest sink rate believed, m/s.
+/// Largest sink rate accepted, m/s.
 const SINK_MAX: f32 = 10.0;
 
 /// Time for which a condition has held without a break.

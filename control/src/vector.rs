@@ -63,7 +63,7 @@ impl Vec3 {
         Self::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// True when every component is finite. Their sum tells: false as well where that overflows.
+    /// True when every component is finite. Tests their sum: false as well where that overflows.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.x + self.y + self.z).is_finite()
@@ -209,7 +209,7 @@ impl Quat {
         )
     }
 
-    /// True when every component is finite. Their sum tells: false as well where that overflows.
+    /// True when every component is finite. Tests their sum: false as well where that overflows.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.w + self.x + self.y + self.z).is_finite()

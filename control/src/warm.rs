@@ -19,11 +19,11 @@ pub type Words = [u32; WORDS];
 const MAGIC: u32 = 0x5741_524D + 2;
 /// Bits of the code of one arm's fault.
 const FAULT_BITS: u32 = 4;
-/// Largest servo angle believed, rad: beyond any servo's travel.
+/// Largest servo angle accepted, rad: beyond any servo's travel.
 const ANGLE_MAX: f32 = 6.5;
-/// Largest tendon force believed, N: beyond what any parameters allow.
+/// Largest tendon force accepted, N: beyond what any parameters allow.
 const FORCE_MAX: f32 = 2000.0;
-/// Largest gyro bias believed, rad/s: the estimator's own bound.
+/// Largest gyro bias accepted, rad/s: the estimator's own bound.
 const BIAS_MAX: f32 = 0.1;
 
 /// What the tendons do to the pipe, as far as it must outlive the rotors and a reset.
@@ -104,7 +104,7 @@ impl Warm {
         if let Some(last) = words.last_mut() {
             *last = sum;
         }
-        // What would not be believed again must not take the place of what would.
+        // Never overwrites a valid record with one that fails validation.
         Self::from_words(&words).map(|_| words)
     }
 
@@ -172,7 +172,7 @@ impl Warm {
             && within(&bias, -BIAS_MAX, BIAS_MAX)
     }
 
-    /// The same with servo angles and forces brought into what is believed again.
+    /// The same with servo angles and forces limited to what validation accepts.
     pub fn bounded(self) -> Self {
         Self {
             angle: self.angle.map(|a| math::clamp(a, 0.0, ANGLE_MAX)),

@@ -25,7 +25,7 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// True when every component is finite. Their sum tells: false as well where that overflows.
+    /// True when every component is finite. Tests their sum: false as well where that overflows.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.thrust + self.roll + self.pitch + self.yaw).is_finite()

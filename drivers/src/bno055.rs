@@ -218,7 +218,7 @@ impl Bno055 {
         self.state = match self.state {
             State::Absent(_) => {
                 self.identify(bus).await?;
-                // Whatever the chip did before a reset of the processor, it starts afresh.
+                // Whatever the chip did before a reset of the processor, it is configured from its reset state.
                 self.write(bus, reg::PAGE_ID, 0).await?;
                 self.write(bus, reg::SYS_TRIGGER, RST_SYS).await?;
                 State::Resetting(Instant::now() + RESET_TIME)
@@ -288,7 +288,7 @@ impl Bno055 {
         }
     }
 
-    /// One reading, with everything that says whether it can be believed, in one burst.
+    /// One reading, with the status that validates it, in one burst.
     async fn reading(&mut self, bus: &mut impl I2c, since: Instant) -> Result<Vec3, PortError> {
         match self
             .read::<16>(bus, reg::GRV_DATA_X_LSB)
@@ -404,7 +404,7 @@ impl Bno055 {
 enum Lost {
     /// The transaction was not over in time: the clock is held, or the bus hangs.
     Timeout,
-    /// The bus said no: mostly an address that nobody acknowledges.
+    /// I2C error, usually a NACK on the address.
     Refused,
     /// The chip answered wrongly.
     Fault(Fault),

@@ -2,7 +2,7 @@
 
 use embassy_time::Instant;
 
-/// A data-ready line. A wait may be dropped; a pulse that comes while nobody waits is lost.
+/// A data-ready line. A wait may be dropped; a pulse without a pending wait is lost.
 pub trait DataReady {
     /// Waits for the next sample and gives the time at which it was ready.
     async fn next(&mut self) -> Instant;

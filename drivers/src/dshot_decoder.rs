@@ -40,7 +40,7 @@ impl Decoder {
     ///
     /// # Errors
     /// A pulse of a length that means nothing, a frame that ended early, a wrong checksum. The decoder then
-    /// starts afresh.
+    /// restarts.
     pub fn pulse(&mut self, rise: u64, high: u32) -> Option<Result<Frame, LineError>> {
         let gap = self.last_rise.replace(rise).map(|last| rise.saturating_sub(last));
         // More than a bit and a half after the last rise, this is the first bit of a frame.

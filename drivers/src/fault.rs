@@ -86,7 +86,7 @@ impl Fault {
         }
     }
 
-    /// What a task behind the port is told.
+    /// Error that the port returns to its task.
     pub const fn port_error(&self) -> PortError {
         match self {
             Self::Identity {

@@ -1,6 +1,6 @@
 //! Frees an I2C bus whose data line a chip holds low.
 //!
-//! A chip that loses its master in the middle of a byte, by a reset or by noise, goes on holding the bit that it was
+//! A chip that loses its master in the middle of a byte, by a reset or by noise, keeps holding the bit that it was
 //! about to give, and no start condition gets through any more. Clocks take the rest of the byte from it: nine are
 //! enough whatever it was doing, and a stop ends the transfer (UM10204, §3.1.16).
 

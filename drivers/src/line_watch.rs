@@ -1,7 +1,7 @@
 //! Whether the data-ready line of a part can be relied on, and when samples are read by the clock in its place.
 //!
 //! A line that has been silent is taken up again when its pulses and the part's own status have agreed for a while;
-//! how long, doubles with each silence, so that a loose contact does not have the driver change sides for ever. One
+//! how long, doubles with each silence, so that a loose contact does not make the driver toggle. One
 //! short silence is nothing; a line that stays silent, or falls silent again and again, is reported.
 
 use embassy_time::{Duration, Instant};
@@ -221,7 +221,7 @@ mod tests {
             );
             line.not_yet(at(1000 + period / 4 + period + 30));
             assert_eq!(line.due(), Some(at(1000 + 2 * (period / 4) + period)));
-            // After a stall the phase starts afresh: no burst.
+            // After a stall the phase restarts: no burst.
             line.sample(at(50_000), false);
             assert_eq!(line.due(), Some(at(50_000 + period)));
             line.not_yet(at(90_000));

@@ -10,7 +10,7 @@
 //! says when the line is used again.
 //!
 //! The caller bounds the wait for a sample (the imu task gives up after 3 ms) by dropping the future of
-//! `read`. Every step may be dropped: the next call goes on where it makes sense, and takes a wait that was
+//! `read`. Every step may be dropped: the next call resumes at a consistent step, and takes a wait that was
 //! dropped for a silence, which is looked into. Failures are paced (1 ms, doubling to 128 ms), so a dead part
 //! costs its task no processor time.
 
@@ -95,7 +95,7 @@ impl Default for Watch {
     }
 }
 
-/// What tells one part from another.
+/// Differences between the parts.
 pub trait Chip {
     /// Name for messages.
     const NAME: &'static str;
@@ -291,7 +291,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         self.bring_up().await?;
         let raw = loop {
             let raw = self.next_raw().await?;
-            // A part that hung may hang still after its reset: nothing is believed before the first change.
+            // A part that hung may still hang after its reset: samples are discarded until the data change.
             if self.gyro.alive || self.chip.watch().stuck_after == 0 {
                 break raw;
             }
@@ -392,7 +392,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                     self.registers.select(0).await?;
                     self.registers.apply(&settings).await?;
                     self.registers.verify(&settings).await?;
-                    // From here on nothing may be configured again: a dropped call goes on behind the switch.
+                    // From here on nothing may be configured again: a dropped call resumes behind the switch.
                     self.state = State::Powering(Instant::now() + POWER_QUIET);
                     self.registers.apply(&[C::POWER]).await?;
                 }
@@ -429,7 +429,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                 let [value] = self.registers.read(setting.register).await?;
                 setting.compare(value)?;
             }
-            // Nobody has asked for the status yet: what it holds may be of long ago.
+            // The status has not been read yet: its content may be stale.
             let [_] = self.registers.read(C::SAMPLE_READY.register).await?;
             self.line.silent(Instant::now(), self.chip.rate_hz());
         }

@@ -256,7 +256,7 @@ fn a_chip_that_resets_itself_is_noticed_at_once_and_set_up_again() {
         assert_eq!(arms.last_fault(3), Some(fault));
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls[3].result.is_ok());
-        // Deaf while it boots: told within three rounds.
+        // Silent while it boots: reported within three rounds.
         chips[3].borrow_mut().reset();
         let calls = rounds(&mut arms, Duration::from_millis(40)).await;
         assert_eq!(calls[3].result, Err(PortError::Absent));

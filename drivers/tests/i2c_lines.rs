@@ -22,7 +22,7 @@ struct Wires {
     /// Line shorted to ground.
     clock_shorted: bool,
     data_shorted: bool,
-    /// Reads of the clock for which the chip goes on stretching it, of each clock.
+    /// Reads of the clock for which the chip keeps stretching it, of each clock.
     stretch: u32,
     stretched: u32,
     clocks: u32,

@@ -8,9 +8,9 @@ use clap::{Args, Parser, Subcommand};
 use sophie_control::mixer::Variant;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
-use sophie_hil::scenario::Overrides;
-use sophie_hil::scenario::keys::{self, Range};
 use sophie_report::terminal::console;
+use sophie_sim::scenario::Overrides;
+use sophie_sim::scenario::keys::{self, Range};
 
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
@@ -40,9 +40,9 @@ enum Command {
     /// BENCH.csv has a header line with the columns infill_percent (%), thrust_n (N), tilt_deg (degrees, tip up
     /// positive) and, if wanted, power_ratio (P/P0, 1 without it). Exit status: 0 done, 2 bad input or unwritable output.
     FitArm(FitArgs),
-    /// Say what a board's log tells of its timing.
+    /// Print the timing of a board's log.
     ///
-    /// Exit status: 0 read, also when parts were cut off (told on stderr), 2 bad input or unwritable output.
+    /// Exit status: 0 read, also when parts were cut off (said on stderr), 2 bad input or unwritable output.
     Timing(TimingArgs),
 }
 

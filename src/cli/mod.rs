@@ -9,11 +9,11 @@ mod timing;
 
 use std::process::ExitCode;
 
-use sophie_hil::flight::fly;
-use sophie_hil::scenario::Scenario;
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain, finish, result};
+use sophie_sim::flight::fly;
+use sophie_sim::scenario::Scenario;
 
 use self::args::{FlyArgs, Task};
 
@@ -48,7 +48,7 @@ fn run(args: &FlyArgs) -> Result<bool, String> {
         Some(path) => Scenario::load(path, &args.overrides()).map_err(|e| e.to_string())?,
         None => Scenario::default_mission_with(&args.overrides()),
     };
-    // Before the flight, so that a bad directory is told at once.
+    // Before the flight, so that a bad directory is reported at once.
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));

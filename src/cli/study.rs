@@ -8,8 +8,8 @@ use sophie_report::terminal::output::OutDir;
 
 use super::PROGRAM;
 use super::args::{FitArgs, PaperArgs};
-use crate::paper::printed::Printed;
-use crate::paper::{self, bench_data, fit, fit_report, json, page, text};
+use sophie_paper::printed::Printed;
+use sophie_paper::{self as paper, bench_data, fit, fit_report, json, page, text};
 
 /// The files of the paper's results.
 const FILES: [&str; 2] = ["paper.html", "paper.json"];

@@ -1,4 +1,4 @@
-//! `sophie timing`: what a board's log tells of its timing.
+//! `sophie timing`: the timing in a board's log.
 
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{complain, console};

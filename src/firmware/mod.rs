@@ -26,7 +26,7 @@ use crate::board::cortex_m::retained::{self, Kept, Memory, ResetCause};
 #[cfg(feature = "trace")]
 pub use self::trace::named;
 
-/// Keeps what a task is called and where it runs; without the trace nobody asks.
+/// Keeps what a task is called and where it runs; used by the trace alone.
 #[cfg(not(feature = "trace"))]
 pub fn named<T>(_: sophie_tasks::deadline::Level, _: &'static str, token: T) -> T {
     token

@@ -1,4 +1,4 @@
-//! What the firmware tells over defmt while it runs. Background: logging never delays a flight.
+//! What the firmware logs over defmt while it runs. Background: logging never delays a flight.
 //!
 //! A line when the state, its reason or the warning changes, for each arm of a proven grip, and for each thing of the
 //! hardware that begins or ceases to speak against arming; each second the timing of every task, and missed deadlines
@@ -21,7 +21,7 @@ const SECOND: u32 = 20;
 /// Looks between two reports of the stack.
 const STACK_EVERY: u32 = 200;
 
-/// Reports for ever.
+/// Logs each second and at each change; never returns.
 pub async fn run(links: &Links, looks: &[Look]) -> ! {
     // The clock starts when the chip's clocks are up, some milliseconds after the reset.
     defmt::info!("started in {=u64} ms", Instant::now().as_millis());

@@ -13,7 +13,7 @@ use sophie_tasks::histogram::Histogram;
 use sophie_tasks::links::Links;
 use sophie_tasks::timing::Quantity;
 
-/// Missed deadlines that were told already.
+/// Missed deadlines already reported.
 #[derive(Default)]
 pub struct TimingReport {
     recorded: [u32; TaskId::COUNT],

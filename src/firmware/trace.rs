@@ -50,7 +50,7 @@ pub fn named<S>(level: Level, name: &'static str, token: SpawnToken<S>) -> Spawn
     token
 }
 
-/// Background, spawned last: tells of the events for ever.
+/// Background, spawned last: logs the events; never returns.
 #[embassy_executor::task]
 pub async fn trace() -> ! {
     let mut ticker = Ticker::every(PERIOD);

@@ -24,7 +24,7 @@ pub const SILENCE: Duration = Duration::from_millis(100);
 /// Conversions for one battery reading.
 const BATTERY_EVERY: u8 = 5;
 
-/// Serves the analog inputs for ever.
+/// Serves the analog inputs; never returns.
 pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Analog, PERIOD, PERIOD);
     let scales = FsrScale::all(&links.params);

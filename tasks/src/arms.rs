@@ -32,7 +32,7 @@ const REASONS: PerArm<Refusal> = [
     Refusal::ArmSensor4,
 ];
 
-/// Serves the arm sensors for ever. A sensor that fails leaves `None` for its arm.
+/// Serves the arm sensors; never returns. A sensor that fails leaves `None` for its arm.
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Arms, PERIOD, PERIOD);
     let start = Instant::now() + START - SILENCE;

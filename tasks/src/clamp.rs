@@ -22,7 +22,7 @@ use crate::links::{ClampCommand, GripState, Links, TendonForces};
 /// Time between two steps.
 pub const PERIOD: Duration = Duration::from_millis(10);
 
-/// Runs the clamp loops for ever.
+/// Runs the clamp loops; never returns.
 pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, PERIOD);
     let config = Config::from_params(&links.params);

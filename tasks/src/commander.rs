@@ -20,7 +20,7 @@ const LATE_WINDOW: Duration = Duration::from_secs(1);
 /// Misses of the whole flight level in that time beyond which it counts as late: 1 % of one task's runs.
 const LATE_MAX: u32 = 10;
 
-/// Steps the mode logic for ever.
+/// Steps the mode logic; never returns.
 pub async fn run(links: &Links) -> ! {
     let mut logic = match links.start.warm {
         Some(warm) => ModeLogic::resume(&links.params, warm.grasp),

@@ -1,7 +1,7 @@
 //! The console: a line for builders, over any terminal program at 115,200 baud.
 //!
 //! Background level, no deadline. Parameters in force are fixed; what is set here goes into a working copy, which `save`
-//! stores and a restart puts in force. A terminal that takes nothing loses its text and delays nobody else; a line that
+//! stores and a restart puts in force. A terminal that takes nothing loses its text and delays no other task; a line that
 //! carries noise is read as lines that mean nothing.
 
 mod chip;
@@ -29,7 +29,7 @@ const PAUSE: Duration = Duration::from_millis(1);
 /// What asks for a line.
 const PROMPT: &[u8] = b"> ";
 
-/// Serves the console for ever.
+/// Serves the console; never returns.
 pub async fn run(
     links: &Links,
     mut input: impl SerialInput,

@@ -16,7 +16,7 @@ use crate::links::{Attitude, Demand, Links, Setpoint};
 /// Time from data-ready to the demand.
 pub const DEADLINE: Duration = Duration::from_micros(400);
 
-/// Controls for ever; returns only if the link has no receiver left.
+/// Runs both loops at 1 kHz; returns only if the link has no receiver left.
 pub async fn run(links: &Links) {
     let Some(mut attitude) = links.attitude.receiver() else {
         return;
@@ -108,7 +108,7 @@ impl Loops {
         asked: Option<Instant>,
         feedback: Feedback,
     ) -> Demand {
-        // A loop that did not run has a past that is not this flight's: it starts afresh where the vehicle is.
+        // A loop is reset on activation, at the vehicle's attitude: its state is stale.
         let kind = Kind::of(setpoint);
         if kind != self.kind {
             if kind == Kind::Attitude {

@@ -152,7 +152,7 @@ pub struct Tick {
 /// The loop of every periodic task.
 ///
 /// embassy's `Ticker` fires every missed tick at once after a stall, which feeds a control law a burst of
-/// steps with no time between them. This one drops them, counts them as overruns, and starts afresh.
+/// steps with no time between them. This one drops them, counts them as overruns, and restarts the period.
 /// Dropped periods keep the phase: the next release is the next multiple of the period.
 pub struct FixedRate<'a> {
     links: &'a Links,

@@ -11,7 +11,7 @@ use crate::links::{Attitude, Links};
 /// Time from data-ready to the estimate.
 pub const DEADLINE: Duration = Duration::from_micros(300);
 
-/// Estimates for ever; returns only if the link has no receiver left.
+/// Estimates at 1 kHz; returns only if the link has no receiver left.
 pub async fn run(links: &Links) {
     let Some(mut imu) = links.imu.receiver() else {
         return;

@@ -1,6 +1,6 @@
 //! Times on a logarithmic scale, in a fixed number of buckets.
 //!
-//! Below 8 µs each microsecond has a bucket of its own, above it every octave has four: a quantile is never told too
+//! Below 8 µs each microsecond has a bucket of its own, above it every octave has four: a quantile is never given too
 //! small, and too large by less than a quarter. Smallest and largest are exact. Adding takes the same few instructions
 //! whatever the time, and no division.
 

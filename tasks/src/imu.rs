@@ -27,7 +27,7 @@ const ERRORS: u8 = 3;
 /// Time without an error after which good samples take the report back.
 const CLEAN: Duration = Duration::from_millis(100);
 
-/// Serves the inertial sensor for ever. A failed or silent read sends nothing: readers see the age. What the part
+/// Serves the inertial sensor; never returns. A failed or silent read sends nothing: readers see the age. What the part
 /// answers in place of samples is reported against arming, and a data-ready line that its port does without; that it
 /// says nothing at all shows as age.
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {

@@ -17,7 +17,7 @@ pub struct Keeper<R> {
 }
 
 impl<R: Retain> Keeper<R> {
-    /// A keeper that goes on where the run before ended.
+    /// A keeper that continues from the state of the run before.
     pub fn new(links: &Links, port: R) -> Self {
         Self {
             port,

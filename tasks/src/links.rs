@@ -152,7 +152,7 @@ pub struct MixOutput {
     pub given: sophie_control::desaturation::Given,
     /// Yaw is being given up because the arms' tilt leaves no authority.
     pub yaw_gated: bool,
-    /// Tilt at which each arm is believed to be, rad.
+    /// Estimated tilt of each arm, rad.
     pub tilt: PerArm<f32>,
     /// Tilt bias of each arm, rad.
     pub tilt_bias: PerArm<f32>,
@@ -228,7 +228,7 @@ pub struct Status {
 pub struct Links {
     /// Parameters, fixed while armed.
     pub params: Params,
-    /// Why the board started and what the run before left, fixed. start-up -> every task that goes on from it.
+    /// Why the board started and what the run before left, fixed. start-up -> every task that resumes from it.
     pub start: Start,
     /// imu -> estimator. 1 kHz, stale after 5 ms.
     pub imu: Link<ImuSample>,

@@ -12,10 +12,10 @@ use crate::links::{Battery, Demand, Links, MixOutput, Setpoint};
 
 /// Time from data-ready to the motor commands.
 pub const DEADLINE: Duration = Duration::from_micros(500);
-/// Step time when no estimate tells it, s.
+/// Step time without an estimate, s.
 const NOMINAL_DT: f32 = 1e-3;
 
-/// Allocates for ever; returns only if the link has no receiver left.
+/// Allocates at 1 kHz; returns only if the link has no receiver left.
 pub async fn run(links: &Links, variant: Variant, configuration: Configuration) {
     let Some(mut demand) = links.demand.receiver() else {
         return;

@@ -15,7 +15,7 @@ pub const DEADLINE: Duration = Duration::from_micros(600);
 /// Time after which a frame is given up: ten times the slowest protocol's.
 pub const FRAME_LIMIT: Duration = Duration::from_millis(3);
 
-/// Serves the motors for ever; returns, motors stopped, only if the link has no receiver left.
+/// Serves the motors; returns, motors stopped, only if the link has no receiver left.
 pub async fn run(links: &Links, mut port: impl Motors) {
     write(&mut port, [0.0; 4]).await;
     let Some(mut mix) = links.mix.receiver() else {

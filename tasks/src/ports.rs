@@ -106,7 +106,7 @@ pub trait SerialInput {
     /// Waits for bytes and puts them at the start of `buffer`; returns how many.
     ///
     /// # Errors
-    /// A line error; the next call starts afresh.
+    /// A line error; the next call starts a new frame.
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError>;
 }
 

@@ -53,7 +53,7 @@ trait Decode {
     fn broken(&mut self, at: Instant);
 }
 
-/// Decodes frames for ever.
+/// Decodes frames; never returns.
 pub async fn run(links: &Links, port: impl SerialInput) -> ! {
     match Protocol::from_params(&links.params) {
         Protocol::Crsf => serve(links, port, crsf::Decoder::new()).await,

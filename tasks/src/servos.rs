@@ -1,4 +1,4 @@
-//! The tendon servos: forces asked for become pulses, and the tension that they can be giving is told.
+//! The tendon servos: forces asked for become pulses, and the tension that they can be giving is published.
 //!
 //! Steady level, at the servos' frame (`servo_frame_rate`, 50 to 333 Hz). Until the first force there are no pulses:
 //! when power comes on on the pipe the gears hold, and nothing moves before the clamp loop knows what it wants. After a
@@ -18,7 +18,7 @@ pub fn period(hz: f32) -> Duration {
     Duration::from_micros((1e6 / hz + 0.5) as u64)
 }
 
-/// Serves the servos for ever.
+/// Serves the servos; never returns.
 pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     let period = period(links.params.servo_frame_rate);
     let mut rate = FixedRate::new(links, TaskId::Servos, period, period);

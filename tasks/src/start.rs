@@ -40,7 +40,7 @@ impl Cause {
 pub struct Start {
     /// Why it started.
     pub cause: Cause,
-    /// What the run before left, when it can be believed.
+    /// Retained state of the run before, when it is valid.
     pub warm: Option<Warm>,
     /// Number of the last copy that was kept; the next one takes the next.
     pub sequence: u32,

@@ -69,7 +69,7 @@ const WATCHED: [Watched; 9] = [
     },
 ];
 
-/// Watches for ever.
+/// Watches every task at 100 Hz; never returns.
 pub async fn run(links: &Links, mut watchdog: impl Watchdog, memory: impl Retain) -> ! {
     let mut keeper = Keeper::new(links, memory);
     let mut health = Health::new(links, Instant::now());

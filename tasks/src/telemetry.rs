@@ -35,7 +35,7 @@ const TEXT: usize = 59;
 /// A frame ready to be sent.
 type Frame = heapless::Vec<u8, 64>;
 
-/// Sends frames for ever.
+/// Sends frames; never returns.
 pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
     while Protocol::from_params(&links.params) == Protocol::Sbus {
         pending::<()>().await;

@@ -2,7 +2,7 @@
 //!
 //! Times are whole microseconds, the resolution of the clock. Lateness is from release to start, execution from start to
 //! end, response from release to end. A run's execution holds whatever preempted it and what it waited for on a bus; the
-//! executor trace (docs/timing.md) tells them apart.
+//! executor trace (docs/timing.md) separates them.
 
 use embassy_time::{Duration, Instant};
 

@@ -1,12 +1,12 @@
 //! What several tests of whole flights check.
 
-use sophie_hil::record::FlightRecord;
+use sophie_sim::record::FlightRecord;
 
 /// A mission with a perch is only accomplished with a grip within its tolerance on every chosen arm.
 pub fn proven(record: &FlightRecord) -> Result<(), String> {
     let perches = record.phases.iter().filter(|p| p.name == "perch").count();
     let arms = record.scenario.arms.mask().into_iter().filter(|m| *m).count();
-    // A grip that goes on over a reset is proven anew.
+    // A grip that outlasts a reset is proven anew.
     let resets = record.phases.iter().any(|p| p.name == "reset");
     let (proofs, wanted) = (record.grip.len(), perches * arms);
     if proofs < wanted || proofs > wanted && !resets {

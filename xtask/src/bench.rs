@@ -92,7 +92,7 @@ impl<'a> Bench<'a> {
     pub fn fly(&self) -> Result<ExitCode, Error> {
         let (elf, _) = crate::firmware(self.board, self.variant)?;
         emulator(
-            "sophie-bench",
+            "sophie-emulator",
             [OsStr::new(self.board.name), "--elf".as_ref(), elf.as_os_str()],
             &self.rest,
         )
@@ -133,7 +133,7 @@ fn run(name: &str) -> Command {
     command
         .arg("--manifest-path")
         .arg(build::root().join("Cargo.toml"));
-    command.args(["--package", "sophie-bench", "--bin", name, "--"]);
+    command.args(["--package", "sophie-emulator", "--bin", name, "--"]);
     command
 }
 
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn the_minutes_of_the_first_build_are_not_silent() {
-        let command = run("sophie-bench");
+        let command = run("sophie-emulator");
         let words: Vec<_> = command
             .get_args()
             .map(|word| word.to_string_lossy().into_owned())

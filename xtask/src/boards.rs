@@ -17,7 +17,7 @@ pub struct Sectors {
 pub enum UsbLoader {
     /// How it is entered.
     Enter(&'static str),
-    /// Nobody can enter it on this board: why.
+    /// It cannot be entered on this board: why.
     OutOfReach(&'static str),
 }
 

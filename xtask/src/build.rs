@@ -18,7 +18,7 @@ const TRACE_BUFFER: &str = "8192";
 pub enum Variant {
     /// The one that flies.
     Plain,
-    /// One that tells of every event of the executors (docs/timing.md).
+    /// One that logs every event of the executors (docs/timing.md).
     Trace,
     /// One with the data cache on, for a board that flies without (docs/boards.md).
     DataCache,

@@ -91,7 +91,7 @@ fn emulated(core: &Core, elf: &Path) -> Command {
         "--locked",
         "--ignore-rust-version",
     ]);
-    command.args(["--package", "sophie-bench", "--bin", "core", "--"]);
+    command.args(["--package", "sophie-emulator", "--bin", "core", "--"]);
     command.arg(elf).arg(core.name.to_lowercase());
     command
 }

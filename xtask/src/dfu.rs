@@ -1,6 +1,6 @@
 //! A firmware onto a chip through the USB loader that the chip has from its maker (ST's AN2606 and AN3156).
 //!
-//! The loader erases whole sectors and writes where it is told; `dfu-util` erases each sector that a file touches, and
+//! The loader erases whole sectors and writes where `dfu-util` says; `dfu-util` erases each sector that a file touches, and
 //! remembers nothing from one call to the next. So the image goes in stretches, no two of which share a sector: a flat
 //! file would erase what lies between, on the f405 the stored parameters, and a file for each segment would erase the
 //! end of the one before. The stretch with the vector table goes last: the loader is left to the address of the last

@@ -71,7 +71,7 @@ usage: cargo xtask VERB
                      the table in docs/boards.md; --tighten lowers the ceilings to what is taken now and writes the table
   cost [--tighten|--json|--cycles]
                      count the instructions of every control stage under QEMU, print them beside targets and peers,
-                     compare with hil/cost/baseline.toml; --tighten takes what is counted now as the baseline and
+                     compare with hil/qemu/cost/baseline.toml; --tighten takes what is counted now as the baseline and
                      writes the table of docs/cost.md; --cycles bounds the cycles on an M4F instead
   own-board          build a copy of the reference board as docs/boards.md says for a board of one's own, and check its
                      image

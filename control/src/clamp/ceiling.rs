@@ -1,6 +1,6 @@
 //! Watches that the pressure rises with the tension, until a sensor has shown that it can read the grip pressure.
 //!
-//! Behind a divider that nobody told of, a sensor's reading ends far below the grip pressure, however hard the arm
+//! Behind a divider that no parameter states, a sensor's reading ends far below the grip pressure, however hard the arm
 //! presses: the loop would wind to the force limit. A pressure that rises so slowly that the whole limit would not bring
 //! it to the grip pressure never gets there, so no arm that could have held is stopped.
 
@@ -75,7 +75,7 @@ mod tests {
 
     const DT: f32 = 0.01;
 
-    /// Steps for 2 s in which pressure (from 300 Pa), tension and force (from 50 N) rise by so much; tells a ceiling.
+    /// Steps for 2 s in which pressure (from 300 Pa), tension and force (from 50 N) rise by so much; true for a ceiling.
     fn seen(watch: &mut CeilingWatch, pressure: f32, tension: f32, force: f32) -> bool {
         let cfg = Config::from_params(&Params::default());
         (0..=200).any(|step| {

@@ -5,7 +5,7 @@ use super::*;
 
 const DT: f32 = 0.01;
 
-/// One arm in a world that does as it is told.
+/// One arm in a scripted world.
 struct Bench {
     cfg: Config,
     arm: ArmClamp,
@@ -174,7 +174,7 @@ fn a_lead_that_breaks_is_a_pressure_that_vanishes_within_one_step() {
         bench.step(to);
         assert_eq!(bench.arm.fault() == Some(Fault::Sensor), broken, "{from} -> {to}");
         if broken {
-            // The force is held, and the sensor is not believed again.
+            // The force is held, and the sensor stays rejected.
             assert!(near(bench.run(950.0, 100), before, 1e-6));
             assert!(bench.arm.fault() == Some(Fault::Sensor));
         }

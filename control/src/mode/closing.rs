@@ -43,7 +43,7 @@ impl ModeLogic {
             return self.slide_off(i, Grasp::Closed(hold.arms));
         }
 
-        // Without the radio nobody could fly away: a poor grip is then better than none.
+        // Without the radio there is no pilot to fly away: a poor grip is then better than none.
         if let Some(s) = sticks {
             let hope = hopeless(i.grip, hold.arms);
             spool.hopeless = if hope.is_some() && !proven {
@@ -81,7 +81,7 @@ impl ModeLogic {
             }
         }
 
-        // Nobody could fly away and the rotors are about to stop anyway: down slowly, on whatever grip there is.
+        // Radio lost and battery critical: spools down slowly, without proof of grip.
         let last_resort = sticks.is_none() && self.dangers.battery_critical();
         let down = if spool.down { holds } else { proven };
         if down || last_resort {

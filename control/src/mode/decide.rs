@@ -29,7 +29,7 @@ impl ModeLogic {
             arms_closed: grasp != Grasp::Open && !held,
         }
         .refusals(&self.params);
-        // The range of a sensor that nobody needs.
+        // The range of a sensor of an unused arm.
         let refusals = Refusal::FSR_RANGE
             .into_iter()
             .zip(chosen)

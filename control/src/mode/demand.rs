@@ -95,7 +95,7 @@ impl Collective {
 }
 
 fn with_thrust(rotors: Setpoint, thrust: f32) -> Setpoint {
-    // Angles beyond a quarter turn are nobody's wish; the limit only catches what should not be there.
+    // Defensive limit at a quarter turn.
     let angle = |x| clamp_abs(x, 1.6);
     match rotors {
         Setpoint::Angle {

@@ -6,8 +6,8 @@
 //! | radio lost | stop | level, sink, stop on what carries | keep closing, keep the grip |
 //! | inertial sensor silent | stop | stop | stop, arms stay closed |
 //! | tipped over | stop | stop | stop, arms stay closed |
-//! | battery critical | - | sink, the pilot still steers | told; release refused |
-//! | data-ready line silent | stop | sink, the pilot still steers | told; release refused |
+//! | battery critical | - | sink, the pilot still steers | reported; release refused |
+//! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
 
 use super::logic::{ModeLogic, State};
 use super::{Inputs, Setpoint, demand};
@@ -48,7 +48,7 @@ pub enum Cause {
     BatteryCritical,
     /// The inertial sensor is read by the clock, its data-ready line being silent.
     LineSilent,
-    /// The vehicle has left the pipe by itself and nobody has taken the throttle since.
+    /// The vehicle has left the pipe by itself and the throttle has not moved since.
     NotTakenOver,
 }
 

@@ -225,7 +225,7 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
         r.out.rotors.thrust() <= 0.42 * 33.2 + 0.1,
         "the pipe carries the rest"
     );
-    // On a release as well they are told of.
+    // They are reported on a release as well.
     let mut r = Rig::releasing();
     r.expect(9.8, Mode::Releasing);
     assert_eq!(r.out.reason, "");

@@ -13,7 +13,7 @@ use crate::rc::Sticks;
 use crate::support::{Felt, Support};
 use crate::warm::Grasp;
 
-/// Longest step believed, s: a stall of the commander must not end a timer.
+/// Longest step accepted, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
 /// Time for which the rotors may idle before they are stopped, s.
 pub const IDLE_MAX: f32 = 30.0;

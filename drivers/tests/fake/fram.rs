@@ -15,7 +15,7 @@ pub enum Answer {
     /// The part.
     #[default]
     Sound,
-    /// This byte, always: a line that nobody drives.
+    /// This byte, always: an undriven line.
     Only(u8),
     /// The bus peripheral reports an error.
     Bus,

@@ -11,9 +11,9 @@ use embedded_hal_async::i2c::I2c;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     None,
-    /// Nobody acknowledges the address.
+    /// The address is not acknowledged.
     Missing,
-    /// The clock is held for ever.
+    /// The clock stays held.
     Stretched,
     /// All bytes read as this.
     Reads(u8),

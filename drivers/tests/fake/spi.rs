@@ -22,7 +22,7 @@ pub enum Failure {
     None,
     /// MISO held low.
     Zeros,
-    /// MISO held high, or nobody there.
+    /// MISO held high, or no part fitted.
     Ones,
     /// The bus peripheral reports an error.
     Bus,

@@ -4,7 +4,7 @@
 //! The board's own files are in here, so what is tested are the very drivers, pins and timers that fly. Each test starts
 //! from a reset and takes the board as the firmware does.
 //!
-//! What a test finds missing, a jumper or a part outside the board, it tells in a line that begins with `ignored:` and
+//! What a test finds missing, a jumper or a part outside the board, it logs in a line that begins with `ignored:` and
 //! passes; with the feature `wired` it fails. Empty on the host.
 
 #![cfg_attr(target_os = "none", no_std)]
@@ -26,7 +26,7 @@ use sophie_tasks::ports::Watchdog;
 use verdict::end_of_run;
 pub use verdict::{absent, passed};
 
-/// Time between two meals of the watchdog, which bites after 200 ms at the soonest.
+/// Watchdog feed period; the shortest time-out is 200 ms.
 const MEAL: Duration = Duration::from_millis(50);
 
 /// Starts the urgent levels and feeds the watchdog from one of them, for as long as the test runs; returns the flight

@@ -17,12 +17,12 @@ pub fn absent(what: fmt::Arguments<'_>) {
     defmt::warn!("ignored: not found: {}", Display2Format(&what));
 }
 
-/// Ends a test well that a reset cut in two: nobody waits for its return.
+/// Ends a test well that a reset cut in two: the probe no longer waits for its return.
 pub fn passed() -> ! {
     semihosting::process::exit(0)
 }
 
-/// A panic or a fault ends the test, not the chip: the motors stop, the probe is told.
+/// A panic or a fault ends the test, not the chip: the motors stop and the probe gets the verdict.
 pub fn end_of_run(message: fmt::Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
     board::stop_motors();

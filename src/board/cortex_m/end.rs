@@ -1,6 +1,6 @@
 //! The end of a run: whatever happens, the motors stop first, then the message is kept, then the chip is reset.
 //!
-//! A reset, because nothing after a fault can be trusted, and because it is the fastest way to motors that are *told*
+//! A reset, because nothing after a fault can be trusted, and because it is the fastest way to motors that are *commanded*
 //! to stop: the motor task's first act is a frame of zeros. The message is logged at the next start.
 //!
 //! A second fault on the way comes here again and goes straight to the reset. Within the handler of a hard fault it

@@ -1,4 +1,4 @@
-//! What else ends a run: a panic, an interrupt that nobody serves. How it ends is up to the image
+//! What else ends a run: a panic, an unserved interrupt. How it ends is up to the image
 //! (`crate::end_of_run`): the firmware restarts, a test reports.
 
 use core::panic::PanicInfo;

@@ -13,13 +13,13 @@ const FRAME: u32 = 32;
 /// In the fault status: what was to be stacked could not be, by memory protection and by the bus (ARMv7-M, B3.2.15).
 const STACKING: u32 = 1 << 4 | 1 << 12;
 
-/// The address that a memory fault tells is valid, and that of a bus fault.
+/// The address of a memory fault is valid, and that of a bus fault.
 const MEMORY_ADDRESS: u32 = 1 << 7;
 const BUS_ADDRESS: u32 = 1 << 15;
 
 /// The entry in the vector table: takes what it can from the frame, and begins the whole stack anew.
 ///
-/// Nobody returns to what is on it. The frame's own words are read first, and only where the stack is.
+/// Nothing returns to what is on it. The frame's own words are read first, and only where the stack is.
 ///
 /// # Safety
 /// Only the processor calls it.

@@ -31,7 +31,7 @@ pub enum ResetCause {
 }
 
 impl ResetCause {
-    /// What the tasks are told; `fault` when a message of the run before says that it gave up.
+    /// The tasks' view; `fault` when a message of the run before says that it gave up.
     pub fn told(self, fault: bool) -> Cause {
         match self {
             Self::PowerOn => Cause::PowerOn,
@@ -61,7 +61,7 @@ pub struct Kept {
 }
 
 const WORDS: usize = LONGEST / 4;
-/// Marks a block that this firmware wrote ("SOPH"), so that noise after power-on is not believed.
+/// Marks a block that this firmware wrote ("SOPH"), so that noise after power-on is rejected.
 const MAGIC: u32 = 0x534F_5048;
 
 #[repr(C)]

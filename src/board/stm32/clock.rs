@@ -10,7 +10,7 @@ use embassy_stm32::{Config, Peripherals, rcc};
 use super::watchdog;
 use crate::board::cortex_m::retained;
 
-/// What the next start tells of one that never came out of starting its clocks.
+/// Message of the next start after one that hung in starting its clocks.
 const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
 
 /// The clock of embassy-time counts: before it does, its registers must not be read.

@@ -8,7 +8,7 @@ use embassy_time::{Duration, Instant};
 const HIGHEST: u8 = 0b11;
 /// Keys of the option bytes (RM0433 §4.5.1).
 const KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
-/// Longest write: no datasheet tells it, so what the F7's may take.
+/// Longest write: no datasheet states it; that of the F7 serves.
 const LONGEST: Duration = Duration::from_secs(2);
 /// Read-out protection: off, and what can never be undone.
 const OPEN: u8 = 0xAA;

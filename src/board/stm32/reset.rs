@@ -6,7 +6,7 @@ use crate::board::cortex_m::retained::ResetCause;
 
 /// Reads the cause of the last reset and clears it for the next.
 ///
-/// Every reset also pulls the reset pin, so the pin only counts when nothing else is told; and a power-on sets the
+/// Every reset also pulls the reset pin, so the pin only counts without any other cause; and a power-on sets the
 /// brown-out bit too.
 #[cfg(family = "h7")]
 pub fn take_reset_cause() -> ResetCause {
@@ -23,7 +23,7 @@ pub fn take_reset_cause() -> ResetCause {
 
 /// Reads the cause of the last reset and clears it for the next.
 ///
-/// Every reset also pulls the reset pin, so the pin only counts when nothing else is told; and a power-on sets the
+/// Every reset also pulls the reset pin, so the pin only counts without any other cause; and a power-on sets the
 /// brown-out bit too.
 #[cfg(not(family = "h7"))]
 pub fn take_reset_cause() -> ResetCause {

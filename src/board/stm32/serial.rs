@@ -75,7 +75,7 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
             let (tx, rx) = accepted(both).split();
             (rx, Some(tx))
         }
-        // Nobody listens on the other pin: it stays an input.
+        // The other pin is unused: it stays an input.
         Protocol::Sbus => {
             let rx = UartRx::new(uart, rx, rx_dma, irqs, config);
             (accepted(rx), None)

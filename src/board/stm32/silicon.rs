@@ -1,4 +1,4 @@
-//! What the start-up looks at in the chip: what no datasheet of the board tells, and what a start that went wrong, a chip
+//! What the start-up looks at in the chip: what no datasheet of the board states, and what a start that went wrong, a chip
 //! of another revision or another firmware's option bytes would leave behind.
 
 use core::fmt::{self, Write};

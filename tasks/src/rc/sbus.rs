@@ -11,7 +11,7 @@
 //! channels go into the same table of meanings.
 //!
 //! There is no checksum. A frame is found only where it began after silence or where the frame before it ended;
-//! after garbage on an unbroken stream, the first frame found serves to find the second. And the pilot is believed
+//! after garbage on an unbroken stream, the first frame found serves to find the second. And the pilot's sticks are accepted
 //! only from the third frame on that comes without garbage between: bytes that are no SBUS look like one frame now
 //! and then (in 70,000 random ones after silence), hardly ever like three.
 //!
@@ -36,7 +36,7 @@ const FLAGS: u8 = 0x0F;
 const BYTE: Duration = Duration::from_micros(120);
 /// Pause of the line that parts two frames. Receivers leave 4 ms and more; within a frame there is none.
 const SILENCE: Duration = Duration::from_millis(3);
-/// Frames in a row from which on the pilot is believed.
+/// Frames in a row from which on the sticks are accepted.
 const BELIEVED_FROM: u8 = 3;
 
 /// One frame.
@@ -141,7 +141,7 @@ const fn is_end(byte: u8) -> bool {
 /// Finds frames in a stream of bytes, however it is cut.
 ///
 /// Call [`Parser::silence`] wherever the line was idle (a receiver's is, for 4 ms or more after each frame): data
-/// that stands still can look like frames at the wrong place, and only silence tells.
+/// that stands still can look like frames at the wrong place, and only silence separates them.
 #[derive(Clone, Copy, Debug)]
 pub struct Parser {
     bytes: [u8; FRAME],
@@ -469,7 +469,7 @@ mod tests {
         let mut d = believing();
         assert_eq!(published(&mut d, &frame[..12], 28_000), None);
         assert_eq!(published(&mut d, &frame, 31_500), None, "still the same stream");
-        // The same with a rest of 4 ms: the half is dropped, the frame is found, and no longer believed alone.
+        // The same with a rest of 4 ms: the half is dropped, the frame is found, and no longer accepted alone.
         let mut d = believing();
         assert_eq!(published(&mut d, &frame[..12], 28_000), None);
         assert_eq!(published(&mut d, &frame, 35_000), None);
@@ -556,7 +556,7 @@ mod tests {
             let (frames, _) = stream(&mut fresh(), &bytes);
             // Garbage may end in the head of a frame that was never sent, which swallows one and unsettles one.
             prop_assert!(frames.iter().rev().take(3).all(|f| *f == pilot()) && frames.len() >= 3);
-            // And after silence the next frame is believed at once.
+            // And after silence the next frame is accepted at once.
             let mut parser = Parser::new();
             stream(&mut parser, &bytes);
             parser.silence();

@@ -127,7 +127,7 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
     world.command = Some(CLOSE);
     let force = bench.run(1000, &world);
     assert!(force.iter().all(|f| (f - 34.74).abs() < 1.5), "{force:?}");
-    // The command is stale after 200 ms; from then on the forces stand still and are still told.
+    // The command is stale after 200 ms; from then on the forces are held and still published.
     world.command = None;
     let held = bench.run(210, &world);
     assert_eq!(bench.run(1000, &world), held);

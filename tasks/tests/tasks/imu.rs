@@ -189,7 +189,7 @@ fn the_third_error_is_reported_and_taken_back_after_a_tenth_of_a_second_without(
         assert!(rig.links.hardware().iter().eq(refusal), "{error:?}");
         rig.run(15);
         assert!(rig.links.hardware().is_empty(), "{error:?}");
-        // Counted afresh: two are none again.
+        // Counted from zero: two do not count.
         part.errors.set((2, Some(error)));
         rig.run(20);
         assert!(rig.links.hardware().is_empty(), "{error:?}");

@@ -1,4 +1,4 @@
-//! How old a message may be, who is told of what, and what stands at the start.
+//! How old a message may be, which readers are notified, and what stands at the start.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};

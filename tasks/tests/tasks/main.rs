@@ -1,4 +1,4 @@
-//! Each task by itself, on ports that do as they are told, in virtual time.
+//! Each task by itself, on scripted ports, in virtual time.
 
 mod analog;
 mod clamp;
@@ -6,7 +6,7 @@ mod commander;
 mod console;
 mod control;
 mod deadline;
-#[path = "../../../hil/tests/fakes/mod.rs"]
+#[path = "../../../sim/tests/fakes/mod.rs"]
 mod fakes;
 mod imu;
 mod keeper;

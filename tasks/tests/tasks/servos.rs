@@ -77,7 +77,7 @@ fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
             pulse(angle)
         );
     }
-    // 0.89 s of it, and then it is home for good, although it is still told that the arms were found.
+    // 0.89 s of it, and then it is home for good, although the arms are still reported as found.
     assert!(pulses.len() == 60 && near(pulses[59], 550.0));
 }
 

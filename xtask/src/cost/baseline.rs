@@ -23,7 +23,7 @@ struct Call {
 type Baseline = BTreeMap<String, BTreeMap<String, Call>>;
 
 fn path() -> PathBuf {
-    build::root().join("hil/cost/baseline.toml")
+    build::root().join("hil/qemu/cost/baseline.toml")
 }
 
 /// Compares with the baseline and says what has become cheaper.

@@ -22,7 +22,7 @@ const STAGES: [&str; 8] = [
     "tilt",
     "commands",
 ];
-/// Steps of calibration at rest, which do not count (`hil/cost/src/inputs.rs`), and steps that are looked at.
+/// Steps of calibration at rest, which do not count (`hil/qemu/cost/src/inputs.rs`), and steps that are looked at.
 const REST: u32 = 2500;
 const STEPS: u32 = 1000;
 /// Bytes that one access to the F405's flash reads, and cycles that it waits at 168 MHz (RM0090 §3.5).
@@ -154,7 +154,7 @@ fn stages(image: &Image) -> Result<Vec<u64>, Error> {
     STAGES.iter().map(begin).collect()
 }
 
-/// The address of the instruction that a line of QEMU's log tells of:
+/// The address of the instruction in a line of QEMU's log:
 /// `Trace 0: HOST [BASE/ADDRESS/FLAGS/...] SYMBOL`.
 fn address(line: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(line).ok()?.strip_prefix("Trace ")?;

@@ -10,7 +10,7 @@ const REFILL: [u32; 2] = [1, 3];
 pub struct Instruction {
     /// Its bytes, 2 or 4.
     pub bytes: u64,
-    /// Fewest and most cycles while it goes on to the next one.
+    /// Fewest and most cycles when the next instruction follows it.
     pub cycles: [u32; 2],
     /// It reads a constant that lies between the instructions, thus from flash.
     pub constant: bool,

@@ -94,7 +94,7 @@ fn cut_off() {
     running.wait().unwrap();
     assert!(half("a.bin.part"));
     assert!(!bench.file("a.bin").exists());
-    // What was begun is in nobody's way.
+    // What was begun is not in the way.
     bench.mood("");
     bench.calls();
     bench.run("backup f405 @a.bin").done();

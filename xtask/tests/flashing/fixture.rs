@@ -7,6 +7,9 @@ const CODE: usize = 0x4800;
 /// Bytes of constants and of initial values.
 const CONSTANTS: usize = 0x130;
 const VALUES: usize = 0x24;
+/// Bytes of statics, and where lies what outlives a reset: the same on every board.
+const STATICS: u32 = 0x400;
+const RETAINED: u32 = 0x2001_FC00;
 /// Between code and constants, bytes that belong to nothing.
 const GAP: u32 = 12;
 
@@ -81,19 +84,21 @@ pub fn image(chip: &Chip) -> Fixture {
         section(".rodata", 0, constants, constants, pattern(CONSTANTS, 3)),
         section(".data", WRITE, chip.ram, values, pattern(VALUES, 5)),
     ];
-    sections.push(Section {
-        name: ".bss",
-        kind: NOBITS,
-        flags: ALLOC | WRITE,
-        address: chip.ram + 0x100,
-        loaded: chip.ram + 0x100,
-        bytes: Vec::new(),
-        length: 0x400,
-    });
+    let bss = chip.ram + 0x100;
+    for (name, address, length) in [(".bss", bss, STATICS), (".retained", RETAINED, 0x184)] {
+        sections.push(Section {
+            name,
+            kind: NOBITS,
+            flags: ALLOC | WRITE,
+            address,
+            loaded: address,
+            bytes: Vec::new(),
+            length,
+        });
+    }
     let segments = sections.iter().filter(|s| s.kind == PROGBITS);
     let segments = segments.map(|s| (s.loaded as usize, s.bytes.clone())).collect();
 
-    let bss = chip.ram + 0x100;
     let mut symbols: Vec<(String, u32, u32, u8)> = [
         ("Reset", reset | 1, 8, FUNCTION),
         ("HardFault", fault | 1, 2, FUNCTION),
@@ -101,6 +106,10 @@ pub fn image(chip: &Chip) -> Fixture {
         ("__vector_table", FLASH as u32, 0, OBJECT),
         ("_stack_start", chip.stack, 0, 0),
         ("_stack_end", chip.stack - 0x8000, 0, 0),
+        ("__sdata", chip.ram, 0, 0),
+        ("__edata", chip.ram + VALUES as u32, 0, 0),
+        ("__sbss", bss, 0, 0),
+        ("__ebss", bss + STATICS, 0, 0),
         ("_ZN6sophie5board7DMA_IMU17h0123456789abcdefE", bss, 32, OBJECT),
         (
             "_ZN6sophie5board6DMA_RC17h0123456789abcdefE",

@@ -1,0 +1,455 @@
+//! The emulated board as the aircraft of a flight: what the world sees of it is its pins, its telemetry and its log.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use rand_pcg::Pcg64Mcg;
+use sophie_control::fsr::FsrScale;
+use sophie_control::grip::{ArmGrip, ArmState, GripState};
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+use sophie_control::rc::Sticks;
+use sophie_control::tendon::Reel;
+use sophie_control::thrust_curve::ThrustCurve;
+use sophie_control::wrench::PerArm;
+use sophie_sim::crsf::Telemetry;
+use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
+use sophie_sim::plant::{Actuators, Plant};
+use sophie_sim::scenario::Scenario;
+use sophie_tasks::rc::{Protocol, sbus};
+use sophie_tasks::start::Cause;
+use sophie_tasks::telemetry::parse_mode_text;
+use uf_crsf::{CrsfParser, Packet};
+
+use crate::elf::Firmware;
+use crate::emulator::{Emulator, Settings};
+use crate::log::{Line, Log};
+use crate::plan::Plan;
+use crate::sensors::Sensors;
+use crate::terminal::Sockets;
+use crate::tilt::{TiltError, Tilts};
+use crate::wires::{Digest, Fault, Pins, Run, Wires};
+
+/// Height at which the arms hang free in the air, m.
+const AIRBORNE: f64 = 0.3;
+
+/// A vehicle with the emulated board in it.
+pub struct Bench<'a> {
+    /// `None` before power-on.
+    emulator: Option<Emulator>,
+    firmware: &'a Firmware,
+    settings: Settings,
+    sensors: Sensors,
+    plan: Plan,
+    wires: Wires,
+    pins: Pins,
+    log: Log<'a>,
+    sockets: Sockets,
+    told: Box<dyn FnMut(&Line) + 'a>,
+    telemetry: VecDeque<u8>,
+    display: Telemetry,
+    status: Option<Status>,
+    grip: PerArm<ArmGrip>,
+    proven: bool,
+    setpoint: [f64; 3],
+    /// The last reset that the mission asked for, how many there were, and whether the board is still dead from it.
+    reset: Option<Reset>,
+    cuts: u32,
+    dead: bool,
+    overruns: BTreeMap<String, u32>,
+    log_digest: Digest,
+    params: Params,
+    protocol: Protocol,
+    watched: Watched,
+    tilts: Tilts,
+    /// Every line of the log.
+    pub lines: Vec<Line>,
+    raw: Vec<u8>,
+    /// Restarts of the processor: when (ms since power-on) and why.
+    pub resets: Vec<(f64, String)>,
+}
+
+/// What the log says of the vehicle's state.
+struct Status {
+    mode: Mode,
+    reason: String,
+    warning: String,
+}
+
+/// What the bench sees of the plant besides the pins.
+#[derive(Default)]
+struct Watched {
+    tilt: PerArm<f64>,
+    voltage: f64,
+}
+
+/// What is left of a bench after its run.
+pub struct Finished {
+    /// The emulator's record.
+    pub run: Run,
+    /// Missed deadlines by task, as last logged.
+    pub overruns: BTreeMap<String, u32>,
+    /// Digest of every line of the log with its time.
+    pub log_digest: u64,
+    /// How far the arms' measured tilt was from the model's in flight.
+    pub tilt_error: TiltError,
+    /// Every line of the log.
+    pub lines: Vec<Line>,
+    /// The log as the firmware wrote it.
+    pub log: Vec<u8>,
+    /// Restarts of the processor: when (ms since power-on) and why.
+    pub resets: Vec<(f64, String)>,
+    /// Stretches of the log that could not be decoded.
+    pub malformed: u32,
+}
+
+impl<'a> Bench<'a> {
+    /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
+    /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
+    /// `told`; `sockets` has the serial lines that are on one.
+    pub fn new(
+        firmware: &'a Firmware,
+        scenario: &Scenario,
+        speed: f64,
+        plan: Plan,
+        sockets: Sockets,
+        rng: &mut Pcg64Mcg,
+        told: impl FnMut(&Line) + 'a,
+    ) -> Self {
+        let sensors = Sensors::new(&scenario.params, rng);
+        let [accel_bias_x, accel_bias_y, accel_bias_z] = sensors.calibration;
+        let params = Params {
+            accel_bias_x,
+            accel_bias_y,
+            accel_bias_z,
+            ..scenario.params
+        };
+        Self {
+            emulator: None,
+            firmware,
+            settings: Settings { speed, params },
+            sensors,
+            plan,
+            wires: Wires::default(),
+            pins: Pins::default(),
+            log: Log::new(&firmware.table),
+            sockets,
+            told: Box::new(told),
+            telemetry: VecDeque::new(),
+            display: Telemetry::default(),
+            status: None,
+            grip: [ArmGrip::default(); 4],
+            proven: false,
+            setpoint: [f64::NAN; 3],
+            reset: None,
+            cuts: 0,
+            dead: false,
+            overruns: BTreeMap::new(),
+            log_digest: Digest::default(),
+            params,
+            protocol: Protocol::from_params(&params),
+            watched: Watched::default(),
+            tilts: Tilts::new(&params),
+            lines: Vec::new(),
+            raw: Vec::new(),
+            resets: Vec::new(),
+        }
+    }
+
+    /// Ends the run.
+    ///
+    /// # Errors
+    /// One line: why the emulator failed.
+    pub fn finish(mut self) -> Result<Finished, String> {
+        let emulator = self.emulator.as_mut().ok_or("the board was never powered")?;
+        Ok(Finished {
+            run: emulator.finish()?,
+            overruns: self.overruns,
+            log_digest: self.log_digest.0,
+            tilt_error: self.tilts.error,
+            lines: self.lines,
+            log: self.raw,
+            resets: self.resets,
+            malformed: self.log.malformed,
+        })
+    }
+
+    /// What the pins show now.
+    #[must_use]
+    pub fn pins(&self) -> &Pins {
+        &self.pins
+    }
+
+    fn hear(&mut self, line: Line) {
+        (self.told)(&line);
+        self.log_digest.word(line.ms);
+        line.text.bytes().for_each(|byte| self.log_digest.byte(byte));
+        if let Some((mode, reason)) = parse_mode_text(&line.text) {
+            self.proven &= !matches!(mode, Mode::Releasing | Mode::Flight | Mode::Disarmed);
+            let warning = self.status.take().map_or(String::new(), |s| s.warning);
+            self.status = Some(Status {
+                mode,
+                reason: reason.to_owned(),
+                warning,
+            });
+        } else if let Some(warning) = line.text.strip_prefix("warning: ")
+            && let Some(status) = &mut self.status
+        {
+            warning.clone_into(&mut status.warning);
+        } else if line.text == "grip proven" {
+            self.proven = true;
+        } else if let Some((arm, grip)) = told_grip(&line.text) {
+            self.grip[arm] = grip;
+        } else if let Some((task, count)) = told_overruns(&line.text) {
+            self.overruns.insert(task.to_owned(), count);
+        }
+        self.lines.push(line);
+    }
+
+    fn pressure(&self) -> PerArm<f64> {
+        let mut pressure = [0.0; 4];
+        let scales = FsrScale::all(&self.params);
+        for ((slot, scale), counts) in pressure.iter_mut().zip(scales).zip(self.sensors.pressure_counts) {
+            *slot = f64::from(scale.pressure(counts));
+        }
+        pressure
+    }
+
+    /// Thrust of each rotor (N) that its motor's command asks for.
+    fn thrusts(&self) -> PerArm<f32> {
+        let curve = ThrustCurve::from_params(&self.params);
+        let ratio = self.watched.voltage as f32 / self.params.battery_nominal;
+        self.pins
+            .motors
+            .map(|command| curve.thrust(command as f32, ratio))
+    }
+
+    /// Force of each tendon (N) that its servo's pulse asks for.
+    fn tension(&self) -> PerArm<f64> {
+        let mut force = [0.0; 4];
+        let pins = self.pins.servos.into_iter().zip(self.watched.tilt);
+        for ((force, (pulse, tilt)), reel) in force.iter_mut().zip(pins).zip(Reel::all(&self.params)) {
+            if pulse > 0.0 {
+                *force = f64::from(reel.force(reel.angle_of(pulse as f32), tilt as f32));
+            }
+        }
+        force
+    }
+}
+
+impl Aircraft for Bench<'_> {
+    fn step_world(&mut self, plant: &mut Plant) {
+        self.plan
+            .apply(self.pins.ms, &mut self.sensors, &mut self.wires.faults);
+        let actuators = Actuators {
+            motors: self.pins.motors,
+            servos: self.pins.servos,
+        };
+        self.sensors.step(plant, &actuators, &mut self.wires);
+        self.watched.tilt = plant.tilt();
+        self.watched.voltage = plant.battery_voltage();
+        let [roll, ..] = plant.euler();
+        let thrusts = self.thrusts();
+        let flies = self.mode() == Mode::Flight && -plant.pose().position.z > AIRBORNE;
+        self.tilts.step(&thrusts, &self.wires.arms, roll, flies);
+    }
+
+    fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize {
+        let count = self.telemetry.len().min(buffer.len());
+        for (slot, byte) in buffer.iter_mut().zip(self.telemetry.drain(..count)) {
+            *slot = byte;
+        }
+        count
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.setpoint = [f64::NAN; 3];
+        if self.mode() == Mode::Flight
+            && let Some(sticks) = sticks(self.protocol, bytes)
+        {
+            let angle = self.params.stick_angle;
+            self.setpoint = [sticks.roll * angle, sticks.pitch * angle, f32::NAN].map(f64::from);
+        }
+        let words = bytes.iter().map(|byte| on_line(self.protocol, *byte));
+        self.plan.radio(words, &mut self.wires.receiver);
+    }
+
+    fn run_until(&mut self, us: u64) -> Result<(), String> {
+        while self.pins.ms * 1000 < us {
+            let emulator = match &mut self.emulator {
+                Some(emulator) => emulator,
+                off => off.insert(Emulator::power_on(self.firmware, self.settings)?),
+            };
+            self.pins = emulator.advance(std::mem::take(&mut self.wires))?;
+            let ms = self.pins.ms;
+            if let Some(console) = &mut self.sockets.console {
+                self.wires.console = console.exchange(&self.pins.console);
+            }
+            let bytes = std::mem::take(&mut self.pins.telemetry);
+            if let Some(listener) = &mut self.sockets.telemetry {
+                let _ = listener.exchange(&bytes);
+            }
+            self.display.take(&bytes);
+            self.telemetry.extend(bytes);
+            for (at, why) in std::mem::take(&mut self.pins.resets) {
+                self.resets.push((at as f64 * 1e-6, why));
+                self.dead = false;
+                self.status = None;
+            }
+            let log = std::mem::take(&mut self.pins.log);
+            self.raw.extend(&log);
+            for line in self.log.take(ms, &log) {
+                self.hear(line);
+            }
+        }
+        Ok(())
+    }
+
+    fn status(&self) -> Option<Said<'_>> {
+        self.status.as_ref().map(|s| Said {
+            mode: s.mode,
+            reason: &s.reason,
+            warning: &s.warning,
+        })
+    }
+
+    fn grip(&self) -> Option<GripState> {
+        Some(GripState {
+            proven: self.proven,
+            arms: self.grip,
+            ..GripState::default()
+        })
+    }
+
+    fn belief(&self) -> Belief {
+        Belief {
+            attitude: self.display.attitude.unwrap_or([f64::NAN; 3]),
+            setpoint: self.setpoint,
+            tilt_measured: self.tilts.measured,
+            tilt_model: self.tilts.modelled(),
+            thrust_asked: self.thrusts().map(f64::from),
+            tension_asked: self.tension(),
+            pressure: self.pressure(),
+            saturated: false,
+        }
+    }
+
+    fn motors(&self) -> PerArm<f64> {
+        self.pins.motors
+    }
+
+    // The processor stands still until its watchdog bites. Scenarios with another cause are refused beforehand.
+    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+        self.wires.faults.push(Fault::Hang(true));
+        self.reset = Some(Reset { cause, step, at });
+        self.cuts += 1;
+        self.dead = true;
+    }
+
+    fn start(&mut self, _: u64) {}
+
+    fn runs(&self) -> bool {
+        !self.dead
+    }
+
+    fn reset(&self) -> Option<Reset> {
+        self.reset
+    }
+
+    fn resets(&self) -> u32 {
+        self.cuts
+    }
+
+    fn overruns(&self) -> u32 {
+        self.overruns.values().sum()
+    }
+}
+
+/// Where the sticks are by a frame of the radio; `None` for other frames.
+fn sticks(protocol: Protocol, mut frame: &[u8]) -> Option<Sticks> {
+    match protocol {
+        Protocol::Crsf => match CrsfParser::default().next_packet(&mut frame) {
+            Some(Ok(Packet::RCChannels(channels))) => Sticks::from_channels(&channels.0).ok(),
+            _ => None,
+        },
+        Protocol::Sbus => sbus::Frame::decode(frame.try_into().ok()?)?.sticks().ok(),
+    }
+}
+
+/// A byte as it goes over the receiver's line: SBUS puts an even parity on top.
+fn on_line(protocol: Protocol, byte: u8) -> u16 {
+    let parity = match protocol {
+        Protocol::Crsf => 0,
+        Protocol::Sbus => byte.count_ones() as u16 & 1,
+    };
+    u16::from(byte) | parity << 8
+}
+
+/// One arm's grip as logged: `grip: arm 1 holds 947 N/m2 with 34 N, closed in 5.6 s`.
+fn told_grip(text: &str) -> Option<(usize, ArmGrip)> {
+    let (arm, rest) = text.strip_prefix("grip: arm ")?.split_once(" holds ")?;
+    let (pressure, rest) = rest.split_once(" N/m2 with ")?;
+    let (force, rest) = rest.split_once(" N, closed in ")?;
+    let closure = rest.strip_suffix(" s")?;
+    let arm = arm.parse::<usize>().ok()?.checked_sub(1).filter(|arm| *arm < 4)?;
+    let grip = ArmGrip {
+        state: ArmState::Holding,
+        pressure: pressure.parse().ok()?,
+        force: force.parse().ok()?,
+        closure: Some(closure.parse().ok()?),
+        fault: None,
+    };
+    Some((arm, grip))
+}
+
+/// Missed deadlines as logged: `imu: 3 overruns in 12000 runs; worst: …`.
+fn told_overruns(text: &str) -> Option<(&str, u32)> {
+    let (task, rest) = text.split_once(": ")?;
+    let (count, _) = rest.split_once(" overruns in ")?;
+    Some((task, count.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_log_is_understood() {
+        let (arm, grip) = told_grip("grip: arm 3 holds 947.25 N/m2 with 33.5 N, closed in 3.65 s").unwrap();
+        assert_eq!((arm, grip.closure), (2, Some(3.65)));
+        assert!((grip.pressure - 947.25).abs() < 1e-3 && (grip.force - 33.5).abs() < 1e-3);
+        assert_eq!(
+            told_grip("grip: arm 5 holds 1 N/m2 with 1 N, closed in 1 s"),
+            None
+        );
+        assert_eq!(
+            told_overruns("imu: 3 overruns in 12000 runs; worst: 1 us late, 2 us response, 3 us execution"),
+            Some(("imu", 3))
+        );
+        assert_eq!(told_overruns("imu: self-test passed"), None);
+    }
+
+    #[test]
+    fn an_sbus_word_has_an_even_number_of_ones() {
+        assert_eq!(on_line(Protocol::Sbus, 0x0F), 0x0F);
+        assert_eq!(on_line(Protocol::Sbus, 0x07), 0x107);
+        assert_eq!(on_line(Protocol::Crsf, 0x07), 0x07);
+    }
+
+    #[test]
+    fn the_sticks_of_a_frame_are_read() {
+        let sent = Sticks {
+            roll: 0.5,
+            ..Sticks::default()
+        };
+        let read = sticks(Protocol::Crsf, &sophie_sim::crsf::rc_frame(&sent)).unwrap();
+        assert!((read.roll - 0.5).abs() < 0.02);
+        assert!(sticks(Protocol::Crsf, &[1, 2, 3]).is_none());
+        let frame = sbus::Frame {
+            channels: [1500; 16],
+            ..sbus::Frame::default()
+        };
+        let read = sticks(Protocol::Sbus, &frame.encode()).unwrap();
+        assert!((read.roll - 0.62).abs() < 0.02);
+        assert!(sticks(Protocol::Sbus, &[1, 2, 3]).is_none());
+    }
+}

@@ -1,0 +1,483 @@
+//! The STM32F405, by the emulator's STM32F427 and what that lacks: external interrupts, the routing of pins to them, the
+//! timers' DMA requests, the end of an I2C read by DMA, the two-channel timer.
+//!
+//! The F427 has everything that the F405 has, under the same addresses, and more: twice the flash, a third more RAM, an
+//! over-drive for 180 MHz, more ports and timers. The image is held to the F405's memory when it is read. The emulator
+//! does not let an F427 write its flash.
+
+mod exti;
+mod i2c;
+mod small_timer;
+
+use std::num::{NonZeroU32, NonZeroU64};
+use std::sync::LazyLock;
+
+use rigless::cpu::armv7m::windows;
+use rigless::device::{Device, ErasedDevice, Level, ResetCause};
+use rigless::emulator::CoreSpec;
+use rigless::machine::armv7m;
+use rigless::mcu::{Mcu, Operate};
+use rigless::soc::stm32f427::generated::dbg::Register as Debug;
+use rigless::soc::stm32f427::generated::dma2::Register as DmaRegister;
+use rigless::soc::stm32f427::generated::flash::Register as Flash;
+use rigless::soc::stm32f427::generated::rcc::Register as Clocks;
+use rigless::soc::stm32f427::generated::usart6::Register as Serial;
+use rigless::soc::stm32f427::peripherals::dma::{Dma, Wire};
+use rigless::soc::stm32f427::peripherals::i2c::I2c;
+use rigless::soc::stm32f427::peripherals::rcc::HSI_HZ;
+use rigless::soc::stm32f427::peripherals::tim::{Advanced, Channel, Counter, Tim, UPDATE_REQUEST};
+use rigless::soc::stm32f427::peripherals::{CONTROLLERS, SERIAL_PORTS, TIMERS};
+use rigless::soc::stm32f427::{Stm32f427, generated};
+use rigless::soc::{Bus, Layout};
+use rigless::time::VirtualNanos;
+
+use self::exti::{Exti, Syscfg, routed_to};
+use self::i2c::DmaI2c;
+use self::small_timer::{TwoChannels, tim12};
+use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_part};
+use super::chips::bno055::Bno055;
+use super::chips::icm42688p::Imu;
+use super::chips::line::Line;
+use super::deaf::Deaf;
+use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
+use super::serial::Setup;
+use super::stretched::Stretched;
+use super::tap::{Edge, Tap};
+
+/// Supply and converter reference, mV.
+const SUPPLY: u32 = 3300;
+/// Core clock, Hz.
+const CLOCK: f64 = 168e6;
+/// Clock of the receiver's port, Hz.
+const SERIAL_CLOCK: f64 = 84e6;
+/// The servos' timer that has two channels.
+const SMALL_TIMER: &str = "TIM12";
+/// The motors' timer, and the one whose DMA request moves their frames (RM0090 table 43).
+const MOTOR_TIMER: &str = "TIM8";
+/// What the streams that read the arms' buses have still to take: DMA1 streams 0 and 2.
+const BUS_COUNTS: [DmaRegister; 2] = [DmaRegister::S0ndtr, DmaRegister::S2ndtr];
+
+/// Bits of the flash's control register that program and that start an erase, and that of its access register that has the
+/// data cache on (RM0090 §3.9.8, §3.9.2).
+const CHANGES: u64 = 1 << 16 | 1;
+const DATA_CACHE: u64 = 1 << 10;
+
+/// The pads of `docs/boards.md`.
+pub static PADS: Pads = Pads {
+    name: "f405",
+    part: "stm32f427",
+    crystal: 8_000_000,
+    imu: 0,
+    imu_select: ("GPIOA", 4),
+    imu_ready: At(2, 4),
+    // Marking up, x forward: the chip's y points left and its z up.
+    imu_axes: |[x, y, z]| [x, -y, -z],
+    arms: [(0, 0x28), (0, 0x29), (1, 0x28), (1, 0x29)],
+    pressure: [
+        AnalogPad::bare(At(2, 0), 10),
+        AnalogPad::bare(At(2, 1), 11),
+        AnalogPad::bare(At(2, 2), 12),
+        AnalogPad::bare(At(2, 3), 13),
+    ],
+    // 1:11 and 40 A/V.
+    battery: AnalogPad::divided(At(0, 0), 0, 11.0),
+    current: AnalogPad::divided(At(0, 1), 1, 40.0),
+    receiver: 0,
+    receiver_out: (At(0, 9), 7),
+    console: 1,
+    motors: TimerPins {
+        pins: [At(2, 6), At(2, 7), At(2, 8), At(2, 9)],
+        function: 3,
+    },
+    servos: [
+        ServoPin::new(At(1, 6), 2, "TIM4", 1),
+        ServoPin::new(At(1, 7), 2, "TIM4", 2),
+        ServoPin::new(At(1, 14), 9, SMALL_TIMER, 1),
+        ServoPin::new(At(1, 15), 9, SMALL_TIMER, 2),
+    ],
+    buses: &[
+        (At(0, 5), 5),
+        (At(0, 6), 5),
+        (At(0, 7), 5),
+        (At(1, 8), 4),
+        (At(1, 9), 4),
+        (At(1, 10), 4),
+        (At(1, 11), 4),
+        (At(0, 10), 7),
+        (At(0, 2), 7),
+        (At(0, 3), 7),
+    ],
+    resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10), At(0, 3)],
+    signals: [At(1, 12), At(1, 13), At(0, 8)],
+    foreign: &[0x5168_5BFC],
+};
+
+/// Instances that no firmware of ours uses, or that the F405 lacks. Whoever reaches one all the same finds it listed as
+/// unimplemented, and the run failed.
+const UNUSED: [&str; 27] = [
+    "TIM1",
+    "TIM2",
+    "TIM3",
+    "SPI2",
+    "SPI3",
+    "SPI4",
+    "SPI5",
+    "SPI6",
+    "I2C3",
+    "USART3",
+    "USART6",
+    "UART4",
+    "UART5",
+    "UART7",
+    "UART8",
+    "ADC2",
+    "ADC3",
+    "SDIO",
+    "OTG_FS_GLOBAL",
+    "RTC",
+    "GPIOE",
+    "GPIOF",
+    "GPIOG",
+    "GPIOH",
+    "GPIOI",
+    "GPIOJ",
+    "GPIOK",
+];
+
+/// The requests that reach DMA2: the emulator's, and the motor timer's update (table 44).
+fn requests() -> &'static [Wire] {
+    static WIRES: LazyLock<Vec<Wire>> = LazyLock::new(|| {
+        let known = CONTROLLERS[1].wiring.iter().map(|wire| Wire {
+            instance: wire.instance,
+            request: wire.request,
+            channel: wire.channel,
+            streams: wire.streams,
+        });
+        let motors = Wire {
+            instance: MOTOR_TIMER,
+            request: UPDATE_REQUEST,
+            channel: 7,
+            streams: &[1],
+        };
+        known.chain([motors]).collect()
+    });
+    &WIRES
+}
+
+fn controller() -> Dma {
+    let known = &CONTROLLERS[1];
+    Dma::new(requests(), known.last_data, known.reaches_memory)
+}
+
+fn motor_timer() -> Tim<Advanced> {
+    Tim::with_clock(HSI_HZ, Counter::Narrow)
+}
+
+/// The part.
+#[derive(Debug)]
+pub struct F405 {
+    inner: Stm32f427,
+    motors: Tap<Advanced>,
+    servos: Deaf<TwoChannels>,
+    dma: Dma,
+    buses: [Stretched<DmaI2c>; 2],
+    exti: Exti,
+    syscfg: Syscfg,
+    slots: Slots,
+    pulses: u64,
+    /// The next reset is by a supply that broke down.
+    browned_out: bool,
+    /// Bits of the clocks' control register that never rise.
+    missing: u64,
+    /// Content of the identity register.
+    revision: u64,
+}
+
+#[derive(Debug)]
+struct Slots {
+    motors: usize,
+    servos: usize,
+    clocks: usize,
+    debug: usize,
+    flash: usize,
+    dma: usize,
+    buses: [usize; 2],
+    exti: usize,
+    syscfg: usize,
+    unused: Vec<bool>,
+}
+
+impl F405 {
+    /// The part, out of reset.
+    ///
+    /// # Errors
+    /// The emulator cannot make it.
+    pub fn new() -> Result<Self, String> {
+        let told = |e: rigless::soc::Error| format!("emulator: {e}");
+        let inner = Stm32f427::new().map_err(told)?;
+        let slot = |name| inner.bus().slot(name).map_err(told);
+        let mut unused = vec![false; inner.bus().slots().len()];
+        for name in UNUSED {
+            unused[slot(name)?] = true;
+        }
+        let slots = Slots {
+            motors: slot(MOTOR_TIMER)?,
+            servos: slot(SMALL_TIMER)?,
+            clocks: slot("RCC")?,
+            debug: slot("DBG")?,
+            flash: slot("FLASH")?,
+            dma: slot(CONTROLLERS[1].instance)?,
+            buses: [slot("I2C1")?, slot("I2C2")?],
+            exti: slot("EXTI")?,
+            syscfg: slot("SYSCFG")?,
+            unused,
+        };
+        let buses = BUS_COUNTS.map(|count| {
+            let count = generated::DMA1.base + u64::from(count.spec().offset);
+            // Its place is taken by `Mcu::split`.
+            Stretched::new(DmaI2c::new(I2c::with_clock(HSI_HZ), count))
+        });
+        let mut part = Self {
+            inner,
+            motors: Tap::new(motor_timer),
+            servos: Deaf(tim12()),
+            dma: controller(),
+            buses,
+            exti: Exti::default(),
+            syscfg: Syscfg,
+            slots,
+            pulses: 0,
+            browned_out: false,
+            missing: 0,
+            // The last one (RM0090 §38.6.1).
+            revision: 0x101F,
+        };
+        part.mark_revision();
+        Ok(part)
+    }
+
+    /// Puts an F405's identity into its register.
+    fn mark_revision(&mut self) {
+        let file = self.inner.bus_mut().slot_mut(self.slots.debug).registers_mut();
+        file.set(Debug::DbgmcuIdcode, 0x413 | self.revision << 16);
+    }
+
+    /// The interface of a bus.
+    fn i2c(&mut self, bus: usize) -> &mut I2c {
+        &mut self.buses[bus].inner.inner
+    }
+
+    /// Gives the data-ready pulses that the sensor has sent to the pin that it is wired to, and to the interrupt line of
+    /// that pin.
+    fn carry_data_ready(&mut self, now: VirtualNanos) {
+        let pulses = self.imu(PADS.imu).map_or(0, |imu| imu.pulses);
+        if pulses == self.pulses {
+            return;
+        }
+        self.pulses = pulses;
+        let pin = PADS.imu_ready;
+        let routed = routed_to(pin.1, self.inner.bus().slots()[self.slots.syscfg].registers());
+        // 8 µs on the real part; the interrupt takes the edge.
+        for level in [Level::High, Level::Low] {
+            self.drive(now, pin, level);
+            if routed == pin.0 {
+                let (file, mut c) = self.inner.bus_mut().drive(now, self.slots.exti);
+                self.exti.edge(pin.1, level, file, &mut c);
+            }
+        }
+    }
+}
+
+impl Chip for F405 {
+    same_on_this_part!(stm32f427);
+
+    fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)> {
+        let number = Channel::new(servo.channel)?;
+        let pulse = if servo.timer == SMALL_TIMER {
+            let slots = self.inner.bus().slots();
+            let clocks = slots[self.slots.clocks].registers().get(Clocks::Apb1enr);
+            let file = slots[self.slots.servos].registers();
+            (clocks & small_timer::ENABLED != 0).then(|| self.servos.0.pulse(number, file))??
+        } else {
+            let nth = TIMERS.iter().position(|timer| timer.instance == servo.timer)?;
+            let (timer, file) = self.inner.timer(nth);
+            timer.pulse(number, file)?
+        };
+        Some((pulse.width.0, pulse.period.0))
+    }
+
+    fn hold_clock(&mut self, bus: usize, hold: u64) -> bool {
+        self.buses[bus].hold = hold;
+        true
+    }
+
+    fn serial_setup(&self, port: usize) -> Setup {
+        let file = self.inner.bus().registers(SERIAL_PORTS[port].instance);
+        let values = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.map_or(0, |file| file.get(r)));
+        let [brr, cr1, cr2] = values;
+        Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+    }
+
+    fn set_options(&mut self, options: Options) {
+        let (flash, file) = self.inner.program();
+        let (optcr, optcr1) = flash.committed_options();
+        let level = match options {
+            Options::Factory => 3 << 2,
+            // Level 3: two bits that count downwards (RM0090 §3.9.10).
+            Options::BrownOut => 0,
+        };
+        flash.keep_options(optcr & !(3 << 2) | level, optcr1, file);
+    }
+
+    fn age(&mut self) {
+        // Revision A (RM0090 §38.6.1).
+        self.revision = 0x1000;
+        self.mark_revision();
+    }
+
+    fn changes_cached_flash(&self, address: u64, value: u64) -> bool {
+        let control = generated::FLASH.base + u64::from(Flash::Cr.spec().offset);
+        let file = self.inner.bus().slots()[self.slots.flash].registers();
+        address == control && value & CHANGES != 0 && file.get(Flash::Acr) & DATA_CACHE != 0
+    }
+
+    // The emulator does not let this part erase.
+    fn erased(&self, _: u64, _: u64) -> Option<u64> {
+        None
+    }
+
+    fn core(&self, speed: f64) -> Result<CoreSpec, String> {
+        let rate = NonZeroU64::new((CLOCK * speed) as u64).ok_or("the speed must be more than 0")?;
+        let core = armv7m::Core {
+            variant: armv7m::Variant::M4,
+            clock_hz: NonZeroU64::new(CLOCK as u64).ok_or("no clock")?,
+            interrupt_lines: NonZeroU32::new(u32::from(self.cpu().interrupt_lines)).ok_or("no interrupts")?,
+            priority_bits: 4,
+            refclk_divider: NonZeroU32::new(8).ok_or("no divider")?,
+            instructions_per_second: rate,
+            boot: "flash",
+        };
+        Ok(core.spec_with_parts(
+            &windows(self.bus()),
+            armv7m::Fpu::FpV4Sp,
+            armv7m::MpuRegions::Eight,
+        ))
+    }
+}
+
+impl Mcu for F405 {
+    fn bus(&self) -> &Bus {
+        self.inner.bus()
+    }
+
+    fn bus_mut(&mut self) -> &mut Bus {
+        self.inner.bus_mut()
+    }
+
+    fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
+        // It builds its models anew, keeping what hangs on them; ours go the same way.
+        for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
+            stock.inherit(&mut own.inner.inner);
+        }
+        // What the outside drives stays, which it forgets.
+        let mut ports = std::mem::take(&mut self.inner.gpio);
+        self.inner.reset(at, cause);
+        for (fresh, old) in self.inner.gpio.iter_mut().zip(&mut ports) {
+            *fresh = std::mem::take(old);
+            Device::reset(fresh);
+        }
+        for (own, stock) in self.buses.iter_mut().zip(&mut self.inner.i2c) {
+            own.inner.inner = I2c::with_clock(HSI_HZ);
+            own.inner.inner.inherit(stock);
+            Device::reset(own);
+        }
+        self.motors.restart(at);
+        self.mark_revision();
+        self.servos = Deaf(tim12());
+        if std::mem::take(&mut self.browned_out) {
+            // The emulator knows no brown-out: its flag is set beside the pin's (RM0090 §7.3.21).
+            let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();
+            file.set(Clocks::Csr, file.get(Clocks::Csr) | 1 << 25);
+        }
+        self.dma = controller();
+        self.exti = Exti::default();
+    }
+
+    fn poll(&mut self, now: VirtualNanos) {
+        self.inner.poll(now);
+        self.carry_data_ready(now);
+    }
+
+    fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        if self.missing != 0 && slot == self.slots.clocks {
+            let file = self.inner.bus_mut().slot_mut(slot).registers_mut();
+            file.set(Clocks::Cr, file.get(Clocks::Cr) & !self.missing);
+        }
+        let own: &mut dyn ErasedDevice = if slot == self.slots.motors {
+            &mut self.motors
+        } else if slot == self.slots.servos {
+            &mut self.servos
+        } else if slot == self.slots.dma {
+            &mut self.dma
+        } else if let Some(nth) = self.slots.buses.iter().position(|bus| *bus == slot) {
+            &mut self.buses[nth]
+        } else if slot == self.slots.exti {
+            &mut self.exti
+        } else if slot == self.slots.syscfg {
+            &mut self.syscfg
+        } else if self.slots.unused.get(slot) == Some(&true) {
+            return (self.inner.bus_mut(), None);
+        } else {
+            return self.inner.split(slot);
+        };
+        (self.inner.bus_mut(), Some(own))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rigless::soc::stm32f427::generated::{EXTI, RCC, SYSCFG, exti, rcc, syscfg};
+
+    use super::*;
+
+    fn write<L: Layout>(part: &mut F405, base: u64, register: L, value: u64) {
+        let address = base + u64::from(register.spec().offset);
+        part.write(VirtualNanos(0), address, rigless::soc::Width::W32, value)
+            .unwrap();
+    }
+
+    fn pending(part: &F405) -> u64 {
+        part.bus().slots()[part.slots.exti]
+            .registers()
+            .get(exti::Register::Pr)
+    }
+
+    fn edge(part: &mut F405) {
+        let (file, mut c) = part.inner.bus_mut().drive(VirtualNanos(0), part.slots.exti);
+        part.exti.edge(4, Level::High, file, &mut c);
+    }
+
+    #[test]
+    fn an_edge_pends_an_unmasked_line_until_a_one_is_written() {
+        let mut part = F405::new().unwrap();
+        write(&mut part, EXTI.base, exti::Register::Rtsr, 1 << 4);
+        edge(&mut part);
+        assert_eq!(pending(&part), 0);
+        write(&mut part, EXTI.base, exti::Register::Imr, 1 << 4);
+        edge(&mut part);
+        assert_eq!(pending(&part), 1 << 4);
+        write(&mut part, EXTI.base, exti::Register::Pr, 1 << 3);
+        assert_eq!(pending(&part), 1 << 4);
+        write(&mut part, EXTI.base, exti::Register::Pr, 1 << 4);
+        assert_eq!(pending(&part), 0);
+    }
+
+    #[test]
+    fn a_pin_reaches_the_line_that_the_firmware_routes_it_to() {
+        let mut part = F405::new().unwrap();
+        write(&mut part, RCC.base, rcc::Register::Apb2enr, 1 << 14);
+        write(&mut part, SYSCFG.base, syscfg::Register::Exticr2, 0x2);
+        let file = part.bus().slots()[part.slots.syscfg].registers();
+        assert_eq!((routed_to(4, file), routed_to(5, file)), (2, 0));
+    }
+}

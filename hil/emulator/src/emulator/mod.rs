@@ -1,0 +1,591 @@
+//! The emulated board, a millisecond at a time. Nothing outside this module knows which emulator it is.
+//!
+//! The emulator keeps its core to itself on a thread of its own and calls back at each stop; here the call waits for the
+//! next millisecond's [`Wires`]. So the two threads take turns, and a run is as deterministic as one thread.
+
+mod board;
+mod chip;
+mod chips;
+pub mod conformance;
+mod deaf;
+mod f405;
+mod h743;
+mod outputs;
+mod pads;
+pub mod rig;
+mod rtt;
+mod serial;
+mod stretched;
+mod tap;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+
+use rigless::emulator::{self, AccessKind, Driver, Host, Settled, Start, Stop};
+use rigless::image::Image;
+use rigless::session::Session;
+use rigless::soc::Width;
+use rigless::time::{NO_DEADLINE, VirtualNanos};
+use sophie_control::params::Params;
+use sophie_control::wrench::PerArm;
+use sophie_tasks::rc::Protocol;
+
+use self::board::Wired;
+use self::chip::{Chip, Clock, Options};
+use self::chips::icm42688p::Sample;
+use self::chips::line::Line;
+use self::f405::F405;
+use self::h743::H743;
+use self::outputs::Outputs;
+use self::pads::Pads;
+use self::rtt::Rtt;
+use crate::boards::Kind;
+use crate::elf::Firmware;
+use crate::esc::{self, Esc};
+use crate::stored;
+use crate::wires::{Digest, Fault, Gap, Hung, Latency, Pins, Run, Wires};
+
+const MS: u64 = 1_000_000;
+/// Registers of all ports of either processor: first address, and first one beyond (RM0433 table 8, RM0090 table 1).
+const PORTS: [std::ops::Range<u64>; 2] = [0x5802_0000..0x5802_2C00, 0x4002_0000..0x4002_2C00];
+/// From a start of the processor until every pin must be what it is wired to, ns: the arms' buses wait for their chips.
+const START_UP: u64 = 1000 * MS;
+/// Longest time from data-ready to motor frame that differs from a lost sample: the time between two samples, ns.
+const SAMPLE: u64 = 250_000;
+
+/// What a corrupted flash holds: each word its address with these bits flipped.
+const NOISE: u64 = 0x5A5A_5A5A;
+
+/// Bytes of the header of a task of embassy-executor 0.10, and in its state the bits "spawned" and "queued to run".
+const HEADER: u64 = 64;
+const SPAWNED: u64 = 1;
+const QUEUED: u64 = 1 << 8;
+
+/// Code that fills the stack: `push {r0-r7, lr}`, over and over.
+const RECURSION: u64 = 0xE7FD_B5FF;
+/// Code that locks the processor up: `cpsid f`, which takes the priority of a hard fault, and `udf`.
+const LOCK_UP: u64 = 0xDE00_B671;
+/// Where it is put: bytes before the end of the RAM, where no image has statics.
+const SPARE: u64 = 0x1000;
+
+/// How the board is emulated.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Instructions for each cycle of the core's clock.
+    pub speed: f64,
+    /// What is stored in its flash.
+    pub params: Params,
+}
+
+/// A board under emulation.
+pub struct Emulator {
+    wires: Option<SyncSender<Wires>>,
+    pins: Receiver<Pins>,
+    thread: Option<JoinHandle<Result<Run, String>>>,
+}
+
+impl Emulator {
+    /// The board with `firmware` in its flash, powered and about to execute its first instruction.
+    ///
+    /// # Errors
+    /// One line: what the emulator refuses.
+    pub fn power_on(firmware: &Firmware, settings: Settings) -> Result<Self, String> {
+        let image = Image::new(&firmware.path, firmware.bytes.clone(), None)
+            .map_err(|e| format!("{}: {e}", firmware.path.display()))?;
+        let kind = firmware.board.kind;
+        let (first, end) = firmware.params;
+        let stored = stored::sectors(kind, (end - first) as usize, &settings.params)?;
+        let stored =
+            Image::new(Path::new("parameters"), stored, Some(first)).map_err(|e| format!("emulator: {e}"))?;
+        let mut images = vec![image, stored];
+        if let Some(loader) = firmware.loader.clone() {
+            let loader = Image::new(Path::new("loader"), loader.bytes, Some(loader.at));
+            images.push(loader.map_err(|e| format!("emulator: {e}"))?);
+        }
+        let line = esc::Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
+        let receiver = serial::Setup::of(Protocol::from_params(&settings.params), kind);
+        let (wires, wires_in) = sync_channel(1);
+        let (pins_out, pins) = sync_channel(1);
+        let driver = World {
+            wires: wires_in,
+            pins: pins_out,
+            ms: 0,
+            rtt: Rtt::new(firmware.rtt),
+            params: firmware.params,
+            receiver,
+            erases: BTreeMap::new(),
+            cached: 0,
+            tasks: firmware.tasks.clone(),
+            flash: firmware.board.flash,
+            spare: firmware.board.ram.last().map_or(0, |(_, end)| end - SPARE),
+            impossible: Vec::new(),
+            dark: false,
+            escs: std::array::from_fn(|_| Esc::new(line)),
+            servos: [0.0; 4],
+            resets: 0,
+            high: [false; 4],
+            still: None,
+            hung: None,
+            latency: Latency::default(),
+            digest: Digest::default(),
+            pulses: Vec::new(),
+            outputs: Outputs::default(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("emulator".to_owned())
+            .spawn(move || match kind {
+                Kind::MatekH743 => run(H743::new()?, &h743::MATEK, settings.speed, &images, driver),
+                Kind::F405 => run(F405::new()?, &f405::PADS, settings.speed, &images, driver),
+            })
+            .map_err(|e| format!("emulator: {e}"))?;
+        let mut emulator = Self {
+            wires: Some(wires),
+            pins,
+            thread: Some(thread),
+        };
+        emulator.wait()?;
+        Ok(emulator)
+    }
+
+    /// Runs the board for a millisecond with `wires`.
+    ///
+    /// # Errors
+    /// One line: why the processor cannot go on.
+    pub fn advance(&mut self, wires: Wires) -> Result<Pins, String> {
+        // The wait reports a closed channel.
+        if let Some(sender) = &self.wires {
+            let _ = sender.send(wires);
+        }
+        self.wait()
+    }
+
+    /// Ends the run.
+    ///
+    /// # Errors
+    /// One line: why the emulator failed.
+    pub fn finish(&mut self) -> Result<Run, String> {
+        self.wires = None;
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Ok(run)) => run,
+            Some(Err(_)) => Err("emulator: it panicked".to_owned()),
+            None => Err("emulator: the run has ended already".to_owned()),
+        }
+    }
+
+    fn wait(&mut self) -> Result<Pins, String> {
+        match self.pins.recv() {
+            Ok(pins) => Ok(pins),
+            Err(_) => Err(match self.finish() {
+                Ok(_) => "emulator: the run ended by itself".to_owned(),
+                Err(why) => why,
+            }),
+        }
+    }
+}
+
+/// The emulator's thread.
+fn run<C: Chip>(
+    chip: C,
+    pads: &'static Pads,
+    speed: f64,
+    images: &[Image],
+    driver: World,
+) -> Result<Run, String> {
+    let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
+    let board = Wired::new(chip, pads, speed)?;
+    let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
+    // The first stop is at power-on, to get the wires of the first millisecond.
+    session.run_until(VirtualNanos(1));
+    let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| told(&e))?;
+    let (at, instructions) = finished
+        .stop
+        .map_or((VirtualNanos(0), 0), |s| (s.at, s.instruction_count));
+    let mut gaps = gaps(&finished.session);
+    let started = finished.session.resets().last().map_or(0, |reset| reset.at.0);
+    let miswired = if at.0 - started.min(at.0) > START_UP {
+        let receiver = finished.driver.receiver;
+        finished.session.board_mut().miswired(at, receiver)
+    } else {
+        Vec::new()
+    };
+    gaps.extend(miswired.into_iter().map(|(at, what)| Gap {
+        kind: "miswired",
+        at,
+        what,
+    }));
+    let world = finished.driver;
+    gaps.extend(world.impossible.iter().map(|fault| Gap {
+        kind: "refused",
+        at: "fault".to_owned(),
+        what: format!("this part cannot have {fault:?}"),
+    }));
+    if world.cached > 0 {
+        gaps.push(Gap {
+            kind: "told",
+            at: "FLASH".to_owned(),
+            what: format!("{} writes and erases begun with the data cache on", world.cached),
+        });
+    }
+    Ok(Run {
+        gaps,
+        instructions,
+        escs: world.escs.map(|esc| esc.stats),
+        latency_us: world.latency,
+        hung: world.hung,
+        erases: world.erases,
+        outputs: world.outputs.found,
+        servos: world.servos,
+        pins_digest: world.digest.0,
+    })
+}
+
+/// Everything that the emulator says it could not do.
+fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
+    let mut gaps = Vec::new();
+    let mut add = |kind, at: String, what: String| gaps.push(Gap { kind, at, what });
+    for entry in session.unmapped() {
+        add(
+            "unmapped",
+            format!("{:#010x}", entry.address),
+            format!("first from {:#010x}", entry.program_counter),
+        );
+    }
+    for (address, fault) in session.refused() {
+        add("refused", format!("{address:#010x}"), format!("{fault:?}"));
+    }
+    for entry in session.unimplemented().values() {
+        add(
+            "unimplemented",
+            format!("{}.{}", entry.instance, entry.register),
+            format!(
+                "{} reads, {} writes, first from {:#010x}",
+                entry.reads, entry.writes, entry.program_counter
+            ),
+        );
+    }
+    for (address, entry) in session.undefined() {
+        add(
+            "undefined",
+            format!("{} {address:#010x}", entry.instance),
+            format!(
+                "{} reads, {} writes, first from {:#010x}",
+                entry.reads, entry.writes, entry.program_counter
+            ),
+        );
+    }
+    for (instance, request) in session.unrouted() {
+        add("unrouted", format!("{instance} request {request}"), String::new());
+    }
+    for entry in session.told() {
+        add(
+            "told",
+            format!("{}.{}", entry.instance, entry.register),
+            entry.reason.to_owned(),
+        );
+    }
+    gaps
+}
+
+/// The world's end of the wires, called by the emulator each millisecond.
+struct World {
+    wires: Receiver<Wires>,
+    pins: SyncSender<Pins>,
+    ms: u64,
+    rtt: Rtt,
+    /// The flash that is kept for parameters: first address, and first one beyond.
+    params: (u64, u64),
+    /// How the receiver's port must be set up.
+    receiver: serial::Setup,
+    erases: BTreeMap<u64, u32>,
+    /// Writes to the flash with its data cache on.
+    cached: u32,
+    /// Addresses of the tasks.
+    tasks: BTreeMap<String, u64>,
+    /// Flash: first address, and first one beyond.
+    flash: (u64, u64),
+    /// A word of RAM that no image uses.
+    spare: u64,
+    /// Faults that this part cannot have.
+    impossible: Vec<Fault>,
+    /// The supply is down.
+    dark: bool,
+    escs: PerArm<Esc>,
+    servos: PerArm<f64>,
+    resets: usize,
+    /// Levels of the motors' pins.
+    high: PerArm<bool>,
+    /// Since when the processor stands still, ns.
+    still: Option<u64>,
+    hung: Option<Hung>,
+    latency: Latency,
+    digest: Digest,
+    /// Data-ready pulses of the last milliseconds, ns.
+    pulses: Vec<u64>,
+    /// The outputs since each start.
+    outputs: Outputs,
+}
+
+impl World {
+    /// Reads the pins at `now`.
+    fn read<C: Chip>(
+        &mut self,
+        session: &mut Session<Wired<C>>,
+        now: VirtualNanos,
+        host: &mut dyn Host,
+    ) -> Pins {
+        let resets = session.resets();
+        let new = resets.get(self.resets..).unwrap_or_default();
+        let resets: Vec<_> = new.iter().map(|r| (r.at.0, format!("{:?}", r.cause))).collect();
+        self.resets += resets.len();
+        if !resets.is_empty() && !self.dark {
+            // A reset ends a standstill of the processor.
+            host.hold(false);
+        }
+
+        let board = session.board_mut();
+        if let Some(imu) = board.imu() {
+            self.pulses.append(&mut imu.pulsed);
+        }
+        self.motors(board, now, resets.first().map_or(u64::MAX, |(at, _)| *at));
+        let servos = board
+            .servo_pulses(now)
+            .map(|pulse| pulse.map_or(0.0, |(width, _)| width as f64 * 1e-3));
+        if servos != self.servos {
+            self.servos = servos;
+            servos.iter().for_each(|us| self.digest.word(us.to_bits()));
+        }
+        let telemetry = heard(board.receiver());
+        let console = heard(board.console());
+        telemetry.iter().for_each(|byte| self.digest.byte(*byte));
+        Pins {
+            ms: self.ms,
+            motors: self.escs.each_ref().map(|esc| esc.command(now.0)),
+            servos,
+            telemetry,
+            console,
+            log: self.rtt.drain(host),
+            signals: board.signals(now),
+            resets,
+        }
+    }
+
+    /// Takes the motors' edges until `now`, in a millisecond in which the processor was reset at `reset`.
+    fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos, reset: u64) {
+        let driven = board.motors_driven(now);
+        for edge in board.motor_edges() {
+            self.digest
+                .word(edge.at << 3 | (edge.channel as u64) << 1 | u64::from(edge.high));
+            if edge.at >= reset {
+                self.started();
+            }
+            // A pin that is not the timer's does not show what the timer does.
+            if !driven[edge.channel] {
+                continue;
+            }
+            self.high[edge.channel] = edge.high;
+            if let (Some(since), Some(hung)) = (self.still, &mut self.hung) {
+                hung.high = self.high;
+                if edge.high {
+                    hung.last_rise_us = edge.at.saturating_sub(since) as f64 * 1e-3;
+                }
+            }
+            let Some(began) = self.escs[edge.channel].edge(edge.at, edge.high) else {
+                continue;
+            };
+            // A stopped motor's frames come by themselves, not from a sample.
+            let ready = self.pulses.iter().rev().find(|at| **at <= began);
+            if edge.channel == 0
+                && self.escs[0].command(edge.at) > 0.0
+                && let Some(age) = ready.map(|at| began - at)
+                && age < SAMPLE
+            {
+                self.latency.add(age as f64 * 1e-3);
+            }
+        }
+        self.pulses.retain(|at| at + MS > now.0);
+        if reset <= now.0 {
+            self.started();
+        }
+    }
+
+    /// The processor was reset: its pins float, and it stands still no more.
+    fn started(&mut self) {
+        self.still = None;
+        self.high = [false; 4];
+    }
+
+    /// Breaks or mends something; false where the emulator cannot.
+    fn inflict<C: Chip>(
+        &mut self,
+        fault: Fault,
+        session: &mut Session<Wired<C>>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> bool {
+        let board = session.board_mut();
+        match fault {
+            Fault::ImuUnplugged(out) => board.silence_imu(out),
+            Fault::DataReadyCut(cut) => board.cut_data_ready(cut),
+            Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
+            Fault::PadDivider(sensor, divider) => board.divide(sensor, divider),
+            Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
+            Fault::ClockHeld(bus, us) => return board.hold_clock(bus, us),
+            Fault::Supply(false) => {
+                board.brown_out();
+                session.reset_by_pin(stop.at, stop.instruction_count, host);
+                self.dark = true;
+                host.hold(true);
+            }
+            Fault::Supply(true) => {
+                self.dark = false;
+                host.hold(false);
+            }
+            Fault::TaskHung(name) => return self.hang(name, host),
+            Fault::StackOverflow(name) => return self.replace(name, RECURSION, host),
+            Fault::LockUp(name) => return self.replace(name, LOCK_UP, host),
+            Fault::CorruptParameters => {
+                let (first, end) = self.params;
+                let mut words = (first..end).step_by(4);
+                return words.all(|at| host.program(at, Width::W32, at ^ NOISE).is_ok());
+            }
+            Fault::ForeignParameters => {
+                let (first, _) = self.params;
+                let mut words = board.foreign().iter().zip((first..).step_by(4));
+                return words.all(|(word, at)| host.program(at, Width::W32, *word).is_ok());
+            }
+            Fault::FactoryOptions => board.chip.set_options(Options::Factory),
+            Fault::FirstRevision => board.chip.age(),
+            Fault::NoCrystal => board.chip.stop_clock(Clock::Crystal),
+            Fault::NoPll => board.chip.stop_clock(Clock::Pll),
+            Fault::Hang(still) => {
+                host.hold(still);
+                self.still = still.then_some(stop.at.0);
+                self.hung = still.then_some(Hung {
+                    last_rise_us: 0.0,
+                    high: self.high,
+                });
+            }
+            Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
+        }
+        true
+    }
+
+    /// Marks a task as waiting in its executor's queue, where it is not: nothing will ever put it there again.
+    fn hang(&self, name: &str, host: &mut dyn Host) -> bool {
+        let mut word = |at: u64| host.read(at, Width::W32).unwrap_or(0);
+        // The executor's header has no fixed layout: the state is what is "spawned" in every task.
+        let mut places = (0..HEADER).step_by(4);
+        let state = places.find(|place| {
+            self.tasks
+                .values()
+                .all(|task| word(task + place) & !QUEUED == SPAWNED)
+        });
+        let (Some(state), Some(task)) = (state, self.tasks.get(name)) else {
+            return false;
+        };
+        host.write(task + state, Width::W32, SPAWNED | QUEUED).is_ok()
+    }
+
+    /// Makes the function that runs a task the two instructions `code`.
+    fn replace(&self, name: &str, code: u64, host: &mut dyn Host) -> bool {
+        let Some(task) = self.tasks.get(name) else {
+            return false;
+        };
+        // The only address of code in the executor's header.
+        let (first, end) = self.flash;
+        let in_flash = |word: u64| word & 1 == 1 && (first..end).contains(&word);
+        let mut places = (0..HEADER).step_by(4).map(|place| task + place);
+        let place = places.find(|at| host.read(*at, Width::W32).is_ok_and(in_flash));
+        place.is_some_and(|at| {
+            host.write(self.spare, Width::W32, code).is_ok()
+                && host.write(at, Width::W32, self.spare | 1).is_ok()
+        })
+    }
+
+    /// Puts the world's side on the wires.
+    fn write<C: Chip>(
+        &mut self,
+        session: &mut Session<Wired<C>>,
+        stop: Stop,
+        wires: Wires,
+        host: &mut dyn Host,
+    ) {
+        for fault in wires.faults {
+            if !self.inflict(fault, session, stop, host) {
+                self.impossible.push(fault);
+            }
+        }
+        let board = session.board_mut();
+        let count = wires.imu.len().max(1) as u64;
+        for (nth, (rate, force)) in (1..).zip(wires.imu) {
+            let [rate, force] = [rate, force].map(|vector| board.on_imu(vector));
+            let sample = Sample {
+                at: self.ms * MS + nth * MS / count,
+                rate: rate.map(|v| (v.to_degrees() * 1e3).round() as i32),
+                force: force.map(|v| (v / 9.806_65 * 1e6).round() as i32),
+            };
+            if let Some(imu) = board.imu() {
+                imu.feed(sample);
+            }
+        }
+        for (arm, [x, y, z]) in wires.arms.into_iter().enumerate() {
+            if let Some(sensor) = board.arm(arm) {
+                // Marking up, x forward: the chip's y points left and its z up, and it feels what carries it.
+                sensor.up = [-x, y, z];
+            }
+        }
+        board.set_analog(wires.analog);
+        if let Some(line) = board.receiver() {
+            line.outgoing.extend(wires.receiver);
+        }
+        if let Some(line) = board.console() {
+            line.outgoing.extend(wires.console.into_iter().map(u16::from));
+        }
+    }
+}
+
+/// Takes the bytes that the chip has sent over a line.
+fn heard(line: Option<&mut Line>) -> Vec<u8> {
+    let words = line.map_or(Vec::new(), |line| std::mem::take(&mut line.incoming));
+    words.into_iter().map(|word| word as u8).collect()
+}
+
+impl<C: Chip> Driver<Wired<C>> for World {
+    fn on_settled(&mut self, session: &mut Session<Wired<C>>, _: &mut dyn Host, settled: Settled) {
+        if let Settled::Access { access, .. } = settled
+            && access.kind == AccessKind::Write
+        {
+            let chip = &session.board().chip;
+            if let Some(sector) = chip.erased(access.address, access.value) {
+                *self.erases.entry(sector).or_default() += 1;
+            }
+            if chip.changes_cached_flash(access.address, access.value) {
+                self.cached += 1;
+            }
+            if PORTS.iter().any(|ports| ports.contains(&access.address)) {
+                self.outputs.look(session, access.virtual_time);
+            }
+        }
+    }
+
+    fn on_stop(
+        &mut self,
+        session: &mut Session<Wired<C>>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        if self.ms == 0 {
+            session.board_mut().power_up(stop.at);
+        }
+        let pins = self.read(session, stop.at, host);
+        // Both ends close when the run is to end.
+        self.pins.send(pins).ok()?;
+        let wires = self.wires.recv().ok()?;
+        self.write(session, stop, wires, host);
+        // On its own grid: a stop may come slightly late.
+        self.ms += 1;
+        Some(VirtualNanos(self.ms * MS))
+    }
+}

@@ -1,0 +1,182 @@
+//! A motor controller at the end of its wire: makes a command of edges, and stops when it hears nothing.
+
+use sophie_drivers::dshot::{THROTTLE_MAX, THROTTLE_MIN};
+use sophie_drivers::dshot_decoder::{Decoder, LineError};
+
+/// Silence after which a controller stops its motor, ns (assumed; controllers differ between 0.1 and 0.5 s).
+const SILENCE: u64 = 250_000_000;
+
+/// What the controller understands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// DShot with this many kbit/s.
+    DShot(u32),
+    /// Pulses from this many µs (stop) to twice as many.
+    Pulse(u32),
+}
+
+impl Line {
+    /// What the parameter `motor_protocol` names, by its number in the parameters' table.
+    #[must_use]
+    pub fn from_number(number: f32) -> Self {
+        match number as u32 {
+            150 => Self::DShot(150),
+            600 => Self::DShot(600),
+            400 => Self::Pulse(1000),
+            125 => Self::Pulse(125),
+            _ => Self::DShot(300),
+        }
+    }
+}
+
+/// What a controller has heard.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EscStats {
+    /// Frames or pulses understood.
+    pub frames: u64,
+    /// Frames or pulses that meant nothing.
+    pub bad: u64,
+    /// Shortest and longest time between two frames, ns; `None` before the second.
+    pub interval: Option<[u64; 2]>,
+}
+
+/// One controller.
+#[derive(Clone, Debug)]
+pub struct Esc {
+    line: Line,
+    decoder: Decoder,
+    rose: Option<u64>,
+    /// First edge of the frame under way.
+    began: Option<u64>,
+    command: f64,
+    heard: Option<u64>,
+    /// What it has heard.
+    pub stats: EscStats,
+}
+
+impl Esc {
+    /// A controller on a silent line.
+    #[must_use]
+    pub fn new(line: Line) -> Self {
+        let bit = match line {
+            Line::DShot(kbit) => 1_000_000 / kbit,
+            Line::Pulse(_) => 0,
+        };
+        Self {
+            line,
+            decoder: Decoder::new(bit),
+            rose: None,
+            began: None,
+            command: 0.0,
+            heard: None,
+            stats: EscStats::default(),
+        }
+    }
+
+    /// The line changes to `high` at `at` ns. Gives the time of the first edge of a frame that this completes.
+    pub fn edge(&mut self, at: u64, high: bool) -> Option<u64> {
+        if high {
+            self.rose = Some(at);
+            return None;
+        }
+        let rose = self.rose.take()?;
+        let width = at.saturating_sub(rose);
+        let began = *self.began.get_or_insert(rose);
+        let command = match self.line {
+            Line::DShot(_) => {
+                let width = u32::try_from(width).unwrap_or(u32::MAX);
+                match self.decoder.pulse(rose, width)? {
+                    Ok(frame) => throttle(frame.value()),
+                    Err(error) => {
+                        self.stats.bad += 1;
+                        // A frame that was cut short: this pulse is the first of the next one.
+                        self.began = matches!(error, LineError::Short(_)).then_some(rose);
+                        return None;
+                    }
+                }
+            }
+            Line::Pulse(stop) => {
+                let share = width as f64 / (1e3 * f64::from(stop)) - 1.0;
+                if !(-0.1..=1.1).contains(&share) {
+                    self.stats.bad += 1;
+                    self.began = None;
+                    return None;
+                }
+                share.clamp(0.0, 1.0)
+            }
+        };
+        self.began = None;
+        self.stats.frames += 1;
+        if let Some(last) = self.heard.replace(began) {
+            let gap = began.saturating_sub(last);
+            let [shortest, longest] = self.stats.interval.unwrap_or([gap; 2]);
+            self.stats.interval = Some([shortest.min(gap), longest.max(gap)]);
+        }
+        self.command = command;
+        Some(began)
+    }
+
+    /// The command in force at `now` ns, 0..1.
+    #[must_use]
+    pub fn command(&self, now: u64) -> f64 {
+        match self.heard {
+            Some(heard) if now.saturating_sub(heard) < SILENCE => self.command,
+            _ => 0.0,
+        }
+    }
+}
+
+/// The command that a DShot value means: what is no throttle stops the motor.
+fn throttle(value: u16) -> f64 {
+    f64::from(value.saturating_sub(THROTTLE_MIN)) / f64::from(THROTTLE_MAX - THROTTLE_MIN)
+}
+
+#[cfg(test)]
+mod tests {
+    use sophie_drivers::dshot::Frame;
+
+    use super::*;
+
+    /// Sends `bits` from `at` on with bits of 3333 ns; returns the result of the completed frame.
+    fn send(esc: &mut Esc, at: u64, bits: u16, count: u32) -> Option<u64> {
+        let mut done = None;
+        for n in 0..count {
+            let rise = at + 3333 * u64::from(n);
+            let width = if bits >> (15 - n) & 1 == 1 { 2500 } else { 1250 };
+            esc.edge(rise, true);
+            done = esc.edge(rise + width, false).or(done);
+        }
+        done
+    }
+
+    #[test]
+    fn a_frame_becomes_a_command_and_silence_stops_it() {
+        let mut esc = Esc::new(Line::DShot(300));
+        let bits = Frame::from_command(0.5).bits();
+        assert_eq!(send(&mut esc, 1000, bits, 16), Some(1000));
+        assert!((esc.command(60_000) - 0.5).abs() < 1e-3);
+        assert!(esc.command(1000 + SILENCE) == 0.0);
+    }
+
+    #[test]
+    fn a_cut_frame_is_counted_and_the_next_is_understood() {
+        let mut esc = Esc::new(Line::DShot(300));
+        let bits = Frame::from_command(1.0).bits();
+        assert_eq!(send(&mut esc, 0, bits, 7), None);
+        assert_eq!(send(&mut esc, 1_000_000, bits, 16), Some(1_000_000));
+        assert_eq!((esc.stats.frames, esc.stats.bad), (1, 1));
+        assert_eq!(send(&mut esc, 2_000_000, bits ^ 1, 16), None);
+        assert_eq!((esc.stats.frames, esc.stats.bad), (1, 2));
+    }
+
+    #[test]
+    fn pulses_are_read_by_their_length() {
+        let mut esc = Esc::new(Line::Pulse(125));
+        esc.edge(0, true);
+        assert_eq!(esc.edge(187_500, false), Some(0));
+        assert!((esc.command(200_000) - 0.5).abs() < 1e-9);
+        esc.edge(1_000_000, true);
+        assert_eq!(esc.edge(1_400_000, false), None);
+        assert_eq!(esc.stats.bad, 1);
+    }
+}

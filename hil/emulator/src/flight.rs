@@ -1,0 +1,62 @@
+//! One flight of an image on the bench, with its verdict.
+
+use sophie_sim::flight::fly_with;
+use sophie_sim::record::{FlightRecord, Observer};
+use sophie_sim::scenario::Scenario;
+
+use crate::bench::{Bench, Finished};
+use crate::elf::Firmware;
+use crate::log;
+use crate::plan::Plan;
+use crate::terminal::Sockets;
+use crate::wires::Gap;
+use crate::{flyable, gaps};
+
+/// A flown flight.
+pub struct Flight {
+    /// The record, as that of any flight.
+    pub record: FlightRecord,
+    /// The emulated board's own record.
+    pub board: Finished,
+    /// Gaps of the emulation that are not allowed; with any, the flight proves nothing.
+    pub gaps: Vec<Gap>,
+}
+
+impl Flight {
+    /// The mission was flown, and the emulation vouches for it.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.record.outcome.accomplished && self.gaps.is_empty()
+    }
+
+    /// Digest of the log and of the pins: equal digests mean equal runs.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        let mut digest = crate::wires::Digest::default();
+        digest.word(self.board.log_digest);
+        digest.word(self.board.run.pins_digest);
+        digest.0
+    }
+}
+
+/// Flies `scenario` with `firmware` on a board that runs `speed` instructions a cycle; `plan` goes wrong on the way.
+/// `sockets` has the serial lines that are on one. Each line of the log is passed to `told`.
+///
+/// # Errors
+/// One line: why the scenario cannot be flown, or the emulator failed.
+pub fn fly(
+    firmware: &Firmware,
+    scenario: &Scenario,
+    speed: f64,
+    plan: Plan,
+    sockets: Sockets,
+    told: impl FnMut(&log::Line),
+    observer: &mut dyn Observer,
+) -> Result<Flight, String> {
+    flyable::check(scenario)?;
+    let make = |rng: &mut _| Bench::new(firmware, scenario, speed, plan, sockets, rng, told);
+    let (record, bench) = fly_with(scenario, make, observer);
+    let board = bench.finish()?;
+    let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();
+    Ok(Flight { record, board, gaps })
+}

@@ -1,0 +1,54 @@
+//! Whether the image can fly a scenario: parameters are stored for it, but some of what it flies is built into it.
+
+use sophie_control::mixer::Variant;
+use sophie_control::wrench::Configuration;
+use sophie_sim::scenario::{Scenario, Step, keys};
+use sophie_tasks::start::Cause;
+
+/// Refuses a scenario that needs another image.
+///
+/// # Errors
+/// One line: the scenario, the setting, its value and what the image has.
+pub fn check(scenario: &Scenario) -> Result<(), String> {
+    let name = &scenario.name;
+    if scenario.mixer != Variant::default() {
+        return Err(format!(
+            "{name}: mixer {}: the image allocates by {}",
+            keys::mixer_word(scenario.mixer),
+            keys::mixer_word(Variant::default())
+        ));
+    }
+    if scenario.vehicle.configuration != Configuration::default() {
+        return Err(format!(
+            "{name}: configuration {}: the image flies {}",
+            keys::configuration_word(scenario.vehicle.configuration),
+            keys::configuration_word(Configuration::default())
+        ));
+    }
+    for step in &scenario.steps {
+        if let Step::Reset { cause, .. } = step
+            && *cause != Cause::Watchdog
+        {
+            return Err(format!(
+                "{name}: step {}: the bench cannot cut the power: allowed is a reset by the watchdog",
+                step.name()
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_image_does_not_hold_is_refused_by_name() {
+        let mut scenario = Scenario::default_mission_with(&Default::default());
+        assert_eq!(check(&scenario), Ok(()));
+        scenario.params.rate_p = 9.0;
+        assert_eq!(check(&scenario), Ok(()));
+        scenario.mixer = Variant::Rigid;
+        assert!(check(&scenario).unwrap_err().contains("mixer rigid"));
+    }
+}

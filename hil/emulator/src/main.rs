@@ -1,0 +1,243 @@
+//! `sophie-emulator`: flies a scenario with the image of a board, emulated. `cargo xtask bench` builds both and calls it.
+//!
+//! Exit status: 0 when the mission was accomplished and the emulator vouches for it, 1 when not, 2 for bad input.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+use sophie_emulator::boards;
+use sophie_emulator::compare;
+use sophie_emulator::elf::Firmware;
+use sophie_emulator::flight::{self, Flight};
+use sophie_emulator::flyable;
+use sophie_emulator::plan::{Plan, Trouble};
+use sophie_emulator::silicon;
+use sophie_emulator::terminal::{Sockets, Terminal};
+use sophie_emulator::wires::Fault;
+use sophie_report::terminal::console::{self, Console};
+use sophie_report::terminal::live::Lines;
+use sophie_report::terminal::output::OutDir;
+use sophie_report::terminal::{Besides, FILES, complain, finish, result};
+use sophie_sim::record::Silent;
+use sophie_sim::scenario::{Overrides, Scenario};
+
+/// Name before every complaint.
+const PROGRAM: &str = "bench";
+/// The log as it was decoded, and as the firmware wrote it.
+const LOG_FILES: [&str; 2] = ["log.txt", "log.bin"];
+/// Begin of the log's lines that come too often for a terminal.
+const EACH_SECOND: [&str; 2] = ["timing ", "trace "];
+/// Instructions for each cycle of the clock that can be asked for.
+const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
+
+/// Flies a mission with the image that is flashed, on an emulated board.
+#[derive(Parser)]
+#[command(name = "bench", version)]
+struct Args {
+    /// Board: matek-h743 or f405.
+    board: String,
+    /// Scenario file; without one the default mission is flown.
+    scenario: Option<PathBuf>,
+    /// Image to fly, as `cargo xtask firmware BOARD` builds it.
+    #[arg(long, value_name = "FILE")]
+    elf: PathBuf,
+    /// Seed of every random number.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Directory for report.html, flight.mcap, summary.json, bench.json, log.txt and log.bin.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// Instructions for each cycle of the core's clock, 0.25 to 1: a real core manages fewer than one at times.
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
+    speed: f64,
+    /// Put the board's console on this port of 127.0.0.1.
+    #[arg(long, value_name = "PORT")]
+    console: Option<u16>,
+    /// Put what the board sends to its receiver on this port of 127.0.0.1.
+    #[arg(long, value_name = "PORT")]
+    telemetry: Option<u16>,
+    /// Start with the option bytes of a new chip, whose brown-out level nobody has set.
+    #[arg(long)]
+    factory: bool,
+    /// Print the result as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    json: bool,
+}
+
+fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => {
+            let text = error.render().to_string();
+            // What is wrong stands before the first empty line.
+            let lines: Vec<&str> = text
+                .lines()
+                .map(str::trim)
+                .take_while(|l| !l.is_empty())
+                .collect();
+            complain(PROGRAM, lines.join(" ").trim_start_matches("error: "));
+            return ExitCode::from(2);
+        }
+    };
+    match run(&args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(line) => {
+            complain(PROGRAM, &line);
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(args: &Args) -> Result<bool, String> {
+    let board = boards::find(&args.board)?;
+    if !SPEEDS.contains(&args.speed) {
+        let (low, high) = (SPEEDS.start(), SPEEDS.end());
+        return Err(format!("--speed {}: allowed is {low} to {high}", args.speed));
+    }
+    let overrides = Overrides {
+        seed: args.seed,
+        ..Overrides::default()
+    };
+    let scenario = match &args.scenario {
+        Some(path) => Scenario::load(path, &overrides).map_err(|e| e.to_string())?,
+        None => Scenario::default_mission_with(&overrides),
+    };
+    flyable::check(&scenario)?;
+    let firmware = Firmware::read(&args.elf, board)?;
+    let listen = |option, port: Option<u16>| port.map(|port| Terminal::listen(option, port)).transpose();
+    let sockets = Sockets {
+        console: listen("--console", args.console)?,
+        telemetry: listen("--telemetry", args.telemetry)?,
+    };
+    let out = OutDir::prepare(&args.out, &[&FILES[..], &LOG_FILES].concat())?;
+    let console = Console::new(args.json);
+    console.say(&result::intro(&scenario));
+    console.say(&format!(
+        "{} on an emulated {}, {} instructions a cycle",
+        args.elf.display(),
+        args.board,
+        args.speed
+    ));
+    let factory = args.factory.then_some((0, Trouble::Board(Fault::FactoryOptions)));
+    let plan = Plan::new(factory);
+    let flight = flight::fly(
+        &firmware,
+        &scenario,
+        args.speed,
+        plan,
+        sockets,
+        |line| {
+            if !EACH_SECOND.iter().any(|begin| line.text.starts_with(begin)) {
+                console.say(&line.to_string());
+            }
+        },
+        &mut Lines::new(&console),
+    )?;
+    // A second's work beside the minutes of the emulation.
+    let host = sophie_sim::flight::fly(&scenario, &mut Silent);
+    let mut value = told(args, &flight);
+    value["host"] = compare::value(&host);
+    let besides = Besides {
+        name: "bench",
+        value,
+        lines: [compare::lines(&host, &flight.record), lines(&flight)].concat(),
+    };
+    let text: String = flight
+        .board
+        .lines
+        .iter()
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let logs = [text.into_bytes(), flight.board.log.clone()];
+    let logs: Vec<_> = LOG_FILES.into_iter().zip(logs).collect();
+    let _ = out.write(&logs)?;
+    finish(&flight.record, Some(&besides), &out, &console, args.json)?;
+    if !flight.record.outcome.accomplished {
+        let reason = console::one_line(&flight.record.outcome.reason);
+        complain(PROGRAM, &format!("not accomplished: {reason}"));
+    }
+    for gap in &flight.gaps {
+        complain(
+            PROGRAM,
+            &format!(
+                "the emulator cannot vouch for {} {}: {}: allowed is what hil/emulator/allowed_gaps.toml lists",
+                gap.kind, gap.at, gap.what
+            ),
+        );
+    }
+    Ok(flight.passed())
+}
+
+/// What the bench knows besides the flight, for programs.
+fn told(args: &Args, flight: &Flight) -> serde_json::Value {
+    let board = &flight.board;
+    let run = &board.run;
+    let intervals = run.escs.iter().filter_map(|esc| esc.interval);
+    let longest = intervals.map(|[_, longest]| longest).max().unwrap_or(0);
+    serde_json::json!({
+        "board": args.board,
+        "speed": args.speed,
+        "passed": flight.passed(),
+        "digest": format!("{:016x}", flight.digest()),
+        "instructions": run.instructions,
+        "motor_frames": run.escs.map(|esc| esc.frames),
+        "motor_frames_bad": run.escs.map(|esc| esc.bad),
+        "motor_frame_gap_max_us": longest as f64 * 1e-3,
+        "latency_mean_us": run.latency_us.mean(),
+        "latency_max_us": run.latency_us.worst,
+        "arm_tilt_error_mean_deg": board.tilt_error.mean().map(f64::to_degrees),
+        "arm_tilt_error_max_deg": board.tilt_error.mean().map(|_| board.tilt_error.worst.to_degrees()),
+        "overruns": board.overruns,
+        "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
+        "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
+        "silicon": board.lines.iter().filter_map(|line| silicon::told(&line.text)).collect::<Vec<_>>(),
+        "log_lines": board.lines.len(),
+        "log_malformed": board.malformed,
+        "gaps_allowed": run.gaps.len() - flight.gaps.len(),
+        "gaps": flight.gaps.iter().map(|g| serde_json::json!({"kind": g.kind, "at": g.at, "what": g.what})).collect::<Vec<_>>(),
+    })
+}
+
+/// The same for people.
+fn lines(flight: &Flight) -> Vec<String> {
+    let run = &flight.board.run;
+    let frames: u64 = run.escs.iter().map(|esc| esc.frames).sum();
+    let bad: u64 = run.escs.iter().map(|esc| esc.bad).sum();
+    let tilt = flight.board.tilt_error;
+    vec![
+        String::new(),
+        tilt.mean()
+            .map_or("arm tilt: never in the air".to_owned(), |mean| {
+                format!(
+                    "arm tilt in flight, measured against the model: {:.1} deg off, at most {:.1}",
+                    mean.to_degrees(),
+                    tilt.worst.to_degrees()
+                )
+            }),
+        format!(
+            "motor frames: {frames} good, {bad} bad; from data-ready to their first edge {:.0} us, at most {:.0}",
+            run.latency_us.mean(),
+            run.latency_us.worst
+        ),
+        format!(
+            "emulator: {} million instructions, {} gaps, {} resets; digest {:016x}",
+            run.instructions / 1_000_000,
+            run.gaps.len(),
+            flight.board.resets.len(),
+            flight.digest()
+        ),
+    ]
+}

@@ -1,0 +1,72 @@
+//! What goes wrong during a run, and when.
+
+use sophie_sim::sensors::fsr::FsrBreak;
+
+use crate::sensors::Sensors;
+use crate::wires::Fault;
+
+/// Something that goes wrong, or is mended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trouble {
+    /// At the board itself.
+    Board(Fault),
+    /// The lead of this arm's pressure sensor (0 to 3) breaks, touches its neighbour, or is mended.
+    Fsr(usize, Option<FsrBreak>),
+    /// The receiver sends nothing (true), or again.
+    RadioSilent(bool),
+    /// Bits flipped in one byte out of so many from the receiver; 0 is a sound line.
+    RadioBits(u32),
+    /// Share of the battery's voltage that its divider still sees.
+    BatteryShare(f64),
+}
+
+/// Troubles with their times, and the state of the radio's line.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    troubles: Vec<(u64, Trouble)>,
+    next: usize,
+    silent: bool,
+    every: u32,
+    bytes: u32,
+}
+
+impl Plan {
+    /// A run on which these happen, each at its time in ms since power-on.
+    #[must_use]
+    pub fn new(troubles: impl IntoIterator<Item = (u64, Trouble)>) -> Self {
+        let mut troubles: Vec<_> = troubles.into_iter().collect();
+        troubles.sort_by_key(|(at, _)| *at);
+        Self {
+            troubles,
+            ..Self::default()
+        }
+    }
+
+    /// Does what is due at `ms`.
+    pub fn apply(&mut self, ms: u64, sensors: &mut Sensors, faults: &mut Vec<Fault>) {
+        while let Some((at, trouble)) = self.troubles.get(self.next)
+            && *at <= ms
+        {
+            self.next += 1;
+            match *trouble {
+                Trouble::Board(fault) => faults.push(fault),
+                Trouble::Fsr(arm, broken) => sensors.break_fsr(arm, broken),
+                Trouble::RadioSilent(silent) => self.silent = silent,
+                Trouble::RadioBits(every) => self.every = every,
+                Trouble::BatteryShare(share) => sensors.battery_share = share,
+            }
+        }
+    }
+
+    /// What of `words` comes out of the receiver's line.
+    pub fn radio(&mut self, words: impl Iterator<Item = u16>, line: &mut Vec<u16>) {
+        if self.silent {
+            return;
+        }
+        for word in words {
+            self.bytes = self.bytes.wrapping_add(1);
+            let hit = self.every > 0 && self.bytes.is_multiple_of(self.every);
+            line.push(word ^ if hit { 0x10 } else { 0 });
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! What the vehicle's sensors put on the board's wires: the errors of the simulated board's sensors, as voltages and
+//! samples.
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use sophie_control::params::Params;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
+use sophie_sim::plant::{Plant, STEP};
+use sophie_sim::sensors::analog::{AMPS_PER_COUNT, BatteryInputs, VOLTS_PER_COUNT};
+use sophie_sim::sensors::arm_imu::{self, ArmImu};
+use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
+use sophie_sim::sensors::imu::Imu;
+
+use crate::wires::Wires;
+
+/// Reference of the converter, V, and its full scale in the counts that the models speak.
+const REFERENCE: f64 = 3.3;
+const FULL_SCALE: f64 = 4095.0;
+/// Plant steps in a millisecond.
+const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
+
+/// The vehicle's sensors.
+pub struct Sensors {
+    imu: Imu,
+    /// Samples of the inertial sensor in a plant step.
+    samples: u32,
+    /// What the builder's calibration finds of the accelerometer's bias, m/s².
+    pub calibration: [f32; 3],
+    arms: PerArm<ArmImu>,
+    fsr: PerArm<FsrSensor>,
+    battery: BatteryInputs,
+    rng: Pcg64Mcg,
+    arm_clock: f64,
+    gravity: PerArm<Vec3>,
+    /// Counts of 12 bits at the pressure sensors' pins.
+    pub pressure_counts: PerArm<u16>,
+    /// Factor on the battery's voltage at its divider: 1 is a sound battery.
+    pub battery_share: f64,
+}
+
+impl Sensors {
+    /// Sensors with errors drawn from `rng`, in the order of [`sophie_sim::board::Board::configured`]: one seed, one
+    /// vehicle.
+    #[must_use]
+    pub fn new(params: &Params, rng: &mut Pcg64Mcg) -> Self {
+        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
+        let calibration = imu.bench_bias().as_vec3().to_array();
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
+        let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
+        let battery = BatteryInputs::new(rng);
+        Self {
+            imu,
+            samples: ((f64::from(params.imu_rate) * STEP) as u32).max(1),
+            calibration,
+            arms,
+            fsr,
+            battery,
+            rng: Pcg64Mcg::from_rng(rng),
+            arm_clock: 0.0,
+            gravity: [Vec3::new(0.0, 0.0, 9.806_65); 4],
+            pressure_counts: [0; 4],
+            battery_share: 1.0,
+        }
+    }
+
+    /// Breaks the lead of a pressure sensor, or mends it.
+    pub fn break_fsr(&mut self, arm: usize, broken: Option<FsrBreak>) {
+        if let Some(sensor) = self.fsr.get_mut(arm) {
+            sensor.set_broken(broken);
+        }
+    }
+
+    /// Steps the plant by a millisecond and puts what the sensors make of it on `wires`.
+    pub fn step(&mut self, plant: &mut Plant, actuators: &sophie_sim::plant::Actuators, wires: &mut Wires) {
+        for _ in 0..STEPS_PER_MS {
+            let (rate, force) = (plant.pose().omega, plant.specific_force());
+            plant.step(actuators);
+            let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
+            for k in 1..=self.samples {
+                // The part samples faster than the plant steps: on the line between two steps.
+                let share = f64::from(k) / f64::from(self.samples);
+                let rotors = plant.rotor_speed();
+                let reading = self
+                    .imu
+                    .sample(rate + rate_step * share, force + force_step * share, &rotors);
+                let wide = |v: Vec3| v.to_array().map(f64::from);
+                wires.imu.push((wide(reading.gyro), wide(reading.accel)));
+            }
+        }
+        self.arm_clock += 1e-3 * arm_imu::RATE_HZ;
+        if self.arm_clock >= 1.0 {
+            self.arm_clock -= 1.0;
+            let (attitude, force, tilt) = (plant.pose().attitude, plant.specific_force(), plant.tilt());
+            for ((g, arm), tilt) in self.gravity.iter_mut().zip(&mut self.arms).zip(tilt) {
+                *g = arm.sample(attitude, tilt, force);
+            }
+        }
+        wires.arms = self.gravity.map(|g| g.to_array().map(f64::from));
+        let volts = |counts: u16| f64::from(counts) * REFERENCE / FULL_SCALE;
+        let pressures = self.fsr.iter_mut().zip(plant.pressure());
+        for ((counts, (sensor, pressure)), volt) in self
+            .pressure_counts
+            .iter_mut()
+            .zip(pressures)
+            .zip(&mut wires.analog)
+        {
+            *counts = sensor.sample(pressure, 1e-3, &mut self.rng);
+            *volt = volts(*counts);
+        }
+        let voltage = plant.battery_voltage() * self.battery_share;
+        let voltage = f64::from(self.battery.voltage(voltage, &mut self.rng)) * VOLTS_PER_COUNT;
+        let amps = f64::from(self.battery.current(plant.battery_current(), &mut self.rng)) * AMPS_PER_COUNT;
+        let [.., v, i] = &mut wires.analog;
+        (*v, *i) = (voltage, amps);
+    }
+}

@@ -1,0 +1,52 @@
+//! What the firmware's start-up looked at in the chip, as logged.
+
+use serde::Serialize;
+
+/// One thing.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Look {
+    /// What.
+    pub name: String,
+    /// What was read.
+    pub read: String,
+    /// What the firmware is made for.
+    pub expected: String,
+    /// They go together.
+    pub ok: bool,
+}
+
+/// A look as one line of the log: `silicon: NAME: READ, expected EXPECTED: ok`, or `: not ok`.
+#[must_use]
+pub fn told(text: &str) -> Option<Look> {
+    let (name, rest) = text.strip_prefix("silicon: ")?.split_once(": ")?;
+    let (read, rest) = rest.split_once(", expected ")?;
+    let (expected, verdict) = rest.rsplit_once(": ")?;
+    Some(Look {
+        name: name.to_owned(),
+        read: read.to_owned(),
+        expected: expected.to_owned(),
+        ok: verdict == "ok",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_of_the_log_is_understood() {
+        let look = told("silicon: bus clock: 168 MHz, PLL on crystal, expected PLL on crystal: ok").unwrap();
+        assert_eq!(
+            (look.name.as_str(), look.read.as_str()),
+            ("bus clock", "168 MHz, PLL on crystal")
+        );
+        assert!(look.ok);
+        let look = told("silicon: read-out protection: level 1, expected level 0: a probe can read: not ok")
+            .unwrap();
+        assert_eq!(
+            (look.expected.as_str(), look.ok),
+            ("level 0: a probe can read", false)
+        );
+        assert_eq!(told("started in 72 ms"), None);
+    }
+}

@@ -1,0 +1,179 @@
+//! Commands typed at the emulated board's console while it runs.
+
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::time::Duration;
+
+use sophie_emulator::terminal::{Sockets, Terminal};
+use sophie_emulator::wires::Fault;
+
+use super::*;
+
+/// Types `command` and reads until the console says `answer`; gives what it said.
+fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
+    user.write_all(command.as_bytes()).unwrap();
+    let mut said = String::new();
+    let mut bytes = [0; 64];
+    while !said.contains(answer) {
+        let count = user.read(&mut bytes).unwrap();
+        assert!(count > 0, "the board has gone: {said}");
+        said.push_str(&String::from_utf8_lossy(&bytes[..count]));
+    }
+    said
+}
+
+/// The battery's voltage by `status`, once it has been measured.
+fn volts(user: &mut TcpStream) -> f64 {
+    loop {
+        let said = type_in(user, "status\r", "up for");
+        if let Some((_, rest)) = said.split_once("\nbattery ")
+            && let Some((volts, _)) = rest.split_once(" V, ")
+        {
+            return volts.parse().unwrap_or_else(|_| panic!("{said}"));
+        }
+    }
+}
+
+/// A free port with the board's listener.
+fn terminal(option: &'static str) -> (u16, Terminal) {
+    let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let port = free.local_addr().unwrap().port();
+    drop(free);
+    (port, Terminal::listen(option, port).unwrap())
+}
+
+/// A session at the console of a board that stays disarmed, for at most `seconds` s of its time: the flight, and
+/// what `session` gives.
+fn at_the_console<T: Send + 'static>(
+    firmware: &Firmware,
+    seconds: f64,
+    fault: Option<Fault>,
+    telemetry: Option<Terminal>,
+    session: impl FnOnce(&mut TcpStream) -> T + Send + 'static,
+) -> (Flight, T) {
+    let (port, console) = terminal("--console");
+    let user = std::thread::spawn(move || {
+        let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
+        wake(&mut user);
+        session(&mut user)
+    });
+    let scenario = Scenario {
+        time_limit: seconds,
+        ..scenario("hover.toml")
+    };
+    let faults = fault.map(|fault| (0, Trouble::Board(fault)));
+    let plan = Plan::new(faults.into_iter().chain([(0, Trouble::RadioSilent(true))]));
+    let sockets = Sockets {
+        console: Some(console),
+        telemetry,
+    };
+    let flight = flight::fly(firmware, &scenario, 1.0, plan, sockets, |_| (), &mut Silent).unwrap();
+    let given = user.join().unwrap_or_else(|_| panic!("{}", log(&flight)));
+    (flight, given)
+}
+
+/// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
+fn wake(user: &mut TcpStream) {
+    let mut bytes = [0; 64];
+    // Long enough for a restart, on a machine that is busy.
+    user.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
+    while matches!(user.read(&mut bytes), Ok(count) if count > 0) {}
+    loop {
+        user.write_all(b"\r").unwrap();
+        if matches!(user.read(&mut bytes), Ok(count) if count > 0) {
+            break;
+        }
+    }
+    // An answer that does not come ends the test, whatever the load of the machine.
+    user.set_read_timeout(Some(Duration::from_secs(300))).unwrap();
+}
+
+#[test]
+fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
+    let (heard_at, telemetry) = terminal("--telemetry");
+    let mut listener = TcpStream::connect((Ipv4Addr::LOCALHOST, heard_at)).unwrap();
+    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let session = |user: &mut TcpStream| {
+        let before = volts(user);
+        type_in(user, "set infill 8\r", "in force after save");
+        type_in(user, "set battery_divider 22\r", "in force after save");
+        type_in(user, "save\r", "saved; restarting");
+        // The board restarts: what is typed meanwhile is lost.
+        wake(user);
+        let after = volts(user);
+        (type_in(user, "list infill\r", "4 to 10 %"), before, after)
+    };
+    let (flight, (listed, before, after)) = at_the_console(&firmware, 16.0, None, Some(telemetry), session);
+    // CRSF frames, one of them with the mode, marked as one that does not arm.
+    let mut telemetry = Vec::new();
+    listener.read_to_end(&mut telemetry).unwrap();
+    assert_eq!(telemetry.first(), Some(&0xC8), "{telemetry:02x?}");
+    let said = String::from_utf8_lossy(&telemetry);
+    assert!(said.contains("!DISARMED"), "{said}");
+    assert!(listed.contains("* infill") && listed.contains(" 8 "), "{listed}");
+    // A full battery behind 1:11, and by a divider that the parameter states twice as large.
+    assert!((16.0..17.0).contains(&before), "{before} V");
+    assert!((after / before - 2.0).abs() < 0.01, "{before} V, then {after} V");
+    // Two more than the calibration.
+    assert!(
+        told(&flight, 0.0, "parameters: 3 from storage").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(
+        told(&flight, 0.0, "parameters: 5 from storage").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert_eq!(flight.board.resets.len(), 1, "{:?}", flight.board.resets);
+    // The set was appended: no sector is worn by a save.
+    assert!(flight.board.run.erases.is_empty());
+    assert_eq!(flight.gaps, []);
+}
+
+/// On a new chip the level is set at the console, once; the next start finds it.
+fn the_brown_out_level_is_set(image: &Path, board: &str) {
+    let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let session = |user: &mut TcpStream| {
+        let before = type_in(user, "brownout\r", "nothing else is changed");
+        type_in(user, "brownout set\r", "restarting");
+        wake(user);
+        let after = type_in(user, "brownout\r", "nothing to do");
+        (
+            before,
+            after,
+            type_in(user, "brownout set\r", "not set: nothing to do"),
+        )
+    };
+    let (flight, (before, after, _)) =
+        at_the_console(&firmware, 8.0, Some(Fault::FactoryOptions), None, session);
+    assert!(
+        before.contains("brown-out level 0, expected 3"),
+        "{board}: {before}"
+    );
+    assert!(
+        after.contains("brown-out level 3, expected 3"),
+        "{board}: {after}"
+    );
+    // Refused before, and no more after.
+    let refused = told(&flight, 0.0, "arming blocked: brown-out level not set");
+    assert!(refused.is_some(), "{board}: {}", log(&flight));
+    let [(ms, _)] = &flight.board.resets[..] else {
+        panic!("{board}: {:?}\n{}", flight.board.resets, log(&flight))
+    };
+    let restarted = told(&flight, *ms * 1e-3, "start after Software");
+    assert!(restarted.is_some(), "{board}: {}", log(&flight));
+    let again = told(&flight, *ms * 1e-3, "brown-out level not set");
+    assert_eq!(again, None, "{board}: {}", log(&flight));
+    assert_eq!(flight.gaps, [], "{board}");
+}
+
+#[test]
+fn the_brown_out_level_of_a_new_chip_is_set_at_the_console() {
+    the_brown_out_level_is_set(image(), "matek-h743");
+}
+
+#[test]
+fn so_is_that_of_the_small_board_whose_encoding_is_the_opposite() {
+    the_brown_out_level_is_set(small_image(), "f405");
+}

@@ -1,0 +1,100 @@
+use sophie_emulator::wires::Fault;
+use sophie_sim::sensors::fsr::FsrBreak;
+
+use super::*;
+
+#[test]
+fn the_image_perches_at_half_an_instruction_a_cycle() {
+    let flight = fly(&scenario("perch-short.toml"), 0.5, &[]);
+    assert!(
+        flight.passed(),
+        "{:?} {:?}\n{}",
+        flight.record.outcome,
+        flight.gaps,
+        log(&flight)
+    );
+    for task in FLIGHT_LEVEL {
+        assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(&flight));
+    }
+    for esc in flight.board.run.escs {
+        assert!(esc.frames > 50_000 && esc.bad == 0, "{esc:?}");
+    }
+    let latency = flight.board.run.latency_us;
+    assert!(latency.count > 20_000 && latency.worst < 250.0, "{latency:?}");
+    assert_eq!(flight.record.grip.len(), 4);
+    assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
+}
+
+#[test]
+fn the_small_board_flies_in_time() {
+    let flight = fly_small(&scenario("hover.toml"), &[]);
+    assert!(
+        flight.passed(),
+        "{:?} {:?}\n{}",
+        flight.record.outcome,
+        flight.gaps,
+        log(&flight)
+    );
+    assert!(flight.board.overruns.is_empty(), "{:?}", flight.board.overruns);
+    for esc in flight.board.run.escs {
+        assert!(esc.frames > 20_000 && esc.bad == 0, "{esc:?}");
+    }
+    let latency = flight.board.run.latency_us;
+    assert!(latency.count > 10_000 && latency.worst <= 150.0, "{latency:?}");
+    assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
+}
+
+/// The buses of the arms' sensors as slow as a stretched clock makes them, and a line in the log every 50 ms or more
+/// often: sensors lost and found again, buses clocked free, pressure sensors cut and mended.
+fn background_at_its_worst() -> Vec<(f64, Trouble)> {
+    let mut troubles = Vec::new();
+    for bus in 0..2 {
+        troubles.push((AIRBORNE, Trouble::Board(Fault::ClockHeld(bus, 300))));
+    }
+    for turn in 0..40u32 {
+        let t = AIRBORNE + 0.1 * f64::from(turn);
+        let (arm, lost) = (turn as usize / 2 % 4, turn % 2 == 0);
+        troubles.push((t, Trouble::Board(Fault::ArmUnplugged(arm, lost))));
+        troubles.push((t + 0.05, Trouble::Fsr(arm, lost.then_some(FsrBreak::Short))));
+    }
+    troubles
+}
+
+/// Zero overruns of the flight level, and frames within `longest` us of data-ready, at most `jitter` later than the mean.
+fn in_time(flight: &Flight, longest: f64, jitter: f64) {
+    assert_eq!(flight.gaps, [], "{}", log(flight));
+    for task in FLIGHT_LEVEL {
+        assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(flight));
+    }
+    assert!(
+        running(flight, AIRBORNE, AIRBORNE + 4.0) && told(flight, AIRBORNE, "BNO055: ").is_some(),
+        "{}",
+        log(flight)
+    );
+    // The buses really were slow.
+    assert!(flight.board.overruns.contains_key("arms"), "{}", log(flight));
+    let latency = flight.board.run.latency_us;
+    // For docs/timing.md.
+    println!(
+        "{:.1} us in the mean, {:.1} at most",
+        latency.mean(),
+        latency.worst
+    );
+    assert!(
+        latency.count > 5_000 && latency.worst <= longest && latency.worst - latency.mean() <= jitter,
+        "{latency:?}"
+    );
+    assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
+}
+
+#[test]
+fn the_flight_level_is_in_time_while_the_background_is_at_its_worst() {
+    let flight = fly(&hover(AIRBORNE + 4.0), 1.0, &background_at_its_worst());
+    in_time(&flight, 60.0, 5.0);
+}
+
+#[test]
+fn so_it_is_on_the_small_board() {
+    let flight = fly_small(&hover(AIRBORNE + 4.0), &background_at_its_worst());
+    in_time(&flight, 150.0, 5.0);
+}

@@ -1,0 +1,69 @@
+//! What a reset does to a board's outputs.
+
+use sophie_emulator::wires::{Fault, Output};
+
+use super::*;
+
+/// Two seconds, with the reset pin pulled at the first one; and what became of the outputs.
+fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
+    let flight = fly(&hover(2.2), &[(1.0, Trouble::Board(Fault::ResetPin))]);
+    for output in &flight.board.run.outputs {
+        // For docs/boards.md.
+        println!("{output:?}");
+        let after = &output.after_us;
+        assert!(
+            after.len() == 2 && after.iter().all(Option::is_some),
+            "{output:?}"
+        );
+    }
+    assert!(
+        told(&flight, 1.0, "start after Pin").is_some(),
+        "{}",
+        log(&flight)
+    );
+    flight
+}
+
+/// The longest time from a start until the firmware drives the outputs whose names begin so, ms.
+fn longest_ms(outputs: &[Output], what: &str) -> f64 {
+    let these = outputs.iter().filter(|output| output.what.starts_with(what));
+    let times = these.flat_map(|output| output.after_us.iter().flatten());
+    times.fold(0.0, |longest: f64, us| longest.max(us * 1e-3))
+}
+
+/// No output is pulled up by the chip but those named, and each but the lights is driven in time, before the clocks run.
+fn in_order(flight: &Flight, pulled_up: &[&str], limit_ms: f64) {
+    let outputs = &flight.board.run.outputs;
+    assert_eq!(outputs.len(), 12);
+    for output in outputs {
+        assert_eq!(
+            output.pulled_up,
+            pulled_up.contains(&output.what.as_str()),
+            "{output:?}"
+        );
+    }
+    for what in ["motor", "servo", "buzzer", "select"] {
+        let longest = longest_ms(outputs, what);
+        assert!(
+            longest > 0.0 && longest <= limit_ms,
+            "{what}: {longest} ms, at most {limit_ms}"
+        );
+    }
+    assert!(
+        flight.board.run.servos.iter().all(|us| *us > 0.0),
+        "{:?}",
+        flight.board.run.servos
+    );
+}
+
+#[test]
+fn no_output_of_the_matek_but_its_buzzer_is_pulled_up_at_a_reset() {
+    let flight = restarted(|scenario, troubles| fly(scenario, 1.0, troubles));
+    in_order(&flight, &["buzzer"], 0.3);
+}
+
+#[test]
+fn no_output_of_the_small_board_is_pulled_up_at_a_reset() {
+    let flight = restarted(fly_small);
+    in_order(&flight, &[], 0.6);
+}

@@ -1,0 +1,88 @@
+//! Parameters that are stored in the chip's flash.
+
+use sophie_emulator::wires::Fault;
+
+use super::*;
+
+/// The first seconds of a flight: armed and off the ground.
+fn start(change: impl FnOnce(&mut Scenario)) -> Scenario {
+    let mut scenario = Scenario {
+        time_limit: 7.0,
+        ..scenario("hover.toml")
+    };
+    change(&mut scenario);
+    scenario
+}
+
+#[test]
+fn the_image_flies_what_is_stored() {
+    let scenario = start(|s| {
+        s.params.receiver_protocol = 1.0;
+        s.params.motor_protocol = 600.0;
+    });
+    let flight = fly(&scenario, 1.0, &[]);
+    // Both, and the calibration of the accelerometer's three axes.
+    let taken = told(&flight, 0.0, "parameters: 5 from storage");
+    assert!(taken.is_some(), "{}", log(&flight));
+    // Off the ground by an inverted line with parity, on motor frames of twice the rate.
+    assert!(told(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
+    for esc in flight.board.run.escs {
+        assert!(esc.frames > 5000 && esc.bad == 0, "{esc:?}");
+    }
+    assert_eq!(flight.gaps, []);
+}
+
+#[test]
+fn the_small_board_flies_what_is_stored() {
+    let scenario = start(|s| s.params.receiver_protocol = 1.0);
+    let flight = fly_small(&scenario, &[]);
+    assert!(
+        told(&flight, 0.0, "parameters: 4 from storage").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(told(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
+    assert_eq!(flight.gaps, []);
+}
+
+#[test]
+fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
+    let scenario = start(|s| s.params.motor_protocol = 600.0);
+    let flight = fly(&scenario, 1.0, &[(0.0, Trouble::Board(Fault::CorruptParameters))]);
+    assert!(
+        told(&flight, 0.0, "parameters: 0 from storage").is_some(),
+        "{}",
+        log(&flight)
+    );
+    assert!(
+        told(&flight, 0.0, "parameters: storage unreadable").is_some(),
+        "{}",
+        log(&flight)
+    );
+    let refused = told(&flight, 0.0, "DISARMED: stored parameters unreadable");
+    assert!(refused.is_some(), "{}", log(&flight));
+    let mut lines = flight.board.lines.iter();
+    assert!(
+        !lines.any(|line| line.text.starts_with("ARMED")),
+        "{}",
+        log(&flight)
+    );
+    assert!(stopped(&flight, 0.0, f64::INFINITY));
+    // Frames of the default rate: the controllers, made for the stored one, take none.
+    assert!(flight.board.run.escs.iter().all(|esc| esc.frames == 0));
+    assert_eq!(flight.gaps, []);
+}
+
+#[test]
+fn storage_that_is_corrupted_in_flight_speaks_after_the_next_reset() {
+    let troubles = [
+        (6.5, Trouble::Board(Fault::CorruptParameters)),
+        (7.5, Trouble::Board(Fault::ResetPin)),
+    ];
+    let scenario = start(|s| s.time_limit = 8.5);
+    let flight = fly(&scenario, 1.0, &troubles);
+    assert!(running(&flight, 6.5, 7.4), "{}", log(&flight));
+    let unreadable = told(&flight, 0.0, "parameters: storage unreadable");
+    assert!(unreadable.is_some_and(|t| t > 7.5), "{}", log(&flight));
+    assert_eq!(flight.gaps, []);
+}

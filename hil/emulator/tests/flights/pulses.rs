@@ -1,0 +1,61 @@
+//! Motor controllers that take pulses: how often they get one, and that none begins once the software stands still.
+
+use sophie_emulator::wires::Fault;
+
+use super::*;
+
+/// Where the processor stands still, off the ground; and the end of the flight, before its watchdog has bitten.
+const STILL: f64 = AIRBORNE - 0.5;
+const END: f64 = STILL + 0.18;
+
+/// The hover with controllers that speak `protocol`, until the processor stands still.
+fn hung(protocol: f32, small: bool) -> Flight {
+    let mut scenario = hover(END);
+    scenario.params.motor_protocol = protocol;
+    let troubles = [(STILL, Trouble::Board(Fault::Hang(true)))];
+    let flight = if small {
+        fly_small(&scenario, &troubles)
+    } else {
+        fly(&scenario, 1.0, &troubles)
+    };
+    assert!(
+        told(&flight, 0.0, "FLIGHT").is_some_and(|t| t < STILL),
+        "{}",
+        log(&flight)
+    );
+    assert!(running(&flight, STILL - 0.5, STILL), "{}", log(&flight));
+    assert_eq!(flight.gaps, [], "{}", log(&flight));
+    flight
+}
+
+/// Frames come within `interval` µs of each other, each is understood, and none begins later than `last` µs after the
+/// processor has stopped; the pins are low then.
+fn ends(protocol: f32, interval: [f64; 2], last: f64) {
+    for small in [false, true] {
+        let flight = hung(protocol, small);
+        for esc in flight.board.run.escs {
+            let [shortest, longest] = esc.interval.unwrap().map(|ns| ns as f64 * 1e-3);
+            assert!(esc.bad == 0 && esc.frames > 1000, "{esc:?}");
+            assert!(shortest >= interval[0] && longest <= interval[1], "{esc:?}");
+        }
+        let hung = flight.board.run.hung.unwrap();
+        assert!(hung.last_rise_us <= last && hung.high == [false; 4], "{hung:?}");
+    }
+}
+
+#[test]
+fn a_pulse_is_the_last_one_when_the_software_stands_still() {
+    // At most 400 Hz; at 100 Hz while no mix comes. A pulse that was under way ends, and nothing follows.
+    ends(400.0, [2500.0, 13_000.0], 0.0);
+}
+
+#[test]
+fn so_is_a_short_pulse() {
+    ends(125.0, [900.0, 13_000.0], 0.0);
+}
+
+#[test]
+fn so_is_a_digital_frame() {
+    // Its bits follow by DMA.
+    ends(300.0, [900.0, 13_000.0], 120.0);
+}

@@ -1,0 +1,140 @@
+//! What the start-up looks at in the chip, and what it does where a clock never comes.
+
+use sophie_emulator::silicon::{self, Look};
+use sophie_emulator::wires::Fault;
+
+use super::*;
+
+/// Both boards, each with what its caches are called in the log and how they must be.
+const BOARDS: [(&str, [&str; 2]); 2] = [
+    ("matek-h743", ["caches", "I+ D-"]),
+    ("f405", ["flash acceleration", "prefetch+ I+ D+"]),
+];
+
+/// `seconds` s on the ground, disarmed, with `fault` from before the first instruction on.
+fn on_the_bench(board: &str, seconds: f64, fault: Option<Fault>) -> Flight {
+    let scenario = Scenario {
+        time_limit: seconds,
+        ..scenario("hover.toml")
+    };
+    let silent = (0.0, Trouble::RadioSilent(true));
+    let troubles: Vec<_> = fault
+        .map(|fault| (0.0, Trouble::Board(fault)))
+        .into_iter()
+        .chain([silent])
+        .collect();
+    match board {
+        "f405" => fly_small(&scenario, &troubles),
+        _ => fly(&scenario, 1.0, &troubles),
+    }
+}
+
+fn looks(flight: &Flight) -> Vec<Look> {
+    let lines = flight.board.lines.iter();
+    lines.filter_map(|line| silicon::told(&line.text)).collect()
+}
+
+/// The logged look `name`.
+fn look(flight: &Flight, name: &str) -> Look {
+    let all = looks(flight);
+    let found = all.iter().find(|look| look.name == name);
+    found
+        .unwrap_or_else(|| panic!("no {name}: {}", log(flight)))
+        .clone()
+}
+
+#[test]
+fn every_look_at_a_sound_chip_is_as_expected() {
+    for (board, [caches, on]) in BOARDS {
+        let flight = on_the_bench(board, 1.5, None);
+        let all = looks(&flight);
+        assert!(
+            all.len() >= 8 && all.iter().all(|look| look.ok),
+            "{board}: {all:#?}"
+        );
+        assert_eq!(look(&flight, caches).read, on, "{board}");
+        assert_eq!(look(&flight, "brown-out level").read, "3", "{board}");
+        assert_eq!(flight.gaps, [], "{board}");
+    }
+}
+
+#[test]
+fn a_chip_without_a_brown_out_level_does_not_arm() {
+    for (board, _) in BOARDS {
+        let flight = on_the_bench(board, 1.5, Some(Fault::FactoryOptions));
+        let level = look(&flight, "brown-out level");
+        assert_eq!((level.read.as_str(), level.ok), ("0", false), "{board}");
+        assert!(
+            told(&flight, 0.0, "arming blocked: brown-out level not set").is_some(),
+            "{board}: {}",
+            log(&flight)
+        );
+        assert_eq!(flight.gaps, [], "{board}");
+    }
+}
+
+#[test]
+fn a_first_revision_flies_without_prefetch_or_not_at_all() {
+    let flight = on_the_bench("f405", 1.5, Some(Fault::FirstRevision));
+    let caches = look(&flight, "flash acceleration");
+    assert_eq!((caches.read.as_str(), caches.ok), ("prefetch- I+ D+", true));
+    assert_eq!(
+        told(&flight, 0.0, "chip not as expected"),
+        None,
+        "{}",
+        log(&flight)
+    );
+
+    let flight = on_the_bench("matek-h743", 1.5, Some(Fault::FirstRevision));
+    let revision = look(&flight, "revision");
+    assert_eq!((revision.read.as_str(), revision.ok), ("0x450 0x1003", false));
+    assert!(
+        told(&flight, 0.0, "arming blocked: chip not as expected").is_some(),
+        "{}",
+        log(&flight)
+    );
+}
+
+#[test]
+fn another_firmwares_parameters_are_named_with_what_to_do() {
+    // The emulator does not let the F405's flash be written.
+    let flight = on_the_bench("matek-h743", 1.5, Some(Fault::ForeignParameters));
+    for words in [
+        "the storage holds ArduPilot's data; 'save' at the console replaces them",
+        "arming blocked: storage holds another firmware's data",
+    ] {
+        assert!(told(&flight, 0.0, words).is_some(), "{words}: {}", log(&flight));
+    }
+    assert_eq!(told(&flight, 0.0, "unreadable"), None, "{}", log(&flight));
+    assert_eq!(look(&flight, "stored data of").read, "ArduPilot");
+}
+
+/// A clock that never comes ends in a message and a reset, again and again, with the motors' pins low.
+fn never_starts(board: &str, fault: Fault, message: &str, by: &str) {
+    let flight = on_the_bench(board, 1.2, Some(fault));
+    assert!(
+        told(&flight, 0.0, message).is_some(),
+        "{board} {fault:?}: {}",
+        log(&flight)
+    );
+    let resets = &flight.board.resets;
+    assert!(
+        !resets.is_empty() && resets.iter().all(|(_, cause)| cause.contains(by)),
+        "{board} {fault:?}: {resets:?}"
+    );
+    assert_eq!(told(&flight, 0.0, "started in"), None, "{board} {fault:?}");
+    assert!(flight.board.run.escs.iter().all(|esc| esc.frames == 0));
+    assert_eq!(flight.gaps, [], "{board} {fault:?}");
+}
+
+#[test]
+fn a_crystal_that_does_not_start_is_told_and_resets_the_board() {
+    let message = "the run before ended with: the 8 MHz crystal does not start";
+    never_starts("f405", Fault::NoCrystal, message, "IWDG");
+}
+
+#[test]
+fn a_pll_that_never_locks_is_told_and_ends_by_the_watchdog() {
+    let message = "the run before ended with: the clocks did not start: a PLL does not lock";
+    never_starts("f405", Fault::NoPll, message, "IWDG");
+}

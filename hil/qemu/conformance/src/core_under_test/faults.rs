@@ -1,0 +1,224 @@
+//! Runs that end: a stack that overflows, an address where nothing is, a fault while one is reported. The very handlers
+//! that fly (`src/board/cortex_m/`) are called; where the firmware restarts the chip, the image continues with the next
+//! line.
+
+use core::arch::{asm, global_asm};
+use core::fmt::{self, Arguments, Write};
+use core::hint::black_box;
+use core::sync::atomic::Ordering::Relaxed;
+use core::sync::atomic::{AtomicBool, AtomicU32};
+
+use cortex_m::asm::{dsb, isb};
+
+use crate::board::cortex_m::end;
+
+/// First address of the guard below the stack, and the log2 of its bytes. QEMU's machines ignore accesses to where they
+/// have nothing, so the memory protection stands in for that.
+const NOWHERE: u32 = 0x1FFF_F000;
+const NOWHERE_SIZE: u32 = 12;
+/// Of the memory protection: on, in fault handlers too, and only where a region says so (ARMv7-M, B3.5).
+const PROTECTED: u32 = 0b111;
+/// Bytes of stack that are left to the handler.
+const HANDLER: usize = 8192;
+/// Words of a frame that the processor stacks, and the place of the address to go on at, and of the program status.
+const FRAME: usize = 8;
+const PC: usize = 6;
+const STATUS: usize = 7;
+/// Thumb state.
+const THUMB: u32 = 1 << 24;
+
+/// The motors were stopped.
+pub static STOPPED: AtomicBool = AtomicBool::new(false);
+/// Stack pointer to go on with.
+#[unsafe(no_mangle)]
+static CONFORMANCE_STACK: AtomicU32 = AtomicU32::new(0);
+
+global_asm!(
+    ".syntax unified",
+    ".fpu fpv4-sp-d16",
+    // Calls the function in r0; when that ends the run, returns all the same.
+    ".thumb_func",
+    ".global conformance_try",
+    "conformance_try:",
+    "push {{r4-r11, lr}}",
+    "sub sp, #4",
+    "vpush {{s16-s31}}",
+    "ldr r1, =CONFORMANCE_STACK",
+    "str sp, [r1]",
+    "blx r0",
+    ".thumb_func",
+    ".global conformance_go_on",
+    "conformance_go_on:",
+    "vpop {{s16-s31}}",
+    "add sp, #4",
+    "pop {{r4-r11, pc}}",
+    ".ltorg",
+);
+
+unsafe extern "C" {
+    fn conformance_try(scenario: extern "C" fn());
+    fn conformance_go_on();
+}
+
+/// What a run leaves for the next: the message.
+pub struct Left {
+    text: [u8; 240],
+    length: usize,
+}
+
+impl Left {
+    /// Nothing.
+    pub const fn new() -> Self {
+        Self {
+            text: [0; 240],
+            length: 0,
+        }
+    }
+}
+
+impl Write for Left {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for (slot, byte) in self.text.iter_mut().skip(self.length).zip(text.bytes()) {
+            *slot = byte;
+            self.length += 1;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Left {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = self.text.get(..self.length).unwrap_or_default();
+        f.write_str(core::str::from_utf8(text).unwrap_or_default())
+    }
+}
+
+/// Goes on in `conformance_try`, in thread mode and from whatever handler.
+pub fn go_on() -> ! {
+    end::ENDING.store(false, Relaxed);
+    let stack = CONFORMANCE_STACK.load(Relaxed) as *mut u32;
+    // SAFETY: `conformance_try` left its registers above that, and what it called will not go on. In a handler the
+    // frame makes the processor return there; in thread mode the same place is jumped to.
+    unsafe {
+        if cortex_m::peripheral::SCB::vect_active() == cortex_m::peripheral::scb::VectActive::ThreadMode {
+            asm!(
+                "cpsie i",
+                "mov sp, {stack}",
+                "bx {place}",
+                stack = in(reg) stack,
+                place = in(reg) conformance_go_on as *const () as u32,
+                options(noreturn),
+            );
+        }
+        let frame = stack.sub(FRAME);
+        for word in 0..FRAME {
+            frame.add(word).write_volatile(0);
+        }
+        frame
+            .add(PC)
+            .write_volatile(conformance_go_on as *const () as u32 & !1);
+        frame.add(STATUS).write_volatile(THUMB);
+        asm!(
+            "cpsie i",
+            "msr msp, {frame}",
+            "mvn lr, #6",
+            "bx lr",
+            frame = in(reg) frame,
+            options(noreturn),
+        );
+    }
+}
+
+/// Prints a line for each scenario, and calls `done`.
+///
+/// The handler begins at the top of the stack, so nothing up there is returned to.
+pub fn run(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) -> ! {
+    let room = black_box([0u8; HANDLER]);
+    try_all(print, done);
+    // Never reached; keeps the room.
+    black_box(&room);
+    done()
+}
+
+#[inline(never)]
+fn try_all(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) {
+    let scenarios: [(&str, extern "C" fn()); 4] = [
+        ("a stack overflows", overflow),
+        ("a stack overflows with floats", float_overflow),
+        ("nothing there", nothing_there),
+        ("a fault in a message", fault_in_a_message),
+    ];
+    // SAFETY: nothing is there that anybody uses, and nothing else uses the memory protection.
+    unsafe {
+        let mpu = &*cortex_m::peripheral::MPU::PTR;
+        mpu.rnr.write(0);
+        mpu.rbar.write(NOWHERE);
+        // No access.
+        mpu.rasr.write(1 << 28 | (NOWHERE_SIZE - 1) << 1 | 1);
+        mpu.ctrl.write(PROTECTED);
+    }
+    dsb();
+    isb();
+    for (name, scenario) in scenarios {
+        STOPPED.store(false, Relaxed);
+        // SAFETY: the status registers of faults; ones clear what former scenarios left.
+        unsafe {
+            (0xE000_ED28 as *mut u32).write_volatile(u32::MAX);
+            (0xE000_ED2C as *mut u32).write_volatile(u32::MAX);
+        }
+        // SAFETY: it returns with every register kept that a callee keeps.
+        unsafe { conformance_try(scenario) };
+        let stopped = if STOPPED.load(Relaxed) {
+            "stopped"
+        } else {
+            "running"
+        };
+        let mut left = Left::new();
+        let _ = crate::board::cortex_m::retained::with(|words| write!(left, "{words}"));
+        print(format_args!("{name}: motors {stopped}, kept: {left}"));
+    }
+    done();
+}
+
+#[expect(unconditional_recursion, reason = "that is what is tried")]
+fn deeper(words: &[u32; 16]) -> u32 {
+    let more = words.map(|word| black_box(word).wrapping_add(1));
+    deeper(black_box(&more)).wrapping_add(words[3])
+}
+
+extern "C" fn overflow() {
+    black_box(deeper(&[0; 16]));
+}
+
+#[expect(unconditional_recursion, reason = "that is what is tried")]
+fn deeper_with_floats(value: f32) -> f32 {
+    let more = black_box(value) * 1.5 + 1.0;
+    deeper_with_floats(black_box(more)) + black_box(more) * value
+}
+
+extern "C" fn float_overflow() {
+    black_box(deeper_with_floats(1.0));
+}
+
+/// Reads where nothing is.
+fn read_nowhere() -> u32 {
+    // SAFETY: the read gives no value, the processor faults.
+    unsafe { (NOWHERE as *const u32).read_volatile() }
+}
+
+extern "C" fn nothing_there() {
+    black_box(read_nowhere());
+}
+
+/// A message that cannot be made.
+struct Unreadable;
+
+impl fmt::Display for Unreadable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", read_nowhere())
+    }
+}
+
+extern "C" fn fault_in_a_message() {
+    crate::end_of_run(format_args!("{Unreadable}"))
+}

@@ -1,0 +1,360 @@
+//! Fits Eq. 1 to bench data by least squares, with confidence intervals.
+//!
+//! α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. Everything but C_P enters linearly; Gauss-Newton from a linear start
+//! takes a few steps. With one infill A1 and A2 (B1 and B2) cannot be separated: A and B are fitted. C_P is fitted only
+//! where the power ratio varies. K is not another unknown (it multiplies what is fitted) but the gain that Table I would
+//! need: fitted on its own, with the residual that its shape leaves.
+
+use super::bench_data::Point;
+
+/// Power ratio below which, somewhere, C_P can be seen.
+const POWER_SEEN: f64 = 0.95;
+/// Exponent where it cannot be seen: the middle of the paper's 1.6 to 1.8.
+const EXPONENT: f64 = 1.7;
+/// Difference of infill from which two count as two, %.
+const INFILL_STEP: f64 = 0.2;
+
+/// A fitted number.
+#[derive(Clone, Copy, Debug)]
+pub struct Fitted {
+    /// Name as in the paper.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Estimate.
+    pub value: f64,
+    /// Half of the 95 % confidence interval.
+    pub half: f64,
+}
+
+/// A fit of Eq. 1.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The numbers.
+    pub fitted: Vec<Fitted>,
+    /// A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)); A and B with zeros for a single infill.
+    pub coefficients: [f64; 4],
+    /// α0, degrees.
+    pub offset: f64,
+    /// C_P, fitted or assumed.
+    pub exponent: f64,
+    /// RMS of the residuals, degrees, over the degrees of freedom.
+    pub residual: f64,
+    /// The gain on Table I that meets the data best, with its residual RMS (°).
+    pub gain: (Fitted, f64),
+}
+
+impl Fit {
+    /// Tilt, degrees.
+    pub fn tilt(&self, infill: f64, thrust: f64, power: f64) -> f64 {
+        let [a1, a2, b1, b2] = self.coefficients;
+        self.offset
+            + ((a1 + infill * a2) * thrust + (b1 + infill * b2) * thrust * thrust) * power.powf(self.exponent)
+    }
+
+    /// Linear and quadratic coefficient at an infill, °/N and °/N².
+    pub fn at(&self, infill: f64) -> (f64, f64) {
+        let [a1, a2, b1, b2] = self.coefficients;
+        (a1 + infill * a2, b1 + infill * b2)
+    }
+
+    /// Thrust (N) at which the arm of an infill is level; none where it never is.
+    pub fn level_thrust(&self, infill: f64) -> Option<f64> {
+        let (a, b) = self.at(infill);
+        let root = a * a - 4.0 * b * self.offset;
+        (root >= 0.0 && a > 0.0).then(|| -2.0 * self.offset / (a + root.sqrt()))
+    }
+}
+
+/// Fits `points` against Table I's coefficients `table_1`.
+///
+/// # Errors
+/// One line that says what the data lack.
+pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
+    let (low, high) = range(points, |p| p.infill);
+    let several = high - low >= INFILL_STEP;
+    let powered = range(points, |p| p.power).0 < POWER_SEEN;
+    let (least, most) = range(points, |p| p.thrust);
+    if points.is_empty() || most - least < 0.5 {
+        return Err("thrust_n spans less than 0.5 N: allowed are data over the thrusts of flight".to_owned());
+    }
+    // Columns of the linear part: α0, then A (and A2), B (and B2).
+    let basis = |p: &Point| {
+        let (t, t2) = (p.thrust, p.thrust * p.thrust);
+        if several {
+            vec![t, p.infill * t, t2, p.infill * t2]
+        } else {
+            vec![t, t2]
+        }
+    };
+    let linear = if several { 5 } else { 3 };
+    let count = linear + usize::from(powered);
+    if points.len() < count + 3 {
+        return Err(format!(
+            "{} rows: allowed are at least {} for {count} unknowns",
+            points.len(),
+            count + 3
+        ));
+    }
+    let lacking = || {
+        "the rows do not tell the coefficients apart: allowed are at least three thrusts at every infill, and two infills or \
+         one"
+            .to_owned()
+    };
+    let mut exponent = EXPONENT;
+    let (mut x, mut covariance) = (vec![], vec![]);
+    for _ in 0..30 {
+        let rows = |p: &Point, x: &[f64]| {
+            let factor = p.power.powf(exponent);
+            let basis = basis(p);
+            let mut row = vec![1.0];
+            row.extend(basis.iter().map(|b| b * factor));
+            if powered {
+                // d α/d C_P about the last solution.
+                let elastic: f64 = basis.iter().zip(x.iter().skip(1)).map(|(b, c)| b * c).sum();
+                row.push(elastic * factor * p.power.ln());
+            }
+            row
+        };
+        if x.is_empty() {
+            // Without C_P first: its derivative needs a solution.
+            let start: Vec<Vec<f64>> = points.iter().map(|p| rows(p, &[])[..linear].to_vec()).collect();
+            x = solve(&start, points).ok_or_else(lacking)?.0;
+            if powered {
+                x.push(0.0);
+            }
+        }
+        let design: Vec<Vec<f64>> = points.iter().map(|p| rows(p, &x)).collect();
+        let (next, inverse) = solve(&design, points).ok_or_else(lacking)?;
+        let step = if powered {
+            next[linear].clamp(-0.5, 0.5)
+        } else {
+            0.0
+        };
+        (x, covariance) = (next, inverse);
+        exponent += step;
+        if step.abs() < 1e-9 {
+            break;
+        }
+    }
+    let mut fit = Fit {
+        fitted: vec![],
+        coefficients: if several {
+            [x[1], x[2], x[3], x[4]]
+        } else {
+            [x[1], 0.0, x[2], 0.0]
+        },
+        offset: x[0],
+        exponent,
+        residual: 0.0,
+        gain: (
+            Fitted {
+                name: "K",
+                unit: "",
+                value: f64::NAN,
+                half: f64::NAN,
+            },
+            f64::NAN,
+        ),
+    };
+    let square: f64 = points
+        .iter()
+        .map(|p| (p.tilt - fit.tilt(p.infill, p.thrust, p.power)).powi(2))
+        .sum();
+    let freedom = points.len() - count;
+    fit.residual = (square / freedom as f64).sqrt();
+    let t = quantile(freedom);
+    let names: &[(&str, &str)] = if several {
+        &[
+            ("α0", "°"),
+            ("A1", "°/N"),
+            ("A2", "°/(N %)"),
+            ("B1", "°/N²"),
+            ("B2", "°/(N² %)"),
+        ]
+    } else {
+        &[("α0", "°"), ("A", "°/N"), ("B", "°/N²")]
+    };
+    for (i, (name, unit)) in names.iter().chain(&[("C_P", "")]).take(count).enumerate() {
+        let value = if *name == "C_P" { exponent } else { x[i] };
+        fit.fitted.push(Fitted {
+            name,
+            unit,
+            value,
+            half: t * fit.residual * covariance[i][i].sqrt(),
+        });
+    }
+    fit.gain = gain(points, table_1, exponent).ok_or_else(lacking)?;
+    Ok(fit)
+}
+
+/// The gain on Table I and an offset of its own.
+fn gain(points: &[Point], [a1, a2, b1, b2]: [f64; 4], exponent: f64) -> Option<(Fitted, f64)> {
+    let shape = |p: &Point| {
+        ((a1 + p.infill * a2) + (b1 + p.infill * b2) * p.thrust) * p.thrust * p.power.powf(exponent)
+    };
+    let design: Vec<Vec<f64>> = points.iter().map(|p| vec![1.0, shape(p)]).collect();
+    let (x, covariance) = solve(&design, points)?;
+    let square: f64 = points
+        .iter()
+        .map(|p| (p.tilt - x[0] - x[1] * shape(p)).powi(2))
+        .sum();
+    let freedom = points.len() - 2;
+    let residual = (square / freedom as f64).sqrt();
+    let half = quantile(freedom) * residual * covariance[1][1].sqrt();
+    Some((
+        Fitted {
+            name: "K",
+            unit: "",
+            value: x[1],
+            half,
+        },
+        residual,
+    ))
+}
+
+fn range(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
+    points
+        .iter()
+        .map(of)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        })
+}
+
+/// Least squares of `design` x = tilts by the normal equations with scaled columns; the solution and (XᵀX)⁻¹.
+fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let n = design.first()?.len();
+    let scale: Vec<f64> = (0..n)
+        .map(|j| design.iter().map(|r| r[j] * r[j]).sum::<f64>().sqrt())
+        .collect();
+    if scale.iter().any(|s| !s.is_normal()) {
+        return None;
+    }
+    // [XᵀX | I | Xᵀy] of the scaled columns, brought to [I | inverse | solution].
+    let mut m: Vec<Vec<f64>> = (0..n)
+        .map(|i| {
+            let dot = |j: usize| design.iter().map(|r| r[i] * r[j]).sum::<f64>() / (scale[i] * scale[j]);
+            let y = design.iter().zip(points).map(|(r, p)| r[i] * p.tilt).sum::<f64>() / scale[i];
+            (0..n)
+                .map(dot)
+                .chain((0..n).map(|j| f64::from(u8::from(i == j))))
+                .chain([y])
+                .collect()
+        })
+        .collect();
+    for column in 0..n {
+        let pivot = (column..n).max_by(|a, b| m[*a][column].abs().total_cmp(&m[*b][column].abs()))?;
+        if m[pivot][column].abs() < 1e-11 {
+            return None;
+        }
+        m.swap(column, pivot);
+        let lead = m[column][column];
+        m[column].iter_mut().for_each(|v| *v /= lead);
+        let top = m[column].clone();
+        for (_, row) in m.iter_mut().enumerate().filter(|(i, _)| *i != column) {
+            let factor = row[column];
+            row.iter_mut().zip(&top).for_each(|(v, t)| *v -= factor * t);
+        }
+    }
+    let solution = (0..n).map(|i| m[i][2 * n] / scale[i]).collect();
+    let inverse = (0..n)
+        .map(|i| (0..n).map(|j| m[i][n + j] / (scale[i] * scale[j])).collect())
+        .collect();
+    Some((solution, inverse))
+}
+
+/// Student's 97.5 % quantile by Cornish and Fisher's expansion about the normal one: 1 % at 4 degrees of freedom.
+fn quantile(freedom: usize) -> f64 {
+    let (z, n) = (1.959_964_f64, freedom as f64);
+    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
+    z + (z3 + z) / (4.0 * n)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n)
+        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n.powi(3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
+
+    /// Bench data of Table I with a gain, an offset and a fixed pattern of errors.
+    fn bench(infills: &[f64], powers: &[f64], gain: f64, noise: f64) -> Vec<Point> {
+        let mut points = vec![];
+        for infill in infills {
+            for power in powers {
+                for i in 0..16 {
+                    let thrust = 0.5 * f64::from(i);
+                    let elastic =
+                        (2.4387 - 0.1997 * infill) * thrust + (-0.162 + 0.0151 * infill) * thrust * thrust;
+                    // A pattern without trend: it leaves the estimates near the truth and sets the intervals.
+                    let error = noise * (1.7 * (points.len() as f64 + 1.0).powi(2)).sin();
+                    let tilt = -20.0 + gain * elastic * power.powf(1.7) + error;
+                    points.push(Point {
+                        infill: *infill,
+                        thrust,
+                        tilt,
+                        power: *power,
+                    });
+                }
+            }
+        }
+        points
+    }
+
+    #[test]
+    fn it_finds_what_was_put_in() {
+        let f = fit(&bench(&[6.0, 8.0, 10.0], &[1.0, 0.8], 7.75, 0.3), TABLE_1).unwrap();
+        for (name, truth) in [
+            ("α0", -20.0),
+            ("A1", 7.75 * 2.4387),
+            ("A2", -7.75 * 0.1997),
+            ("B1", -7.75 * 0.162),
+            ("B2", 7.75 * 0.0151),
+            ("C_P", 1.7),
+        ] {
+            let found = f.fitted.iter().find(|x| x.name == name).unwrap();
+            assert!(
+                (found.value - truth).abs() < 1.5 * found.half,
+                "{found:?} {truth}"
+            );
+            assert!(found.half < 0.35 * truth.abs(), "{found:?}");
+        }
+        assert!((f.gain.0.value - 7.75).abs() < 3.0 * f.gain.0.half && (f.residual - 0.21).abs() < 0.03);
+        assert!((f.level_thrust(6.9).unwrap() - 2.9).abs() < 0.3);
+    }
+
+    #[test]
+    fn one_arm_has_a_and_b_and_no_exponent_without_a_weak_battery() {
+        let f = fit(&bench(&[6.9], &[1.0], 5.0, 0.0), TABLE_1).unwrap();
+        let names: Vec<&str> = f.fitted.iter().map(|x| x.name).collect();
+        assert_eq!(names, ["α0", "A", "B"]);
+        assert!((f.coefficients[0] - 5.0 * 1.060_77).abs() < 1e-6 && f.coefficients[1] == 0.0);
+        assert!((f.gain.0.value - 5.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn data_that_cannot_tell_are_refused() {
+        assert!(fit(&[], TABLE_1).unwrap_err().contains("thrust_n"));
+        let few = bench(&[6.9], &[1.0], 5.0, 0.0)[..5].to_vec();
+        assert!(fit(&few, TABLE_1).unwrap_err().contains("at least 6"));
+        let two: Vec<Point> = (0..20)
+            .map(|i| Point {
+                infill: 6.0,
+                thrust: f64::from(i % 2) * 4.0,
+                tilt: 1.0,
+                power: 1.0,
+            })
+            .collect();
+        assert!(fit(&two, TABLE_1).unwrap_err().contains("apart"));
+    }
+
+    #[test]
+    fn student_s_quantile() {
+        // Tables: 2.776 for 4, 2.228 for 10, 1.984 for 100.
+        for (n, t) in [(4, 2.776), (10, 2.228), (100, 1.984)] {
+            assert!((quantile(n) / t - 1.0).abs() < 0.012, "{n} {}", quantile(n));
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! What a fit of an arm comes to: its page, and the file that simulator and stack take the arm from.
+
+use sophie_control::params::Params;
+use sophie_sim::scenario::Scenario;
+
+use super::bench_data::Point;
+use super::fit::{Fit, Fitted};
+use super::model::{Axis, Chart, Look, Section, Series, Table, num};
+
+/// Largest span of tilts that is taken for one in radians: a quarter turn, with a hundredth for the rounding. The
+/// stiffest arm of Table I (10 %, K = 1) bends 2.8 degrees up to the largest thrust.
+const RADIANS: f64 = 1.58;
+/// Share of a rotor's largest thrust that the data must reach, or the fit is a guess where the vehicle hovers.
+const REACH: f64 = 0.5;
+/// Coefficients that may well be 0: an arm may be level at rest, and K is written nowhere.
+const MAY_BE_NONE: [&str; 2] = ["α0", "K"];
+
+fn span(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
+    points
+        .iter()
+        .map(of)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        })
+}
+
+/// Refuses tilts that cannot be degrees.
+///
+/// # Errors
+/// One line: the span of the tilts and what is allowed.
+pub fn check_units(points: &[Point]) -> Result<(), String> {
+    let ((low, high), (from, to)) = (span(points, |p| p.tilt), span(points, |p| p.thrust));
+    if high - low > RADIANS {
+        return Ok(());
+    }
+    Err(format!(
+        "tilt_deg spans {:.2} over thrusts of {from} to {to} N, as an arm in radians does: allowed are degrees, over more \
+         than {RADIANS}",
+        high - low
+    ))
+}
+
+/// Where the data end, N, with what may be wrong there.
+fn reach(points: &[Point]) -> Option<(f64, f64)> {
+    let (most, top) = (span(points, |p| p.thrust).1, thrust_max());
+    (most < REACH * top).then_some((most, top))
+}
+
+/// Largest thrust of a rotor as the stack has it, N.
+fn thrust_max() -> f64 {
+    // A float's 8.3 has seven digits.
+    (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4
+}
+
+/// What a user must know before flying the fit, a line each.
+pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
+    let mut lines = vec![];
+    if let Some((most, top)) = reach(points) {
+        lines.push(format!(
+            "thrust_n ends at {most:.2} N, less than half of the {top} N that a rotor gives: above it the fit is a guess \
+             (thrusts in kgf are 9.81 times too small)"
+        ));
+    }
+    for f in fit
+        .fitted
+        .iter()
+        .filter(|f| !MAY_BE_NONE.contains(&f.name) && f.value.abs() <= f.half)
+    {
+        lines.push(
+            format!(
+                "the 95 % interval of {} holds 0 ({:.4} to {:.4} {}): these data do not tell whether it is there",
+                f.name,
+                f.value - f.half,
+                f.value + f.half,
+                f.unit
+            )
+            .replace(" )", ")"),
+        );
+    }
+    lines
+}
+
+/// Infill that the vehicle is to have, %: the only one measured, or the stack's within those measured.
+pub fn infill(points: &[Point]) -> f64 {
+    // A float's 6.9 has seven digits.
+    let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
+    let (low, high) = span(points, |p| p.infill);
+    default.clamp(low, high.max(low))
+}
+
+/// The section of the fit.
+pub fn section(points: &[Point], fit: &Fit) -> Section {
+    let mut s = Section::new("fit", "Eq. 1 fitted to bench data");
+    let show = |f: &Fitted| {
+        [
+            f.name.into(),
+            f.unit.into(),
+            num(f.value, 4),
+            num(f.value - f.half, 4),
+            num(f.value + f.half, 4),
+        ]
+    };
+    let mut t = Table::new(
+        "Coefficients with their 95 % confidence interval",
+        &["name", "unit", "value", "from", "to"],
+    );
+    for f in &fit.fitted {
+        t.row(show(f));
+    }
+    if !fit.fitted.iter().any(|f| f.name == "C_P") {
+        t.row([
+            "C_P".into(),
+            "".into(),
+            num(fit.exponent, 2),
+            num(f64::NAN, 0),
+            num(f64::NAN, 0),
+        ]);
+    }
+    let (k, with_k) = &fit.gain;
+    t.row(show(k));
+    s.table(t);
+    s.text(format!(
+        "K is the gain that the paper's Table I would need; its shape leaves {with_k:.2}° RMS where the fit leaves {:.2}°. A \
+         C_P without an interval was not measured (no power ratio below 0.95) and is assumed.",
+        fit.residual
+    ));
+    for warning in warnings(points, fit) {
+        s.text(format!("Warning: {warning}."));
+    }
+    let mut infills: Vec<f64> = points.iter().map(|p| p.infill).collect();
+    infills.sort_by(f64::total_cmp);
+    infills.dedup_by(|a, b| (*a - *b).abs() < 0.05);
+    let top = points.iter().map(|p| p.thrust).fold(0.0, f64::max);
+    let (mut fits, mut rests) = (vec![], vec![]);
+    for (i, rho) in infills.iter().take(8).enumerate() {
+        let own = || points.iter().filter(move |p| (p.infill - rho).abs() < 0.05);
+        let line = (0..=80)
+            .map(|j| top * f64::from(j) / 80.0)
+            .map(|x| (x, fit.tilt(*rho, x, 1.0)))
+            .collect();
+        fits.push(Series::new(
+            format!("ρ {rho} %, fit at full power"),
+            i,
+            Look::Line,
+            line,
+        ));
+        let full = own()
+            .filter(|p| p.power >= 0.95)
+            .map(|p| (p.thrust, p.tilt))
+            .collect();
+        fits.push(Series::new("", i, Look::Dots, full));
+        let rest = own()
+            .map(|p| (p.thrust, p.tilt - fit.tilt(p.infill, p.thrust, p.power)))
+            .collect();
+        rests.push(Series::new(format!("ρ {rho} %"), i, Look::Dots, rest));
+    }
+    let x = || Axis::new("thrust (N)").with(&[0.0]);
+    s.figure(
+        "Left: the fit and the points at full power. Right: what the fit leaves of all points; a trend there means that Eq. 1 \
+         has the wrong shape for this arm.",
+        vec![
+            Chart { title: "Tilt".to_owned(), x: x(), y: Axis::new("α (°)"), series: fits, ..Chart::default() },
+            Chart {
+                title: "Residuals".to_owned(),
+                x: x(),
+                y: Axis::new("measured less fitted (°)").with(&[0.0]),
+                series: rests,
+                ..Chart::default()
+            },
+        ],
+    );
+    s.finding = format!("{} points, residual {:.2}° RMS.", points.len(), fit.residual);
+    s
+}
+
+/// The lines that give a board's console the parameters of the file `text`.
+pub fn console_lines(text: &str) -> String {
+    let named = text.lines().skip_while(|l| *l != "[params]").skip(1);
+    let mut lines: String = named
+        .filter_map(|l| l.split_once(" = "))
+        .map(|(name, value)| format!("set {name} {value}\n"))
+        .collect();
+    lines += "save\n";
+    lines
+}
+
+/// The parameter file: a scenario whose `[vehicle]` is this arm, and `[params]` the same for the stack.
+///
+/// # Errors
+/// One line that says which number the stack cannot take, and what it can.
+pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, String> {
+    let rho = infill(points);
+    let (a, b) = fit.at(rho);
+    let top = f64::from(Params::default().thrust_max);
+    if a <= 0.0 {
+        return Err(format!(
+            "the fitted arm does not rise with thrust: A = {a:.3} deg/N at {rho} %, allowed above 0"
+        ));
+    }
+    let share = fit.level_thrust(rho).map_or(f64::NAN, |t| t / top);
+    if !(-0.5..=1.0).contains(&share) {
+        return Err(format!(
+            "the fitted arm of {rho} % is never level in flight: α0 = {:.1} deg, A = {a:.3} deg/N, B = {b:.4} deg/N2; allowed \
+             is a level thrust of -0.5 to 1 times {top} N",
+            fit.offset
+        ));
+    }
+    in_range(points, fit)?;
+    // An arm of a single infill is the same whatever the infill says: it is put in the range that the stack knows.
+    let [a1, a2, b1, b2] = fit.coefficients;
+    let rho = rho.clamp(4.0, 10.0);
+    let text = format!(
+        "# Arm of {source}, fitted by sophie fit-arm: {} points, residual {:.3} deg RMS.\n\
+         # sophie fly THIS_FILE flies the default mission with it. [vehicle] is what the simulator builds, [params] what the\n\
+         # flight stack believes, under the names of its parameter table.\n\n\
+         [vehicle]\ninfill = {rho}\ngain_k = 1.0\narm_coefficients = [{a1:.6}, {a2:.6}, {b1:.6}, {b2:.6}]\n\
+         arm_level_share = {share:.6}\n\n\
+         [params]\ninfill = {rho}\ngain_k = 1.0\narm_a1 = {a1:.6}\narm_a2 = {a2:.6}\narm_b1 = {b1:.6}\narm_b2 = {b2:.6}\n\
+         arm_level_share = {share:.6}\npower_exponent = {:.4}\n",
+        points.len(),
+        fit.residual,
+        fit.exponent.clamp(1.0, 2.5)
+    );
+    // Only what the reader takes is written.
+    Scenario::parse(&text, "arm.toml", &Default::default()).map_err(|e| {
+        let hint = unit_hint(points);
+        format!("the fitted arm is out of range{hint}; as arm.toml, which is not written: {e}")
+    })?;
+    Ok(text)
+}
+
+/// What may be wrong with thrusts that end early; empty when they do not.
+fn unit_hint(points: &[Point]) -> String {
+    reach(points).map_or_else(String::new, |(most, _)| {
+        format!(": thrust_n ends at {most:.2} N, as thrusts in kgf do (1 kgf is 9.81 N)")
+    })
+}
+
+/// Refuses coefficients that the stack cannot take, by their own names.
+fn in_range(points: &[Point], fit: &Fit) -> Result<(), String> {
+    let one = fit.coefficients[1] == 0.0 && fit.coefficients[3] == 0.0;
+    let names = if one {
+        ["A", "", "B", ""]
+    } else {
+        ["A1", "A2", "B1", "B2"]
+    };
+    for ((name, value), key) in names
+        .into_iter()
+        .zip(fit.coefficients)
+        .zip(["arm_a1", "arm_a2", "arm_b1", "arm_b2"])
+    {
+        let Some(row) = Params::TABLE.iter().find(|row| row.name == key) else {
+            continue;
+        };
+        if (f64::from(row.min)..=f64::from(row.max)).contains(&value) {
+            continue;
+        }
+        let unit = row.unit;
+        let hint = unit_hint(points);
+        return Err(format!(
+            "the fitted arm is out of range: {name} = {value:.4} {unit}, allowed {} to {} {unit}{hint}",
+            row.min, row.max
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::fit;
+    use super::*;
+
+    #[test]
+    fn the_file_is_an_arm_that_simulator_and_stack_agree_on() {
+        let points: Vec<Point> = (0..20)
+            .map(|i| {
+                let thrust = 0.4 * f64::from(i);
+                Point {
+                    infill: 15.0,
+                    thrust,
+                    tilt: -9.0 + 4.0 * thrust - 0.2 * thrust * thrust,
+                    power: 1.0,
+                }
+            })
+            .collect();
+        let f = fit(&points, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
+        let text = parameters(&points, &f, "bench.csv").unwrap();
+        let s = Scenario::parse(&text, "arm.toml", &Default::default()).unwrap();
+        let believed = sophie_control::deflection::ArmModel::from_params(&s.params);
+        for t in [0.5f32, 3.0, 6.0] {
+            let truth = -9.0 + 4.0 * t - 0.2 * t * t;
+            assert!((believed.angle(t).to_degrees() - truth).abs() < 0.01, "{t}");
+        }
+        assert!((s.vehicle.arm_coefficients[0] - 4.0).abs() < 1e-4);
+        // The same lines typed at a board's console give the same parameters.
+        let lines = console_lines(&text);
+        let mut board = Params::default();
+        for line in lines.lines().filter(|l| *l != "save") {
+            let [_, name, value] = line.split(' ').collect::<Vec<_>>()[..] else {
+                panic!("{line}");
+            };
+            board.set(name, value.parse().unwrap()).unwrap();
+        }
+        for name in [
+            "infill",
+            "gain_k",
+            "arm_a1",
+            "arm_a2",
+            "arm_b1",
+            "arm_b2",
+            "arm_level_share",
+            "power_exponent",
+        ] {
+            assert!(board.get(name) == s.params.get(name), "{name}");
+        }
+        assert!(lines.ends_with("save\n"));
+        // An arm that falls with thrust is refused.
+        let falling: Vec<Point> = points.iter().map(|p| Point { tilt: -p.tilt, ..*p }).collect();
+        let f = fit(&falling, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
+        assert!(
+            parameters(&falling, &f, "b")
+                .unwrap_err()
+                .contains("does not rise")
+        );
+    }
+}

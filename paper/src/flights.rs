@@ -1,0 +1,90 @@
+//! What the flown sections share: the vehicle, its gusts, and numbers out of a flight.
+
+use crate::study::rig::{Flown, Moment, rms};
+use sophie_control::mixer::Variant;
+use sophie_control::wrench::Configuration;
+use sophie_sim::scenario::Scenario;
+
+use super::model::{Cell, num};
+
+/// Gusts of the comparisons: RMS force (N) and moment (N·m) on each axis.
+pub const GUSTS: (f64, f64) = (0.35, 0.015);
+/// The paper's two senses of rotation.
+pub const BOTH: [Configuration; 2] = [Configuration::A, Configuration::B];
+
+/// The vehicle with an infill (%) and gain K that the stack knows, in still air.
+pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Variant) -> Scenario {
+    let mut s = Scenario::default_mission();
+    (s.vehicle.gain_k, s.vehicle.infill, s.vehicle.configuration) = (gain_k, infill, configuration);
+    (s.params.gain_k, s.params.infill) = (gain_k as f32, infill as f32);
+    (s.world.gust_force, s.world.gust_moment) = (0.0, 0.0);
+    s.mixer = mixer;
+    s
+}
+
+/// The same in the gusts of the comparisons.
+pub fn in_gusts(mut s: Scenario) -> Scenario {
+    (s.world.gust_force, s.world.gust_moment) = GUSTS;
+    s
+}
+
+/// RMS of target less truth on an axis (0 roll, 1 pitch, 2 yaw), degrees; none when the vehicle was lost.
+pub fn error(flown: &Flown, axis: usize) -> Option<f64> {
+    let of = |m: &Moment| {
+        let error = m.attitude[axis] - m.target[axis];
+        error.sin().atan2(error.cos())
+    };
+    flown.lost.is_none().then(|| rms(&flown.moments, of).to_degrees())
+}
+
+/// Largest less smallest thrust (N) asked of rotor 1.
+pub fn swing(flown: &Flown) -> Option<f64> {
+    let asked = flown.moments.iter().map(|m| m.asked[0]);
+    let (low, high) = asked.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
+        (l.min(t), h.max(t))
+    });
+    flown.lost.is_none().then_some(high - low)
+}
+
+/// A number, or the word for a lost vehicle.
+pub fn or_lost(value: Option<f64>, digits: usize) -> Cell {
+    value.map_or_else(|| Cell::from("lost"), |v| num(v, digits))
+}
+
+/// When the vehicle was lost, in words; a dash when it was not.
+pub fn lost_when(flown: &Flown) -> Cell {
+    match flown.lost {
+        None => Cell::from("–"),
+        Some(t) if t < 0.0 => Cell::from("at take-off"),
+        Some(t) => Cell::from(format!("after {t:.1} s")),
+    }
+}
+
+/// `name`, and that the vehicle was lost where it was.
+pub fn named(name: &str, flown: &Flown) -> String {
+    match flown.lost {
+        None => name.to_owned(),
+        Some(t) if t < 0.0 => format!("{name}: lost at take-off"),
+        Some(t) => format!("{name}: lost after {t:.1} s"),
+    }
+}
+
+/// A curve over time, every `every` ms.
+pub fn curve(flown: &Flown, every: usize, value: impl Fn(&Moment) -> f64) -> Vec<(f64, f64)> {
+    flown
+        .moments
+        .iter()
+        .step_by(every)
+        .map(|m| (m.t, value(m)))
+        .collect()
+}
+
+/// Mean tilt of the left arms less that of the right ones, rad.
+pub fn delta_alpha(m: &Moment) -> f64 {
+    0.5 * (m.tilt[0] + m.tilt[1] - m.tilt[2] - m.tilt[3])
+}
+
+/// Mean thrust of a left rotor less that of a right one, N.
+pub fn delta_thrust(m: &Moment) -> f64 {
+    0.5 * (m.thrust[0] + m.thrust[1] - m.thrust[2] - m.thrust[3])
+}

@@ -1,0 +1,138 @@
+//! Table II: the mass budget, and the rigid-body numbers that follow from it.
+
+use sophie_control::params::Params;
+use sophie_sim::plant::GRAVITY;
+use sophie_sim::plant::arm::TIP_MASS;
+
+use super::model::{Class, Comparison, Section, Table, num};
+use super::printed::Printed;
+
+/// Where the masses sit, m: platform with battery and electronics as a box (length, width, height), and the sideways
+/// place of servos and reels (assumed from the layout; the paper gives no dimension).
+const BOX: [f64; 3] = [0.40, 0.12, 0.06];
+const BATTERY_LENGTH: f64 = 0.15;
+const SERVO_SIDE: f64 = 0.05;
+
+/// Moments of inertia about roll, pitch and yaw, kg·m², from Table II and a layout: arms as rods from the centre line
+/// to the rotor, propulsion as points at their ends.
+pub fn inertia(p: &Printed, d: f64, b: f64) -> [f64; 3] {
+    let m = |name: &str| {
+        let row = p.table_2.iter().find(|r| r.equipment == name);
+        row.map_or(0.0, |r| r.mass_g * 1e-3 * f64::from(r.count))
+    };
+    let (arms, motors, servos) = (m("Arms"), m("Propulsion"), m("Other mechanisms"));
+    let (platform, inside) = (m("Platform"), m("Battery") + m("Electronics"));
+    let [l, w, h] = BOX.map(|x| x * x);
+    let y2 = motors * d * d + arms * d * d / 3.0 + servos * SERVO_SIDE * SERVO_SIDE + platform * w / 12.0;
+    let x2 =
+        (motors + arms + servos) * b * b + (platform * l + inside * BATTERY_LENGTH * BATTERY_LENGTH) / 12.0;
+    let z2 = platform * h / 12.0;
+    [y2 + z2, x2 + z2, x2 + y2]
+}
+
+/// Table II.
+pub fn section(p: &Printed) -> Section {
+    let mut s = Section::new("table2", "Table II: the mass budget");
+    let d = Params::default();
+    let mass = p.mass();
+    let hover = mass * GRAVITY / 4.0;
+    let nominal = p.text.motor_thrust_g * 1e-3 * GRAVITY;
+    let computed = inertia(p, f64::from(d.arm_d), f64::from(d.arm_b));
+    let arm_rod = p.table_2.first().map_or(0.0, |r| r.mass_g * 1e-3) / 3.0;
+    let tip = p
+        .table_2
+        .iter()
+        .find(|r| r.equipment == "Propulsion")
+        .map_or(0.0, |r| r.mass_g * 1e-3)
+        + arm_rod;
+    s.finding = format!(
+        "The rows add up to {mass:.3} kg, hover takes {hover:.3} N a rotor. The nominal thrust of {:.0} g a motor is \
+         {:.3} of that: the four motors at their nominal thrust just carry the vehicle, so the 25° roll needs their largest.",
+        p.text.motor_thrust_g,
+        nominal / hover
+    );
+    s.compare(
+        "Table II",
+        vec![Comparison {
+            what: "total mass".to_owned(),
+            unit: "kg",
+            printed: p.text.total_mass_kg,
+            here: mass,
+            class: Class::Prediction,
+            why: "sum of the six rows".to_owned(),
+        }],
+    );
+    let mut t = Table::new("Shares of the mass", &["equipment", "mass kg", "share %"]);
+    for row in &p.table_2 {
+        let kg = row.mass_g * 1e-3 * f64::from(row.count);
+        t.row([
+            row.equipment.as_str().into(),
+            num(kg, 3),
+            num(100.0 * kg / mass, 1),
+        ]);
+    }
+    s.table(t);
+
+    let mut t = Table::new(
+        "Rigid-body numbers",
+        &["quantity", "value", "unit", "used in flight", "source"],
+    );
+    let flown = [d.inertia_roll, d.inertia_pitch, d.inertia_yaw];
+    for (axis, (i, f)) in ["roll", "pitch", "yaw"].iter().zip(computed.iter().zip(flown)) {
+        t.row([
+            format!("inertia, {axis}").into(),
+            num(*i, 4),
+            "kg m²".into(),
+            num(f64::from(f), 3),
+            "Table II on an assumed layout; ±30 %".into(),
+        ]);
+    }
+    for (what, value, unit, used, source) in [
+        ("weight", mass * GRAVITY, "N", mass * GRAVITY, "Table II"),
+        ("hover thrust of a rotor", hover, "N", hover, "Table II"),
+        (
+            "largest thrust of all over weight",
+            f64::from(d.thrust_max) * 4.0 / (mass * GRAVITY),
+            "",
+            f64::NAN,
+            "8.3 N a rotor, assumed",
+        ),
+        (
+            "nominal thrust of all over weight",
+            nominal / hover,
+            "",
+            f64::NAN,
+            "450 g printed, Table II",
+        ),
+        (
+            "mass carried by an arm's tip",
+            tip,
+            "kg",
+            TIP_MASS,
+            "propulsion and a third of the arm, Table II",
+        ),
+    ] {
+        t.row([
+            what.into(),
+            num(value, 3),
+            unit.into(),
+            num(used, 3),
+            source.into(),
+        ]);
+    }
+    s.table(t);
+    s.text(format!(
+        "The tip is the one that does not fit: Table II puts {tip:.3} kg on a hinge at the centre line, the plant flies \
+         {TIP_MASS} kg so that the bending mode is at 5 Hz. The paper gives neither a frequency nor where the arm bends; \
+         with the whole {tip:.3} kg the mode would be at {:.1} Hz.",
+        5.0 * (TIP_MASS / tip).sqrt()
+    ));
+    let [a, b] = p.text.weight_saving_percent;
+    s.text(format!(
+        "\"Reduced by {a:.0} % and {b:.0} %\" against the two rigid vehicles means that those weigh {:.2} and {:.2} kg; the \
+         paper does not print their masses.",
+        mass / (1.0 - 0.01 * a),
+        mass / (1.0 - 0.01 * b)
+    ));
+    s
+}

@@ -1,0 +1,342 @@
+//! Touches of the pipe as no pilot means them: beside the crown, leaning, drifting, called off at any time.
+//!
+//! The whole stack flies, with a receiver's bytes for its sticks. The vehicle hovers high up, is put over the pipe while
+//! it leans (no sensor of it knows where it is), and sinks onto it. What follows is the mode logic's, until a pilot who
+//! sees the vehicle leave the pipe climbs away after his reaction time.
+
+use std::collections::VecDeque;
+
+use glam::{DQuat, DVec3};
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use sophie_control::mode::Mode;
+use sophie_control::rc::Sticks;
+
+use sophie_sim::crsf::{FRAME_HZ, rc_frame};
+use sophie_sim::flight::aircraft::Aircraft;
+use sophie_sim::flight::stack::Stack;
+use sophie_sim::plant::Plant;
+use sophie_sim::plant::contact::{ArmSkin, BELLY_Z, STATIONS};
+use sophie_sim::scenario::Scenario;
+
+/// Longest wait for the calibration and the arming, s.
+const ARMED_BY: f64 = 12.0;
+/// Time in hover before the touch, s, and the time for which the vehicle leans at its end, s.
+const HOVER: f64 = 2.0;
+const LEANING: f64 = 0.8;
+/// Height of the hover, m.
+const HEIGHT: f64 = 12.0;
+/// Clearance over the pipe at which the vehicle is put, m.
+const CLEARANCE: f64 = 0.01;
+/// Time from there to the end, s.
+const DURATION: f64 = 14.0;
+/// Reaction time of the pilot, s.
+const REACTION: f64 = 0.35;
+/// Throttle with which the vehicle is set down, and the speed of that stick, 1/s.
+const SET_DOWN: f64 = 0.40;
+const EASE: f64 = 0.5;
+/// Lean and depth below the height of the touch at which the pilot sees that it slides, rad and m.
+const SEEN_LEAN: f64 = 0.5;
+const SEEN_DEPTH: f64 = 0.06;
+/// Depth below the height of the touch at which the vehicle is lost, m: the ground under the lowest pipe.
+const LOST_DEPTH: f64 = 0.95;
+/// Height over that of the touch at which the vehicle is away from the pipe, m.
+const CLEAR: f64 = 0.4;
+/// Time on the pipe after which the arms are opened, s.
+const STAY: f64 = 2.0;
+/// Throttle of the release.
+const RELEASE: f64 = 0.25;
+
+/// A touch to be tried.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch {
+    /// Distance of the centre of mass beside the crown line when it touches, m.
+    pub offset: f64,
+    /// Roll then, rad.
+    pub lean: f64,
+    /// Sink rate, m/s.
+    pub sink: f64,
+    /// Speed to the right, m/s.
+    pub sideways: f64,
+    /// Diameter of the pipe, m.
+    pub diameter: f64,
+    /// Its coefficient of friction.
+    pub friction: f64,
+    /// RMS of the gusts, N.
+    pub gust: f64,
+    /// Throttle while the arms close.
+    pub throttle: f64,
+    /// Time after the touch at which the perch switch is turned off, s; infinite when it is not.
+    pub cancel: f64,
+    /// Seed of the sensors' errors and the gusts.
+    pub seed: u64,
+}
+
+impl Touch {
+    /// A touch within ±150 mm and ±25°, on pipes of 0.2 to 0.4 m and friction of 0.3 to 0.8, half of them called off.
+    #[must_use]
+    pub fn random(seed: u64) -> Self {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let mut within = |from: f64, to: f64| from + (to - from) * rng.random::<f64>();
+        let diameter = within(0.2, 0.4);
+        Self {
+            // Beside a thinner pipe there is nothing to be touched.
+            offset: within(-0.15, 0.15).clamp(-0.48 * diameter, 0.48 * diameter),
+            lean: within(-25.0, 25.0).to_radians(),
+            sink: within(0.05, 0.4),
+            sideways: within(-0.1, 0.1),
+            diameter,
+            friction: within(0.3, 0.8),
+            gust: within(0.0, 0.1),
+            throttle: within(0.15, 0.38),
+            cancel: match within(-8.0, 8.0) {
+                t if t < 0.0 => f64::INFINITY,
+                t => t,
+            },
+            seed,
+        }
+    }
+}
+
+/// How a touch ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// On the pipe, gripped; too far leaning to let go, if the switch was turned off.
+    Perched,
+    /// In the air again after a perch.
+    Released,
+    /// In the air again without one.
+    Away,
+    /// On the ground, or on its way there.
+    Lost,
+}
+
+/// What came of a touch.
+#[derive(Clone, Copy, Debug)]
+pub struct Touched {
+    /// Its end.
+    pub end: End,
+    /// Deepest that the vehicle came below the height of the touch, m.
+    pub drop: f64,
+    /// Largest lean on the way, rad.
+    pub lean: f64,
+    /// Largest true pressure on an arm, Pa.
+    pub pressure: f64,
+    /// The vehicle left the pipe by itself.
+    pub escaped: bool,
+    /// State of the stack at the end.
+    pub mode: Mode,
+}
+
+struct Hand {
+    sticks: Sticks,
+    /// Modes on the display over the last reaction time.
+    display: VecDeque<Mode>,
+    perched: f64,
+    releases: bool,
+    climbs: bool,
+}
+
+/// A vehicle, its world and the hand on its sticks.
+struct Try {
+    scenario: Scenario,
+    plant: Plant,
+    stack: Stack,
+    ms: u64,
+    elapsed: f64,
+}
+
+impl Try {
+    fn new(touch: &Touch) -> Self {
+        let mut scenario = Scenario::default_mission();
+        scenario.seed = touch.seed;
+        scenario.world.pipe_diameter = touch.diameter;
+        scenario.world.pipe_friction = touch.friction;
+        scenario.world.gust_force = touch.gust;
+        scenario.world.gust_moment = 0.04 * touch.gust;
+        let mut seeds = Pcg64Mcg::seed_from_u64(touch.seed);
+        let plant = Plant::new(&scenario, Pcg64Mcg::from_rng(&mut seeds));
+        let stack = Stack::new(&scenario, &mut seeds);
+        Self {
+            scenario,
+            plant,
+            stack,
+            ms: 0,
+            elapsed: 0.0,
+        }
+    }
+
+    /// A millisecond with these sticks.
+    fn step(&mut self, sticks: &Sticks) {
+        self.ms += 1;
+        self.stack.step_world(&mut self.plant);
+        self.elapsed += 1e-3;
+        if self.elapsed >= 1.0 / FRAME_HZ {
+            self.elapsed -= 1.0 / FRAME_HZ;
+            self.stack.receive(&rc_frame(sticks));
+        }
+        // Tasks in virtual time never fail to run.
+        let _ = self.stack.run_until(self.ms * 1000);
+    }
+
+    fn roll(&self) -> f64 {
+        self.plant.euler()[0]
+    }
+
+    /// Throttle that climbs at `rate` m/s.
+    fn climb(&self, rate: f64) -> f32 {
+        let hover =
+            f64::from(self.scenario.params.mass) * 9.81 / (4.0 * f64::from(self.scenario.params.thrust_max));
+        (hover + 0.25 * (rate + self.plant.pose().velocity.z)).clamp(0.2, 0.9) as f32
+    }
+
+    /// Armed and in hover, leaning as the touch wants at the end.
+    fn take_off(&mut self, lean: f64) -> bool {
+        let mut sticks = Sticks::default();
+        while self.stack.mode() != Mode::Armed {
+            if self.ms as f64 * 1e-3 > ARMED_BY {
+                return false;
+            }
+            sticks.arm_switch = self.stack.mode() == Mode::Disarmed;
+            sticks.yaw = if sticks.arm_switch { 1.0 } else { 0.0 };
+            self.step(&sticks);
+        }
+        sticks.yaw = 0.0;
+        self.plant.place(DVec3::new(0.0, 0.0, -HEIGHT), DVec3::ZERO);
+        for ms in 0..((HOVER + LEANING) * 1e3) as u32 {
+            sticks.throttle = self.climb(0.0);
+            if f64::from(ms) > HOVER * 1e3 {
+                sticks.roll = (lean / f64::from(self.scenario.params.stick_angle)).clamp(-1.0, 1.0) as f32;
+            }
+            self.step(&sticks);
+        }
+        true
+    }
+
+    /// Puts the vehicle over the pipe; returns the height of its centre of mass when it will touch, m, NED.
+    fn put_over(&mut self, touch: &Touch) -> f64 {
+        let world = &self.scenario.world;
+        let [north, east] = world.pipe_position;
+        let radius = 0.5 * touch.diameter;
+        let axis = -world.pipe_top + radius;
+        let down = touch_height(
+            self.plant.pose().attitude,
+            touch.offset,
+            radius,
+            self.plant.tilt(),
+        ) + axis;
+        self.plant.place(
+            DVec3::new(north, east + touch.offset, down - CLEARANCE),
+            DVec3::new(0.0, touch.sideways, touch.sink),
+        );
+        down
+    }
+}
+
+/// Height of the centre of mass over the pipe's axis, m, NED, at which the first point of belly or arms touches.
+fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f64 {
+    let belly = [-0.03, 0.03].map(|y| DVec3::new(0.0, y, BELLY_Z));
+    let arms = (0..4).flat_map(|arm| STATIONS.map(|s| ArmSkin::new(arm).point(tilt[arm], s).0));
+    belly
+        .into_iter()
+        .chain(arms)
+        .filter_map(|point| {
+            let r = attitude * point;
+            let beside = offset + r.y;
+            (beside.abs() < radius).then(|| -(radius * radius - beside * beside).sqrt() - r.z)
+        })
+        .fold(-BELLY_Z, f64::min)
+}
+
+/// Flies a touch. `None` when the vehicle would not arm.
+#[must_use]
+pub fn fly(touch: &Touch) -> Option<Touched> {
+    let mut flight = Try::new(touch);
+    if !flight.take_off(touch.lean) {
+        return None;
+    }
+    let height = flight.put_over(touch);
+    let mut hand = Hand {
+        sticks: Sticks {
+            arm_switch: true,
+            perch_switch: true,
+            throttle: SET_DOWN as f32,
+            ..Sticks::default()
+        },
+        display: VecDeque::new(),
+        perched: 0.0,
+        releases: false,
+        climbs: false,
+    };
+    let mut out = Touched {
+        end: End::Lost,
+        drop: 0.0,
+        lean: 0.0,
+        pressure: 0.0,
+        escaped: false,
+        mode: Mode::Flight,
+    };
+    for ms in 0..(DURATION * 1e3) as u32 {
+        hand.act(&flight, f64::from(ms) * 1e-3, touch, height);
+        flight.step(&hand.sticks);
+        let mode = flight.stack.mode();
+        out.mode = mode;
+        out.escaped |= mode == Mode::Escaping;
+        out.drop = out.drop.max(flight.plant.pose().position.z - height);
+        out.lean = out.lean.max(flight.roll().abs());
+        out.pressure = flight.plant.pressure().into_iter().fold(out.pressure, f64::max);
+        if out.drop > LOST_DEPTH || mode == Mode::Disarmed {
+            return Some(out);
+        }
+        if mode == Mode::Flight && hand.climbs && flight.plant.pose().position.z < height - CLEAR {
+            break;
+        }
+    }
+    out.end = match out.mode {
+        Mode::Perched => End::Perched,
+        _ if hand.perched > STAY => End::Released,
+        _ => End::Away,
+    };
+    Some(out)
+}
+
+impl Hand {
+    fn act(&mut self, flight: &Try, t: f64, touch: &Touch, height: f64) {
+        self.display.push_back(flight.stack.mode());
+        let shown = if self.display.len() as f64 > REACTION * 1e3 {
+            self.display.pop_front()
+        } else {
+            None
+        };
+        let pose = flight.plant.pose();
+        let slides = flight.roll().abs() > SEEN_LEAN || pose.position.z > height + SEEN_DEPTH;
+        let away = matches!(shown, Some(Mode::Escaping | Mode::Failsafe))
+            || self.releases && shown == Some(Mode::Flight);
+        self.climbs |= away || slides && shown == Some(Mode::Flight);
+        if self.climbs {
+            self.sticks.perch_switch = false;
+            let rate = if pose.position.z > height - 1.0 { 0.7 } else { 0.0 };
+            self.sticks.throttle = flight.climb(rate);
+            self.sticks.roll = (-0.3 * pose.velocity.y).clamp(-0.4, 0.4) as f32;
+            self.sticks.pitch = (0.3 * pose.velocity.x).clamp(-0.4, 0.4) as f32;
+            return;
+        }
+        if t >= touch.cancel && shown != Some(Mode::Perched) {
+            self.sticks.perch_switch = false;
+        }
+        let mut throttle = touch.throttle;
+        if shown == Some(Mode::Perched) {
+            self.perched += 1e-3;
+            throttle = 0.0;
+            if self.perched > STAY {
+                throttle = RELEASE;
+                self.releases |= self.sticks.throttle > 0.22;
+                self.sticks.perch_switch &= !self.releases;
+            }
+        } else if self.releases {
+            throttle = RELEASE;
+        }
+        let step = (EASE * 1e-3) as f32;
+        self.sticks.throttle += (throttle as f32 - self.sticks.throttle).clamp(-step, step);
+    }
+}

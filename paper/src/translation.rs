@@ -1,0 +1,226 @@
+//! Eqs. 5 to 8: translational dynamics as printed and as derived, against a flight.
+
+use crate::study::rig::{Flown, Moment, Wish, fly};
+use glam::DVec3;
+use sophie_control::mixer::Variant;
+use sophie_control::wrench::Configuration;
+use sophie_sim::plant::GRAVITY;
+
+use super::flights::vehicle;
+use super::model::{Axis, Chart, Look, Section, Series, Table, num};
+use super::printed::Printed;
+use super::roll::sideways;
+use sophie_sim::parallel;
+
+/// Linear air drag of the plant, N·s/m; known here so that only the equations differ.
+const DRAG: f64 = 0.3;
+
+/// Thrust along the body's -z, N.
+fn lift(m: &Moment) -> f64 {
+    m.thrust.iter().zip(m.tilt).map(|(t, a)| t * a.cos()).sum()
+}
+
+/// The paper's f_x, its sign included: -α1T1 - α2T2 + α3T3 + α4T4, N.
+fn printed_f_x(m: &Moment) -> f64 {
+    -m.tilt[0] * m.thrust[0] - m.tilt[1] * m.thrust[1] + m.tilt[2] * m.thrust[2] + m.tilt[3] * m.thrust[3]
+}
+
+/// Eqs. 5 to 7 as printed: force along the paper's x (east), y (north), z (down), N; its T is the sum of the thrusts.
+fn printed(m: &Moment) -> DVec3 {
+    let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
+    let (t, f) = (m.thrust.iter().sum::<f64>(), printed_f_x(m));
+    DVec3::new(
+        -(ss * st * cp - cs * sp) * t + ct * ss * f,
+        -(cs * st * cp + ss * sp) * t + ct * cs * f,
+        -(cs * st * cp + ss * sp) * t - st * f,
+    )
+}
+
+/// As derived: the thrusts' sum along -z and their sideways part along the body's y axis, with gravity.
+fn derived(m: &Moment, mass: f64) -> DVec3 {
+    let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
+    let (t, f) = (lift(m), sideways(m));
+    DVec3::new(
+        -(ss * st * cp - cs * sp) * t + (ss * st * sp + cs * cp) * f,
+        -(cs * st * cp + ss * sp) * t + (cs * st * sp - ss * cp) * f,
+        -ct * cp * t + ct * sp * f + mass * GRAVITY,
+    )
+}
+
+/// The rigid vehicle: thrust alone.
+fn rigid(m: &Moment, mass: f64) -> DVec3 {
+    let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
+    let t = m.thrust.iter().sum::<f64>();
+    DVec3::new(
+        -(ss * st * cp - cs * sp) * t,
+        -(cs * st * cp + ss * sp) * t,
+        -ct * cp * t + mass * GRAVITY,
+    )
+}
+
+/// Mass times acceleration less drag, N, over a centred window of 10 ms: what an equation has to give.
+fn truth(flown: &Flown, mass: f64) -> Vec<(Moment, DVec3)> {
+    let m = &flown.moments;
+    (5..m.len().saturating_sub(5))
+        .map(|i| {
+            let a = (m[i + 5].velocity - m[i - 5].velocity) / (m[i + 5].t - m[i - 5].t);
+            let force = a * mass + m[i].velocity * DRAG;
+            (m[i], DVec3::new(force.y, force.x, force.z))
+        })
+        .collect()
+}
+
+/// Turns to a heading (rad), then rolls to 25° to either side.
+fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
+    let mut s = vehicle(Configuration::B, 7.75, 6.9, Variant::Flexible);
+    s.vehicle.coupled_arms = coupled;
+    s.params.setpoint_cutoff = 30.0;
+    let turn = heading / 0.5;
+    let mut flown = fly(&s, None, turn + 5.0, |t| Wish {
+        yaw_rate: if t < turn { 0.5 } else { 0.0 },
+        roll: match t - turn - 2.0 {
+            x if x < 0.0 => 0.0,
+            x if x < 1.0 => angle,
+            x if x < 2.0 => -angle,
+            _ => 0.0,
+        },
+        ..Wish::default()
+    });
+    flown.moments.retain(|m| m.t > turn + 1.8);
+    flown
+}
+
+/// Eqs. 5 to 8.
+pub fn section(p: &Printed) -> Section {
+    let mut s = Section::new("eq5", "Eqs. 5 to 8: translational dynamics");
+    let (mass, angle) = (p.mass(), p.text.roll_deg.to_radians());
+    let jobs = [
+        (false, 0.0),
+        (false, 90f64.to_radians()),
+        (true, 0.0),
+        (true, 90f64.to_radians()),
+    ];
+    let flights = parallel::each(&jobs, |(coupled, heading)| manoeuvre(*coupled, *heading, angle));
+    let mut t = Table::new(
+        "Error of the force, RMS over a roll to 25° on either side, N",
+        &[
+            "arms",
+            "heading",
+            "axis",
+            "printed",
+            "derived",
+            "rigid",
+            "largest true force",
+        ],
+    );
+    let mut worst_derived: f64 = 0.0;
+    for ((coupled, heading), flown) in jobs.iter().zip(&flights) {
+        let all = truth(flown, mass);
+        for (axis, name) in ["x (east), Eq. 5", "y (north), Eq. 6", "z (down), Eq. 7"]
+            .iter()
+            .enumerate()
+        {
+            let rms = |f: &dyn Fn(&Moment) -> DVec3| {
+                (all.iter()
+                    .map(|(m, force)| (f(m)[axis] - force[axis]).powi(2))
+                    .sum::<f64>()
+                    / all.len().max(1) as f64)
+                    .sqrt()
+            };
+            let derived_error = rms(&|m| derived(m, mass));
+            if !coupled {
+                worst_derived = worst_derived.max(derived_error);
+            }
+            t.row([
+                if *coupled {
+                    "carry their tip mass"
+                } else {
+                    "follow thrust alone"
+                }
+                .into(),
+                format!("{:.0}°", heading.to_degrees()).into(),
+                (*name).into(),
+                num(rms(&printed), 3),
+                num(derived_error, 3),
+                num(rms(&|m| rigid(m, mass)), 3),
+                num(all.iter().map(|(_, f)| f[axis].abs()).fold(0.0, f64::max), 2),
+            ]);
+        }
+    }
+    s.table(t);
+    s.text(
+        "The paper's axes read as x east, y north, z down (its rigid terms are then right for x and y). Its flexible terms \
+         use the body's forward axis: (cθ sψ, cθ cψ, -sθ) instead of the sideways one (sψ sθ sφ + cψ cφ, cψ sθ sφ - sψ cφ, \
+         cθ sφ). So they vanish at ψ = 0, where Eq. 8 has them, and push along the nose at ψ = 90°. Eq. 7 repeats the rigid \
+         term of Eq. 6 and lacks gravity. Going from f_x to Eq. 8 the sign changes: f_x = -α1T1 - α2T2 + α3T3 + α4T4 is \
+         negative where Eq. 8 says +Δα ΔT, and the first-order part (T1+T3) Δα is lost on the way.",
+    );
+    let chart = |i: usize, axis: usize, title: &str, y: &str| {
+        let all = flights.get(i).map(|f| truth(f, mass)).unwrap_or_default();
+        let start = all.first().map_or(0.0, |(m, _)| m.t);
+        let of = |f: &dyn Fn(&Moment, &DVec3) -> f64| {
+            all.iter()
+                .step_by(5)
+                .map(|(m, force)| (m.t - start, f(m, force)))
+                .collect::<Vec<_>>()
+        };
+        Chart {
+            title: title.to_owned(),
+            x: Axis::new("time (s)"),
+            y: Axis::new(y),
+            series: vec![
+                Series::new(
+                    "flown: mass times acceleration",
+                    7,
+                    Look::Line,
+                    of(&|_, f| f[axis]),
+                ),
+                Series::new("derived", 0, Look::Dashed, of(&|m, _| derived(m, mass)[axis])),
+                Series::new("printed", 1, Look::Line, of(&|m, _| printed(m)[axis])),
+                Series::new("rigid", 2, Look::Dashed, of(&|m, _| rigid(m, mass)[axis])),
+            ],
+            ..Chart::default()
+        }
+    };
+    let flexible = {
+        let all = flights.first().map(|f| truth(f, mass)).unwrap_or_default();
+        let start = all.first().map_or(0.0, |(m, _)| m.t);
+        let of =
+            |f: &dyn Fn(&Moment) -> f64| all.iter().step_by(5).map(|(m, _)| (m.t - start, f(m))).collect();
+        Chart {
+            title: "The flexible term alone, heading 0°".to_owned(),
+            x: Axis::new("time (s)"),
+            y: Axis::new("sideways force (N)"),
+            series: vec![
+                Series::new("true: Σ ± T sin α", 0, Look::Line, of(&sideways)),
+                Series::new(
+                    "Eq. 8: Δα ΔT, two pairs",
+                    1,
+                    Look::Line,
+                    of(&|m| 2.0 * super::flights::delta_alpha(m) * super::flights::delta_thrust(m)),
+                ),
+                Series::new(
+                    "first order: (T1+T3) Δα",
+                    2,
+                    Look::Dashed,
+                    of(&|m| 0.5 * m.thrust.iter().sum::<f64>() * super::flights::delta_alpha(m)),
+                ),
+            ],
+            ..Chart::default()
+        }
+    };
+    s.figure(
+        "Arms that follow their thrust alone, roll to 25° and -25°. Flown and derived lie on each other.",
+        vec![
+            chart(0, 0, "Sideways (x) at heading 0°", "force (N)"),
+            chart(1, 1, "Sideways (y) at heading 90°", "force (N)"),
+            chart(0, 2, "Downwards (z) at heading 0°", "force (N)"),
+            flexible,
+        ],
+    );
+    s.finding = format!(
+        "As derived, the equations give the flown force within {worst_derived:.3} N RMS. As printed, Eqs. 5 and 6 have the \
+         flexible force along the nose, Eq. 7 lacks gravity, and Eq. 8 keeps the smaller of two terms."
+    );
+    s
+}

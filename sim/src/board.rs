@@ -1,0 +1,292 @@
+//! The simulated board: the ports that the tasks see, wired to the plant through its sensors.
+//!
+//! The world steps the plant for a millisecond, then lets the tasks run; what they write takes effect in the
+//! next millisecond. Nothing but sensor readings crosses over to the tasks.
+
+use std::cell::{Cell, RefCell};
+
+use embassy_sync::pipe::Pipe;
+use embassy_sync::signal::Signal;
+use embassy_time::{Instant, Timer};
+use heapless::Vec;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use sophie_control::params::Params;
+use sophie_control::vector::Vec3;
+use sophie_control::warm::{WORDS, Words};
+use sophie_control::wrench::PerArm;
+use sophie_tasks::links::Raw;
+use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
+
+use crate::plant::{Actuators, Plant, STEP};
+use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
+use crate::sensors::arm_imu::{self, ArmImu};
+use crate::sensors::fsr::FsrSensor;
+use crate::sensors::imu::Imu;
+
+/// Bytes that a serial line holds until they are read: half a hardware ring of 512.
+const LINE_BYTES: usize = 256;
+/// Time that one conversion of all analog inputs takes, µs.
+const CONVERSION_US: u64 = 30;
+/// Time that reading one arm's sensor over 400 kHz I2C takes, µs.
+const ARM_READ_US: u64 = 400;
+
+/// Plant steps in a millisecond.
+const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
+
+/// The board's state, shared by its ports and the world.
+pub struct Board {
+    imu_ready: Signal<Raw, Vec<ImuReading, IMU_BATCH>>,
+    actuators: Cell<Actuators>,
+    rc: Pipe<Raw, LINE_BYTES>,
+    telemetry: Pipe<Raw, LINE_BYTES>,
+    sensors: RefCell<Sensors>,
+    truth: Cell<AnalogTruth>,
+    arm_gravity: Cell<PerArm<Vec3>>,
+    /// Samples of the inertial sensor in a second.
+    imu_rate: f64,
+    /// Memory that outlives a reset.
+    pub memory: Cell<[Words; 2]>,
+    /// Accelerometer bias that the builder measured on a level bench, m/s²: a parameter of this board.
+    pub accel_bias: [f32; 3],
+}
+
+/// What the analog inputs are connected to.
+#[derive(Clone, Copy, Default)]
+struct AnalogTruth {
+    pressure: PerArm<f64>,
+    voltage: f64,
+    current: f64,
+    /// Time since the last conversion, s.
+    elapsed: f64,
+}
+
+struct Sensors {
+    imu: Imu,
+    arms: PerArm<ArmImu>,
+    fsr: PerArm<FsrSensor>,
+    battery: BatteryInputs,
+    rng: Pcg64Mcg,
+    arm_clock: f64,
+}
+
+impl Board {
+    /// A board with the default parameters whose parts have errors drawn from `rng`.
+    #[must_use]
+    pub fn new(rng: &mut Pcg64Mcg) -> Self {
+        Self::configured(&Params::default(), rng)
+    }
+
+    /// A board configured as `params` say, whose parts have errors drawn from `rng`.
+    #[must_use]
+    pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
+        let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
+        let accel_bias = imu.bench_bias().as_vec3().to_array();
+        let arms = std::array::from_fn(|arm| ArmImu::new(arm, Pcg64Mcg::from_rng(rng)));
+        let fsr = std::array::from_fn(|_| FsrSensor::new(rng));
+        let battery = BatteryInputs::new(rng);
+        Self {
+            imu_ready: Signal::new(),
+            actuators: Cell::default(),
+            rc: Pipe::new(),
+            telemetry: Pipe::new(),
+            sensors: RefCell::new(Sensors {
+                imu,
+                arms,
+                fsr,
+                battery,
+                rng: Pcg64Mcg::from_rng(rng),
+                arm_clock: 0.0,
+            }),
+            truth: Cell::default(),
+            arm_gravity: Cell::default(),
+            memory: Cell::new([[0; WORDS]; 2]),
+            accel_bias,
+            imu_rate: f64::from(params.imu_rate),
+        }
+    }
+
+    /// Steps the plant by a millisecond under what the tasks wrote last and takes the sensors' readings.
+    pub fn step_world(&self, plant: &mut Plant) {
+        let actuators = self.actuators.get();
+        let mut sensors = self.sensors.borrow_mut();
+        let mut batch = Vec::new();
+        for step in 0..STEPS_PER_MS {
+            let (rate, force) = (plant.pose().omega, plant.specific_force());
+            plant.step(&actuators);
+            let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
+            // A part at 1 kHz samples at the end of every other step; a faster one on the line between two steps.
+            let samples = (self.imu_rate * STEP * f64::from(step + 1)) as u32
+                - (self.imu_rate * STEP * f64::from(step)) as u32;
+            for k in 1..=samples {
+                let share = f64::from(k) / f64::from(samples);
+                let rotors = plant.rotor_speed();
+                let reading =
+                    sensors
+                        .imu
+                        .sample(rate + rate_step * share, force + force_step * share, &rotors);
+                // The batch holds more than a millisecond's samples.
+                let _ = batch.push(reading);
+            }
+        }
+        sensors.arm_clock += 1e-3 * arm_imu::RATE_HZ;
+        if sensors.arm_clock >= 1.0 {
+            sensors.arm_clock -= 1.0;
+            let (attitude, force, tilt) = (plant.pose().attitude, plant.specific_force(), plant.tilt());
+            let mut gravity = self.arm_gravity.get();
+            for ((g, arm), tilt) in gravity.iter_mut().zip(&mut sensors.arms).zip(tilt) {
+                *g = arm.sample(attitude, tilt, force);
+            }
+            self.arm_gravity.set(gravity);
+        }
+        self.truth.set(AnalogTruth {
+            pressure: plant.pressure(),
+            voltage: plant.battery_voltage(),
+            current: plant.battery_current(),
+            elapsed: self.truth.get().elapsed + 1e-3,
+        });
+        self.imu_ready.signal(batch);
+    }
+
+    /// A reset: no motor frame, no servo pulse, nothing in the lines' buffers. Sensors and memory stay as they are.
+    pub fn reset(&self) {
+        self.actuators.set(Actuators::default());
+        self.imu_ready.reset();
+        self.rc.clear();
+        self.telemetry.clear();
+    }
+
+    /// Puts bytes on the receiver's line; what does not fit is lost, as on an unread line.
+    pub fn receive(&self, bytes: &[u8]) {
+        let mut rest = bytes;
+        // The ring takes bytes up to its end, then from its start.
+        while !rest.is_empty()
+            && let Ok(taken) = self.rc.try_write(rest)
+        {
+            rest = rest.get(taken..).unwrap_or_default();
+        }
+    }
+
+    /// Takes the telemetry bytes sent since the last call.
+    pub fn take_telemetry(&self, buffer: &mut [u8]) -> usize {
+        self.telemetry.try_read(buffer).unwrap_or(0)
+    }
+
+    /// What the tasks wrote last.
+    #[must_use]
+    pub fn actuators(&self) -> Actuators {
+        self.actuators.get()
+    }
+}
+
+/// A port of the simulated board; one type serves them all.
+#[derive(Clone, Copy)]
+pub struct Port(pub &'static Board);
+
+impl ports::Imu for Port {
+    fn rate_hz(&self) -> f32 {
+        self.0.imu_rate as f32
+    }
+
+    async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {
+        Ok(self.0.imu_ready.wait().await)
+    }
+
+    // No bus lies between the simulated part and the processor.
+    fn ready_at(&self) -> Instant {
+        Instant::now()
+    }
+}
+
+impl ports::ArmImus for Port {
+    async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
+        Timer::after_micros(ARM_READ_US).await;
+        self.0
+            .arm_gravity
+            .get()
+            .get(arm)
+            .copied()
+            .ok_or(PortError::Absent)
+    }
+}
+
+impl ports::Analog for Port {
+    fn volts_per_count(&self) -> f32 {
+        PIN_VOLTS_PER_COUNT as f32
+    }
+
+    async fn read(&mut self) -> Result<AnalogFrame, PortError> {
+        Timer::after_micros(CONVERSION_US).await;
+        let truth = self.0.truth.get();
+        self.0.truth.set(AnalogTruth {
+            elapsed: 0.0,
+            ..truth
+        });
+        let Sensors {
+            fsr, battery, rng, ..
+        } = &mut *self.0.sensors.borrow_mut();
+        let mut frame = AnalogFrame {
+            fsr: [0; 4],
+            battery_voltage: battery.voltage(truth.voltage, rng),
+            battery_current: battery.current(truth.current, rng),
+        };
+        for ((counts, sensor), pressure) in frame.fsr.iter_mut().zip(fsr).zip(truth.pressure) {
+            *counts = sensor.sample(pressure, truth.elapsed, rng);
+        }
+        Ok(frame)
+    }
+}
+
+impl ports::Motors for Port {
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
+        let actuators = self.0.actuators.get();
+        self.0.actuators.set(Actuators {
+            motors: commands.map(f64::from),
+            ..actuators
+        });
+        Instant::now()
+    }
+}
+
+impl ports::Servos for Port {
+    async fn write(&mut self, pulses_us: PerArm<f32>) {
+        let actuators = self.0.actuators.get();
+        self.0.actuators.set(Actuators {
+            servos: pulses_us.map(f64::from),
+            ..actuators
+        });
+    }
+}
+
+impl ports::SerialInput for Port {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        Ok(self.0.rc.read(buffer).await)
+    }
+}
+
+impl ports::SerialOutput for Port {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let written = self.0.telemetry.write(rest).await;
+            rest = rest.get(written..).unwrap_or_default();
+        }
+        Ok(())
+    }
+}
+
+impl ports::Retain for Port {
+    fn keep(&mut self, second: bool, words: &Words) {
+        let [first_copy, second_copy] = self.0.memory.get();
+        self.0.memory.set(if second {
+            [first_copy, *words]
+        } else {
+            [*words, second_copy]
+        });
+    }
+}
+
+impl ports::Watchdog for Port {
+    /// Nothing bites here: the supervisor's own tests cover withheld feeds.
+    fn feed(&mut self) {}
+}

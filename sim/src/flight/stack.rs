@@ -1,0 +1,209 @@
+//! The flight stack on the simulated board: every task spawned on the virtual executor, and thrown away by a reset.
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use sophie_control::math;
+use sophie_control::mixer::Variant;
+use sophie_control::params::Params;
+use sophie_control::wrench::{Configuration, PerArm};
+use sophie_tasks::deadline::TaskId;
+use sophie_tasks::links::{GripState, Links, Status};
+use sophie_tasks::start::{Cause, Start};
+
+use super::aircraft::{Aircraft, Belief, Reset, Said};
+use crate::aim;
+use crate::board::{Board, Port};
+use crate::clock::VirtualTime;
+use crate::plant::Plant;
+use crate::scenario::Scenario;
+
+/// The stack of one flight.
+pub struct Stack {
+    /// Nothing runs while it is `None`; with it the time of the start, µs after power-up.
+    running: Option<(VirtualTime, u64)>,
+    /// The board that it runs on.
+    pub board: &'static Board,
+    /// Its links.
+    pub links: &'static Links,
+    params: Params,
+    mixer: Variant,
+    configuration: Configuration,
+    /// The last reset and how many there were.
+    reset: Option<Reset>,
+    resets: u32,
+    /// Missed deadlines of the runs before.
+    overruns: u32,
+    noise: Pcg64Mcg,
+}
+
+impl Stack {
+    /// Powers the board up and spawns the tasks.
+    ///
+    /// Board and links are leaked: tasks borrow them as `'static`, as they do statics on a real board.
+    pub fn new(scenario: &Scenario, rng: &mut Pcg64Mcg) -> Self {
+        let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, rng)));
+        let params = calibrated(scenario.params, board);
+        let mut stack = Self {
+            running: None,
+            board,
+            links: Box::leak(Box::new(Links::new(params))),
+            params,
+            mixer: scenario.mixer,
+            configuration: scenario.vehicle.configuration,
+            reset: None,
+            resets: 0,
+            overruns: 0,
+            noise: Pcg64Mcg::seed_from_u64(!scenario.seed),
+        };
+        stack.spawn(0);
+        stack
+    }
+
+    /// The tasks begin, `us` µs after power-up.
+    fn spawn(&mut self, us: u64) {
+        let (links, board) = (self.links, self.board);
+        let (mixer, configuration) = (self.mixer, self.configuration);
+        let time = VirtualTime::new();
+        // Flight level.
+        time.spawn(sophie_tasks::imu::run(links, Port(board)));
+        time.spawn(sophie_tasks::estimator::run(links));
+        time.spawn(sophie_tasks::control::run(links));
+        time.spawn(sophie_tasks::mixer::run(links, mixer, configuration));
+        time.spawn(sophie_tasks::motors::run(links, Port(board)));
+        // Steady level.
+        time.spawn(sophie_tasks::analog::run(links, Port(board)));
+        time.spawn(sophie_tasks::clamp::run(links));
+        time.spawn(sophie_tasks::servos::run(links, Port(board)));
+        time.spawn(sophie_tasks::rc::run(links, Port(board)));
+        time.spawn(sophie_tasks::commander::run(links));
+        time.spawn(sophie_tasks::supervisor::run(links, Port(board), Port(board)));
+        // Background.
+        time.spawn(sophie_tasks::arms::run(links, Port(board)));
+        time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
+        self.running = Some((time, us));
+    }
+}
+
+impl Aircraft for Stack {
+    fn step_world(&mut self, plant: &mut Plant) {
+        self.board.step_world(plant);
+    }
+
+    fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize {
+        self.board.take_telemetry(buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.board.receive(bytes);
+    }
+
+    fn run_until(&mut self, us: u64) -> Result<(), String> {
+        if let Some((time, start)) = &self.running {
+            time.run_until(us.saturating_sub(*start));
+        }
+        Ok(())
+    }
+
+    fn status(&self) -> Option<Said<'_>> {
+        let Status {
+            mode,
+            reason,
+            warning,
+            ..
+        } = self.links.status.latest()?.value;
+        Some(Said {
+            mode,
+            reason,
+            warning,
+        })
+    }
+
+    fn grip(&self) -> Option<GripState> {
+        self.links.grip.latest().map(|g| g.value)
+    }
+
+    fn belief(&self) -> Belief {
+        let links = self.links;
+        let wide = |v: PerArm<f32>| v.map(f64::from);
+        let mix = links.mix.latest().map(|m| m.value).unwrap_or_default();
+        let estimate = links
+            .attitude
+            .latest()
+            .map(|a| a.value.q.to_euler())
+            .unwrap_or_default();
+        // The wanted heading comes as what it is ahead of the present one.
+        let target = links.target.latest().map(|v| {
+            let [roll, pitch, ahead] = aim::angles(v.value);
+            let heading = math::wrap_pi(estimate.2 + ahead as f32);
+            [roll, pitch, f64::from(heading)]
+        });
+        let arms = links.arms.fresh().unwrap_or_default();
+        let contact = links.contact.latest().map(|c| c.value).unwrap_or_default();
+        let tendons = links.tendons.latest().map(|f| f.value).unwrap_or_default();
+        Belief {
+            attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
+            setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
+            tilt_measured: arms.tilt.map(|a| a.map_or(f64::NAN, f64::from)),
+            tilt_model: wide(mix.tilt),
+            thrust_asked: wide(mix.thrusts),
+            tension_asked: wide(tendons.force),
+            pressure: wide(contact.pressure),
+            saturated: mix.running && mix.given.saturated(),
+        }
+    }
+
+    fn motors(&self) -> PerArm<f64> {
+        self.board.actuators().motors
+    }
+
+    // What outlives it is what was kept, unless power went too.
+    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+        self.overruns = self.overruns();
+        self.running = None;
+        self.board.reset();
+        if cause.loses_memory() {
+            let noise: [[u32; 16]; 2] =
+                core::array::from_fn(|_| core::array::from_fn(|_| self.noise.random()));
+            self.board.memory.set(noise);
+        }
+        let start = Start::new(cause, &self.board.memory.get());
+        self.links = Box::leak(Box::new(Links::starting(self.params, start)));
+        self.reset = Some(Reset { cause, step, at });
+        self.resets += 1;
+    }
+
+    fn start(&mut self, us: u64) {
+        self.spawn(us);
+    }
+
+    fn runs(&self) -> bool {
+        self.running.is_some()
+    }
+
+    fn reset(&self) -> Option<Reset> {
+        self.reset
+    }
+
+    fn resets(&self) -> u32 {
+        self.resets
+    }
+
+    fn overruns(&self) -> u32 {
+        let now: u32 = TaskId::ALL
+            .iter()
+            .map(|&task| self.links.timing(task).overruns)
+            .sum();
+        self.overruns + now
+    }
+}
+
+/// The parameters of this very board: its accelerometer was calibrated on a bench.
+fn calibrated(params: Params, board: &Board) -> Params {
+    let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
+    Params {
+        accel_bias_x,
+        accel_bias_y,
+        accel_bias_z,
+        ..params
+    }
+}

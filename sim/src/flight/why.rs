@@ -1,0 +1,210 @@
+//! By how much a flight failed: what the samples say of the quantity that ended it, behind the reason.
+
+use core::f64::consts::PI;
+use glam::{DQuat, DVec3};
+use sophie_control::mode::Mode;
+use sophie_control::tendon::ForceLimit;
+
+use crate::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose};
+use crate::plant::tendon::TendonSpec;
+use crate::plant::{GRAVITY, STEP, arm_spec};
+use crate::record::{SAMPLE_HZ, Sample};
+use crate::scenario::{Scenario, Step};
+
+/// Time before the end that is looked at for swings, s.
+const SWING_TIME: f64 = 2.0;
+/// Least swing from one turn to the next, rad (12 deg), and least number of them in a row, that is reported: gusts and
+/// the pilot make less, the roll manoeuvre turns twice.
+const SWING: f64 = 12.0 * PI / 180.0;
+const SWINGS: usize = 4;
+/// Thrust to weight below which a vehicle is reported as too weak: in the default gusts 1.07 still flies, 1.05 does not.
+const WEAK: f64 = 1.1;
+/// Step of the tilt at which an arm is looked for that presses on the pipe, rad, and their number: down to -2 rad.
+const TILT_STEP: f64 = 1e-3;
+const DEEPEST: u32 = 2000;
+
+/// What is to be said behind the reason `reason` of a flight that failed in `step`; empty when there is nothing.
+pub fn detail(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], reason: &str) -> String {
+    let mut parts = Vec::new();
+    let swings = swings(samples);
+    parts.extend(strength(scenario, step, samples, swings.is_some()));
+    parts.extend(swings);
+    if reason.contains("force limit reached") {
+        parts.extend(force(scenario, samples));
+    }
+    parts.iter().map(|part| format!("; {part}")).collect()
+}
+
+/// Thrust to weight of a vehicle that did not get up.
+fn strength(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], swings: bool) -> Option<String> {
+    let Some(Step::TakeOff { height }) = step else {
+        return None;
+    };
+    let last = samples.last()?;
+    let (thrust, weight) = (
+        4.0 * scenario.vehicle.rotor.thrust_max,
+        scenario.vehicle.body.mass * GRAVITY,
+    );
+    let ratio = thrust / weight;
+    let low = -last.position[2] < 0.5 * height;
+    (low && !swings || ratio < WEAK).then(|| {
+        let small = if ratio < WEAK {
+            format!(", too small: at least {WEAK} is needed")
+        } else {
+            String::new()
+        };
+        format!(
+            "throttle {:.2} given, thrust to weight {ratio:.2} ({thrust:.1} N of {weight:.1} N){small}",
+            last.throttle
+        )
+    })
+}
+
+/// Swings of the attitude that do not end.
+fn swings(samples: &[Sample]) -> Option<String> {
+    let count = (SWING_TIME * SAMPLE_HZ) as usize;
+    let last = samples.get(samples.len().saturating_sub(count)..)?;
+    let told = ["roll", "pitch"]
+        .into_iter()
+        .enumerate()
+        .filter_map(|(axis, name)| {
+            let turns = turns(last.iter().map(|s| s.attitude[axis]));
+            let sizes: Vec<f64> = turns
+                .iter()
+                .zip(turns.iter().skip(1))
+                .map(|(a, b)| (a - b).abs())
+                .collect();
+            if sizes.len() < SWINGS {
+                return None;
+            }
+            let rate = last.iter().map(|s| s.rate[axis].abs()).fold(0.0, f64::max);
+            Some((name, sizes.into_iter().fold(0.0, f64::max), rate))
+        });
+    let (name, size, rate) = told.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(format!(
+        "{name} swings by {:.0} deg at up to {:.0} deg/s",
+        size.to_degrees(),
+        rate.to_degrees()
+    ))
+}
+
+/// Where an angle turned back after at least [`SWING`].
+fn turns(angles: impl Iterator<Item = f64>) -> Vec<f64> {
+    let (mut turns, mut low, mut high, mut rising) = (Vec::new(), f64::MAX, f64::MIN, None);
+    for angle in angles {
+        (low, high) = (f64::min(low, angle), f64::max(high, angle));
+        if rising != Some(false) && angle < high - SWING {
+            turns.push(high);
+            (rising, low) = (Some(false), angle);
+        } else if rising != Some(true) && angle > low + SWING {
+            turns.push(low);
+            (rising, high) = (Some(true), angle);
+        }
+    }
+    turns
+}
+
+/// What the arm that came least far had on its tendon, and what it would have needed.
+fn force(scenario: &Scenario, samples: &[Sample]) -> Option<String> {
+    let p = &scenario.params;
+    let (limit, target) = (
+        f64::from(ForceLimit::from_params(p).force),
+        f64::from(p.grip_pressure),
+    );
+    let radius = TendonSpec::default().reel_radius;
+    let end = samples.iter().rev().find(|s| s.mode == Mode::Clamping)?;
+    let chosen = scenario.arms.mask();
+    let (arm, pressure) = (0..4)
+        .filter(|arm| chosen[*arm])
+        .map(|arm| (arm, end.pressure[arm]))
+        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let needed = needed(scenario, arm, end.thrust[arm], target).map_or_else(
+        || "no force brings it there".to_owned(),
+        |needed| {
+            format!(
+                "about {needed:.0} N needed under a thrust of {:.1} N ({:.2} N m at the servo)",
+                end.thrust[arm],
+                needed * radius
+            )
+        },
+    );
+    Some(format!(
+        "arm {} reached {pressure:.0} of {target:.0} N/m2 with {:.1} N, allowed {limit:.1} N, {needed}",
+        arm + 1,
+        end.tension[arm]
+    ))
+}
+
+/// Force (N) on the tendon of `arm` that holds it at the pressure `target` (Pa) on the scenario's pipe, the body level
+/// on its crown and the rotor at `thrust` (N): the static balance of rotor, spring, skin and tendon.
+fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Option<f64> {
+    let radius = 0.5 * scenario.world.pipe_diameter;
+    let pipe = Pipe {
+        north: 0.0,
+        half_length: 1.0,
+        east: 0.0,
+        down: BELLY_Z + radius,
+        radius,
+        friction: scenario.world.pipe_friction,
+    };
+    let pose = Pose {
+        position: DVec3::ZERO,
+        attitude: DQuat::IDENTITY,
+        velocity: DVec3::ZERO,
+        omega: DVec3::ZERO,
+    };
+    let spec = arm_spec(&scenario.vehicle, arm);
+    (0..DEEPEST)
+        .map(|step| -TILT_STEP * f64::from(step))
+        .find_map(|tilt| {
+            let skin = ArmSkin::new(arm).step(STEP, tilt, 0.0, &pose, &pipe);
+            let moment = ARM_LENGTH * (thrust - spec.static_load(tilt)) + skin.moment_alpha;
+            (skin.pressure >= target).then(|| (moment / TendonSpec::default().lever).max(0.0))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm_bench::{Closing, close};
+    use crate::scenario::ServoProfile;
+
+    fn attitude(angle: impl Fn(f64) -> f64) -> Vec<Sample> {
+        (0..400)
+            .map(|i| Sample {
+                attitude: [0.0, angle(0.01 * f64::from(i)), 0.0],
+                ..Sample::default()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn swings_are_told_and_a_manoeuvre_is_not() {
+        let swinging = attitude(|t| 0.3 * (2.0 * PI * 3.0 * t).sin());
+        assert!(swings(&swinging).unwrap().starts_with("pitch swings by 34 deg"));
+        assert_eq!(swings(&attitude(|t| 0.08 * (2.0 * PI * 3.0 * t).sin())), None);
+        assert_eq!(swings(&attitude(|t| 0.45 * (2.0 * PI * 0.4 * t).sin())), None);
+        assert_eq!(swings(&[]), None);
+    }
+
+    #[test]
+    fn the_force_needed_is_what_a_closing_arm_takes() {
+        for (infill, diameter) in [(6.0, 0.3), (8.0, 0.3), (6.0, 0.2)] {
+            let mut scenario = Scenario::default_mission();
+            scenario.vehicle.infill = infill;
+            scenario.world.pipe_diameter = diameter;
+            let closed = close(&Closing {
+                infill,
+                diameter,
+                servo: ServoProfile::Paper.into(),
+                thrust: 2.5,
+                seconds: 12.0,
+                seed: 1,
+            });
+            let takes = closed.steady / TendonSpec::default().reel_radius;
+            let needed = needed(&scenario, 0, 0.0, 950.0).unwrap();
+            println!("{infill} % on {diameter} m: {needed:.1} N, takes {takes:.1} N");
+            assert!((needed / takes - 1.0).abs() < 0.1, "{needed} {takes}");
+        }
+    }
+}

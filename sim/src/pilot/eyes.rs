@@ -1,0 +1,125 @@
+//! What the pilot sees: late, and not exactly.
+
+use std::collections::VecDeque;
+
+use glam::{DVec2, DVec3};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use super::Seen;
+
+/// Time over which an error of the eyes changes, s (assumed).
+const ERROR_TIME: f64 = 0.5;
+/// Error of the seen velocity over the error of the seen position, 1/s (assumed).
+const VELOCITY_ERROR: f64 = 2.0;
+/// RMS error of the seen heading, rad (assumed, 0.5°).
+const YAW_ERROR: f64 = 0.009;
+
+/// The eyes.
+#[derive(Clone, Debug)]
+pub struct Eyes {
+    delay: f64,
+    noise: f64,
+    rng: Pcg64Mcg,
+    position_error: DVec3,
+    velocity_error: DVec3,
+    yaw_error: f64,
+    queue: VecDeque<Seen>,
+}
+
+impl Eyes {
+    /// Eyes that see `delay` s late with an RMS error of `noise` m.
+    pub fn new(delay: f64, noise: f64, rng: Pcg64Mcg) -> Self {
+        Self {
+            delay,
+            noise,
+            rng,
+            position_error: DVec3::ZERO,
+            velocity_error: DVec3::ZERO,
+            yaw_error: 0.0,
+            queue: VecDeque::new(),
+        }
+    }
+
+    /// Looks at the vehicle as it is now, `dt` s after the last look; returns what reaches the mind.
+    pub fn look(&mut self, now: Seen, dt: f64) -> Seen {
+        let keep = (1.0 - dt / ERROR_TIME).max(0.0);
+        let push = (1.0 - keep * keep).sqrt();
+        let rng = &mut self.rng;
+        let mut normal = || -> f64 { StandardNormal.sample(rng) };
+        let mut vector = |rms: f64| DVec3::new(normal(), normal(), normal()) * rms;
+        self.position_error = self.position_error * keep + vector(self.noise) * push;
+        self.velocity_error = self.velocity_error * keep + vector(VELOCITY_ERROR * self.noise) * push;
+        self.yaw_error = self.yaw_error * keep + vector(YAW_ERROR).x * push;
+        self.queue.push_back(Seen {
+            position: now.position + self.position_error,
+            velocity: now.velocity + self.velocity_error,
+            yaw: now.yaw + self.yaw_error,
+            ..now
+        });
+        while self.queue.len() > 1 && self.queue[1].t <= now.t - self.delay {
+            self.queue.pop_front();
+        }
+        self.queue[0]
+    }
+}
+
+/// What the pilot knows his own sticks to have done since what he sees happened: without it no one could
+/// hold a spot to a few centimetres with a quarter of a second of delay.
+#[derive(Clone, Debug)]
+pub struct Foresight {
+    delay: f64,
+    /// Accelerations over the last `delay`: (time, north-east, down), m/s².
+    past: VecDeque<(f64, DVec2, f64)>,
+    /// Acceleration now: the vehicle follows the sticks with a lag.
+    level: DVec2,
+    down: f64,
+}
+
+/// Time that the vehicle takes to lean, s, and to change its thrust: what a pilot knows of his vehicle.
+const LEAN_TIME: f64 = 0.35;
+const THRUST_TIME: f64 = 0.08;
+/// Time by which he steers ahead of the present, s: his hands and half of the lean.
+const AHEAD_LEVEL: f64 = 0.25;
+const AHEAD_DOWN: f64 = 0.12;
+
+impl Foresight {
+    /// Foresight over `delay` s.
+    pub fn new(delay: f64) -> Self {
+        Self {
+            delay,
+            past: VecDeque::new(),
+            level: DVec2::ZERO,
+            down: 0.0,
+        }
+    }
+
+    /// Notes what the hands ask for now: accelerations, m/s², without the trims that only hold against the wind
+    /// and the weight.
+    pub fn note(&mut self, t: f64, level: DVec2, down: f64, dt: f64) {
+        self.level += (level - self.level) * (dt / (dt + LEAN_TIME));
+        self.down += (down - self.down) * (dt / (dt + THRUST_TIME));
+        self.past.push_back((t, self.level, self.down));
+        while self.past.front().is_some_and(|p| p.0 <= t - self.delay) {
+            self.past.pop_front();
+        }
+    }
+
+    /// Nothing that the sticks did moved the vehicle: it stood on something.
+    pub fn forget(&mut self) {
+        *self = Self::new(self.delay);
+    }
+
+    /// Position and velocity, NED, that the vehicle will have when the hands act, from what is seen.
+    pub fn ahead(&self, seen: &Seen, dt: f64) -> (DVec3, DVec3) {
+        let (mut position, mut velocity) = (seen.position, seen.velocity);
+        for (_, level, down) in &self.past {
+            velocity += level.extend(*down) * dt;
+            position += velocity * dt;
+        }
+        // Without a note for each moment of the delay the rest is flown straight on.
+        position += velocity * (self.delay - self.past.len() as f64 * dt).max(0.0);
+        velocity += (self.level * AHEAD_LEVEL).extend(self.down * AHEAD_DOWN);
+        (position, velocity)
+    }
+}

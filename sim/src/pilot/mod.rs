@@ -1,0 +1,244 @@
+//! The simulated pilot: flies the steps of a scenario with sticks alone.
+//!
+//! He sees the vehicle from outside (position, speed, attitude: late and with errors) and the transmitter's
+//! display, or hears the log read aloud where there is no telemetry; he has hands of limited bandwidth. What leaves him are channel frames of the radio. He knows
+//! nothing else, and the flight stack learns nothing of him but those bytes.
+
+mod air;
+mod eyes;
+mod ground;
+mod guidance;
+mod hands;
+mod limits;
+mod mind;
+mod perch;
+mod radio;
+mod referee;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod toy;
+
+use std::collections::VecDeque;
+
+use glam::DVec3;
+use rand_pcg::Pcg64Mcg;
+use sophie_control::mode::Mode;
+use sophie_control::rc::CHANNELS;
+
+use self::eyes::Eyes;
+use self::hands::{Hands, Wish};
+use self::mind::{Mind, Progress, View};
+use self::referee::Referee;
+use crate::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};
+use crate::record::Outcome;
+use crate::scenario::{Scenario, Step};
+
+/// The vehicle as it looks from outside, now.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Simulated time, s.
+    pub t: f64,
+    /// Position of the centre of mass, NED from the take-off point on the ground, m.
+    pub position: DVec3,
+    /// Velocity, NED, m/s.
+    pub velocity: DVec3,
+    /// Roll, right side down positive, rad.
+    pub roll: f64,
+    /// Pitch, nose up positive, rad.
+    pub pitch: f64,
+    /// Heading of the nose, clockwise from north, rad.
+    pub yaw: f64,
+}
+
+/// A step of the mission began or ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepEvent {
+    /// The step of this index began.
+    Began(usize),
+    /// The step of this index ended: done, or failed and the mission with it.
+    Ended {
+        /// Index in [`Scenario::steps`].
+        index: usize,
+        /// It was done.
+        done: bool,
+    },
+}
+
+/// What the pilot did in one step of time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PilotOutput {
+    /// A channel frame from a receiver of CRSF, [`FRAME_HZ`] a second while the transmitter is on.
+    pub rc_bytes: Option<Frame>,
+    /// The same channels as they come over the air, for a receiver that speaks another protocol.
+    pub channels: Option<[u16; CHANNELS]>,
+    /// Index of the step being flown; the number of steps once all are done.
+    pub step: usize,
+    /// Steps that began or ended just now.
+    pub events: Vec<StepEvent>,
+    /// How the mission ended, in the call in which it did.
+    pub outcome: Option<Outcome>,
+}
+
+/// The pilot.
+#[derive(Debug)]
+pub struct Pilot {
+    steps: Vec<Step>,
+    index: usize,
+    begun: bool,
+    outcome: Option<Outcome>,
+    /// Time since the last frame, s.
+    elapsed: f64,
+    telemetry: Telemetry,
+    eyes: Eyes,
+    /// What the display showed over the last reaction time.
+    display: VecDeque<Option<Mode>>,
+    display_delay: usize,
+    mind: Mind,
+    hands: Hands,
+    wish: Wish,
+    referee: Referee,
+}
+
+impl Pilot {
+    /// A pilot for `scenario`, with his own random numbers.
+    #[must_use]
+    pub fn new(scenario: &Scenario, rng: Pcg64Mcg) -> Self {
+        let limits = &scenario.pilot;
+        Self {
+            steps: scenario.steps.clone(),
+            index: 0,
+            begun: false,
+            outcome: None,
+            elapsed: 0.0,
+            telemetry: Telemetry::default(),
+            eyes: Eyes::new(limits.delay, limits.eye_noise, rng),
+            display: VecDeque::new(),
+            display_delay: (limits.delay * FRAME_HZ) as usize,
+            mind: Mind::new(scenario),
+            hands: Hands::new(limits.bandwidth, scenario.arms),
+            wish: Wish::default(),
+            referee: Referee::default(),
+        }
+    }
+
+    /// One step of `dt` s (at most a few ms): what there is to see now, and the bytes that the vehicle sent.
+    pub fn step(&mut self, dt: f64, seen: Seen, telemetry_bytes: &[u8]) -> PilotOutput {
+        let mut out = PilotOutput {
+            step: self.index,
+            ..Default::default()
+        };
+        if self.mind.transmits() {
+            self.telemetry.take(telemetry_bytes);
+        } else {
+            self.telemetry.darken();
+        }
+        if self.outcome.is_none()
+            && self.index > 0
+            && let Some(why) = self.referee.judge(&seen, mind::HEADING, dt)
+        {
+            self.fail(&why, &mut out);
+        }
+        self.elapsed += dt;
+        if self.elapsed >= 1.0 / FRAME_HZ {
+            self.elapsed -= 1.0 / FRAME_HZ;
+            if self.outcome.is_none() {
+                self.think(seen, 1.0 / FRAME_HZ, &mut out);
+            }
+            let sticks = self.hands.move_to(&self.wish, 1.0 / FRAME_HZ);
+            if self.mind.transmits() {
+                out.rc_bytes = Some(rc_frame(&sticks));
+                out.channels = Some(sticks.to_channels());
+            }
+        }
+        out.step = self.index;
+        out
+    }
+
+    /// Somebody reads the vehicle's log aloud: with a receiver that has no way back the display shows nothing.
+    pub fn hear(&mut self, mode: Mode, reason: &str) {
+        if self.mind.transmits() {
+            self.telemetry.tell(mode, reason);
+        }
+    }
+
+    /// How the mission ended; `None` before that.
+    #[must_use]
+    pub fn outcome(&self) -> Option<&Outcome> {
+        self.outcome.as_ref()
+    }
+
+    /// Throttle stick, 0..1.
+    #[must_use]
+    pub fn throttle(&self) -> f64 {
+        self.hands.at()[3]
+    }
+
+    /// What the transmitter's display shows.
+    #[must_use]
+    pub fn telemetry(&self) -> &Telemetry {
+        &self.telemetry
+    }
+
+    fn think(&mut self, now: Seen, dt: f64, out: &mut PilotOutput) {
+        let seen = self.eyes.look(now, dt);
+        self.display.push_back(self.telemetry.mode);
+        while self.display.len() > self.display_delay + 1 {
+            self.display.pop_front();
+        }
+        let mode = self.display.front().copied().flatten();
+        let Some(step) = self.steps.get(self.index).cloned() else {
+            self.outcome = Some(Outcome {
+                accomplished: true,
+                reason: "mission accomplished".to_owned(),
+            });
+            out.outcome.clone_from(&self.outcome);
+            return;
+        };
+        if !self.begun {
+            self.begun = true;
+            self.mind.begin(&seen);
+            out.events.push(StepEvent::Began(self.index));
+        }
+        let view = View {
+            seen,
+            now: now.t,
+            mode,
+            reason: &self.telemetry.reason,
+        };
+        match self.mind.fly(&step, &view, self.hands.at(), dt) {
+            Progress::Going(wish) => self.wish = wish,
+            Progress::Done(wish) => {
+                self.wish = wish;
+                out.events.push(StepEvent::Ended {
+                    index: self.index,
+                    done: true,
+                });
+                self.index += 1;
+                self.begun = false;
+            }
+            Progress::Failed(why) => self.fail(&why, out),
+        }
+    }
+
+    fn fail(&mut self, why: &str, out: &mut PilotOutput) {
+        let name = self.steps.get(self.index).map_or("end", Step::name);
+        self.outcome = Some(Outcome {
+            accomplished: false,
+            reason: format!("{name}: {why}"),
+        });
+        out.outcome.clone_from(&self.outcome);
+        if self.begun {
+            out.events.push(StepEvent::Ended {
+                index: self.index,
+                done: false,
+            });
+        }
+    }
+}
+
+/// An angle folded into [-π, π).
+fn wrap(x: f64) -> f64 {
+    use core::f64::consts::PI;
+    (x + PI).rem_euclid(2.0 * PI) - PI
+}

@@ -1,0 +1,321 @@
+//! Steps at the pipe: fly over it, touch, perch, hold, release.
+
+use sophie_control::mode::{Mode, SLIDES};
+
+use super::hands::Wish;
+use super::mind::{Mind, Phase, Progress, View};
+
+/// Height over the pipe from which it is approached, and to which the vehicle goes after a release, m.
+const OVER: f64 = 1.0;
+/// Height over the pipe to which a missed approach goes up again, m.
+const OVER_AGAIN: f64 = 0.4;
+/// Distance, m, speed, m/s, and time, s, at which the vehicle has settled over the pipe.
+const SETTLED: f64 = 0.08;
+const SETTLED_SPEED: f64 = 0.10;
+const SETTLED_TIME: f64 = 1.5;
+/// Rates of descent, m/s: to the gate over the pipe, and from there onto it.
+const DESCENT: f64 = 0.15;
+const LAST_DESCENT: f64 = 0.25;
+/// Height of the centre of mass over the pipe's top at the gate, where the pilot waits until he is over the
+/// crown, and the height at which the belly touches, m.
+const GATE: f64 = 0.11;
+const BELLY: f64 = 0.05;
+/// Distance beside the crown, m, now and after the time that the last bit takes, s, and speed, m/s, at which he
+/// continues from the gate; time for which all must hold, s.
+const CENTRED: f64 = 0.02;
+const CENTRED_SPEED: f64 = 0.06;
+const LAST_TIME: f64 = 0.5;
+/// Time at the gate over which he comes to be content with twice the distance, s.
+const PATIENCE: f64 = 25.0;
+const CENTRED_TIME: f64 = 0.15;
+/// Largest distance along the pipe from the spot, m.
+const ALONG: f64 = 0.25;
+/// Height over the pipe below which being far off it matters, m, and how far that is, m.
+const NEAR: f64 = 0.4;
+const ASTRAY: f64 = 0.20;
+/// Distance from the spot at which he descends again, m: well within [`ASTRAY`], or one gust would cost every try.
+const BACK: f64 = 0.10;
+/// Distance beside the crown at which a vehicle on the pipe will not stay, share of the pipe's radius.
+const SLIPPING: f64 = 0.33;
+/// Height over the pipe at which a vehicle that does not sink any more stands on it, m.
+const STANDS: f64 = 0.12;
+/// Depth of the centre of mass below the pipe's top by which it was missed, m.
+const MISSED: f64 = 0.05;
+/// Sink rate of a vehicle that stands, m/s, and the time for which it must last, s.
+const STOPPED: f64 = 0.05;
+const STOPPED_TIME: f64 = 0.3;
+/// Throttle at which the vehicle stands firmly, and the speed at which it is set, 1/s: with nearly all of the
+/// weight on the rotors the slightest lean makes it slide.
+const FIRM_THROTTLE: f64 = 0.36;
+const FIRM_EASE: f64 = 0.5;
+/// Tries after which the pilot gives up.
+const TRIES: u32 = 8;
+/// Speed of the throttle on the pipe, 1/s.
+const EASE: f64 = 0.25;
+/// Throttle at which the arms are opened: enough to steer by, but most of the weight still presses the belly onto
+/// the pipe. The more thrust, the more of it pushes a leaning vehicle off the crown.
+const RELEASE_THROTTLE: f64 = 0.25;
+/// The same at least: below 0.20 the stack opens nothing, whatever the rotors' strength.
+const RELEASE_LEAST: f64 = 0.21;
+/// What the display says where a perched vehicle will not be let go, and the time for which it must, s.
+const TROUBLES: [&str; 2] = ["battery critical", "radio lost"];
+const REFUSED_TIME: f64 = 3.0;
+/// Depth below where it stood at which the vehicle has slid off, m.
+const SUNK: f64 = 0.06;
+/// Time for which the display may tell of a lost grip, s.
+const GRIP_LOST_TIME: f64 = 1.0;
+/// Rise at which the vehicle is clear of the pipe and the sticks are used again, m.
+const CLEAR: f64 = 0.06;
+
+impl Mind {
+    /// Share of the throttles on the pipe that is given: less with stronger rotors, which would lift the vehicle off,
+    /// never more, since the stack takes more than `perch_throttle_max` for flying on.
+    fn lightly(&self) -> f64 {
+        self.guidance.strength().min(1.0)
+    }
+
+    /// The throttle while closing that the scenario wants, as far as it leaves a stronger vehicle standing on the pipe.
+    fn closing(&self, wanted: f64) -> f64 {
+        if self.lightly() < 1.0 {
+            wanted.min(FIRM_THROTTLE * self.lightly())
+        } else {
+            wanted
+        }
+    }
+
+    pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {
+        let wish = self.go_to(v, self.pipe, self.pipe_top + OVER, dt);
+        if self.settled(v, dt) {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    fn settled(&mut self, v: &View<'_>, dt: f64) -> bool {
+        let off = (v.seen.position.truncate() - self.pipe)
+            .length()
+            .hypot(v.height() - self.pipe_top - OVER);
+        let there = off < SETTLED && v.seen.velocity.length() < SETTLED_SPEED;
+        self.held_for(there, SETTLED_TIME, dt)
+    }
+
+    pub(super) fn touch(&mut self, v: &View<'_>, stick: f64, dt: f64) -> Progress {
+        let (wish, felt) = self.approach(v, stick, dt);
+        if self.missed >= TRIES {
+            return Progress::Failed(format!(
+                "missed the pipe {TRIES} times, last {:.2} m beside it",
+                (v.seen.position.y - self.pipe.y).abs()
+            ));
+        }
+        if felt {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    /// Descends onto the pipe, and up again for another try when it would be missed. True once it carries.
+    /// `throttle` is where that stick is.
+    fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (Wish, bool) {
+        let over = v.height() - self.pipe_top;
+        let (firm, firm_ease) = (FIRM_THROTTLE * self.lightly(), FIRM_EASE * self.lightly());
+        let off = v.seen.position.truncate() - self.pipe;
+        if self.phase == Phase::GoAround {
+            let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
+            if over > 0.75 * OVER_AGAIN && off.length() < BACK {
+                self.enter(Phase::Descend);
+            }
+            return (wish, false);
+        }
+        let (position, velocity) = self.guidance.ahead();
+        let away = position.truncate() - self.pipe;
+        let over_ahead = -position.z - self.pipe_top;
+        let astray = over < NEAR && (off.y.abs() > ASTRAY || off.x.abs() > 2.0 * ALONG);
+        let slips = self.phase == Phase::Plant && off.y.abs() > SLIPPING * self.pipe_radius;
+        if astray || slips || over < -MISSED {
+            self.missed += 1;
+            self.enter(Phase::GoAround);
+        }
+        match self.phase {
+            Phase::Commit => {
+                let drifts = away.y.abs() > 2.0 * CENTRED || velocity.y.abs() > 2.0 * CENTRED_SPEED;
+                if drifts && over_ahead > BELLY + 0.02 {
+                    self.enter(Phase::Descend);
+                } else if over_ahead < BELLY {
+                    self.throttle = throttle;
+                    self.enter(Phase::Plant);
+                }
+                (self.climb_over(v, self.pipe, -LAST_DESCENT, dt), false)
+            }
+            Phase::Plant => {
+                let stands = over < STANDS && v.seen.velocity.z.abs() < STOPPED;
+                // Most of the weight is still on the rotors: without the trim it would slide.
+                let (roll, pitch) = self.guidance.trim(&v.seen);
+                let wish = Wish {
+                    roll,
+                    pitch,
+                    ..self.throttle_to(firm, firm_ease, dt)
+                };
+                let felt = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
+                if felt {
+                    self.height = v.height();
+                }
+                (wish, felt)
+            }
+            Phase::GoAround => (self.climb_over(v, self.pipe, DESCENT, dt), false),
+            _ => {
+                if self.phase != Phase::Descend {
+                    self.enter(Phase::Descend);
+                }
+                let patience = (1.0 + self.phase_time / PATIENCE).min(1.75);
+                let centred = away.y.abs() < 1.5 * CENTRED * patience
+                    && (away.y + LAST_TIME * velocity.y).abs() < CENTRED * patience
+                    && velocity.y.abs() < CENTRED_SPEED * patience
+                    && away.x.abs() < ALONG
+                    && velocity.x.abs() < 2.0 * CENTRED_SPEED;
+                let at_gate = over_ahead < 1.5 * GATE;
+                if self.held_for(at_gate && centred, CENTRED_TIME, dt) {
+                    self.enter(Phase::Commit);
+                }
+                let rate = (1.5 * (GATE - over_ahead)).clamp(-DESCENT, DESCENT);
+                (self.climb_over(v, self.pipe, rate, dt), false)
+            }
+        }
+    }
+
+    pub(super) fn clamp(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
+        match self.perch(v, throttle, stick, dt) {
+            Progress::Going(wish) if v.mode == Some(Mode::Clamping) => Progress::Done(wish),
+            other => other,
+        }
+    }
+
+    pub(super) fn perch(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
+        if matches!(
+            self.phase,
+            Phase::GoAround | Phase::Descend | Phase::Commit | Phase::Plant
+        ) {
+            let (wish, felt) = self.approach(v, stick, dt);
+            if felt {
+                self.enter(Phase::Throttle);
+            }
+            return Progress::Going(wish);
+        }
+        if self.phase == Phase::Start {
+            self.enter(Phase::Throttle);
+        }
+        self.perch_switch = true;
+        let closing = matches!(v.mode, Some(Mode::Contact | Mode::Clamping | Mode::Perched));
+        if closing && self.phase == Phase::Throttle {
+            self.enter(Phase::Wait);
+        }
+        let beside = (v.seen.position.y - self.pipe.y).abs();
+        let slips = self.phase == Phase::Throttle
+            && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK);
+        let left = v.mode == Some(Mode::Escaping) && v.reason == SLIDES;
+        if slips || left {
+            self.perch_switch = false;
+            self.missed += 1;
+            if self.missed >= TRIES {
+                return Progress::Failed(format!(
+                    "slid off the pipe {TRIES} times, last {beside:.2} m beside it"
+                ));
+            }
+            self.enter(Phase::GoAround);
+        }
+        if self.phase == Phase::Wait
+            && matches!(
+                v.mode,
+                Some(Mode::Releasing | Mode::Escaping | Mode::Flight | Mode::Failsafe)
+            )
+        {
+            return Progress::Failed(format!("no proven grip, {}", v.shown()));
+        }
+        let perched = v.mode == Some(Mode::Perched);
+        let throttle = if perched { 0.0 } else { self.closing(throttle) };
+        let wish = self.throttle_to(throttle, EASE * self.lightly(), dt);
+        if perched && self.throttle <= 0.0 {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    pub(super) fn hold(&mut self, v: &View<'_>, seconds: f64, dt: f64) -> Progress {
+        if v.mode != Some(Mode::Perched) {
+            return Progress::Failed(format!(
+                "no longer perched after {:.1} s, {}",
+                self.step_time,
+                v.shown()
+            ));
+        }
+        if self.held_for(v.reason == "grip lost", GRIP_LOST_TIME, dt) {
+            return Progress::Failed(format!("grip lost after {:.1} s", self.step_time));
+        }
+        let wish = Wish::default();
+        if self.step_time >= seconds {
+            Progress::Done(wish)
+        } else {
+            Progress::Going(wish)
+        }
+    }
+
+    pub(super) fn open(&mut self, v: &View<'_>, dt: f64) -> Progress {
+        match self.release(v, dt) {
+            Progress::Going(wish) if v.mode == Some(Mode::Releasing) => Progress::Done(wish),
+            other => other,
+        }
+    }
+
+    pub(super) fn release(&mut self, v: &View<'_>, dt: f64) -> Progress {
+        let (opening, ease) = (
+            (RELEASE_THROTTLE * self.lightly()).max(RELEASE_LEAST),
+            EASE * self.lightly(),
+        );
+        match self.phase {
+            Phase::Start if v.mode == Some(Mode::Releasing) => {
+                self.enter(Phase::Wait);
+                Progress::Going(self.throttle_to(opening, ease, dt))
+            }
+            Phase::Start | Phase::Throttle => {
+                if self.phase == Phase::Start {
+                    self.throttle = 0.0;
+                    // Off already after a release that a reset has cut short: off counts only after on.
+                    self.perch_switch = true;
+                    self.enter(Phase::Throttle);
+                }
+                let wish = self.throttle_to(opening, ease, dt);
+                if self.held_for(self.throttle >= opening, 0.5, dt) {
+                    self.perch_switch = false;
+                    self.enter(Phase::Wait);
+                }
+                Progress::Going(wish)
+            }
+            Phase::Wait => {
+                if matches!(v.mode, Some(Mode::Flight | Mode::Escaping)) {
+                    self.height = v.height();
+                    self.spot = v.seen.position.truncate();
+                    self.enter(Phase::Fly);
+                }
+                let refused = v.mode == Some(Mode::Perched) && TROUBLES.contains(&v.reason);
+                if self.held_for(refused, REFUSED_TIME, dt) {
+                    return Progress::Failed(format!("arms not opened, {}", v.shown()));
+                }
+                Progress::Going(self.throttle_to(opening, ease, dt))
+            }
+            _ => {
+                let mut wish = self.go_to(v, self.spot, self.height + OVER, dt);
+                if v.height() < self.height + CLEAR {
+                    (wish.roll, wish.pitch, wish.yaw) = (0.0, 0.0, 0.0);
+                }
+                let there = (v.height() - self.height - OVER).abs() < 0.2 && v.seen.velocity.length() < 0.3;
+                if self.held_for(there, 0.5, dt) {
+                    Progress::Done(wish)
+                } else {
+                    Progress::Going(wish)
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! A vehicle just good enough to try the pilot on: a point mass with lags, the real mode logic, a made-up grip.
+
+use glam::{DVec2, DVec3};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use sophie_control::grip::GripState;
+use sophie_control::grip::{ArmGrip, ArmState};
+use sophie_control::math::GRAVITY;
+use sophie_control::mode::{Inputs, ModeLogic, Motion, Outputs};
+use sophie_control::rc::Sticks;
+use sophie_control::setpoint::{ClampCommand, Setpoint};
+use sophie_control::vector::{Quat, Vec3};
+use uf_crsf::packets::{FlightMode, PacketAddress};
+use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};
+
+use super::{Pilot, PilotOutput, Seen};
+use crate::plant::gust::Gust;
+use crate::scenario::Scenario;
+
+pub const DT: f64 = 0.002;
+/// Height of the centre of mass over what it stands on, m.
+const BELLY: f64 = 0.04;
+/// Time that the arms take to close and to open, s.
+const CLOSING: f64 = 3.0;
+
+pub struct Toy {
+    pub pilot: Pilot,
+    pub seen: Seen,
+    pub out: Outputs,
+    pub sticks: Option<Sticks>,
+    /// Steady force of the wind, N.
+    pub wind: DVec3,
+    /// Grip pressure that the closing reaches, Pa.
+    pub pressure: f32,
+    /// Thrust of the real rotors over the nominal ones.
+    pub strength: f64,
+    /// Voltage of the flight battery, V.
+    pub battery: f32,
+    /// The receiver hears nothing.
+    pub deaf: bool,
+    /// Uncommanded yaw rate, rad/s.
+    pub spin: f64,
+    scenario: Scenario,
+    gust: Gust,
+    logic: ModeLogic,
+    parser: CrsfParser,
+    setpoint: DVec2,
+    thrust: f64,
+    closed: f64,
+    steps: u64,
+    acceleration: DVec3,
+}
+
+impl Toy {
+    pub fn new(scenario: &Scenario) -> Self {
+        let mut rng = Pcg64Mcg::seed_from_u64(scenario.seed);
+        let gust_rng = Pcg64Mcg::from_rng(&mut rng);
+        Self {
+            pilot: Pilot::new(scenario, rng),
+            seen: Seen {
+                position: DVec3::new(0.0, 0.0, -BELLY),
+                ..Default::default()
+            },
+            out: Outputs::default(),
+            sticks: None,
+            wind: DVec3::ZERO,
+            pressure: 950.0,
+            strength: 1.0,
+            battery: 15.5,
+            deaf: false,
+            spin: 0.0,
+            scenario: scenario.clone(),
+            gust: Gust::new(scenario.world.gust_force, 0.0, gust_rng),
+            logic: ModeLogic::new(&scenario.params),
+            parser: CrsfParser::new(),
+            setpoint: DVec2::ZERO,
+            thrust: 0.0,
+            closed: 0.0,
+            steps: 0,
+            acceleration: DVec3::ZERO,
+        }
+    }
+
+    /// Flies until the pilot has ended or `seconds` have passed.
+    pub fn fly(&mut self, seconds: f64, mut watch: impl FnMut(&Self, &PilotOutput)) {
+        for _ in 0..(seconds / DT) as u64 {
+            let out = self.step();
+            watch(self, &out);
+            if out.outcome.is_some() {
+                return;
+            }
+        }
+    }
+
+    pub fn step(&mut self) -> PilotOutput {
+        self.steps += 1;
+        let mut telemetry = [0; 64];
+        let mut count = 0;
+        if self.steps.is_multiple_of(50) {
+            let text = match self.out.reason {
+                "" => self.out.mode.name().to_owned(),
+                why => format!("{}: {why}", self.out.mode.name()),
+            };
+            let packet = FlightMode::new(&text).unwrap();
+            count = write_packet_to_buffer(&mut telemetry, PacketAddress::FlightController, &packet).unwrap();
+        }
+        let out = self.pilot.step(DT, self.seen, &telemetry[..count]);
+        if let Some(frame) = &out.rc_bytes {
+            let mut bytes = frame.as_slice();
+            while let Some(packet) = self.parser.next_packet(&mut bytes) {
+                if let Ok(Packet::RCChannels(c)) = packet {
+                    self.sticks = Sticks::from_channels(&c.0).ok();
+                }
+            }
+        }
+        if self.steps.is_multiple_of(5) {
+            self.command();
+        }
+        self.move_on();
+        out
+    }
+
+    fn command(&mut self) {
+        let dt = 5.0 * DT;
+        let close = matches!(self.out.tendons, ClampCommand::Close { .. });
+        self.closed = (self.closed + if close { dt } else { -3.0 * dt }).clamp(0.0, CLOSING + 1.0);
+        let pressure = self.pressure * (self.closed / CLOSING).min(1.0) as f32;
+        let state = if self.closed > 0.0 {
+            ArmState::Touching
+        } else {
+            ArmState::Free
+        };
+        let proven = self.closed > CLOSING + 0.5 && (pressure - 950.0).abs() < 50.0;
+        let s = &self.seen;
+        let q = Quat::from_euler(s.roll as f32, s.pitch as f32, s.yaw as f32);
+        let [north, east, down] = self.acceleration.to_array().map(|a| a as f32);
+        let felt = q.rotate_inverse(Vec3::new(north, east, down - GRAVITY));
+        let inputs = Inputs {
+            sticks: self.sticks.filter(|_| !self.deaf),
+            motion: Some(Motion {
+                q,
+                accel: felt,
+                calibrated: s.t > 2.0,
+                ..Default::default()
+            }),
+            lift: self.out.rotors.thrust(),
+            grip: Some(GripState {
+                proven,
+                released: self.closed <= 0.0,
+                arms: [ArmGrip {
+                    state,
+                    pressure,
+                    ..Default::default()
+                }; 4],
+            }),
+            battery: Some(self.battery),
+            ..Default::default()
+        };
+        self.out = self.logic.step(&inputs, dt as f32);
+    }
+
+    fn move_on(&mut self) {
+        let (roll, pitch, yaw_rate, thrust) = match self.out.rotors {
+            Setpoint::Stop => (0.0, 0.0, 0.0, 0.0),
+            Setpoint::Idle => (0.0, 0.0, 0.0, 1.0),
+            Setpoint::Angle {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
+            }
+            | Setpoint::Escape {
+                roll,
+                pitch,
+                yaw_rate,
+                thrust,
+            } => (roll, pitch, yaw_rate, thrust),
+            Setpoint::Resting { roll, pitch, thrust } => (roll, pitch, 0.0, thrust),
+            // Spooling down in a proven grip: no moments.
+            Setpoint::Direct { wrench } => {
+                (self.seen.roll as f32, self.seen.pitch as f32, 0.0, wrench.thrust)
+            }
+            Setpoint::Rate { .. } => panic!("the pilot flies angles"),
+        };
+        let s = &mut self.seen;
+        self.setpoint += (DVec2::new(f64::from(roll), f64::from(pitch)) - self.setpoint) * (10.0 * DT);
+        s.roll += (self.setpoint.x - s.roll) * (4.5 * DT);
+        s.pitch += (self.setpoint.y - s.pitch) * (4.5 * DT);
+        s.yaw += (f64::from(yaw_rate) + self.spin) * DT;
+        self.thrust += (f64::from(thrust) * self.strength - self.thrust) * (20.0 * DT);
+        self.gust.step(DT);
+
+        let mass = f64::from(self.scenario.params.mass);
+        let lean = DVec2::from_angle(s.yaw)
+            .rotate(DVec2::new(-s.pitch.tan(), s.roll.tan()) * (s.roll.cos() * s.pitch.cos()));
+        let up = s.roll.cos() * s.pitch.cos();
+        let mut force = self.thrust * lean.extend(-up) + self.gust.force() + self.wind;
+        force.z += mass * f64::from(GRAVITY);
+        let depth = floor(&self.scenario, s.position) + BELLY + s.position.z;
+        if depth > 0.0 {
+            let normal = (4000.0 * depth + 120.0 * s.velocity.z).max(0.0);
+            force.z -= normal;
+            let slip = (s.velocity.truncate() * 300.0).clamp_length_max(0.6 * normal);
+            force -= slip.extend(0.0);
+        }
+        if self.closed > CLOSING {
+            force -= s.velocity * 300.0;
+            force.z = force.z.min(0.0);
+        }
+        let acceleration = force / mass;
+        self.acceleration = acceleration;
+        s.velocity += acceleration * DT;
+        s.position += s.velocity * DT;
+        s.t += DT;
+    }
+}
+
+/// Height of what is below, m: the upper half of 2 m of pipe, or the ground.
+fn floor(scenario: &Scenario, position: DVec3) -> f64 {
+    let w = &scenario.world;
+    let radius = 0.5 * w.pipe_diameter;
+    let [along, beside] = [position.x - w.pipe_position[0], position.y - w.pipe_position[1]];
+    if along.abs() < 1.0 && beside.abs() < radius {
+        w.pipe_top - radius + (radius * radius - beside * beside).sqrt()
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,157 @@
+//! What is kept of a flight: enough for the table, the report and the log file.
+
+use sophie_control::mode::Mode;
+use sophie_control::wrench::PerArm;
+
+use crate::scenario::Scenario;
+
+/// A flown flight.
+#[derive(Clone, Debug)]
+pub struct FlightRecord {
+    /// What was to be flown.
+    pub scenario: Scenario,
+    /// Whether it was, and if not, why.
+    pub outcome: Outcome,
+    /// Samples at [`SAMPLE_HZ`].
+    pub samples: Vec<Sample>,
+    /// One entry for each step that was begun.
+    pub phases: Vec<Phase>,
+    /// What happened, in order of time.
+    pub events: Vec<Event>,
+    /// One entry for each chosen arm of each proven grip.
+    pub grip: Vec<Grip>,
+    /// Simulated time, s.
+    pub sim_seconds: f64,
+    /// Wall time that the simulation took, s.
+    pub wall_seconds: f64,
+    /// Missed deadlines of all tasks.
+    pub overruns: u32,
+    /// Digest of every sample to the bit, for comparing two runs.
+    pub digest: u64,
+}
+
+/// Samples per simulated second.
+pub const SAMPLE_HZ: f64 = 100.0;
+
+/// How a flight ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Every step was done.
+    pub accomplished: bool,
+    /// One line: `mission accomplished`, or what went wrong, when.
+    pub reason: String,
+}
+
+/// One sample of truth and of the stack's estimates.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Simulated time, s.
+    pub t: f64,
+    /// State of the stack.
+    pub mode: Mode,
+    /// True position NED, m.
+    pub position: [f64; 3],
+    /// True velocity NED, m/s.
+    pub velocity: [f64; 3],
+    /// True roll, pitch, yaw, rad.
+    pub attitude: [f64; 3],
+    /// Estimated roll, pitch, yaw, rad.
+    pub attitude_estimate: [f64; 3],
+    /// Roll, pitch and yaw that the controller aims at, rad; NaN where there is none.
+    pub attitude_setpoint: [f64; 3],
+    /// True angular rate, rad/s, body.
+    pub rate: [f64; 3],
+    /// True tilt of each arm, rad.
+    pub tilt: PerArm<f64>,
+    /// Tilt by the arm's own sensor, rad; NaN where there is none.
+    pub tilt_measured: PerArm<f64>,
+    /// Tilt by the model in the mixer, rad.
+    pub tilt_model: PerArm<f64>,
+    /// True thrust of each rotor, N.
+    pub thrust: PerArm<f64>,
+    /// Thrust asked of each rotor, N.
+    pub thrust_asked: PerArm<f64>,
+    /// True tension of each tendon, N.
+    pub tension: PerArm<f64>,
+    /// Tension asked of each tendon, N.
+    pub tension_asked: PerArm<f64>,
+    /// True contact pressure at each sensor, Pa.
+    pub pressure: PerArm<f64>,
+    /// Measured contact pressure, Pa.
+    pub pressure_measured: PerArm<f64>,
+    /// Battery voltage under load, V.
+    pub battery_voltage: f64,
+    /// Throttle of the pilot, 0..1.
+    pub throttle: f64,
+    /// The rotors could not give all that was asked.
+    pub saturated: bool,
+}
+
+/// One step of the mission as flown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// Name of the step, such as `take-off`.
+    pub name: String,
+    /// Start, s.
+    pub start: f64,
+    /// End, s.
+    pub end: f64,
+    /// The step was done.
+    pub done: bool,
+    /// Largest angle between true and aimed-at attitude (roll, pitch), rad.
+    pub worst_attitude_error: f64,
+    /// Tilt farthest from level of any arm, rad, with its sign.
+    pub worst_tilt: f64,
+    /// Share of the time with saturated rotors, 0..1.
+    pub saturation: f64,
+    /// Battery voltage at the end, V.
+    pub battery_voltage: f64,
+    /// Missed deadlines during the step.
+    pub overruns: u32,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// When, s.
+    pub t: f64,
+    /// What, one line.
+    pub text: String,
+}
+
+/// Grip of one arm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grip {
+    /// Arm, 1 to 4.
+    pub arm: u8,
+    /// Measured pressure when the grip was proven, Pa.
+    pub pressure: f64,
+    /// True pressure at the same time, Pa.
+    pub pressure_true: f64,
+    /// Servo force when the grip was proven, as the torque in N·m.
+    pub torque: f64,
+    /// Time from the start of closing to the pressure within its tolerance for good, s.
+    pub closure: f64,
+}
+
+/// What is shown during a flight.
+pub trait Observer {
+    /// A step began: `index` of `count`.
+    fn step_began(&mut self, t: f64, index: usize, count: usize, name: &str);
+    /// A step ended.
+    fn step_ended(&mut self, t: f64, phase: &Phase);
+    /// Called a few times a simulated second; `height` over the ground, m.
+    fn progress(&mut self, t: f64, mode: Mode, height: f64);
+    /// Something happened.
+    fn event(&mut self, event: &Event);
+}
+
+/// An observer that shows nothing.
+pub struct Silent;
+
+impl Observer for Silent {
+    fn step_began(&mut self, _: f64, _: usize, _: usize, _: &str) {}
+    fn step_ended(&mut self, _: f64, _: &Phase) {}
+    fn progress(&mut self, _: f64, _: Mode, _: f64) {}
+    fn event(&mut self, _: &Event) {}
+}

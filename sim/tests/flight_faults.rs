@@ -1,0 +1,141 @@
+//! The whole stack on parts that fail: what a silent sensor, a hung task or a dead radio does in flight.
+
+mod fakes;
+mod vehicle;
+
+use embassy_time::Instant;
+use fakes::{Answer, FakeImu, FakeMotors, links};
+use sophie_control::mixer::Variant;
+use sophie_control::mode::Mode;
+use sophie_control::rc::Sticks;
+use sophie_control::wrench::Configuration;
+use sophie_sim::clock::VirtualTime;
+use sophie_tasks::links::Setpoint;
+use vehicle::Vehicle;
+
+/// A silent inertial sensor stops the motors within the mix's own limit, for good, and the board is reset.
+fn a_lost_sensor_stops_the_motors(answer: Answer) {
+    let mut v = Vehicle::flying();
+    v.imu.0.answer.set(answer);
+    // The sample under way still comes; 10 ms after it the motors stop by themselves.
+    let stopped = v.until(30, Vehicle::motors_stand);
+    assert!((5..=12).contains(&stopped), "{answer:?}: {stopped} ms");
+    assert!(v.links.attitude.fresh().is_none());
+    v.until(80, |v| v.mode() == Mode::Disarmed);
+    assert_eq!(v.links.setpoint.fresh(), Some(Setpoint::Stop));
+    assert_eq!(v.reason(), "inertial sensor silent");
+    assert!(!v.imu.0.spun.get(), "asked a thousand times without waiting");
+    v.run(400);
+    assert_eq!(v.fed_over(200), 0, "the watchdog would have reset the board");
+
+    // Back again: alive, but nothing turns before a new arming.
+    v.imu.0.answer.set(Answer::Sound);
+    v.run(500);
+    assert!(v.motors_stand() && v.mode() == Mode::Disarmed);
+    assert!(v.links.attitude.fresh().is_some() && v.fed_over(200) >= 19);
+}
+
+#[test]
+fn a_sensor_that_never_answers_stops_the_motors() {
+    a_lost_sensor_stops_the_motors(Answer::Hangs);
+}
+
+#[test]
+fn a_sensor_that_only_gives_errors_stops_the_motors() {
+    a_lost_sensor_stops_the_motors(Answer::Fails);
+}
+
+#[test]
+fn a_sensor_that_refuses_at_once_stops_the_motors_and_starves_nobody() {
+    a_lost_sensor_stops_the_motors(Answer::Refuses);
+}
+
+#[test]
+fn a_gap_in_the_samples_shorter_than_the_limit_is_flown_through() {
+    let mut v = Vehicle::flying();
+    for _ in 0..20 {
+        v.imu.0.answer.set(Answer::Fails);
+        v.run(4);
+        v.imu.0.answer.set(Answer::Sound);
+        v.run(50);
+        assert!(v.motors_run());
+    }
+    assert_eq!((v.mode(), v.reason()), (Mode::Flight, ""));
+}
+
+#[test]
+fn a_setpoint_that_is_not_renewed_stops_the_rotors() {
+    // Everything but the commander: it has died after its last word.
+    let (time, links, motors) = (VirtualTime::new(), links(), FakeMotors::default());
+    time.spawn(sophie_tasks::imu::run(links, FakeImu::default()));
+    time.spawn(sophie_tasks::estimator::run(links));
+    time.spawn(sophie_tasks::control::run(links));
+    let (mixer, b) = (Variant::Flexible, Configuration::B);
+    time.spawn(sophie_tasks::mixer::run(links, mixer, b));
+    time.spawn(sophie_tasks::motors::run(links, motors.clone()));
+    let setpoint = Setpoint::Angle {
+        roll: 0.0,
+        pitch: 0.0,
+        yaw_rate: 0.0,
+        thrust: 17.0,
+    };
+    for ms in 1..=4000 {
+        time.run_until(ms * 1000);
+        links.setpoint.send(Instant::now(), setpoint);
+    }
+    time.run_until(4_049_000);
+    assert!(motors.commands.get().iter().all(|c| *c > 0.0));
+    time.run_until(4_053_000);
+    assert_eq!(motors.commands.get(), [0.0; 4]);
+}
+
+#[test]
+fn a_hung_port_of_any_watched_task_leaves_the_watchdog_unfed() {
+    type Break = fn(&Vehicle);
+    let cases: [(&str, Break); 3] = [
+        ("motors", |v| v.motors.part.answer.set(Answer::Hangs)),
+        ("analog", |v| v.converter.part.answer.set(Answer::Hangs)),
+        ("servos", |v| v.servos.part.answer.set(Answer::Hangs)),
+    ];
+    for (name, hang) in cases {
+        let mut v = Vehicle::flying();
+        hang(&v);
+        v.run(200);
+        // Two windows: the one that it hung in may have had enough runs already.
+        v.run(1000);
+        assert_eq!(v.fed_over(1000), 0, "{name}");
+    }
+}
+
+#[test]
+fn a_hung_arm_sensor_or_a_lost_radio_does_not_reset_the_board() {
+    let mut v = Vehicle::flying();
+    v.arms.0.answer.set(Answer::Hangs);
+    v.run(1000);
+    assert_eq!(v.links.arms.fresh().unwrap_or_default().tilt, [None; 4]);
+    assert!(v.fed_over(900) >= 89 && v.motors_run());
+    v.sticks = None;
+    v.run(1000);
+    assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, "radio lost"));
+    assert!(v.fed_over(900) >= 89);
+}
+
+#[test]
+fn a_board_whose_sensor_never_came_up_is_fed_but_never_arms() {
+    // A reset would not mend it, and the pilot can read why.
+    let mut v = Vehicle::new();
+    v.imu.0.answer.set(Answer::Hangs);
+    v.sticks = Some(Sticks::default());
+    v.run(3500);
+    v.sticks = Some(Sticks {
+        arm_switch: true,
+        yaw: 1.0,
+        ..Sticks::default()
+    });
+    v.run(3000);
+    assert_eq!(
+        (v.mode(), v.reason()),
+        (Mode::Calibrating, "inertial sensor silent")
+    );
+    assert!(v.motors_stand() && v.fed_over(1000) >= 99);
+}

@@ -1,0 +1,350 @@
+//! Sensors that are broken, missing or the wrong ones: named on the pilot's display, arming refused until they are
+//! healed, and a flight that continues where it can.
+
+mod fakes;
+mod vehicle;
+
+use fakes::Answer;
+use sophie_control::arming::Refusal;
+use sophie_control::mode::Mode;
+use sophie_control::rc::Sticks;
+use sophie_tasks::ports::PortError;
+use vehicle::Vehicle;
+
+/// Breaks a part.
+type Break = fn(&Vehicle);
+
+const ERRORS: [(PortError, Refusal); 3] = [
+    (PortError::Absent, Refusal::ImuAbsent),
+    (PortError::WrongPart, Refusal::ImuWrongPart),
+    (PortError::Corrupt, Refusal::ImuCorrupt),
+];
+
+/// On the ground, calibrated.
+fn ready() -> Vehicle {
+    let mut v = Vehicle::new();
+    v.run(4000);
+    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, ""));
+    v
+}
+
+/// The arming gesture for 1.2 s; true if rotors may turn then.
+fn tries_to_arm(v: &mut Vehicle) -> bool {
+    v.sticks = Some(Sticks {
+        arm_switch: true,
+        yaw: 1.0,
+        ..Sticks::default()
+    });
+    v.run(1200);
+    let armed = v.mode() == Mode::Armed;
+    assert_eq!(v.motors_run(), armed);
+    v.sticks = Some(Sticks::default());
+    v.run(200);
+    armed
+}
+
+fn holds(v: &Vehicle, reason: Refusal) -> bool {
+    v.links.hardware().contains(reason)
+}
+
+#[test]
+fn a_sound_vehicle_has_nothing_to_report_from_power_up_on() {
+    let mut v = Vehicle::new();
+    for _ in 0..4000 {
+        v.run(1);
+        assert!(
+            v.links.hardware().is_empty(),
+            "{} ms",
+            v.links.hardware().iter().count()
+        );
+    }
+    assert!(tries_to_arm(&mut v));
+}
+
+#[test]
+fn arm_sensors_that_take_their_time_to_start_raise_no_alarm() {
+    // A BNO055 answers after 650 ms; its driver has found, reset and configured it after 2.1 s at the latest.
+    let mut v = Vehicle::new();
+    v.arms.0.answer.set(Answer::Refuses);
+    for _ in 0..2300 {
+        v.run(1);
+        assert!(v.links.hardware().is_empty());
+    }
+    v.arms.0.answer.set(Answer::Sound);
+    for _ in 0..3000 {
+        v.run(1);
+        assert!(v.links.hardware().is_empty());
+    }
+    assert!(tries_to_arm(&mut v));
+}
+
+#[test]
+fn what_the_inertial_sensor_answers_instead_of_samples_is_named_while_calibrating() {
+    for (error, reason) in ERRORS {
+        let mut v = Vehicle::new();
+        v.imu.0.answer.set(Answer::Errs(error));
+        v.run(500);
+        assert!(v.links.hardware().iter().eq([reason]), "{error:?}");
+        assert_eq!((v.mode(), v.reason()), (Mode::Calibrating, reason.text()));
+        // Another fault takes its place, it does not join it.
+        v.imu.0.answer.set(Answer::Errs(PortError::Corrupt));
+        v.run(100);
+        assert!(v.links.hardware().iter().eq([Refusal::ImuCorrupt]), "{error:?}");
+        // Healed, it calibrates and arms.
+        v.imu.0.answer.set(Answer::Sound);
+        v.run(4000);
+        assert!(v.links.hardware().is_empty());
+        assert!(tries_to_arm(&mut v), "{error:?}: {}", v.reason());
+    }
+}
+
+#[test]
+fn a_silent_inertial_sensor_stays_silent_in_words_too() {
+    for answer in [Answer::Hangs, Answer::Fails] {
+        let mut v = Vehicle::new();
+        v.imu.0.answer.set(answer);
+        v.run(1000);
+        assert!(v.links.hardware().is_empty(), "{answer:?}");
+        assert_eq!(
+            (v.mode(), v.reason()),
+            (Mode::Calibrating, "inertial sensor silent")
+        );
+    }
+}
+
+#[test]
+fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
+    for (error, reason) in ERRORS {
+        let mut v = Vehicle::flying();
+        // One or two at a time, each quarter of a second: glitches.
+        for _ in 0..20 {
+            v.imu.0.answer.set(Answer::Errs(error));
+            v.until(4, |v| v.imu.0.failed.get() > 0);
+            v.imu.0.answer.set(Answer::Sound);
+            v.imu.0.failed.set(0);
+            for _ in 0..250 {
+                v.run(1);
+                assert!(!holds(&v, reason), "{error:?}");
+            }
+        }
+        assert_eq!((v.mode(), v.reason()), (Mode::Flight, ""));
+        // One each 20 ms: the third is reported, and the report stays, without flapping.
+        let mut changes = 0;
+        let mut before = false;
+        for _ in 0..50 {
+            v.imu.0.answer.set(Answer::Errs(error));
+            v.until(4, |v| v.imu.0.failed.get() > 0);
+            v.imu.0.answer.set(Answer::Sound);
+            v.imu.0.failed.set(0);
+            for _ in 0..20 {
+                v.run(1);
+                changes += u32::from(holds(&v, reason) != before);
+                before = holds(&v, reason);
+            }
+        }
+        assert_eq!((changes, before), (1, true), "{error:?}");
+        // It flies on: every gap was shorter than the limit.
+        assert!(v.motors_run() && v.mode() == Mode::Flight && v.reason().is_empty());
+        let healed = v.until(300, |v| !holds(v, reason));
+        assert!((70..=100).contains(&healed), "{error:?}: {healed} ms");
+        assert!(v.motors_run() && v.mode() == Mode::Flight);
+    }
+}
+
+#[test]
+fn each_arm_sensor_is_named_and_refuses_arming_until_it_answers() {
+    let reasons = [
+        Refusal::ArmSensor1,
+        Refusal::ArmSensor2,
+        Refusal::ArmSensor3,
+        Refusal::ArmSensor4,
+    ];
+    for answer in [
+        Answer::Fails,
+        Answer::Refuses,
+        Answer::Errs(PortError::Corrupt),
+        Answer::Hangs,
+    ] {
+        for (arm, reason) in reasons.into_iter().enumerate() {
+            let mut v = ready();
+            v.arms.1[arm].answer.set(answer);
+            let took = v.until(1500, |v| !v.links.hardware().is_empty());
+            assert!((950..=1150).contains(&took), "{answer:?}: {took} ms");
+            // The others go on, whatever this one does.
+            v.run(2000);
+            assert!(v.links.hardware().iter().eq([reason]), "{answer:?} on arm {arm}");
+            let tilts = v.links.arms.fresh().unwrap().tilt;
+            for (other, tilt) in tilts.into_iter().enumerate() {
+                assert_eq!(tilt.is_some(), other != arm, "{answer:?} on arm {arm}: {other}");
+            }
+            // Without the arm switch, and with it.
+            assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, reason.text()));
+            assert!(!tries_to_arm(&mut v));
+            v.arms.1[arm].answer.set(Answer::Sound);
+            v.until(50, |v| v.links.hardware().is_empty());
+            v.run(20);
+            assert_eq!(v.reason(), "");
+            assert!(tries_to_arm(&mut v), "{answer:?} on arm {arm}: {}", v.reason());
+        }
+    }
+}
+
+#[test]
+fn an_arm_sensor_that_never_was_there_is_named_before_the_first_arming() {
+    let mut v = Vehicle::new();
+    v.arms.1[2].answer.set(Answer::Refuses);
+    v.run(4000);
+    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, "arm sensor 3 silent"));
+    assert!(!tries_to_arm(&mut v));
+}
+
+#[test]
+fn a_hung_bus_names_all_its_arms() {
+    let mut v = ready();
+    v.arms.0.answer.set(Answer::Hangs);
+    v.run(2000);
+    assert_eq!(v.links.hardware().iter().count(), 4);
+    assert_eq!(v.reason(), "arm sensor 1 silent");
+    v.arms.0.answer.set(Answer::Sound);
+    v.run(200);
+    assert!(v.links.hardware().is_empty());
+}
+
+#[test]
+fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
+    for answer in [Answer::Fails, Answer::Refuses, Answer::Hangs] {
+        let mut v = ready();
+        v.converter.part.answer.set(answer);
+        let took = v.until(300, |v| holds(v, Refusal::AnalogSilent));
+        assert!((95..=110).contains(&took), "{answer:?}: {took} ms");
+        v.run(20);
+        assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, "analog inputs silent"));
+        assert!(!tries_to_arm(&mut v), "{answer:?}");
+        if answer == Answer::Hangs {
+            // For good: the watchdog resets the board.
+            assert_eq!(v.fed_over(500), 0);
+            continue;
+        }
+        v.converter.part.answer.set(Answer::Sound);
+        v.until(10, |v| !holds(v, Refusal::AnalogSilent));
+        v.run(1000);
+        assert!(tries_to_arm(&mut v), "{answer:?}: {}", v.reason());
+    }
+}
+
+#[test]
+fn gaps_shorter_than_the_limits_are_not_reported() {
+    let mut v = ready();
+    for _ in 0..10 {
+        v.converter.part.answer.set(Answer::Fails);
+        v.run(90);
+        assert!(v.links.hardware().is_empty());
+        v.converter.part.answer.set(Answer::Sound);
+        v.run(20);
+        v.arms.0.answer.set(Answer::Refuses);
+        v.run(900);
+        assert!(v.links.hardware().is_empty());
+        v.arms.0.answer.set(Answer::Sound);
+        v.run(30);
+    }
+}
+
+#[test]
+fn what_breaks_in_flight_does_not_end_it() {
+    let breaks: [(Break, &[Refusal]); 3] = [
+        (
+            |v| v.arms.1[1].answer.set(Answer::Refuses),
+            &[Refusal::ArmSensor2],
+        ),
+        (
+            |v| v.arms.1.iter().for_each(|arm| arm.answer.set(Answer::Hangs)),
+            &[
+                Refusal::ArmSensor1,
+                Refusal::ArmSensor2,
+                Refusal::ArmSensor3,
+                Refusal::ArmSensor4,
+            ],
+        ),
+        (
+            |v| v.converter.part.answer.set(Answer::Fails),
+            &[Refusal::AnalogSilent],
+        ),
+    ];
+    for (breaks, reasons) in breaks {
+        let mut v = Vehicle::flying();
+        let overruns = |v: &Vehicle| {
+            use sophie_tasks::deadline::TaskId;
+            [
+                TaskId::Imu,
+                TaskId::Estimator,
+                TaskId::Control,
+                TaskId::Mixer,
+                TaskId::Motors,
+            ]
+            .map(|task| v.links.timing(task).overruns)
+        };
+        let before = overruns(&v);
+        breaks(&v);
+        for _ in 0..3000 {
+            v.run(1);
+            assert!(
+                v.motors_run() && v.mode() == Mode::Flight,
+                "{reasons:?}: {}",
+                v.reason()
+            );
+        }
+        assert!(
+            v.links.hardware().iter().eq(reasons.iter().copied()),
+            "{reasons:?}"
+        );
+        assert_eq!(overruns(&v), before, "{reasons:?}");
+        assert_eq!(v.reason(), "", "{reasons:?}");
+        // Once down, it is named and not armed again.
+        v.sticks = Some(Sticks::default());
+        v.until(50, |v| v.mode() == Mode::Disarmed);
+        v.run(11_000);
+        assert_eq!(v.reason(), reasons[0].text());
+        assert!(!tries_to_arm(&mut v));
+    }
+}
+
+#[test]
+fn whatever_start_up_and_storage_report_refuses_arming_while_it_holds() {
+    for reason in [
+        Refusal::ImuSelfTest,
+        Refusal::ImuLineSilent,
+        Refusal::BrownOut,
+        Refusal::StorageUnreadable,
+        Refusal::StorageFull,
+        Refusal::Storing,
+    ] {
+        let mut v = ready();
+        v.links.report(reason, true);
+        v.run(20);
+        assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, reason.text()));
+        assert!(!tries_to_arm(&mut v), "{reason:?}");
+        v.links.report(reason, false);
+        assert!(tries_to_arm(&mut v), "{reason:?}: {}", v.reason());
+    }
+}
+
+#[test]
+fn a_silent_data_ready_line_refuses_arming_and_brings_a_flight_down_with_its_rotors_turning() {
+    let text = Refusal::ImuLineSilent.text();
+    let mut v = ready();
+    v.imu.1.set(true);
+    v.run(20);
+    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, text));
+    assert!(!tries_to_arm(&mut v));
+    v.imu.1.set(false);
+    v.run(20);
+    assert_eq!(v.reason(), "");
+    assert!(tries_to_arm(&mut v), "{}", v.reason());
+
+    let mut v = Vehicle::flying();
+    v.imu.1.set(true);
+    let took = v.until(30, |v| v.mode() == Mode::Failsafe);
+    assert!(took <= 12, "{took} ms");
+    assert_eq!(v.reason(), text);
+    assert!(v.motors_run() && v.fed_over(10) == 1);
+}

@@ -1,0 +1,92 @@
+//! A flight that fails says by how much: the quantity that ended it, and what it would have had to be.
+
+use sophie_sim::flight::fly;
+use sophie_sim::record::{FlightRecord, Silent};
+use sophie_sim::scenario::{Overrides, Scenario};
+
+fn flown(text: &str, overrides: &Overrides) -> FlightRecord {
+    fly(
+        &Scenario::parse(text, "reasons.toml", overrides).unwrap(),
+        &mut Silent,
+    )
+}
+
+const HOP: &str = "steps = [{ do = 'arm' }, { do = 'take-off' }, { do = 'hover', seconds = 60 }, { do = 'land' }, { do = 'disarm' }]\n";
+
+fn reason(text: &str) -> String {
+    let record = flown(text, &Overrides::default());
+    println!("{}", record.outcome.reason);
+    assert!(!record.outcome.accomplished && !record.outcome.reason.contains('\n'));
+    record.outcome.reason
+}
+
+#[test]
+fn a_vehicle_too_weak_to_fly_is_told_by_its_thrust_to_weight() {
+    for (mass, thrust, ratio) in [(3.0, 7.7, "1.05"), (3.0, 7.5, "1.02"), (3.0, 7.0, "0.95")] {
+        let line = reason(&format!(
+            "{HOP}[vehicle]\nmass_kg = {mass}\nthrust_max_n = {thrust}\n"
+        ));
+        assert!(line.starts_with("take-off: "), "{line}");
+        assert!(line.contains(&format!("thrust to weight {ratio}")), "{line}");
+        assert!(line.contains(&format!("{:.1} N", 4.0 * thrust)), "{line}");
+        assert!(line.contains("throttle"), "{line}");
+    }
+}
+
+#[test]
+fn a_vehicle_that_oscillates_is_told_by_its_swings() {
+    for params in [
+        "attitude_p = 12\nrate_p = 40",
+        "rate_p = 40",
+        "attitude_p = 12\nrate_p = 25",
+    ] {
+        let line = reason(&format!("{HOP}[params]\n{params}\n"));
+        assert!(line.contains("swings by") && line.contains("deg/s"), "{line}");
+    }
+}
+
+#[test]
+fn a_sound_failure_says_nothing_of_swings() {
+    let line = reason(&format!("{HOP}[vehicle]\nbattery_charge_percent = 8\n"));
+    assert!(
+        !line.contains("swings") && !line.contains("thrust to weight"),
+        "{line}"
+    );
+}
+
+#[test]
+fn a_force_that_does_not_grip_is_told_with_the_force_that_would() {
+    let line = reason("[vehicle]\nservo = 'mg996r'\ninfill = 10\n");
+    assert!(line.contains("force limit reached without grip"), "{line}");
+    for words in ["of 950 N/m2", "N needed", "52.2 N"] {
+        assert!(line.contains(words), "{words} is missing in: {line}");
+    }
+}
+#[test]
+fn the_stack_stays_below_its_own_force_limit() {
+    for diameter in [0.2, 0.18, 0.25] {
+        for seed in 1..=4 {
+            let overrides = Overrides {
+                infill: Some(10.0),
+                seed: Some(seed),
+                ..Default::default()
+            };
+            let record = flown(&format!("[world]\npipe_diameter_m = {diameter}\n"), &overrides);
+            let most = record.samples.iter().flat_map(|s| s.tension).fold(0.0, f64::max);
+            let asked = record
+                .samples
+                .iter()
+                .flat_map(|s| s.tension_asked)
+                .fold(0.0, f64::max);
+            println!(
+                "{diameter} m, seed {seed}: {most:.3} N of {asked:.3} asked; {}",
+                record.outcome.reason
+            );
+            assert!(
+                !record.outcome.reason.contains("tendon"),
+                "{}",
+                record.outcome.reason
+            );
+        }
+    }
+}

@@ -1,0 +1,403 @@
+//! The board restarts: what resumes, what stays stopped, and what the pilot sees.
+
+mod fakes;
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use embassy_time::Instant;
+use fakes::{
+    FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
+};
+use sophie_control::arming::Refusal;
+use sophie_control::clamp::Fault;
+use sophie_control::mixer::Variant;
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+use sophie_control::rc::{ArmChoice, Sticks};
+use sophie_control::tendon::Reel;
+use sophie_control::vector::Vec3;
+use sophie_control::warm::{Grasp, WORDS, Warm, Words};
+use sophie_control::wrench::Configuration;
+use sophie_sim::clock::VirtualTime;
+use sophie_sim::flight::fly;
+use sophie_sim::record::{FlightRecord, Silent};
+use sophie_sim::scenario::{Overrides, Scenario};
+use sophie_tasks::links::{Links, RcState};
+use sophie_tasks::ports::AnalogFrame;
+use sophie_tasks::start::{Cause, Start};
+
+/// Counts of a pressure of some 950 Pa with the default sensor.
+const PRESSED: u16 = 2000;
+/// Servo angle and tendon force of a grip, rad and N.
+const ANGLE: f32 = 2.5;
+const FORCE: f32 = 45.0;
+
+/// Arms 1 and 3 closed, arms 2 and 4 at rest.
+fn held() -> Warm {
+    Warm {
+        grasp: Grasp::Closed(ArmChoice::Front),
+        angle: [ANGLE, 0.0, ANGLE, 0.0],
+        force: [FORCE, 0.0, FORCE, 0.0],
+        gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
+        ..Warm::default()
+    }
+}
+
+/// A board with everything on it, started once.
+struct Vehicle {
+    time: VirtualTime,
+    links: &'static Links,
+    motors: FakeMotors,
+    servos: FakeServos,
+    memory: FakeMemory,
+    converter: FakeAnalog,
+    sticks: Sticks,
+    ms: u64,
+}
+
+impl Vehicle {
+    /// Started for `cause` with `copies` in its memory and `counts` at the pressure sensors.
+    fn start(cause: Cause, copies: [Words; 2], counts: [u16; 4]) -> Self {
+        let time = VirtualTime::new();
+        let start = Start::new(cause, &copies);
+        let links: &'static Links = Box::leak(Box::new(Links::starting(Params::default(), start)));
+        let converter = FakeAnalog::default();
+        converter.frame.set(AnalogFrame {
+            fsr: counts,
+            battery_voltage: (16.0 / VOLTS_PER_COUNT) as u16,
+            ..AnalogFrame::default()
+        });
+        let v = Self {
+            time,
+            links,
+            motors: FakeMotors::default(),
+            servos: FakeServos::default(),
+            memory: FakeMemory(Rc::new(Cell::new((copies, [0; 2])))),
+            converter,
+            sticks: Sticks {
+                arm_switch: true,
+                perch_switch: true,
+                ..Sticks::default()
+            },
+            ms: 0,
+        };
+        v.motors.commands.set([9.0; 4]);
+        let (mixer, b) = (Variant::Flexible, Configuration::B);
+        v.time.spawn(sophie_tasks::motors::run(links, v.motors.clone()));
+        v.time.spawn(sophie_tasks::mixer::run(links, mixer, b));
+        v.time.spawn(sophie_tasks::control::run(links));
+        v.time.spawn(sophie_tasks::estimator::run(links));
+        v.time.spawn(sophie_tasks::imu::run(links, FakeImu::default()));
+        v.time.spawn(sophie_tasks::supervisor::run(
+            links,
+            FakeWatchdog::default(),
+            v.memory.clone(),
+        ));
+        v.time.spawn(sophie_tasks::commander::run(links));
+        v.time
+            .spawn(sophie_tasks::analog::run(links, v.converter.clone()));
+        v.time.spawn(sophie_tasks::clamp::run(links));
+        v.time.spawn(sophie_tasks::servos::run(links, v.servos.clone()));
+        v.time.spawn(sophie_tasks::arms::run(links, FakeArms::default()));
+        v
+    }
+
+    /// Restarted by the watchdog with `warm` in its memory.
+    fn warm(warm: Warm, counts: [u16; 4]) -> Self {
+        let copy = warm.to_words(7).expect("a sane one");
+        Self::start(Cause::Watchdog, [[0; WORDS], copy], counts)
+    }
+
+    fn run(&mut self, ms: u64) {
+        for _ in 0..ms {
+            self.ms += 1;
+            if self.ms.is_multiple_of(10) {
+                let state = RcState {
+                    sticks: self.sticks,
+                    ..RcState::default()
+                };
+                self.links.rc.send(Instant::now(), state);
+            }
+            self.time.run_until(self.ms * 1000);
+            if self.ms > 2 {
+                assert_eq!(self.motors.commands.get(), [0.0; 4], "after {} ms", self.ms);
+            }
+        }
+    }
+
+    fn status(&self) -> (Mode, &'static str, &'static str) {
+        let status = self.links.status.latest().unwrap().value;
+        (status.mode, status.reason, status.warning)
+    }
+
+    /// Every pulse so far of servo `arm`, µs.
+    fn pulses(&self, arm: usize) -> Vec<f32> {
+        self.servos.pulses.borrow().iter().map(|p| p[arm]).collect()
+    }
+
+    fn kept(&self) -> Option<(Warm, u32)> {
+        Warm::newest(&self.memory.copies())
+    }
+
+    fn arm(&mut self) {
+        self.sticks.arm_switch = false;
+        self.run(300);
+        self.sticks.arm_switch = true;
+        self.sticks.yaw = 1.0;
+        self.run(1200);
+        self.sticks.yaw = 0.0;
+    }
+}
+
+fn pulse(angle: f32) -> f32 {
+    Reel::from_params(&Params::default(), 0).pulse(angle)
+}
+
+#[test]
+fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
+    let mut v = Vehicle::warm(held(), [PRESSED, 0, PRESSED, 0]);
+    v.run(650);
+    // The attitude is there after 0.5 s, and 0.2 s later the loops take over.
+    for arm in [0, 2] {
+        let pulses = v.pulses(arm);
+        let sent = pulses.iter().skip_while(|p| **p == 0.0);
+        assert!(sent.clone().count() > 25, "{pulses:?}");
+        assert!(sent.clone().all(|p| (p - pulse(ANGLE)).abs() < 0.1), "{pulses:?}");
+    }
+    for arm in [1, 3] {
+        assert!(
+            v.pulses(arm)
+                .iter()
+                .all(|p| [0.0, Params::default().servo_release_1].contains(p))
+        );
+    }
+    let attitude = v.links.attitude.latest().unwrap().value;
+    assert!(attitude.calibrated && (attitude.gyro_bias - held().gyro_bias.unwrap()).norm() < 1e-3);
+    assert_eq!(
+        v.status(),
+        (
+            Mode::Disarmed,
+            "arm switch on at power-up",
+            "restarted by the watchdog"
+        )
+    );
+    let (kept, sequence) = v.kept().unwrap();
+    assert_eq!((kept.grasp, kept.angle), (held().grasp, held().angle));
+    // At 100 Hz, in both copies by turns, from where the run before ended.
+    let writes = v.memory.0.get().1;
+    assert_eq!(sequence, 7 + writes[0] + writes[1]);
+    assert!(
+        writes[0].abs_diff(writes[1]) <= 1 && writes[0] >= 31,
+        "{writes:?}"
+    );
+}
+
+#[test]
+fn a_start_off_the_pipe_is_as_ever_after_half_a_second_of_looking() {
+    for (cause, copies) in [
+        (Cause::PowerOn, [[0xFFFF_FFFF; WORDS]; 2]),
+        (Cause::Watchdog, [[0x5A5A_5A5A; WORDS]; 2]),
+        (Cause::PowerOn, [held().to_words(1).unwrap(); 2]),
+    ] {
+        let mut v = Vehicle::start(cause, copies, [0; 4]);
+        v.run(480);
+        assert!(v.servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]));
+        v.run(200);
+        assert_eq!(v.servos.now(), [Params::default().servo_release_1; 4]);
+        assert_eq!(v.status().0, Mode::Calibrating);
+        v.run(1900);
+        assert_eq!(v.status().0, Mode::Disarmed);
+        let (kept, _) = v.kept().unwrap();
+        assert!(kept.grasp == Grasp::Open && kept.gyro_bias.is_some());
+    }
+    // The run before has said that they are open.
+    let open = Warm {
+        grasp: Grasp::Open,
+        ..held()
+    };
+    let mut v = Vehicle::warm(open, [PRESSED; 4]);
+    v.run(1500);
+    let pulses = v.pulses(0);
+    let first = pulses.iter().find(|p| **p > 0.0).unwrap();
+    assert!((pulse(ANGLE) - 40.0..pulse(ANGLE)).contains(first), "{pulses:?}");
+    let steps = pulses.windows(2).filter(|w| w[0] > 0.0);
+    assert!(
+        steps.clone().all(|w| (-0.1..30.0).contains(&(w[0] - w[1]))),
+        "paid out gently"
+    );
+    assert_eq!(v.servos.now(), [Params::default().servo_release_1; 4]);
+}
+
+#[test]
+fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
+    let copy = held().to_words(5).unwrap();
+    for word in 0..WORDS {
+        for bit in [0, 9, 21, 31] {
+            let mut bad = copy;
+            bad[word] ^= 1 << bit;
+            let start = Start::new(Cause::Fault, &[bad; 2]);
+            assert!(start.warm.is_none() && start.sequence == 0);
+        }
+    }
+    let mut bad = copy;
+    bad[4] ^= 1;
+    for (cause, copies) in [
+        (Cause::Fault, [bad; 2]),
+        (Cause::BrownOut, [copy; 2]),
+        (Cause::PowerOn, [[7; WORDS]; 2]),
+    ] {
+        let mut v = Vehicle::start(cause, copies, [PRESSED, 0, PRESSED, 0]);
+        v.run(6000);
+        assert!(
+            v.servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]),
+            "{cause:?}"
+        );
+        assert_eq!(v.status().0, Mode::Disarmed);
+        assert_eq!(v.kept().unwrap().0.grasp, Grasp::Kept(ArmChoice::Front));
+        // The next reset finds them kept, and leaves them so.
+        let mut again = Vehicle::start(Cause::Watchdog, v.memory.copies(), [PRESSED, 0, PRESSED, 0]);
+        again.run(1000);
+        assert_eq!(again.status().0, Mode::Disarmed, "calibrated already");
+        again.arm();
+        assert_eq!(again.status().0, Mode::Perched);
+        again.run(1000);
+        assert!(again.servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]));
+    }
+}
+
+#[test]
+fn resets_one_after_the_other_move_nothing() {
+    let mut copies = [held().to_words(1).unwrap(), [0; WORDS]];
+    for ms in (1..120).map(|i| 1 + i * 37 % 400) {
+        let mut v = Vehicle::start(Cause::Fault, copies, [PRESSED, 0, PRESSED, 0]);
+        v.run(ms);
+        for arm in [0, 2] {
+            assert!(
+                v.pulses(arm)
+                    .iter()
+                    .all(|p| *p == 0.0 || (p - pulse(ANGLE)).abs() < 0.1),
+                "{ms} ms: {:?}",
+                v.pulses(arm)
+            );
+        }
+        copies = v.memory.copies();
+    }
+    let (kept, _) = Warm::newest(&copies).unwrap();
+    assert_eq!(kept, held());
+}
+
+#[test]
+fn a_fault_that_an_arm_keeps_until_release_is_kept_over_the_reset() {
+    let fault = [Some(Fault::Sensor), None, None, None];
+    let mut v = Vehicle::warm(Warm { fault, ..held() }, [0, 0, PRESSED, 0]);
+    v.run(3000);
+    assert!(
+        v.pulses(0)
+            .iter()
+            .all(|p| *p == 0.0 || (p - pulse(ANGLE)).abs() < 0.1)
+    );
+    assert_eq!(
+        v.links.grip.latest().unwrap().value.arms[0].fault,
+        Some(Fault::Sensor)
+    );
+    assert_eq!(v.kept().unwrap().0.fault, fault);
+}
+
+#[test]
+fn a_brown_out_forbids_arming_on_the_ground_and_says_so() {
+    let mut v = Vehicle::start(Cause::BrownOut, [[0; WORDS]; 2], [0; 4]);
+    v.sticks.perch_switch = false;
+    v.run(3000);
+    v.arm();
+    assert_eq!(
+        v.status(),
+        (Mode::Disarmed, "supply broke down", "restarted by a brown-out")
+    );
+    assert!(v.links.hardware().contains(Refusal::BrownOut));
+    for (cause, warning) in [
+        (Cause::Fault, "restarted after a fault"),
+        (Cause::Watchdog, "restarted by the watchdog"),
+        (Cause::Asked, ""),
+        (Cause::PowerOn, ""),
+    ] {
+        let mut v = Vehicle::start(cause, [[0; WORDS]; 2], [0; 4]);
+        v.run(3000);
+        assert_eq!((v.status().2, v.links.hardware().is_empty()), (warning, true));
+    }
+}
+
+fn flown(file: &str) -> FlightRecord {
+    let path = format!("{}/../tests/scenarios/{file}.toml", env!("CARGO_MANIFEST_DIR"));
+    let scenario = Scenario::load(path.as_ref(), &Overrides::default()).unwrap();
+    fly(&scenario, &mut Silent)
+}
+
+/// When `text` happened for the first time after `from` s.
+fn when(record: &FlightRecord, text: &str, from: f64) -> f64 {
+    let event = record.events.iter().find(|e| e.t >= from && e.text == text);
+    event
+        .unwrap_or_else(|| panic!("no '{text}': {:?}", record.events))
+        .t
+}
+
+#[test]
+fn a_reset_in_flight_stops_the_rotors_and_they_stay_stopped() {
+    let record = flown("reset-in-flight");
+    let reset = when(&record, "board reset", 0.0);
+    // The flight's judge looks at the motor commands every millisecond after it.
+    assert!(
+        record.outcome.reason.contains("crashed into the ground"),
+        "{:?}",
+        record.outcome
+    );
+    when(&record, "warning: restarted by the watchdog", reset);
+    let after: Vec<_> = record.samples.iter().filter(|s| s.t >= reset + 0.01).collect();
+    assert!(after.len() > 30 && after.iter().all(|s| s.thrust_asked == [0.0; 4]));
+    // What the propellers still give runs out with the motors' 50 ms.
+    let late = after.iter().filter(|s| s.t > reset + 0.4);
+    assert!(late.clone().count() > 10 && late.clone().all(|s| s.thrust.iter().all(|t| *t < 0.05)));
+}
+
+#[test]
+fn a_reset_on_the_ground_keeps_the_calibration() {
+    let record = flown("reset-on-ground");
+    assert!(record.outcome.accomplished, "{:?}", record.outcome);
+    let reset = when(&record, "board reset", 0.0);
+    let start = when(&record, "mode CALIBRATING", reset);
+    // Half a second for the attitude instead of two at rest.
+    let ready = when(&record, "mode DISARMED", start) - start;
+    assert!((0.4..0.7).contains(&ready), "{ready}");
+    let armed = when(&record, "mode ARMED", start);
+    let between = record.samples.iter().filter(|s| s.t > reset + 0.4 && s.t < armed);
+    assert!(between.clone().count() > 100 && between.clone().all(|s| s.thrust.iter().all(|t| *t < 0.05)));
+}
+
+#[test]
+fn the_grip_on_the_pipe_hardly_notices_a_reset() {
+    for (file, event, tension) in [
+        ("reset-perched", "board reset", 3.0),
+        ("power-cycle-perched", "power lost", 3.0),
+    ] {
+        let record = flown(file);
+        assert!(record.outcome.accomplished, "{file}: {:?}", record.outcome);
+        let reset = when(&record, event, 0.0);
+        let perched = when(&record, "mode PERCHED", reset);
+        let before = record.samples.iter().rfind(|s| s.t < reset).unwrap();
+        let hanging = record.samples.iter().filter(|s| s.t >= reset && s.t < perched);
+        for s in hanging {
+            for (now, then) in s.tension.iter().zip(before.tension) {
+                assert!(
+                    (now - then).abs() < tension,
+                    "{file} {}: {now} N, {then} N before",
+                    s.t
+                );
+            }
+            assert!(
+                s.pressure.iter().all(|p| (700.0..1300.0).contains(p)),
+                "{file} {:?}",
+                s.pressure
+            );
+        }
+    }
+}

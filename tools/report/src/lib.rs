@@ -1,0 +1,22 @@
+//! What is kept of a flight on disk (a page to read, a log to plot, a summary for programs), and what is printed of it on
+//! a terminal.
+
+mod attitude_error;
+mod bands;
+mod drawing;
+mod figures;
+mod grip_figure;
+pub mod log;
+mod moments;
+pub mod page;
+mod plot;
+pub mod scale;
+mod scene;
+mod schemas;
+pub mod summary;
+pub mod svg;
+#[cfg(test)]
+mod synthetic;
+mod tables;
+pub mod terminal;
+pub mod units;

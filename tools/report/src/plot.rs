@@ -1,0 +1,224 @@
+//! Panels of curves over a common time axis, with a band of modes and steps below.
+
+use sophie_sim::record::FlightRecord;
+
+use super::bands::{BAND, bands};
+use super::scale::{thin, tick_step, ticks};
+use super::svg::{line, path, rect, short, text};
+
+/// Size of the drawing, px; it scales with the page.
+const WIDTH: f64 = 1000.0;
+/// Room for the titles on the left, px.
+pub const LEFT: f64 = 74.0;
+const RIGHT: f64 = 14.0;
+const GAP: f64 = 22.0;
+
+/// One curve.
+pub struct Trace<'a> {
+    /// CSS classes that give colour and dash.
+    pub class: &'a str,
+    /// One value for each sample.
+    pub values: Vec<f64>,
+}
+
+/// One panel.
+pub struct Panel<'a> {
+    /// Title of the vertical axis, with its unit.
+    pub axis: String,
+    /// Height, px.
+    pub height: f64,
+    /// Curves, the last on top.
+    pub traces: Vec<Trace<'a>>,
+    /// Shaded range of values.
+    pub target: Option<(f64, f64)>,
+    /// Dashed levels.
+    pub levels: Vec<f64>,
+    /// Values that the axis must show at least.
+    pub include: Vec<f64>,
+    /// Smallest span of the axis, so that noise does not fill a panel.
+    pub span: f64,
+    /// Times that are marked at the top of the panel.
+    pub marks: Vec<(f64, f64)>,
+}
+
+impl Default for Panel<'_> {
+    fn default() -> Self {
+        Self {
+            axis: String::new(),
+            height: 150.0,
+            traces: vec![],
+            target: None,
+            levels: vec![],
+            include: vec![],
+            span: 0.0,
+            marks: vec![],
+        }
+    }
+}
+
+/// The part of the flight that is shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// First time, s.
+    pub from: f64,
+    /// Last time, s.
+    pub to: f64,
+}
+
+impl Span {
+    /// The whole flight.
+    pub fn all(record: &FlightRecord) -> Self {
+        Self {
+            from: 0.0,
+            to: record.sim_seconds.max(1.0),
+        }
+    }
+
+    /// Horizontal place of a time, px.
+    pub fn x(self, t: f64) -> f64 {
+        LEFT + (t - self.from) / (self.to - self.from) * (WIDTH - LEFT - RIGHT)
+    }
+
+    /// Whether a time is shown.
+    pub fn contains(self, t: f64) -> bool {
+        (self.from..=self.to).contains(&t)
+    }
+}
+
+/// A figure of panels, one below the other.
+pub fn figure(record: &FlightRecord, span: Span, title: &str, panels: &[Panel<'_>]) -> String {
+    let panels_height: f64 = panels.iter().map(|p| p.height + GAP).sum();
+    let height = panels_height + 2.0 * BAND + 36.0;
+    let mut svg = format!(
+        "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" data-from=\"{}\" data-to=\"{}\" \
+         aria-label=\"{}\">",
+        short(span.from, 3),
+        short(span.to, 3),
+        super::svg::escape(title)
+    );
+    let bottom = panels_height - GAP + 12.0;
+    let ticks = ticks(span.from, span.to, 16);
+    let mut top = 12.0;
+    for panel in panels {
+        svg += &draw_panel(record, span, panel, top, &ticks);
+        top += panel.height + GAP;
+    }
+    svg += &bands(record, span, bottom + 8.0);
+    let foot = bottom + 8.0 + 2.0 * BAND;
+    for t in &ticks {
+        svg += &line(span.x(*t), foot, span.x(*t), foot + 4.0, "axis");
+        svg += &text(span.x(*t), foot + 17.0, "tick mid", &short(*t, 2));
+    }
+    svg += &text(
+        (LEFT + WIDTH - RIGHT) / 2.0,
+        foot + 34.0,
+        "title mid",
+        "simulated time (s)",
+    );
+    svg += &format!(
+        "<line class=\"cursor\" x1=\"0\" x2=\"0\" y1=\"12\" y2=\"{}\"/>",
+        short(foot, 1)
+    );
+    svg + "</svg>"
+}
+
+fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, times: &[f64]) -> String {
+    let (low, high) = limits(record, span, panel);
+    let y = |v: f64| top + panel.height - (v - low) / (high - low) * panel.height;
+    let (left, right, bottom) = (LEFT, WIDTH - RIGHT, top + panel.height);
+    let mut out = rect(left, top, right - left, panel.height, "field", "");
+    if let Some((a, b)) = panel.target {
+        out += &rect(
+            left,
+            y(b.min(high)),
+            right - left,
+            y(a.max(low)) - y(b.min(high)),
+            "target",
+            "",
+        );
+    }
+    for t in times {
+        out += &line(span.x(*t), top, span.x(*t), bottom, "grid");
+    }
+    let rows = if panel.height < 125.0 { 5 } else { 6 };
+    for v in ticks(low, high, rows) {
+        out += &line(
+            left,
+            y(v),
+            right,
+            y(v),
+            if v == 0.0 { "grid zero" } else { "grid" },
+        );
+        out += &text(left - 7.0, y(v) + 4.0, "tick end", &short(v, 3));
+    }
+    for level in &panel.levels {
+        out += &line(left, y(*level), right, y(*level), "level");
+    }
+    for (a, b) in panel
+        .marks
+        .iter()
+        .filter(|(a, b)| *b >= span.from && *a <= span.to)
+    {
+        let (a, b) = (span.x(a.max(span.from)), span.x(b.min(span.to)));
+        out += &rect(a, top, (b - a).max(1.5), 5.0, "mark", "");
+    }
+    for trace in &panel.traces {
+        let points = thin(record, span, &trace.values)
+            .into_iter()
+            .map(|(t, v)| (span.x(t), y(v)));
+        out += &format!("<path class=\"trace {}\" d=\"{}\"/>", trace.class, path(points));
+    }
+    let (x, middle) = (17.0, top + panel.height / 2.0);
+    let turned = format!("transform=\"rotate(-90 {x} {})\"", short(middle, 1));
+    out + &text(x, middle, "title mid", &panel.axis).replacen("<text", &format!("<text {turned}"), 1)
+}
+
+/// Bounds of the vertical axis, rounded out to whole ticks.
+fn limits(record: &FlightRecord, span: Span, panel: &Panel<'_>) -> (f64, f64) {
+    let shown = |values: &'_ [f64]| -> Vec<f64> {
+        let pairs = record.samples.iter().zip(values);
+        pairs
+            .filter(|(s, v)| span.contains(s.t) && v.is_finite())
+            .map(|(_, v)| *v)
+            .collect()
+    };
+    let values = panel
+        .traces
+        .iter()
+        .flat_map(|t| shown(&t.values))
+        .chain(panel.include.iter().copied());
+    let (low, high) = values.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+    if low > high {
+        return (0.0, 1.0);
+    }
+    let missing = (panel.span.max(1e-9) - (high - low)).max(0.0) / 2.0;
+    let (low, high) = (low - missing, high + missing);
+    let step = tick_step(low, high, 6);
+    // A curve that lies on the frame is hard to see: leave a little room, but not below a true zero.
+    let room = 0.04 * (high - low);
+    let low = if low == 0.0 { 0.0 } else { low - room };
+    let round = |v: f64, f: fn(f64) -> f64| f(v / step * 2.0) * step / 2.0;
+    (round(low, f64::floor), round(high + room, f64::ceil))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic;
+    use super::*;
+
+    #[test]
+    fn a_flight_without_samples_still_makes_a_figure() {
+        let mut record = synthetic::record();
+        record.samples.clear();
+        record.phases.clear();
+        record.sim_seconds = 0.0;
+        let panel = Panel {
+            traces: vec![Trace {
+                class: "a1",
+                values: vec![],
+            }],
+            ..Panel::default()
+        };
+        assert!(figure(&record, Span::all(&record), "t", &[panel]).ends_with("</svg>"));
+    }
+}

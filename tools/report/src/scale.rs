@@ -1,0 +1,83 @@
+//! Round ticks, and curves thinned to what a drawing can show.
+
+use sophie_sim::record::FlightRecord;
+
+use super::plot::Span;
+
+/// Columns into which a curve is thinned: about two to a pixel of the drawing.
+const COLUMNS: usize = 460;
+
+/// The curve as its smallest and largest value in each column, in the order in which they come.
+pub(crate) fn thin(record: &FlightRecord, span: Span, values: &[f64]) -> Vec<(f64, f64)> {
+    let shown: Vec<(f64, f64)> = record
+        .samples
+        .iter()
+        .zip(values)
+        .map(|(s, v)| (s.t, *v))
+        .filter(|(t, _)| span.contains(*t))
+        .collect();
+    if shown.len() <= 2 * COLUMNS {
+        return shown;
+    }
+    let size = shown.len().div_ceil(COLUMNS);
+    let mut out = Vec::with_capacity(2 * COLUMNS);
+    for column in shown.chunks(size) {
+        let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        let finite = || column.iter().filter(|(_, v)| v.is_finite());
+        match (finite().min_by(by_value), finite().max_by(by_value)) {
+            (Some(a), Some(b)) if a.0 < b.0 => out.extend([*a, *b]),
+            (Some(a), Some(b)) if a.0 > b.0 => out.extend([*b, *a]),
+            (Some(a), _) => out.push(*a),
+            _ => out.extend(column.first()),
+        }
+    }
+    out
+}
+
+/// Round values between `low` and `high`, about `count` of them.
+pub fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
+    let step = tick_step(low, high, count);
+    let (first, last) = (
+        (low / step - 1e-9).ceil() as i64,
+        (high / step + 1e-9).floor() as i64,
+    );
+    (first..=last).map(|i| i as f64 * step).collect()
+}
+
+/// 1, 2 or 5 times a power of ten.
+pub fn tick_step(low: f64, high: f64, count: usize) -> f64 {
+    let raw = ((high - low) / count.max(1) as f64).max(1e-9);
+    let power = 10_f64.powf(raw.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|m| m * power >= raw * 0.999);
+    step.unwrap_or(10.0) * power
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic;
+    use super::*;
+
+    #[test]
+    fn ticks_are_round() {
+        assert_eq!(ticks(0.0, 10.0, 5), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+        assert_eq!(ticks(-0.5, 0.5, 4), [-0.5, 0.0, 0.5]);
+        assert!(ticks(0.0, 72.0, 12).contains(&70.0));
+    }
+
+    #[test]
+    fn thinning_keeps_peaks_and_order() {
+        let record = synthetic::record();
+        let mut values = vec![0.0; record.samples.len()];
+        values[3210] = 7.0;
+        values[3211] = -5.0;
+        let thinned = thin(&record, Span::all(&record), &values);
+        assert!(thinned.len() <= 2 * COLUMNS);
+        assert!(thinned.iter().any(|(_, v)| *v == 7.0) && thinned.iter().any(|(_, v)| *v == -5.0));
+        assert!(thinned.windows(2).all(|w| w[0].0 < w[1].0));
+        // Where there is no value, the gap stays.
+        let gap = thin(&record, Span::all(&record), &vec![f64::NAN; record.samples.len()]);
+        assert!(!gap.is_empty() && gap.iter().all(|(_, v)| v.is_nan()));
+    }
+}

@@ -1,0 +1,135 @@
+//! What goes to the terminal: lines that survive a closed pipe, colour only where it is wanted.
+
+use std::cell::{Cell, RefCell};
+use std::io::{self, ErrorKind, IsTerminal, Write};
+
+use sophie_sim::record::{FlightRecord, Observer};
+
+use super::live::{Bar, Lines};
+
+/// Where the running text goes: stdout, or stderr when stdout is kept for JSON.
+pub struct Console {
+    to_stderr: bool,
+    terminal: bool,
+    closed: Cell<bool>,
+    /// Why stdout cannot be written, unless its reader has gone.
+    failure: RefCell<Option<String>>,
+}
+
+impl Console {
+    /// A console on stdout, or on stderr if `json`.
+    pub fn new(json: bool) -> Self {
+        let terminal = if json {
+            std::io::stderr().is_terminal()
+        } else {
+            std::io::stdout().is_terminal()
+        };
+        Self {
+            to_stderr: json,
+            terminal,
+            closed: Cell::new(false),
+            failure: RefCell::default(),
+        }
+    }
+
+    /// Shows one line. Once it cannot be shown any more, the work continues; [`Console::end`] says why.
+    pub fn say(&self, line: &str) {
+        if self.closed.get() {
+            return;
+        }
+        let told = if self.to_stderr {
+            writeln!(std::io::stderr(), "{line}")
+        } else {
+            let mut out = std::io::stdout().lock();
+            writeln!(out, "{line}").and_then(|()| out.flush())
+        };
+        self.closed.set(told.is_err());
+        // A broken stderr could not be reported anyway.
+        if !self.to_stderr {
+            *self.failure.borrow_mut() = self::told(told).err();
+        }
+    }
+
+    /// Whether all could be shown that somebody wanted to read.
+    ///
+    /// # Errors
+    /// One line with the reason why stdout could not be written.
+    pub fn end(&self) -> Result<(), String> {
+        self.failure.borrow_mut().take().map_or(Ok(()), Err)
+    }
+
+    /// Runs `flight` with the observer that fits: a progress bar on a terminal, plain lines elsewhere.
+    pub fn watch<T>(&self, flight: impl FnOnce(&mut dyn Observer) -> T) -> T {
+        if self.terminal {
+            let mut bar = Bar::new(self.to_stderr);
+            let result = flight(&mut bar);
+            bar.finish();
+            result
+        } else {
+            flight(&mut Lines::new(self))
+        }
+    }
+
+    /// The line that says how the flight ended.
+    pub fn verdict(&self, record: &FlightRecord) -> String {
+        let word = if record.outcome.accomplished {
+            "accomplished"
+        } else {
+            "NOT accomplished"
+        };
+        let speed = record.sim_seconds / record.wall_seconds.max(1e-6);
+        let decimals = if speed < 10.0 { 2 } else { 0 };
+        format!(
+            "{}: {:.1} s flown in {:.2} s ({speed:.decimals$} times real time), {} overruns",
+            self.paint(word, record.outcome.accomplished),
+            record.sim_seconds,
+            record.wall_seconds,
+            record.overruns
+        )
+    }
+
+    fn paint(&self, word: &str, good: bool) -> String {
+        if !self.terminal || !colour_wanted() {
+            return word.to_owned();
+        }
+        let code = if good { "1;32" } else { "1;31" };
+        format!("\x1b[{code}m{word}\x1b[0m")
+    }
+}
+
+/// <https://no-color.org>: set and not empty means no colour.
+fn colour_wanted() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    !set("NO_COLOR") && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// One line on stdout.
+///
+/// # Errors
+/// As [`told`].
+pub fn print(line: &str) -> Result<(), String> {
+    let mut out = std::io::stdout().lock();
+    told(writeln!(out, "{line}").and_then(|()| out.flush()))
+}
+
+/// What became of text for stdout. A closed pipe is no failure: whoever reads has read enough.
+///
+/// # Errors
+/// One line with any other reason why it was not written.
+pub fn told(result: io::Result<()>) -> Result<(), String> {
+    match result {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(format!("stdout: cannot be written: {error}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// `text` as one line.
+pub fn one_line(text: &str) -> String {
+    text.split(char::is_control)
+        .map(str::trim)
+        .filter(|l| !l.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ")
+}
