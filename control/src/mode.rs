@@ -49,10 +49,10 @@ pub use self::lean::SLIDES;
 pub use self::logic::ModeLogic;
 use crate::arming::Refusals;
 use crate::grip::GripState;
+use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
 use crate::setpoint::{ClampCommand, Setpoint};
 use crate::vector::{Quat, Vec3};
-use crate::warm::Grasp;
 use crate::wrench::PerArm;
 
 /// What the vehicle is doing; the commander alone changes it.
@@ -191,7 +191,7 @@ pub struct Outputs {
     /// What the tendons are to do.
     pub tendons: ClampCommand,
     /// The grip that must outlive a reset.
-    pub grasp: Grasp,
+    pub grip_memory: GripMemory,
     /// Why arming is refused, the failsafe acts or the last state was left; empty when nothing is wrong.
     pub reason: &'static str,
     /// Everything against arming; empty while armed.

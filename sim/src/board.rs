@@ -13,10 +13,10 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
-use sophie_control::warm::{WORDS, Words};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::Raw;
 use sophie_tasks::ports::{self, AnalogFrame, IMU_BATCH, ImuReading, PortError};
+use sophie_tasks::retained_state::{WORDS, Words};
 
 use crate::plant::{Actuators, Plant, STEP};
 use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};

@@ -11,13 +11,13 @@ use fakes::{
 };
 use sophie_control::arming::Refusal;
 use sophie_control::clamp::Fault;
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::mixer::Variant;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::rc::{ArmChoice, Sticks};
 use sophie_control::tendon::Reel;
 use sophie_control::vector::Vec3;
-use sophie_control::warm::{Grasp, WORDS, Warm, Words};
 use sophie_control::wrench::Configuration;
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::flight::fly;
@@ -25,6 +25,7 @@ use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::{Overrides, Scenario};
 use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::ports::AnalogFrame;
+use sophie_tasks::retained_state::{RetainedState, WORDS, Words};
 use sophie_tasks::start::{Cause, Start};
 
 /// Counts of a pressure of some 950 Pa with the default sensor.
@@ -34,13 +35,13 @@ const ANGLE: f32 = 2.5;
 const FORCE: f32 = 45.0;
 
 /// Arms 1 and 3 closed, arms 2 and 4 at rest.
-fn held() -> Warm {
-    Warm {
-        grasp: Grasp::Closed(ArmChoice::Front),
+fn held() -> RetainedState {
+    RetainedState {
+        grip_memory: GripMemory::Controlled(ArmChoice::Front),
         angle: [ANGLE, 0.0, ANGLE, 0.0],
         force: [FORCE, 0.0, FORCE, 0.0],
         gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
-        ..Warm::default()
+        ..RetainedState::default()
     }
 }
 
@@ -103,9 +104,9 @@ impl Vehicle {
         v
     }
 
-    /// Restarted by the watchdog with `warm` in its memory.
-    fn warm(warm: Warm, counts: [u16; 4]) -> Self {
-        let copy = warm.to_words(7).expect("a sane one");
+    /// Restarted by the watchdog with `retained` in its memory.
+    fn retained(retained: RetainedState, counts: [u16; 4]) -> Self {
+        let copy = retained.to_words(7).expect("a sane one");
         Self::start(Cause::Watchdog, [[0; WORDS], copy], counts)
     }
 
@@ -136,8 +137,8 @@ impl Vehicle {
         self.servos.pulses.borrow().iter().map(|p| p[arm]).collect()
     }
 
-    fn kept(&self) -> Option<(Warm, u32)> {
-        Warm::newest(&self.memory.copies())
+    fn kept(&self) -> Option<(RetainedState, u32)> {
+        RetainedState::newest(&self.memory.copies())
     }
 
     fn arm(&mut self) {
@@ -156,7 +157,7 @@ fn pulse(angle: f32) -> f32 {
 
 #[test]
 fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
-    let mut v = Vehicle::warm(held(), [PRESSED, 0, PRESSED, 0]);
+    let mut v = Vehicle::retained(held(), [PRESSED, 0, PRESSED, 0]);
     v.run(650);
     // The attitude is there after 0.5 s, and 0.2 s later the loops take over.
     for arm in [0, 2] {
@@ -183,7 +184,7 @@ fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
         )
     );
     let (kept, sequence) = v.kept().unwrap();
-    assert_eq!((kept.grasp, kept.angle), (held().grasp, held().angle));
+    assert_eq!((kept.grip_memory, kept.angle), (held().grip_memory, held().angle));
     // At 100 Hz, in both copies by turns, from where the run before ended.
     let writes = v.memory.0.get().1;
     assert_eq!(sequence, 7 + writes[0] + writes[1]);
@@ -209,14 +210,14 @@ fn a_start_off_the_pipe_is_as_ever_after_half_a_second_of_looking() {
         v.run(1900);
         assert_eq!(v.status().0, Mode::Disarmed);
         let (kept, _) = v.kept().unwrap();
-        assert!(kept.grasp == Grasp::Open && kept.gyro_bias.is_some());
+        assert!(kept.grip_memory == GripMemory::Open && kept.gyro_bias.is_some());
     }
     // The run before has said that they are open.
-    let open = Warm {
-        grasp: Grasp::Open,
+    let open = RetainedState {
+        grip_memory: GripMemory::Open,
         ..held()
     };
-    let mut v = Vehicle::warm(open, [PRESSED; 4]);
+    let mut v = Vehicle::retained(open, [PRESSED; 4]);
     v.run(1500);
     let pulses = v.pulses(0);
     let first = pulses.iter().find(|p| **p > 0.0).unwrap();
@@ -237,7 +238,7 @@ fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
             let mut bad = copy;
             bad[word] ^= 1 << bit;
             let start = Start::new(Cause::Fault, &[bad; 2]);
-            assert!(start.warm.is_none() && start.sequence == 0);
+            assert!(start.retained.is_none() && start.sequence == 0);
         }
     }
     let mut bad = copy;
@@ -254,7 +255,10 @@ fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
             "{cause:?}"
         );
         assert_eq!(v.status().0, Mode::Disarmed);
-        assert_eq!(v.kept().unwrap().0.grasp, Grasp::Kept(ArmChoice::Front));
+        assert_eq!(
+            v.kept().unwrap().0.grip_memory,
+            GripMemory::HeldByGears(ArmChoice::Front)
+        );
         // The next reset finds them kept, and leaves them so.
         let mut again = Vehicle::start(Cause::Watchdog, v.memory.copies(), [PRESSED, 0, PRESSED, 0]);
         again.run(1000);
@@ -283,14 +287,14 @@ fn resets_one_after_the_other_move_nothing() {
         }
         copies = v.memory.copies();
     }
-    let (kept, _) = Warm::newest(&copies).unwrap();
+    let (kept, _) = RetainedState::newest(&copies).unwrap();
     assert_eq!(kept, held());
 }
 
 #[test]
 fn a_fault_that_an_arm_keeps_until_release_is_kept_over_the_reset() {
     let fault = [Some(Fault::Sensor), None, None, None];
-    let mut v = Vehicle::warm(Warm { fault, ..held() }, [0, 0, PRESSED, 0]);
+    let mut v = Vehicle::retained(RetainedState { fault, ..held() }, [0, 0, PRESSED, 0]);
     v.run(3000);
     assert!(
         v.pulses(0)

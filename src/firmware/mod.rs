@@ -10,8 +10,8 @@ mod timing;
 #[cfg(feature = "trace")]
 pub mod trace;
 
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
-use sophie_control::warm::Grasp;
 use sophie_tasks::links::Links;
 use sophie_tasks::parameters;
 use sophie_tasks::ports::{Loaded, Look};
@@ -76,10 +76,12 @@ pub fn greet(beginning: &Beginning) {
     if let Some(words) = &kept.last_words {
         defmt::error!("the run before ended with: {=str}", words.as_str());
     }
-    let calibrated = start.warm.is_some_and(|warm| warm.gyro_bias.is_some());
-    match start.warm.map(|warm| warm.grasp) {
-        Some(Grasp::Closed(_)) => defmt::warn!("arms closed: they go on from where they were"),
-        Some(Grasp::Kept(_)) => defmt::warn!("arms closed: left to the servos' gears"),
+    let calibrated = start
+        .retained
+        .is_some_and(|retained| retained.gyro_bias.is_some());
+    match start.retained.map(|retained| retained.grip_memory) {
+        Some(GripMemory::Controlled(_)) => defmt::warn!("arms closed: they go on from where they were"),
+        Some(GripMemory::HeldByGears(_)) => defmt::warn!("arms closed: left to the servos' gears"),
         _ => {}
     }
     if calibrated {

@@ -11,9 +11,10 @@
 //! No force is sent before one is known: after power-on the arms may be closed, and the servos' gears hold them as long
 //! as no pulse opens them.
 
+use crate::retained_state::RetainedState;
 use embassy_time::{Duration, Instant};
 use sophie_control::clamp::{ArmInput, Clamp, Config, Pressure};
-use sophie_control::warm::{Grasp, Warm};
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
@@ -26,7 +27,7 @@ pub const PERIOD: Duration = Duration::from_millis(10);
 pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, PERIOD);
     let config = Config::from_params(&links.params);
-    let (mut clamp, mut forces) = begin(links.start.warm);
+    let (mut clamp, mut forces) = begin(links.start.retained);
     let mut grip = None;
     let mut found = false;
     loop {
@@ -68,10 +69,10 @@ pub async fn run(links: &Links) -> ! {
 }
 
 /// Loops and forces at the start: those of closed arms go on, all others wait for a command.
-fn begin(warm: Option<Warm>) -> (Clamp, Option<TendonForces>) {
-    match warm {
-        Some(Warm {
-            grasp: Grasp::Closed(_),
+fn begin(retained: Option<RetainedState>) -> (Clamp, Option<TendonForces>) {
+    match retained {
+        Some(RetainedState {
+            grip_memory: GripMemory::Controlled(_),
             force,
             fault,
             ..

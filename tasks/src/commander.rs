@@ -22,8 +22,8 @@ const LATE_MAX: u32 = 10;
 
 /// Steps the mode logic; never returns.
 pub async fn run(links: &Links) -> ! {
-    let mut logic = match links.start.warm {
-        Some(warm) => ModeLogic::resume(&links.params, warm.grasp),
+    let mut logic = match links.start.retained {
+        Some(retained) => ModeLogic::resume(&links.params, retained.grip_memory),
         None => ModeLogic::new(&links.params),
     };
     let mut late = Lateness::new();
@@ -35,14 +35,14 @@ pub async fn run(links: &Links) -> ! {
             mode,
             rotors,
             tendons,
-            grasp,
+            grip_memory,
             reason,
             refusals,
             ..
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
-        links.grasp.send(tick.started, grasp);
+        links.grip_memory.send(tick.started, grip_memory);
         let warning = warning(links, mode);
         links.status.send(
             tick.started,

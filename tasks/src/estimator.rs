@@ -16,7 +16,7 @@ pub async fn run(links: &Links) {
     let Some(mut imu) = links.imu.receiver() else {
         return;
     };
-    let bias = links.start.warm.and_then(|warm| warm.gyro_bias);
+    let bias = links.start.retained.and_then(|retained| retained.gyro_bias);
     let mut estimator = match bias {
         Some(bias) => Estimator::resume(&links.params, bias),
         None => Estimator::new(&links.params),

@@ -10,7 +10,7 @@
 //!              v  └─────── grip ──── clamp <───────────────────┘
 //!          clamp command ──────────> clamp ──> servos          steady level, 50 to 500 Hz
 //!
-//! grasp, reel angle, tendon forces, gyro bias ──> supervisor ──> memory that outlives a reset ──> start
+//! grip_memory, reel angle, tendon forces, gyro bias ──> supervisor ──> memory that outlives a reset ──> start
 //! ```
 
 use core::cell::{Cell, RefCell};
@@ -23,12 +23,12 @@ use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::attitude::Target;
 pub use sophie_control::grip::GripState;
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::vector::{Quat, Vec3};
-use sophie_control::warm::Grasp;
 use sophie_control::wrench::{PerArm, Wrench};
 
 use crate::deadline::{Level, TaskId};
@@ -258,7 +258,7 @@ pub struct Links {
     /// servos -> supervisor. 50 Hz, stale after 200 ms: angle to which each servo is sent, rad from release.
     pub reel_angle: Link<PerArm<f32>>,
     /// commander -> supervisor. 100 Hz, stale after 200 ms: the grip that must outlive a reset.
-    pub grasp: Link<Grasp>,
+    pub grip_memory: Link<GripMemory>,
     /// clamp -> commander, supervisor. 100 Hz, stale after 100 ms.
     pub grip: Link<GripState>,
     /// rc -> commander. As frames come (50 to 500 Hz), stale after 500 ms: failsafe.
@@ -298,7 +298,7 @@ impl Links {
             tendons: Link::new(ms(200)),
             tension: Link::new(ms(200)),
             reel_angle: Link::new(ms(200)),
-            grasp: Link::new(ms(200)),
+            grip_memory: Link::new(ms(200)),
             grip: Link::new(ms(100)),
             rc: Link::new(ms(500)),
             status: Link::new(ms(200)),

@@ -1,11 +1,11 @@
 //! What a board implements. Every unit is SI unless said otherwise.
 
+use crate::retained_state::Words;
 use embassy_time::Instant;
 use heapless::{String, Vec};
 use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
-use sophie_control::warm::Words;
 use sophie_control::wrench::PerArm;
 
 /// Why a port gave nothing.

@@ -6,8 +6,8 @@
 //! 200 ms hold the servos; so does a missing tilt (100 ms) for its arm, unless that arm is to be released.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::tendon::{Drive, Reel, TendonDrive};
-use sophie_control::warm::Grasp;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::Links;
@@ -25,9 +25,12 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     let reels = Reel::all(&links.params);
     let mut drives = [TendonDrive::new(); 4];
     // Kept arms are on gears alone: the angle of a servo without pulses is not known.
-    let known = links.start.warm.filter(|w| !matches!(w.grasp, Grasp::Kept(_)));
-    if let Some(warm) = known {
-        for (drive, angle) in drives.iter_mut().zip(warm.angle) {
+    let known = links
+        .start
+        .retained
+        .filter(|w| !matches!(w.grip_memory, GripMemory::HeldByGears(_)));
+    if let Some(retained) = known {
+        for (drive, angle) in drives.iter_mut().zip(retained.angle) {
             *drive = drive.resume(angle);
         }
     }

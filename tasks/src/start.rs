@@ -1,6 +1,6 @@
 //! Why the board started, and what the run before left.
 
-use sophie_control::warm::{Warm, Words};
+use crate::retained_state::{RetainedState, Words};
 
 /// Why the board started.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +41,7 @@ pub struct Start {
     /// Why it started.
     pub cause: Cause,
     /// Retained state of the run before, when it is valid.
-    pub warm: Option<Warm>,
+    pub retained: Option<RetainedState>,
     /// Number of the last copy that was kept; the next one takes the next.
     pub sequence: u32,
 }
@@ -50,7 +50,7 @@ impl Start {
     /// Power-on, with nothing left.
     pub const COLD: Self = Self {
         cause: Cause::PowerOn,
-        warm: None,
+        retained: None,
         sequence: 0,
     };
 
@@ -59,11 +59,11 @@ impl Start {
         let kept = if cause.loses_memory() {
             None
         } else {
-            Warm::newest(copies)
+            RetainedState::newest(copies)
         };
         Self {
             cause,
-            warm: kept.map(|(warm, _)| warm),
+            retained: kept.map(|(retained, _)| retained),
             sequence: kept.map_or(0, |(_, sequence)| sequence),
         }
     }
@@ -71,19 +71,19 @@ impl Start {
 
 #[cfg(test)]
 mod tests {
+    use sophie_control::grip_memory::GripMemory;
     use sophie_control::rc::ArmChoice;
-    use sophie_control::warm::Grasp;
 
     use super::*;
 
     #[test]
     fn memory_is_believed_only_where_power_never_went() {
-        let warm = Warm {
-            grasp: Grasp::Closed(ArmChoice::All),
+        let retained = RetainedState {
+            grip_memory: GripMemory::Controlled(ArmChoice::All),
             force: [50.0; 4],
-            ..Warm::default()
+            ..RetainedState::default()
         };
-        let copy = warm.to_words(8).unwrap_or_default();
+        let copy = retained.to_words(8).unwrap_or_default();
         for (cause, believed) in [
             (Cause::PowerOn, false),
             (Cause::BrownOut, false),
@@ -92,9 +92,9 @@ mod tests {
             (Cause::Asked, true),
         ] {
             let start = Start::new(cause, &[copy, [0; 16]]);
-            assert_eq!(start.warm, believed.then_some(warm), "{cause:?}");
+            assert_eq!(start.retained, believed.then_some(retained), "{cause:?}");
             assert_eq!(start.sequence, if believed { 8 } else { 0 });
-            assert!(Start::new(cause, &[[7; 16]; 2]).warm.is_none());
+            assert!(Start::new(cause, &[[7; 16]; 2]).retained.is_none());
             assert!(cause.warning().len() <= 40);
         }
     }

@@ -12,9 +12,9 @@
 use embassy_time::{Duration, Instant};
 
 use crate::deadline::{FixedRate, Level, TaskId};
-use crate::keeper::Keeper;
 use crate::links::Links;
 use crate::ports::{Retain, Watchdog};
+use crate::retained_store::RetainedStore;
 
 /// Time between two looks.
 pub const PERIOD: Duration = Duration::from_millis(10);
@@ -71,12 +71,12 @@ const WATCHED: [Watched; 9] = [
 
 /// Watches every task at 100 Hz; never returns.
 pub async fn run(links: &Links, mut watchdog: impl Watchdog, memory: impl Retain) -> ! {
-    let mut keeper = Keeper::new(links, memory);
+    let mut store = RetainedStore::new(links, memory);
     let mut health = Health::new(links, Instant::now());
     let mut rate = FixedRate::new(links, TaskId::Supervisor, PERIOD, PERIOD);
     loop {
         let tick = rate.next().await;
-        keeper.keep(links);
+        store.keep(links);
         if health.look(links, tick.started) {
             watchdog.feed();
         }

@@ -5,9 +5,9 @@ use super::failsafe::Cause;
 use super::hold::{Hold, Spool, held, hopeless};
 use super::lean::LEANS;
 use super::logic::{ModeLogic, State};
+use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::rc::{ArmChoice, Sticks};
-use crate::warm::Grasp;
 
 /// Time of the linear ramp of the collective between the pilot's throttle and nothing, s.
 pub const SPOOL_TIME: f32 = 1.5;
@@ -40,7 +40,7 @@ impl ModeLogic {
         let proven = i.grip.is_some_and(|g| g.proven);
         let holds = held(i.grip, hold.arms, &self.params);
         if !holds && self.slides() {
-            return self.slide_off(i, Grasp::Closed(hold.arms));
+            return self.slide_off(i, GripMemory::Controlled(hold.arms));
         }
 
         // Without the radio there is no pilot to fly away: a poor grip is then better than none.
@@ -76,7 +76,7 @@ impl ModeLogic {
                         kept: false,
                     };
                 }
-                Some(why) => return self.give_up(i, Grasp::Closed(hold.arms), why),
+                Some(why) => return self.give_up(i, GripMemory::Controlled(hold.arms), why),
                 None => {}
             }
         }
@@ -100,12 +100,12 @@ impl ModeLogic {
         }
         if spool.still >= STOP_TIME && proven {
             return State::Perched {
-                grasp: Grasp::Closed(hold.arms),
+                grip_memory: GripMemory::Controlled(hold.arms),
             };
         }
         if spool.still >= STOP_TIME && last_resort {
             return State::Disarmed {
-                grasp: Grasp::Closed(hold.arms),
+                grip_memory: GripMemory::Controlled(hold.arms),
             };
         }
         if spool.still >= STOP_TIME + PROOF_TIME {
@@ -120,17 +120,17 @@ impl ModeLogic {
         State::Clamping { hold, spool }
     }
 
-    pub(super) fn perched(&mut self, i: &Inputs, grasp: Grasp, sticks: Option<Sticks>) -> State {
-        let (Some(s), Some(arms)) = (sticks, grasp.arms()) else {
-            return State::Perched { grasp };
+    pub(super) fn perched(&mut self, i: &Inputs, grip_memory: GripMemory, sticks: Option<Sticks>) -> State {
+        let (Some(s), Some(arms)) = (sticks, grip_memory.arms()) else {
+            return State::Perched { grip_memory };
         };
         if !s.arm_switch {
             // Rotors stay locked. The disarming gesture hands the closed vehicle over to a person.
             if self.gesture == Some(crate::arming::Gesture::Disarm) {
                 self.perch_seen_on = false;
-                return State::Disarmed { grasp };
+                return State::Disarmed { grip_memory };
             }
-            return State::Perched { grasp };
+            return State::Perched { grip_memory };
         }
         let throttle_set = (RELEASE_THROTTLE_MIN..=self.params.perch_throttle_max).contains(&s.throttle);
         let asked = !s.perch_switch && self.perch_seen_on && throttle_set;
@@ -143,10 +143,10 @@ impl ModeLogic {
                     share: 0.0,
                     free: 0.0,
                     opening: false,
-                    kept: matches!(grasp, Grasp::Kept(_)),
+                    kept: matches!(grip_memory, GripMemory::HeldByGears(_)),
                 }
             }
-            _ => State::Perched { grasp },
+            _ => State::Perched { grip_memory },
         }
     }
 
@@ -169,13 +169,13 @@ impl ModeLogic {
     }
 
     /// What the pilot should know while perched.
-    pub(super) fn perch_trouble(&self, i: &Inputs, grasp: Grasp) -> Option<&'static str> {
+    pub(super) fn perch_trouble(&self, i: &Inputs, grip_memory: GripMemory) -> Option<&'static str> {
         let asked = i
             .sticks
             .is_some_and(|s| !s.perch_switch && s.throttle >= RELEASE_THROTTLE_MIN);
         if i.grip.is_none() {
             Some("clamp loop silent")
-        } else if !self.grasps(i, grasp) {
+        } else if !self.grasps(i, grip_memory) {
             Some("grip lost")
         } else if i.sticks.is_none() {
             Some("radio lost")
@@ -211,14 +211,14 @@ impl ModeLogic {
         }
         let holds = held(i.grip, hold.arms, &self.params);
         if !holds && self.slides() || opening && self.falls() {
-            return self.slide_off(i, Grasp::Closed(hold.arms));
+            return self.slide_off(i, GripMemory::Controlled(hold.arms));
         }
         let again = sticks.is_none_or(|s| s.perch_switch && self.perch_seen_off);
         let grounded = !opening && self.dangers.line_silent();
         if (again || grounded) && kept && !opening {
             // The gears hold what they held all along; the loops could only close from where the drives are not.
             return State::Perched {
-                grasp: Grasp::Kept(hold.arms),
+                grip_memory: GripMemory::HeldByGears(hold.arms),
             };
         }
         let share = clamp(share + dt / SPOOL_TIME, 0.0, 1.0);

@@ -5,14 +5,17 @@ use super::failsafe::Cause;
 use super::logic::{ModeLogic, State};
 use super::{ClampCommand, Inputs, Mode, Outputs, Setpoint, demand};
 use crate::arming::{Checks, Refusal, Refusals};
+use crate::grip_memory::GripMemory;
 use crate::math::clamp;
-use crate::warm::Grasp;
 
 impl ModeLogic {
     pub(super) fn refusals(&self, i: &Inputs) -> Refusals {
-        let grasp = self.grasp();
-        let chosen = grasp.arms().unwrap_or(i.sticks.unwrap_or_default().arms).mask();
-        let held = grasp.arms().is_some() && self.grasps(i, grasp);
+        let grip_memory = self.grip_memory();
+        let chosen = grip_memory
+            .arms()
+            .unwrap_or(i.sticks.unwrap_or_default().arms)
+            .mask();
+        let held = grip_memory.arms().is_some() && self.grasps(i, grip_memory);
         let refusals = Checks {
             calibrated: i.motion.is_some_and(|m| m.calibrated),
             cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
@@ -26,7 +29,7 @@ impl ModeLogic {
                 .any(|(&fault, chosen)| fault && chosen),
             late: i.late,
             hardware: i.hardware,
-            arms_closed: grasp != Grasp::Open && !held,
+            arms_closed: grip_memory != GripMemory::Open && !held,
         }
         .refusals(&self.params);
         // The range of a sensor of an unused arm.
@@ -35,7 +38,7 @@ impl ModeLogic {
             .zip(chosen)
             .filter(|(_, chosen)| !chosen)
             .fold(refusals, |all, (range, _)| all.without(range));
-        if grasp.arms().is_some() {
+        if grip_memory.arms().is_some() {
             // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms are
             // opened; and no one can reach the battery there to put a broken supply right.
             refusals
@@ -47,31 +50,33 @@ impl ModeLogic {
     }
 
     /// The grip that must outlive a reset: from the first step of closing until every arm is proven free.
-    fn grasp(&self) -> Grasp {
+    fn grip_memory(&self) -> GripMemory {
         match self.state {
-            State::Calibrating { grasp } | State::Disarmed { grasp } | State::Perched { grasp } => grasp,
+            State::Calibrating { grip_memory }
+            | State::Disarmed { grip_memory }
+            | State::Perched { grip_memory } => grip_memory,
             State::Releasing {
                 hold,
                 opening: false,
                 kept: true,
                 ..
-            } => Grasp::Kept(hold.arms),
-            State::Clamping { hold, .. } | State::Releasing { hold, .. } => Grasp::Closed(hold.arms),
-            State::Escaping(escape) => escape.grasp,
+            } => GripMemory::HeldByGears(hold.arms),
+            State::Clamping { hold, .. } | State::Releasing { hold, .. } => GripMemory::Controlled(hold.arms),
+            State::Escaping(escape) => escape.grip_memory,
             State::Armed | State::Flight | State::Contact { .. } | State::Landed | State::Failsafe(_) => {
-                Grasp::Open
+                GripMemory::Open
             }
         }
     }
 
     pub(super) fn decide(&mut self, i: &Inputs, dt: f32) -> Outputs {
         let mode = self.state.mode();
-        let grasp = self.grasp();
-        let tendons = match (self.state, grasp) {
-            (State::Releasing { opening: true, .. }, _) | (_, Grasp::Open) => ClampCommand::Release,
+        let grip_memory = self.grip_memory();
+        let tendons = match (self.state, grip_memory) {
+            (State::Releasing { opening: true, .. }, _) | (_, GripMemory::Open) => ClampCommand::Release,
             (State::Escaping(escape), _) if escape.opening => ClampCommand::Release,
-            (_, Grasp::Closed(arms)) => ClampCommand::Close { arms },
-            (_, Grasp::Kept(_) | Grasp::Unknown) => ClampCommand::Keep,
+            (_, GripMemory::Controlled(arms)) => ClampCommand::Close { arms },
+            (_, GripMemory::HeldByGears(_) | GripMemory::Unknown) => ClampCommand::Keep,
         };
         self.probe(dt);
         let wish = self.wish(i);
@@ -87,7 +92,7 @@ impl ModeLogic {
             mode,
             rotors,
             tendons,
-            grasp,
+            grip_memory,
             reason,
             refusals,
         }
@@ -127,7 +132,7 @@ impl ModeLogic {
                 first(refusals)
             }
             State::Disarmed { .. } if note.is_empty() && !i.hardware.is_empty() => first(i.hardware),
-            State::Perched { grasp } => self.perch_trouble(i, grasp).unwrap_or(note),
+            State::Perched { grip_memory } => self.perch_trouble(i, grip_memory).unwrap_or(note),
             State::Failsafe(cause) => cause.text(),
             _ if self.dangers.battery_critical() => Cause::BatteryCritical.text(),
             _ if i.sticks.is_none() && self.state.mode() != Mode::Disarmed => "radio lost",

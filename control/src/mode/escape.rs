@@ -8,10 +8,10 @@ use super::failsafe::Cause;
 use super::lean::SLIDES;
 use super::logic::{ModeLogic, State};
 use super::{Inputs, Setpoint};
+use crate::grip_memory::GripMemory;
 use crate::math::{clamp, clamp_abs, deg};
 use crate::rc::Sticks;
 use crate::support::HINT_FORCE;
-use crate::warm::Grasp;
 
 /// Collective while the vehicle does not climb, share of the weight: 3.4 m/s² upwards.
 const LIFT_SHARE: f32 = 1.35;
@@ -43,7 +43,7 @@ pub(super) const TAKE_OVER_SHARE: f32 = 0.9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Escape {
     /// What the tendons still hold: open, or closed until every arm is proven free.
-    pub grasp: Grasp,
+    pub grip_memory: GripMemory,
     /// Roll held until the vehicle is clear, rad.
     roll: f32,
     /// Collective from which the slow rise starts, N; `None` on a slide, which lifts at once.
@@ -55,27 +55,27 @@ pub struct Escape {
 }
 
 impl ModeLogic {
-    /// Leaves the pipe from which the vehicle slides or falls, with the arms of `grasp` closed or closing.
-    pub(super) fn slide_off(&mut self, i: &Inputs, grasp: Grasp) -> State {
-        self.leave(i, grasp, SLIDES, None)
+    /// Leaves the pipe from which the vehicle slides or falls, with the arms of `grip_memory` closed or closing.
+    pub(super) fn slide_off(&mut self, i: &Inputs, grip_memory: GripMemory) -> State {
+        self.leave(i, grip_memory, SLIDES, None)
     }
 
     /// Leaves the pipe on which the vehicle stands, because its closing is given up for `why`.
-    pub(super) fn give_up(&mut self, i: &Inputs, grasp: Grasp, why: &'static str) -> State {
+    pub(super) fn give_up(&mut self, i: &Inputs, grip_memory: GripMemory, why: &'static str) -> State {
         let from = self.collective.now().max(self.release_thrust());
-        self.leave(i, grasp, why, Some(from))
+        self.leave(i, grip_memory, why, Some(from))
     }
 
-    fn leave(&mut self, i: &Inputs, grasp: Grasp, why: &'static str, from: Option<f32>) -> State {
+    fn leave(&mut self, i: &Inputs, grip_memory: GripMemory, why: &'static str, from: Option<f32>) -> State {
         self.note(why);
         self.perch_seen_off = false;
         let lean = i.motion.map_or(0.0, |m| m.q.to_euler().0);
         State::Escaping(Escape {
-            grasp,
+            grip_memory,
             roll: clamp_abs(lean, AWAY_LEAN),
             from,
             climb: 0.0,
-            opening: grasp == Grasp::Open,
+            opening: grip_memory == GripMemory::Open,
         })
     }
 
@@ -84,14 +84,14 @@ impl ModeLogic {
         // Below the least throttle of a release only the arms keep the vehicle on the pipe.
         escape.opening |= self.collective.now() >= self.release_thrust();
         if escape.opening && i.grip.is_some_and(|g| g.released) {
-            escape.grasp = Grasp::Open;
+            escape.grip_memory = GripMemory::Open;
         }
-        if let (Some(arms), true) = (escape.grasp.arms(), self.since >= FREE_MAX) {
+        if let (Some(arms), true) = (escape.grip_memory.arms(), self.since >= FREE_MAX) {
             if self.support.force() < -HINT_FORCE {
                 return self.stuck(i, arms);
             }
             // Nothing pulls the vehicle down: it flies, whatever an arm's sensors say.
-            escape.grasp = Grasp::Open;
+            escape.grip_memory = GripMemory::Open;
         }
         if !self.clear(escape) {
             return State::Escaping(escape);
@@ -108,7 +108,7 @@ impl ModeLogic {
     /// The arms are free, and there was time to leave the pipe.
     fn clear(&self, escape: Escape) -> bool {
         let ramp = escape.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
-        self.since >= ramp + CLEAR_TIME && escape.grasp == Grasp::Open
+        self.since >= ramp + CLEAR_TIME && escape.grip_memory == GripMemory::Open
     }
 
     /// The throttle stick carries the vehicle.

@@ -12,11 +12,11 @@
 use super::logic::{ModeLogic, State};
 use super::{Inputs, Setpoint, demand};
 use crate::arming::Refusal;
+use crate::grip_memory::GripMemory;
 use crate::math::{clamp, deg};
 use crate::params::Params;
 use crate::rc::{StickMode, Sticks};
 use crate::support::{HINT_FORCE, Held};
-use crate::warm::Grasp;
 
 /// Silence of the inertial sensor after which the rotors stop, s. Control has stopped them before: this makes
 /// it last.
@@ -128,7 +128,9 @@ impl ModeLogic {
         let free = i.grip.is_some_and(|g| g.released);
         let state = match self.state {
             State::Calibrating { .. } | State::Disarmed { .. } | State::Perched { .. } => return None,
-            State::Releasing { opening: true, .. } if free => State::Disarmed { grasp: Grasp::Open },
+            State::Releasing { opening: true, .. } if free => State::Disarmed {
+                grip_memory: GripMemory::Open,
+            },
             State::Releasing {
                 hold,
                 opening: false,
@@ -137,27 +139,31 @@ impl ModeLogic {
             } => {
                 self.perch_seen_on = false;
                 State::Perched {
-                    grasp: Grasp::Kept(hold.arms),
+                    grip_memory: GripMemory::HeldByGears(hold.arms),
                 }
             }
             State::Escaping(escape) if !free => {
                 self.perch_seen_on = false;
-                State::Disarmed { grasp: escape.grasp }
+                State::Disarmed {
+                    grip_memory: escape.grip_memory,
+                }
             }
             State::Clamping { hold, .. } | State::Releasing { hold, .. } => {
                 // Opening takes a new and deliberate turn of the switch.
                 self.perch_seen_on = false;
                 if proven && !matches!(self.state, State::Releasing { opening: true, .. }) {
                     State::Perched {
-                        grasp: Grasp::Closed(hold.arms),
+                        grip_memory: GripMemory::Controlled(hold.arms),
                     }
                 } else {
                     State::Disarmed {
-                        grasp: Grasp::Closed(hold.arms),
+                        grip_memory: GripMemory::Controlled(hold.arms),
                     }
                 }
             }
-            _ => State::Disarmed { grasp: Grasp::Open },
+            _ => State::Disarmed {
+                grip_memory: GripMemory::Open,
+            },
         };
         Some((state, why))
     }

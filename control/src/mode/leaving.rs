@@ -86,7 +86,7 @@ fn a_touch_that_leans_too_much_is_left_before_an_arm_closes() {
             leaves,
             "{degrees} {carried} {switch}: {mode:?}"
         );
-        assert!(!leaves || (r.out.grasp, r.out.tendons) == (Grasp::Open, ClampCommand::Release));
+        assert!(!leaves || (r.out.grip_memory, r.out.tendons) == (GripMemory::Open, ClampCommand::Release));
     }
 }
 
@@ -114,8 +114,8 @@ fn an_escape_lifts_nearly_level_until_the_throttle_carries() {
         // 8° of the 20° stay: away from the pipe, never across it.
         assert!((roll - deg(8.0 * side)).abs() < 1e-4 && pitch == 0.0 && yaw_rate == 0.0);
         assert_eq!(
-            (r.out.tendons, r.out.grasp),
-            (ClampCommand::Release, Grasp::Closed(ArmChoice::All))
+            (r.out.tendons, r.out.grip_memory),
+            (ClampCommand::Release, GripMemory::Controlled(ArmChoice::All))
         );
         r.grip(false, true, ArmState::Free, 0.0);
         r.carried = false;
@@ -123,7 +123,7 @@ fn an_escape_lifts_nearly_level_until_the_throttle_carries() {
         // Resting throttle would drop it.
         r.sticks().roll = 0.5;
         r.expect(1.5, Mode::Escaping);
-        assert_eq!(r.out.grasp, Grasp::Open);
+        assert_eq!(r.out.grip_memory, GripMemory::Open);
         assert!(
             matches!(r.out.rotors, Setpoint::Escape { roll, .. } if roll > 0.3),
             "clear: the pilot steers"
@@ -242,7 +242,10 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
 
 #[test]
 fn the_arm_switch_ends_an_escape_as_it_ends_a_release() {
-    for (free, grasp) in [(false, Grasp::Closed(ArmChoice::All)), (true, Grasp::Open)] {
+    for (free, grip_memory) in [
+        (false, GripMemory::Controlled(ArmChoice::All)),
+        (true, GripMemory::Open),
+    ] {
         for make in [Rig::escaping as fn() -> Rig, Rig::releasing] {
             let mut r = make();
             r.run(1.8);
@@ -250,11 +253,14 @@ fn the_arm_switch_ends_an_escape_as_it_ends_a_release() {
             r.sticks().arm_switch = false;
             r.step();
             assert_eq!(
-                (r.out.mode, r.out.rotors, r.out.grasp),
-                (Mode::Disarmed, Setpoint::Stop, grasp)
+                (r.out.mode, r.out.rotors, r.out.grip_memory),
+                (Mode::Disarmed, Setpoint::Stop, grip_memory)
             );
             r.run(2.0);
-            assert_eq!(r.out.grasp, grasp, "opening again takes a new turn of the switch");
+            assert_eq!(
+                r.out.grip_memory, grip_memory,
+                "opening again takes a new turn of the switch"
+            );
         }
     }
 }

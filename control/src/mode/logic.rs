@@ -7,11 +7,11 @@ use super::lean::Lean;
 use super::look::Look;
 use super::{Inputs, Mode, Outputs, demand};
 use crate::arming::{Gesture, GestureWatch};
+use crate::grip_memory::GripMemory;
 use crate::math::{clamp, cos};
 use crate::params::Params;
 use crate::rc::Sticks;
 use crate::support::{Felt, Support};
-use crate::warm::Grasp;
 
 /// Longest step accepted, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
@@ -37,11 +37,11 @@ const NOTE_TIME: f32 = 10.0;
 pub(super) enum State {
     /// A grip outlives rotors and resets.
     Calibrating {
-        grasp: Grasp,
+        grip_memory: GripMemory,
     },
     /// As above.
     Disarmed {
-        grasp: Grasp,
+        grip_memory: GripMemory,
     },
     Armed,
     Flight,
@@ -54,7 +54,7 @@ pub(super) enum State {
     },
     Perched {
         /// Closed or kept.
-        grasp: Grasp,
+        grip_memory: GripMemory,
     },
     Releasing {
         hold: Hold,
@@ -126,14 +126,14 @@ pub struct ModeLogic {
 impl ModeLogic {
     /// A vehicle that has just been switched on: whether its arms are closed is looked at first.
     pub fn new(params: &Params) -> Self {
-        Self::resume(params, Grasp::Unknown)
+        Self::resume(params, GripMemory::Unknown)
     }
 
     /// A vehicle whose board has restarted with this grip. The rotors wait for the pilot, whatever ran before.
-    pub fn resume(params: &Params, grasp: Grasp) -> Self {
+    pub fn resume(params: &Params, grip_memory: GripMemory) -> Self {
         Self {
             params: *params,
-            state: State::Calibrating { grasp },
+            state: State::Calibrating { grip_memory },
             since: 0.0,
             support: Support::new(params),
             dangers: Dangers::default(),
@@ -220,15 +220,15 @@ impl ModeLogic {
     fn transition(&mut self, i: &Inputs, dt: f32) -> State {
         let low = |s: &Sticks| s.throttle <= self.params.throttle_low;
         match (self.state, i.sticks) {
-            (State::Calibrating { grasp }, sticks) => {
-                let grasp = sticks.map_or(grasp, |s| self.after_switch(s, grasp));
+            (State::Calibrating { grip_memory }, sticks) => {
+                let grip_memory = sticks.map_or(grip_memory, |s| self.after_switch(s, grip_memory));
                 if i.motion.is_some_and(|m| m.calibrated) {
-                    State::Disarmed { grasp }
+                    State::Disarmed { grip_memory }
                 } else {
-                    State::Calibrating { grasp }
+                    State::Calibrating { grip_memory }
                 }
             }
-            (State::Disarmed { grasp }, Some(s)) => self.disarmed(i, s, grasp),
+            (State::Disarmed { grip_memory }, Some(s)) => self.disarmed(i, s, grip_memory),
             (State::Armed | State::Landed, None) => self.stop("radio lost"),
             (State::Armed | State::Landed, _) if self.dangers.line_silent() => {
                 self.stop(Cause::LineSilent.text())
@@ -244,7 +244,7 @@ impl ModeLogic {
             (State::Flight, Some(s)) => self.touch(i, s).unwrap_or(State::Flight),
             (State::Contact { hold }, sticks) => self.contact(i, hold, sticks, dt),
             (State::Clamping { hold, spool }, sticks) => self.clamping(i, hold, spool, sticks, dt),
-            (State::Perched { grasp }, sticks) => self.perched(i, grasp, sticks),
+            (State::Perched { grip_memory }, sticks) => self.perched(i, grip_memory, sticks),
             (
                 State::Releasing {
                     hold,
@@ -261,29 +261,29 @@ impl ModeLogic {
         }
     }
 
-    fn disarmed(&mut self, i: &Inputs, s: Sticks, grasp: Grasp) -> State {
-        let grasp = self.after_switch(s, grasp);
+    fn disarmed(&mut self, i: &Inputs, s: Sticks, grip_memory: GripMemory) -> State {
+        let grip_memory = self.after_switch(s, grip_memory);
         if self.gesture != Some(Gesture::Arm) || !self.refusals(i).is_empty() {
-            return State::Disarmed { grasp };
+            return State::Disarmed { grip_memory };
         }
-        match grasp {
-            Grasp::Closed(_) | Grasp::Kept(_) => {
+        match grip_memory {
+            GripMemory::Controlled(_) | GripMemory::HeldByGears(_) => {
                 // Armed on purpose with the switch where it is: from here on, off is a wish to go.
                 self.perch_seen_on = s.perch_switch;
                 self.perch_left_on = false;
-                State::Perched { grasp }
+                State::Perched { grip_memory }
             }
-            Grasp::Open => State::Armed,
-            Grasp::Unknown => State::Disarmed { grasp },
+            GripMemory::Open => State::Armed,
+            GripMemory::Unknown => State::Disarmed { grip_memory },
         }
     }
 
     /// The grip of a disarmed vehicle. A person who holds it opens the arms by the perch switch, on and off again.
-    fn after_switch(&self, s: Sticks, grasp: Grasp) -> Grasp {
-        if grasp.arms().is_some() && !s.perch_switch && self.perch_seen_on {
-            Grasp::Open
+    fn after_switch(&self, s: Sticks, grip_memory: GripMemory) -> GripMemory {
+        if grip_memory.arms().is_some() && !s.perch_switch && self.perch_seen_on {
+            GripMemory::Open
         } else {
-            grasp
+            grip_memory
         }
     }
 
@@ -292,7 +292,7 @@ impl ModeLogic {
         let motion = i.motion?;
         let wanted = s.perch_switch && s.throttle <= self.params.perch_throttle_max;
         if wanted && self.perch_seen_off && self.slides_at_touch() {
-            return Some(self.slide_off(i, Grasp::Open));
+            return Some(self.slide_off(i, GripMemory::Open));
         }
         if !(wanted && self.support.resting()) {
             return None;
@@ -321,7 +321,7 @@ impl ModeLogic {
             return State::Flight;
         }
         if self.slides() {
-            return self.slide_off(i, Grasp::Open);
+            return self.slide_off(i, GripMemory::Open);
         }
         if !self.support.resting() {
             // Lost the pipe, or the inertial sensor for a moment: back to where the pilot steers.
@@ -343,7 +343,9 @@ impl ModeLogic {
     /// Rotors off for good, from a state in which no arm is closed.
     pub(super) fn stop(&mut self, why: &'static str) -> State {
         self.note(why);
-        State::Disarmed { grasp: Grasp::Open }
+        State::Disarmed {
+            grip_memory: GripMemory::Open,
+        }
     }
 
     /// Shows `why` for a while.

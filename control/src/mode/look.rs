@@ -3,7 +3,7 @@
 //! Nothing that is remembered outlives a loss of power, but the arms do: the servos' gears hold them without a pulse,
 //! and the first pulse would open them. So no pulse goes out before the pressure sensors have been looked at.
 //!
-//! Arms that press are left to the gears ([`Grasp::Kept`]) until a person opens them or the pilot has the rotors
+//! Arms that press are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot has the rotors
 //! carry the vehicle. Their servos are not taken up before: a pulse must name an angle, and that is known from tilt
 //! and pressure no better than to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of tilt, and a skin of unknown
 //! stiffness), a third of a grip's force that might be let go of, where doing nothing loses nothing.
@@ -11,8 +11,8 @@
 use super::Inputs;
 use super::hold::held;
 use super::logic::{ModeLogic, State};
+use crate::grip_memory::GripMemory;
 use crate::rc::ArmChoice;
-use crate::warm::Grasp;
 use crate::wrench::PerArm;
 
 /// Time over which the pressures are averaged, s.
@@ -57,10 +57,10 @@ fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Opt
 impl ModeLogic {
     /// Decides once whether the arms were closed when the power came on.
     pub(super) fn look_for_grasp(&mut self, i: &Inputs, dt: f32) {
-        let (State::Calibrating { grasp } | State::Disarmed { grasp }) = &mut self.state else {
+        let (State::Calibrating { grip_memory } | State::Disarmed { grip_memory }) = &mut self.state else {
             return;
         };
-        let (Grasp::Unknown, Some(grip)) = (*grasp, i.grip) else {
+        let (GripMemory::Unknown, Some(grip)) = (*grip_memory, i.grip) else {
             return;
         };
         let mut pressure = [None; 4];
@@ -68,20 +68,20 @@ impl ModeLogic {
             *slot = (!fault && arm.pressure.is_finite()).then_some(arm.pressure);
         }
         if let Some(pressed) = self.look.step(pressure, self.params.release_pressure, dt) {
-            *grasp = chosen(pressed).map_or(Grasp::Open, Grasp::Kept);
+            *grip_memory = chosen(pressed).map_or(GripMemory::Open, GripMemory::HeldByGears);
         }
     }
 
-    /// The arms of `grasp` hold something. Of arms that the gears alone hold only some pressure is asked: a weak servo
+    /// The arms of `grip_memory` hold something. Of arms that the gears alone hold only some pressure is asked: a weak servo
     /// has given way to what its friction carries, and still holds.
-    pub(super) fn grasps(&self, i: &Inputs, grasp: Grasp) -> bool {
-        match grasp {
-            Grasp::Closed(arms) => held(i.grip, arms, &self.params),
-            Grasp::Kept(arms) => i.grip.is_some_and(|grip| {
+    pub(super) fn grasps(&self, i: &Inputs, grip_memory: GripMemory) -> bool {
+        match grip_memory {
+            GripMemory::Controlled(arms) => held(i.grip, arms, &self.params),
+            GripMemory::HeldByGears(arms) => i.grip.is_some_and(|grip| {
                 let mut arms = grip.arms.iter().zip(arms.mask());
                 arms.any(|(arm, chosen)| chosen && arm.pressure > self.params.release_pressure)
             }),
-            Grasp::Open | Grasp::Unknown => false,
+            GripMemory::Open | GripMemory::Unknown => false,
         }
     }
 }

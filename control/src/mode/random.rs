@@ -118,9 +118,9 @@ proptest! {
             3 => Rig::perched(),
             _ => {
                 let mut r = Rig::new();
-                let grasps = [Grasp::Closed(ArmChoice::All), Grasp::Kept(ArmChoice::Front), Grasp::Open];
-                let grasp = grasps.into_iter().nth(usize::from(start) - 4).unwrap_or_default();
-                r.logic = ModeLogic::resume(&r.params, grasp);
+                let grasps = [GripMemory::Controlled(ArmChoice::All), GripMemory::HeldByGears(ArmChoice::Front), GripMemory::Open];
+                let grip_memory = grasps.into_iter().nth(usize::from(start) - 4).unwrap_or_default();
+                r.logic = ModeLogic::resume(&r.params, grip_memory);
                 r
             }
         };
@@ -132,7 +132,7 @@ proptest! {
             let q = Quat::from_euler(roll, 0.0, 0.0);
             r.inputs.motion = there.then_some(Motion { q, calibrated: true, ..Default::default() });
             for _ in 0..steps {
-                let (before, grasp) = (r.out.mode, r.out.grasp);
+                let (before, grip_memory) = (r.out.mode, r.out.grip_memory);
                 r.step();
                 let Outputs { mode, rotors, tendons, reason, .. } = r.out;
                 let still = [Mode::Calibrating, Mode::Disarmed, Mode::Perched].contains(&mode);
@@ -145,7 +145,7 @@ proptest! {
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.len() <= 40);
                 // Nothing opens but by the switch, turned off, or by rotors that carry.
-                if grasp.arms().is_some() && tendons == ClampCommand::Release {
+                if grip_memory.arms().is_some() && tendons == ClampCommand::Release {
                     prop_assert!([Mode::Releasing, Mode::Escaping].contains(&mode) || before == Mode::Escaping || sticks.is_some_and(|s| !s.perch_switch)
                         || r.inputs.grip.is_some_and(|g| g.released), "{before:?} -> {mode:?}");
                 }

@@ -11,9 +11,9 @@ const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
 impl Rig {
     /// Restarted with this grip, the switches where they were on the pipe.
-    fn restarted(grasp: Grasp) -> Self {
+    fn restarted(grip_memory: GripMemory) -> Self {
         let mut r = Self::new();
-        r.logic = ModeLogic::resume(&r.params, grasp);
+        r.logic = ModeLogic::resume(&r.params, grip_memory);
         *r.sticks() = Sticks {
             arm_switch: true,
             perch_switch: true,
@@ -51,7 +51,7 @@ impl Rig {
 
     /// Found pressed at `pressure` Pa when the power came on.
     fn found(pressure: f32) -> Self {
-        let mut r = Self::restarted(Grasp::Unknown);
+        let mut r = Self::restarted(GripMemory::Unknown);
         r.grip(false, false, ArmState::Free, pressure);
         r
     }
@@ -59,7 +59,7 @@ impl Rig {
 
 #[test]
 fn a_restart_on_the_pipe_never_opens_and_flies_home_once_the_pilot_has_armed() {
-    let mut r = Rig::restarted(Grasp::Closed(ArmChoice::All));
+    let mut r = Rig::restarted(GripMemory::Controlled(ArmChoice::All));
     r.grip(false, false, ArmState::Closing, 930.0);
     r.stays(0.5, ALL);
     assert_eq!(r.out.mode, Mode::Calibrating);
@@ -67,8 +67,8 @@ fn a_restart_on_the_pipe_never_opens_and_flies_home_once_the_pilot_has_armed() {
     r.grip(true, false, ArmState::Holding, 950.0);
     r.stays(30.0, ALL);
     assert_eq!(
-        (r.out.mode, r.out.grasp),
-        (Mode::Disarmed, Grasp::Closed(ArmChoice::All))
+        (r.out.mode, r.out.grip_memory),
+        (Mode::Disarmed, GripMemory::Controlled(ArmChoice::All))
     );
     // The switch that was on all along does not count: arming takes a hand.
     assert_eq!(r.out.refusals.first(), Some(Refusal::SwitchOnAtPowerUp));
@@ -85,16 +85,23 @@ fn a_restart_on_the_pipe_never_opens_and_flies_home_once_the_pilot_has_armed() {
     r.expect(0.1, Mode::Releasing);
     r.run(2.0);
     assert_eq!(r.out.tendons, ClampCommand::Release);
-    assert_eq!(r.out.grasp, Grasp::Closed(ArmChoice::All), "not free yet");
+    assert_eq!(
+        r.out.grip_memory,
+        GripMemory::Controlled(ArmChoice::All),
+        "not free yet"
+    );
     r.grip(false, true, ArmState::Free, 0.0);
     r.expect(1.0, Mode::Flight);
-    assert_eq!(r.out.grasp, Grasp::Open);
+    assert_eq!(r.out.grip_memory, GripMemory::Open);
 }
 
 #[test]
 fn the_perch_switch_that_was_left_on_opens_nothing_when_it_is_turned_off() {
-    for grasp in [Grasp::Closed(ArmChoice::Front), Grasp::Kept(ArmChoice::All)] {
-        let mut r = Rig::restarted(grasp);
+    for grip_memory in [
+        GripMemory::Controlled(ArmChoice::Front),
+        GripMemory::HeldByGears(ArmChoice::All),
+    ] {
+        let mut r = Rig::restarted(grip_memory);
         r.grip(false, false, ArmState::Touching, 950.0);
         for calibrated in [false, true] {
             if calibrated {
@@ -103,11 +110,11 @@ fn the_perch_switch_that_was_left_on_opens_nothing_when_it_is_turned_off() {
             r.run(0.5);
             r.sticks().perch_switch = false;
             r.run(2.0);
-            assert!(r.out.tendons != ClampCommand::Release && r.out.grasp == grasp);
+            assert!(r.out.tendons != ClampCommand::Release && r.out.grip_memory == grip_memory);
             r.sticks().perch_switch = true;
             if !calibrated {
                 // Off and on so far. The next off is a person's wish, tried in the next test.
-                r.logic = ModeLogic::resume(&r.params, grasp);
+                r.logic = ModeLogic::resume(&r.params, grip_memory);
             }
         }
         r.sticks().perch_switch = true;
@@ -116,8 +123,8 @@ fn the_perch_switch_that_was_left_on_opens_nothing_when_it_is_turned_off() {
         r.sticks().perch_switch = false;
         r.run(0.1);
         assert_eq!(
-            (r.out.tendons, r.out.grasp),
-            (ClampCommand::Release, Grasp::Open),
+            (r.out.tendons, r.out.grip_memory),
+            (ClampCommand::Release, GripMemory::Open),
             "on and off again"
         );
     }
@@ -140,7 +147,7 @@ fn a_person_opens_a_vehicle_that_swings_too_much_to_be_calibrated() {
 
 #[test]
 fn arming_with_the_switch_off_takes_a_new_turn_of_it_to_release() {
-    let mut r = Rig::restarted(Grasp::Closed(ArmChoice::All));
+    let mut r = Rig::restarted(GripMemory::Controlled(ArmChoice::All));
     r.calibrated();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.sticks().perch_switch = false;
@@ -158,22 +165,22 @@ fn arming_with_the_switch_off_takes_a_new_turn_of_it_to_release() {
 
 #[test]
 fn a_grip_that_is_not_held_is_not_armed() {
-    for (grasp, pressure, state) in [
-        (Grasp::Closed(ArmChoice::All), 400.0, ArmState::Touching),
-        (Grasp::Closed(ArmChoice::All), 950.0, ArmState::Faulty),
-        (Grasp::Kept(ArmChoice::All), 60.0, ArmState::Free),
-        (Grasp::Unknown, 0.0, ArmState::Free),
+    for (grip_memory, pressure, state) in [
+        (GripMemory::Controlled(ArmChoice::All), 400.0, ArmState::Touching),
+        (GripMemory::Controlled(ArmChoice::All), 950.0, ArmState::Faulty),
+        (GripMemory::HeldByGears(ArmChoice::All), 60.0, ArmState::Free),
+        (GripMemory::Unknown, 0.0, ArmState::Free),
     ] {
-        let mut r = Rig::restarted(grasp);
+        let mut r = Rig::restarted(grip_memory);
         r.calibrated();
         r.grip(false, false, state, pressure);
-        if grasp == Grasp::Unknown {
+        if grip_memory == GripMemory::Unknown {
             r.inputs.fsr_fault = [true; 4];
         }
         r.run(1.0);
         r.arm();
-        assert_eq!(r.out.mode, Mode::Disarmed, "{grasp:?}");
-        assert!(r.out.refusals.contains(Refusal::ArmsClosed), "{grasp:?}");
+        assert_eq!(r.out.mode, Mode::Disarmed, "{grip_memory:?}");
+        assert!(r.out.refusals.contains(Refusal::ArmsClosed), "{grip_memory:?}");
     }
 }
 
@@ -213,7 +220,7 @@ fn every_other_check_still_counts_on_the_pipe() {
     ];
     for (edit, why) in cases {
         // The pilot's own choice is the front pair: what counts is the grip's.
-        let mut r = Rig::restarted(Grasp::Closed(ArmChoice::Rear));
+        let mut r = Rig::restarted(GripMemory::Controlled(ArmChoice::Rear));
         r.sticks().arms = ArmChoice::Front;
         r.calibrated();
         r.grip(true, false, ArmState::Holding, 950.0);
@@ -246,9 +253,12 @@ fn power_comes_on_with_open_arms_as_ever() {
         let mut r = Rig::found(pressure);
         r.sticks().perch_switch = false;
         r.stays(LOOK_TIME - 0.02, ClampCommand::Keep);
-        assert_eq!(r.out.grasp, Grasp::Unknown);
+        assert_eq!(r.out.grip_memory, GripMemory::Unknown);
         r.run(0.05);
-        assert_eq!((r.out.tendons, r.out.grasp), (ClampCommand::Release, Grasp::Open));
+        assert_eq!(
+            (r.out.tendons, r.out.grip_memory),
+            (ClampCommand::Release, GripMemory::Open)
+        );
         r.calibrated();
         r.run(0.1);
         r.arm();
@@ -260,7 +270,7 @@ fn power_comes_on_with_open_arms_as_ever() {
 fn arms_found_pressed_are_left_to_the_gears_until_they_are_opened_on_purpose() {
     let mut r = Rig::found(700.0);
     r.stays(20.0, ClampCommand::Keep);
-    assert_eq!(r.out.grasp, Grasp::Kept(ArmChoice::All));
+    assert_eq!(r.out.grip_memory, GripMemory::HeldByGears(ArmChoice::All));
     r.calibrated();
     r.stays(1.0, ClampCommand::Keep);
     r.arm();
@@ -291,8 +301,8 @@ fn arms_found_pressed_are_left_to_the_gears_until_they_are_opened_on_purpose() {
     r.expect(2.0, Mode::Releasing);
     assert_eq!(r.out.tendons, ClampCommand::Release);
     assert_eq!(
-        r.out.grasp,
-        Grasp::Closed(ArmChoice::All),
+        r.out.grip_memory,
+        GripMemory::Controlled(ArmChoice::All),
         "a reset now would close them again"
     );
     r.grip(false, true, ArmState::Free, 0.0);
@@ -301,11 +311,11 @@ fn arms_found_pressed_are_left_to_the_gears_until_they_are_opened_on_purpose() {
 
 #[test]
 fn the_pair_that_presses_is_the_one_that_is_kept() {
-    for (pressures, grasp) in [
-        ([90.0, 0.0, 0.0, 0.0], Grasp::Kept(ArmChoice::Front)),
-        ([0.0, 500.0, 0.0, 500.0], Grasp::Kept(ArmChoice::Rear)),
-        ([900.0, 0.0, 0.0, 85.0], Grasp::Kept(ArmChoice::All)),
-        ([f32::NAN, 10.0, 79.0, 0.0], Grasp::Open),
+    for (pressures, grip_memory) in [
+        ([90.0, 0.0, 0.0, 0.0], GripMemory::HeldByGears(ArmChoice::Front)),
+        ([0.0, 500.0, 0.0, 500.0], GripMemory::HeldByGears(ArmChoice::Rear)),
+        ([900.0, 0.0, 0.0, 85.0], GripMemory::HeldByGears(ArmChoice::All)),
+        ([f32::NAN, 10.0, 79.0, 0.0], GripMemory::Open),
     ] {
         let mut r = Rig::found(0.0);
         if let Some(grip) = &mut r.inputs.grip {
@@ -314,7 +324,7 @@ fn the_pair_that_presses_is_the_one_that_is_kept() {
             }
         }
         r.run(1.0);
-        assert_eq!(r.out.grasp, grasp, "{pressures:?}");
+        assert_eq!(r.out.grip_memory, grip_memory, "{pressures:?}");
     }
     // A moment's knock is no grip.
     let mut r = Rig::found(0.0);
@@ -323,7 +333,7 @@ fn the_pair_that_presses_is_the_one_that_is_kept() {
     r.run(0.05);
     r.grip(false, false, ArmState::Free, 0.0);
     r.run(0.5);
-    assert_eq!(r.out.grasp, Grasp::Open);
+    assert_eq!(r.out.grip_memory, GripMemory::Open);
 }
 
 #[test]
@@ -333,9 +343,12 @@ fn nothing_is_decided_while_nothing_is_felt() {
     r.stays(10.0, ClampCommand::Keep);
     r.calibrated();
     r.stays(10.0, ClampCommand::Keep);
-    assert_eq!((r.out.mode, r.out.grasp), (Mode::Disarmed, Grasp::Unknown));
+    assert_eq!(
+        (r.out.mode, r.out.grip_memory),
+        (Mode::Disarmed, GripMemory::Unknown)
+    );
     // One sensor of a hanging vehicle is enough.
     r.inputs.fsr_fault = [true, true, true, false];
     r.stays(1.0, ClampCommand::Keep);
-    assert_eq!(r.out.grasp, Grasp::Kept(ArmChoice::Rear));
+    assert_eq!(r.out.grip_memory, GripMemory::HeldByGears(ArmChoice::Rear));
 }

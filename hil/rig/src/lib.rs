@@ -13,9 +13,9 @@
 #[path = "../../../src/board/mod.rs"]
 pub mod board;
 pub mod cycles;
-pub mod errand;
 pub mod pads;
 pub mod pulses;
+pub mod resumable_test;
 mod verdict;
 
 use board::{WatchdogPort, start_levels};
@@ -33,7 +33,7 @@ const MEAL: Duration = Duration::from_millis(50);
 /// level, for what the test itself wants there. Called once.
 pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
     defmt::info!("{=str}", board::NAME);
-    errand::leave(errand::Errand::Test);
+    resumable_test::leave(resumable_test::ResumableTest::Test);
     let (flight, steady) = start_levels();
     // Only a second call could fail, and `start_levels` panics at one.
     if let Ok(feeder) = feed(watchdog) {

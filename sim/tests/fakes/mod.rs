@@ -12,13 +12,13 @@ use heapless::Vec as Few;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
-use sophie_control::warm::{WORDS, Words};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::ports::{
     Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain, SerialInput, Servos,
     Watchdog,
 };
+use sophie_tasks::retained_state::{WORDS, Words};
 
 /// Links without messages, for as long as the process lives.
 pub fn links() -> &'static Links {

@@ -1,5 +1,5 @@
 //! The few words that outlive a reset: how often the board started, what ended the run before, and two copies of what
-//! the tasks go on from (`sophie_control::warm`), which this file only stores.
+//! the tasks go on from (`sophie_tasks::retained_state`), which this file only stores.
 //!
 //! Nothing but these functions reaches the memory: the linker gives it to no one else, no DMA is pointed at it, and the
 //! stack lies alone at the very bottom of a memory, where one that overflows faults. A fault handler writes the message
@@ -9,8 +9,8 @@ use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
 
 use heapless::String;
-use sophie_control::warm::{WORDS as WARM_WORDS, Words};
 use sophie_tasks::ports::Retain;
+use sophie_tasks::retained_state::{WORDS as STATE_WORDS, Words};
 use sophie_tasks::start::Cause;
 
 /// Why the chip was reset.
@@ -132,7 +132,7 @@ unsafe impl Sync for Copies {}
 
 // SAFETY: as for the block.
 #[unsafe(link_section = ".retained")]
-static COPIES: Copies = Copies(UnsafeCell::new([[0; WARM_WORDS]; 2]));
+static COPIES: Copies = Copies(UnsafeCell::new([[0; STATE_WORDS]; 2]));
 
 /// Writes the copies. One exists, from [`start`].
 pub struct Memory(());
@@ -178,7 +178,7 @@ pub fn start(cause: ResetCause) -> (Kept, Memory) {
     let faulty = last_words.is_some() || cause == ResetCause::Watchdog;
     block.faults = block.faults.saturating_add(u32::from(faulty));
     let mut memory = Memory(());
-    let blank = [[0; WARM_WORDS]; 2];
+    let blank = [[0; STATE_WORDS]; 2];
     let copies = if lost {
         // Written before it is ever read, as the error correction wants it.
         for (second, words) in [false, true].into_iter().zip(&blank) {

@@ -3,12 +3,13 @@
 use embassy_time::Instant;
 use sophie_control::clamp::Fault;
 use sophie_control::grip::ArmState;
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
-use sophie_control::warm::{Grasp, Warm};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::clamp;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Contact, Links, MixOutput};
+use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::start::{Cause, Start};
 
 use crate::rig::Rig;
@@ -197,28 +198,28 @@ fn only_rotors_that_run_are_met_by_the_tendons() {
 
 #[test]
 fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothing() {
-    for (grasp, sent) in [
-        (Grasp::Closed(ArmChoice::All), true),
-        (Grasp::Kept(ArmChoice::All), false),
-        (Grasp::Open, false),
+    for (grip_memory, sent) in [
+        (GripMemory::Controlled(ArmChoice::All), true),
+        (GripMemory::HeldByGears(ArmChoice::All), false),
+        (GripMemory::Open, false),
     ] {
-        let warm = Warm {
-            grasp,
+        let retained = RetainedState {
+            grip_memory,
             force: [50.0, 51.0, 52.0, 53.0],
-            ..Warm::default()
+            ..RetainedState::default()
         };
         let start = Start {
             cause: Cause::Watchdog,
-            warm: Some(warm),
+            retained: Some(retained),
             sequence: 1,
         };
         let mut rig = Rig::starting(Params::default(), start);
         rig.time.spawn(clamp::run(rig.links));
         rig.run(1);
         let forces = rig.links.tendons.fresh();
-        assert_eq!(forces.is_some(), sent, "{grasp:?}");
+        assert_eq!(forces.is_some(), sent, "{grip_memory:?}");
         if let Some(forces) = forces {
-            assert_eq!((forces.force, forces.stay), (warm.force, [true; 4]));
+            assert_eq!((forces.force, forces.stay), (retained.force, [true; 4]));
             assert!(!forces.found);
         }
     }

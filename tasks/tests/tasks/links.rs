@@ -46,7 +46,7 @@ fn every_link_goes_stale_when_the_safety_of_its_readers_wants_it() {
         ("tendons", l.tendons.stale_after, 200),
         ("tension", l.tension.stale_after, 200),
         ("reel_angle", l.reel_angle.stale_after, 200),
-        ("grasp", l.grasp.stale_after, 200),
+        ("grip_memory", l.grip_memory.stale_after, 200),
         ("status", l.status.stale_after, 200),
         ("battery", l.battery.stale_after, 500),
         ("rc", l.rc.stale_after, 500),

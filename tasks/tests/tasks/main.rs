@@ -9,9 +9,9 @@ mod deadline;
 #[path = "../../../sim/tests/fakes/mod.rs"]
 mod fakes;
 mod imu;
-mod keeper;
 mod links;
 mod mixer;
+mod retained_store;
 mod rig;
 mod servos;
 mod supervisor;

@@ -1,11 +1,12 @@
 //! From forces to pulses: when there are none, how fast they move, and when they stand still.
 
 use embassy_time::Instant;
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
-use sophie_control::warm::{Grasp, Warm};
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{ArmAngles, Links, TendonForces};
+use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::servos;
 use sophie_tasks::start::{Cause, Start};
 
@@ -142,24 +143,24 @@ fn an_arm_that_is_to_stay_stays_whatever_its_force() {
 
 #[test]
 fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know() {
-    for (grasp, first) in [
-        (Grasp::Closed(ArmChoice::All), pulse(2.0)),
-        (Grasp::Open, pulse(2.0)),
-        (Grasp::Kept(ArmChoice::All), 550.0),
+    for (grip_memory, first) in [
+        (GripMemory::Controlled(ArmChoice::All), pulse(2.0)),
+        (GripMemory::Open, pulse(2.0)),
+        (GripMemory::HeldByGears(ArmChoice::All), 550.0),
     ] {
-        let warm = Warm {
-            grasp,
+        let retained = RetainedState {
+            grip_memory,
             angle: [2.0; 4],
-            ..Warm::default()
+            ..RetainedState::default()
         };
         let (mut rig, port) = started(Start {
             cause: Cause::Watchdog,
-            warm: Some(warm),
+            retained: Some(retained),
             sequence: 1,
         });
         let mut order = forces(0.0, false);
         order.stay = [true; 4];
         rig.run_with(30, |links, at| speak(links, at, Some(order), CLOSED));
-        assert!(near(port.now(), first), "{grasp:?}: {:?}", port.now());
+        assert!(near(port.now(), first), "{grip_memory:?}: {:?}", port.now());
     }
 }

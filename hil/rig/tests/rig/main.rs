@@ -46,11 +46,11 @@ fn main() {
 #[embedded_test::setup]
 fn setup() {
     use sophie_rig::board::ResetCause;
-    use sophie_rig::errand::{Errand, begin};
+    use sophie_rig::resumable_test::{ResumableTest, begin};
 
     match begin() {
-        (Errand::Starving(us), ResetCause::Watchdog) => t70_watchdog::bitten(us),
-        (Errand::Stored(was), ResetCause::Software) => t80_storage::restarted(was),
+        (ResumableTest::Starving(us), ResetCause::Watchdog) => t70_watchdog::bitten(us),
+        (ResumableTest::Stored(was), ResetCause::Software) => t80_storage::restarted(was),
         _ => {}
     }
 }

@@ -24,7 +24,7 @@ pub fn bitten(us: u32) -> ! {
 mod tests {
     use embassy_time::{Instant, Timer};
     use sophie_rig::board;
-    use sophie_rig::errand::{Errand, leave};
+    use sophie_rig::resumable_test::{ResumableTest, leave};
     use sophie_tasks::ports::Watchdog;
 
     #[test]
@@ -37,7 +37,7 @@ mod tests {
         let start = Instant::now();
         loop {
             let us = start.elapsed().as_micros() as u32;
-            leave(Errand::Starving(us));
+            leave(ResumableTest::Starving(us));
             assert!(us < 2 * super::BITE.end(), "the watchdog never bit");
             Timer::after_micros(500).await;
         }

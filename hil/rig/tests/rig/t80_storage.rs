@@ -69,7 +69,7 @@ async fn put_back(was: f32) {
 #[embedded_test::tests]
 mod tests {
     use sophie_control::params::Params;
-    use sophie_rig::errand::{Errand, leave};
+    use sophie_rig::resumable_test::{ResumableTest, leave};
     use sophie_rig::{board, keep_alive};
     use sophie_tasks::ports::Chip;
 
@@ -83,7 +83,7 @@ mod tests {
             ..original
         };
         super::store(&mut board.storage, &changed).await;
-        leave(Errand::Stored(original.servo_trim_4));
+        leave(ResumableTest::Stored(original.servo_trim_4));
         board.chip.restart();
     }
 }

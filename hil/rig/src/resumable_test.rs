@@ -6,8 +6,8 @@
 use core::cell::RefCell;
 
 use critical_section::Mutex;
-use sophie_control::warm::{WORDS, Words};
 use sophie_tasks::ports::Retain;
+use sophie_tasks::retained_state::{WORDS, Words};
 
 use crate::board::cortex_m::retained::{self, Memory};
 use crate::board::stm32::stop_with_core;
@@ -16,7 +16,7 @@ use crate::cycles;
 
 /// What a reset interrupts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Errand {
+pub enum ResumableTest {
     /// Nothing.
     None,
     /// A test that no reset may interrupt.
@@ -27,12 +27,12 @@ pub enum Errand {
     Stored(f32),
 }
 
-/// Marks words that are an errand ("RIG" and the version of their layout).
+/// Marks words that are a test ("RIG" and the version of their layout).
 const MAGIC: u32 = 0x5249_4701;
 
 static MEMORY: Mutex<RefCell<Option<Memory>>> = Mutex::new(RefCell::new(None));
 
-impl Errand {
+impl ResumableTest {
     fn words(self) -> Words {
         let (kind, value) = match self {
             Self::None => (0, 0),
@@ -64,7 +64,7 @@ impl Errand {
 ///
 /// # Panics
 /// If the watchdog interrupted a test that feeds it.
-pub fn begin() -> (Errand, ResetCause) {
+pub fn begin() -> (ResumableTest, ResetCause) {
     cycles::start();
     // The probe reads a test's verdict while the core is halted.
     stop_with_core();
@@ -72,20 +72,20 @@ pub fn begin() -> (Errand, ResetCause) {
     let (kept, memory) = retained::start(cause);
     critical_section::with(|cs| MEMORY.borrow(cs).replace(Some(memory)));
     let [words, _] = &kept.copies;
-    let errand = Errand::of(words);
-    leave(Errand::None);
+    let test = ResumableTest::of(words);
+    leave(ResumableTest::None);
     assert!(
-        errand != Errand::Test || cause != ResetCause::Watchdog,
+        test != ResumableTest::Test || cause != ResetCause::Watchdog,
         "the watchdog bit in the midst of a test"
     );
-    (errand, cause)
+    (test, cause)
 }
 
-/// Leaves an errand for after the next reset.
-pub fn leave(errand: Errand) {
+/// Leaves a test for after the next reset.
+pub fn leave(test: ResumableTest) {
     critical_section::with(|cs| {
         if let Some(memory) = MEMORY.borrow(cs).borrow_mut().as_mut() {
-            memory.keep(false, &errand.words());
+            memory.keep(false, &test.words());
         }
     });
 }

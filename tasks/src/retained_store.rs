@@ -3,36 +3,36 @@
 //! What it keeps is at most 30 ms old (a servo's frame and a run of its own), over which a winding servo turns 0.2 rad
 //! and one that holds not at all. A message that is stale or silent leaves what was kept as it is.
 
-use sophie_control::warm::Warm;
+use crate::retained_state::RetainedState;
 use sophie_control::wrench::PerArm;
 
 use crate::links::Links;
 use crate::ports::Retain;
 
 /// What was kept last.
-pub struct Keeper<R> {
+pub struct RetainedStore<R> {
     port: R,
-    warm: Warm,
+    retained: RetainedState,
     sequence: u32,
 }
 
-impl<R: Retain> Keeper<R> {
-    /// A keeper that continues from the state of the run before.
+impl<R: Retain> RetainedStore<R> {
+    /// A store that continues from the state of the run before.
     pub fn new(links: &Links, port: R) -> Self {
         Self {
             port,
-            warm: links.start.warm.unwrap_or_default(),
+            retained: links.start.retained.unwrap_or_default(),
             sequence: links.start.sequence,
         }
     }
 
     /// Keeps what the links say now. Nothing is kept before the commander knows whether the arms are closed.
     pub fn keep(&mut self, links: &Links) {
-        if let Some(grasp) = links.grasp.fresh() {
-            self.warm.grasp = grasp;
+        if let Some(grip_memory) = links.grip_memory.fresh() {
+            self.retained.grip_memory = grip_memory;
         }
         if let Some(angle) = links.reel_angle.fresh() {
-            self.warm.angle = angle;
+            self.retained.angle = angle;
         }
         if let Some(tendons) = links.tendons.fresh() {
             // A rotor's thrust bends its arm away from the pipe. The reset stops it, and what the tendon pulled against
@@ -43,7 +43,7 @@ impl<R: Retain> Keeper<R> {
                 .filter(|m| m.running)
                 .map_or([0.0; 4], |m| m.thrusts);
             let per_thrust = links.params.arm_d / links.params.tendon_lever;
-            for ((slot, force), thrust) in self.warm.force.iter_mut().zip(tendons.force).zip(thrusts) {
+            for ((slot, force), thrust) in self.retained.force.iter_mut().zip(tendons.force).zip(thrusts) {
                 *slot = force - per_thrust * thrust;
             }
         }
@@ -52,14 +52,14 @@ impl<R: Retain> Keeper<R> {
             for (slot, arm) in fault.iter_mut().zip(grip.arms) {
                 *slot = arm.fault.filter(|f| f.is_latched());
             }
-            self.warm.fault = fault;
+            self.retained.fault = fault;
         }
         if let Some(attitude) = links.attitude.fresh().filter(|a| a.calibrated) {
-            self.warm.gyro_bias = Some(attitude.gyro_bias);
+            self.retained.gyro_bias = Some(attitude.gyro_bias);
         }
-        self.warm = self.warm.bounded();
+        self.retained = self.retained.bounded();
         let sequence = self.sequence.wrapping_add(1);
-        if let Some(words) = self.warm.to_words(sequence) {
+        if let Some(words) = self.retained.to_words(sequence) {
             self.sequence = sequence;
             // By turns: a reset in the midst of the write leaves the copy before whole.
             self.port.keep(sequence & 1 == 1, &words);

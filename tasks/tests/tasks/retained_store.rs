@@ -3,24 +3,25 @@
 use embassy_time::Instant;
 use sophie_control::clamp::Fault;
 use sophie_control::grip::{ArmGrip, GripState};
+use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::vector::Vec3;
-use sophie_control::warm::{Grasp, Warm};
-use sophie_tasks::keeper::Keeper;
 use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForces};
+use sophie_tasks::retained_state::RetainedState;
+use sophie_tasks::retained_store::RetainedStore;
 use sophie_tasks::start::{Cause, Start};
 
 use crate::fakes::FakeMemory;
 use crate::rig::Rig;
 
-const GRASP: Grasp = Grasp::Closed(ArmChoice::All);
+const GRIP: GripMemory = GripMemory::Controlled(ArmChoice::All);
 const BIAS: Vec3 = Vec3::new(0.01, -0.02, 0.03);
 
 /// A grip of 50 N on each tendon, with rotors of 2 N.
 fn speak(links: &Links, running: bool, calibrated: bool) {
     let now = Instant::now();
-    links.grasp.send(now, GRASP);
+    links.grip_memory.send(now, GRIP);
     links.reel_angle.send(now, [2.0, 2.1, 2.2, 2.3]);
     let forces = TendonForces {
         force: [50.0, 51.0, 52.0, 5.0],
@@ -67,14 +68,20 @@ fn a_grip_is_kept_without_what_met_the_rotors_and_with_the_faults_that_last() {
     ] {
         let (rig, memory) = (Rig::new(), FakeMemory::default());
         speak(rig.links, running, true);
-        Keeper::new(rig.links, memory.clone()).keep(rig.links);
-        let warm = found(&memory).warm.unwrap();
-        for (kept, expected) in warm.force.iter().zip(force) {
-            assert!((kept - expected).abs() < 0.01, "{running}: {:?}", warm.force);
+        RetainedStore::new(rig.links, memory.clone()).keep(rig.links);
+        let retained = found(&memory).retained.unwrap();
+        for (kept, expected) in retained.force.iter().zip(force) {
+            assert!((kept - expected).abs() < 0.01, "{running}: {:?}", retained.force);
         }
-        assert_eq!((warm.grasp, warm.angle), (GRASP, [2.0, 2.1, 2.2, 2.3]));
-        assert_eq!(warm.fault, [None, Some(Fault::Sensor), None, Some(Fault::Unfelt)]);
-        assert_eq!(warm.gyro_bias, Some(BIAS));
+        assert_eq!(
+            (retained.grip_memory, retained.angle),
+            (GRIP, [2.0, 2.1, 2.2, 2.3])
+        );
+        assert_eq!(
+            retained.fault,
+            [None, Some(Fault::Sensor), None, Some(Fault::Unfelt)]
+        );
+        assert_eq!(retained.gyro_bias, Some(BIAS));
     }
 }
 
@@ -82,31 +89,31 @@ fn a_grip_is_kept_without_what_met_the_rotors_and_with_the_faults_that_last() {
 fn a_bias_before_calibration_is_none() {
     let (rig, memory) = (Rig::new(), FakeMemory::default());
     speak(rig.links, false, false);
-    Keeper::new(rig.links, memory.clone()).keep(rig.links);
-    assert_eq!(found(&memory).warm.unwrap().gyro_bias, None);
+    RetainedStore::new(rig.links, memory.clone()).keep(rig.links);
+    assert_eq!(found(&memory).retained.unwrap().gyro_bias, None);
 }
 
 #[test]
 fn copies_are_written_by_turns_and_numbered_on_from_the_run_before() {
-    let warm = Warm {
-        grasp: GRASP,
+    let retained = RetainedState {
+        grip_memory: GRIP,
         angle: [1.0; 4],
-        ..Warm::default()
+        ..RetainedState::default()
     };
     let start = Start {
         cause: Cause::Watchdog,
-        warm: Some(warm),
+        retained: Some(retained),
         sequence: 7,
     };
     let (rig, memory) = (Rig::starting(Params::default(), start), FakeMemory::default());
-    let mut keeper = Keeper::new(rig.links, memory.clone());
+    let mut store = RetainedStore::new(rig.links, memory.clone());
     // Nothing was said yet: what the run before kept is kept on, as the copies with even and odd numbers.
     for (sequence, writes) in [(8, [1, 0]), (9, [1, 1]), (10, [2, 1]), (11, [2, 2])] {
-        keeper.keep(rig.links);
+        store.keep(rig.links);
         assert_eq!(memory.0.get().1, writes);
         assert_eq!(
-            (found(&memory).sequence, found(&memory).warm),
-            (sequence, Some(warm))
+            (found(&memory).sequence, found(&memory).retained),
+            (sequence, Some(retained))
         );
     }
 }
@@ -114,17 +121,17 @@ fn copies_are_written_by_turns_and_numbered_on_from_the_run_before() {
 #[test]
 fn nothing_is_kept_before_the_arms_were_looked_at_and_old_messages_change_nothing() {
     let (mut rig, memory) = (Rig::new(), FakeMemory::default());
-    let mut keeper = Keeper::new(rig.links, memory.clone());
-    keeper.keep(rig.links);
-    assert!(found(&memory).warm.is_none() && memory.0.get().1 == [0, 0]);
+    let mut store = RetainedStore::new(rig.links, memory.clone());
+    store.keep(rig.links);
+    assert!(found(&memory).retained.is_none() && memory.0.get().1 == [0, 0]);
     speak(rig.links, false, true);
-    keeper.keep(rig.links);
-    let kept = found(&memory).warm;
+    store.keep(rig.links);
+    let kept = found(&memory).retained;
     assert!(kept.is_some());
     // An angle that is stale when it is looked at.
     rig.links.reel_angle.send(Instant::now(), [6.0; 4]);
-    rig.links.grasp.send(Instant::now(), Grasp::Open);
+    rig.links.grip_memory.send(Instant::now(), GripMemory::Open);
     rig.run(201);
-    keeper.keep(rig.links);
-    assert_eq!(found(&memory).warm, kept);
+    store.keep(rig.links);
+    assert_eq!(found(&memory).retained, kept);
 }

@@ -4,11 +4,12 @@
 //! of this lie there, written by turns, each with a sequence number and a checksum: a reset in the midst of a write
 //! leaves the other one whole. After power-on the memory is noise, which the checksum does not let pass.
 
-use crate::clamp::Fault;
-use crate::math;
-use crate::rc::ArmChoice;
-use crate::vector::Vec3;
-use crate::wrench::PerArm;
+use sophie_control::clamp::Fault;
+use sophie_control::grip_memory::GripMemory;
+use sophie_control::math;
+use sophie_control::rc::ArmChoice;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
 
 /// Words of one copy.
 pub const WORDS: usize = 16;
@@ -26,35 +27,11 @@ const FORCE_MAX: f32 = 2000.0;
 /// Largest gyro bias accepted, rad/s: the estimator's own bound.
 const BIAS_MAX: f32 = 0.1;
 
-/// What the tendons do to the pipe, as far as it must outlive the rotors and a reset.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Grasp {
-    /// Not looked at yet since the power came on: the arms may be closed.
-    #[default]
-    Unknown,
-    /// Open, or opening because a person wanted it.
-    Open,
-    /// These arms are closed, closing, or not proven free yet: the clamp loops hold them.
-    Closed(ArmChoice),
-    /// These arms were found pressed when the power came on; where their servos stand is not known. The gears hold.
-    Kept(ArmChoice),
-}
-
-impl Grasp {
-    /// The arms that hold something.
-    pub const fn arms(self) -> Option<ArmChoice> {
-        match self {
-            Self::Closed(arms) | Self::Kept(arms) => Some(arms),
-            Self::Open | Self::Unknown => None,
-        }
-    }
-}
-
 /// What a run leaves to the next one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Warm {
-    /// The grip; never [`Grasp::Unknown`] in memory.
-    pub grasp: Grasp,
+pub struct RetainedState {
+    /// The grip; never [`GripMemory::Unknown`] in memory.
+    pub grip_memory: GripMemory,
     /// Angle to which each tendon's servo was sent, rad from release, 0 to 6.5.
     pub angle: PerArm<f32>,
     /// Force asked of each tendon, less what met the thrust of its rotor, N, 0 to 2000.
@@ -65,14 +42,14 @@ pub struct Warm {
     pub gyro_bias: Option<Vec3>,
 }
 
-impl Warm {
+impl RetainedState {
     /// The words of one copy. `None` when there is nothing to be kept: a grip not looked at, or what is no number.
     pub fn to_words(&self, sequence: u32) -> Option<Words> {
-        let (grasp, arms) = match self.grasp {
-            Grasp::Unknown => return None,
-            Grasp::Open => (1, 0),
-            Grasp::Closed(arms) => (2, arm_code(arms)),
-            Grasp::Kept(arms) => (3, arm_code(arms)),
+        let (grip_memory, arms) = match self.grip_memory {
+            GripMemory::Unknown => return None,
+            GripMemory::Open => (1, 0),
+            GripMemory::Controlled(arms) => (2, arm_code(arms)),
+            GripMemory::HeldByGears(arms) => (3, arm_code(arms)),
         };
         let faults = self
             .fault
@@ -85,7 +62,7 @@ impl Warm {
         let mut words = [
             MAGIC,
             sequence,
-            grasp | arms << 8 | u32::from(self.gyro_bias.is_some()) << 16,
+            grip_memory | arms << 8 | u32::from(self.gyro_bias.is_some()) << 16,
             faults,
             angle_1,
             angle_2,
@@ -132,25 +109,25 @@ impl Warm {
             return None;
         }
         let arms = arm_choice(state >> 8 & 0xFF)?;
-        let grasp = match state & 0xFF {
-            1 => Grasp::Open,
-            2 => Grasp::Closed(arms),
-            3 => Grasp::Kept(arms),
+        let grip_memory = match state & 0xFF {
+            1 => GripMemory::Open,
+            2 => GripMemory::Controlled(arms),
+            3 => GripMemory::HeldByGears(arms),
             _ => return None,
         };
         let mut fault = [None; 4];
         for (slot, arm) in fault.iter_mut().rev().zip(0..) {
             *slot = fault_of(faults >> (arm * FAULT_BITS) & ((1 << FAULT_BITS) - 1))?;
         }
-        let warm = Self {
-            grasp,
+        let retained = Self {
+            grip_memory,
             angle: [angle_1, angle_2, angle_3, angle_4].map(f32::from_bits),
             force: [force_1, force_2, force_3, force_4].map(f32::from_bits),
             fault,
             gyro_bias: (state >> 16 & 1 != 0)
                 .then_some(Vec3::from([bias_x, bias_y, bias_z].map(f32::from_bits))),
         };
-        warm.is_sane().then_some((warm, sequence))
+        retained.is_sane().then_some((retained, sequence))
     }
 
     /// The later of two copies and its sequence number; the other one when it is broken.
@@ -240,9 +217,9 @@ mod tests {
 
     use super::*;
 
-    fn held() -> Warm {
-        Warm {
-            grasp: Grasp::Closed(ArmChoice::Rear),
+    fn held() -> RetainedState {
+        RetainedState {
+            grip_memory: GripMemory::Controlled(ArmChoice::Rear),
             angle: [0.0, 2.5, 0.0, 2.75],
             force: [0.0, 53.5, 0.0, 61.25],
             fault: [
@@ -255,25 +232,28 @@ mod tests {
         }
     }
 
-    fn words(warm: Warm, sequence: u32) -> Words {
-        warm.to_words(sequence).unwrap_or_default()
+    fn words(retained: RetainedState, sequence: u32) -> Words {
+        retained.to_words(sequence).unwrap_or_default()
     }
 
     #[test]
     fn what_is_kept_comes_back() {
-        for grasp in [
-            Grasp::Open,
-            Grasp::Closed(ArmChoice::All),
-            Grasp::Closed(ArmChoice::Front),
-            Grasp::Kept(ArmChoice::Rear),
+        for grip_memory in [
+            GripMemory::Open,
+            GripMemory::Controlled(ArmChoice::All),
+            GripMemory::Controlled(ArmChoice::Front),
+            GripMemory::HeldByGears(ArmChoice::Rear),
         ] {
             for gyro_bias in [None, held().gyro_bias] {
-                let warm = Warm {
-                    grasp,
+                let retained = RetainedState {
+                    grip_memory,
                     gyro_bias,
                     ..held()
                 };
-                assert_eq!(Warm::from_words(&words(warm, 7)), Some((warm, 7)));
+                assert_eq!(
+                    RetainedState::from_words(&words(retained, 7)),
+                    Some((retained, 7))
+                );
             }
         }
     }
@@ -287,19 +267,19 @@ mod tests {
     #[test]
     fn every_single_wrong_bit_is_found_out() {
         let good = words(held(), 41);
-        assert!(Warm::from_words(&good).is_some());
+        assert!(RetainedState::from_words(&good).is_some());
         for word in 0..WORDS {
             for bit in 0..32 {
                 let mut bad = good;
                 bad[word] ^= 1 << bit;
-                assert_eq!(Warm::from_words(&bad), None, "word {word} bit {bit}");
+                assert_eq!(RetainedState::from_words(&bad), None, "word {word} bit {bit}");
                 // The copy written before takes its place.
-                let before = Warm {
-                    grasp: Grasp::Kept(ArmChoice::All),
+                let before = RetainedState {
+                    grip_memory: GripMemory::HeldByGears(ArmChoice::All),
                     ..held()
                 };
                 assert_eq!(
-                    Warm::newest(&[words(before, 40), bad]),
+                    RetainedState::newest(&[words(before, 40), bad]),
                     Some((before, 40)),
                     "word {word} bit {bit}"
                 );
@@ -311,7 +291,7 @@ mod tests {
     fn a_write_that_a_reset_cut_short_anywhere_loses_one_step_at_most() {
         let (old, new) = (
             held(),
-            Warm {
+            RetainedState {
                 angle: [0.5; 4],
                 force: [9.0; 4],
                 ..held()
@@ -320,11 +300,11 @@ mod tests {
         let other = words(old, 8);
         for written in 0..=WORDS {
             // The copy of two steps ago is written over from its start.
-            let mut torn = words(Warm::default().opened(), 7);
+            let mut torn = words(RetainedState::default().opened(), 7);
             for (slot, word) in torn.iter_mut().zip(words(new, 9)).take(written) {
                 *slot = word;
             }
-            let kept = Warm::newest(&[torn, other]).map(|(warm, _)| warm);
+            let kept = RetainedState::newest(&[torn, other]).map(|(retained, _)| retained);
             let expected = if written == WORDS { new } else { old };
             assert_eq!(kept, Some(expected), "{written} words written");
         }
@@ -334,7 +314,7 @@ mod tests {
     fn the_later_copy_counts_also_where_the_sequence_wraps() {
         for sequence in [0, 1, 99, u32::MAX - 1, u32::MAX] {
             let next = sequence.wrapping_add(1);
-            let later = Warm {
+            let later = RetainedState {
                 force: [5.0; 4],
                 ..held()
             };
@@ -342,7 +322,7 @@ mod tests {
                 [words(held(), sequence), words(later, next)],
                 [words(later, next), words(held(), sequence)],
             ] {
-                assert_eq!(Warm::newest(&copies), Some((later, next)));
+                assert_eq!(RetainedState::newest(&copies), Some((later, next)));
             }
         }
     }
@@ -351,45 +331,45 @@ mod tests {
     fn what_is_no_number_or_out_of_range_is_neither_kept_nor_believed() {
         let nan = f32::NAN;
         let bad = [
-            Warm {
+            RetainedState {
                 angle: [nan, 0.0, 0.0, 0.0],
                 ..held()
             },
-            Warm {
+            RetainedState {
                 angle: [0.0, -0.1, 0.0, 0.0],
                 ..held()
             },
-            Warm {
+            RetainedState {
                 angle: [0.0, 0.0, 6.6, 0.0],
                 ..held()
             },
-            Warm {
+            RetainedState {
                 force: [0.0, 0.0, 0.0, f32::INFINITY],
                 ..held()
             },
-            Warm {
+            RetainedState {
                 force: [-1.0, 0.0, 0.0, 0.0],
                 ..held()
             },
-            Warm {
+            RetainedState {
                 force: [2001.0, 0.0, 0.0, 0.0],
                 ..held()
             },
-            Warm {
+            RetainedState {
                 gyro_bias: Some(Vec3::new(0.0, nan, 0.0)),
                 ..held()
             },
-            Warm {
+            RetainedState {
                 gyro_bias: Some(Vec3::new(0.0, 0.0, 0.2)),
                 ..held()
             },
-            Warm {
-                grasp: Grasp::Unknown,
+            RetainedState {
+                grip_memory: GripMemory::Unknown,
                 ..held()
             },
         ];
-        for warm in bad {
-            assert_eq!(warm.to_words(1), None, "{warm:?}");
+        for retained in bad {
+            assert_eq!(retained.to_words(1), None, "{retained:?}");
         }
         // With a sound checksum, too.
         for (word, value) in [
@@ -403,24 +383,24 @@ mod tests {
             let mut forged = words(held(), 3);
             forged[word] = value;
             forged[WORDS - 1] = checksum(&forged);
-            assert_eq!(Warm::from_words(&forged), None, "word {word} {value:#x}");
+            assert_eq!(RetainedState::from_words(&forged), None, "word {word} {value:#x}");
         }
-        for warm in bad.into_iter().take(8) {
-            assert!(warm.bounded().to_words(1).is_some(), "{warm:?}");
+        for retained in bad.into_iter().take(8) {
+            assert!(retained.bounded().to_words(1).is_some(), "{retained:?}");
         }
     }
 
     #[test]
     fn blank_memory_is_nothing() {
         for word in [0, u32::MAX, 0xCCCC_CCCC] {
-            assert_eq!(Warm::newest(&[[word; WORDS]; 2]), None);
+            assert_eq!(RetainedState::newest(&[[word; WORDS]; 2]), None);
         }
     }
 
-    impl Warm {
+    impl RetainedState {
         fn opened(self) -> Self {
             Self {
-                grasp: Grasp::Open,
+                grip_memory: GripMemory::Open,
                 ..self
             }
         }
@@ -433,7 +413,7 @@ mod tests {
             if marked {
                 words[0] = MAGIC;
             }
-            prop_assert_eq!(Warm::from_words(&words), None);
+            prop_assert_eq!(RetainedState::from_words(&words), None);
         }
 
         #[test]
@@ -442,14 +422,14 @@ mod tests {
             for bit in (0..32).filter(|bit| pattern >> bit & 1 != 0) {
                 bad[(start + bit) / 32] ^= 1 << ((start + bit) % 32);
             }
-            prop_assert_eq!(Warm::from_words(&bad), None);
+            prop_assert_eq!(RetainedState::from_words(&bad), None);
         }
 
         #[test]
         fn whatever_is_kept_is_sane(angle in prop::array::uniform4(any::<f32>()), force in prop::array::uniform4(any::<f32>())) {
-            let warm = Warm { angle, force, ..held() }.bounded();
-            let back = warm.to_words(1).and_then(|w| Warm::from_words(&w));
-            prop_assert_eq!(back, Some((warm, 1)));
+            let retained = RetainedState { angle, force, ..held() }.bounded();
+            let back = retained.to_words(1).and_then(|w| RetainedState::from_words(&w));
+            prop_assert_eq!(back, Some((retained, 1)));
         }
     }
 }
