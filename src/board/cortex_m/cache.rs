@@ -30,8 +30,8 @@ const ENABLED: u32 = 1;
 const ON: u32 = 1 << 2 | 1;
 
 /// Switches the instruction cache on, and with `data` the data cache, for what is read from flash; and keeps the core
-/// from reading ahead at the addresses of external memories, where a controller that was never set up may stall it for
-/// ever. Called once, at the start.
+/// from reading ahead at the addresses of external memories, where a controller that was never set up may stall it
+/// without end. Called once, at the start.
 pub fn enable_caches(data: bool) {
     // SAFETY: nothing else uses the core's cache control and memory protection, and nothing else runs yet.
     let mut core = unsafe { Peripherals::steal() };
@@ -53,7 +53,7 @@ fn protect(mpu: &MPU) {
             mpu.rasr.write(attributes);
         }
     }
-    // SAFETY: as above; every address that the firmware uses is in a region, with the type that it had before.
+    // SAFETY: as above; every address that the firmware uses is in a region with full access, and no cache is on yet.
     unsafe { mpu.ctrl.write(ON) };
     cortex_m::asm::dsb();
     cortex_m::asm::isb();

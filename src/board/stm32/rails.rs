@@ -3,9 +3,9 @@
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Speed};
+use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::vals::Moder;
-use embassy_stm32::pac::{self};
 
 /// Ports A to H in the clock controller.
 const PORTS: u32 = 0xFF;
