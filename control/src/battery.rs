@@ -1,4 +1,7 @@
 //! State of the flight battery from its voltage and current.
+//!
+//! [`Monitor::step`] is called at 100 Hz by the task `analog` (V, A, s). After a missed
+//! reading thrusts are compensated for the last voltage; it is stale after 500 ms.
 
 use crate::filter::LowPass;
 use crate::math;

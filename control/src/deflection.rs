@@ -1,5 +1,7 @@
 //! Static deflection of a soft arm under its rotor's thrust: Eq. 1 of the paper and what flies of it.
 //!
+//! A function without state: the tilt model evaluates it at 1 kHz, the gripper its compliance once at start-up.
+//!
 //! α = α0 + K ((A1 + ρ A2) T + (B1 + ρ B2) T²) (P/P0)^C_P, in degrees, ρ in %, T in N.
 //!
 //! K is ours: the literal equation (K = 1) gives a fifth of the tilts that the paper's Table III shows.

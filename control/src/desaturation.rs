@@ -1,4 +1,6 @@
 //! What to give up when the rotors cannot do it all: yaw first, then thrust, roll and pitch last.
+//!
+//! It runs once in each step of the mixer, 1 kHz, on thrusts in N.
 
 use crate::math;
 use crate::wrench::PerArm;

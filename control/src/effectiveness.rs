@@ -1,5 +1,7 @@
 //! What four tilted rotors do to the body, and how that changes with their thrusts.
 //!
+//! Evaluated once in each step of the mixer, 1 kHz; body axes FRD, thrusts in N, tilts in rad with the tip up.
+//!
 //! A rotor at (±b, ∓d) whose arm is tilted by α leans its thrust inward by α. Hinged at the centre line,
 //! the thrust stays perpendicular to the arm, so its roll lever is d whatever the tilt; its pitch lever
 //! acts on T cos α; its yaw moment is the sideways part T sin α at ±b and the rotor's drag ±k_q T.

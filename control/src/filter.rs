@@ -1,4 +1,7 @@
 //! First-order low pass and biquads, all with an explicit step time.
+//!
+//! Each is stepped at its owner's rate, 50 Hz to 4 kHz. The biquads are made for one sampling rate: a sample that is
+//! missed shifts their cut-off for as long. The low passes take the time since the step before (s).
 
 use crate::math;
 
@@ -42,6 +45,39 @@ impl LowPass {
     /// The present output.
     pub const fn value(&self) -> f32 {
         self.value
+    }
+}
+
+/// Two first-order low passes in a row, of the same cut-off.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CascadedLowPass {
+    first: LowPass,
+    second: LowPass,
+}
+
+impl CascadedLowPass {
+    /// A filter that has settled at `value`.
+    pub const fn at(value: f32) -> Self {
+        Self {
+            first: LowPass::at(value),
+            second: LowPass::at(value),
+        }
+    }
+
+    /// One step of `dt` s; both with the cut-off `rate` (rad/s). See [`LowPass::step`].
+    pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
+        let once = self.first.step(input, rate, dt);
+        self.second.step(once, rate, dt)
+    }
+
+    /// The present output.
+    pub const fn value(&self) -> f32 {
+        self.second.value()
+    }
+
+    /// Change of an evenly moving input within one time constant: what the first is ahead of the second.
+    pub fn lead(&self) -> f32 {
+        self.first.value() - self.second.value()
     }
 }
 

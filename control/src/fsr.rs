@@ -1,12 +1,15 @@
 //! Contact pressure from the counts of a force-sensing resistor's divider.
 //!
+//! [`Fsr::step`] is called for every sensor at 500 Hz by the task `analog`, counts in and pascals out. A missed
+//! conversion leaves the last pressure standing; after 20 ms the gripper holds that arm's force.
+//!
 //! The resistor hangs between the supply and a pad, a fixed resistor between the pad and ground: the pad has the
 //! share x = R_d / (R_d + R) of the supply, so the conductance is x / ((1 - x) R_d). It grows in proportion to the
 //! force (Interlink integration guide), and the force over the sensor's area is the pressure. The converter is at full
 //! scale where the pad has the share s: x = s counts / full scale. On a bare pad s is 1; what sees no more than a part
 //! of x reads no more than s / ((1 - s) R_d): 692 Pa for a half, 69 Pa for an eleventh. An unloaded sensor conducts
-//! nothing, so an open lead looks like no pressure at all: only the clamp loop, which knows what it pulls, can tell
-//! ([`crate::clamp::Fault::Unfelt`]).
+//! nothing, so an open lead looks like no pressure at all: only the gripper, which knows what it pulls, can tell
+//! ([`crate::grip_fault::GripFault::Unfelt`]).
 
 use crate::math;
 use crate::params::Params;

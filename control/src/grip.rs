@@ -1,11 +1,14 @@
-//! The judgement whether an arm holds the pipe, and whether it is free of it.
+//! The grip and release detector: whether an arm holds the pipe, and whether it is free of it.
+//!
+//! Stepped by the [gripper](crate::gripper) at 100 Hz with the time of its step (s), pressures in Pa, forces along the
+//! tendon in N. A late step delays a proof by as much, and the rotors' stop with it.
 
-use crate::clamp::Fault;
+use crate::grip_fault::GripFault;
 use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
-/// What the clamp loop knows of the grip.
+/// What the gripper knows of the grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GripState {
     /// Every chosen arm, all at once, held the pressure for the dwell time with a force below the limit.
@@ -28,7 +31,7 @@ pub struct ArmGrip {
     /// Time from the start of closing until the pressure was within its tolerance for good, s.
     pub closure: Option<f32>,
     /// Why the arm is [`ArmState::Faulty`].
-    pub fault: Option<Fault>,
+    pub fault: Option<GripFault>,
 }
 
 /// State of one arm.
@@ -53,9 +56,9 @@ pub enum ArmState {
 
 /// Factor on the tolerance beyond which a proven grip is doubted: stopping the rotors and pushing the vehicle
 /// disturb the pressure without loosening the grip.
-const DOUBT: f32 = 4.0;
+const DOUBT_FACTOR: f32 = 4.0;
 /// Share of the force limit that a proven grip must stay below.
-const FORCE_SHARE: f32 = 0.98;
+const FORCE_SHARE_MAX: f32 = 0.98;
 /// Time for which an arm must look free before it counts as free, s.
 const FREE_DWELL: f32 = 0.1;
 /// The same for an arm whose sensor failed, s: its servo alone testifies, so the arm gets time to spring back.
@@ -63,7 +66,7 @@ const FREE_DWELL_BLIND: f32 = 1.0;
 
 /// What a proof demands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Demand {
+pub struct GripDemand {
     /// Pressure, Pa.
     pub pressure: f32,
     /// Its tolerance, Pa.
@@ -76,14 +79,14 @@ pub struct Demand {
     pub release_pressure: f32,
 }
 
-impl Demand {
+impl GripDemand {
     /// What the parameters demand, below the force limit `limit` (N).
     pub fn from_params(p: &Params, limit: f32) -> Self {
         Self {
             pressure: p.grip_pressure,
             tolerance: p.grip_tolerance,
             dwell: p.grip_dwell,
-            force: FORCE_SHARE * limit,
+            force: FORCE_SHARE_MAX * limit,
             release_pressure: p.release_pressure,
         }
     }
@@ -104,13 +107,13 @@ impl HoldProof {
     /// `force` (N); returns whether the grip is proven.
     ///
     /// A pressure that is unknown or beyond four tolerances for the dwell time takes the proof away.
-    pub fn step(&mut self, demand: &Demand, pressure: Option<f32>, force: f32, dt: f32) -> bool {
+    pub fn step(&mut self, demand: &GripDemand, pressure: Option<f32>, force: f32, dt: f32) -> bool {
         self.elapsed = math::clamp(self.elapsed + dt, 0.0, 1e6);
         let error = pressure.map_or(f32::INFINITY, |p| (p - demand.pressure).abs());
         let good = error <= demand.tolerance && force < demand.force;
         if self.proven {
             // NaN counts as doubt.
-            self.doubt = if error <= DOUBT * demand.tolerance {
+            self.doubt = if error <= DOUBT_FACTOR * demand.tolerance {
                 0.0
             } else {
                 self.doubt + dt
@@ -148,7 +151,13 @@ pub struct FreeProof {
 impl FreeProof {
     /// Adds `dt` s with the pressure `pressure` (Pa; `None`: unknown) and the tension that the servo can be
     /// giving, `tension` (N; `None`: unknown; 0 only at the release position); returns whether the arm is free.
-    pub fn step(&mut self, demand: &Demand, pressure: Option<f32>, tension: Option<f32>, dt: f32) -> bool {
+    pub fn step(
+        &mut self,
+        demand: &GripDemand,
+        pressure: Option<f32>,
+        tension: Option<f32>,
+        dt: f32,
+    ) -> bool {
         let home = tension.is_some_and(|t| t <= 0.0);
         let light = pressure.is_none_or(|p| p < demand.release_pressure);
         self.free_for = if home && light {
@@ -159,9 +168,9 @@ impl FreeProof {
         self.proven(pressure.is_some())
     }
 
-    /// Whether the arm was free at the last step, with a sensor that feels or without.
-    pub fn proven(&self, felt: bool) -> bool {
-        self.free_for >= if felt { FREE_DWELL } else { FREE_DWELL_BLIND }
+    /// Whether the arm was free at the last step, with a pressure that is `measured` or without.
+    pub fn proven(&self, measured: bool) -> bool {
+        self.free_for >= if measured { FREE_DWELL } else { FREE_DWELL_BLIND }
     }
 }
 
@@ -169,7 +178,7 @@ impl FreeProof {
 mod tests {
     use super::*;
 
-    const DEMAND: Demand = Demand {
+    const DEMAND: GripDemand = GripDemand {
         pressure: 950.0,
         tolerance: 50.0,
         dwell: 0.5,

@@ -1,4 +1,6 @@
 //! The grip as it must be remembered: over stopped rotors, and over a reset.
+//!
+//! The mode logic decides it at 100 Hz, and the supervisor copies it into memory that a reset leaves alone.
 
 use crate::rc::ArmChoice;
 

@@ -1,4 +1,7 @@
 //! Low-passes the inertial sensor at its own rate and decimates it to the control rate.
+//!
+//! [`ImuFilter::batch`] is called at 1 kHz by the task `imu` with the sensor's samples of the last millisecond (4 kHz, or
+//! the part's nearest; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
 
 use crate::filter::Coefficients;
 use crate::vector::Vec3;

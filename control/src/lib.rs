@@ -19,7 +19,6 @@
 pub mod arming;
 pub mod attitude;
 pub mod battery;
-pub mod clamp;
 pub mod decimal;
 pub mod deflection;
 pub mod desaturation;
@@ -28,7 +27,9 @@ pub mod estimator;
 pub mod filter;
 pub mod fsr;
 pub mod grip;
+pub mod grip_fault;
 pub mod grip_memory;
+pub mod gripper;
 pub mod imu_filter;
 pub mod math;
 pub mod mixer;

@@ -1,5 +1,8 @@
 //! Evidence that something carries the vehicle, from what it can feel itself.
 //!
+//! [`Support::step`] is called by the mode logic at 100 Hz with its measured step (s). Forces are along the body's
+//! thrust axis (N). A missed step delays the evidence by as much; 50 ms without an inertial sample end it.
+//!
 //! In free air the specific force along the thrust axis, times the mass, is the thrust. On the ground or on
 //! the pipe it is about the weight, whatever the thrust. The difference is the support:
 //!

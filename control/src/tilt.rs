@@ -1,5 +1,8 @@
 //! Where each arm is: Eq. 1 about the low-passed thrust, plus a slow bias that the arm's own sensor finds.
 //!
+//! [`TiltModel::step`] is called in each step of the mixer, 1 kHz (N, s); the sensors' tilts come at 100 Hz (rad, tip up
+//! positive). A sensor that is missed leaves the bias where it is.
+//!
 //! The sensor does not give the angle itself: its noise and latency in the allocation cost more than they
 //! bring. It only moves the bias, which takes up what the model does not know of this very arm.
 

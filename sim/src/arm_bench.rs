@@ -1,5 +1,5 @@
 //! One arm closes on a pipe, as on the paper's test bench: the body is fixed, arm, tendon, servo, skin and pressure
-//! sensor are the plant's, clamp loop and tendon drive are the flight stack's, each at its rate.
+//! sensor are the plant's, gripper and tendon drive are the flight stack's, each at its rate.
 
 use std::collections::VecDeque;
 
@@ -7,9 +7,9 @@ use glam::{DQuat, DVec3};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::clamp::{ArmClamp, ArmInput, Config, Pressure};
 use sophie_control::fsr::{Fsr, FsrScale};
 use sophie_control::grip::ArmState;
+use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
 use sophie_control::tendon::{Reel, TendonDrive};
 
@@ -111,7 +111,7 @@ pub fn close(what: &Closing) -> Closed {
         FsrScale::from_params(&params, 0),
         Reel::from_params(&params, 0),
     );
-    let (mut fsr, mut clamp, mut drive) = (Fsr::default(), ArmClamp::default(), TendonDrive::new());
+    let (mut fsr, mut gripper, mut drive) = (Fsr::default(), ArmGripper::default(), TendonDrive::new());
     let mut driven = drive.hold(&reel);
     let (mut sensed, mut tilts, mut measured) = (Pressure::Stale, VecDeque::new(), None);
     let (mut asked, mut thrust) = (what.thrust, what.thrust);
@@ -149,12 +149,13 @@ pub fn close(what: &Closing) -> Closed {
                 measured = tilts.pop_front().map(|late: f64| late as f32);
             }
             let input = ArmInput {
+                close: t >= 0.0,
                 pressure: sensed,
                 thrust: asked as f32,
                 tension: Some(driven.tension),
                 tilt: measured,
             };
-            grip = clamp.step(&config, t >= 0.0, &input, 0.01);
+            grip = gripper.step(&config, &input, 0.01);
             if t >= 0.0 {
                 let torque = tendon.servo_torque();
                 out.samples.push(BenchSample {

@@ -1,7 +1,7 @@
 //! One arm closes on a pipe, holds it while the rotor stops and the arm is disturbed, and lets go.
 //!
 //! The body is fixed on the pipe, as on the paper's test bench. Arm, tendon, servo, skin and pressure sensor
-//! are the plant's; fault watch, clamp loop and tendon drive are the flight stack's, each at its rate. The
+//! are the plant's; fault watch, gripper and tendon drive are the flight stack's, each at its rate. The
 //! arm's tilt comes 20 ms late with noise and an offset, the thrust that the loop hears of is 5 % wrong.
 
 use std::collections::VecDeque;
@@ -10,9 +10,10 @@ use glam::{DQuat, DVec3};
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::clamp::{ArmClamp, ArmInput, Config, Fault, Pressure};
 use sophie_control::fsr::{Fsr, FsrScale};
 use sophie_control::grip::{ArmGrip, ArmState};
+use sophie_control::grip_fault::GripFault;
+use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
 use sophie_control::tendon::{Drive, ForceLimit, Reel, TendonDrive};
 use sophie_sim::plant::STEP;
@@ -59,7 +60,7 @@ struct Bench {
     fsr: Fsr,
     sensed: Pressure,
     measured_tilt: Option<f32>,
-    clamp: ArmClamp,
+    gripper: ArmGripper,
     reel: Reel,
     drive: TendonDrive,
     driven: Drive,
@@ -139,7 +140,7 @@ impl Bench {
             fsr: Fsr::default(),
             sensed: Pressure::Stale,
             measured_tilt: None,
-            clamp: ArmClamp::default(),
+            gripper: ArmGripper::default(),
             reel,
             drive,
             driven: drive.hold(&reel),
@@ -188,12 +189,13 @@ impl Bench {
                 self.measured_tilt = self.tilt_alive.then_some(((late * 1e3).round() * 1e-3) as f32);
             }
             let input = ArmInput {
+                close: self.close,
                 pressure: self.sensed,
                 thrust: self.asked as f32,
                 tension: Some(self.driven.tension),
                 tilt: self.measured_tilt,
             };
-            self.grip = self.clamp.step(&self.config, self.close, &input, 0.01);
+            self.grip = self.gripper.step(&self.config, &input, 0.01);
             assert!(self.grip.force >= 0.0 && self.grip.force <= self.config.limit());
         }
         self.to_frame -= STEP;
@@ -273,7 +275,7 @@ fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Opti
             b.grip.state == ArmState::ForceLimited,
             "{what}: {:?} {:?}",
             b.grip,
-            b.clamp.fault()
+            b.gripper.fault()
         );
         assert!(
             b.peak < 1150.0 && b.tendon.servo_torque() < 2.452 * 1.05,
@@ -460,7 +462,7 @@ fn a_shorted_sensor_holds_the_force() {
     let (mut b, tension, pressure) = holding(6.9, 1);
     b.sensor.set_broken(Some(FsrBreak::Short));
     b.run(5.0);
-    assert!(b.grip.state == ArmState::Faulty && b.clamp.fault() == Some(Fault::Sensor));
+    assert!(b.grip.state == ArmState::Faulty && b.gripper.fault() == Some(GripFault::Sensor));
     assert!((b.tendon.tension() - tension).abs() < 3.0 && (b.load.pressure - pressure).abs() < 200.0);
     // It can still be released: by its servo's word.
     b.close = false;
@@ -476,7 +478,7 @@ fn a_lead_that_breaks_while_holding_does_not_run_away() {
             b.sensor.set_broken(Some(FsrBreak::Open));
             b.run(5.0);
             assert!(b.grip.state == ArmState::Faulty, "{infill} {seed}: {:?}", b.grip);
-            assert!(b.clamp.fault() == Some(Fault::Sensor), "{infill} {seed}");
+            assert!(b.gripper.fault() == Some(GripFault::Sensor), "{infill} {seed}");
             assert!(
                 b.largest_force < tension + 5.0 && b.peak < pressure + 250.0,
                 "{infill} {seed}: {}",
@@ -497,13 +499,13 @@ fn a_sensor_behind_a_divider_that_nobody_told_of_stops_the_closing() {
     for infill in [6.0, 6.9, 8.0] {
         for seed in 1..=4 {
             // Behind 1:2 it reads 692 Pa at most; behind 1:11 69 Pa, which is no touch.
-            for (pad, fault) in [(2.0, Fault::Ceiling), (11.0, Fault::Unfelt)] {
+            for (pad, fault) in [(2.0, GripFault::Ceiling), (11.0, GripFault::Unfelt)] {
                 let mut b = Bench::new(infill, 0.30, seed, ServoProfile::Paper);
                 b.pad = pad;
                 b.close = true;
                 b.run(8.0);
                 let what = format!("{infill} {seed} 1:{pad} {:?}, {} Pa", b.grip, b.peak);
-                assert!(b.clamp.fault() == Some(fault), "{what}");
+                assert!(b.gripper.fault() == Some(fault), "{what}");
                 assert!(
                     b.grip.state == ArmState::Faulty && b.grip.force < 0.75 * b.config.limit(),
                     "{what}"
@@ -546,7 +548,7 @@ fn an_open_sensor_stops_the_closing() {
             b.close = true;
             b.run(8.0);
             assert!(
-                b.clamp.fault() == Some(Fault::Unfelt),
+                b.gripper.fault() == Some(GripFault::Unfelt),
                 "{infill} {seed}: {:?}",
                 b.grip
             );
@@ -560,7 +562,7 @@ fn a_stalled_converter_and_a_silent_arm_sensor_hold_and_recover() {
     let (mut b, tension, _) = holding(6.9, 2);
     b.analog_alive = false;
     b.run(2.0);
-    assert!(b.grip.state == ArmState::Faulty && b.clamp.fault() == Some(Fault::Stale));
+    assert!(b.grip.state == ArmState::Faulty && b.gripper.fault() == Some(GripFault::Stale));
     assert!((b.tendon.tension() - tension).abs() < 3.0);
     b.analog_alive = true;
     assert!(b.run_until(ArmState::Holding, 2.0), "{:?}", b.grip);
@@ -569,7 +571,7 @@ fn a_stalled_converter_and_a_silent_arm_sensor_hold_and_recover() {
     b.run(0.3);
     assert!(b.grip.state == ArmState::Holding);
     b.run(1.0);
-    assert!(b.grip.state == ArmState::Faulty && b.clamp.fault() == Some(Fault::Tilt));
+    assert!(b.grip.state == ArmState::Faulty && b.gripper.fault() == Some(GripFault::Tilt));
     assert!((b.tendon.tension() - tension).abs() < 3.0);
     b.tilt_alive = true;
     assert!(b.run_until(ArmState::Holding, 2.0), "{:?}", b.grip);

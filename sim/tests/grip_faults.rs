@@ -5,9 +5,9 @@ mod fakes;
 
 use embassy_time::Instant;
 use fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
-use sophie_control::clamp::Fault;
 use sophie_control::deflection::ArmModel;
 use sophie_control::grip::{ArmState, GripState};
+use sophie_control::grip_fault::GripFault;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::tendon::{ForceLimit, REFERENCE_TILT, Reel};
@@ -380,7 +380,7 @@ fn an_arm_whose_pressure_does_not_rise_any_more_stops_and_says_so() {
     b.run(12.0);
     let grip = b.grip();
     assert_eq!(b.state(0), ArmState::Faulty, "{grip:?}");
-    assert_eq!(grip.arms[0].fault, Some(Fault::Ceiling));
+    assert_eq!(grip.arms[0].fault, Some(GripFault::Ceiling));
     // Not much beyond what a sound arm takes: the others hold.
     assert!(grip.arms[0].force < grip.arms[1].force + 30.0, "{grip:?}");
     assert!((1..4).all(|arm| b.state(arm) == ArmState::Holding) && !grip.proven);

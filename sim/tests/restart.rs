@@ -10,7 +10,7 @@ use fakes::{
     FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
 };
 use sophie_control::arming::Refusal;
-use sophie_control::clamp::Fault;
+use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mixer::Variant;
 use sophie_control::mode::Mode;
@@ -293,7 +293,7 @@ fn resets_one_after_the_other_move_nothing() {
 
 #[test]
 fn a_fault_that_an_arm_keeps_until_release_is_kept_over_the_reset() {
-    let fault = [Some(Fault::Sensor), None, None, None];
+    let fault = [Some(GripFault::Sensor), None, None, None];
     let mut v = Vehicle::retained(RetainedState { fault, ..held() }, [0, 0, PRESSED, 0]);
     v.run(3000);
     assert!(
@@ -303,7 +303,7 @@ fn a_fault_that_an_arm_keeps_until_release_is_kept_over_the_reset() {
     );
     assert_eq!(
         v.links.grip.latest().unwrap().value.arms[0].fault,
-        Some(Fault::Sensor)
+        Some(GripFault::Sensor)
     );
     assert_eq!(v.kept().unwrap().0.fault, fault);
 }

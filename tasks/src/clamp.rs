@@ -13,8 +13,8 @@
 
 use crate::retained_state::RetainedState;
 use embassy_time::{Duration, Instant};
-use sophie_control::clamp::{ArmInput, Clamp, Config, Pressure};
 use sophie_control::grip_memory::GripMemory;
+use sophie_control::gripper::{ArmInput, Config, Gripper, Pressure};
 use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
@@ -27,7 +27,7 @@ pub const PERIOD: Duration = Duration::from_millis(10);
 pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, PERIOD);
     let config = Config::from_params(&links.params);
-    let (mut clamp, mut forces) = begin(links.start.retained);
+    let (mut gripper, mut forces) = begin(links.start.retained);
     let mut grip = None;
     let mut found = false;
     loop {
@@ -37,7 +37,7 @@ pub async fn run(links: &Links) -> ! {
                 ClampCommand::Release | ClampCommand::Keep => [false; 4],
                 ClampCommand::Close { arms } => arms.mask(),
             };
-            let out = clamp.step(&config, close, &inputs(links), tick.dt);
+            let out = gripper.step(&config, &inputs(links, close), tick.dt);
             let pressed = |grip: GripState| {
                 let mut arms = grip.arms.iter();
                 arms.any(|arm| arm.pressure > links.params.release_pressure)
@@ -45,16 +45,16 @@ pub async fn run(links: &Links) -> ! {
             let now = GripState {
                 proven: out.proven,
                 released: out.released,
-                arms: out.arms,
+                arms: out.arms.map(|arm| arm.grip),
             };
             grip = Some(now);
             if command == ClampCommand::Keep {
                 found = pressed(now);
             } else {
                 forces = Some(TendonForces {
-                    force: out.force,
+                    force: out.arms.map(|arm| arm.grip.force),
                     found,
-                    stay: out.stay,
+                    stay: out.arms.map(|arm| arm.hold_position),
                 });
             }
         }
@@ -69,7 +69,7 @@ pub async fn run(links: &Links) -> ! {
 }
 
 /// Loops and forces at the start: those of closed arms go on, all others wait for a command.
-fn begin(retained: Option<RetainedState>) -> (Clamp, Option<TendonForces>) {
+fn begin(retained: Option<RetainedState>) -> (Gripper, Option<TendonForces>) {
     match retained {
         Some(RetainedState {
             grip_memory: GripMemory::Controlled(_),
@@ -77,20 +77,23 @@ fn begin(retained: Option<RetainedState>) -> (Clamp, Option<TendonForces>) {
             fault,
             ..
         }) => (
-            Clamp::resume(force, fault),
+            Gripper::resume(force, fault),
             Some(TendonForces {
                 force,
                 found: false,
                 stay: [true; 4],
             }),
         ),
-        _ => (Clamp::default(), None),
+        _ => (Gripper::default(), None),
     }
 }
 
-/// What is known of each arm now.
-fn inputs(links: &Links) -> PerArm<ArmInput> {
-    let mut inputs = [ArmInput::default(); 4];
+/// What each arm is to do, and what is known of it now.
+fn inputs(links: &Links, close: PerArm<bool>) -> PerArm<ArmInput> {
+    let mut inputs = close.map(|close| ArmInput {
+        close,
+        ..ArmInput::default()
+    });
     if let Some(contact) = links.contact.fresh() {
         for ((input, pressure), fault) in inputs.iter_mut().zip(contact.pressure).zip(contact.fault) {
             input.pressure = if fault {

@@ -4,7 +4,7 @@
 //! of this lie there, written by turns, each with a sequence number and a checksum: a reset in the midst of a write
 //! leaves the other one whole. After power-on the memory is noise, which the checksum does not let pass.
 
-use sophie_control::clamp::Fault;
+use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::math;
 use sophie_control::rc::ArmChoice;
@@ -37,7 +37,7 @@ pub struct RetainedState {
     /// Force asked of each tendon, less what met the thrust of its rotor, N, 0 to 2000.
     pub force: PerArm<f32>,
     /// What is wrong with an arm for as long as it is closed.
-    pub fault: PerArm<Option<Fault>>,
+    pub fault: PerArm<Option<GripFault>>,
     /// Gyro bias, rad/s, at most 0.1 on each axis; `None` before the first calibration at rest.
     pub gyro_bias: Option<Vec3>,
 }
@@ -178,22 +178,22 @@ fn arm_choice(code: u32) -> Option<ArmChoice> {
 }
 
 /// Only the faults that stay until release: the others show themselves again.
-fn fault_code(fault: Option<Fault>) -> u32 {
+fn fault_code(fault: Option<GripFault>) -> u32 {
     match fault {
-        Some(Fault::Sensor) => 1,
-        Some(Fault::Unfelt) => 2,
-        Some(Fault::Ceiling) => 3,
+        Some(GripFault::Sensor) => 1,
+        Some(GripFault::Unfelt) => 2,
+        Some(GripFault::Ceiling) => 3,
         _ => 0,
     }
 }
 
 /// The outer `None` for a code that stands for nothing.
-fn fault_of(code: u32) -> Option<Option<Fault>> {
+fn fault_of(code: u32) -> Option<Option<GripFault>> {
     match code {
         0 => Some(None),
-        1 => Some(Some(Fault::Sensor)),
-        2 => Some(Some(Fault::Unfelt)),
-        3 => Some(Some(Fault::Ceiling)),
+        1 => Some(Some(GripFault::Sensor)),
+        2 => Some(Some(GripFault::Unfelt)),
+        3 => Some(Some(GripFault::Ceiling)),
         _ => None,
     }
 }
@@ -224,9 +224,9 @@ mod tests {
             force: [0.0, 53.5, 0.0, 61.25],
             fault: [
                 None,
-                Some(Fault::Sensor),
-                Some(Fault::Ceiling),
-                Some(Fault::Unfelt),
+                Some(GripFault::Sensor),
+                Some(GripFault::Ceiling),
+                Some(GripFault::Unfelt),
             ],
             gyro_bias: Some(Vec3::new(0.01, -0.02, 0.03)),
         }

@@ -48,7 +48,7 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
             Some(forces) => {
                 if forces.found && !told {
                     for ((drive, reel), tilt) in drives.iter_mut().zip(&reels).zip(tilts) {
-                        drive.find(reel, tilt);
+                        drive.seed_from_tilt(reel, tilt);
                     }
                 }
                 told = true;
@@ -56,7 +56,7 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
                 let arms = drives.iter_mut().zip(&reels).zip(output.iter_mut());
                 for (((drive, reel), out), ((force, stay), tilt)) in arms.zip(asked) {
                     *out = if stay {
-                        drive.stay(reel, tilt, tick.dt)
+                        drive.hold_position(reel, tilt, tick.dt)
                     } else {
                         drive.step(reel, force, tilt, tick.dt)
                     };

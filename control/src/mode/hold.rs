@@ -1,8 +1,8 @@
 //! What is held on the pipe: an attitude, a share of the collective, a grip.
 
 use super::{GripState, Inputs, Setpoint};
-use crate::clamp::Fault;
 use crate::grip::{ArmGrip, ArmState};
+use crate::grip_fault::GripFault;
 use crate::math::clamp_abs;
 use crate::params::Params;
 use crate::rc::ArmChoice;
@@ -132,7 +132,7 @@ pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<&'sta
             .map(|(a, _)| a)
     };
     if let Some(arm) = chosen().find(|a| a.state == ArmState::Faulty) {
-        Some(arm.fault.map_or("arm fault", Fault::text))
+        Some(arm.fault.map_or("arm fault", GripFault::text))
     } else if chosen().any(|a| a.state == ArmState::ForceLimited) {
         Some("force limit reached without grip")
     } else {

@@ -1,8 +1,8 @@
 //! What the clamp task makes of commands and of inputs that are old.
 
 use embassy_time::Instant;
-use sophie_control::clamp::Fault;
 use sophie_control::grip::ArmState;
+use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
@@ -157,7 +157,7 @@ fn what_is_missing_of_one_arm_holds_that_arm_alone() {
     let grip = bench.0.links.grip.fresh().unwrap();
     assert_eq!(
         grip.arms.map(|arm| arm.fault),
-        [None, Some(Fault::Sensor), Some(Fault::Tilt), None]
+        [None, Some(GripFault::Sensor), Some(GripFault::Tilt), None]
     );
 }
 

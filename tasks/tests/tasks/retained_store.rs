@@ -1,8 +1,8 @@
 //! What is kept for the run after a reset.
 
 use embassy_time::Instant;
-use sophie_control::clamp::Fault;
 use sophie_control::grip::{ArmGrip, GripState};
+use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
@@ -29,11 +29,12 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     };
     links.tendons.send(now, forces);
     let mut grip = GripState::default();
-    for (arm, fault) in
-        grip.arms
-            .iter_mut()
-            .zip([None, Some(Fault::Sensor), Some(Fault::Stale), Some(Fault::Unfelt)])
-    {
+    for (arm, fault) in grip.arms.iter_mut().zip([
+        None,
+        Some(GripFault::Sensor),
+        Some(GripFault::Stale),
+        Some(GripFault::Unfelt),
+    ]) {
         *arm = ArmGrip {
             fault,
             ..ArmGrip::default()
@@ -79,7 +80,7 @@ fn a_grip_is_kept_without_what_met_the_rotors_and_with_the_faults_that_last() {
         );
         assert_eq!(
             retained.fault,
-            [None, Some(Fault::Sensor), None, Some(Fault::Unfelt)]
+            [None, Some(GripFault::Sensor), None, Some(GripFault::Unfelt)]
         );
         assert_eq!(retained.gyro_bias, Some(BIAS));
     }

@@ -3,12 +3,10 @@
 
 use super::*;
 
-const DT: f32 = 0.01;
-
 /// One arm in a scripted world.
 struct Bench {
     cfg: Config,
-    arm: ArmClamp,
+    arm: ArmGripper,
     thrust: f32,
     /// Tilt of an arm that no longer follows its tendon, rad.
     stuck_at: Option<f32>,
@@ -18,7 +16,7 @@ impl Bench {
     fn new(p: &Params) -> Self {
         Self {
             cfg: Config::from_params(p),
-            arm: ArmClamp::default(),
+            arm: ArmGripper::default(),
             thrust: 0.0,
             stuck_at: None,
         }
@@ -33,12 +31,13 @@ impl Bench {
     fn step(&mut self, pressure: f32) -> f32 {
         let before = self.arm.force;
         let input = ArmInput {
+            close: true,
             pressure: Pressure::Known(pressure),
             thrust: self.thrust,
             tension: Some(before),
             tilt: Some(self.stuck_at.unwrap_or(self.bent())),
         };
-        self.arm.step(&self.cfg, true, &input, DT).force - before
+        self.arm.step(&self.cfg, &input, DT).force - before
     }
 
     fn run(&mut self, pressure: f32, steps: u32) -> f32 {
@@ -134,7 +133,7 @@ fn a_touch_lost_for_good_falls_back_to_the_force_it_was_held_with() {
         bench.step(50.0);
         most.max(bench.arm.force)
     });
-    assert!(bench.arm.fault() == Some(Fault::Unfelt));
+    assert!(bench.arm.fault() == Some(GripFault::Unfelt));
     assert!(
         most > usual + 7.0 && near(bench.arm.force, usual, 1.0),
         "{most} {}",
@@ -151,7 +150,7 @@ fn a_touch_lost_at_once_falls_back_to_the_tendons_own_force() {
     bench.run(150.0, 5);
     bench.stuck_at = Some(bench.bent());
     bench.run(50.0, 100);
-    assert!(bench.arm.fault() == Some(Fault::Unfelt));
+    assert!(bench.arm.fault() == Some(GripFault::Unfelt));
     assert!(
         near(bench.arm.force, touched, 1.5),
         "{touched} {}",
@@ -172,11 +171,15 @@ fn a_lead_that_breaks_is_a_pressure_that_vanishes_within_one_step() {
         let mut bench = Bench::holding(&Params::default());
         let before = bench.run(from, 50);
         bench.step(to);
-        assert_eq!(bench.arm.fault() == Some(Fault::Sensor), broken, "{from} -> {to}");
+        assert_eq!(
+            bench.arm.fault() == Some(GripFault::Sensor),
+            broken,
+            "{from} -> {to}"
+        );
         if broken {
             // The force is held, and the sensor stays rejected.
             assert!(near(bench.run(950.0, 100), before, 1e-6));
-            assert!(bench.arm.fault() == Some(Fault::Sensor));
+            assert!(bench.arm.fault() == Some(GripFault::Sensor));
         }
     }
     // An arm that lets go takes longer: two steps of 10 ms.

@@ -1,0 +1,38 @@
+//! What can be wrong with a closing arm; below both the loop that finds it and the grip state that carries it.
+
+/// Why an arm is faulty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GripFault {
+    /// No fresh pressure; over as soon as there is one.
+    Stale,
+    /// The pressure sensor failed; stays until release.
+    Sensor,
+    /// The arm met something that its sensor does not feel; stays until release.
+    Unfelt,
+    /// The force rose and the pressure, below that of a grip, did not follow: the sensor cannot read it; stays until
+    /// release.
+    Ceiling,
+    /// The arm's tilt is missing; over when it is back.
+    Tilt,
+    /// A number is not finite; over when it is.
+    NotFinite,
+}
+
+impl GripFault {
+    /// It stays until the arm is released.
+    pub const fn is_latched(self) -> bool {
+        matches!(self, Self::Sensor | Self::Unfelt | Self::Ceiling)
+    }
+
+    /// Text for the pilot.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Stale => "pressure reading lost",
+            Self::Sensor => "pressure sensor fault",
+            Self::Unfelt => "arm stopped, no pressure felt",
+            Self::Ceiling => "pressure sensor at its ceiling",
+            Self::Tilt => "arm tilt lost",
+            Self::NotFinite => "reading is no number",
+        }
+    }
+}

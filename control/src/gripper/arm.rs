@@ -1,0 +1,310 @@
+//! The controller of one arm: free, approach, grip and release, and what is wrong with it.
+
+use super::bend_watch::{BendSample, BendWatch};
+use super::ceiling_watch::{CeilingSample, CeilingWatch};
+use super::input::{Contact, InputFilters, Measured};
+use super::pressure_loop::PressureLoop;
+use super::{ArmInput, Config, FORCE_MIN, Pressure};
+use crate::grip::{ArmGrip, ArmState, FreeProof, HoldProof};
+use crate::grip_fault::GripFault;
+use crate::math;
+
+/// Fastest change of the force of an arm that touches, N/s.
+const FORCE_RATE_MAX: f32 = 300.0;
+/// Fastest rise of the force of an arm that lost touch, N/s: slow enough for the watch on unfelt contact.
+const REGAIN_RATE_MAX: f32 = 30.0;
+/// Force (N) that the tendon lacks, for good, where the servo is at the end of its travel or strength.
+const LAG_STUCK: f32 = 8.0;
+/// Time at the force limit after which the arm counts as limited, s.
+const LIMITED_AFTER: f32 = 1.0;
+/// Time for which pressure and tilt must be known after a restart, s: ten frames of the servos' drives.
+const RESUME_TIME: f32 = 0.2;
+/// Time without a tilt after which the arm counts as faulty, s; its servo is held from the first moment.
+const TILT_MISSING_MAX: f32 = 0.5;
+/// Shares of the grip pressure between which no arm can fall within one step of 10 ms (its modes are below 30 Hz):
+/// the sensor's lead broke.
+const VANISHED_FROM_SHARE: f32 = 0.3;
+const VANISHED_TO_SHARE: f32 = 0.02;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Phase {
+    #[default]
+    Free,
+    /// Bending down, nothing felt yet.
+    Approach,
+    /// After a restart, with the time for which all is known again, s: the servo stays where it is.
+    Resume(f32),
+    /// Felt: the pressure is controlled.
+    Grip(PressureLoop),
+    Release,
+}
+
+/// The controller of one arm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ArmGripper {
+    pub(super) phase: Phase,
+    /// Force asked of the tendon, N.
+    pub(super) force: f32,
+    filters: InputFilters,
+    bend_watch: Option<BendWatch>,
+    ceiling_watch: CeilingWatch,
+    fault: Option<GripFault>,
+    /// Time without a tilt, s.
+    tilt_missing: f32,
+    /// Time at the force limit, s.
+    at_limit: f32,
+    /// Pressure of the step before, unfiltered, Pa.
+    last_pressure: Option<f32>,
+    hold: HoldProof,
+    free: FreeProof,
+}
+
+impl ArmGripper {
+    /// A closed arm of which the run before asked `force` N, with the fault that stays until release.
+    pub fn resume(force: f32, fault: Option<GripFault>) -> Self {
+        Self {
+            phase: Phase::Resume(0.0),
+            force: math::clamp(force, 0.0, 1e4),
+            fault: fault.filter(|f| f.is_latched()),
+            ..Self::default()
+        }
+    }
+
+    /// One step of `dt` s: closes or releases the arm; returns what is known of its grip.
+    ///
+    /// Whatever the input, the force stays within 0 and the limit.
+    pub fn step(&mut self, cfg: &Config, input: &ArmInput, dt: f32) -> ArmGrip {
+        let dt = math::clamp(dt, 1e-4, 0.1);
+        let measured = self.filters.step(input, dt);
+        if input.close {
+            self.close(cfg, &measured, dt);
+        } else {
+            self.release(cfg, dt);
+        }
+        self.force = math::clamp(self.force, 0.0, cfg.limit);
+        let free = self
+            .free
+            .step(&cfg.demand, measured.pressure, measured.tension, dt);
+        let felt = measured.pressure.filter(|_| self.fault.is_none());
+        if self.phase == Phase::Release && free {
+            *self = Self {
+                filters: self.filters,
+                free: self.free,
+                ..Self::default()
+            };
+        }
+        let holding = match self.phase {
+            Phase::Grip(_) | Phase::Approach | Phase::Resume(_) => {
+                self.hold.step(&cfg.demand, felt, self.force, dt)
+            }
+            Phase::Free | Phase::Release => {
+                self.hold = HoldProof::default();
+                false
+            }
+        };
+        ArmGrip {
+            state: self.state(holding),
+            pressure: self.filters.pressure(),
+            force: self.force,
+            closure: self.hold.closure(),
+            fault: self.fault,
+        }
+    }
+
+    /// Why the arm is faulty, if it is.
+    pub fn fault(&self) -> Option<GripFault> {
+        self.fault
+    }
+
+    /// The servo is to stay where a restart left it.
+    pub(super) fn holds_position(&self) -> bool {
+        matches!(self.phase, Phase::Resume(_))
+    }
+
+    /// The arm is free: released for long enough, by all that is known of it.
+    pub(super) fn is_free(&self, sensed: Pressure) -> bool {
+        self.phase == Phase::Free && self.free.proven(sensed.known().is_some())
+    }
+
+    fn state(&self, holding: bool) -> ArmState {
+        match self.phase {
+            Phase::Free => ArmState::Free,
+            Phase::Release => ArmState::Releasing,
+            _ if self.fault.is_some() => ArmState::Faulty,
+            _ if holding => ArmState::Holding,
+            _ if self.at_limit >= LIMITED_AFTER => ArmState::ForceLimited,
+            Phase::Approach | Phase::Resume(_) => ArmState::Closing,
+            Phase::Grip(_) => ArmState::Touching,
+        }
+    }
+
+    /// Lets the force fall; every fault ends with it.
+    fn release(&mut self, cfg: &Config, dt: f32) {
+        if self.phase != Phase::Free {
+            self.phase = Phase::Release;
+        }
+        self.fault = None;
+        self.bend_watch = None;
+        self.ceiling_watch = CeilingWatch::default();
+        self.at_limit = 0.0;
+        self.tilt_missing = 0.0;
+        self.force = math::slew(self.force, 0.0, cfg.release_rate * dt);
+    }
+
+    fn close(&mut self, cfg: &Config, measured: &Measured, dt: f32) {
+        if matches!(self.phase, Phase::Free | Phase::Release) {
+            self.phase = Phase::Approach;
+            self.hold = HoldProof::default();
+            self.free = FreeProof::default();
+        }
+        self.tilt_missing = if measured.tilt.is_some() {
+            0.0
+        } else {
+            math::clamp(self.tilt_missing + dt, 0.0, 10.0)
+        };
+        self.fault = self.input_fault(cfg, measured);
+        self.last_pressure = measured.sensed.known();
+        let Some(contact) = self.contact(cfg, measured) else {
+            self.pause();
+            return;
+        };
+        if let Phase::Resume(seen) = self.phase {
+            self.take_over(cfg, &contact, seen + dt);
+            return;
+        }
+        self.control(cfg, &contact, dt);
+        if contact.touches() {
+            self.watch_ceiling(cfg, &contact, dt);
+        } else {
+            self.watch_bending(cfg, &contact, dt);
+        }
+        // A servo at the end of its travel, or at its stall, is a limit as good as the force's.
+        let stuck = matches!(self.phase, Phase::Grip(_)) && self.force - contact.tension > LAG_STUCK;
+        let limited = self.force >= cfg.demand.force || stuck;
+        self.at_limit = if limited {
+            math::clamp(self.at_limit + dt, 0.0, 10.0)
+        } else {
+            0.0
+        };
+    }
+
+    /// What is wrong with the arm by its input, or has been since it closed.
+    fn input_fault(&self, cfg: &Config, measured: &Measured) -> Option<GripFault> {
+        let latched = self.fault.is_some_and(GripFault::is_latched);
+        let pressure = measured.sensed.known();
+        let vanished = matches!(self.phase, Phase::Grip(_))
+            && self
+                .last_pressure
+                .is_some_and(|p| p > VANISHED_FROM_SHARE * cfg.demand.pressure)
+            && pressure.is_some_and(|p| p < VANISHED_TO_SHARE * cfg.demand.pressure);
+        match measured.sensed {
+            _ if latched => self.fault,
+            Pressure::Faulty => Some(GripFault::Sensor),
+            // An unloaded sensor looks like an open one, but no arm lets go within one step.
+            Pressure::Known(_) if vanished => Some(GripFault::Sensor),
+            Pressure::Stale => Some(GripFault::Stale),
+            Pressure::Known(_) if measured.pressure.is_none() || measured.thrust.is_none() => {
+                Some(GripFault::NotFinite)
+            }
+            Pressure::Known(_) if self.tilt_missing >= TILT_MISSING_MAX => Some(GripFault::Tilt),
+            Pressure::Known(_) => None,
+        }
+    }
+
+    /// What the loop needs; `None` while something of it is missing or the arm is faulty.
+    fn contact(&self, cfg: &Config, measured: &Measured) -> Option<Contact> {
+        if self.fault.is_some() {
+            return None;
+        }
+        Some(Contact {
+            pressure: measured.pressure?,
+            feed_forward: cfg.per_thrust * measured.thrust?,
+            tension: measured.tension.unwrap_or(self.force),
+            tilt: measured.tilt?,
+        })
+    }
+
+    /// Holds the force, and lets the loop restart from it: no wind-up, no kick.
+    fn pause(&mut self) {
+        match self.phase {
+            Phase::Grip(_) => self.phase = Phase::Approach,
+            Phase::Resume(_) => self.phase = Phase::Resume(0.0),
+            _ => {}
+        }
+        self.bend_watch = None;
+        self.ceiling_watch.pause();
+    }
+
+    /// After a restart: seeds the force from the tension by the new attitude (which may show every tilt 0.02 rad off the
+    /// old one) once that has been seen for [`RESUME_TIME`]. Asked for the old force, the servo would jump.
+    fn take_over(&mut self, cfg: &Config, contact: &Contact, seen: f32) {
+        if seen < RESUME_TIME {
+            self.phase = Phase::Resume(seen);
+            return;
+        }
+        self.force = math::clamp(contact.tension, FORCE_MIN, cfg.limit);
+        self.phase = if contact.touches() {
+            Phase::Grip(PressureLoop::new(contact, self.force, 0.0))
+        } else {
+            self.bend_watch = Some(BendWatch::of_a_start(contact.tilt, contact.tension));
+            Phase::Approach
+        };
+    }
+
+    /// The force of this step: by the pressure once it has been felt, by the arm's stiffness until then.
+    fn control(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
+        let lag = self.force - contact.tension;
+        match self.phase {
+            Phase::Grip(mut pressure_loop) => {
+                let rise = if contact.pressure < super::TOUCH_PRESSURE {
+                    REGAIN_RATE_MAX
+                } else {
+                    FORCE_RATE_MAX
+                };
+                let wanted = pressure_loop.step(cfg, contact, lag, dt);
+                self.force = math::clamp(wanted, self.force - FORCE_RATE_MAX * dt, self.force + rise * dt);
+                self.force = math::clamp(self.force, FORCE_MIN, cfg.limit);
+                if contact.touches() {
+                    pressure_loop.note_force(self.force, dt);
+                }
+                self.phase = Phase::Grip(pressure_loop);
+            }
+            _ if contact.touches() => {
+                let transient = math::clamp(lag, 0.0, cfg.limit);
+                self.phase = Phase::Grip(PressureLoop::new(contact, self.force, transient));
+            }
+            _ => self.force = math::clamp(self.force + cfg.approach_rate * dt, FORCE_MIN, cfg.limit),
+        }
+    }
+
+    /// Of an arm that touches: the pressure must rise with the force.
+    fn watch_ceiling(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
+        self.bend_watch = None;
+        let sample = CeilingSample {
+            pressure: contact.pressure,
+            tension: contact.tension - contact.feed_forward,
+            force: self.force - contact.feed_forward,
+        };
+        if self.ceiling_watch.step(cfg, sample, dt) {
+            self.fault = Some(GripFault::Ceiling);
+        }
+    }
+
+    /// Of an arm that does not touch: it must bend as the force rises. Takes the force of a rise without bending back.
+    fn watch_bending(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
+        self.ceiling_watch.pause();
+        let start = BendWatch::new(contact.tilt, contact.tension);
+        let sample = BendSample {
+            tilt: contact.tilt,
+            tension: contact.tension,
+            force: self.force,
+        };
+        if let Some(before) = self.bend_watch.get_or_insert(start).step(cfg, sample, dt) {
+            self.fault = Some(GripFault::Unfelt);
+            self.force = match self.phase {
+                Phase::Grip(pressure_loop) => math::clamp(pressure_loop.mean_force(), FORCE_MIN, self.force),
+                _ => before,
+            };
+        }
+    }
+}

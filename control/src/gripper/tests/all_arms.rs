@@ -1,0 +1,99 @@
+//! The four arms together, and bounds that hold for any input.
+
+use proptest::prelude::*;
+
+use super::*;
+
+#[test]
+fn every_chosen_arm_must_hold_and_every_arm_be_free() {
+    let cfg = config();
+    let mut gripper = Gripper::default();
+    let front = [true, false, true, false];
+    let mut out = GripperOutput::default();
+    let drive = |gripper: &mut Gripper, close: PerArm<bool>, pressure: PerArm<f32>, seconds: f32| {
+        let mut out = GripperOutput::default();
+        for _ in 0..(seconds / DT) as u32 {
+            let mut inputs = [ArmInput::default(); 4];
+            for ((i, arm), (close, p)) in inputs
+                .iter_mut()
+                .zip(&gripper.arms)
+                .zip(close.into_iter().zip(pressure))
+            {
+                *i = ArmInput {
+                    close,
+                    ..input(&cfg, arm, p)
+                };
+            }
+            out = gripper.step(&cfg, &inputs, DT);
+        }
+        out
+    };
+    for (pressures, proven) in [
+        ([0.0; 4], false),
+        ([950.0, 0.0, 880.0, 0.0], false),
+        ([950.0, 0.0, 950.0, 0.0], true),
+    ] {
+        out = drive(&mut gripper, front, pressures, 1.5);
+        assert!(out.proven == proven && !out.released, "{out:?}");
+    }
+    assert!(
+        out.arms.map(|arm| arm.grip.state)
+            == [
+                ArmState::Holding,
+                ArmState::Free,
+                ArmState::Holding,
+                ArmState::Free
+            ]
+    );
+    out = drive(&mut gripper, [false; 4], [0.0, 0.0, 300.0, 0.0], 5.0);
+    assert!(!out.released && !out.proven);
+    // Not once one arm has left the tolerance again before the other came: only when both are in it.
+    let mut gripper = Gripper::default();
+    for (pressures, proven) in [
+        ([0.0; 4], false),
+        ([950.0, 0.0, 880.0, 0.0], false),
+        ([1020.0, 0.0, 950.0, 0.0], false),
+        ([960.0, 0.0, 950.0, 0.0], true),
+        ([1020.0, 0.0, 950.0, 0.0], true),
+    ] {
+        out = drive(&mut gripper, front, pressures, 1.5);
+        assert!(out.proven == proven, "{pressures:?} {out:?}");
+    }
+    out = drive(&mut gripper, [false; 4], [0.0, 0.0, 300.0, 0.0], 5.0);
+    assert!(!out.released && !out.proven);
+    out = drive(&mut gripper, [false; 4], [0.0; 4], 1.0);
+    assert!(out.released && !out.proven);
+}
+
+fn any_pressure() -> impl Strategy<Value = Pressure> {
+    prop_oneof![
+        proptest::num::f32::ANY.prop_map(Pressure::Known),
+        (0.0f32..2000.0).prop_map(Pressure::Known),
+        Just(Pressure::Stale),
+        Just(Pressure::Faulty),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn the_force_stays_within_its_bounds(
+        steps in proptest::collection::vec(
+            (
+                any::<bool>(), any_pressure(), proptest::num::f32::ANY,
+                proptest::option::of(proptest::num::f32::ANY),
+                proptest::option::of(prop_oneof![proptest::num::f32::ANY, -2.0f32..0.5]),
+                prop_oneof![proptest::num::f32::ANY, 0.005f32..0.02],
+            ),
+            1..200,
+        ),
+    ) {
+        let cfg = config();
+        let mut arm = ArmGripper::default();
+        for (close, pressure, thrust, tension, tilt, dt) in steps {
+            let grip = arm.step(&cfg, &ArmInput { close, pressure, thrust, tension, tilt }, dt);
+            prop_assert!(grip.force >= 0.0 && grip.force <= cfg.limit(), "{grip:?}");
+            prop_assert!(grip.pressure.is_finite());
+            prop_assert!(grip.closure.is_none_or(f32::is_finite));
+        }
+    }
+}
