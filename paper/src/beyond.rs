@@ -3,10 +3,10 @@
 use crate::study::allocation::Studied;
 use crate::study::rig::{Flown, Wish, fly};
 use glam::DVec3;
-use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::tendon::REFERENCE_TILT;
 use sophie_control::wrench::Configuration;
+use sophie_sim::mixers::Variant;
 
 use super::flights::{BOTH, curve, error, in_gusts, lost_when, named, or_lost, vehicle};
 use super::model::{Axis, Chart, Look, Section, Series, Table, Tile, num};

@@ -1,9 +1,9 @@
 //! Section V-C: an arm that loses stiffness, in flight and as seen from on board.
 
 use crate::study::rig::{Flown, Moment, Wish, fly};
-use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::wrench::Configuration;
+use sophie_sim::mixers::Variant;
 
 use super::flights::{error, in_gusts, lost_when, or_lost, vehicle};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};

@@ -1,8 +1,8 @@
 //! What the flown sections share: the vehicle, its gusts, and numbers out of a flight.
 
 use crate::study::rig::{Flown, Moment, rms};
-use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
+use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::Scenario;
 
 use super::model::{Cell, num};

@@ -6,9 +6,10 @@ use crate::study::allocation::Studied;
 use crate::study::rig::{Flown, Wish, fly};
 use sophie_control::deflection::ArmModel;
 use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
-use sophie_control::mixer::{Conditions, Mixer, Variant};
+use sophie_control::mixer::{Allocation, Conditions};
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, FORE, SIDE, Wrench, YAW};
+use sophie_sim::mixers::{Mixer, Variant};
 use sophie_sim::plant::GRAVITY;
 
 use super::flights::{curve, error, in_gusts, lost_when, named, or_lost, swing, vehicle};

@@ -1,8 +1,8 @@
 //! Figs. 7 and 8, Table III: the 25° roll manoeuvre, its arms and its sideways force.
 
 use crate::study::rig::{Flown, Moment, Wish, fly};
-use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
+use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::Scenario;
 
 use super::flights::{curve, delta_alpha, delta_thrust, lost_when, vehicle};

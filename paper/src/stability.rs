@@ -4,9 +4,9 @@ use crate::study::allocation::Studied;
 use crate::study::perturbation::Trial;
 use crate::study::rig::{Flown, Wish, fly};
 use glam::DVec3;
-use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, FORE, SIDE, YAW};
+use sophie_sim::mixers::Variant;
 use sophie_sim::plant::GRAVITY;
 
 use super::flights::{BOTH, curve, named, vehicle};

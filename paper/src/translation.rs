@@ -2,8 +2,8 @@
 
 use crate::study::rig::{Flown, Moment, Wish, fly};
 use glam::DVec3;
-use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
+use sophie_sim::mixers::Variant;
 use sophie_sim::plant::GRAVITY;
 
 use super::flights::vehicle;

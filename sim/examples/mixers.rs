@@ -9,10 +9,10 @@
 mod rig;
 
 use rig::{Rig, level, vehicle};
-use sophie_control::mixer::Variant::{self, Flexible, Frozen, Paper, Rigid};
 use sophie_control::mode::Mode;
 use sophie_control::wrench::Configuration::{self, A, B};
 use sophie_sim::flight::fly;
+use sophie_sim::mixers::Variant::{self, Flexible, Frozen, Paper, Rigid};
 use sophie_sim::record::{Sample, Silent};
 
 /// Seeds of the mission table.

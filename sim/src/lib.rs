@@ -14,3 +14,4 @@ pub mod scenario;
 pub mod sensors;
 
 pub use sophie_clock as clock;
+pub use sophie_mixers as mixers;

@@ -5,7 +5,7 @@ mod vehicle;
 
 use embassy_time::Instant;
 use fakes::{Answer, FakeImu, FakeMotors, links};
-use sophie_control::mixer::Variant;
+use sophie_control::mixer::Flexible;
 use sophie_control::mode::Mode;
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::Configuration;
@@ -70,8 +70,8 @@ fn a_setpoint_that_is_not_renewed_stops_the_rotors() {
     time.spawn(sophie_tasks::imu::run(links, FakeImu::default()));
     time.spawn(sophie_tasks::estimator::run(links));
     time.spawn(sophie_tasks::control::run(links));
-    let (mixer, b) = (Variant::Flexible, Configuration::B);
-    time.spawn(sophie_tasks::mixer::run(links, mixer, b));
+    let mixer = |p: &_| Flexible::new(Configuration::B, p);
+    time.spawn(sophie_tasks::mixer::run(links, mixer));
     time.spawn(sophie_tasks::motors::run(links, motors.clone()));
     let setpoint = Setpoint::Angle {
         roll: 0.0,

@@ -3,8 +3,8 @@
 mod rig;
 
 use rig::{Rig, Wish, level, vehicle};
-use sophie_control::mixer::Variant::{Flexible, Frozen, Paper, Rigid};
 use sophie_control::wrench::Configuration::{A, B};
+use sophie_sim::mixers::Variant::{Flexible, Frozen, Paper, Rigid};
 use sophie_sim::scenario::Scenario;
 
 /// A quarter of a minute with the paper's roll to 25° and back.

@@ -4,8 +4,8 @@
 mod rig;
 
 use rig::{Rig, Wish, vehicle};
-use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
+use sophie_sim::mixers::Variant;
 use sophie_tasks::deadline::TaskId;
 
 /// Leans by 10° to the right for two seconds, and back.

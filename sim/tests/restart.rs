@@ -12,7 +12,7 @@ use fakes::{
 use sophie_control::arming::Refusal;
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
-use sophie_control::mixer::Variant;
+use sophie_control::mixer::Flexible;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::rc::{ArmChoice, Sticks};
@@ -84,9 +84,9 @@ impl Vehicle {
             ms: 0,
         };
         v.motors.commands.set([9.0; 4]);
-        let (mixer, b) = (Variant::Flexible, Configuration::B);
+        let mixer = |p: &_| Flexible::new(Configuration::B, p);
         v.time.spawn(sophie_tasks::motors::run(links, v.motors.clone()));
-        v.time.spawn(sophie_tasks::mixer::run(links, mixer, b));
+        v.time.spawn(sophie_tasks::mixer::run(links, mixer));
         v.time.spawn(sophie_tasks::control::run(links));
         v.time.spawn(sophie_tasks::estimator::run(links));
         v.time.spawn(sophie_tasks::imu::run(links, FakeImu::default()));

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand};
-use sophie_control::mixer::Variant;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_report::terminal::console;
+use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::Overrides;
 use sophie_sim::scenario::keys::{self, Range};
 

@@ -1,7 +1,7 @@
 //! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`.
 
 use sophie_control::arming::Refusal;
-use sophie_control::mixer::Variant;
+use sophie_control::mixer::Flexible;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::Look;
@@ -47,7 +47,7 @@ pub async fn control(links: &'static Links) {
 /// Flight level: allocation.
 #[embassy_executor::task]
 pub async fn mixer(links: &'static Links) {
-    sophie_tasks::mixer::run(links, Variant::default(), Configuration::default()).await;
+    sophie_tasks::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
 }
 
 /// Flight level: motors.

@@ -3,9 +3,9 @@
 //! Flight level. Deadline: 500 µs after data-ready.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::mixer::{Conditions, Mix, Mixer, Variant};
+use sophie_control::mixer::{Allocation, Conditions, Mix};
+use sophie_control::params::Params;
 use sophie_control::thrust_curve::ThrustCurve;
-use sophie_control::wrench::Configuration;
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::{Battery, Demand, Links, MixOutput, Setpoint};
@@ -15,12 +15,12 @@ pub const DEADLINE: Duration = Duration::from_micros(500);
 /// Step time without an estimate, s.
 const NOMINAL_DT: f32 = 1e-3;
 
-/// Allocates at 1 kHz; returns only if the link has no receiver left.
-pub async fn run(links: &Links, variant: Variant, configuration: Configuration) {
+/// Allocates at 1 kHz by what `allocation` makes of the parameters; returns only if the link has no receiver left.
+pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) -> A) {
     let Some(mut demand) = links.demand.receiver() else {
         return;
     };
-    let mut mixer = Mixer::new(variant, configuration, &links.params);
+    let mut mixer = allocation(&links.params);
     let curve = ThrustCurve::from_params(&links.params);
     let mut arms_seen = Instant::MIN;
     let mut readings = [None; 4].into_iter().enumerate();
@@ -51,7 +51,7 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
         }
         // One arm a step: all four in one would make it longer than the others.
         if let Some((arm, Some(tilt))) = readings.next() {
-            mixer.correct_tilt(arm, tilt);
+            mixer.tilt_mut().correct(arm, tilt);
         }
         let (mix, running) = match message.value {
             Demand::Stop => (

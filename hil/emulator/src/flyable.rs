@@ -1,7 +1,7 @@
 //! Whether the image can fly a scenario: parameters are stored for it, but some of what it flies is built into it.
 
-use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
+use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::{Scenario, Step, keys};
 use sophie_tasks::start::Cause;
 

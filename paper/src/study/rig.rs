@@ -7,10 +7,11 @@ use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{Links, Setpoint};
 
-use super::allocation::{self, Studied};
+use super::allocation::Studied;
 use sophie_sim::aim;
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
+use sophie_sim::mixers::Mixer;
 use sophie_sim::plant::{GRAVITY, Plant};
 use sophie_sim::scenario::Scenario;
 
@@ -104,8 +105,15 @@ impl Rig {
         time.spawn(sophie_tasks::estimator::run(links));
         time.spawn(sophie_tasks::control::run(links));
         match studied {
-            None => time.spawn(sophie_tasks::mixer::run(links, scenario.mixer, configuration)),
-            Some(kind) => time.spawn(allocation::run(links, kind, configuration)),
+            None => {
+                let variant = scenario.mixer;
+                let mixer = move |p: &_| Mixer::new(variant, configuration, p);
+                time.spawn(sophie_tasks::mixer::run(links, mixer));
+            }
+            Some(kind) => {
+                let allocation = move |p: &_| kind.allocation(configuration, p);
+                time.spawn(sophie_tasks::mixer::run(links, allocation));
+            }
         }
         time.spawn(sophie_tasks::motors::run(links, Port(board)));
         time.spawn(sophie_tasks::arms::run(links, Port(board)));

@@ -3,9 +3,9 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::math;
-use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, PerArm};
+use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Status};
 use sophie_tasks::start::{Cause, Start};
@@ -62,13 +62,14 @@ impl Stack {
     /// The tasks begin, `us` µs after power-up.
     fn spawn(&mut self, us: u64) {
         let (links, board) = (self.links, self.board);
-        let (mixer, configuration) = (self.mixer, self.configuration);
+        let (variant, configuration) = (self.mixer, self.configuration);
+        let mixer = move |p: &Params| Mixer::new(variant, configuration, p);
         let time = VirtualTime::new();
         // Flight level.
         time.spawn(sophie_tasks::imu::run(links, Port(board)));
         time.spawn(sophie_tasks::estimator::run(links));
         time.spawn(sophie_tasks::control::run(links));
-        time.spawn(sophie_tasks::mixer::run(links, mixer, configuration));
+        time.spawn(sophie_tasks::mixer::run(links, mixer));
         time.spawn(sophie_tasks::motors::run(links, Port(board)));
         // Steady level.
         time.spawn(sophie_tasks::analog::run(links, Port(board)));

@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
+use sophie_mixers::Variant;
 
 use super::{Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read_steps};
 use crate::plant::arm::TABLE_1;

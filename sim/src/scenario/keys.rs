@@ -3,9 +3,9 @@
 
 use core::f64::consts::PI;
 
-use sophie_control::mixer::Variant;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
+use sophie_mixers::Variant;
 
 use super::{Scenario, ServoProfile};
 

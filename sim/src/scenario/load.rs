@@ -4,9 +4,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use sophie_control::mixer::Variant;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
+use sophie_mixers::Variant;
 
 use super::Scenario;
 use super::error::{Place, ScenarioError};

@@ -42,7 +42,7 @@ pub struct Scenario {
     /// The parameters of the flight stack; what the builder believes about the vehicle.
     pub params: Params,
     /// Allocation that the stack uses.
-    pub mixer: sophie_control::mixer::Variant,
+    pub mixer: sophie_mixers::Variant,
     /// Arms that close on the pipe.
     pub arms: ArmChoice,
     /// Air and pipe.

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::mixer::Variant;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
+use sophie_mixers::Variant;
 
 use super::keys::{KEYS, Kind};
 use super::*;

@@ -2,11 +2,11 @@
 
 use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
-use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
 use sophie_sim::aim;
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
+use sophie_sim::mixers::{Mixer, Variant};
 use sophie_sim::plant::Plant;
 use sophie_sim::scenario::Scenario;
 use sophie_tasks::links::{Links, Setpoint};
@@ -69,11 +69,12 @@ impl Rig {
         let plant = Plant::new(scenario, rng.clone());
         let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, &mut rng)));
         let links: &'static Links = Box::leak(Box::new(Links::new(scenario.params)));
-        let (mixer, configuration) = (scenario.mixer, scenario.vehicle.configuration);
+        let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
+        let mixer = move |p: &_| Mixer::new(variant, configuration, p);
         time.spawn(sophie_tasks::imu::run(links, Port(board)));
         time.spawn(sophie_tasks::estimator::run(links));
         time.spawn(sophie_tasks::control::run(links));
-        time.spawn(sophie_tasks::mixer::run(links, mixer, configuration));
+        time.spawn(sophie_tasks::mixer::run(links, mixer));
         time.spawn(sophie_tasks::motors::run(links, Port(board)));
         time.spawn(sophie_tasks::arms::run(links, Port(board)));
         time.spawn(sophie_tasks::analog::run(links, Port(board)));

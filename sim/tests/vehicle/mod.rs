@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test file uses what it needs")]
 
 use embassy_time::Instant;
-use sophie_control::mixer::Variant;
+use sophie_control::mixer::Flexible;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
@@ -61,8 +61,8 @@ impl Vehicle {
         v.time.spawn(sophie_tasks::imu::run(links, v.imu.clone()));
         v.time.spawn(sophie_tasks::estimator::run(links));
         v.time.spawn(sophie_tasks::control::run(links));
-        let (mixer, b) = (Variant::Flexible, Configuration::B);
-        v.time.spawn(sophie_tasks::mixer::run(links, mixer, b));
+        let mixer = |p: &_| Flexible::new(Configuration::B, p);
+        v.time.spawn(sophie_tasks::mixer::run(links, mixer));
         v.time.spawn(sophie_tasks::motors::run(links, v.motors.clone()));
         v.time
             .spawn(sophie_tasks::analog::run(links, v.converter.clone()));

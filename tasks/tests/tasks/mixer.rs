@@ -1,7 +1,7 @@
 //! What the mixer task makes of demands, voltage and the arms' sensors.
 
 use embassy_time::Instant;
-use sophie_control::mixer::Variant;
+use sophie_control::mixer::Flexible;
 use sophie_control::wrench::{Configuration, PerArm, Wrench};
 use sophie_tasks::links::{ArmAngles, Battery, Demand, MixOutput, Setpoint};
 use sophie_tasks::mixer;
@@ -24,8 +24,8 @@ struct Bench(Rig);
 impl Bench {
     fn new() -> Self {
         let rig = Rig::new();
-        let (variant, configuration) = (Variant::Flexible, Configuration::B);
-        rig.time.spawn(mixer::run(rig.links, variant, configuration));
+        let allocation = |p: &_| Flexible::new(Configuration::B, p);
+        rig.time.spawn(mixer::run(rig.links, allocation));
         Self(rig)
     }
 

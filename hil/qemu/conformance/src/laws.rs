@@ -7,12 +7,13 @@ use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
 use sophie_control::estimator::Estimator;
 use sophie_control::imu_filter::ImuFilter;
 use sophie_control::math;
-use sophie_control::mixer::{Conditions, Mixer, Variant};
+use sophie_control::mixer::{Allocation, Conditions};
 use sophie_control::params::Params;
 use sophie_control::rate::{Feedback, RateLoop};
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, Wrench};
+use sophie_mixers::{Mixer, Variant};
 
 /// Inputs of each function of the maths module.
 const INPUTS: u32 = 4096;
@@ -116,7 +117,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
         };
         if step % 10 == 0 {
             for (arm, tilt) in mixer.tilt().tilt().into_iter().enumerate() {
-                mixer.correct_tilt(arm, tilt + 0.05 * noise.unit());
+                mixer.tilt_mut().correct(arm, tilt + 0.05 * noise.unit());
             }
         }
         let battery_ratio = 1.0 + 0.15 * noise.unit();

@@ -7,7 +7,7 @@ use core::hint::black_box;
 use sophie_control::attitude::{AttitudeLoop, Target};
 use sophie_control::estimator::Estimator;
 use sophie_control::imu_filter::{AxisFilter, ImuFilter};
-use sophie_control::mixer::{Conditions, Mix, Mixer, Variant};
+use sophie_control::mixer::{Allocation, Conditions, Flexible, Mix};
 use sophie_control::params::Params;
 use sophie_control::rate::{Feedback, RateLoop};
 use sophie_control::thrust_curve::ThrustCurve;
@@ -24,7 +24,7 @@ pub struct Chain {
     pub estimator: Estimator,
     pub attitude: AttitudeLoop,
     pub rate: RateLoop,
-    pub mixer: Mixer,
+    pub mixer: Flexible,
     pub curve: ThrustCurve,
     pub flow: Flow,
 }
@@ -55,7 +55,7 @@ impl Chain {
             estimator: Estimator::new(&p),
             attitude: AttitudeLoop::new(&p),
             rate: RateLoop::new(&p, black_box(1000.0)),
-            mixer: Mixer::new(Variant::Flexible, black_box(Configuration::B), &p),
+            mixer: Flexible::new(black_box(Configuration::B), &p),
             curve: ThrustCurve::from_params(&p),
             flow: Flow {
                 accel_bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
@@ -173,9 +173,9 @@ pub fn arm_sensor(c: &mut Chain, i: &Inputs) {
 }
 
 #[inline(always)]
-fn teach(mixer: &mut Mixer, i: &Inputs) {
+fn teach(mixer: &mut Flexible, i: &Inputs) {
     if let Some((arm, measured)) = i.arm {
-        mixer.correct_tilt(arm, measured);
+        mixer.tilt_mut().correct(arm, measured);
     }
 }
 

@@ -1,0 +1,135 @@
+//! The allocation that flies: the wrench inverted through the quasi-static Jacobian about the low-passed thrusts.
+//!
+//! Inverting the effectiveness at the frozen arm angle is wrong even with the true angle: a thrust changed for yaw bends
+//! its arm a moment later and yaws |C| times more, and an inverse that follows the angle turns this into a limit cycle.
+
+#[cfg(test)]
+mod tests;
+
+use crate::desaturation::Patterns;
+use crate::effectiveness::{Effectiveness, Geometry, Inverse, Load};
+use crate::math;
+use crate::mixer::{Allocation, Conditions, Limits, Mix, Split, moment_patterns, stiff};
+use crate::params::Params;
+use crate::tilt::TiltModel;
+use crate::wrench::{Configuration, PerArm, Wrench};
+
+/// Share of the stiff frame's yaw authority k_q below which yaw fades and entries are floored.
+const YAW_FLOOR: f32 = 0.35;
+
+/// Allocation by the quasi-static Jacobian, with its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flexible {
+    geometry: Geometry,
+    /// The same as configuration B would have it, and the sign that makes one of the other.
+    as_b: Geometry,
+    chi: f32,
+    tilt: TiltModel,
+    limits: Limits,
+    /// Least entry of the yaw row, m.
+    yaw_floor: f32,
+    /// Rise of yaw's share with the authority, 1/m: nothing at half the floor, all of it at the floor.
+    fade_slope: f32,
+}
+
+impl Flexible {
+    /// An allocation with idle rotors.
+    pub fn new(configuration: Configuration, p: &Params) -> Self {
+        let geometry = Geometry::from_params(p, configuration);
+        Self {
+            geometry,
+            as_b: geometry.as_b(),
+            chi: configuration.chi(),
+            tilt: TiltModel::new(p),
+            limits: Limits::new(p),
+            yaw_floor: YAW_FLOOR * p.torque_ratio,
+            fade_slope: 2.0 / (YAW_FLOOR * p.torque_ratio),
+        }
+    }
+
+    /// T = Tt + J⁻¹ (w - w(Tt)), J the static Jacobian at the low-passed thrusts Tt.
+    #[inline(always)]
+    fn quasi_static(&self, w: Wrench, yaw_usable: bool) -> Split {
+        let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
+        // In A yaw works the other way round: it is allocated as in B, with the moment reversed.
+        let geometry = self.as_b;
+        let w = Wrench {
+            yaw: self.chi * w.yaw,
+            ..w
+        };
+        let mut e = Effectiveness::quasi_static(&geometry, &tilt, &self.tilt.follow());
+        // The authority fades with its own quasi-static gain, and no entry may pass zero: the inverse of a
+        // vanishing entry would be a kick, and a reversed authority is not to be trusted.
+        let [y1, y2, y3, y4] = e.yaw;
+        let authority = 0.25 * (y1 + y2 + y3 + y4);
+        let least = self.yaw_floor;
+        let fade = math::clamp(authority * self.fade_slope - 1.0, 0.0, 1.0);
+        let fade = if yaw_usable { fade } else { 0.0 };
+        e.yaw = e.yaw.map(|y| if y > least { y } else { least });
+        let Some(inverse) = Inverse::new(&e) else {
+            return self.without_yaw(w);
+        };
+        let now = Load::given(&geometry, &thrusts, &tilt);
+        let half = 0.5 * w.thrust;
+        let [c1, c2, c3, c4] = inverse.solve(Load {
+            front: half - now.front,
+            rear: half - now.rear,
+            roll: -now.roll,
+            yaw: -now.yaw * fade,
+        });
+        let [t1, t2, t3, t4] = thrusts;
+        let (c1, c2, c3, c4) = (t1 + c1, t2 + c2, t3 + c3, t4 + c4);
+        // The collective continues from the last thrusts. Where yaw is given up nothing corrects what they have
+        // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
+        let left = (0.25 - 0.25 * fade) * (c1 - c2 - c3 + c4);
+        let patterns = Patterns {
+            collective: [c1 - left, c2 + left, c3 + left, c4 - left],
+            ..moment_patterns(&geometry, &inverse, w)
+        };
+        Split { patterns, fade }
+    }
+
+    /// No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
+    #[cold]
+    fn without_yaw(&self, w: Wrench) -> Split {
+        Split {
+            fade: 0.0,
+            ..stiff(&self.geometry, Wrench { yaw: 0.0, ..w }, [0.0; 4])
+        }
+    }
+}
+
+impl Allocation for Flexible {
+    // On its own: inlined into a caller that is built for size, its loops would not be unrolled and cost twice as much.
+    #[inline(never)]
+    fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
+        if !w.is_finite() {
+            return self.limits.at_idle();
+        }
+        let ratio = Limits::battery_ratio(c.battery_ratio);
+        let open = self.limits.open_yaw(self.tilt.thrusts());
+        let usable = c.yaw && open;
+        let split = self.quasi_static(w, usable);
+        self.limits.give(split, usable, ratio)
+    }
+
+    fn at_idle(&self) -> Mix {
+        self.limits.at_idle()
+    }
+
+    // On its own as the allocation.
+    #[inline(never)]
+    fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
+        self.tilt.step(thrusts, dt);
+    }
+
+    #[inline(always)]
+    fn tilt(&self) -> &TiltModel {
+        &self.tilt
+    }
+
+    #[inline(always)]
+    fn tilt_mut(&mut self) -> &mut TiltModel {
+        &mut self.tilt
+    }
+}

@@ -1,0 +1,119 @@
+//! What every allocation keeps within: the rotors' range, the thrust from which yaw is used, and yaw's share.
+
+use crate::desaturation::{Given, desaturate};
+use crate::math;
+use crate::mixer::{Mix, Split};
+use crate::params::Params;
+use crate::wrench::PerArm;
+
+/// Thrust above the yaw gate at which it opens again, N: a mean that hovers about the gate must not switch yaw.
+const GATE_HYSTERESIS: f32 = 0.2;
+
+/// Limits of the rotors, with the state of the yaw gate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    idle: f32,
+    max: f32,
+    yaw_limit: f32,
+    gate: f32,
+    yaw_open: bool,
+}
+
+impl Limits {
+    /// The limits that the parameters describe, the yaw gate shut.
+    pub const fn new(p: &Params) -> Self {
+        Self {
+            idle: p.thrust_idle,
+            max: p.thrust_max,
+            yaw_limit: p.yaw_thrust_max,
+            gate: p.yaw_gate_thrust,
+            yaw_open: false,
+        }
+    }
+
+    /// Rotors at idle.
+    pub const fn at_idle(&self) -> Mix {
+        Mix {
+            thrusts: [self.idle; 4],
+            given: Given::ALL,
+            yaw_gated: true,
+        }
+    }
+
+    /// A battery's voltage ratio within what is compensated for.
+    #[inline(always)]
+    pub fn battery_ratio(ratio: f32) -> f32 {
+        math::clamp(ratio, 0.5, 1.0)
+    }
+
+    /// Moves the yaw gate by the low-passed thrusts (N); true where yaw may be used.
+    #[inline(always)]
+    pub fn open_yaw(&mut self, thrusts: PerArm<f32>) -> bool {
+        let [t1, t2, t3, t4] = thrusts;
+        let mean = 0.25 * ((t1 + t2) + (t3 + t4));
+        let shut = if self.yaw_open { 0.0 } else { GATE_HYSTERESIS };
+        self.yaw_open = mean >= self.gate + shut;
+        self.yaw_open
+    }
+
+    /// The thrusts of `split` within the limits at the battery's voltage ratio `ratio`, yaw only where it is `usable`.
+    #[inline(always)]
+    pub fn give(&self, split: Split, usable: bool, ratio: f32) -> Mix {
+        let high = self.max * ratio * ratio;
+        let Split { mut patterns, fade } = split;
+        let share = self.yaw_share(&patterns.yaw, if usable { fade } else { 0.0 });
+        patterns.yaw = patterns.yaw.map(|y| y * share);
+        let (thrusts, mut given) = desaturate(&patterns, self.idle, high);
+        given.yaw *= share;
+        Mix {
+            thrusts,
+            given,
+            yaw_gated: share <= 0.0,
+        }
+    }
+
+    /// Share of a yaw pattern that keeps within what one rotor may get, at most `fade`.
+    #[inline(always)]
+    fn yaw_share(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let [a, b, c, d] = yaw.map(f32::abs);
+        let worst = larger(larger(a, b), larger(c, d));
+        let limited = self.yaw_limit / worst;
+        if worst * fade > self.yaw_limit {
+            limited
+        } else {
+            fade
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rotor_that_yaw_moves_most_sets_its_share_whichever_it_is() {
+        let limits = Limits::new(&Params::default());
+        // 3 N asked of one rotor, 1.5 N allowed: a half. 1.2 N of 3 are within it: only the fade counts.
+        for worst in 0..4 {
+            for sign in [1.0, -1.0] {
+                let mut yaw = [0.5, -1.0, 0.25, -2.0];
+                yaw[worst] = 3.0 * sign;
+                assert!(
+                    limits.yaw_share(&yaw, 1.0) == 0.5 && limits.yaw_share(&yaw, 0.51) == 0.5,
+                    "{yaw:?}"
+                );
+                assert!(limits.yaw_share(&yaw, 0.4) == 0.4, "{yaw:?}");
+            }
+        }
+        assert!(limits.yaw_share(&[0.0; 4], 1.0) == 1.0 && limits.yaw_share(&[0.0; 4], 0.3) == 0.3);
+    }
+
+    #[test]
+    fn the_yaw_gate_opens_a_fifth_of_a_newton_above_where_it_shuts() {
+        let mut limits = Limits::new(&Params::default());
+        let gate = Params::default().yaw_gate_thrust;
+        let mut open = |mean: f32| limits.open_yaw([mean - 1.0, mean + 1.0, mean, mean]);
+        assert!(!open(gate + 0.19) && open(gate + 0.21) && open(gate + 0.01) && !open(gate - 0.01));
+    }
+}

@@ -1,0 +1,65 @@
+//! A wrench split into the patterns of thrust that may be given up one after the other.
+
+use crate::desaturation::Patterns;
+use crate::effectiveness::{Geometry, Inverse, Load};
+use crate::math;
+use crate::wrench::{FORE, PerArm, SIDE, Wrench, YAW};
+
+/// A wrench as patterns of thrust, and how much of its yaw is to be trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Split {
+    /// Thrusts of the collective, of roll and pitch and of yaw, N.
+    pub patterns: Patterns,
+    /// Share of the yaw pattern that has authority, 0..1.
+    pub fade: f32,
+}
+
+/// The moments of `w` split into patterns, and what a newton of thrust takes; without the collective.
+#[inline(always)]
+pub fn moment_patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
+    let moments = Load::of(
+        geometry,
+        Wrench {
+            thrust: 0.0,
+            yaw: 0.0,
+            ..w
+        },
+    );
+    Patterns {
+        collective: [0.0; 4],
+        shift: inverse.solve(Load {
+            front: 0.5,
+            rear: 0.5,
+            ..Load::default()
+        }),
+        roll_pitch: inverse.solve(moments),
+        yaw: inverse.solve_yaw(w.yaw),
+    }
+}
+
+/// The printed matrix: stiff levers for roll, pitch and yaw, the cosine of `tilt` (rad) in the thrust row alone.
+pub fn stiff(geometry: &Geometry, w: Wrench, tilt: PerArm<f32>) -> Split {
+    let roll = 0.25 * w.roll / geometry.d;
+    let pitch = 0.25 * w.pitch / geometry.b;
+    let yaw = 0.25 * w.yaw / geometry.drag;
+    let lift = tilt.map(math::cos);
+    let mut p = Patterns::default();
+    let mut moments_lift = 0.0;
+    for ((rp, y), (s, (f, (n, l)))) in p
+        .roll_pitch
+        .iter_mut()
+        .zip(&mut p.yaw)
+        .zip(SIDE.iter().zip(FORE.iter().zip(YAW.iter().zip(&lift))))
+    {
+        *rp = s * roll + f * pitch;
+        *y = n * yaw;
+        moments_lift += l * (*rp + *y);
+    }
+    let inv_lift = 1.0 / lift.iter().sum::<f32>();
+    p.collective = [(w.thrust - moments_lift) * inv_lift; 4];
+    p.shift = [inv_lift; 4];
+    Split {
+        patterns: p,
+        fade: 1.0,
+    }
+}

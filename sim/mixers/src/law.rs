@@ -1,0 +1,77 @@
+//! What an allocation of its own must say, and what is put around it.
+
+use sophie_control::mixer::{Allocation, Conditions, Limits, Mix, Split};
+use sophie_control::params::Params;
+use sophie_control::tilt::TiltModel;
+use sophie_control::wrench::{PerArm, Wrench};
+
+/// What a law may know of the vehicle.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// The arms' modelled tilt and the low-passed thrusts.
+    pub tilt: &'a TiltModel,
+    /// Yaw is asked for, and the thrust is large enough for it.
+    pub yaw: bool,
+    /// Battery voltage over nominal, 0.5..1.
+    pub battery_ratio: f32,
+}
+
+/// Splits a wrench into patterns of thrust.
+pub trait Law {
+    /// The patterns for the wrench `w` (N, N·m, finite), and the share of yaw that has authority.
+    fn split(&self, w: Wrench, s: &Situation<'_>) -> Split;
+
+    /// Takes the thrusts (N) that were sent and the step time `dt` (s).
+    fn follow(&mut self, _thrusts: &PerArm<f32>, _dt: f32) {}
+}
+
+/// A law as an allocation, with the limits and the tilt model of the one that flies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WithLimits<L> {
+    law: L,
+    limits: Limits,
+    tilt: TiltModel,
+}
+
+impl<L> WithLimits<L> {
+    /// The allocation by `law` with idle rotors.
+    pub fn new(law: L, p: &Params) -> Self {
+        Self {
+            law,
+            limits: Limits::new(p),
+            tilt: TiltModel::new(p),
+        }
+    }
+}
+
+impl<L: Law> Allocation for WithLimits<L> {
+    fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
+        if !w.is_finite() {
+            return self.limits.at_idle();
+        }
+        let situation = Situation {
+            tilt: &self.tilt,
+            yaw: self.limits.open_yaw(self.tilt.thrusts()) && c.yaw,
+            battery_ratio: Limits::battery_ratio(c.battery_ratio),
+        };
+        let split = self.law.split(w, &situation);
+        self.limits.give(split, situation.yaw, situation.battery_ratio)
+    }
+
+    fn at_idle(&self) -> Mix {
+        self.limits.at_idle()
+    }
+
+    fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
+        self.tilt.step(thrusts, dt);
+        self.law.follow(thrusts, dt);
+    }
+
+    fn tilt(&self) -> &TiltModel {
+        &self.tilt
+    }
+
+    fn tilt_mut(&mut self) -> &mut TiltModel {
+        &mut self.tilt
+    }
+}

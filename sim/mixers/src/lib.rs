@@ -1,0 +1,103 @@
+//! The allocations that `--mixer` and scenario files choose from: three that no board flies, and the one that flies.
+//!
+//! Each is a [`Law`] that splits a wrench into patterns of thrust; [`WithLimits`] puts the limits of rotors and yaw and the
+//! model of the arms' tilt around it, the same that the flexible allocation has.
+
+#![no_std]
+
+mod frozen;
+mod law;
+mod printed;
+mod rigid;
+
+pub use frozen::Frozen;
+pub use law::{Law, Situation, WithLimits};
+pub use printed::Printed;
+pub use rigid::Rigid;
+
+use sophie_control::mixer::{Allocation, Conditions, Flexible, Mix};
+use sophie_control::params::Params;
+use sophie_control::tilt::TiltModel;
+use sophie_control::wrench::{Configuration, PerArm, Wrench};
+
+/// The allocation in use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Variant {
+    /// The arms are taken as stiff.
+    Rigid,
+    /// Algorithm 1 in the printed matrix, its singular yaw row mended: tilt enters the thrust row only.
+    Paper,
+    /// The whole effectiveness inverted at the frozen arm angle: for study, it limit-cycles.
+    Frozen,
+    /// The quasi-static Jacobian about the low-passed thrust: what flies.
+    #[default]
+    Flexible,
+}
+
+/// An allocation of any [`Variant`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mixer {
+    /// [`Variant::Rigid`].
+    Rigid(WithLimits<Rigid>),
+    /// [`Variant::Paper`].
+    Paper(WithLimits<Printed>),
+    /// [`Variant::Frozen`].
+    Frozen(WithLimits<Frozen>),
+    /// [`Variant::Flexible`].
+    Flexible(Flexible),
+}
+
+impl Mixer {
+    /// The allocation of `variant` with idle rotors.
+    pub fn new(variant: Variant, configuration: Configuration, p: &Params) -> Self {
+        match variant {
+            Variant::Rigid => Self::Rigid(WithLimits::new(Rigid::new(configuration, p), p)),
+            Variant::Paper => Self::Paper(WithLimits::new(Printed::new(configuration, p), p)),
+            Variant::Frozen => Self::Frozen(WithLimits::new(Frozen::new(configuration, p), p)),
+            Variant::Flexible => Self::Flexible(Flexible::new(configuration, p)),
+        }
+    }
+
+    fn chosen(&self) -> &dyn Allocation {
+        match self {
+            Self::Rigid(mixer) => mixer,
+            Self::Paper(mixer) => mixer,
+            Self::Frozen(mixer) => mixer,
+            Self::Flexible(mixer) => mixer,
+        }
+    }
+
+    fn chosen_mut(&mut self) -> &mut dyn Allocation {
+        match self {
+            Self::Rigid(mixer) => mixer,
+            Self::Paper(mixer) => mixer,
+            Self::Frozen(mixer) => mixer,
+            Self::Flexible(mixer) => mixer,
+        }
+    }
+}
+
+impl Allocation for Mixer {
+    fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
+        self.chosen_mut().allocate(w, c)
+    }
+
+    fn at_idle(&self) -> Mix {
+        self.chosen().at_idle()
+    }
+
+    fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
+        self.chosen_mut().follow(thrusts, dt);
+    }
+
+    fn tilt(&self) -> &TiltModel {
+        self.chosen().tilt()
+    }
+
+    fn tilt_mut(&mut self) -> &mut TiltModel {
+        self.chosen_mut().tilt_mut()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,40 @@
+//! The paper's Algorithm 1 in the printed matrix, its singular yaw row mended.
+
+use sophie_control::deflection::{Algorithm1, ArmModel};
+use sophie_control::effectiveness::Geometry;
+use sophie_control::mixer::{Split, stiff};
+use sophie_control::params::Params;
+use sophie_control::wrench::{Configuration, PerArm, Wrench};
+
+use crate::law::{Law, Situation};
+
+/// Tilt by the thrust of the step before; it enters the thrust row only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Printed {
+    geometry: Geometry,
+    algorithm_1: Algorithm1,
+    last: PerArm<f32>,
+}
+
+impl Printed {
+    /// The law for the vehicle that the parameters describe, with idle rotors.
+    pub fn new(configuration: Configuration, p: &Params) -> Self {
+        Self {
+            geometry: Geometry::from_params(p, configuration),
+            algorithm_1: Algorithm1::new(ArmModel::from_params(p), p.power_exponent),
+            last: [p.thrust_idle; 4],
+        }
+    }
+}
+
+impl Law for Printed {
+    fn split(&self, w: Wrench, s: &Situation<'_>) -> Split {
+        let power = s.battery_ratio * s.battery_ratio;
+        let tilt = self.last.map(|t| self.algorithm_1.angle(t, power));
+        stiff(&self.geometry, w, tilt)
+    }
+
+    fn follow(&mut self, thrusts: &PerArm<f32>, _: f32) {
+        self.last = *thrusts;
+    }
+}

@@ -1,0 +1,29 @@
+//! The allocation of a stiff frame.
+
+use sophie_control::effectiveness::Geometry;
+use sophie_control::mixer::{Split, stiff};
+use sophie_control::params::Params;
+use sophie_control::wrench::{Configuration, Wrench};
+
+use crate::law::{Law, Situation};
+
+/// The arms are taken as stiff and level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rigid {
+    geometry: Geometry,
+}
+
+impl Rigid {
+    /// The law for the vehicle that the parameters describe.
+    pub fn new(configuration: Configuration, p: &Params) -> Self {
+        Self {
+            geometry: Geometry::from_params(p, configuration),
+        }
+    }
+}
+
+impl Law for Rigid {
+    fn split(&self, w: Wrench, _: &Situation<'_>) -> Split {
+        stiff(&self.geometry, w, [0.0; 4])
+    }
+}
