@@ -22,28 +22,12 @@ mod decide;
 mod demand;
 mod escape;
 mod failsafe;
-#[cfg(test)]
-mod hand_over;
 mod hold;
 mod lean;
-#[cfg(test)]
-mod leaving;
 mod logic;
 mod look;
 #[cfg(test)]
-mod losses;
-#[cfg(test)]
-mod random;
-#[cfg(test)]
-mod reasons;
-#[cfg(test)]
-mod restart;
-#[cfg(test)]
-mod rig;
-#[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod trouble;
 
 pub use self::lean::SLIDES;
 pub use self::logic::ModeLogic;

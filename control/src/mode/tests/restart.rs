@@ -1,10 +1,10 @@
 //! Starts on the pipe and off it: nothing opens by itself, nothing turns before the pilot has armed.
 
-use super::look::LOOK_TIME;
 use super::rig::Rig;
-use super::*;
 use crate::arming::Refusal;
 use crate::grip::ArmState;
+use crate::mode::look::LOOK_TIME;
+use crate::mode::*;
 use crate::rc::ArmChoice;
 
 const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };

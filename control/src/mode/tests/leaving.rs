@@ -1,11 +1,11 @@
 //! Leaving the pipe by itself: what starts an escape, what it does, who ends it; and when the arms do not let go.
 
-use super::escape::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
-use super::lean::{LEANS, SLIDES};
 use super::rig::{DT, Rig};
-use super::*;
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
+use crate::mode::escape::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
+use crate::mode::lean::{LEANS, SLIDES};
+use crate::mode::*;
 use crate::rc::ArmChoice;
 
 impl Rig {

@@ -1,8 +1,8 @@
 //! What the pilot reads beside the state, and which of two reasons comes first.
 
 use super::rig::Rig;
-use super::*;
 use crate::arming::Refusal;
+use crate::mode::*;
 
 #[test]
 fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {

@@ -1,13 +1,13 @@
 //! Everything that may go wrong, in each state in which it can.
 
-use super::closing::HOPELESS_TIME;
-use super::failsafe::{BATTERY_TIME, IMU_LOST_TIME, RESUME_TIME, TIPPED_TIME};
-use super::logic::CONTACT_TIME;
 use super::rig::Rig;
-use super::*;
 use crate::arming::{Refusal, Refusals};
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
+use crate::mode::closing::HOPELESS_TIME;
+use crate::mode::failsafe::{BATTERY_TIME, IMU_LOST_TIME, RESUME_TIME, TIPPED_TIME};
+use crate::mode::logic::CONTACT_TIME;
+use crate::mode::*;
 use crate::rc::ArmChoice;
 use crate::rc::StickMode;
 

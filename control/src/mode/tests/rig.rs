@@ -1,11 +1,11 @@
 //! A vehicle for the tests: the mode logic in a world that carries it or does not.
 
-use super::closing::{SPOOL_TIME, STOP_TIME};
-use super::logic::CONTACT_TIME;
-use super::*;
 use crate::grip::ArmGrip;
 use crate::grip::ArmState;
 use crate::math::GRAVITY;
+use crate::mode::closing::{SPOOL_TIME, STOP_TIME};
+use crate::mode::logic::CONTACT_TIME;
+use crate::mode::*;
 use crate::params::Params;
 use crate::rc::ArmChoice;
 

@@ -8,8 +8,8 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::rig::Rig;
-use super::*;
 use crate::grip::ArmState;
+use crate::mode::*;
 use crate::rc::StickMode;
 
 fn number() -> impl Strategy<Value = f32> {
