@@ -26,11 +26,12 @@ mod hold;
 mod lean;
 mod logic;
 mod look;
+mod reason;
 #[cfg(test)]
 mod tests;
 
-pub use self::lean::SLIDES;
 pub use self::logic::ModeLogic;
+pub use self::reason::Reason;
 use crate::arming::Refusals;
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
@@ -176,8 +177,8 @@ pub struct Outputs {
     pub tendons: ClampCommand,
     /// The grip that must outlive a reset.
     pub grip_memory: GripMemory,
-    /// Why arming is refused, the failsafe acts or the last state was left; empty when nothing is wrong.
-    pub reason: &'static str,
+    /// Why arming is refused, the failsafe acts or the last state was left; `None` when nothing is wrong.
+    pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub refusals: Refusals,
 }

@@ -4,6 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::math;
 use sophie_control::mixer::Variant;
+use sophie_control::mode::Reason;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_tasks::deadline::TaskId;
@@ -113,7 +114,7 @@ impl Aircraft for Stack {
         } = self.links.status.latest()?.value;
         Some(Said {
             mode,
-            reason,
+            reason: reason.map_or("", Reason::text),
             warning,
         })
     }

@@ -88,7 +88,7 @@ impl Rig {
 
     pub(super) fn expect(&mut self, seconds: f32, mode: Mode) {
         let got = self.run(seconds);
-        assert_eq!(got, mode, "after {seconds} s, reason '{}'", self.out.reason);
+        assert_eq!(got, mode, "after {seconds} s, reason {:?}", self.out.reason);
     }
 
     pub(super) fn armed() -> Self {
@@ -145,7 +145,7 @@ impl Rig {
         r.expect(SPOOL_TIME + STOP_TIME + 0.1, Mode::Perched);
         r.sticks().throttle = 0.0;
         r.expect(5.0, Mode::Perched);
-        assert_eq!(r.out.reason, "");
+        assert_eq!(r.out.reason, None);
         r
     }
 
