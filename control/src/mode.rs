@@ -22,31 +22,16 @@ mod decide;
 mod demand;
 mod escape;
 mod failsafe;
-#[cfg(test)]
-mod hand_over;
 mod hold;
 mod lean;
-#[cfg(test)]
-mod leaving;
 mod logic;
 mod look;
-#[cfg(test)]
-mod losses;
-#[cfg(test)]
-mod random;
-#[cfg(test)]
-mod reasons;
-#[cfg(test)]
-mod restart;
-#[cfg(test)]
-mod rig;
+mod reason;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod trouble;
 
-pub use self::lean::SLIDES;
 pub use self::logic::ModeLogic;
+pub use self::reason::Reason;
 use crate::arming::Refusals;
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
@@ -192,8 +177,8 @@ pub struct Outputs {
     pub tendons: ClampCommand,
     /// The grip that must outlive a reset.
     pub grip_memory: GripMemory,
-    /// Why arming is refused, the failsafe acts or the last state was left; empty when nothing is wrong.
-    pub reason: &'static str,
+    /// Why arming is refused, the failsafe acts or the last state was left; `None` when nothing is wrong.
+    pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub refusals: Refusals,
 }

@@ -13,7 +13,7 @@ use embassy_time::{Instant, Timer};
 use fakes::{Answer, BrokenLine, FakeAnalog, FakeImu, FakeLine, Part};
 use flash::Flash;
 use sophie_control::arming::Refusal;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
 use sophie_sim::clock::VirtualTime;
@@ -172,7 +172,7 @@ impl Bench {
                 let storing = refusals.contains(Refusal::Storing);
                 let status = Status {
                     mode: if storing { then } else { mode },
-                    reason: refusals.first().map_or("", Refusal::text),
+                    reason: refusals.first().map(Reason::Check),
                     refusals,
                     ..Status::default()
                 };

@@ -6,7 +6,7 @@ mod vehicle;
 use embassy_time::Instant;
 use fakes::{Answer, FakeImu, FakeMotors, links};
 use sophie_control::mixer::Flexible;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::Configuration;
 use sophie_sim::clock::VirtualTime;
@@ -23,7 +23,7 @@ fn a_lost_sensor_stops_the_motors(answer: Answer) {
     assert!(v.links.attitude.fresh().is_none());
     v.until(80, |v| v.mode() == Mode::Disarmed);
     assert_eq!(v.links.setpoint.fresh(), Some(Setpoint::Stop));
-    assert_eq!(v.reason(), "inertial sensor silent");
+    assert_eq!(v.reason(), Some(Reason::IMU_SILENT));
     assert!(!v.imu.0.spun.get(), "asked a thousand times without waiting");
     v.run(400);
     assert_eq!(v.fed_over(200), 0, "the watchdog would have reset the board");
@@ -60,7 +60,7 @@ fn a_gap_in_the_samples_shorter_than_the_limit_is_flown_through() {
         v.run(50);
         assert!(v.motors_run());
     }
-    assert_eq!((v.mode(), v.reason()), (Mode::Flight, ""));
+    assert_eq!((v.mode(), v.reason()), (Mode::Flight, None));
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn a_hung_arm_sensor_or_a_lost_radio_does_not_reset_the_board() {
     assert!(v.fed_over(900) >= 89 && v.motors_run());
     v.sticks = None;
     v.run(1000);
-    assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, "radio lost"));
+    assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, Some(Reason::RADIO_LOST)));
     assert!(v.fed_over(900) >= 89);
 }
 
@@ -135,7 +135,7 @@ fn a_board_whose_sensor_never_came_up_is_fed_but_never_arms() {
     v.run(3000);
     assert_eq!(
         (v.mode(), v.reason()),
-        (Mode::Calibrating, "inertial sensor silent")
+        (Mode::Calibrating, Some(Reason::IMU_SILENT))
     );
     assert!(v.motors_stand() && v.fed_over(1000) >= 99);
 }

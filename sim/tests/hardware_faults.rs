@@ -6,7 +6,7 @@ mod vehicle;
 
 use fakes::Answer;
 use sophie_control::arming::Refusal;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::rc::Sticks;
 use sophie_tasks::ports::PortError;
 use vehicle::Vehicle;
@@ -24,7 +24,7 @@ const ERRORS: [(PortError, Refusal); 3] = [
 fn ready() -> Vehicle {
     let mut v = Vehicle::new();
     v.run(4000);
-    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, ""));
+    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, None));
     v
 }
 
@@ -85,7 +85,10 @@ fn what_the_inertial_sensor_answers_instead_of_samples_is_named_while_calibratin
         v.imu.0.answer.set(Answer::Errs(error));
         v.run(500);
         assert!(v.links.hardware().iter().eq([reason]), "{error:?}");
-        assert_eq!((v.mode(), v.reason()), (Mode::Calibrating, reason.text()));
+        assert_eq!(
+            (v.mode(), v.reason()),
+            (Mode::Calibrating, Some(Reason::Check(reason)))
+        );
         // Another fault takes its place, it does not join it.
         v.imu.0.answer.set(Answer::Errs(PortError::Corrupt));
         v.run(100);
@@ -94,7 +97,7 @@ fn what_the_inertial_sensor_answers_instead_of_samples_is_named_while_calibratin
         v.imu.0.answer.set(Answer::Sound);
         v.run(4000);
         assert!(v.links.hardware().is_empty());
-        assert!(tries_to_arm(&mut v), "{error:?}: {}", v.reason());
+        assert!(tries_to_arm(&mut v), "{error:?}: {:?}", v.reason());
     }
 }
 
@@ -107,7 +110,7 @@ fn a_silent_inertial_sensor_stays_silent_in_words_too() {
         assert!(v.links.hardware().is_empty(), "{answer:?}");
         assert_eq!(
             (v.mode(), v.reason()),
-            (Mode::Calibrating, "inertial sensor silent")
+            (Mode::Calibrating, Some(Reason::IMU_SILENT))
         );
     }
 }
@@ -127,7 +130,7 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
                 assert!(!holds(&v, reason), "{error:?}");
             }
         }
-        assert_eq!((v.mode(), v.reason()), (Mode::Flight, ""));
+        assert_eq!((v.mode(), v.reason()), (Mode::Flight, None));
         // One each 20 ms: the third is reported, and the report stays, without flapping.
         let mut changes = 0;
         let mut before = false;
@@ -144,7 +147,7 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
         }
         assert_eq!((changes, before), (1, true), "{error:?}");
         // It flies on: every gap was shorter than the limit.
-        assert!(v.motors_run() && v.mode() == Mode::Flight && v.reason().is_empty());
+        assert!(v.motors_run() && v.mode() == Mode::Flight && v.reason().is_none());
         let healed = v.until(300, |v| !holds(v, reason));
         assert!((70..=100).contains(&healed), "{error:?}: {healed} ms");
         assert!(v.motors_run() && v.mode() == Mode::Flight);
@@ -178,13 +181,16 @@ fn each_arm_sensor_is_named_and_refuses_arming_until_it_answers() {
                 assert_eq!(tilt.is_some(), other != arm, "{answer:?} on arm {arm}: {other}");
             }
             // Without the arm switch, and with it.
-            assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, reason.text()));
+            assert_eq!(
+                (v.mode(), v.reason()),
+                (Mode::Disarmed, Some(Reason::Check(reason)))
+            );
             assert!(!tries_to_arm(&mut v));
             v.arms.1[arm].answer.set(Answer::Sound);
             v.until(50, |v| v.links.hardware().is_empty());
             v.run(20);
-            assert_eq!(v.reason(), "");
-            assert!(tries_to_arm(&mut v), "{answer:?} on arm {arm}: {}", v.reason());
+            assert_eq!(v.reason(), None);
+            assert!(tries_to_arm(&mut v), "{answer:?} on arm {arm}: {:?}", v.reason());
         }
     }
 }
@@ -194,7 +200,10 @@ fn an_arm_sensor_that_never_was_there_is_named_before_the_first_arming() {
     let mut v = Vehicle::new();
     v.arms.1[2].answer.set(Answer::Refuses);
     v.run(4000);
-    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, "arm sensor 3 silent"));
+    assert_eq!(
+        (v.mode(), v.reason()),
+        (Mode::Disarmed, Some(Reason::Check(Refusal::ArmSensor3)))
+    );
     assert!(!tries_to_arm(&mut v));
 }
 
@@ -204,7 +213,7 @@ fn a_hung_bus_names_all_its_arms() {
     v.arms.0.answer.set(Answer::Hangs);
     v.run(2000);
     assert_eq!(v.links.hardware().iter().count(), 4);
-    assert_eq!(v.reason(), "arm sensor 1 silent");
+    assert_eq!(v.reason(), Some(Reason::Check(Refusal::ArmSensor1)));
     v.arms.0.answer.set(Answer::Sound);
     v.run(200);
     assert!(v.links.hardware().is_empty());
@@ -218,7 +227,10 @@ fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
         let took = v.until(300, |v| holds(v, Refusal::AnalogSilent));
         assert!((95..=110).contains(&took), "{answer:?}: {took} ms");
         v.run(20);
-        assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, "analog inputs silent"));
+        assert_eq!(
+            (v.mode(), v.reason()),
+            (Mode::Disarmed, Some(Reason::Check(Refusal::AnalogSilent)))
+        );
         assert!(!tries_to_arm(&mut v), "{answer:?}");
         if answer == Answer::Hangs {
             // For good: the watchdog resets the board.
@@ -228,7 +240,7 @@ fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
         v.converter.part.answer.set(Answer::Sound);
         v.until(10, |v| !holds(v, Refusal::AnalogSilent));
         v.run(1000);
-        assert!(tries_to_arm(&mut v), "{answer:?}: {}", v.reason());
+        assert!(tries_to_arm(&mut v), "{answer:?}: {:?}", v.reason());
     }
 }
 
@@ -289,7 +301,7 @@ fn what_breaks_in_flight_does_not_end_it() {
             v.run(1);
             assert!(
                 v.motors_run() && v.mode() == Mode::Flight,
-                "{reasons:?}: {}",
+                "{reasons:?}: {:?}",
                 v.reason()
             );
         }
@@ -298,12 +310,12 @@ fn what_breaks_in_flight_does_not_end_it() {
             "{reasons:?}"
         );
         assert_eq!(overruns(&v), before, "{reasons:?}");
-        assert_eq!(v.reason(), "", "{reasons:?}");
+        assert_eq!(v.reason(), None, "{reasons:?}");
         // Once down, it is named and not armed again.
         v.sticks = Some(Sticks::default());
         v.until(50, |v| v.mode() == Mode::Disarmed);
         v.run(11_000);
-        assert_eq!(v.reason(), reasons[0].text());
+        assert_eq!(v.reason(), Some(Reason::Check(reasons[0])));
         assert!(!tries_to_arm(&mut v));
     }
 }
@@ -321,30 +333,33 @@ fn whatever_start_up_and_storage_report_refuses_arming_while_it_holds() {
         let mut v = ready();
         v.links.report(reason, true);
         v.run(20);
-        assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, reason.text()));
+        assert_eq!(
+            (v.mode(), v.reason()),
+            (Mode::Disarmed, Some(Reason::Check(reason)))
+        );
         assert!(!tries_to_arm(&mut v), "{reason:?}");
         v.links.report(reason, false);
-        assert!(tries_to_arm(&mut v), "{reason:?}: {}", v.reason());
+        assert!(tries_to_arm(&mut v), "{reason:?}: {:?}", v.reason());
     }
 }
 
 #[test]
 fn a_silent_data_ready_line_refuses_arming_and_brings_a_flight_down_with_its_rotors_turning() {
-    let text = Refusal::ImuLineSilent.text();
+    let silent = Some(Reason::LINE_SILENT);
     let mut v = ready();
     v.imu.1.set(true);
     v.run(20);
-    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, text));
+    assert_eq!((v.mode(), v.reason()), (Mode::Disarmed, silent));
     assert!(!tries_to_arm(&mut v));
     v.imu.1.set(false);
     v.run(20);
-    assert_eq!(v.reason(), "");
-    assert!(tries_to_arm(&mut v), "{}", v.reason());
+    assert_eq!(v.reason(), None);
+    assert!(tries_to_arm(&mut v), "{:?}", v.reason());
 
     let mut v = Vehicle::flying();
     v.imu.1.set(true);
     let took = v.until(30, |v| v.mode() == Mode::Failsafe);
     assert!(took <= 12, "{took} ms");
-    assert_eq!(v.reason(), text);
+    assert_eq!(v.reason(), silent);
     assert!(v.motors_run() && v.fed_over(10) == 1);
 }

@@ -13,7 +13,7 @@ use sophie_control::arming::Refusal;
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mixer::Flexible;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::{ArmChoice, Sticks};
 use sophie_control::tendon::Reel;
@@ -127,7 +127,7 @@ impl Vehicle {
         }
     }
 
-    fn status(&self) -> (Mode, &'static str, &'static str) {
+    fn status(&self) -> (Mode, Option<Reason>, &'static str) {
         let status = self.links.status.latest().unwrap().value;
         (status.mode, status.reason, status.warning)
     }
@@ -179,7 +179,7 @@ fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
         v.status(),
         (
             Mode::Disarmed,
-            "arm switch on at power-up",
+            Some(Reason::Check(Refusal::SwitchOnAtPowerUp)),
             "restarted by the watchdog"
         )
     );
@@ -316,7 +316,11 @@ fn a_brown_out_forbids_arming_on_the_ground_and_says_so() {
     v.arm();
     assert_eq!(
         v.status(),
-        (Mode::Disarmed, "supply broke down", "restarted by a brown-out")
+        (
+            Mode::Disarmed,
+            Some(Reason::Check(Refusal::BrownOut)),
+            "restarted by a brown-out"
+        )
     );
     assert!(v.links.hardware().contains(Refusal::BrownOut));
     for (cause, warning) in [

@@ -7,7 +7,7 @@ mod vehicle;
 use fakes::FakeLine;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 use sophie_sim::crsf::rc_frame;
@@ -61,10 +61,10 @@ fn flying() -> (Vehicle, FakeLine, Frame) {
         ..low
     };
     send(&mut v, &line, &frame(&Sticks { yaw: 1.0, ..on }).encode(), 1200);
-    assert_eq!(v.mode(), Mode::Armed, "{}", v.reason());
+    assert_eq!(v.mode(), Mode::Armed, "{:?}", v.reason());
     let hover = frame(&Sticks { throttle: 0.5, ..on });
     send(&mut v, &line, &hover.encode(), 1000);
-    assert_eq!((v.mode(), v.reason()), (Mode::Flight, ""));
+    assert_eq!((v.mode(), v.reason()), (Mode::Flight, None));
     (v, line, hover)
 }
 
@@ -75,7 +75,7 @@ fn sbus_flies_as_crsf_does() {
     assert!(state.sticks.arm_switch && (state.sticks.throttle - 0.5).abs() < 2e-3);
     assert_eq!(state.errors, 0);
     send(&mut v, &line, &hover.encode(), 5000);
-    assert_eq!((v.mode(), v.reason()), (Mode::Flight, ""));
+    assert_eq!((v.mode(), v.reason()), (Mode::Flight, None));
     // The arm switch stops the motors.
     send(&mut v, &line, &frame(&Sticks::default()).encode(), 300);
     assert!(v.motors_stand() && v.mode() == Mode::Disarmed);
@@ -93,10 +93,10 @@ fn what_the_receiver_says_of_its_radio_starts_the_failsafe_although_frames_go_on
         send(&mut v, &line, &lost.encode(), 490);
         assert_eq!(v.mode(), Mode::Flight, "a gap of half a second is flown over");
         send(&mut v, &line, &lost.encode(), 50);
-        assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, "radio lost"));
+        assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, Some(Reason::RADIO_LOST)));
         // And back.
         send(&mut v, &line, &hover.encode(), 300);
-        assert!(v.links.rc.fresh().is_some() && v.reason() != "radio lost");
+        assert!(v.links.rc.fresh().is_some() && v.reason() != Some(Reason::RADIO_LOST));
     }
 }
 
@@ -109,7 +109,7 @@ fn a_line_that_turns_to_crsf_is_a_lost_radio() {
         ..Sticks::default()
     });
     send(&mut v, &line, &crsf, 600);
-    assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, "radio lost"));
+    assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, Some(Reason::RADIO_LOST)));
     assert!(v.links.rc.latest().unwrap().value.sticks.throttle < 0.51);
 }
 

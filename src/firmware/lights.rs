@@ -40,7 +40,7 @@ pub async fn run(links: &Links, mut lights: LightsPort) -> ! {
                 Some(_) => ON,
             };
             // No commander at all is the worst of faults.
-            let fault = status.is_none_or(|s| !s.reason.is_empty());
+            let fault = status.is_none_or(|s| s.reason.is_some());
             let acts = status.is_some_and(|s| matches!(s.mode, Mode::Failsafe | Mode::Escaping));
             let alarm = acts && DOUBLE[step];
             lights.show(pattern[step], fault, alarm);

@@ -64,8 +64,8 @@ pub async fn run(links: &Links, looks: &[Look]) -> ! {
 
 fn state(now: Status, before: Option<Status>) {
     match now.reason {
-        "" => defmt::info!("{=str}", now.mode.name()),
-        reason => defmt::warn!("{=str}: {=str}", now.mode.name(), reason),
+        None => defmt::info!("{=str}", now.mode.name()),
+        Some(reason) => defmt::warn!("{=str}: {=str}", now.mode.name(), reason.text()),
     }
     if before.is_none_or(|b| b.warning != now.warning) && !now.warning.is_empty() {
         defmt::warn!("warning: {=str}", now.warning);

@@ -24,7 +24,7 @@ use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::attitude::Target;
 pub use sophie_control::grip::GripState;
 use sophie_control::grip_memory::GripMemory;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
@@ -216,8 +216,8 @@ pub struct RcState {
 pub struct Status {
     /// State of the vehicle.
     pub mode: Mode,
-    /// Why arming is refused or the failsafe acts; empty when nothing does.
-    pub reason: &'static str,
+    /// Why arming is refused or the failsafe acts; `None` when nothing does.
+    pub reason: Option<Reason>,
     /// What does not stop the flight but must be known; empty when there is nothing.
     pub warning: &'static str,
     /// Everything that forbids arming now.

@@ -14,7 +14,7 @@ use core::future::pending;
 
 use embassy_time::Duration;
 use heapless::String;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use uf_crsf::packets::{self, CrsfPacket, PacketAddress};
 use uf_crsf::write_packet_to_buffer;
 
@@ -89,7 +89,7 @@ fn mode_text(status: Status) -> String<TEXT> {
         warning,
         ..
     } = status;
-    let reason = if reason.is_empty() { warning } else { reason };
+    let reason = reason.map_or(warning, Reason::text);
     let mut text = String::new();
     let written = if reason.is_empty() {
         text.write_str(mode.name())
@@ -140,21 +140,24 @@ mod tests {
     #[test]
     fn the_text_of_every_mode_can_be_read_back() {
         for mode in Mode::ALL {
-            for reason in ["", "battery low", "force limit reached without grip"] {
+            for reason in Reason::PLAIN.iter().copied().map(Some).chain([None]) {
                 let text = mode_text(Status {
                     mode,
                     reason,
                     ..Status::default()
                 });
-                assert_eq!(parse_mode_text(&text), Some((mode, reason)));
+                assert_eq!(
+                    parse_mode_text(&text),
+                    Some((mode, reason.map_or("", Reason::text)))
+                );
                 assert!(encode(packets::FlightMode::new(&text).ok()).is_some());
             }
         }
-        let long = "a reason far too long for the one line that a transmitter's display has for it";
+        let long = "a warning far too long for the one line that a transmitter's display has for it";
         assert_eq!(
             mode_text(Status {
                 mode: Mode::Disarmed,
-                reason: long,
+                warning: long,
                 ..Status::default()
             }),
             "DISARMED"

@@ -1,10 +1,8 @@
 //! On the pipe: closing, proof of grip, spooling down, holding, spooling up, opening.
 
-use super::Inputs;
-use super::failsafe::Cause;
 use super::hold::{Hold, Spool, held, hopeless};
-use super::lean::LEANS;
 use super::logic::{ModeLogic, State};
+use super::{Inputs, Reason};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::rc::{ArmChoice, Sticks};
@@ -54,19 +52,19 @@ impl ModeLogic {
             let limit = self.params.clamp_timeout + if spool.down { SPOOL_ALLOWANCE } else { 0.0 };
             let cancelled = !s.perch_switch && self.perch_seen_on;
             let lost = match hope {
-                _ if cancelled => Some("closing cancelled"),
+                _ if cancelled => Some(Reason::ClosingCancelled),
                 Some(why) if spool.hopeless >= HOPELESS_TIME => Some(why),
-                _ if self.since >= limit => Some("grip not proven in time"),
+                _ if self.since >= limit => Some(Reason::GripNotProven),
                 _ => None,
             };
             match lost {
                 // Held where the belly alone would not stay: a poor grip is then better than none.
-                Some(_) if holds && self.leans_too_far() => self.note(LEANS),
+                Some(_) if holds && self.leans_too_far() => self.note(Some(Reason::LeansTooFar)),
                 // A vehicle that may not fly stays where its arms hold it.
-                Some(_) if holds && self.dangers.line_silent() => self.note(Cause::LineSilent.text()),
+                Some(_) if holds && self.dangers.line_silent() => self.note(Some(Reason::LINE_SILENT)),
                 // The arms carry and the rotors may stand: these spool up first, as on a release.
                 Some(why) if holds && spool.down => {
-                    self.note(why);
+                    self.note(Some(why));
                     self.perch_seen_off = false;
                     return State::Releasing {
                         hold,
@@ -90,7 +88,7 @@ impl ModeLogic {
             spool.still = if spool.share <= 0.0 { spool.still + dt } else { 0.0 };
         } else {
             if spool.down {
-                self.note("grip lost while spooling down");
+                self.note(Some(Reason::GripLostSpooling));
             }
             let share = clamp(spool.share + dt / SPOOL_TIME, 0.0, 1.0);
             spool = Spool {
@@ -152,7 +150,7 @@ impl ModeLogic {
 
     /// Arms that do not come free while the rotors pull at them: less throttle, and the tendons stay slack.
     pub(super) fn stuck(&mut self, i: &Inputs, arms: ArmChoice) -> State {
-        self.note("arms do not come free");
+        self.note(Some(Reason::ArmsStuck));
         let (roll, pitch, _) = i.motion.map_or((0.0, 0.0, 0.0), |m| m.q.to_euler());
         State::Releasing {
             hold: Hold { roll, pitch, arms },
@@ -169,28 +167,28 @@ impl ModeLogic {
     }
 
     /// What the pilot should know while perched.
-    pub(super) fn perch_trouble(&self, i: &Inputs, grip_memory: GripMemory) -> Option<&'static str> {
+    pub(super) fn perch_trouble(&self, i: &Inputs, grip_memory: GripMemory) -> Option<Reason> {
         let asked = i
             .sticks
             .is_some_and(|s| !s.perch_switch && s.throttle >= RELEASE_THROTTLE_MIN);
         if i.grip.is_none() {
-            Some("clamp loop silent")
+            Some(Reason::ClampSilent)
         } else if !self.grasps(i, grip_memory) {
-            Some("grip lost")
+            Some(Reason::GripLost)
         } else if i.sticks.is_none() {
-            Some("radio lost")
+            Some(Reason::RADIO_LOST)
         } else if i.motion.is_none() {
-            Some("inertial sensor silent")
+            Some(Reason::IMU_SILENT)
         } else if let Some(landing) = self.dangers.landing() {
-            Some(landing.text())
+            Some(landing.reason())
         } else if asked && !self.perch_seen_on {
-            Some("turn perch switch on first")
+            Some(Reason::PerchSwitchNotOn)
         } else if asked && i.sticks.is_some_and(|s| !s.arm_switch) {
-            Some("arm switch off")
+            Some(Reason::ArmSwitchOff)
         } else if asked && self.leans_too_far() {
-            Some(LEANS)
+            Some(Reason::LeansTooFar)
         } else if asked {
-            Some("throttle too high to release")
+            Some(Reason::ThrottleTooHigh)
         } else {
             None
         }
@@ -225,7 +223,7 @@ impl ModeLogic {
         // The lean may have grown since the rotors began to lift: the arms stay closed.
         let leans = !opening && share >= 1.0 && self.leans_too_far();
         if leans {
-            self.note(LEANS);
+            self.note(Some(Reason::LeansTooFar));
         }
         let refused = leans || grounded;
         if (again || refused) && !released {
@@ -237,7 +235,7 @@ impl ModeLogic {
             };
         }
         if self.since >= STUCK_TIME {
-            self.note("arms do not come free");
+            self.note(Some(Reason::ArmsStuck));
         }
         State::Releasing {
             hold: hold.levelled(dt),

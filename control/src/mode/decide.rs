@@ -3,7 +3,7 @@
 use super::closing::CLOSE_AGAIN;
 use super::failsafe::Cause;
 use super::logic::{ModeLogic, State};
-use super::{ClampCommand, Inputs, Mode, Outputs, Setpoint, demand};
+use super::{ClampCommand, Inputs, Mode, Outputs, Reason, Setpoint, demand};
 use crate::arming::{Checks, Refusal, Refusals};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
@@ -120,28 +120,28 @@ impl ModeLogic {
         }
     }
 
-    fn reason(&self, i: &Inputs, refusals: Refusals) -> &'static str {
-        let note = if self.note.1 > 0.0 { self.note.0 } else { "" };
+    fn reason(&self, i: &Inputs, refusals: Refusals) -> Option<Reason> {
+        let note = self.note.0.filter(|_| self.note.1 > 0.0);
         match self.state {
             State::Calibrating { .. } if i.motion.is_none() => first(i.hardware.with(Refusal::ImuStale)),
-            State::Calibrating { .. } if i.hardware.is_empty() => "keep still",
+            State::Calibrating { .. } if i.hardware.is_empty() => Some(Reason::KeepStill),
             // A builder must see what is broken without trying to arm.
             State::Calibrating { .. } => first(i.hardware),
             // What just happened comes before what keeps from arming again.
-            State::Disarmed { .. } if note.is_empty() && i.sticks.is_some_and(|s| s.arm_switch) => {
+            State::Disarmed { .. } if note.is_none() && i.sticks.is_some_and(|s| s.arm_switch) => {
                 first(refusals)
             }
-            State::Disarmed { .. } if note.is_empty() && !i.hardware.is_empty() => first(i.hardware),
-            State::Perched { grip_memory } => self.perch_trouble(i, grip_memory).unwrap_or(note),
-            State::Failsafe(cause) => cause.text(),
-            _ if self.dangers.battery_critical() => Cause::BatteryCritical.text(),
-            _ if i.sticks.is_none() && self.state.mode() != Mode::Disarmed => "radio lost",
-            _ if note.is_empty() && self.dangers.line_silent() => Cause::LineSilent.text(),
+            State::Disarmed { .. } if note.is_none() && !i.hardware.is_empty() => first(i.hardware),
+            State::Perched { grip_memory } => self.perch_trouble(i, grip_memory).or(note),
+            State::Failsafe(cause) => Some(cause.reason()),
+            _ if self.dangers.battery_critical() => Some(Reason::BatteryCritical),
+            _ if i.sticks.is_none() && self.state.mode() != Mode::Disarmed => Some(Reason::RADIO_LOST),
+            _ if note.is_none() && self.dangers.line_silent() => Some(Reason::LINE_SILENT),
             _ => note,
         }
     }
 }
 
-fn first(refusals: Refusals) -> &'static str {
-    refusals.first().map_or("", Refusal::text)
+fn first(refusals: Refusals) -> Option<Reason> {
+    refusals.first().map(Reason::Check)
 }

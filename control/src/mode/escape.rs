@@ -5,9 +5,8 @@
 //! here until the throttle stick says hover; a pilot who never moves it is brought down by the failsafe.
 
 use super::failsafe::Cause;
-use super::lean::SLIDES;
 use super::logic::{ModeLogic, State};
-use super::{Inputs, Setpoint};
+use super::{Inputs, Reason, Setpoint};
 use crate::grip_memory::GripMemory;
 use crate::math::{clamp, clamp_abs, deg};
 use crate::rc::Sticks;
@@ -57,17 +56,17 @@ pub struct Escape {
 impl ModeLogic {
     /// Leaves the pipe from which the vehicle slides or falls, with the arms of `grip_memory` closed or closing.
     pub(super) fn slide_off(&mut self, i: &Inputs, grip_memory: GripMemory) -> State {
-        self.leave(i, grip_memory, SLIDES, None)
+        self.leave(i, grip_memory, Reason::SlidesOff, None)
     }
 
     /// Leaves the pipe on which the vehicle stands, because its closing is given up for `why`.
-    pub(super) fn give_up(&mut self, i: &Inputs, grip_memory: GripMemory, why: &'static str) -> State {
+    pub(super) fn give_up(&mut self, i: &Inputs, grip_memory: GripMemory, why: Reason) -> State {
         let from = self.collective.now().max(self.release_thrust());
         self.leave(i, grip_memory, why, Some(from))
     }
 
-    fn leave(&mut self, i: &Inputs, grip_memory: GripMemory, why: &'static str, from: Option<f32>) -> State {
-        self.note(why);
+    fn leave(&mut self, i: &Inputs, grip_memory: GripMemory, why: Reason, from: Option<f32>) -> State {
+        self.note(Some(why));
         self.perch_seen_off = false;
         let lean = i.motion.map_or(0.0, |m| m.q.to_euler().0);
         State::Escaping(Escape {

@@ -10,7 +10,7 @@
 //! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
 
 use super::logic::{ModeLogic, State};
-use super::{Inputs, Setpoint, demand};
+use super::{Inputs, Reason, Setpoint, demand};
 use crate::arming::Refusal;
 use crate::grip_memory::GripMemory;
 use crate::math::{clamp, deg};
@@ -53,13 +53,13 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// For the pilot's display.
-    pub const fn text(self) -> &'static str {
+    /// What the pilot reads.
+    pub const fn reason(self) -> Reason {
         match self {
-            Self::RadioLost => "radio lost",
-            Self::BatteryCritical => "battery critical",
-            Self::LineSilent => Refusal::ImuLineSilent.text(),
-            Self::NotTakenOver => "throttle not taken over",
+            Self::RadioLost => Reason::RADIO_LOST,
+            Self::BatteryCritical => Reason::BatteryCritical,
+            Self::LineSilent => Reason::LINE_SILENT,
+            Self::NotTakenOver => Reason::NotTakenOver,
         }
     }
 }
@@ -107,13 +107,13 @@ impl Dangers {
         }
     }
 
-    fn stop(&self, sticks: Option<Sticks>) -> Option<&'static str> {
+    fn stop(&self, sticks: Option<Sticks>) -> Option<Option<Reason>> {
         if sticks.is_some_and(|s| !s.arm_switch) {
-            Some("")
+            Some(None)
         } else if self.imu.time() >= IMU_LOST_TIME {
-            Some("inertial sensor silent")
+            Some(Some(Reason::IMU_SILENT))
         } else if self.tipped.time() >= TIPPED_TIME {
-            Some("tipped over")
+            Some(Some(Reason::TippedOver))
         } else {
             None
         }
@@ -122,7 +122,7 @@ impl Dangers {
 
 impl ModeLogic {
     /// The state for which everything is dropped, and why.
-    pub(super) fn emergency(&mut self, i: &Inputs) -> Option<(State, &'static str)> {
+    pub(super) fn emergency(&mut self, i: &Inputs) -> Option<(State, Option<Reason>)> {
         let why = self.dangers.stop(i.sticks)?;
         let proven = i.grip.is_some_and(|g| g.proven);
         let free = i.grip.is_some_and(|g| g.released);
@@ -172,7 +172,7 @@ impl ModeLogic {
         // Not `resting`: a vehicle lighter or stronger than its parameters would seem carried in free air. On real
         // ground the probe takes thrust away until most of the weight is carried.
         if self.support.grounded() {
-            return self.stop(cause.text());
+            return self.stop(Some(cause.reason()));
         }
         match (cause, sticks) {
             (Cause::RadioLost | Cause::NotTakenOver, Some(_))

@@ -1,8 +1,7 @@
 //! What is held on the pipe: an attitude, a share of the collective, a grip.
 
-use super::{GripState, Inputs, Setpoint};
+use super::{GripState, Inputs, Reason, Setpoint};
 use crate::grip::{ArmGrip, ArmState};
-use crate::grip_fault::GripFault;
 use crate::math::clamp_abs;
 use crate::params::Params;
 use crate::rc::ArmChoice;
@@ -122,7 +121,7 @@ pub(super) fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool
 }
 
 /// Why a chosen arm will never hold.
-pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<&'static str> {
+pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     let grip = grip?;
     let chosen = || {
         grip.arms
@@ -132,9 +131,9 @@ pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<&'sta
             .map(|(a, _)| a)
     };
     if let Some(arm) = chosen().find(|a| a.state == ArmState::Faulty) {
-        Some(arm.fault.map_or("arm fault", GripFault::text))
+        Some(Reason::ArmFault(arm.fault))
     } else if chosen().any(|a| a.state == ArmState::ForceLimited) {
-        Some("force limit reached without grip")
+        Some(Reason::ForceLimit)
     } else {
         None
     }

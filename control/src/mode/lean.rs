@@ -24,11 +24,6 @@ const RELEASE_LEAN_MAX: f32 = deg(17.0);
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;
 
-/// What the pilot reads when the arms are not opened.
-pub(super) const LEANS: &str = "leaning too far to let go";
-/// What he reads when the vehicle leaves the pipe by itself.
-pub const SLIDES: &str = "sliding off the pipe";
-
 /// What the lean has done over the last steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lean {

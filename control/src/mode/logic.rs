@@ -5,7 +5,7 @@ use super::failsafe::{Cause, Dangers};
 use super::hold::{Hold, Spool};
 use super::lean::Lean;
 use super::look::Look;
-use super::{Inputs, Mode, Outputs, demand};
+use super::{Inputs, Mode, Outputs, Reason, demand};
 use crate::arming::{Gesture, GestureWatch};
 use crate::grip_memory::GripMemory;
 use crate::math::{clamp, cos};
@@ -118,7 +118,7 @@ pub struct ModeLogic {
     pub(super) sinking: f32,
     pub(super) collective: demand::Collective,
     /// A reason and the time for which it is still shown, s.
-    pub(super) note: (&'static str, f32),
+    pub(super) note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
     gravity: f32,
 }
@@ -148,7 +148,7 @@ impl ModeLogic {
             lean: Lean::default(),
             sinking: 0.0,
             collective: demand::Collective::default(),
-            note: ("", 0.0),
+            note: (None, 0.0),
             gravity: crate::math::GRAVITY,
         }
     }
@@ -177,7 +177,7 @@ impl ModeLogic {
                 _ => demand::HAND_OVER_TIME,
             });
             if next.mode() == Mode::Armed {
-                self.note("");
+                self.note(None);
             }
         }
         self.state = next;
@@ -229,14 +229,16 @@ impl ModeLogic {
                 }
             }
             (State::Disarmed { grip_memory }, Some(s)) => self.disarmed(i, s, grip_memory),
-            (State::Armed | State::Landed, None) => self.stop("radio lost"),
+            (State::Armed | State::Landed, None) => self.stop(Some(Reason::RADIO_LOST)),
             (State::Armed | State::Landed, _) if self.dangers.line_silent() => {
-                self.stop(Cause::LineSilent.text())
+                self.stop(Some(Reason::LINE_SILENT))
             }
-            (State::Armed | State::Landed, Some(_)) if self.gesture == Some(Gesture::Disarm) => self.stop(""),
+            (State::Armed | State::Landed, Some(_)) if self.gesture == Some(Gesture::Disarm) => {
+                self.stop(None)
+            }
             (State::Armed | State::Landed, Some(s)) if !low(&s) => State::Flight,
-            (State::Armed, Some(_)) if self.since >= IDLE_MAX => self.stop("idle for too long"),
-            (State::Landed, Some(_)) if self.since >= LANDED_TIME => self.stop(""),
+            (State::Armed, Some(_)) if self.since >= IDLE_MAX => self.stop(Some(Reason::IdleTooLong)),
+            (State::Landed, Some(_)) if self.since >= LANDED_TIME => self.stop(None),
             (State::Flight, Some(_)) if let Some(landing) = self.dangers.landing() => {
                 State::Failsafe(landing)
             }
@@ -298,11 +300,11 @@ impl ModeLogic {
             return None;
         }
         if !self.perch_seen_off {
-            self.note("turn perch switch off first");
+            self.note(Some(Reason::PerchSwitchNotOff));
             return None;
         }
         if motion.q.down_in_body().z < cos(PERCH_LEAN_MAX) {
-            self.note("leaning, not on the crown");
+            self.note(Some(Reason::NotOnCrown));
             return None;
         }
         let (roll, pitch, _) = motion.q.to_euler();
@@ -341,7 +343,7 @@ impl ModeLogic {
     }
 
     /// Rotors off for good, from a state in which no arm is closed.
-    pub(super) fn stop(&mut self, why: &'static str) -> State {
+    pub(super) fn stop(&mut self, why: Option<Reason>) -> State {
         self.note(why);
         State::Disarmed {
             grip_memory: GripMemory::Open,
@@ -349,7 +351,7 @@ impl ModeLogic {
     }
 
     /// Shows `why` for a while.
-    pub(super) fn note(&mut self, why: &'static str) {
+    pub(super) fn note(&mut self, why: Option<Reason>) {
         self.note = (why, NOTE_TIME);
     }
 }

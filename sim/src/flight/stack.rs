@@ -3,6 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::math;
+use sophie_control::mode::Reason;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::{Mixer, Variant};
@@ -114,7 +115,7 @@ impl Aircraft for Stack {
         } = self.links.status.latest()?.value;
         Some(Said {
             mode,
-            reason,
+            reason: reason.map_or("", Reason::text),
             warning,
         })
     }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 use glam::{DQuat, DVec3};
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::tendon::ForceLimit;
 
 use crate::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose};
@@ -29,7 +29,7 @@ pub fn detail(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], reas
     let swings = swings(samples);
     parts.extend(strength(scenario, step, samples, swings.is_some()));
     parts.extend(swings);
-    if reason.contains("force limit reached") {
+    if reason.contains(Reason::ForceLimit.text()) {
         parts.extend(force(scenario, samples));
     }
     parts.iter().map(|part| format!("; {part}")).collect()

@@ -1,7 +1,7 @@
 //! The pilot's mind: what he remembers over a mission, and the moves that several steps share.
 
 use glam::DVec2;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 
 use super::Seen;
 use super::guidance::{Guidance, Vertical};
@@ -21,8 +21,8 @@ pub struct View<'a> {
     pub now: f64,
     /// The mode that he has read.
     pub mode: Option<Mode>,
-    /// The reason beside it.
-    pub reason: &'a str,
+    /// The text beside it: a reason, or a warning.
+    pub text: &'a str,
 }
 
 impl View<'_> {
@@ -31,13 +31,18 @@ impl View<'_> {
         -self.seen.position.z
     }
 
+    /// True when the display shows `reason`.
+    pub fn shows(&self, reason: Reason) -> bool {
+        self.text == reason.text()
+    }
+
     /// The mode as the display words it.
     pub fn shown(&self) -> String {
         let name = self.mode.map_or("nothing", Mode::name);
-        if self.reason.is_empty() {
+        if self.text.is_empty() {
             format!("display {name}")
         } else {
-            format!("display {name}: {}", self.reason)
+            format!("display {name}: {}", self.text)
         }
     }
 }
@@ -152,7 +157,7 @@ impl Mind {
         self.phase_time += dt;
         self.guidance.foresee(&view.seen, view.now, sticks, dt);
         match view.mode {
-            Some(Mode::Failsafe) if self.trouble.is_none() => self.trouble = Some(view.reason.to_owned()),
+            Some(Mode::Failsafe) if self.trouble.is_none() => self.trouble = Some(view.text.to_owned()),
             Some(Mode::Flight) => self.trouble = None,
             _ => (),
         }

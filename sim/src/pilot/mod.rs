@@ -204,7 +204,7 @@ impl Pilot {
             seen,
             now: now.t,
             mode,
-            reason: &self.telemetry.reason,
+            text: &self.telemetry.reason,
         };
         match self.mind.fly(&step, &view, self.hands.at(), dt) {
             Progress::Going(wish) => self.wish = wish,

@@ -1,6 +1,6 @@
 //! Steps at the pipe: fly over it, touch, perch, hold, release.
 
-use sophie_control::mode::{Mode, SLIDES};
+use sophie_control::mode::{Mode, Reason};
 
 use super::hands::Wish;
 use super::mind::{Mind, Phase, Progress, View};
@@ -58,7 +58,7 @@ const RELEASE_THROTTLE: f64 = 0.25;
 /// The same at least: below 0.20 the stack opens nothing, whatever the rotors' strength.
 const RELEASE_LEAST: f64 = 0.21;
 /// What the display says where a perched vehicle will not be let go, and the time for which it must, s.
-const TROUBLES: [&str; 2] = ["battery critical", "radio lost"];
+const TROUBLES: [Reason; 2] = [Reason::BatteryCritical, Reason::RADIO_LOST];
 const REFUSED_TIME: f64 = 3.0;
 /// Depth below where it stood at which the vehicle has slid off, m.
 const SUNK: f64 = 0.06;
@@ -213,7 +213,7 @@ impl Mind {
         let beside = (v.seen.position.y - self.pipe.y).abs();
         let slips = self.phase == Phase::Throttle
             && (beside > SLIPPING * self.pipe_radius || v.height() < self.height - SUNK);
-        let left = v.mode == Some(Mode::Escaping) && v.reason == SLIDES;
+        let left = v.mode == Some(Mode::Escaping) && v.shows(Reason::SlidesOff);
         if slips || left {
             self.perch_switch = false;
             self.missed += 1;
@@ -250,7 +250,7 @@ impl Mind {
                 v.shown()
             ));
         }
-        if self.held_for(v.reason == "grip lost", GRIP_LOST_TIME, dt) {
+        if self.held_for(v.shows(Reason::GripLost), GRIP_LOST_TIME, dt) {
             return Progress::Failed(format!("grip lost after {:.1} s", self.step_time));
         }
         let wish = Wish::default();
@@ -298,7 +298,7 @@ impl Mind {
                     self.spot = v.seen.position.truncate();
                     self.enter(Phase::Fly);
                 }
-                let refused = v.mode == Some(Mode::Perched) && TROUBLES.contains(&v.reason);
+                let refused = v.mode == Some(Mode::Perched) && TROUBLES.iter().any(|&why| v.shows(why));
                 if self.held_for(refused, REFUSED_TIME, dt) {
                     return Progress::Failed(format!("arms not opened, {}", v.shown()));
                 }

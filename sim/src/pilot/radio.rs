@@ -1,7 +1,7 @@
 //! Without a vehicle that answers: the transmitter off for a while, a vehicle taken back from its failsafe, a board that
 //! restarts.
 
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 
 use super::hands::Wish;
 use super::mind::{Mind, Phase, Progress, View};
@@ -56,7 +56,7 @@ impl Mind {
     /// The sticks with which the pilot takes a vehicle back that sinks because it has not heard of him.
     pub(super) fn take_over(step: &Step, v: &View<'_>, wish: Wish) -> Wish {
         let flies = matches!(step, Step::Hover { .. } | Step::FlyTo { .. });
-        if flies && v.mode == Some(Mode::Failsafe) && v.reason == "radio lost" {
+        if flies && v.mode == Some(Mode::Failsafe) && v.shows(Reason::RADIO_LOST) {
             Wish {
                 roll: TAKE_OVER,
                 ..wish

@@ -98,8 +98,8 @@ impl Toy {
         let mut count = 0;
         if self.steps.is_multiple_of(50) {
             let text = match self.out.reason {
-                "" => self.out.mode.name().to_owned(),
-                why => format!("{}: {why}", self.out.mode.name()),
+                None => self.out.mode.name().to_owned(),
+                Some(why) => format!("{}: {}", self.out.mode.name(), why.text()),
             };
             let packet = FlightMode::new(&text).unwrap();
             count = write_packet_to_buffer(&mut telemetry, PacketAddress::FlightController, &packet).unwrap();

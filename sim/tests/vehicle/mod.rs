@@ -4,7 +4,7 @@
 
 use embassy_time::Instant;
 use sophie_control::mixer::Flexible;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::Configuration;
@@ -89,13 +89,13 @@ impl Vehicle {
         };
         v.sticks = Some(Sticks { yaw: 1.0, ..sticks });
         v.run(1200);
-        assert_eq!(v.mode(), Mode::Armed, "{}", v.reason());
+        assert_eq!(v.mode(), Mode::Armed, "{:?}", v.reason());
         v.sticks = Some(Sticks {
             throttle: 0.5,
             ..sticks
         });
         v.run(1000);
-        assert_eq!(v.mode(), Mode::Flight, "{}", v.reason());
+        assert_eq!(v.mode(), Mode::Flight, "{:?}", v.reason());
         assert!(v.motors_run() && v.fed_over(200) >= 19);
         v
     }
@@ -125,7 +125,7 @@ impl Vehicle {
                 }
                 holds(self)
             })
-            .unwrap_or_else(|| panic!("not within {limit} ms: {:?} {}", self.mode(), self.reason()))
+            .unwrap_or_else(|| panic!("not within {limit} ms: {:?} {:?}", self.mode(), self.reason()))
     }
 
     pub fn mode(&self) -> Mode {
@@ -135,8 +135,8 @@ impl Vehicle {
             .map_or(Mode::Calibrating, |s| s.value.mode)
     }
 
-    pub fn reason(&self) -> &'static str {
-        self.links.status.latest().map_or("", |s| s.value.reason)
+    pub fn reason(&self) -> Option<Reason> {
+        self.links.status.latest().and_then(|s| s.value.reason)
     }
 
     pub fn motors_run(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use embassy_time::Instant;
 use sophie_control::decimal::Decimal;
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 
 use super::Console;
 use crate::deadline::TaskId;
@@ -13,8 +13,8 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         match self.links.status.fresh() {
             None => self.out.line(format_args!("the commander is silent")).await,
             Some(status) => {
-                let colon = if status.reason.is_empty() { "" } else { ": " };
-                let (mode, reason) = (status.mode.name(), status.reason);
+                let colon = if status.reason.is_none() { "" } else { ": " };
+                let (mode, reason) = (status.mode.name(), status.reason.map_or("", Reason::text));
                 self.out.line(format_args!("{mode}{colon}{reason}")).await;
                 if !status.warning.is_empty() {
                     self.out.line(format_args!("warning: {}", status.warning)).await;

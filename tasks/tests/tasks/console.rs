@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
-use sophie_control::mode::Mode;
+use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_tasks::console;
 use sophie_tasks::deadline::TaskId;
@@ -257,7 +257,7 @@ fn status_says_how_the_vehicle_is() {
     let refusals = Refusals::NONE.with(Refusal::BatteryLow).with(Refusal::RcLost);
     bench.status = Some(Status {
         mode: Mode::Disarmed,
-        reason: "radio lost",
+        reason: Some(Reason::RADIO_LOST),
         warning: "infill below what was flown",
         refusals,
     });

@@ -1,10 +1,10 @@
 //! Starts on the pipe and off it: nothing opens by itself, nothing turns before the pilot has armed.
 
-use super::look::LOOK_TIME;
 use super::rig::Rig;
-use super::*;
 use crate::arming::Refusal;
 use crate::grip::ArmState;
+use crate::mode::look::LOOK_TIME;
+use crate::mode::*;
 use crate::rc::ArmChoice;
 
 const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
@@ -156,7 +156,7 @@ fn arming_with_the_switch_off_takes_a_new_turn_of_it_to_release() {
     assert_eq!(r.out.mode, Mode::Perched);
     r.sticks().throttle = 0.3;
     r.stays(2.0, ALL);
-    assert_eq!(r.out.reason, "turn perch switch on first");
+    assert_eq!(r.out.reason, Some(Reason::PerchSwitchNotOn));
     r.sticks().perch_switch = true;
     r.stays(0.5, ALL);
     r.sticks().perch_switch = false;
@@ -274,7 +274,7 @@ fn arms_found_pressed_are_left_to_the_gears_until_they_are_opened_on_purpose() {
     r.calibrated();
     r.stays(1.0, ClampCommand::Keep);
     r.arm();
-    assert_eq!((r.out.mode, r.out.reason), (Mode::Perched, ""));
+    assert_eq!((r.out.mode, r.out.reason), (Mode::Perched, None));
     r.stays(5.0, ClampCommand::Keep);
     r.sticks().throttle = 0.3;
     r.run(0.5);

@@ -1,8 +1,8 @@
 //! What the pilot reads beside the state, and which of two reasons comes first.
 
 use super::rig::Rig;
-use super::*;
 use crate::arming::Refusal;
+use crate::mode::*;
 
 #[test]
 fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
@@ -10,14 +10,14 @@ fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
     // Calibrating: the sensor that is silent, what is broken, or that it must be left alone.
     let mut r = Rig::new();
     r.expect(0.1, Mode::Calibrating);
-    assert_eq!(r.out.reason, "keep still");
+    assert_eq!(r.out.reason, Some(Reason::KeepStill));
     r.inputs.hardware = broken;
     r.step();
-    assert_eq!(r.out.reason, Refusal::ImuAbsent.text());
+    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::ImuAbsent)));
     r.inputs.hardware = Refusals::default();
     r.inputs.motion = None;
     r.step();
-    assert_eq!(r.out.reason, Refusal::ImuStale.text());
+    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::ImuStale)));
 
     // Disarmed: what is broken at once, everything else when the pilot tries.
     let mut r = Rig::armed();
@@ -27,18 +27,18 @@ fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
     r.run(0.1);
     r.inputs.battery = Some(13.0);
     r.step();
-    assert_eq!(r.out.reason, "", "nobody tries to arm");
+    assert_eq!(r.out.reason, None, "nobody tries to arm");
     r.inputs.hardware = broken;
     r.step();
-    assert_eq!(r.out.reason, Refusal::ImuAbsent.text());
+    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::ImuAbsent)));
     r.inputs.hardware = Refusals::default();
     r.sticks().arm_switch = true;
     r.step();
-    assert_eq!(r.out.reason, "battery low");
+    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::BatteryLow)));
     r.inputs.sticks = None;
     r.step();
     assert_eq!(
-        r.out.reason, "",
+        r.out.reason, None,
         "the radio is nothing to a vehicle on the ground"
     );
 }
@@ -56,10 +56,10 @@ fn what_just_happened_comes_before_what_keeps_from_arming() {
         ..Sticks::default()
     });
     r.run(0.1);
-    assert_eq!(r.out.reason, "radio lost");
+    assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
     r.run(10.0);
-    assert_eq!(r.out.reason, r.out.refusals.first().map_or("", Refusal::text));
-    assert!(!r.out.reason.is_empty());
+    assert_eq!(r.out.reason, r.out.refusals.first().map(Reason::Check));
+    assert!(r.out.reason.is_some());
 }
 
 #[test]
@@ -67,11 +67,27 @@ fn a_vehicle_on_the_pipe_says_what_is_lost() {
     let mut r = Rig::clamping();
     r.inputs.sticks = None;
     r.step();
-    assert_eq!(r.out.reason, "radio lost");
+    assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
     let mut r = Rig::clamping();
     r.inputs.battery = Some(12.0);
     r.run(0.9);
-    assert_eq!(r.out.reason, "");
+    assert_eq!(r.out.reason, None);
     r.run(0.2);
-    assert_eq!(r.out.reason, "battery critical");
+    assert_eq!(r.out.reason, Some(Reason::BatteryCritical));
+}
+
+#[test]
+fn every_reason_has_a_short_text_of_its_own() {
+    let checks = Refusal::ALL.into_iter().map(Reason::Check);
+    let all = || Reason::PLAIN.iter().copied().chain(checks.clone());
+    for (i, a) in all().enumerate() {
+        let text = a.text();
+        assert!(
+            text.is_ascii() && !text.is_empty() && text.len() <= 40,
+            "{a:?}: {text}"
+        );
+        for b in all().skip(i + 1) {
+            assert_ne!(text, b.text(), "{a:?} {b:?}");
+        }
+    }
 }

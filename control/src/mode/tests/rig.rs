@@ -1,11 +1,11 @@
 //! A vehicle for the tests: the mode logic in a world that carries it or does not.
 
-use super::closing::{SPOOL_TIME, STOP_TIME};
-use super::logic::CONTACT_TIME;
-use super::*;
 use crate::grip::ArmGrip;
 use crate::grip::ArmState;
 use crate::math::GRAVITY;
+use crate::mode::closing::{SPOOL_TIME, STOP_TIME};
+use crate::mode::logic::CONTACT_TIME;
+use crate::mode::*;
 use crate::params::Params;
 use crate::rc::ArmChoice;
 
@@ -88,7 +88,7 @@ impl Rig {
 
     pub(super) fn expect(&mut self, seconds: f32, mode: Mode) {
         let got = self.run(seconds);
-        assert_eq!(got, mode, "after {seconds} s, reason '{}'", self.out.reason);
+        assert_eq!(got, mode, "after {seconds} s, reason {:?}", self.out.reason);
     }
 
     pub(super) fn armed() -> Self {
@@ -145,7 +145,7 @@ impl Rig {
         r.expect(SPOOL_TIME + STOP_TIME + 0.1, Mode::Perched);
         r.sticks().throttle = 0.0;
         r.expect(5.0, Mode::Perched);
-        assert_eq!(r.out.reason, "");
+        assert_eq!(r.out.reason, None);
         r
     }
 

@@ -1,11 +1,10 @@
 //! Leaving the pipe by itself: what starts an escape, what it does, who ends it; and when the arms do not let go.
 
-use super::escape::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
-use super::lean::{LEANS, SLIDES};
 use super::rig::{DT, Rig};
-use super::*;
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
+use crate::mode::escape::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
+use crate::mode::*;
 use crate::rc::ArmChoice;
 
 impl Rig {
@@ -54,7 +53,7 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
                 ends,
                 "{degrees} deg at {rate} rad/s: {mode:?}"
             );
-            assert!(!ends || r.out.reason == SLIDES);
+            assert!(!ends || r.out.reason == Some(Reason::SlidesOff));
         }
     }
     // Arms that hold need no rotors.
@@ -163,7 +162,7 @@ fn nobody_on_the_throttle_is_brought_down_and_may_still_take_over() {
     r.leans(0.0, 0.0);
     r.expect(TAKE_OVER_TIME - 0.2, Mode::Escaping);
     r.expect(0.3, Mode::Failsafe);
-    assert_eq!(r.out.reason, "throttle not taken over");
+    assert_eq!(r.out.reason, Some(Reason::NotTakenOver));
     r.run(1.0);
     assert!((0.8..1.0).contains(&(r.out.rotors.thrust() / r.weight())));
     r.sticks().throttle = 0.55;
@@ -179,14 +178,14 @@ fn an_escape_outlives_the_radio_until_the_vehicle_is_clear() {
     r.grip(false, true, ArmState::Free, 0.0);
     r.expect(0.7, Mode::Escaping);
     r.expect(0.2, Mode::Failsafe);
-    assert_eq!(r.out.reason, "radio lost");
+    assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
     let mut r = Rig::escaping();
     r.inputs.battery = Some(12.0);
     r.carried = false;
     r.leans(0.0, 0.0);
     r.grip(false, true, ArmState::Free, 0.0);
     r.expect(1.2, Mode::Failsafe);
-    assert_eq!(r.out.reason, "battery critical");
+    assert_eq!(r.out.reason, Some(Reason::BatteryCritical));
 }
 
 #[test]
@@ -218,7 +217,7 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
     r.expect(0.3, Mode::Releasing);
     assert_eq!(
         (r.out.reason, r.out.tendons),
-        ("arms do not come free", ClampCommand::Release)
+        (Some(Reason::ArmsStuck), ClampCommand::Release)
     );
     r.run(1.0);
     assert!(
@@ -228,9 +227,9 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
     // They are reported on a release as well.
     let mut r = Rig::releasing();
     r.expect(9.8, Mode::Releasing);
-    assert_eq!(r.out.reason, "");
+    assert_eq!(r.out.reason, None);
     r.expect(0.3, Mode::Releasing);
-    assert_eq!(r.out.reason, "arms do not come free");
+    assert_eq!(r.out.reason, Some(Reason::ArmsStuck));
     // What the sensors call closed may be free all the same: in the air it flies.
     let mut r = Rig::escaping();
     r.leans(0.0, 0.0);
@@ -278,9 +277,9 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
         r.sticks().perch_switch = false;
         r.expect(0.5, after);
         assert_eq!(
-            r.out.reason == LEANS,
+            r.out.reason == Some(Reason::LeansTooFar),
             after == Mode::Perched,
-            "'{}'",
+            "{:?}",
             r.out.reason
         );
     }
@@ -296,7 +295,10 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     assert_eq!(r.out.mode, Mode::Clamping);
     assert_eq!(
         (r.out.reason, r.out.tendons),
-        (LEANS, ClampCommand::Close { arms: ArmChoice::All })
+        (
+            Some(Reason::LeansTooFar),
+            ClampCommand::Close { arms: ArmChoice::All }
+        )
     );
     // Cancelled in the grip: it stays closed and the rotors stop.
     let mut r = Rig::clamping();
@@ -305,7 +307,7 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     r.leans(18.0, 0.0);
     r.sticks().perch_switch = false;
     r.expect(0.5, Mode::Clamping);
-    assert_eq!(r.out.reason, LEANS);
+    assert_eq!(r.out.reason, Some(Reason::LeansTooFar));
     r.expect(2.0, Mode::Perched);
     // Upright it is a release, with the rotors carrying before the arms open.
     let mut r = Rig::clamping();

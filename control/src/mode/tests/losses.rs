@@ -1,10 +1,10 @@
 //! Radio lost, or one non-finite message, at any step of any state: no rotor stops in the air, no arm opens before the
 //! rotors carry, and the state afterwards is that of an undisturbed vehicle.
 
-use super::closing::{FREE_TIME, HOPELESS_TIME, RELEASE_THROTTLE_MIN};
 use super::rig::Rig;
-use super::*;
 use crate::grip::ArmState;
+use crate::mode::closing::{FREE_TIME, HOPELESS_TIME, RELEASE_THROTTLE_MIN};
+use crate::mode::*;
 
 /// Every state in which rotors turn, or stand on the pipe.
 const STATES: [fn() -> Rig; 7] = [

@@ -1,12 +1,12 @@
 //! What passes from one state to the next: the collective, the attitude held, the command in the failsafe.
 
-use super::closing::SPOOL_TIME;
-use super::demand::HAND_OVER_TIME;
-use super::failsafe::RESUME_TIME;
 use super::rig::{DT, Rig};
-use super::*;
 use crate::grip::ArmState;
 use crate::math::GRAVITY;
+use crate::mode::closing::SPOOL_TIME;
+use crate::mode::demand::HAND_OVER_TIME;
+use crate::mode::failsafe::RESUME_TIME;
+use crate::mode::*;
 use crate::rc::StickMode;
 
 /// Four rotors of 8.3 N.

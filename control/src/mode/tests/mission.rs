@@ -1,11 +1,11 @@
 //! Every transition of a flight in which nothing goes wrong.
 
-use super::closing::{FREE_TIME, SPOOL_TIME};
-use super::logic::{IDLE_MAX, LANDED_TIME};
 use super::rig::{DT, Rig};
-use super::*;
 use crate::grip::ArmState;
 use crate::math::deg;
+use crate::mode::closing::{FREE_TIME, SPOOL_TIME};
+use crate::mode::logic::{IDLE_MAX, LANDED_TIME};
+use crate::mode::*;
 use crate::rc::ArmChoice;
 use crate::rc::StickMode;
 use crate::wrench::Wrench;

@@ -8,8 +8,8 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::rig::Rig;
-use super::*;
 use crate::grip::ArmState;
+use crate::mode::*;
 use crate::rc::StickMode;
 
 fn number() -> impl Strategy<Value = f32> {
@@ -143,7 +143,7 @@ proptest! {
                 prop_assert!(rotors.numbers().iter().all(|n| n.is_finite()), "{rotors:?}");
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
-                prop_assert!(reason.len() <= 40);
+                prop_assert!(reason.is_none_or(|r| r.text().len() <= 40));
                 // Nothing opens but by the switch, turned off, or by rotors that carry.
                 if grip_memory.arms().is_some() && tendons == ClampCommand::Release {
                     prop_assert!([Mode::Releasing, Mode::Escaping].contains(&mode) || before == Mode::Escaping || sticks.is_some_and(|s| !s.perch_switch)

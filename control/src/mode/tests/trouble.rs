@@ -1,13 +1,13 @@
 //! Everything that may go wrong, in each state in which it can.
 
-use super::closing::HOPELESS_TIME;
-use super::failsafe::{BATTERY_TIME, IMU_LOST_TIME, RESUME_TIME, TIPPED_TIME};
-use super::logic::CONTACT_TIME;
 use super::rig::Rig;
-use super::*;
 use crate::arming::{Refusal, Refusals};
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
+use crate::mode::closing::HOPELESS_TIME;
+use crate::mode::failsafe::{BATTERY_TIME, IMU_LOST_TIME, RESUME_TIME, TIPPED_TIME};
+use crate::mode::logic::CONTACT_TIME;
+use crate::mode::*;
 use crate::rc::ArmChoice;
 use crate::rc::StickMode;
 
@@ -40,13 +40,13 @@ fn arming_is_refused_with_a_reason_that_can_be_read() {
     });
     r.sticks().yaw = 1.0;
     r.expect(3.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, "arm switch on at power-up");
+    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::SwitchOnAtPowerUp)));
     r.sticks().arm_switch = false;
     r.run(0.1);
     r.sticks().arm_switch = true;
     r.inputs.battery = Some(13.0);
     r.expect(3.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, "battery low");
+    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::BatteryLow)));
     assert!(r.out.refusals.contains(Refusal::BatteryLow));
     r.inputs.battery = Some(16.0);
     r.inputs.fsr_fault = [false, true, false, false];
@@ -60,7 +60,7 @@ fn arming_is_refused_with_a_reason_that_can_be_read() {
     r.inputs.hardware = r.inputs.hardware.with(Refusal::FsrRange3);
     r.run(0.1);
     assert!(r.out.refusals.iter().eq([Refusal::FsrRange3]));
-    assert_eq!(r.out.reason, "pressure sensor 3: range too small");
+    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::FsrRange3)));
     r.inputs.hardware = Refusals::NONE;
     r.run(0.1);
     r.sticks().yaw = 0.0;
@@ -72,18 +72,14 @@ fn arming_is_refused_with_a_reason_that_can_be_read() {
 #[test]
 fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
     for (state, seconds, why) in [
-        (ArmState::Closing, 10.0, "grip not proven in time"),
-        (
-            ArmState::ForceLimited,
-            HOPELESS_TIME,
-            "force limit reached without grip",
-        ),
-        (ArmState::Faulty, HOPELESS_TIME, "arm fault"),
+        (ArmState::Closing, 10.0, Reason::GripNotProven),
+        (ArmState::ForceLimited, HOPELESS_TIME, Reason::ForceLimit),
+        (ArmState::Faulty, HOPELESS_TIME, Reason::ArmFault(None)),
     ] {
         let mut r = Rig::clamping();
         r.grip(false, false, state, 500.0);
         r.expect(seconds + 0.1, Mode::Escaping);
-        assert_eq!(r.out.reason, why);
+        assert_eq!(r.out.reason, Some(why));
         assert!(r.out.rotors.spin());
         r.run(0.1);
         assert_eq!(r.out.tendons, ClampCommand::Release);
@@ -94,7 +90,7 @@ fn a_closing_without_grip_is_given_up_and_not_tried_again_by_itself() {
         r.carried = true;
         r.sticks().throttle = 0.3;
         r.expect(1.0, Mode::Flight);
-        assert_eq!(r.out.reason, "turn perch switch off first");
+        assert_eq!(r.out.reason, Some(Reason::PerchSwitchNotOff));
         r.sticks().perch_switch = false;
         r.run(0.1);
         r.sticks().perch_switch = true;
@@ -119,18 +115,21 @@ fn a_grip_lost_while_spooling_down_brings_the_rotors_back() {
 #[test]
 fn nothing_but_the_pilot_starts_the_rotors_of_a_perched_vehicle() {
     type Edit = fn(&mut Rig);
-    let cases: [(Edit, &str); 5] = [
-        (|r| r.grip(false, false, ArmState::Touching, 100.0), "grip lost"),
-        (|r| r.inputs.grip = None, "clamp loop silent"),
-        (|r| r.inputs.sticks = None, "radio lost"),
-        (|r| r.inputs.motion = None, "inertial sensor silent"),
-        (|r| r.inputs.battery = Some(12.0), "battery critical"),
+    let cases: [(Edit, Reason); 5] = [
+        (
+            |r| r.grip(false, false, ArmState::Touching, 100.0),
+            Reason::GripLost,
+        ),
+        (|r| r.inputs.grip = None, Reason::ClampSilent),
+        (|r| r.inputs.sticks = None, Reason::RADIO_LOST),
+        (|r| r.inputs.motion = None, Reason::IMU_SILENT),
+        (|r| r.inputs.battery = Some(12.0), Reason::BatteryCritical),
     ];
     for (edit, why) in cases {
         let mut r = Rig::perched();
         edit(&mut r);
         r.expect(10.0, Mode::Perched);
-        assert_eq!((r.out.reason, r.out.rotors), (why, Setpoint::Stop));
+        assert_eq!((r.out.reason, r.out.rotors), (Some(why), Setpoint::Stop));
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     }
     for throttle in [0.0, 0.19, 0.43, 1.0] {
@@ -180,7 +179,7 @@ fn a_lost_radio_in_flight_sinks_and_stops_on_what_carries() {
     r.carried = true;
     // The remembered sink rate has to fade before the support shows, and most of the weight must be carried.
     r.expect(10.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, "radio lost");
+    assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
 }
 
 #[test]
@@ -213,7 +212,7 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
     r.expect(3.0, Mode::Perched);
     r.inputs.sticks = sticks;
     r.expect(3.0, Mode::Perched);
-    assert_eq!(r.out.reason, "turn perch switch on first");
+    assert_eq!(r.out.reason, Some(Reason::PerchSwitchNotOn));
     let mut r = Rig::clamping();
     r.inputs.sticks = None;
     r.inputs.battery = Some(12.0);
@@ -264,7 +263,7 @@ fn an_empty_battery_lands_under_the_pilots_sticks() {
     r.inputs.battery = Some(12.5);
     r.expect(BATTERY_TIME - 0.1, Mode::Flight);
     r.expect(0.2, Mode::Failsafe);
-    assert_eq!(r.out.reason, "battery critical");
+    assert_eq!(r.out.reason, Some(Reason::BatteryCritical));
     r.sticks().roll = 0.5;
     r.sticks().stick_mode = StickMode::Direct;
     r.run(1.0);
@@ -286,8 +285,6 @@ impl Rig {
     }
 }
 
-const LINE_SILENT: &str = "inertial sensor: data-ready line silent";
-
 #[test]
 fn a_silent_data_ready_line_refuses_arming_and_stops_rotors_that_idle() {
     let mut r = Rig::armed();
@@ -295,17 +292,17 @@ fn a_silent_data_ready_line_refuses_arming_and_stops_rotors_that_idle() {
     r.step();
     assert_eq!(
         (r.out.mode, r.out.rotors, r.out.reason),
-        (Mode::Disarmed, Setpoint::Stop, LINE_SILENT)
+        (Mode::Disarmed, Setpoint::Stop, Some(Reason::LINE_SILENT))
     );
     r.run(0.5);
     r.sticks().yaw = 1.0;
     r.expect(12.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, LINE_SILENT);
+    assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
     assert!(r.out.refusals.iter().eq([Refusal::ImuLineSilent]));
     // Back again, it takes a new gesture.
     r.line_silent(false);
     r.expect(0.5, Mode::Disarmed);
-    assert_eq!(r.out.reason, "");
+    assert_eq!(r.out.reason, None);
     r.sticks().yaw = 0.0;
     r.run(0.1);
     r.sticks().yaw = 1.0;
@@ -318,7 +315,7 @@ fn a_silent_data_ready_line_lands_under_the_pilots_sticks_even_if_it_comes_back(
         let mut r = Rig::flying();
         r.line_silent(true);
         r.expect(0.02, Mode::Failsafe);
-        assert_eq!(r.out.reason, LINE_SILENT);
+        assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
         assert!(r.out.rotors.spin());
         r.line_silent(!comes_back);
         r.sticks().roll = 0.5;
@@ -329,7 +326,7 @@ fn a_silent_data_ready_line_lands_under_the_pilots_sticks_even_if_it_comes_back(
         r.expect(5.0, Mode::Failsafe);
         r.carried = true;
         r.expect(6.0, Mode::Disarmed);
-        assert_eq!(r.out.reason, LINE_SILENT);
+        assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
     }
     // The radio is lost as well, and comes back: down all the same.
     let mut r = Rig::flying();
@@ -338,14 +335,14 @@ fn a_silent_data_ready_line_lands_under_the_pilots_sticks_even_if_it_comes_back(
     r.line_silent(true);
     r.inputs.sticks = sticks;
     r.expect(0.5, Mode::Failsafe);
-    assert_eq!(r.out.reason, LINE_SILENT);
+    assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
     // An empty battery is the more pressing.
     let mut r = Rig::flying();
     r.inputs.battery = Some(12.0);
     r.expect(BATTERY_TIME + 0.1, Mode::Failsafe);
     r.line_silent(true);
     r.expect(0.5, Mode::Failsafe);
-    assert_eq!(r.out.reason, "battery critical");
+    assert_eq!(r.out.reason, Some(Reason::BatteryCritical));
 }
 
 #[test]
@@ -355,13 +352,16 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         let mut r = make();
         r.line_silent(true);
         r.expect(CONTACT_TIME + 0.05, Mode::Clamping);
-        assert_eq!(r.out.reason, LINE_SILENT);
+        assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
         r.grip(true, false, ArmState::Holding, 950.0);
         r.run(0.5);
         // Called off when the arms hold already: no.
         r.sticks().perch_switch = false;
         r.expect(3.0, Mode::Perched);
-        assert_eq!((r.out.reason, r.out.rotors), (LINE_SILENT, Setpoint::Stop));
+        assert_eq!(
+            (r.out.reason, r.out.rotors),
+            (Some(Reason::LINE_SILENT), Setpoint::Stop)
+        );
     }
     // Perched: no spool-up.
     let mut r = Rig::perched();
@@ -373,7 +373,7 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         assert_eq!((r.out.mode, r.out.rotors), (Mode::Perched, Setpoint::Stop));
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     }
-    assert_eq!(r.out.reason, LINE_SILENT);
+    assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
     // The line is back, the wish still stands.
     r.line_silent(false);
     r.expect(0.1, Mode::Releasing);
@@ -383,7 +383,7 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
     r.line_silent(true);
     r.expect(0.1, Mode::Clamping);
     r.expect(4.0, Mode::Perched);
-    assert_eq!(r.out.reason, LINE_SILENT);
+    assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
     // Arms that open already are let go of: the rotors carry, and the failsafe brings the vehicle down.
     let mut r = Rig::releasing();
     r.run(2.0);
@@ -395,7 +395,10 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         r.step();
         assert!(r.out.rotors.spin());
     }
-    assert_eq!((r.out.mode, r.out.reason), (Mode::Failsafe, LINE_SILENT));
+    assert_eq!(
+        (r.out.mode, r.out.reason),
+        (Mode::Failsafe, Some(Reason::LINE_SILENT))
+    );
     // A closing without grip is given up as ever, and ends in the failsafe.
     let mut r = Rig::clamping();
     r.line_silent(true);
@@ -404,5 +407,5 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
     r.grip(false, true, ArmState::Free, 0.0);
     r.carried = false;
     r.expect(3.0, Mode::Failsafe);
-    assert_eq!(r.out.reason, LINE_SILENT);
+    assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
 }

@@ -1,0 +1,84 @@
+//! Why the vehicle is in its mode, stays in it, or has left the one before: each reason with its text, in one place.
+
+use crate::arming::Refusal;
+use crate::grip_fault::GripFault;
+
+/// Declares the reasons that carry nothing, with the text of each.
+macro_rules! reasons {
+    ($($(#[$doc:meta])+ $name:ident = $text:literal,)+) => {
+        /// Why the vehicle is in its mode, stays in it, or has left the one before.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Reason {
+            /// What also forbids arming.
+            Check(Refusal),
+            /// A chosen arm is faulty.
+            ArmFault(Option<GripFault>),
+            $($(#[$doc])+ $name,)+
+        }
+
+        impl Reason {
+            /// Every reason beside those of the arming checks and of the arms' faults.
+            pub const PLAIN: &'static [Self] = &[$(Self::$name),+];
+
+            /// For the pilot's display: at most 40 ASCII characters.
+            pub const fn text(self) -> &'static str {
+                match self {
+                    Self::Check(check) => check.text(),
+                    Self::ArmFault(Some(fault)) => fault.text(),
+                    Self::ArmFault(None) => "arm fault",
+                    $(Self::$name => $text,)+
+                }
+            }
+        }
+    };
+}
+
+reasons! {
+    /// Calibrating: the vehicle must not be moved.
+    KeepStill = "keep still",
+    /// The rotors have idled for too long.
+    IdleTooLong = "idle for too long",
+    /// The battery is at its end.
+    BatteryCritical = "battery critical",
+    /// The vehicle lies on its side or its back.
+    TippedOver = "tipped over",
+    /// A landing on the pipe takes a new turn of the perch switch.
+    PerchSwitchNotOff = "turn perch switch off first",
+    /// It feels the pipe and leans too much to close the arms.
+    NotOnCrown = "leaning, not on the crown",
+    /// The vehicle leaves the pipe by itself.
+    SlidesOff = "sliding off the pipe",
+    /// After an escape the throttle has not been moved.
+    NotTakenOver = "throttle not taken over",
+    /// The perch switch was turned off while the arms closed.
+    ClosingCancelled = "closing cancelled",
+    /// A chosen arm pulls as hard as it may and does not hold.
+    ForceLimit = "force limit reached without grip",
+    /// The arms have closed for as long as they may.
+    GripNotProven = "grip not proven in time",
+    /// The rotors come back because the arms do not hold any more.
+    GripLostSpooling = "grip lost while spooling down",
+    /// Perched: nothing is known of the grip.
+    ClampSilent = "clamp loop silent",
+    /// Perched: an arm does not hold any more.
+    GripLost = "grip lost",
+    /// A release takes a new turn of the perch switch.
+    PerchSwitchNotOn = "turn perch switch on first",
+    /// A release takes the arm switch.
+    ArmSwitchOff = "arm switch off",
+    /// The arms are not opened: the belly would slide before the rotors carry.
+    LeansTooFar = "leaning too far to let go",
+    /// A release takes less throttle.
+    ThrottleTooHigh = "throttle too high to release",
+    /// The arms are open, and their sensors still press.
+    ArmsStuck = "arms do not come free",
+}
+
+impl Reason {
+    /// No frame from the receiver.
+    pub const RADIO_LOST: Self = Self::Check(Refusal::RcLost);
+    /// No fresh attitude.
+    pub const IMU_SILENT: Self = Self::Check(Refusal::ImuStale);
+    /// The inertial sensor is read by the clock, its data-ready line being silent.
+    pub const LINE_SILENT: Self = Self::Check(Refusal::ImuLineSilent);
+}

@@ -1,0 +1,12 @@
+//! Tests of the mode logic: a vehicle in a world of two switches ([`rig`]), a flight in which nothing goes wrong
+//! ([`mission`]), and everything that does.
+
+mod hand_over;
+mod leaving;
+mod losses;
+mod mission;
+mod random;
+mod reasons;
+mod restart;
+mod rig;
+mod trouble;
