@@ -20,7 +20,6 @@ pub mod arming;
 pub mod attitude;
 pub mod battery;
 pub mod clamp;
-pub mod decimal;
 pub mod deflection;
 pub mod desaturation;
 pub mod effectiveness;

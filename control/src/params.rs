@@ -1,9 +1,5 @@
 //! Every number that a pilot or builder may change, in one table: name, unit, range, default, source.
 
-use core::fmt;
-
-use crate::decimal::Decimal;
-
 /// One row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParamInfo {
@@ -24,48 +20,18 @@ pub struct ParamInfo {
 }
 
 /// Why a parameter was not set.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub enum ParamError {
     /// No parameter has this name.
     Unknown,
-    /// The value is not finite or outside `min..=max`.
-    OutOfRange {
-        /// Smallest value allowed.
-        min: f32,
-        /// Largest value allowed.
-        max: f32,
-        /// Unit of the bounds.
-        unit: &'static str,
-    },
-    /// The value is none of those that exist.
-    NotAChoice {
-        /// The values allowed.
-        choices: &'static [f32],
-        /// Unit of the values.
-        unit: &'static str,
-    },
+    /// The value is not finite, outside `min..=max` or none of the choices of this row.
+    NotAllowed(&'static ParamInfo),
 }
 
-/// What would have been allowed: "4 to 10 %", "one of 0, 1".
-impl fmt::Display for ParamError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unit = match *self {
-            Self::Unknown => return f.write_str("a name of the parameter table"),
-            Self::OutOfRange { min, max, unit } => {
-                write!(f, "{} to {}", Decimal(min), Decimal(max))?;
-                unit
-            }
-            Self::NotAChoice { choices, unit } => {
-                f.write_str("one of ")?;
-                for (i, choice) in choices.iter().enumerate() {
-                    let comma = if i == 0 { "" } else { ", " };
-                    write!(f, "{comma}{}", Decimal(*choice))?;
-                }
-                unit
-            }
-        };
-        // "1" is the unit of a pure number.
-        if unit == "1" { Ok(()) } else { write!(f, " {unit}") }
+impl ParamInfo {
+    /// True for a finite value of the range, and where there are choices for one of them.
+    pub fn allows(&self, value: f32) -> bool {
+        (self.min..=self.max).contains(&value) && (self.choices.is_empty() || self.choices.contains(&value))
     }
 }
 
@@ -133,18 +99,8 @@ impl Params {
     /// An unknown name, or a value that is not finite, out of its range or none of the choices; nothing is changed then.
     pub fn set(&mut self, name: &str, value: f32) -> Result<(), ParamError> {
         let (at, row) = find(name).ok_or(ParamError::Unknown)?;
-        let ParamInfo {
-            min,
-            max,
-            choices,
-            unit,
-            ..
-        } = *row;
-        if !(min..=max).contains(&value) {
-            return Err(ParamError::OutOfRange { min, max, unit });
-        }
-        if !choices.is_empty() && !choices.contains(&value) {
-            return Err(ParamError::NotAChoice { choices, unit });
+        if !row.allows(value) {
+            return Err(ParamError::NotAllowed(row));
         }
         if let Some(place) = self.places().into_iter().nth(at) {
             *place = value;
@@ -404,14 +360,14 @@ mod tests {
         let mut p = Params::default();
         for bad in [f32::NAN, f32::INFINITY, -1.0, 11.0, 3.9] {
             assert!(
-                matches!(p.set("infill", bad), Err(ParamError::OutOfRange { .. })),
+                matches!(p.set("infill", bad), Err(ParamError::NotAllowed(row)) if row.name == "infill"),
                 "{bad}"
             );
         }
-        assert!(p.set("infil", 6.0) == Err(ParamError::Unknown));
+        assert!(matches!(p.set("infil", 6.0), Err(ParamError::Unknown)));
         for bad in [126.0, 200.0, 599.0] {
             let refused = p.set("motor_protocol", bad);
-            assert!(matches!(refused, Err(ParamError::NotAChoice { .. })), "{bad}");
+            assert!(matches!(refused, Err(ParamError::NotAllowed(_))), "{bad}");
         }
         assert!(p == Params::default());
     }

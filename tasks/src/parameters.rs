@@ -1,8 +1,11 @@
-//! The parameters at start-up: the defaults, and over them what is stored.
+//! The parameters at start-up (the defaults, and over them what is stored), and what people are told that they take.
+
+use core::fmt;
 
 use sophie_control::arming::Refusal;
-use sophie_control::params::Params;
+use sophie_control::params::{ParamInfo, Params};
 
+use crate::decimal::Decimal;
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
 
@@ -18,4 +21,37 @@ pub fn report(links: &Links, loaded: Loaded) {
     let foreign = loaded.foreign.is_some();
     links.report(Refusal::StorageUnreadable, loaded.unreadable && !foreign);
     links.report(Refusal::StorageForeign, foreign);
+}
+
+/// What a parameter takes: "4 to 10 %", "one of 0, 1".
+#[derive(Clone, Copy, Debug)]
+pub struct Allowed<'a>(pub &'a ParamInfo);
+
+impl fmt::Display for Allowed<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let row = self.0;
+        if row.choices.is_empty() {
+            write!(f, "{} to {}", Decimal(row.min), Decimal(row.max))?;
+        } else {
+            f.write_str("one of ")?;
+            for (i, choice) in row.choices.iter().enumerate() {
+                let comma = if i == 0 { "" } else { ", " };
+                write!(f, "{comma}{}", Decimal(*choice))?;
+            }
+        }
+        Unit(row.unit).fmt(f)
+    }
+}
+
+/// A unit behind its value; nothing for a pure number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unit(pub &'static str);
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            "1" => Ok(()),
+            unit => write!(f, " {unit}"),
+        }
+    }
 }

@@ -6,6 +6,7 @@
 use core::ops::Range as Span;
 
 use sophie_control::params::{ParamError, Params};
+use sophie_tasks::parameters::Allowed;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -179,7 +180,9 @@ impl Source<'_> {
                     let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
                     return Err(self.unknown(&key, &span, value, known));
                 }
-                Err(allowed) => return Err(self.bad(&key, value, allowed.to_string())),
+                Err(ParamError::NotAllowed(row)) => {
+                    return Err(self.bad(&key, value, Allowed(row).to_string()));
+                }
             }
         }
         Ok(())

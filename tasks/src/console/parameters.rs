@@ -1,12 +1,11 @@
 //! The working copy of the parameters.
 
-use core::fmt;
-
-use sophie_control::decimal::{self, Decimal};
-use sophie_control::params::{ParamError, ParamInfo, Params};
+use sophie_control::params::{ParamInfo, Params};
 
 use super::Console;
 use super::nearest::nearest;
+use crate::decimal::{self, Decimal};
+use crate::parameters::{Allowed, Unit};
 use crate::ports::{Chip, SerialOutput, Storage};
 
 impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
@@ -75,7 +74,8 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                     .line(format_args!("{name} {old} -> {shown}{unit}, {force}"))
                     .await;
             }
-            Err(allowed) => {
+            Err(_) => {
+                let allowed = Allowed(row);
                 self.out
                     .line(format_args!("{name} cannot be {shown}; it takes {allowed}"))
                     .await;
@@ -148,36 +148,4 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
 /// The very same value.
 fn same(a: f32, b: f32) -> bool {
     a.to_bits() == b.to_bits()
-}
-
-/// What a parameter takes.
-struct Allowed<'a>(&'a ParamInfo);
-
-impl fmt::Display for Allowed<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ParamInfo {
-            min,
-            max,
-            choices,
-            unit,
-            ..
-        } = *self.0;
-        if choices.is_empty() {
-            ParamError::OutOfRange { min, max, unit }.fmt(f)
-        } else {
-            ParamError::NotAChoice { choices, unit }.fmt(f)
-        }
-    }
-}
-
-/// A unit behind its value; nothing for a pure number.
-struct Unit(&'static str);
-
-impl fmt::Display for Unit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            "1" => Ok(()),
-            unit => write!(f, " {unit}"),
-        }
-    }
 }

@@ -213,9 +213,9 @@ mod tests {
     use std::string::ToString;
 
     use proptest::prelude::*;
+    use sophie_control::params::Params;
 
     use super::*;
-    use crate::params::Params;
 
     #[test]
     fn numbers_are_read_as_the_library_reads_them() {
