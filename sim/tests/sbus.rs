@@ -10,11 +10,12 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
+use sophie_drivers::rc_decoder::Decoder;
+use sophie_drivers::sbus::Frame;
 use sophie_sim::crsf::rc_frame;
 use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario};
-use sophie_tasks::rc::sbus::Frame;
 use vehicle::Vehicle;
 
 /// Time between two frames, ms.
@@ -39,7 +40,9 @@ fn on_line(params: Params) -> (Vehicle, FakeLine) {
     let mut v = Vehicle::with(params);
     v.sticks = None;
     let line = FakeLine::default();
-    v.time.spawn(sophie_tasks::rc::run(v.links, line.clone()));
+    let decoder = Decoder::from_params(&v.links.params);
+    v.time
+        .spawn(sophie_tasks::rc::run(v.links, line.clone(), decoder));
     (v, line)
 }
 

@@ -5,15 +5,12 @@
 //! turns stale by itself. So it does when the receiver says that it has lost its transmitter, and when the line
 //! speaks the other protocol.
 
-mod crsf;
-pub mod sbus;
-
 use embassy_time::{Duration, Instant, Timer};
 use sophie_control::params::Params;
 
 use crate::deadline::{TaskId, record_run};
-use crate::links::{Links, RcState};
-use crate::ports::SerialInput;
+use crate::links::Links;
+use crate::ports::{RcDecoder, SerialInput};
 
 /// Bytes taken at once: two of the longest frames.
 const BUFFER: usize = 128;
@@ -43,25 +40,8 @@ impl Protocol {
     }
 }
 
-/// Frames and counts out of a stream of bytes, however it is cut.
-trait Decode {
-    /// Takes bytes that were there at `at`; gives the state when they held at least one good frame of channels and
-    /// the radio is not known to be lost.
-    fn take(&mut self, bytes: &[u8], at: Instant) -> Option<RcState>;
-
-    /// The line has failed at `at`: bytes are missing.
-    fn broken(&mut self, at: Instant);
-}
-
 /// Decodes frames; never returns.
-pub async fn run(links: &Links, port: impl SerialInput) -> ! {
-    match Protocol::from_params(&links.params) {
-        Protocol::Crsf => serve(links, port, crsf::Decoder::new()).await,
-        Protocol::Sbus => serve(links, port, sbus::Decoder::new()).await,
-    }
-}
-
-async fn serve(links: &Links, mut port: impl SerialInput, mut decoder: impl Decode) -> ! {
+pub async fn run(links: &Links, mut port: impl SerialInput, mut decoder: impl RcDecoder) -> ! {
     let mut buffer = [0; BUFFER];
     loop {
         let count = match port.read(&mut buffer).await {

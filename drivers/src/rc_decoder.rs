@@ -1,0 +1,43 @@
+//! What the receiver speaks: the parameter `receiver_protocol`.
+
+use embassy_time::Instant;
+use sophie_control::params::Params;
+use sophie_tasks::links::RcState;
+use sophie_tasks::ports::RcDecoder;
+use sophie_tasks::rc::Protocol;
+
+use crate::{crsf, sbus};
+
+/// The decoder of the receiver in use.
+pub enum Decoder {
+    /// Of CRSF.
+    Crsf(crsf::Decoder),
+    /// Of SBUS.
+    Sbus(sbus::Decoder),
+}
+
+impl Decoder {
+    /// The decoder of the protocol that the parameters name.
+    pub fn from_params(params: &Params) -> Self {
+        match Protocol::from_params(params) {
+            Protocol::Crsf => Self::Crsf(crsf::Decoder::new()),
+            Protocol::Sbus => Self::Sbus(sbus::Decoder::new()),
+        }
+    }
+}
+
+impl RcDecoder for Decoder {
+    fn take(&mut self, bytes: &[u8], at: Instant) -> Option<RcState> {
+        match self {
+            Self::Crsf(decoder) => decoder.take(bytes, at),
+            Self::Sbus(decoder) => decoder.take(bytes, at),
+        }
+    }
+
+    fn broken(&mut self, at: Instant) {
+        match self {
+            Self::Crsf(decoder) => decoder.broken(at),
+            Self::Sbus(decoder) => decoder.broken(at),
+        }
+    }
+}
