@@ -1,10 +1,9 @@
 //! What the receiver speaks: the parameter `receiver_protocol`.
 
 use embassy_time::Instant;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, RcProtocol};
 use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
-use sophie_tasks::rc::Protocol;
 
 use crate::{crsf, sbus};
 
@@ -19,9 +18,9 @@ pub enum Decoder {
 impl Decoder {
     /// The decoder of the protocol that the parameters name.
     pub fn from_params(params: &Params) -> Self {
-        match Protocol::from_params(params) {
-            Protocol::Crsf => Self::Crsf(crsf::Decoder::new()),
-            Protocol::Sbus => Self::Sbus(sbus::Decoder::new()),
+        match params.receiver_protocol {
+            RcProtocol::Crsf => Self::Crsf(crsf::Decoder::new()),
+            RcProtocol::Sbus => Self::Sbus(sbus::Decoder::new()),
         }
     }
 }

@@ -8,7 +8,7 @@ use fakes::FakeLine;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, RcProtocol};
 use sophie_control::rc::Sticks;
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_drivers::sbus::Frame;
@@ -23,7 +23,7 @@ const FRAME_MS: u64 = 7;
 
 fn sbus() -> Params {
     Params {
-        receiver_protocol: 1.0,
+        receiver_protocol: RcProtocol::Sbus,
         ..Params::default()
     }
 }

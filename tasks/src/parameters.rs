@@ -5,7 +5,7 @@ use core::fmt;
 use sophie_control::arming::Refusal;
 use sophie_control::params::{ParamInfo, Params};
 
-use crate::decimal::Decimal;
+use crate::decimal::{self, Decimal};
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
 
@@ -23,7 +23,7 @@ pub fn report(links: &Links, loaded: Loaded) {
     links.report(Refusal::StorageForeign, foreign);
 }
 
-/// What a parameter takes: "4 to 10 %", "one of 0, 1".
+/// What a parameter takes: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus".
 #[derive(Clone, Copy, Debug)]
 pub struct Allowed<'a>(pub &'a ParamInfo);
 
@@ -33,13 +33,38 @@ impl fmt::Display for Allowed<'_> {
         if row.choices.is_empty() {
             write!(f, "{} to {}", Decimal(row.min), Decimal(row.max))?;
         } else {
-            f.write_str("one of ")?;
+            f.write_str(if f.alternate() { "" } else { "one of " })?;
             for (i, choice) in row.choices.iter().enumerate() {
-                let comma = if i == 0 { "" } else { ", " };
-                write!(f, "{comma}{}", Decimal(*choice))?;
+                f.write_str(if i == 0 { "" } else { ", " })?;
+                if f.alternate() && !choice.name.is_empty() {
+                    f.write_str(choice.name)?;
+                } else {
+                    Shown(row, choice.value).fmt(f)?;
+                }
             }
         }
         Unit(row.unit).fmt(f)
+    }
+}
+
+/// The value of parameter `row` that `text` is: a number, or the name of a choice. `None` for anything else; whether it
+/// is allowed is not looked at.
+pub(crate) fn parse_value(row: &ParamInfo, text: &str) -> Option<f32> {
+    let named = row.choice_named(text).map(|choice| choice.value);
+    named.or_else(|| decimal::parse(text))
+}
+
+/// A value of a parameter: the number, with its name where it has one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown<'a>(pub &'a ParamInfo, pub f32);
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let &Self(row, value) = self;
+        match row.choice(value).map_or("", |choice| choice.name) {
+            "" => write!(f, "{}", Decimal(value)),
+            name => write!(f, "{} {name}", Decimal(value)),
+        }
     }
 }
 

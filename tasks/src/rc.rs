@@ -6,7 +6,6 @@
 //! speaks the other protocol.
 
 use embassy_time::{Duration, Instant, Timer};
-use sophie_control::params::Params;
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
@@ -18,27 +17,6 @@ const BUFFER: usize = 128;
 const DEADLINE: Duration = Duration::from_millis(2);
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
-
-/// What the receiver speaks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Protocol {
-    /// CRSF: 420 kbaud, 8N1, telemetry back to the pilot on the other line.
-    #[default]
-    Crsf,
-    /// SBUS: 100 kbaud, 8E2, inverted, no way back.
-    Sbus,
-}
-
-impl Protocol {
-    /// As the parameters say.
-    pub fn from_params(p: &Params) -> Self {
-        if p.receiver_protocol < 0.5 {
-            Self::Crsf
-        } else {
-            Self::Sbus
-        }
-    }
-}
 
 /// Decodes frames; never returns.
 pub async fn run(links: &Links, mut port: impl SerialInput, mut decoder: impl RcDecoder) -> ! {

@@ -5,7 +5,7 @@
 
 use core::ops::Range as Span;
 
-use sophie_control::params::{ParamError, Params};
+use sophie_control::params::Params;
 use sophie_tasks::parameters::Allowed;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -173,17 +173,16 @@ impl Source<'_> {
     fn params(&self, table: &DeTable<'_>, params: &mut Params) -> Result<()> {
         for (name, span, value) in in_order(table) {
             let key = format!("params.{name}");
-            let number = as_number(value).ok_or_else(|| self.bad(&key, value, "a number"));
-            match params.set(name, number? as f32) {
-                Ok(()) => {}
-                Err(ParamError::Unknown) => {
-                    let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
-                    return Err(self.unknown(&key, &span, value, known));
-                }
-                Err(ParamError::NotAllowed(row)) => {
-                    return Err(self.bad(&key, value, Allowed(row).to_string()));
-                }
-            }
+            let Some(row) = Params::row(name) else {
+                let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
+                return Err(self.unknown(&key, &span, value, known));
+            };
+            let named = value.get_ref().as_str().and_then(|name| row.choice_named(name));
+            let number = named
+                .map(|choice| choice.value)
+                .or(as_number(value).map(|n| n as f32));
+            let set = number.and_then(|number| params.set(name, number).ok());
+            set.ok_or_else(|| self.bad(&key, value, Allowed(row).to_string()))?;
         }
         Ok(())
     }

@@ -211,7 +211,7 @@ fn bad_values_name_file_line_key_value_and_what_is_allowed() {
         ),
         (
             "[params]\nrate_p = true",
-            "perch.toml:2: params.rate_p = true: allowed a number",
+            "perch.toml:2: params.rate_p = true: allowed 0 to 40 1/s",
         ),
         (
             "[world]\npipe_top_m = 0.6\npipe_diameter_m = 0.5",

@@ -4,8 +4,8 @@ use sophie_control::params::{ParamInfo, Params};
 
 use super::Console;
 use super::nearest::nearest;
-use crate::decimal::{self, Decimal};
-use crate::parameters::{Allowed, Unit};
+use crate::decimal::Decimal;
+use crate::parameters::{Allowed, Shown, Unit, parse_value};
 use crate::ports::{Chip, SerialOutput, Storage};
 
 impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
@@ -28,14 +28,14 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         let mark = if same(value, self.default(row)) { ' ' } else { '*' };
         let (name, value, allowed) = (row.name, Decimal(value), Allowed(row));
         self.out
-            .line(format_args!("{mark} {name:19} {value:<9} {allowed}"))
+            .line(format_args!("{mark} {name:16} {value:<9} {allowed:#}"))
             .await;
     }
 
     pub(super) async fn get(&mut self, name: &str) {
         let Some(row) = self.find(name).await else { return };
         self.row(row).await;
-        let default = Decimal(self.default(row));
+        let default = Shown(row, self.default(row));
         self.out.line(format_args!("  default {default}")).await;
         self.out.bytes(b"  ").await;
         self.out.bytes(row.doc.trim().as_bytes()).await;
@@ -45,10 +45,11 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     pub(super) async fn set(&mut self, name: &str, text: &str) {
         let Some(row) = self.find(name).await else { return };
         let allowed = Allowed(row);
-        let Some(value) = decimal::parse(text) else {
+        let Some(value) = parse_value(row, text) else {
+            let kind = if row.has_names() { "value" } else { "number" };
             return self
                 .out
-                .line(format_args!("'{text}' is not a number; {name} takes {allowed}"))
+                .line(format_args!("'{text}' is not a {kind}; {name} takes {allowed}"))
                 .await;
         };
         self.put(row, value).await;
@@ -62,7 +63,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     async fn put(&mut self, row: &ParamInfo, value: f32) {
         let old = self.value(row);
         let (name, unit) = (row.name, Unit(row.unit));
-        let (old, shown) = (Decimal(old), Decimal(value));
+        let (old, shown) = (Shown(row, old), Shown(row, value));
         match self.params.set(name, value) {
             Ok(()) => {
                 let force = if same(value, self.links.params.get(name).unwrap_or(value)) {
@@ -94,7 +95,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
             }
             count += 1;
             let (name, unit) = (row.name, Unit(row.unit));
-            let (old, new) = (Decimal(old), Decimal(new));
+            let (old, new) = (Shown(row, old), Shown(row, new));
             self.out.line(format_args!("{name} {old} -> {new}{unit}")).await;
         }
         match count {
@@ -126,7 +127,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
 
     /// The parameter called `name`, or a line that there is none.
     async fn find(&mut self, name: &str) -> Option<&'static ParamInfo> {
-        let row = Params::TABLE.iter().find(|row| row.name == name);
+        let row = Params::row(name);
         if row.is_none() {
             match nearest(name, Params::TABLE.iter().map(|row| row.name)) {
                 Some(other) => {

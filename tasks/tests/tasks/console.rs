@@ -325,7 +325,7 @@ fn a_boards_own_defaults_are_its_defaults_on_every_command() {
     let mut bench = Bench::of(Mode::Disarmed, board, CUAV);
     assert_eq!(
         bench.says("list battery_a"),
-        ["  battery_a_per_v     24        1 to 1000 A/V"]
+        ["  battery_a_per_v  24        1 to 1000 A/V"]
     );
     // The table's default is a value like any other here.
     let changed = "battery_a_per_v 24 -> 40 A/V, in force after save";
@@ -333,7 +333,7 @@ fn a_boards_own_defaults_are_its_defaults_on_every_command() {
     let said = bench.says("get battery_a_per_v");
     assert_eq!(
         said[..2],
-        ["* battery_a_per_v     40        1 to 1000 A/V", "  default 24"]
+        ["* battery_a_per_v  40        1 to 1000 A/V", "  default 24"]
     );
     assert_eq!(
         bench.says("reset battery_a_per_v"),
