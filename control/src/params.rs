@@ -1,11 +1,13 @@
 //! Every number that a pilot or builder may change, in one [table]: name, unit, range, default, source.
 
 mod choices;
+mod names;
 mod table;
 
 use core::cmp::Ordering;
 
 pub use self::choices::{ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol};
+pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;
 use self::table::ROWS;
 

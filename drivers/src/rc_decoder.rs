@@ -1,4 +1,4 @@
-//! What the receiver speaks: the parameter `receiver_protocol`.
+//! What the receiver speaks: the parameter `rc_protocol`.
 
 use embassy_time::Instant;
 use sophie_control::params::{Params, RcProtocol};
@@ -18,7 +18,7 @@ pub enum Decoder {
 impl Decoder {
     /// The decoder of the protocol that the parameters name.
     pub fn from_params(params: &Params) -> Self {
-        match params.receiver_protocol {
+        match params.rc_protocol {
             RcProtocol::Crsf => Self::Crsf(crsf::Decoder::new()),
             RcProtocol::Sbus => Self::Sbus(sbus::Decoder::new()),
         }

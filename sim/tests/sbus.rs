@@ -23,7 +23,7 @@ const FRAME_MS: u64 = 7;
 
 fn sbus() -> Params {
     Params {
-        receiver_protocol: RcProtocol::Sbus,
+        rc_protocol: RcProtocol::Sbus,
         ..Params::default()
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use sophie_control::arming::Refusal;
-use sophie_control::params::{ParamInfo, Params};
+use sophie_control::params::{ParamInfo, Params, Renamed};
 
 use crate::decimal::{self, Decimal};
 use crate::links::Links;
@@ -48,10 +48,13 @@ impl fmt::Display for Allowed<'_> {
 }
 
 /// The value of parameter `row` that `text` is: a number, or the name of a choice. `None` for anything else; whether it
-/// is allowed is not looked at.
-pub(crate) fn parse_value(row: &ParamInfo, text: &str) -> Option<f32> {
-    let named = row.choice_named(text).map(|choice| choice.value);
-    named.or_else(|| decimal::parse(text))
+/// is allowed is not looked at. A number under an old name is in its old unit.
+pub(crate) fn parse_value(row: &ParamInfo, renamed: Option<&Renamed>, text: &str) -> Option<f32> {
+    if let Some(choice) = row.choice_named(text) {
+        return Some(choice.value);
+    }
+    let number = decimal::parse(text)?;
+    Some(renamed.map_or(number, |renamed| renamed.convert(number)))
 }
 
 /// A value of a parameter: the number, with its name where it has one.

@@ -1,6 +1,6 @@
 //! The receiver: bytes in, the pilot's wishes out.
 //!
-//! CRSF or SBUS, as the parameter `receiver_protocol` says; 50 to 500 frames a second. A frame that is broken, or
+//! CRSF or SBUS, as the parameter `rc_protocol` says; 50 to 500 frames a second. A frame that is broken, or
 //! whose channels no transmitter sends on purpose, is counted and otherwise as if it had not come: the link then
 //! turns stale by itself. So it does when the receiver says that it has lost its transmitter, and when the line
 //! speaks the other protocol.

@@ -37,7 +37,7 @@ type Frame = heapless::Vec<u8, 64>;
 
 /// Sends frames; never returns.
 pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
-    if links.params.receiver_protocol == RcProtocol::Sbus {
+    if links.params.rc_protocol == RcProtocol::Sbus {
         pending::<()>().await;
     }
     let mut rate = FixedRate::new(links, TaskId::Telemetry, PERIOD, PERIOD);

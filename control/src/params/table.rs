@@ -3,6 +3,7 @@
 
 use super::ParamInfo;
 use super::choices::{ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol, Value};
+use super::names::check_names;
 
 macro_rules! params {
     (@type) => { f32 };
@@ -28,6 +29,8 @@ macro_rules! params {
                 Self::DEFAULT
             }
         }
+
+        const _: () = check_names(&[$( stringify!($name) ),+]);
 
         /// The rows' places in the table.
         #[allow(non_camel_case_types, reason = "the names of the parameters")]
@@ -99,7 +102,7 @@ params! {
     /// Read by the board at start-up; the paper's controllers take 400.
     motor_protocol: MotorProtocol = MotorProtocol::Dshot300, "1";
     /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.
-    receiver_protocol: RcProtocol = RcProtocol::Crsf, "1";
+    rc_protocol: RcProtocol = RcProtocol::Crsf, "1";
     /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.
     imu_rate: ImuRate = ImuRate::Hz4000, "Hz";
     /// Full scale of the gyroscope.
@@ -149,8 +152,8 @@ params! {
     attitude_p = 4.5, "1/s", 0.5 ..= 12.0;
     /// Angle to rate, yaw.
     attitude_yaw_p = 1.2, "1/s", 0.0 ..= 5.0;
-    /// Cut-off of the attitude setpoint's prefilter.
-    setpoint_cutoff = 10.0, "rad/s", 1.0 ..= 100.0;
+    /// Cut-off of the attitude setpoint's prefilter (10 rad/s).
+    setpoint_lpf_hz = 1.5915494, "Hz", 0.15 ..= 16.0;
     /// Largest body rate that the attitude loop asks for.
     rate_max = 3.5, "rad/s", 0.5 ..= 12.0;
     /// Rate to angular acceleration, roll and pitch.
@@ -191,7 +194,7 @@ params! {
     /// Share of the throttle's travel about the pilot's zero that counts as low.
     throttle_low = 0.05, "1", 0.01 ..= 0.2;
     /// Throttle below which the landing on the pipe may start; the paper closes at about 30 %.
-    perch_throttle_max = 0.42, "1", 0.1 ..= 0.6;
+    perch_thr_max = 0.42, "1", 0.1 ..= 0.6;
 
     /// Contact pressure of a proven grip (paper).
     grip_pressure = 950.0, "Pa", 100.0 ..= 5000.0;

@@ -146,7 +146,7 @@ impl<'a> Bench<'a> {
             overruns: BTreeMap::new(),
             log_digest: Digest::default(),
             params,
-            protocol: params.receiver_protocol,
+            protocol: params.rc_protocol,
             watched: Watched::default(),
             tilts: Tilts::new(&params),
             lines: Vec::new(),

@@ -53,7 +53,7 @@ pub fn fly_with<A: Aircraft>(
     let mut recorder = Recorder::new(scenario);
     let mut judge = Judge::new(scenario);
     let mut telemetry = [0u8; TELEMETRY_BYTES];
-    let protocol = scenario.params.receiver_protocol;
+    let protocol = scenario.params.rc_protocol;
     let mut sbus = Receiver::default();
 
     let limit_ms = (scenario.time_limit * 1e3) as u64;

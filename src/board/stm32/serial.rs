@@ -52,7 +52,7 @@ fn receiver_config(protocol: RcProtocol) -> Config {
     config
 }
 
-/// The receiver's line, as the parameter `receiver_protocol` says.
+/// The receiver's line, as the parameter `rc_protocol` says.
 #[expect(clippy::too_many_arguments, reason = "the parts of one port of the board")]
 pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     uart: Peri<'static, T>,
@@ -66,7 +66,7 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     + 'static,
     params: &Params,
 ) -> (ReceiverLine, TelemetryLine) {
-    let protocol = params.receiver_protocol;
+    let protocol = params.rc_protocol;
     let config = receiver_config(protocol);
     let (rx, tx) = match protocol {
         RcProtocol::Crsf => {

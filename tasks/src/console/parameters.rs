@@ -1,6 +1,6 @@
 //! The working copy of the parameters.
 
-use sophie_control::params::{ParamInfo, Params};
+use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 
 use super::Console;
 use super::nearest::nearest;
@@ -11,7 +11,11 @@ use crate::ports::{Chip, SerialOutput, Storage};
 impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     pub(super) async fn list(&mut self, part: &str) {
         let mut count = 0;
-        for row in Params::TABLE.iter().filter(|row| row.name.contains(part)) {
+        let old = |row: &ParamInfo| RENAMED.iter().any(|r| r.new == row.name && r.old.contains(part));
+        for row in Params::TABLE {
+            if !row.name.contains(part) && !old(row) {
+                continue;
+            }
             count += 1;
             self.row(row).await;
         }
@@ -33,7 +37,9 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     }
 
     pub(super) async fn get(&mut self, name: &str) {
-        let Some(row) = self.find(name).await else { return };
+        let Some(Found { row, .. }) = self.find(name).await else {
+            return;
+        };
         self.row(row).await;
         let default = Shown(row, self.default(row));
         self.out.line(format_args!("  default {default}")).await;
@@ -43,9 +49,11 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     }
 
     pub(super) async fn set(&mut self, name: &str, text: &str) {
-        let Some(row) = self.find(name).await else { return };
-        let allowed = Allowed(row);
-        let Some(value) = parse_value(row, text) else {
+        let Some(Found { row, renamed }) = self.find(name).await else {
+            return;
+        };
+        let (name, allowed) = (row.name, Allowed(row));
+        let Some(value) = parse_value(row, renamed, text) else {
             let kind = if row.has_names() { "value" } else { "number" };
             return self
                 .out
@@ -56,7 +64,9 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     }
 
     pub(super) async fn reset(&mut self, name: &str) {
-        let Some(row) = self.find(name).await else { return };
+        let Some(Found { row, .. }) = self.find(name).await else {
+            return;
+        };
         self.put(row, self.default(row)).await;
     }
 
@@ -125,9 +135,22 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         self.params.get(row.name).unwrap_or(row.default)
     }
 
-    /// The parameter called `name`, or a line that there is none.
-    async fn find(&mut self, name: &str) -> Option<&'static ParamInfo> {
-        let row = Params::row(name);
+    /// The parameter called `name`, or a line that there is none. Under its old name it is found with a line that has
+    /// the new one.
+    async fn find(&mut self, name: &str) -> Option<Found> {
+        let renamed = Renamed::find(name);
+        let row = Params::row(renamed.map_or(name, |renamed| renamed.new));
+        if let (Some(row), Some(Renamed { old, unit, .. })) = (row, renamed) {
+            let (new, new_unit) = (row.name, Unit(row.unit));
+            if *unit == row.unit {
+                self.out.line(format_args!("{old} is {new} now")).await;
+            } else {
+                let unit = Unit(unit);
+                self.out
+                    .line(format_args!("{old} in{unit} is {new} in{new_unit} now"))
+                    .await;
+            }
+        }
         if row.is_none() {
             match nearest(name, Params::TABLE.iter().map(|row| row.name)) {
                 Some(other) => {
@@ -142,8 +165,15 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                 }
             }
         }
-        row
+        row.map(|row| Found { row, renamed })
     }
+}
+
+/// A parameter that was named.
+struct Found {
+    row: &'static ParamInfo,
+    /// Where it was named by its old name.
+    renamed: Option<&'static Renamed>,
 }
 
 /// The very same value.

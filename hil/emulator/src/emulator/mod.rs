@@ -104,7 +104,7 @@ impl Emulator {
             images.push(loader.map_err(|e| format!("emulator: {e}"))?);
         }
         let line = esc::Line::of(settings.params.motor_protocol);
-        let receiver = serial::Setup::of(settings.params.receiver_protocol, kind);
+        let receiver = serial::Setup::of(settings.params.rc_protocol, kind);
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);
         let driver = World {

@@ -18,7 +18,7 @@ fn start(change: impl FnOnce(&mut Scenario)) -> Scenario {
 #[test]
 fn the_image_flies_what_is_stored() {
     let scenario = start(|s| {
-        s.params.receiver_protocol = RcProtocol::Sbus;
+        s.params.rc_protocol = RcProtocol::Sbus;
         s.params.motor_protocol = MotorProtocol::Dshot600;
     });
     let flight = fly(&scenario, 1.0, &[]);
@@ -35,7 +35,7 @@ fn the_image_flies_what_is_stored() {
 
 #[test]
 fn the_small_board_flies_what_is_stored() {
-    let scenario = start(|s| s.params.receiver_protocol = RcProtocol::Sbus);
+    let scenario = start(|s| s.params.rc_protocol = RcProtocol::Sbus);
     let flight = fly_small(&scenario, &[]);
     assert!(
         told(&flight, 0.0, "parameters: 4 from storage").is_some(),

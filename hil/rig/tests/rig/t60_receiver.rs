@@ -37,8 +37,8 @@ mod tests {
     async fn what_is_sent_is_received() {
         let mut board = board::take().await;
         keep_alive(board.watchdog);
-        if board.params.receiver_protocol != RcProtocol::Crsf {
-            return absent(format_args!("CRSF: set receiver_protocol to 0"));
+        if board.params.rc_protocol != RcProtocol::Crsf {
+            return absent(format_args!("CRSF: set rc_protocol to 0"));
         }
         let [out, into] = WIRING.receiver;
         for pad in [out, into] {
