@@ -7,6 +7,8 @@
 //! without a sine. Setpoints are limited before, so that no number can stay in the filters: one that is not finite leaves
 //! roll and pitch where they were aimed and stops the turn in yaw.
 
+use core::f32::consts::TAU;
+
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
@@ -70,6 +72,7 @@ impl Smooth {
 pub struct AttitudeLoop {
     p: f32,
     yaw_p: f32,
+    /// Cut-off of the setpoint's prefilter, rad/s.
     cutoff: f32,
     rate_max: f32,
     yaw_rate_max: f32,
@@ -88,7 +91,7 @@ impl AttitudeLoop {
         Self {
             p: p.attitude_p,
             yaw_p: p.attitude_yaw_p,
-            cutoff: p.setpoint_cutoff,
+            cutoff: TAU * p.setpoint_lpf_hz,
             rate_max: p.rate_max,
             yaw_rate_max: p.yaw_slew,
             wanted: LEVEL,

@@ -19,7 +19,6 @@
 pub mod arming;
 pub mod attitude;
 pub mod battery;
-pub mod decimal;
 pub mod deflection;
 pub mod desaturation;
 pub mod effectiveness;

@@ -5,7 +5,7 @@
 //! The accelerometer is renewed at 1 kHz behind its filter, so its samples repeat.
 
 use embassy_time::Duration;
-use sophie_control::params::Params;
+use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
 
 use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
@@ -110,24 +110,23 @@ pub struct Config {
 impl Config {
     /// The rate and the ranges that the parameters ask for; the rest as by default.
     pub fn from_params(p: &Params) -> Self {
-        // Halfway between two choices on the logarithmic scale that they lie on.
         let read_every = match p.imu_rate {
-            hz if hz < 1414.0 => 8,
-            hz if hz < 2828.0 => 4,
-            hz if hz < 5657.0 => 2,
-            _ => 1,
+            ImuRate::Hz1000 => 8,
+            ImuRate::Hz2000 => 4,
+            ImuRate::Hz4000 => 2,
+            ImuRate::Hz8000 => 1,
         };
         let gyro_range = match p.imu_gyro_range {
-            dps if dps < 354.0 => GyroRange::Dps250,
-            dps if dps < 707.0 => GyroRange::Dps500,
-            dps if dps < 1414.0 => GyroRange::Dps1000,
-            _ => GyroRange::Dps2000,
+            ImuGyroRange::Dps250 => GyroRange::Dps250,
+            ImuGyroRange::Dps500 => GyroRange::Dps500,
+            ImuGyroRange::Dps1000 => GyroRange::Dps1000,
+            ImuGyroRange::Dps2000 => GyroRange::Dps2000,
         };
         let accel_range = match p.imu_accel_range {
-            g if g < 2.83 => AccelRange::G2,
-            g if g < 5.66 => AccelRange::G4,
-            g if g < 11.3 => AccelRange::G8,
-            _ => AccelRange::G16,
+            ImuAccelRange::G2 => AccelRange::G2,
+            ImuAccelRange::G4 => AccelRange::G4,
+            ImuAccelRange::G8 => AccelRange::G8,
+            ImuAccelRange::G16 => AccelRange::G16,
         };
         let config = Self {
             gyro_range,

@@ -5,7 +5,7 @@
 //! order, and below that rate its bandwidth, can be chosen.
 
 use embassy_time::Duration;
-use sophie_control::params::Params;
+use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
 
 use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
@@ -190,24 +190,23 @@ pub struct Config {
 impl Config {
     /// The rate and the ranges that the parameters ask for, all of which the part has; the rest as by default.
     pub fn from_params(p: &Params) -> Self {
-        // Halfway between two choices on the logarithmic scale that they lie on.
         let rate = match p.imu_rate {
-            hz if hz < 1414.0 => Rate::Khz1,
-            hz if hz < 2828.0 => Rate::Khz2,
-            hz if hz < 5657.0 => Rate::Khz4,
-            _ => Rate::Khz8,
+            ImuRate::Hz1000 => Rate::Khz1,
+            ImuRate::Hz2000 => Rate::Khz2,
+            ImuRate::Hz4000 => Rate::Khz4,
+            ImuRate::Hz8000 => Rate::Khz8,
         };
         let gyro_range = match p.imu_gyro_range {
-            dps if dps < 354.0 => GyroRange::Dps250,
-            dps if dps < 707.0 => GyroRange::Dps500,
-            dps if dps < 1414.0 => GyroRange::Dps1000,
-            _ => GyroRange::Dps2000,
+            ImuGyroRange::Dps250 => GyroRange::Dps250,
+            ImuGyroRange::Dps500 => GyroRange::Dps500,
+            ImuGyroRange::Dps1000 => GyroRange::Dps1000,
+            ImuGyroRange::Dps2000 => GyroRange::Dps2000,
         };
         let accel_range = match p.imu_accel_range {
-            g if g < 2.83 => AccelRange::G2,
-            g if g < 5.66 => AccelRange::G4,
-            g if g < 11.3 => AccelRange::G8,
-            _ => AccelRange::G16,
+            ImuAccelRange::G2 => AccelRange::G2,
+            ImuAccelRange::G4 => AccelRange::G4,
+            ImuAccelRange::G8 => AccelRange::G8,
+            ImuAccelRange::G16 => AccelRange::G16,
         };
         Self {
             rate,

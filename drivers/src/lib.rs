@@ -1,4 +1,4 @@
-//! Drivers of SOPHIE's sensors and the wire formats of its actuators.
+//! Drivers of SOPHIE's sensors and the wire formats of its receiver and actuators.
 //!
 //! No HAL: chips are reached through the embedded-hal traits, timers through counts that a board writes into
 //! its compare registers. A board builds the drivers and hands them to the tasks as their ports.
@@ -10,6 +10,7 @@
 //! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
 //! | [`i2c_lines`] | a held I2C bus is freed | used by the board's buses |
 //! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
+//! | [`rc_decoder`]: [`crsf`], [`sbus`] | receiver | `RcDecoder` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |
 //! | [`param_store`], [`fram`] | parameters in flash, or in FRAM on SPI | `Storage` |
 
@@ -28,6 +29,7 @@
 
 pub mod arm_buses;
 pub mod bno055;
+pub mod crsf;
 pub mod data_ready;
 pub mod dshot;
 pub mod dshot_decoder;
@@ -43,7 +45,9 @@ pub mod line_watch;
 pub mod mounting;
 pub mod param_store;
 pub mod pwm_timing;
+pub mod rc_decoder;
 pub mod registers;
+pub mod sbus;
 pub mod self_test;
 pub mod servo_pulse;
 pub mod spi_imu;

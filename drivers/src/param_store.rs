@@ -3,7 +3,7 @@
 //! One item of a `sequential_storage` map holds the whole set, so that a save that power cuts short leaves either the
 //! old set or the new one, never a mixture. An item is a tag and one record of eight bytes for each parameter that
 //! differs from the board's default: the FNV-1a hash of its name and the bits of its value. Firmware with other parameters
-//! still reads those that it knows.
+//! still reads those that it knows, and those that it knows under another name.
 //!
 //! Saves are appended; a page is erased when the log comes round to it. Loading never writes and never erases, whatever
 //! it finds: an erase at start-up could outlast the watchdog.
@@ -49,7 +49,7 @@ impl Found {
     /// True when this is just what a save of `params` leaves where they would else be `defaults`.
     fn holds(&self, params: &Params, defaults: &Params) -> bool {
         let same = match &self.set {
-            Some(set) => set.refused == 0 && set.over(defaults) == *params,
+            Some(set) => set.refused == 0 && !set.renamed && set.over(defaults) == *params,
             None => params == defaults,
         };
         same && !self.damaged

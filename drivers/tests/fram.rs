@@ -9,10 +9,12 @@ use std::rc::Rc;
 use embedded_storage_async::nor_flash::{NorFlash, ReadNorFlash};
 use fake::fram::{Answer, Bus, Chip};
 use fake::run;
+use sequential_storage::cache::Cache;
+use sequential_storage::map::{MapConfig, MapStorage};
 use sophie_control::params::Params;
 use sophie_drivers::fault::Fault;
 use sophie_drivers::fram::{CAPACITY, Fram, FramFault};
-use sophie_drivers::param_store::ParamStore;
+use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 /// What identity and protection take before the first access.
@@ -223,4 +225,64 @@ fn it_keeps_parameters_and_a_missing_one_is_a_broken_storage() {
     chip.borrow_mut().answer = Answer::Deaf;
     let (_, saved, again) = store(&chip, Params::default());
     assert_eq!((saved, again), (Err(StorageError::Broken), params));
+}
+
+#[test]
+fn a_set_of_old_names_and_units_is_read_and_the_next_save_has_the_new_ones() {
+    let chip = Chip::new();
+    let stored = include_bytes!("stored/fram-old-names.bin");
+    chip.borrow_mut().cells[..stored.len()].copy_from_slice(stored);
+    let mut params = Params::default();
+    for (name, value) in [
+        ("rc_protocol", 1.0),
+        ("perch_thr_max", 0.5),
+        ("setpoint_lpf_hz", 20.0 / std::f32::consts::TAU),
+        ("infill", 8.0),
+        ("motor_protocol", 600.0),
+    ] {
+        params.set(name, value).unwrap();
+    }
+    let taken = Loaded {
+        taken: 5,
+        ..Loaded::default()
+    };
+    assert_eq!(store(&chip, params), (taken, Ok(()), params));
+    let cells = chip.borrow().cells.clone();
+    let name = hash("setpoint_lpf_hz").to_le_bytes();
+    assert!(cells.windows(4).any(|w| *w == name), "not written anew");
+}
+
+#[test]
+fn sets_of_256_records_go_round_the_pages() {
+    let chip = Chip::new();
+    let mut item = b"SPH1".to_vec();
+    for (i, row) in Params::TABLE.iter().enumerate() {
+        let value = if i == 0 { 2.0 } else { row.default };
+        item.extend(hash(row.name).to_le_bytes());
+        item.extend(value.to_bits().to_le_bytes());
+    }
+    for i in Params::TABLE.len()..256 {
+        item.extend(hash(&format!("another_{i}")).to_le_bytes());
+        item.extend([0; 4]);
+    }
+    // A page holds one of them: twice round the eight pages.
+    for round in 0..16 {
+        let (bus, item) = (Bus(chip.clone()), item.clone());
+        let (params, loaded) = run(async move {
+            let mut fram = Fram::new(bus);
+            let mut map =
+                MapStorage::<(), _, _>::new(&mut fram, MapConfig::new(0..CAPACITY), Cache::new_uncached());
+            map.store_item(&mut [0; BUFFER], &(), &item.as_slice())
+                .await
+                .unwrap();
+            let mut params = Params::default();
+            let loaded = ParamStore::new(fram, 0..CAPACITY).load(&mut params).await;
+            (params, loaded)
+        });
+        let known = Params::TABLE.len() as u16;
+        assert_eq!((loaded.taken, loaded.refused), (known, 256 - known), "{round}");
+        assert!(!loaded.unreadable && params.mass == 2.0, "{round}");
+    }
+    let (_, saved, again) = store(&chip, Params::default());
+    assert_eq!((saved, again), (Ok(()), Params::default()));
 }

@@ -3,6 +3,7 @@
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
 
+use std::f32::consts::TAU;
 use std::ops::Range;
 
 use fake::flash::Flash;
@@ -12,7 +13,7 @@ use proptest::{prop_assert, prop_assert_eq, proptest};
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use sophie_control::params::Params;
-use sophie_drivers::param_store::{ParamStore, hash};
+use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 /// Pages as small as a short log needs, so that it goes round often.
@@ -202,6 +203,127 @@ fn what_firmware_with_other_parameters_stored_is_read_as_far_as_it_is_known() {
     // A save leaves nothing of what was refused.
     assert_eq!(save(&flash, known), Ok(()));
     assert_eq!(load(&flash), (known, sound(2)));
+}
+
+/// Two sectors as firmware of before the names of today left them after two saves; erased behind these bytes.
+fn of_old<const W: usize, const P: usize>(stored: &[u8]) -> Flash<W, P> {
+    let mut bytes = stored.to_vec();
+    bytes.resize(2 * P, 0xFF);
+    Flash::holding(bytes)
+}
+
+/// What that firmware was told: receiver_protocol 1, perch_throttle_max 0.5, setpoint_cutoff 20 rad/s, infill 8 %,
+/// motor_protocol 600.
+fn as_of_old() -> Params {
+    set(&[
+        ("rc_protocol", 1.0),
+        ("perch_thr_max", 0.5),
+        ("setpoint_lpf_hz", 20.0 / TAU),
+        ("infill", 8.0),
+        ("motor_protocol", 600.0),
+    ])
+}
+
+fn reads_old_names<const W: usize, const P: usize>(stored: &[u8]) {
+    let flash = of_old::<W, P>(stored);
+    let before = flash.0.borrow().bytes.clone();
+    assert_eq!(load(&flash), (as_of_old(), sound(5)));
+    assert!(flash.0.borrow().bytes == before, "a load wrote");
+    // A save writes the names of today, once.
+    for written in [true, false] {
+        let steps = flash.0.borrow().steps;
+        assert_eq!(save(&flash, as_of_old()), Ok(()));
+        assert_eq!(flash.0.borrow().steps > steps, written);
+        assert_eq!(load(&flash), (as_of_old(), sound(5)));
+    }
+    let bytes = flash.0.borrow().bytes.clone();
+    let found = |name| {
+        bytes
+            .windows(4)
+            .filter(|w| **w == hash(name).to_le_bytes())
+            .count()
+    };
+    assert_eq!((found("setpoint_cutoff"), found("setpoint_lpf_hz")), (1, 1));
+    assert_eq!(flash.0.borrow().violations, [""; 0]);
+}
+
+#[test]
+fn a_set_of_old_names_and_units_is_read_and_the_next_save_has_the_new_ones() {
+    reads_old_names::<32, { 128 * 1024 }>(include_bytes!("stored/h743-old-names.bin"));
+    reads_old_names::<4, { 16 * 1024 }>(include_bytes!("stored/f405-old-names.bin"));
+}
+
+#[test]
+fn of_an_old_and_a_new_name_in_one_set_the_new_one_counts() {
+    let record = |name, value: f32| [hash(name).to_le_bytes(), value.to_bits().to_le_bytes()].concat();
+    let (old, new) = (record("setpoint_cutoff", 20.0), record("setpoint_lpf_hz", 2.5));
+    for records in [[old.clone(), new.clone()], [new, old]] {
+        let item = [b"SPH1".to_vec(), records.concat()].concat();
+        let flash = with_item::<4, SMALL>(item.leak());
+        assert_eq!(load(&flash), (set(&[("setpoint_lpf_hz", 2.5)]), sound(1)));
+    }
+    // An old value that is out of range is left out, as under a new name.
+    let item = [b"SPH1".to_vec(), record("setpoint_cutoff", 500.0)].concat();
+    let (params, loaded) = load(&with_item::<4, SMALL>(item.leak()));
+    assert_eq!((params, loaded.taken, loaded.refused), (Params::default(), 0, 1));
+}
+
+/// Records of the fullest set.
+const FULL: usize = 256;
+
+/// A set of [`FULL`] records as firmware with more parameters stores it: all that there are here, and others.
+fn full_set(params: &Params) -> Vec<u8> {
+    let known = Params::TABLE
+        .iter()
+        .map(|row| (hash(row.name), params.get(row.name).unwrap()));
+    let others = (0..).map(|i| (hash(&format!("another_{i}")), i as f32));
+    let mut item = b"SPH1".to_vec();
+    for (name, value) in known.chain(others).take(FULL) {
+        item.extend(name.to_le_bytes());
+        item.extend(value.to_bits().to_le_bytes());
+    }
+    assert_eq!(item.len(), 4 + 8 * FULL);
+    item
+}
+
+/// Stores `saves` sets of [`FULL`] records, each read back; gives the erases.
+fn keeps_full_sets<const W: usize, const P: usize>(saves: usize) -> usize {
+    let flash = Flash::<W, P>::blank(2);
+    for i in 0..saves {
+        let wanted = Params {
+            infill: 4.0 + 0.01 * i as f32,
+            ..all_changed()
+        };
+        let (device, range, item) = (flash.clone(), flash.range(), full_set(&wanted));
+        run(async move {
+            let mut map = MapStorage::<(), _, _>::new(device, MapConfig::new(range), Cache::new_uncached());
+            map.store_item(&mut [0; BUFFER], &(), &item.as_slice())
+                .await
+                .unwrap();
+        });
+        let known = Params::TABLE.len();
+        let loaded = Loaded {
+            taken: known as u16,
+            refused: (FULL - known) as u16,
+            ..Loaded::default()
+        };
+        assert_eq!(load(&flash), (wanted, loaded), "save {i}");
+    }
+    assert_eq!(save(&flash, all_changed()), Ok(()));
+    assert_eq!(load(&flash), (all_changed(), sound(Params::TABLE.len() as u16)));
+    assert_eq!(flash.0.borrow().violations, [""; 0]);
+    flash.0.borrow().erases
+}
+
+#[test]
+fn sets_of_256_records_are_kept_on_the_boards_sectors_and_spare_them() {
+    // Items of 2052 bytes: 62 in a sector of the H743 (words of 32 bytes), 7 in one of the F405, of which the newest of
+    // the sector before is one.
+    let (large, small) = (
+        keeps_full_sets::<32, { 128 * 1024 }>(140),
+        keeps_full_sets::<4, { 16 * 1024 }>(60),
+    );
+    assert!(large <= 140 / 60 && small <= 60 / 6, "{large}, {small} erases");
 }
 
 /// A flash of an F405's sectors that another stack has used: the second page begins with `head`, the rest is full.

@@ -1,5 +1,7 @@
 //! Figs. 7 and 8, Table III: the 25° roll manoeuvre, its arms and its sideways force.
 
+use std::f32::consts::TAU;
+
 use crate::study::rig::{Flown, Moment, Wish, fly};
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
@@ -76,7 +78,7 @@ fn scenario(job: Job) -> Scenario {
     s.vehicle.arm_damping = job.arms.damping();
     if let Command::Hard(rate_p) = job.command {
         (s.params.attitude_p, s.params.rate_p) = (12.0, rate_p as f32);
-        (s.params.setpoint_cutoff, s.params.rate_max) = (100.0, 12.0);
+        (s.params.setpoint_lpf_hz, s.params.rate_max) = (100.0 / TAU, 12.0);
     }
     s
 }

@@ -1,5 +1,7 @@
 //! Eqs. 5 to 8: translational dynamics as printed and as derived, against a flight.
 
+use std::f32::consts::TAU;
+
 use crate::study::rig::{Flown, Moment, Wish, fly};
 use glam::DVec3;
 use sophie_control::wrench::Configuration;
@@ -74,7 +76,7 @@ fn truth(flown: &Flown, mass: f64) -> Vec<(Moment, DVec3)> {
 fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
     let mut s = vehicle(Configuration::B, 7.75, 6.9, Variant::Flexible);
     s.vehicle.coupled_arms = coupled;
-    s.params.setpoint_cutoff = 30.0;
+    s.params.setpoint_lpf_hz = 30.0 / TAU;
     let turn = heading / 0.5;
     let mut flown = fly(&s, None, turn + 5.0, |t| Wish {
         yaw_rate: if t < turn { 0.5 } else { 0.0 },

@@ -102,7 +102,7 @@ impl Board {
             arm_gravity: Cell::default(),
             memory: Cell::new([[0; WORDS]; 2]),
             accel_bias,
-            imu_rate: f64::from(params.imu_rate),
+            imu_rate: f64::from(params.imu_rate.number()),
         }
     }
 

@@ -1,7 +1,7 @@
 //! A receiver that speaks SBUS: what comes over the air, as frames on its line.
 
 use sophie_control::rc::CHANNELS;
-use sophie_tasks::rc::sbus::{FRAME, Frame};
+use sophie_drivers::sbus::{FRAME, Frame};
 
 /// Time between two frames, s: the slower of the two usual ones.
 const PERIOD: f64 = 14e-3;

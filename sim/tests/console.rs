@@ -243,7 +243,7 @@ fn a_parameter_is_found_changed_saved_and_in_force_after_the_restart() {
         "set infill NaN\r",
         "set motor_protocol 200\r",
         "set infill 8\r",
-        "set motor_protocol 400\r",
+        "set motor_protocol pwm\r",
         "set rate_p 11\r",
         "reset rate_p\r",
         "changes\r",

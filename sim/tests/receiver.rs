@@ -7,6 +7,7 @@ use fakes::{Answer, BrokenLine, FakeLine, links};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::rc::{RAW_CENTRE, Sticks};
+use sophie_drivers::crsf::Decoder;
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::crsf::{channel_frame, rc_frame};
@@ -22,7 +23,7 @@ struct Line {
 impl Line {
     fn new() -> Self {
         let (time, links, line) = (VirtualTime::new(), links(), FakeLine::default());
-        time.spawn(sophie_tasks::rc::run(links, line.clone()));
+        time.spawn(sophie_tasks::rc::run(links, line.clone(), Decoder::new()));
         Self {
             time,
             links,
@@ -143,7 +144,7 @@ fn a_broken_line_is_counted_and_leaves_the_processor_alone() {
         let (time, links) = (VirtualTime::new(), links());
         let line = BrokenLine::default();
         line.0.answer.set(answer);
-        time.spawn(sophie_tasks::rc::run(links, line.clone()));
+        time.spawn(sophie_tasks::rc::run(links, line.clone(), Decoder::new()));
         time.run_until(1_000_000);
         assert!(!line.0.spun.get(), "{answer:?}");
         assert!(links.rc.latest().is_none());
@@ -154,7 +155,7 @@ fn a_broken_line_is_counted_and_leaves_the_processor_alone() {
 fn the_simulated_line_loses_no_byte_that_fits() {
     let (time, links) = (VirtualTime::new(), links());
     let board: &'static Board = Box::leak(Box::new(Board::new(&mut Pcg64Mcg::seed_from_u64(1))));
-    time.spawn(sophie_tasks::rc::run(links, Port(board)));
+    time.spawn(sophie_tasks::rc::run(links, Port(board), Decoder::new()));
     for i in 1..=100 {
         board.receive(&frame(0.4));
         time.run_until(i * 10_000);

@@ -8,13 +8,14 @@ use fakes::FakeLine;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::{Mode, Reason};
-use sophie_control::params::Params;
+use sophie_control::params::{Params, RcProtocol};
 use sophie_control::rc::Sticks;
+use sophie_drivers::rc_decoder::Decoder;
+use sophie_drivers::sbus::Frame;
 use sophie_sim::crsf::rc_frame;
 use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario};
-use sophie_tasks::rc::sbus::Frame;
 use vehicle::Vehicle;
 
 /// Time between two frames, ms.
@@ -22,7 +23,7 @@ const FRAME_MS: u64 = 7;
 
 fn sbus() -> Params {
     Params {
-        receiver_protocol: 1.0,
+        rc_protocol: RcProtocol::Sbus,
         ..Params::default()
     }
 }
@@ -39,7 +40,9 @@ fn on_line(params: Params) -> (Vehicle, FakeLine) {
     let mut v = Vehicle::with(params);
     v.sticks = None;
     let line = FakeLine::default();
-    v.time.spawn(sophie_tasks::rc::run(v.links, line.clone()));
+    let decoder = Decoder::from_params(&v.links.params);
+    v.time
+        .spawn(sophie_tasks::rc::run(v.links, line.clone(), decoder));
     (v, line)
 }
 

@@ -27,7 +27,7 @@ use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, perip
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
-use sophie_drivers::esc_protocol::Protocol;
+use sophie_drivers::esc_protocol::EscProtocol;
 #[cfg(feature = "imu-icm20689")]
 use sophie_drivers::icm20689 as part;
 #[cfg(not(feature = "imu-icm20689"))]
@@ -261,7 +261,7 @@ fn imu(p: ImuParts, params: &Params) -> ImuPort {
 
 fn motors(p: MotorParts, params: &Params) -> MotorsPort {
     let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
-    EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))
+    EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
 }
 
 /// The motors' pins low, whatever drives them: the last resort of a fault handler.

@@ -3,6 +3,7 @@
 use sophie_control::arming::Refusal;
 use sophie_control::mixer::Flexible;
 use sophie_control::wrench::Configuration;
+use sophie_drivers::rc_decoder::Decoder;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::Look;
 
@@ -77,7 +78,7 @@ pub async fn servos(links: &'static Links, port: board::ServosPort) -> ! {
 /// Steady level: receiver.
 #[embassy_executor::task]
 pub async fn rc(links: &'static Links, port: board::ReceiverLine) -> ! {
-    sophie_tasks::rc::run(links, port).await
+    sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
 }
 
 /// Steady level: mode logic.

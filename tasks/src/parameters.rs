@@ -1,8 +1,11 @@
-//! The parameters at start-up: the defaults, and over them what is stored.
+//! The parameters at start-up (the defaults, and over them what is stored), and what people are told that they take.
+
+use core::fmt;
 
 use sophie_control::arming::Refusal;
-use sophie_control::params::Params;
+use sophie_control::params::{ParamInfo, Params, Renamed};
 
+use crate::decimal::{self, Decimal};
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
 
@@ -18,4 +21,65 @@ pub fn report(links: &Links, loaded: Loaded) {
     let foreign = loaded.foreign.is_some();
     links.report(Refusal::StorageUnreadable, loaded.unreadable && !foreign);
     links.report(Refusal::StorageForeign, foreign);
+}
+
+/// What a parameter takes: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus".
+#[derive(Clone, Copy, Debug)]
+pub struct Allowed<'a>(pub &'a ParamInfo);
+
+impl fmt::Display for Allowed<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let row = self.0;
+        if row.choices.is_empty() {
+            write!(f, "{} to {}", Decimal(row.min), Decimal(row.max))?;
+        } else {
+            f.write_str(if f.alternate() { "" } else { "one of " })?;
+            for (i, choice) in row.choices.iter().enumerate() {
+                f.write_str(if i == 0 { "" } else { ", " })?;
+                if f.alternate() && !choice.name.is_empty() {
+                    f.write_str(choice.name)?;
+                } else {
+                    Shown(row, choice.value).fmt(f)?;
+                }
+            }
+        }
+        Unit(row.unit).fmt(f)
+    }
+}
+
+/// The value of parameter `row` that `text` is: a number, or the name of a choice. `None` for anything else; whether it
+/// is allowed is not looked at. A number under an old name is in its old unit.
+pub(crate) fn parse_value(row: &ParamInfo, renamed: Option<&Renamed>, text: &str) -> Option<f32> {
+    if let Some(choice) = row.choice_named(text) {
+        return Some(choice.value);
+    }
+    let number = decimal::parse(text)?;
+    Some(renamed.map_or(number, |renamed| renamed.convert(number)))
+}
+
+/// A value of a parameter: the number, with its name where it has one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown<'a>(pub &'a ParamInfo, pub f32);
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let &Self(row, value) = self;
+        match row.choice(value).map_or("", |choice| choice.name) {
+            "" => write!(f, "{}", Decimal(value)),
+            name => write!(f, "{} {name}", Decimal(value)),
+        }
+    }
+}
+
+/// A unit behind its value; nothing for a pure number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unit(pub &'static str);
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            "1" => Ok(()),
+            unit => write!(f, " {unit}"),
+        }
+    }
 }

@@ -1,12 +1,14 @@
 //! What a board implements. Every unit is SI unless said otherwise.
 
-use crate::retained_state::Words;
 use embassy_time::Instant;
 use heapless::{String, Vec};
 use sophie_control::arming::Refusal;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
+
+use crate::links::RcState;
+use crate::retained_state::Words;
 
 /// Why a port gave nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,6 +110,16 @@ pub trait SerialInput {
     /// # Errors
     /// A line error; the next call starts a new frame.
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError>;
+}
+
+/// The receiver's protocol: frames and counts out of the bytes of its line, however these are cut.
+pub trait RcDecoder {
+    /// Takes bytes that were there at `at`; gives the state when they held at least one good frame of channels and
+    /// the radio is not known to be lost.
+    fn take(&mut self, bytes: &[u8], at: Instant) -> Option<RcState>;
+
+    /// The line has failed at `at`: bytes are missing.
+    fn broken(&mut self, at: Instant);
 }
 
 /// A serial line from the vehicle: to the receiver, which carries telemetry to the pilot, or to the console.

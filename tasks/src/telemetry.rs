@@ -15,13 +15,13 @@ use core::future::pending;
 use embassy_time::Duration;
 use heapless::String;
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::params::RcProtocol;
 use uf_crsf::packets::{self, CrsfPacket, PacketAddress};
 use uf_crsf::write_packet_to_buffer;
 
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Battery, Links, Status};
 use crate::ports::SerialOutput;
-use crate::rc::Protocol;
 
 /// Time between two frames.
 pub const PERIOD: Duration = Duration::from_millis(50);
@@ -37,7 +37,7 @@ type Frame = heapless::Vec<u8, 64>;
 
 /// Sends frames; never returns.
 pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
-    while Protocol::from_params(&links.params) == Protocol::Sbus {
+    if links.params.rc_protocol == RcProtocol::Sbus {
         pending::<()>().await;
     }
     let mut rate = FixedRate::new(links, TaskId::Telemetry, PERIOD, PERIOD);

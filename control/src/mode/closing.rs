@@ -130,7 +130,7 @@ impl ModeLogic {
             }
             return State::Perched { grip_memory };
         }
-        let throttle_set = (RELEASE_THROTTLE_MIN..=self.params.perch_throttle_max).contains(&s.throttle);
+        let throttle_set = (RELEASE_THROTTLE_MIN..=self.params.perch_thr_max).contains(&s.throttle);
         let asked = !s.perch_switch && self.perch_seen_on && throttle_set;
         match i.motion {
             Some(m) if asked && self.dangers.landing().is_none() && !self.leans_too_far() => {

@@ -101,7 +101,7 @@ impl ModeLogic {
     /// Setpoint of the present state, before the collective is handed over and limited.
     fn wish(&self, i: &Inputs) -> Setpoint {
         let full = 4.0 * self.params.thrust_max;
-        let perch_throttle = clamp(self.throttle, 0.0, self.params.perch_throttle_max);
+        let perch_throttle = clamp(self.throttle, 0.0, self.params.perch_thr_max);
         match (self.state, i.sticks) {
             (State::Armed | State::Landed, _) => Setpoint::Idle,
             (State::Flight, Some(s)) => demand::from_sticks(&s, &self.params),
@@ -111,7 +111,7 @@ impl ModeLogic {
             (State::Clamping { spool, .. }, _) if spool.stopped() => Setpoint::Stop,
             (State::Clamping { hold, spool }, _) => spool.rotors(hold, perch_throttle * full),
             (State::Releasing { hold, share, .. }, _) => {
-                let throttle = clamp(self.throttle, CLOSE_AGAIN, self.params.perch_throttle_max);
+                let throttle = clamp(self.throttle, CLOSE_AGAIN, self.params.perch_thr_max);
                 hold.rotors(share * throttle * full)
             }
             (State::Escaping(escape), sticks) => self.escape_rotors(escape, sticks),

@@ -21,7 +21,7 @@ pub const IDLE_MAX: f32 = 30.0;
 pub const LANDED_TIME: f32 = 2.0;
 /// Time on the pipe before the tendons close, s.
 pub const CONTACT_TIME: f32 = 0.3;
-/// Throttle above `perch_throttle_max` by which the contact is given up, 1.
+/// Throttle above `perch_thr_max` by which the contact is given up, 1.
 const CONTACT_MARGIN: f32 = 0.03;
 /// Lean beyond which the arms are not closed, rad. Before the arms hold, a vehicle that leans by θ along a pipe's
 /// flank stays only while sin θ <= μ (cos θ - T/W): 14° at μ 0.6 and 30 % throttle.
@@ -292,7 +292,7 @@ impl ModeLogic {
     /// The touch of the pipe: perch switch turned on, throttle down, something carries, nearly level.
     fn touch(&mut self, i: &Inputs, s: Sticks) -> Option<State> {
         let motion = i.motion?;
-        let wanted = s.perch_switch && s.throttle <= self.params.perch_throttle_max;
+        let wanted = s.perch_switch && s.throttle <= self.params.perch_thr_max;
         if wanted && self.perch_seen_off && self.slides_at_touch() {
             return Some(self.slide_off(i, GripMemory::Open));
         }
@@ -318,7 +318,7 @@ impl ModeLogic {
     }
 
     fn contact(&mut self, i: &Inputs, hold: Hold, sticks: Option<Sticks>, dt: f32) -> State {
-        let most = self.params.perch_throttle_max + CONTACT_MARGIN;
+        let most = self.params.perch_thr_max + CONTACT_MARGIN;
         if sticks.is_some_and(|s| !s.perch_switch || s.throttle > most) {
             return State::Flight;
         }

@@ -1,14 +1,14 @@
 //! A set of parameters as one item of the map.
 
 use sequential_storage::map::{SerializationError, Value};
-use sophie_control::params::Params;
+use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 
 /// Marks an item as ours, and how it is laid out.
 const TAG: [u8; 4] = *b"SPH1";
 /// Bytes of a record: hash of the name and bits of the value, both little-endian.
 const RECORD: usize = 8;
 /// Most records of a set. More than the table has, so that a set of other firmware can be read.
-const RECORDS: usize = 128;
+pub(super) const RECORDS: usize = 256;
 /// Bytes of the longest set.
 pub(super) const LONGEST: usize = TAG.len() + RECORDS * RECORD;
 
@@ -35,6 +35,8 @@ pub(super) struct Set {
     defaults: &'static Params,
     /// What was read as a set: the rows of the table that had a record.
     given: Rows,
+    /// Something stands under an old name: it is written under the new one at the next save.
+    pub renamed: bool,
     /// Records taken over.
     pub taken: u16,
     /// Records of unknown names, or of values that are not allowed.
@@ -46,7 +48,8 @@ impl Set {
         Self {
             params,
             defaults,
-            given: 0,
+            given: Rows::NONE,
+            renamed: false,
             taken: 0,
             refused: 0,
         }
@@ -55,8 +58,8 @@ impl Set {
     /// What was read, and for everything else the defaults.
     pub(super) fn over(&self, defaults: &Params) -> Params {
         let mut params = *defaults;
-        for (at, row) in (0u32..).zip(Params::TABLE) {
-            if self.given >> at & 1 != 0
+        for (at, row) in Params::TABLE.iter().enumerate() {
+            if self.given.contains(at)
                 && let Some(value) = self.params.get(row.name)
             {
                 // Allowed: it was set in the same way when it was read.
@@ -67,9 +70,42 @@ impl Set {
     }
 }
 
-/// A bit for each row of the table.
-type Rows = u128;
-const _: () = assert!(Params::TABLE.len() <= Rows::BITS as usize, "a row has no bit");
+/// Rows of the table, a bit each.
+#[derive(Clone, Copy)]
+struct Rows([u32; RECORDS / 32]);
+
+impl Rows {
+    const NONE: Self = Self([0; RECORDS / 32]);
+
+    fn insert(&mut self, at: usize) {
+        if let Some(word) = self.0.get_mut(at / 32) {
+            *word |= 1 << (at % 32);
+        }
+    }
+
+    fn contains(&self, at: usize) -> bool {
+        self.0.get(at / 32).is_some_and(|word| word >> (at % 32) & 1 != 0)
+    }
+}
+
+/// What a record's name stands for.
+struct Known {
+    /// The row's place in the table.
+    at: usize,
+    row: &'static ParamInfo,
+    /// Where the record has the row's old name.
+    renamed: Option<&'static Renamed>,
+}
+
+impl Known {
+    fn find(name: u32) -> Option<Self> {
+        let renamed = RENAMED.iter().find(|renamed| hash(renamed.old) == name);
+        let name = renamed.map_or(name, |renamed| hash(renamed.new));
+        let mut rows = Params::TABLE.iter().enumerate();
+        let (at, row) = rows.find(|(_, row)| hash(row.name) == name)?;
+        Some(Self { at, row, renamed })
+    }
+}
 
 impl<'a> Value<'a> for Set {
     /// Writes the tag and a record for each parameter that differs from its default.
@@ -103,19 +139,31 @@ impl<'a> Value<'a> for Set {
             return Err(SerializationError::InvalidFormat);
         };
         let mut set = Self::of(Params::DEFAULT, &Params::DEFAULT);
+        // Rows that have a record under the name of the table, which goes before one under the old name.
+        let mut under_new = Rows::NONE;
         for &[h0, h1, h2, h3, v0, v1, v2, v3] in records {
             let (name, value) = (
                 u32::from_le_bytes([h0, h1, h2, h3]),
                 f32::from_le_bytes([v0, v1, v2, v3]),
             );
-            let mut rows = (0u32..).zip(Params::TABLE);
-            match rows.find(|(_, row)| hash(row.name) == name) {
-                Some((at, row)) if set.params.set(row.name, value).is_ok() => {
-                    set.given |= 1 << at;
-                    set.taken += 1;
-                }
-                _ => set.refused += 1,
+            let Some(Known { at, row, renamed }) = Known::find(name) else {
+                set.refused += 1;
+                continue;
+            };
+            set.renamed |= renamed.is_some();
+            if renamed.is_some() && under_new.contains(at) {
+                continue;
             }
+            let value = renamed.map_or(value, |renamed| renamed.convert(value));
+            if set.params.set(row.name, value).is_err() {
+                set.refused += 1;
+                continue;
+            }
+            if renamed.is_none() {
+                under_new.insert(at);
+            }
+            set.taken += u16::from(!set.given.contains(at));
+            set.given.insert(at);
         }
         Ok((set, buffer.len()))
     }
@@ -130,8 +178,10 @@ mod tests {
 
     #[test]
     fn no_two_names_share_a_hash() {
-        let hashes: BTreeSet<u32> = Params::TABLE.iter().map(|row| hash(row.name)).collect();
-        assert_eq!(hashes.len(), Params::TABLE.len());
+        let names = Params::TABLE.iter().map(|row| row.name);
+        let names = names.chain(RENAMED.iter().map(|renamed| renamed.old));
+        let hashes: BTreeSet<u32> = names.map(hash).collect();
+        assert_eq!(hashes.len(), Params::TABLE.len() + RENAMED.len());
         // Published vectors of FNV-1a, 32 bit: what is stored must mean the same in every release.
         assert_eq!(
             [hash(""), hash("a"), hash("foobar")],

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::future::Future;
 use std::rc::Rc;
 
-use sophie_sim::clock::VirtualTime;
+use sophie_clock::VirtualTime;
 
 /// Runs `future` on a clock of its own; it must end within ten minutes of that clock.
 pub fn run<T: 'static>(future: impl Future<Output = T> + 'static) -> T {

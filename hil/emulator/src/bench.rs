@@ -6,16 +6,16 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::fsr::FsrScale;
 use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::mode::Mode;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, RcProtocol};
 use sophie_control::rc::Sticks;
 use sophie_control::tendon::Reel;
 use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::wrench::PerArm;
+use sophie_drivers::sbus;
 use sophie_sim::crsf::Telemetry;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
-use sophie_tasks::rc::{Protocol, sbus};
 use sophie_tasks::start::Cause;
 use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
@@ -58,7 +58,7 @@ pub struct Bench<'a> {
     overruns: BTreeMap<String, u32>,
     log_digest: Digest,
     params: Params,
-    protocol: Protocol,
+    protocol: RcProtocol,
     watched: Watched,
     tilts: Tilts,
     /// Every line of the log.
@@ -146,7 +146,7 @@ impl<'a> Bench<'a> {
             overruns: BTreeMap::new(),
             log_digest: Digest::default(),
             params,
-            protocol: Protocol::from_params(&params),
+            protocol: params.rc_protocol,
             watched: Watched::default(),
             tilts: Tilts::new(&params),
             lines: Vec::new(),
@@ -365,21 +365,21 @@ impl Aircraft for Bench<'_> {
 }
 
 /// Where the sticks are by a frame of the radio; `None` for other frames.
-fn sticks(protocol: Protocol, mut frame: &[u8]) -> Option<Sticks> {
+fn sticks(protocol: RcProtocol, mut frame: &[u8]) -> Option<Sticks> {
     match protocol {
-        Protocol::Crsf => match CrsfParser::default().next_packet(&mut frame) {
+        RcProtocol::Crsf => match CrsfParser::default().next_packet(&mut frame) {
             Some(Ok(Packet::RCChannels(channels))) => Sticks::from_channels(&channels.0).ok(),
             _ => None,
         },
-        Protocol::Sbus => sbus::Frame::decode(frame.try_into().ok()?)?.sticks().ok(),
+        RcProtocol::Sbus => sbus::Frame::decode(frame.try_into().ok()?)?.sticks().ok(),
     }
 }
 
 /// A byte as it goes over the receiver's line: SBUS puts an even parity on top.
-fn on_line(protocol: Protocol, byte: u8) -> u16 {
+fn on_line(protocol: RcProtocol, byte: u8) -> u16 {
     let parity = match protocol {
-        Protocol::Crsf => 0,
-        Protocol::Sbus => byte.count_ones() as u16 & 1,
+        RcProtocol::Crsf => 0,
+        RcProtocol::Sbus => byte.count_ones() as u16 & 1,
     };
     u16::from(byte) | parity << 8
 }
@@ -430,9 +430,9 @@ mod tests {
 
     #[test]
     fn an_sbus_word_has_an_even_number_of_ones() {
-        assert_eq!(on_line(Protocol::Sbus, 0x0F), 0x0F);
-        assert_eq!(on_line(Protocol::Sbus, 0x07), 0x107);
-        assert_eq!(on_line(Protocol::Crsf, 0x07), 0x07);
+        assert_eq!(on_line(RcProtocol::Sbus, 0x0F), 0x0F);
+        assert_eq!(on_line(RcProtocol::Sbus, 0x07), 0x107);
+        assert_eq!(on_line(RcProtocol::Crsf, 0x07), 0x07);
     }
 
     #[test]
@@ -441,15 +441,15 @@ mod tests {
             roll: 0.5,
             ..Sticks::default()
         };
-        let read = sticks(Protocol::Crsf, &sophie_sim::crsf::rc_frame(&sent)).unwrap();
+        let read = sticks(RcProtocol::Crsf, &sophie_sim::crsf::rc_frame(&sent)).unwrap();
         assert!((read.roll - 0.5).abs() < 0.02);
-        assert!(sticks(Protocol::Crsf, &[1, 2, 3]).is_none());
+        assert!(sticks(RcProtocol::Crsf, &[1, 2, 3]).is_none());
         let frame = sbus::Frame {
             channels: [1500; 16],
             ..sbus::Frame::default()
         };
-        let read = sticks(Protocol::Sbus, &frame.encode()).unwrap();
+        let read = sticks(RcProtocol::Sbus, &frame.encode()).unwrap();
         assert!((read.roll - 0.62).abs() < 0.02);
-        assert!(sticks(Protocol::Sbus, &[1, 2, 3]).is_none());
+        assert!(sticks(RcProtocol::Sbus, &[1, 2, 3]).is_none());
     }
 }

@@ -1,5 +1,6 @@
 //! A motor controller at the end of its wire: makes a command of edges, and stops when it hears nothing.
 
+use sophie_control::params::MotorProtocol;
 use sophie_drivers::dshot::{THROTTLE_MAX, THROTTLE_MIN};
 use sophie_drivers::dshot_decoder::{Decoder, LineError};
 
@@ -16,15 +17,15 @@ pub enum Line {
 }
 
 impl Line {
-    /// What the parameter `motor_protocol` names, by its number in the parameters' table.
+    /// The line of controllers that speak `protocol`.
     #[must_use]
-    pub fn from_number(number: f32) -> Self {
-        match number as u32 {
-            150 => Self::DShot(150),
-            600 => Self::DShot(600),
-            400 => Self::Pulse(1000),
-            125 => Self::Pulse(125),
-            _ => Self::DShot(300),
+    pub const fn of(protocol: MotorProtocol) -> Self {
+        match protocol {
+            MotorProtocol::Oneshot125 => Self::Pulse(125),
+            MotorProtocol::Dshot150 => Self::DShot(150),
+            MotorProtocol::Dshot300 => Self::DShot(300),
+            MotorProtocol::Pwm => Self::Pulse(1000),
+            MotorProtocol::Dshot600 => Self::DShot(600),
         }
     }
 }

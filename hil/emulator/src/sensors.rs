@@ -51,7 +51,7 @@ impl Sensors {
         let battery = BatteryInputs::new(rng);
         Self {
             imu,
-            samples: ((f64::from(params.imu_rate) * STEP) as u32).max(1),
+            samples: ((f64::from(params.imu_rate.number()) * STEP) as u32).max(1),
             calibration,
             arms,
             fsr,

@@ -11,7 +11,7 @@ use std::time::Instant as WallInstant;
 use glam::DVec3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
-use sophie_tasks::rc::Protocol;
+use sophie_control::params::RcProtocol;
 
 use self::aircraft::Aircraft;
 use self::judge::Judge;
@@ -53,7 +53,7 @@ pub fn fly_with<A: Aircraft>(
     let mut recorder = Recorder::new(scenario);
     let mut judge = Judge::new(scenario);
     let mut telemetry = [0u8; TELEMETRY_BYTES];
-    let protocol = Protocol::from_params(&scenario.params);
+    let protocol = scenario.params.rc_protocol;
     let mut sbus = Receiver::default();
 
     let limit_ms = (scenario.time_limit * 1e3) as u64;
@@ -68,19 +68,19 @@ pub fn fly_with<A: Aircraft>(
         let t = ms as f64 * 1e-3;
         stack.step_world(&mut plant);
         let received = stack.take_telemetry(&mut telemetry);
-        if protocol == Protocol::Sbus
+        if protocol == RcProtocol::Sbus
             && let Some(said) = stack.status()
         {
             pilot.hear(said.mode, said.reason);
         }
         let output = pilot.step(1e-3, seen(&plant, t), &telemetry[..received]);
         match protocol {
-            Protocol::Crsf => {
+            RcProtocol::Crsf => {
                 if let Some(frame) = &output.rc_bytes {
                     stack.receive(frame);
                 }
             }
-            Protocol::Sbus => {
+            RcProtocol::Sbus => {
                 if let Some(frame) = sbus.step(1e-3, output.channels) {
                     stack.receive(&frame);
                 }

@@ -6,6 +6,7 @@ use sophie_control::math;
 use sophie_control::mode::Reason;
 use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, PerArm};
+use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Status};
@@ -76,7 +77,8 @@ impl Stack {
         time.spawn(sophie_tasks::analog::run(links, Port(board)));
         time.spawn(sophie_tasks::clamp::run(links));
         time.spawn(sophie_tasks::servos::run(links, Port(board)));
-        time.spawn(sophie_tasks::rc::run(links, Port(board)));
+        let decoder = Decoder::from_params(&links.params);
+        time.spawn(sophie_tasks::rc::run(links, Port(board), decoder));
         time.spawn(sophie_tasks::commander::run(links));
         time.spawn(sophie_tasks::supervisor::run(links, Port(board), Port(board)));
         // Background.

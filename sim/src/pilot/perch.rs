@@ -69,7 +69,7 @@ const CLEAR: f64 = 0.06;
 
 impl Mind {
     /// Share of the throttles on the pipe that is given: less with stronger rotors, which would lift the vehicle off,
-    /// never more, since the stack takes more than `perch_throttle_max` for flying on.
+    /// never more, since the stack takes more than `perch_thr_max` for flying on.
     fn lightly(&self) -> f64 {
         self.guidance.strength().min(1.0)
     }

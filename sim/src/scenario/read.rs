@@ -5,7 +5,8 @@
 
 use core::ops::Range as Span;
 
-use sophie_control::params::{ParamError, Params};
+use sophie_control::params::{Params, Renamed};
+use sophie_tasks::parameters::Allowed;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -172,15 +173,27 @@ impl Source<'_> {
     fn params(&self, table: &DeTable<'_>, params: &mut Params) -> Result<()> {
         for (name, span, value) in in_order(table) {
             let key = format!("params.{name}");
-            let number = as_number(value).ok_or_else(|| self.bad(&key, value, "a number"));
-            match params.set(name, number? as f32) {
-                Ok(()) => {}
-                Err(ParamError::Unknown) => {
-                    let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
-                    return Err(self.unknown(&key, &span, value, known));
-                }
-                Err(allowed) => return Err(self.bad(&key, value, allowed.to_string())),
+            let renamed = Renamed::find(name);
+            if let Some(new) = renamed.map(|r| r.new).filter(|new| table.contains_key(*new)) {
+                return Err(self.bad(&key, value, format!("one of the two, it is params.{new} now")));
             }
+            let Some(row) = Params::row(renamed.map_or(name, |r| r.new)) else {
+                let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
+                return Err(self.unknown(&key, &span, value, known));
+            };
+            let named = value.get_ref().as_str().and_then(|name| row.choice_named(name));
+            let number = named
+                .map(|choice| choice.value)
+                .or(as_number(value).map(|n| n as f32));
+            let number = match (renamed, named) {
+                (Some(renamed), None) => number.map(|number| renamed.convert(number)),
+                _ => number,
+            };
+            let set = number.and_then(|number| params.set(row.name, number).ok());
+            set.ok_or_else(|| {
+                let now = renamed.map_or(String::new(), |r| format!(" as params.{}", r.new));
+                self.bad(&key, value, format!("{}{now}", Allowed(row)))
+            })?;
         }
         Ok(())
     }

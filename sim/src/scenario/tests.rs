@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sophie_control::params::Params;
+use sophie_control::params::{Params, RcProtocol};
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_mixers::Variant;
@@ -211,7 +211,27 @@ fn bad_values_name_file_line_key_value_and_what_is_allowed() {
         ),
         (
             "[params]\nrate_p = true",
-            "perch.toml:2: params.rate_p = true: allowed a number",
+            "perch.toml:2: params.rate_p = true: allowed 0 to 40 1/s",
+        ),
+        (
+            "[params]\nrc_protocol = 0.4",
+            "perch.toml:2: params.rc_protocol = 0.4: allowed one of 0 crsf, 1 sbus",
+        ),
+        (
+            "[params]\nrc_protocol = 'sbos'",
+            "perch.toml:2: params.rc_protocol = 'sbos': allowed one of 0 crsf, 1 sbus",
+        ),
+        (
+            "[params]\nimu_rate = ''",
+            "perch.toml:2: params.imu_rate = '': allowed one of 1000, 2000, 4000, 8000 Hz",
+        ),
+        (
+            "[params]\nsetpoint_cutoff = 500",
+            "perch.toml:2: params.setpoint_cutoff = 500: allowed 0.15 to 16 Hz as params.setpoint_lpf_hz",
+        ),
+        (
+            "[params]\nperch_thr_max = 0.3\nperch_throttle_max = 0.4",
+            "perch.toml:3: params.perch_throttle_max = 0.4: allowed one of the two, it is params.perch_thr_max now",
         ),
         (
             "[world]\npipe_top_m = 0.6\npipe_diameter_m = 0.5",
@@ -549,4 +569,22 @@ fn a_vehicle_that_loads_can_be_stepped() {
     }
     println!("{loaded} flown, {refused} refused");
     assert!(loaded > 40 && refused > 20, "{loaded} flown, {refused} refused");
+}
+
+#[test]
+fn old_names_of_parameters_and_names_of_their_values_are_read() {
+    let params = |text: &str| {
+        Scenario::parse(&format!("[params]\n{text}"), "old.toml", &Overrides::default())
+            .unwrap()
+            .params
+    };
+    let old = params("receiver_protocol = 1\nperch_throttle_max = 0.5\nsetpoint_cutoff = 20");
+    assert_eq!(
+        old,
+        params("rc_protocol = 'sbus'\nperch_thr_max = 0.5\nsetpoint_lpf_hz = 3.1830988")
+    );
+    assert_eq!(old.rc_protocol, RcProtocol::Sbus);
+    assert_eq!(params("receiver_protocol = 'sbus'").rc_protocol, RcProtocol::Sbus);
+    assert_eq!(params("motor_protocol = 'pwm'"), params("motor_protocol = 400"));
+    assert_eq!(params("setpoint_cutoff = 10"), params(""), "the default");
 }

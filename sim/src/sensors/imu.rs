@@ -45,10 +45,10 @@ impl Imu {
     /// A part with biases of its own, configured as `params` say.
     #[must_use]
     pub fn new(params: &Params, mut rng: Pcg64Mcg) -> Self {
-        let rate = f64::from(params.imu_rate);
+        let rate = f64::from(params.imu_rate.number());
         let (dps, g) = (
-            f64::from(params.imu_gyro_range),
-            f64::from(params.imu_accel_range),
+            f64::from(params.imu_gyro_range.number()),
+            f64::from(params.imu_accel_range.number()),
         );
         let mut within =
             |limit: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(-limit..limit)));
@@ -118,6 +118,8 @@ impl Imu {
 
 #[cfg(test)]
 mod tests {
+    use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate};
+
     use super::*;
 
     #[test]
@@ -150,12 +152,12 @@ mod tests {
             (x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64).sqrt()
         };
         // Twice the band is √2 of the noise.
-        let (slow, fast) = (spread(1000.0), spread(8000.0));
+        let (slow, fast) = (spread(ImuRate::Hz1000), spread(ImuRate::Hz8000));
         assert!((fast / slow / 8f64.sqrt() - 1.0).abs() < 0.1, "{slow} {fast}");
 
         let params = Params {
-            imu_gyro_range: 250.0,
-            imu_accel_range: 2.0,
+            imu_gyro_range: ImuGyroRange::Dps250,
+            imu_accel_range: ImuAccelRange::G2,
             ..Params::default()
         };
         let mut imu = Imu::new(&params, Pcg64Mcg::new(3));

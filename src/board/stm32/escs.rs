@@ -16,7 +16,7 @@ use embassy_stm32::{Peri, rcc};
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::wrench::PerArm;
 use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
-use sophie_drivers::esc_protocol::Protocol;
+use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::esc_pwm::EscPulse;
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_tasks::ports::Motors;
@@ -42,7 +42,6 @@ static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> =
 enum Timing {
     DShot(BitTiming),
     Pulse(EscPulse, PwmTiming),
-    Off,
 }
 
 /// Speed controllers on channels of a 16-bit timer.
@@ -74,7 +73,7 @@ where
         ),
         dma: Peri<'static, D>,
         irqs: I,
-        protocol: Protocol,
+        protocol: EscProtocol,
     ) -> Self {
         const {
             let bits = 1 << C1::CHANNEL as u32
@@ -91,12 +90,12 @@ where
     }
 
     /// The first of two timers, without motors yet. Called once.
-    pub fn first(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: Protocol) -> Self {
+    pub fn first(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: EscProtocol) -> Self {
         Self::bare(timer, dma, irqs, protocol, DMA_MOTORS.take())
     }
 
     /// The second of two timers, without motors yet. Called once.
-    pub fn second(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: Protocol) -> Self {
+    pub fn second(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: EscProtocol) -> Self {
         Self::bare(timer, dma, irqs, protocol, DMA_MORE_MOTORS.take())
     }
 
@@ -104,7 +103,7 @@ where
         timer: Peri<'static, T>,
         dma: Peri<'static, D>,
         irqs: I,
-        protocol: Protocol,
+        protocol: EscProtocol,
         burst: &'static mut EscBurst,
     ) -> Self {
         let timing = timing(protocol, rcc::frequency::<T>().0);
@@ -112,7 +111,6 @@ where
         let (prescaler, period) = match timing {
             Timing::DShot(bit) => (0, u32::from(bit.period)),
             Timing::Pulse(_, t) => (t.prescaler, t.period),
-            Timing::Off => (0, 1),
         };
         timer.regs_core().psc().write_value(prescaler);
         // `PwmTiming` and `BitTiming` are made for 16 bits: period - 1 always fits.
@@ -231,7 +229,6 @@ where
         match self.timing {
             Timing::DShot(bit) => return self.send_frame(bit, commands).await,
             Timing::Pulse(pulse, t) => self.shoot(pulse, t, commands),
-            Timing::Off => {}
         }
         Instant::now()
     }
@@ -271,11 +268,10 @@ impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
 ///
 /// # Panics
 /// If the clock cannot make the protocol: a board with such a clock never starts, so it is found at the bench.
-fn timing(protocol: Protocol, clock_hz: u32) -> Timing {
+fn timing(protocol: EscProtocol, clock_hz: u32) -> Timing {
     let found = match protocol {
-        Protocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(Timing::DShot),
-        Protocol::Pulse(pulse) => pulse.timing(clock_hz).map(|t| Timing::Pulse(pulse, t)),
-        Protocol::Off => Some(Timing::Off),
+        EscProtocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(Timing::DShot),
+        EscProtocol::Pulse(pulse) => pulse.timing(clock_hz).map(|t| Timing::Pulse(pulse, t)),
     };
     match found {
         Some(timing) => timing,

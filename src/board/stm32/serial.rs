@@ -10,9 +10,8 @@ use embassy_stm32::usart::{
 use embassy_stm32::{Peri, dma};
 use embassy_time::{Duration, with_timeout};
 use embedded_io_async::{Read, Write};
-use sophie_control::params::Params;
+use sophie_control::params::{Params, RcProtocol};
 use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
-use sophie_tasks::rc::Protocol;
 use static_cell::ConstStaticCell;
 
 use super::Aligned;
@@ -27,14 +26,14 @@ static CONSOLE_IN: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; 128]);
 static CONSOLE_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
 /// How the receiver's line is set up for a protocol.
-fn receiver_config(protocol: Protocol) -> Config {
+fn receiver_config(protocol: RcProtocol) -> Config {
     let mut config = Config::default();
     match protocol {
-        Protocol::Crsf => {
+        RcProtocol::Crsf => {
             config.baudrate = 420_000;
             config.rx_pull = Pull::Up;
         }
-        Protocol::Sbus => {
+        RcProtocol::Sbus => {
             config.baudrate = 100_000;
             config.parity = Parity::ParityEven;
             config.stop_bits = StopBits::STOP2;
@@ -53,7 +52,7 @@ fn receiver_config(protocol: Protocol) -> Config {
     config
 }
 
-/// The receiver's line, as the parameter `receiver_protocol` says.
+/// The receiver's line, as the parameter `rc_protocol` says.
 #[expect(clippy::too_many_arguments, reason = "the parts of one port of the board")]
 pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     uart: Peri<'static, T>,
@@ -67,16 +66,16 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     + 'static,
     params: &Params,
 ) -> (ReceiverLine, TelemetryLine) {
-    let protocol = Protocol::from_params(params);
+    let protocol = params.rc_protocol;
     let config = receiver_config(protocol);
     let (rx, tx) = match protocol {
-        Protocol::Crsf => {
+        RcProtocol::Crsf => {
             let both = Uart::new(uart, rx, tx, tx_dma, rx_dma, irqs, config);
             let (tx, rx) = accepted(both).split();
             (rx, Some(tx))
         }
         // The other pin is unused: it stays an input.
-        Protocol::Sbus => {
+        RcProtocol::Sbus => {
             let rx = UartRx::new(uart, rx, rx_dma, irqs, config);
             (accepted(rx), None)
         }

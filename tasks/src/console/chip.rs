@@ -1,9 +1,9 @@
 //! The chip itself: what the start-up looked at, and the one thing of it that is set here.
 
 use sophie_control::arming::Refusal;
-use sophie_control::decimal::Decimal;
 
 use super::Console;
+use crate::decimal::Decimal;
 use crate::ports::{Chip, Look, SerialOutput, Storage};
 
 impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {

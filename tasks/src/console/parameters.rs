@@ -1,18 +1,21 @@
 //! The working copy of the parameters.
 
-use core::fmt;
-
-use sophie_control::decimal::{self, Decimal};
-use sophie_control::params::{ParamError, ParamInfo, Params};
+use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 
 use super::Console;
 use super::nearest::nearest;
+use crate::decimal::Decimal;
+use crate::parameters::{Allowed, Shown, Unit, parse_value};
 use crate::ports::{Chip, SerialOutput, Storage};
 
 impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     pub(super) async fn list(&mut self, part: &str) {
         let mut count = 0;
-        for row in Params::TABLE.iter().filter(|row| row.name.contains(part)) {
+        let old = |row: &ParamInfo| RENAMED.iter().any(|r| r.new == row.name && r.old.contains(part));
+        for row in Params::TABLE {
+            if !row.name.contains(part) && !old(row) {
+                continue;
+            }
             count += 1;
             self.row(row).await;
         }
@@ -29,14 +32,16 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         let mark = if same(value, self.default(row)) { ' ' } else { '*' };
         let (name, value, allowed) = (row.name, Decimal(value), Allowed(row));
         self.out
-            .line(format_args!("{mark} {name:19} {value:<9} {allowed}"))
+            .line(format_args!("{mark} {name:16} {value:<9} {allowed:#}"))
             .await;
     }
 
     pub(super) async fn get(&mut self, name: &str) {
-        let Some(row) = self.find(name).await else { return };
+        let Some(Found { row, .. }) = self.find(name).await else {
+            return;
+        };
         self.row(row).await;
-        let default = Decimal(self.default(row));
+        let default = Shown(row, self.default(row));
         self.out.line(format_args!("  default {default}")).await;
         self.out.bytes(b"  ").await;
         self.out.bytes(row.doc.trim().as_bytes()).await;
@@ -44,26 +49,31 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     }
 
     pub(super) async fn set(&mut self, name: &str, text: &str) {
-        let Some(row) = self.find(name).await else { return };
-        let allowed = Allowed(row);
-        let Some(value) = decimal::parse(text) else {
+        let Some(Found { row, renamed }) = self.find(name).await else {
+            return;
+        };
+        let (name, allowed) = (row.name, Allowed(row));
+        let Some(value) = parse_value(row, renamed, text) else {
+            let kind = if row.has_names() { "value" } else { "number" };
             return self
                 .out
-                .line(format_args!("'{text}' is not a number; {name} takes {allowed}"))
+                .line(format_args!("'{text}' is not a {kind}; {name} takes {allowed}"))
                 .await;
         };
         self.put(row, value).await;
     }
 
     pub(super) async fn reset(&mut self, name: &str) {
-        let Some(row) = self.find(name).await else { return };
+        let Some(Found { row, .. }) = self.find(name).await else {
+            return;
+        };
         self.put(row, self.default(row)).await;
     }
 
     async fn put(&mut self, row: &ParamInfo, value: f32) {
         let old = self.value(row);
         let (name, unit) = (row.name, Unit(row.unit));
-        let (old, shown) = (Decimal(old), Decimal(value));
+        let (old, shown) = (Shown(row, old), Shown(row, value));
         match self.params.set(name, value) {
             Ok(()) => {
                 let force = if same(value, self.links.params.get(name).unwrap_or(value)) {
@@ -75,7 +85,8 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                     .line(format_args!("{name} {old} -> {shown}{unit}, {force}"))
                     .await;
             }
-            Err(allowed) => {
+            Err(_) => {
+                let allowed = Allowed(row);
                 self.out
                     .line(format_args!("{name} cannot be {shown}; it takes {allowed}"))
                     .await;
@@ -94,7 +105,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
             }
             count += 1;
             let (name, unit) = (row.name, Unit(row.unit));
-            let (old, new) = (Decimal(old), Decimal(new));
+            let (old, new) = (Shown(row, old), Shown(row, new));
             self.out.line(format_args!("{name} {old} -> {new}{unit}")).await;
         }
         match count {
@@ -124,9 +135,22 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         self.params.get(row.name).unwrap_or(row.default)
     }
 
-    /// The parameter called `name`, or a line that there is none.
-    async fn find(&mut self, name: &str) -> Option<&'static ParamInfo> {
-        let row = Params::TABLE.iter().find(|row| row.name == name);
+    /// The parameter called `name`, or a line that there is none. Under its old name it is found with a line that has
+    /// the new one.
+    async fn find(&mut self, name: &str) -> Option<Found> {
+        let renamed = Renamed::find(name);
+        let row = Params::row(renamed.map_or(name, |renamed| renamed.new));
+        if let (Some(row), Some(Renamed { old, unit, .. })) = (row, renamed) {
+            let (new, new_unit) = (row.name, Unit(row.unit));
+            if *unit == row.unit {
+                self.out.line(format_args!("{old} is {new} now")).await;
+            } else {
+                let unit = Unit(unit);
+                self.out
+                    .line(format_args!("{old} in{unit} is {new} in{new_unit} now"))
+                    .await;
+            }
+        }
         if row.is_none() {
             match nearest(name, Params::TABLE.iter().map(|row| row.name)) {
                 Some(other) => {
@@ -141,43 +165,18 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                 }
             }
         }
-        row
+        row.map(|row| Found { row, renamed })
     }
+}
+
+/// A parameter that was named.
+struct Found {
+    row: &'static ParamInfo,
+    /// Where it was named by its old name.
+    renamed: Option<&'static Renamed>,
 }
 
 /// The very same value.
 fn same(a: f32, b: f32) -> bool {
     a.to_bits() == b.to_bits()
-}
-
-/// What a parameter takes.
-struct Allowed<'a>(&'a ParamInfo);
-
-impl fmt::Display for Allowed<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ParamInfo {
-            min,
-            max,
-            choices,
-            unit,
-            ..
-        } = *self.0;
-        if choices.is_empty() {
-            ParamError::OutOfRange { min, max, unit }.fmt(f)
-        } else {
-            ParamError::NotAChoice { choices, unit }.fmt(f)
-        }
-    }
-}
-
-/// A unit behind its value; nothing for a pure number.
-struct Unit(&'static str);
-
-impl fmt::Display for Unit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            "1" => Ok(()),
-            unit => write!(f, " {unit}"),
-        }
-    }
 }

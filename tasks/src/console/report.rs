@@ -1,11 +1,11 @@
 //! How the vehicle is.
 
 use embassy_time::Instant;
-use sophie_control::decimal::Decimal;
 use sophie_control::mode::{Mode, Reason};
 
 use super::Console;
 use crate::deadline::TaskId;
+use crate::decimal::Decimal;
 use crate::ports::{Chip, SerialOutput, Storage};
 
 impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {

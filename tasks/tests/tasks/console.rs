@@ -325,7 +325,7 @@ fn a_boards_own_defaults_are_its_defaults_on_every_command() {
     let mut bench = Bench::of(Mode::Disarmed, board, CUAV);
     assert_eq!(
         bench.says("list battery_a"),
-        ["  battery_a_per_v     24        1 to 1000 A/V"]
+        ["  battery_a_per_v  24        1 to 1000 A/V"]
     );
     // The table's default is a value like any other here.
     let changed = "battery_a_per_v 24 -> 40 A/V, in force after save";
@@ -333,7 +333,7 @@ fn a_boards_own_defaults_are_its_defaults_on_every_command() {
     let said = bench.says("get battery_a_per_v");
     assert_eq!(
         said[..2],
-        ["* battery_a_per_v     40        1 to 1000 A/V", "  default 24"]
+        ["* battery_a_per_v  40        1 to 1000 A/V", "  default 24"]
     );
     assert_eq!(
         bench.says("reset battery_a_per_v"),
@@ -347,4 +347,84 @@ fn a_boards_own_defaults_are_its_defaults_on_every_command() {
         assert!(said[0].contains("1 to 60"), "{said:?}");
     }
     assert_eq!(bench.says("changes"), ["no changes"]);
+}
+
+#[test]
+fn old_names_and_units_are_taken_with_a_line_that_has_the_new_ones() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    for (typed, answers) in [
+        (
+            "set receiver_protocol 1",
+            [
+                "receiver_protocol is rc_protocol now",
+                "rc_protocol 0 crsf -> 1 sbus, in force after save",
+            ],
+        ),
+        (
+            "set setpoint_cutoff 20",
+            [
+                "setpoint_cutoff in rad/s is setpoint_lpf_hz in Hz now",
+                "setpoint_lpf_hz 1.5915494 -> 3.183099 Hz, in force after save",
+            ],
+        ),
+        (
+            "set perch_throttle_max 0.7",
+            [
+                "perch_throttle_max is perch_thr_max now",
+                "perch_thr_max cannot be 0.7; it takes 0.1 to 0.6",
+            ],
+        ),
+        (
+            "reset setpoint_cutoff",
+            [
+                "setpoint_cutoff in rad/s is setpoint_lpf_hz in Hz now",
+                "setpoint_lpf_hz 3.183099 -> 1.5915494 Hz, as in force",
+            ],
+        ),
+    ] {
+        assert_eq!(bench.says(typed), answers, "{typed}");
+    }
+    let listed = bench.says("list setpoint_cutoff");
+    assert!(
+        listed.len() == 1 && listed[0].contains("setpoint_lpf_hz"),
+        "{listed:?}"
+    );
+    assert_eq!(
+        bench.says("get receiver_protocol")[..3],
+        [
+            "receiver_protocol is rc_protocol now",
+            "* rc_protocol      1         crsf, sbus",
+            "  default 0 crsf"
+        ]
+    );
+}
+
+#[test]
+fn enumerated_values_have_a_number_and_a_name() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    let protocols = "one of 125 oneshot125, 150 dshot150, 300 dshot300, 400 pwm, 600 dshot600";
+    for (typed, answer) in [
+        (
+            "set motor_protocol pwm",
+            "motor_protocol 300 dshot300 -> 400 pwm, in force after save",
+        ),
+        (
+            "set motor_protocol 300",
+            "motor_protocol 400 pwm -> 300 dshot300, as in force",
+        ),
+        (
+            "set motor_protocol dshot",
+            &format!("'dshot' is not a value; motor_protocol takes {protocols}"),
+        ),
+        (
+            "set motor_protocol 1e9",
+            &format!("motor_protocol cannot be 1e9; it takes {protocols}"),
+        ),
+        (
+            "set rc_protocol 0.4",
+            "rc_protocol cannot be 0.4; it takes one of 0 crsf, 1 sbus",
+        ),
+    ] {
+        assert_eq!(bench.says(typed), [answer], "{typed}");
+    }
 }

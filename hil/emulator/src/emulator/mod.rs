@@ -30,7 +30,6 @@ use rigless::soc::Width;
 use rigless::time::{NO_DEADLINE, VirtualNanos};
 use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
-use sophie_tasks::rc::Protocol;
 
 use self::board::Wired;
 use self::chip::{Chip, Clock, Options};
@@ -104,8 +103,8 @@ impl Emulator {
             let loader = Image::new(Path::new("loader"), loader.bytes, Some(loader.at));
             images.push(loader.map_err(|e| format!("emulator: {e}"))?);
         }
-        let line = esc::Line::from_number(settings.params.get("motor_protocol").unwrap_or_default());
-        let receiver = serial::Setup::of(Protocol::from_params(&settings.params), kind);
+        let line = esc::Line::of(settings.params.motor_protocol);
+        let receiver = serial::Setup::of(settings.params.rc_protocol, kind);
         let (wires, wires_in) = sync_channel(1);
         let (pins_out, pins) = sync_channel(1);
         let driver = World {

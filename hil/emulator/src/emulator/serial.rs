@@ -3,7 +3,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use sophie_tasks::rc::Protocol;
+use sophie_control::params::RcProtocol;
 
 use crate::boards::Kind;
 
@@ -25,15 +25,15 @@ pub struct Setup {
 
 impl Setup {
     /// What the receiver's line of a board needs for `protocol`.
-    pub fn of(protocol: Protocol, board: Kind) -> Self {
+    pub fn of(protocol: RcProtocol, board: Kind) -> Self {
         match protocol {
-            Protocol::Crsf => Self {
+            RcProtocol::Crsf => Self {
                 rate: 420e3,
                 parity: false,
                 two_stops: false,
                 inverted: false,
             },
-            Protocol::Sbus => Self {
+            RcProtocol::Sbus => Self {
                 rate: 100e3,
                 parity: true,
                 two_stops: true,
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn the_registers_tell_the_set_up() {
-        let sbus = Setup::of(Protocol::Sbus, Kind::MatekH743);
+        let sbus = Setup::of(RcProtocol::Sbus, Kind::MatekH743);
         let found = Setup::in_registers(100e6, 1000, 1 << 12 | 1 << 10, 2 << 12 | 1 << 16);
         assert!(sbus.fits(&found), "{found}");
         assert_eq!(found.to_string(), "100000 baud 8E2 inverted");
@@ -92,7 +92,7 @@ mod tests {
             1 << 12 | 1 << 10,
             2 << 12 | 1 << 16
         )));
-        let crsf = Setup::of(Protocol::Crsf, Kind::F405);
+        let crsf = Setup::of(RcProtocol::Crsf, Kind::F405);
         assert!(crsf.fits(&Setup::in_registers(84e6, 200, 0, 0)));
         assert!(!crsf.fits(&found));
     }

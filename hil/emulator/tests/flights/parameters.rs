@@ -1,5 +1,6 @@
 //! Parameters that are stored in the chip's flash.
 
+use sophie_control::params::{MotorProtocol, RcProtocol};
 use sophie_emulator::wires::Fault;
 
 use super::*;
@@ -17,8 +18,8 @@ fn start(change: impl FnOnce(&mut Scenario)) -> Scenario {
 #[test]
 fn the_image_flies_what_is_stored() {
     let scenario = start(|s| {
-        s.params.receiver_protocol = 1.0;
-        s.params.motor_protocol = 600.0;
+        s.params.rc_protocol = RcProtocol::Sbus;
+        s.params.motor_protocol = MotorProtocol::Dshot600;
     });
     let flight = fly(&scenario, 1.0, &[]);
     // Both, and the calibration of the accelerometer's three axes.
@@ -34,7 +35,7 @@ fn the_image_flies_what_is_stored() {
 
 #[test]
 fn the_small_board_flies_what_is_stored() {
-    let scenario = start(|s| s.params.receiver_protocol = 1.0);
+    let scenario = start(|s| s.params.rc_protocol = RcProtocol::Sbus);
     let flight = fly_small(&scenario, &[]);
     assert!(
         told(&flight, 0.0, "parameters: 4 from storage").is_some(),
@@ -47,7 +48,7 @@ fn the_small_board_flies_what_is_stored() {
 
 #[test]
 fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
-    let scenario = start(|s| s.params.motor_protocol = 600.0);
+    let scenario = start(|s| s.params.motor_protocol = MotorProtocol::Dshot600);
     let flight = fly(&scenario, 1.0, &[(0.0, Trouble::Board(Fault::CorruptParameters))]);
     assert!(
         told(&flight, 0.0, "parameters: 0 from storage").is_some(),

@@ -1,5 +1,6 @@
 //! Motor controllers that take pulses: how often they get one, and that none begins once the software stands still.
 
+use sophie_control::params::MotorProtocol;
 use sophie_emulator::wires::Fault;
 
 use super::*;
@@ -9,7 +10,7 @@ const STILL: f64 = AIRBORNE - 0.5;
 const END: f64 = STILL + 0.18;
 
 /// The hover with controllers that speak `protocol`, until the processor stands still.
-fn hung(protocol: f32, small: bool) -> Flight {
+fn hung(protocol: MotorProtocol, small: bool) -> Flight {
     let mut scenario = hover(END);
     scenario.params.motor_protocol = protocol;
     let troubles = [(STILL, Trouble::Board(Fault::Hang(true)))];
@@ -30,7 +31,7 @@ fn hung(protocol: f32, small: bool) -> Flight {
 
 /// Frames come within `interval` µs of each other, each is understood, and none begins later than `last` µs after the
 /// processor has stopped; the pins are low then.
-fn ends(protocol: f32, interval: [f64; 2], last: f64) {
+fn ends(protocol: MotorProtocol, interval: [f64; 2], last: f64) {
     for small in [false, true] {
         let flight = hung(protocol, small);
         for esc in flight.board.run.escs {
@@ -46,16 +47,16 @@ fn ends(protocol: f32, interval: [f64; 2], last: f64) {
 #[test]
 fn a_pulse_is_the_last_one_when_the_software_stands_still() {
     // At most 400 Hz; at 100 Hz while no mix comes. A pulse that was under way ends, and nothing follows.
-    ends(400.0, [2500.0, 13_000.0], 0.0);
+    ends(MotorProtocol::Pwm, [2500.0, 13_000.0], 0.0);
 }
 
 #[test]
 fn so_is_a_short_pulse() {
-    ends(125.0, [900.0, 13_000.0], 0.0);
+    ends(MotorProtocol::Oneshot125, [900.0, 13_000.0], 0.0);
 }
 
 #[test]
 fn so_is_a_digital_frame() {
     // Its bits follow by DMA.
-    ends(300.0, [900.0, 13_000.0], 120.0);
+    ends(MotorProtocol::Dshot300, [900.0, 13_000.0], 120.0);
 }

@@ -6,7 +6,7 @@ mod tests {
     use embassy_time::Timer;
     use sophie_drivers::dshot::{BITS, Frame, Speed};
     use sophie_drivers::dshot_decoder::Decoder;
-    use sophie_drivers::esc_protocol::Protocol;
+    use sophie_drivers::esc_protocol::EscProtocol;
     use sophie_rig::pads::{WIRING, joined};
     use sophie_rig::pulses::{MOST, Pulse, record};
     use sophie_rig::{absent, board, keep_alive};
@@ -31,7 +31,7 @@ mod tests {
         let mut board = board::take().await;
         keep_alive(board.watchdog);
         let [motor, listener] = WIRING.motor;
-        let Protocol::DShot(speed) = Protocol::from_params(&board.params) else {
+        let EscProtocol::DShot(speed) = EscProtocol::from_params(&board.params) else {
             return absent(format_args!("DShot: set motor_protocol to 150, 300 or 600"));
         };
         assert!(motor.serves_a_peripheral(), "{} is no timer's", motor.name);

@@ -5,10 +5,10 @@
 mod tests {
     use embassy_futures::join::join;
     use embassy_time::{Duration, with_timeout};
+    use sophie_control::params::RcProtocol;
     use sophie_rig::pads::{WIRING, joined};
     use sophie_rig::{absent, board, keep_alive};
     use sophie_tasks::ports::{SerialInput, SerialOutput};
-    use sophie_tasks::rc::Protocol;
 
     /// Length of the receiver's frames with sixteen channels.
     const LENGTH: usize = 26;
@@ -37,8 +37,8 @@ mod tests {
     async fn what_is_sent_is_received() {
         let mut board = board::take().await;
         keep_alive(board.watchdog);
-        if Protocol::from_params(&board.params) != Protocol::Crsf {
-            return absent(format_args!("CRSF: set receiver_protocol to 0"));
+        if board.params.rc_protocol != RcProtocol::Crsf {
+            return absent(format_args!("CRSF: set rc_protocol to 0"));
         }
         let [out, into] = WIRING.receiver;
         for pad in [out, into] {

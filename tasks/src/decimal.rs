@@ -3,8 +3,9 @@
 
 use core::fmt;
 
-/// Digits that are shown: every number of so many is held exactly by the 24 bits of an `f32`.
-const DIGITS: u32 = 7;
+/// Digits are shown as long as they make a whole number that the 24 bits of an `f32` hold exactly: seven, and eight of
+/// those that begin with 1 (below 1.6777216).
+const UNITS_MAX: u64 = 1 << 24;
 /// Digits that are read; 32 bits hold so many.
 const DIGITS_READ: u32 = 9;
 /// Digits behind the point that are shown at most: the smallest parameters are a few millionths.
@@ -94,7 +95,7 @@ fn scaled(mut value: f32, exponent: i32) -> f32 {
     value
 }
 
-/// A number to be shown: with as few digits as read back to it, at most seven; with a precision (`{:.2}`), with so
+/// A number to be shown: with as few digits as read back to it, at most seven or eight; with a precision (`{:.2}`), with so
 /// many places.
 #[derive(Clone, Copy, Debug)]
 pub struct Decimal(pub f32);
@@ -162,7 +163,7 @@ fn shortest(magnitude: f32) -> (u64, usize) {
     let mut best = fixed(magnitude, 0);
     for (places, &power) in POWERS.iter().enumerate() {
         let near = (magnitude * power + 0.5) as u64;
-        if near >= 10u64.pow(DIGITS) {
+        if near > UNITS_MAX {
             break;
         }
         // The product is rounded too: with seven digits its neighbour may be the one.
@@ -213,9 +214,9 @@ mod tests {
     use std::string::ToString;
 
     use proptest::prelude::*;
+    use sophie_control::params::Params;
 
     use super::*;
-    use crate::params::Params;
 
     #[test]
     fn numbers_are_read_as_the_library_reads_them() {

@@ -8,10 +8,9 @@
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
+use sophie_tasks::links::RcState;
+use sophie_tasks::ports::RcDecoder;
 use uf_crsf::{CrsfParser, Packet};
-
-use super::Decode;
-use crate::links::RcState;
 
 /// Silence of the link statistics after which the last of them no longer counts. Receivers report at 5 to 10 Hz.
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
@@ -22,7 +21,7 @@ const BYTE: Duration = Duration::from_micros(24);
 const SILENCE: Duration = Duration::from_millis(3);
 
 /// Frames and counts out of a stream of bytes, however it is cut.
-pub(super) struct Decoder {
+pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
     /// When the receiver last reported an uplink quality of 0 %; `None` while the radio is not known to be lost.
@@ -33,8 +32,15 @@ pub(super) struct Decoder {
     unfinished: bool,
 }
 
+impl Default for Decoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Decoder {
-    pub(super) fn new() -> Self {
+    /// A decoder that has heard nothing yet.
+    pub fn new() -> Self {
         Self {
             parser: CrsfParser::new(),
             state: RcState::default(),
@@ -53,7 +59,7 @@ impl Decoder {
     }
 }
 
-impl Decode for Decoder {
+impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
         // A read ends when its last byte is there, so these bytes began their own length earlier.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);

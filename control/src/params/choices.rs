@@ -1,0 +1,167 @@
+//! The enumerated parameters: their values as types, which cannot hold any other.
+
+use super::Choice;
+
+/// What a field of the parameters holds: a number, or one of a few.
+pub(super) trait Value: Sized {
+    /// Its number in the table.
+    fn to_number(self) -> f32;
+
+    /// The value with this number; `None` where there is none.
+    fn from_number(number: f32) -> Option<Self>;
+}
+
+impl Value for f32 {
+    fn to_number(self) -> f32 {
+        self
+    }
+
+    fn from_number(number: f32) -> Option<Self> {
+        Some(number)
+    }
+}
+
+const fn least(choices: &[Choice]) -> f32 {
+    match choices {
+        [first, ..] => first.value,
+        [] => 0.0,
+    }
+}
+
+const fn most(choices: &[Choice]) -> f32 {
+    match choices {
+        [.., last] => last.value,
+        [] => 0.0,
+    }
+}
+
+macro_rules! choices {
+    ($( $(#[$doc:meta])+ $name:ident { $( $(#[$item_doc:meta])+ $item:ident = $number:literal, $text:literal; )+ } )+) => { $(
+        $(#[$doc])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name {
+            $( $(#[$item_doc])+ $item ),+
+        }
+
+        impl $name {
+            /// Every one of them, by ascending number.
+            pub const ALL: &'static [Self] = &[$( Self::$item ),+];
+            pub(super) const CHOICES: &'static [Choice] = &[$( Choice { value: $number, name: $text } ),+];
+            pub(super) const MIN: f32 = least(Self::CHOICES);
+            pub(super) const MAX: f32 = most(Self::CHOICES);
+
+            /// Its number in the table, in the parameter's unit.
+            pub const fn number(self) -> f32 {
+                match self { $( Self::$item => $number ),+ }
+            }
+        }
+
+        impl Value for $name {
+            fn to_number(self) -> f32 {
+                self.number()
+            }
+
+            fn from_number(number: f32) -> Option<Self> {
+                let at = Self::CHOICES.iter().position(|choice| choice.is(number))?;
+                Self::ALL.get(at).copied()
+            }
+        }
+    )+ };
+}
+
+choices! {
+    /// What the motor controllers understand.
+    MotorProtocol {
+        /// Pulses of 125 to 250 µs.
+        Oneshot125 = 125.0, "oneshot125";
+        /// Digital frames of 150 kbit/s.
+        Dshot150 = 150.0, "dshot150";
+        /// Digital frames of 300 kbit/s.
+        Dshot300 = 300.0, "dshot300";
+        /// Pulses of 1 to 2 ms, at most 400 a second.
+        Pwm = 400.0, "pwm";
+        /// Digital frames of 600 kbit/s.
+        Dshot600 = 600.0, "dshot600";
+    }
+
+    /// What the receiver speaks.
+    RcProtocol {
+        /// CRSF: 420 kbaud, 8N1, telemetry back to the pilot on the other line.
+        Crsf = 0.0, "crsf";
+        /// SBUS: 100 kbaud, 8E2, inverted, no way back.
+        Sbus = 1.0, "sbus";
+    }
+
+    /// Samples per second of the vehicle's inertial sensor.
+    ImuRate {
+        /// 1 kHz.
+        Hz1000 = 1000.0, "";
+        /// 2 kHz.
+        Hz2000 = 2000.0, "";
+        /// 4 kHz.
+        Hz4000 = 4000.0, "";
+        /// 8 kHz.
+        Hz8000 = 8000.0, "";
+    }
+
+    /// Full scale of the gyroscope, deg/s.
+    ImuGyroRange {
+        /// ±250 deg/s.
+        Dps250 = 250.0, "";
+        /// ±500 deg/s.
+        Dps500 = 500.0, "";
+        /// ±1000 deg/s.
+        Dps1000 = 1000.0, "";
+        /// ±2000 deg/s.
+        Dps2000 = 2000.0, "";
+    }
+
+    /// Full scale of the accelerometer, g.
+    ImuAccelRange {
+        /// ±2 g.
+        G2 = 2.0, "";
+        /// ±4 g.
+        G4 = 4.0, "";
+        /// ±8 g.
+        G8 = 8.0, "";
+        /// ±16 g.
+        G16 = 16.0, "";
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Params;
+    use super::*;
+
+    #[test]
+    fn choices_ascend_and_each_is_read_back_by_number_and_by_name() {
+        let mut enumerated = 0;
+        for row in Params::TABLE.iter().filter(|row| !row.choices.is_empty()) {
+            enumerated += 1;
+            assert!(row.choices.is_sorted_by(|a, b| a.value < b.value), "{}", row.name);
+            for choice in row.choices {
+                let mut p = Params::default();
+                assert!(p.set(row.name, choice.value).is_ok() && p.get(row.name) == Some(choice.value));
+                assert_eq!(row.choice(choice.value), Some(choice));
+                let named = row.choice_named(choice.name);
+                assert_eq!(named, (!choice.name.is_empty()).then_some(choice), "{}", row.name);
+                // A name must not be read as a number.
+                assert!(choice.name.parse::<f32>().is_err(), "{}", choice.name);
+            }
+        }
+        assert_eq!(enumerated, 5);
+    }
+
+    #[test]
+    fn a_number_between_two_choices_is_none() {
+        for wrong in [-1.0, 0.4, 0.6, 2.0, f32::NAN, f32::INFINITY] {
+            assert_eq!(RcProtocol::from_number(wrong), None, "{wrong}");
+        }
+        for wrong in [0.0, 124.9, 200.0, 601.0] {
+            assert_eq!(MotorProtocol::from_number(wrong), None, "{wrong}");
+        }
+        assert_eq!(RcProtocol::from_number(-0.0), Some(RcProtocol::Crsf));
+        assert_eq!(MotorProtocol::from_number(400.0), Some(MotorProtocol::Pwm));
+    }
+}

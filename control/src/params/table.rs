@@ -1,0 +1,292 @@
+//! The table: a line a parameter. A number has `name = default, "unit", least ..= most;`, an enumerated parameter
+//! `name: Type = default, "unit";`.
+
+use super::ParamInfo;
+use super::choices::{ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol, Value};
+use super::names::check_names;
+
+macro_rules! params {
+    (@type) => { f32 };
+    (@type $type:ident) => { $type };
+    (@number $number:expr) => { $number };
+    (@number $default:expr, $type:ident) => { $default.number() };
+    (@min $min:literal) => { $min };
+    (@min , $type:ident) => { $type::MIN };
+    (@max $max:literal) => { $max };
+    (@max , $type:ident) => { $type::MAX };
+    (@choices) => { &[] };
+    (@choices $type:ident) => { $type::CHOICES };
+    ($( $(#[doc = $doc:literal])+ $name:ident $(: $type:ident)? = $default:expr, $unit:literal
+        $(, $min:literal ..= $max:literal)?; )+) => {
+        /// The parameters of one vehicle; `Default` is the paper's vehicle.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Params {
+            $( $(#[doc = $doc])+ pub $name: params!(@type $($type)?), )+
+        }
+
+        impl Default for Params {
+            fn default() -> Self {
+                Self::DEFAULT
+            }
+        }
+
+        const _: () = check_names(&[$( stringify!($name) ),+]);
+
+        /// The rows' places in the table.
+        #[allow(non_camel_case_types, reason = "the names of the parameters")]
+        #[repr(usize)]
+        enum Place { $( $name ),+ }
+
+        /// One place in the image, where a constant would be copied into every crate that looks at it.
+        pub(super) static ROWS: [ParamInfo; [$( stringify!($name) ),+].len()] = [
+            $( ParamInfo {
+                name: stringify!($name),
+                unit: $unit,
+                min: params!(@min $($min)? $(, $type)?),
+                max: params!(@max $($max)? $(, $type)?),
+                choices: params!(@choices $($type)?),
+                default: params!(@number $default $(, $type)?),
+                doc: concat!($($doc),+),
+            }, )+
+        ];
+
+        impl Params {
+            /// The table's defaults; a board may have others for what is soldered to it.
+            pub const DEFAULT: Self = Self { $( $name: $default, )+ };
+
+            /// The whole table, in the order of the fields.
+            pub const TABLE: &'static [ParamInfo] = &ROWS;
+
+            /// Every value, in the order of the table.
+            pub(super) fn values(&self) -> [f32; ROWS.len()] {
+                [$( self.$name.to_number() ),+]
+            }
+
+            /// Sets the value of row `at`; `None` where there is no such row, or no such choice.
+            pub(super) fn put(&mut self, at: usize, value: f32) -> Option<()> {
+                $( if at == Place::$name as usize {
+                    self.$name = Value::from_number(value)?;
+                    return Some(());
+                } )+
+                None
+            }
+        }
+    };
+}
+
+params! {
+    /// Mass of the vehicle (paper, Table II).
+    mass = 1.805, "kg", 0.5 ..= 5.0;
+    /// Roll inertia (assumed, 30 %).
+    inertia_roll = 0.021, "kg m2", 0.002 ..= 0.2;
+    /// Pitch inertia (assumed, 30 %).
+    inertia_pitch = 0.044, "kg m2", 0.002 ..= 0.2;
+    /// Yaw inertia (assumed, 30 %).
+    inertia_yaw = 0.063, "kg m2", 0.002 ..= 0.4;
+    /// Sideways distance of a rotor from the centre line (derived from L/D >= 1.4 with 10-inch propellers).
+    arm_d = 0.178, "m", 0.05 ..= 0.5;
+    /// Fore-aft distance of a rotor from the centre (derived, square layout).
+    arm_b = 0.178, "m", 0.05 ..= 0.5;
+    /// Largest thrust of a rotor (assumed from the paper's 450 g nominal and hover at half throttle).
+    thrust_max = 8.3, "N", 2.0 ..= 30.0;
+    /// Thrust of a rotor that idles while armed (assumed).
+    thrust_idle = 0.25, "N", 0.05 ..= 1.0;
+    /// Rotor drag torque over thrust, C_Q/C_T (assumed, 0.002).
+    torque_ratio = 0.016, "m", 0.005 ..= 0.05;
+    /// Time constant of motor and propeller (assumed).
+    motor_tau = 0.05, "s", 0.005 ..= 0.3;
+    /// Share of the thrust that grows with the square of the command; the rest is linear (assumed).
+    thrust_curve = 0.75, "1", 0.0 ..= 1.0;
+
+    /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses of 1 to 2 ms, at most 400 a second, 125 for OneShot125.
+    /// Read by the board at start-up; the paper's controllers take 400.
+    motor_protocol: MotorProtocol = MotorProtocol::Dshot300, "1";
+    /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.
+    rc_protocol: RcProtocol = RcProtocol::Crsf, "1";
+    /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.
+    imu_rate: ImuRate = ImuRate::Hz4000, "Hz";
+    /// Full scale of the gyroscope.
+    imu_gyro_range: ImuGyroRange = ImuGyroRange::Dps2000, "deg/s";
+    /// Full scale of the accelerometer.
+    imu_accel_range: ImuAccelRange = ImuAccelRange::G16, "g";
+    /// Frames per second of the tendon servos; analog servos want 50.
+    servo_frame_rate = 50.0, "Hz", 50.0 ..= 333.0;
+
+    /// Infill of the arms; Eq. 1 covers 4 to 10 %, below 6 % the paper's authors did not fly.
+    infill = 6.9, "%", 4.0 ..= 10.0;
+    /// Gain on the elastic term of Eq. 1 that the paper's Table III needs; 1 is the literal equation.
+    gain_k = 7.75, "1", 1.0 ..= 10.0;
+    /// Linear coefficient A1 of Eq. 1 (paper, Table I; of your own arm from `sophie fit-arm`).
+    arm_a1 = 2.4387, "deg/N", -10.0 ..= 30.0;
+    /// What A1 loses for each percent of infill, A2 (paper, Table I).
+    arm_a2 = -0.1997, "deg/(N %)", -10.0 ..= 30.0;
+    /// Quadratic coefficient B1 of Eq. 1 (paper, Table I).
+    arm_b1 = -0.162, "deg/N2", -10.0 ..= 30.0;
+    /// What B1 gains for each percent of infill, B2 (paper, Table I).
+    arm_b2 = 0.0151, "deg/(N2 %)", -10.0 ..= 30.0;
+    /// Thrust at which an arm is level, as a share of the largest: sets α0 (paper, "positive above 50 %").
+    arm_level_share = 0.5, "1", -0.5 ..= 1.0;
+    /// Exponent C_P of the battery's power ratio in Eq. 1 (paper, 1.6 to 1.8).
+    power_exponent = 1.7, "1", 1.0 ..= 2.5;
+    /// Cut-off of the thrust about which the arm model is linearised (0.2 to 30 Hz all work).
+    tilt_cutoff = 5.0, "Hz", 0.2 ..= 30.0;
+    /// Gain of the arms' IMUs on the tilt bias, each 10 ms.
+    tilt_bias_gain = 0.02, "1", 0.0 ..= 0.05;
+    /// Largest tilt bias accepted.
+    tilt_bias_max = 0.2, "rad", 0.0 ..= 0.5;
+
+    /// Accelerometer bias along body x, measured on a level bench: what it reads beyond gravity.
+    accel_bias_x = 0.0, "m/s2", -0.6 ..= 0.6;
+    /// Accelerometer bias along body y.
+    accel_bias_y = 0.0, "m/s2", -0.6 ..= 0.6;
+    /// Accelerometer bias along body z.
+    accel_bias_z = 0.0, "m/s2", -0.6 ..= 0.6;
+    /// Accelerometer gain of the attitude estimator.
+    estimator_kp = 0.1, "1/s", 0.01 ..= 5.0;
+    /// Gyro bias gain of the attitude estimator.
+    estimator_ki = 0.002, "1/s2", 0.0 ..= 1.0;
+    /// Cut-off of the gyro's low-pass filter.
+    gyro_cutoff = 90.0, "Hz", 20.0 ..= 400.0;
+
+    /// Angle to rate, roll and pitch.
+    attitude_p = 4.5, "1/s", 0.5 ..= 12.0;
+    /// Angle to rate, yaw.
+    attitude_yaw_p = 1.2, "1/s", 0.0 ..= 5.0;
+    /// Cut-off of the attitude setpoint's prefilter (10 rad/s).
+    setpoint_lpf_hz = 1.5915494, "Hz", 0.15 ..= 16.0;
+    /// Largest body rate that the attitude loop asks for.
+    rate_max = 3.5, "rad/s", 0.5 ..= 12.0;
+    /// Rate to angular acceleration, roll and pitch.
+    rate_p = 10.0, "1/s", 0.0 ..= 40.0;
+    /// Integral gain, roll and pitch.
+    rate_i = 8.0, "1/s2", 0.0 ..= 100.0;
+    /// Derivative gain on the measured rate, roll and pitch.
+    rate_d = 0.0, "1", 0.0 ..= 1.0;
+    /// Cut-off of the derivative's low-pass filter.
+    rate_d_cutoff = 40.0, "Hz", 5.0 ..= 200.0;
+    /// Rate to angular acceleration, yaw.
+    rate_yaw_p = 3.0, "1/s", 0.0 ..= 10.0;
+    /// Integral gain, yaw.
+    rate_yaw_i = 1.5, "1/s2", 0.0 ..= 20.0;
+    /// Fastest turn of the heading setpoint: torsion is the soft frame's weak side.
+    yaw_slew = 0.5, "rad/s", 0.05 ..= 6.0;
+    /// Largest thrust that yaw may add to or take from one rotor.
+    yaw_thrust_max = 1.5, "N", 0.1 ..= 5.0;
+    /// Centre of the yaw notch: the arms' bending mode.
+    notch_hz = 4.75, "Hz", 1.0 ..= 40.0;
+    /// Damping ratio of the notch's zeros.
+    notch_zeta_zero = 0.2, "1", 0.0 ..= 1.0;
+    /// Damping ratio of the notch's poles.
+    notch_zeta_pole = 0.8, "1", 0.1 ..= 2.0;
+    /// Mean thrust of a rotor below which yaw is given up: the quasi-static reversal is near.
+    yaw_gate_thrust = 1.95, "N", 0.0 ..= 5.0;
+
+    /// Largest roll and pitch angle of a full stick.
+    stick_angle = 0.61, "rad", 0.1 ..= 1.0;
+    /// Body rate of a full stick in rate mode.
+    stick_rate = 3.0, "rad/s", 0.5 ..= 10.0;
+    /// Yaw rate of a full stick.
+    stick_yaw_rate = 0.5, "rad/s", 0.1 ..= 6.0;
+    /// Roll and pitch torque of a full stick in direct mode.
+    stick_torque = 1.0, "N m", 0.05 ..= 4.0;
+    /// Yaw torque of a full stick in direct mode.
+    stick_yaw_torque = 0.1, "N m", 0.01 ..= 1.0;
+    /// Share of the throttle's travel about the pilot's zero that counts as low.
+    throttle_low = 0.05, "1", 0.01 ..= 0.2;
+    /// Throttle below which the landing on the pipe may start; the paper closes at about 30 %.
+    perch_thr_max = 0.42, "1", 0.1 ..= 0.6;
+
+    /// Contact pressure of a proven grip (paper).
+    grip_pressure = 950.0, "Pa", 100.0 ..= 5000.0;
+    /// Error of the contact pressure that a grip may have (paper, about the sensor's error).
+    grip_tolerance = 50.0, "Pa", 10.0 ..= 500.0;
+    /// Time for which the pressures must stay within the tolerance.
+    grip_dwell = 0.5, "s", 0.05 ..= 5.0;
+    /// Pressure below which an arm counts as free of the pipe.
+    release_pressure = 80.0, "Pa", 10.0 ..= 500.0;
+    /// Longest time that the closing may take before it is given up.
+    clamp_timeout = 10.0, "s", 1.0 ..= 60.0;
+    /// Largest servo torque, 25 kgcm (paper).
+    servo_torque_max = 2.452, "N m", 0.1 ..= 4.0;
+    /// Stall torque of the servo in use, 35 kgcm as the paper says; 0.92 for an MG996R at 4.8 V (datasheet).
+    servo_stall = 3.432, "N m", 0.1 ..= 5.0;
+    /// Travel of every servo from its release to its full pulse (assumed, the 270 degree version of 35 kgcm servos).
+    /// Common: what differs from servo to servo is the pulses at which it stands at the two ends of this travel.
+    servo_range = 4.71, "rad", 0.5 ..= 6.3;
+    /// Radius of the reel on the servo (assumed).
+    reel_radius = 0.015, "m", 0.002 ..= 0.05;
+    /// Distance of the tendon from the arm's neutral line (assumed).
+    tendon_lever = 0.025, "m", 0.005 ..= 0.1;
+    /// Stiffness along the tendon: nylon of 1 mm and 0.25 m, E 2.5 GPa (derived, 30 %).
+    tendon_stiffness = 8000.0, "N/m", 200.0 ..= 100000.0;
+    /// Pressure loop: proportional gain, tendon force per pressure.
+    clamp_p = 0.0035, "N/Pa", 0.0 ..= 0.2;
+    /// Pressure loop: integral gain.
+    clamp_i = 0.05, "N/(Pa s)", 0.0 ..= 1.0;
+    /// Pressure loop: derivative gain on the measured pressure.
+    clamp_d = 0.00003, "N s/Pa", 0.0 ..= 0.05;
+    /// Speed at which an arm is bent down until it touches; the force's rise follows from infill and gain_k.
+    clamp_approach = 0.7, "rad/s", 0.05 ..= 3.0;
+    /// Fastest fall of the tendon force on release.
+    clamp_release = 80.0, "N/s", 5.0 ..= 500.0;
+    /// Trim of servo 1 against its reel's release mark; moves both ends of its travel.
+    servo_trim_1 = 0.0, "us", -50.0 ..= 50.0;
+    /// Trim of servo 2.
+    servo_trim_2 = 0.0, "us", -50.0 ..= 50.0;
+    /// Trim of servo 3.
+    servo_trim_3 = 0.0, "us", -50.0 ..= 50.0;
+    /// Trim of servo 4.
+    servo_trim_4 = 0.0, "us", -50.0 ..= 50.0;
+    /// Pulse at which servo 1 stands at its release position; 50 us within the usual 500 to 2500, for the trim.
+    servo_release_1 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 2 at its release position.
+    servo_release_2 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 3 at its release position.
+    servo_release_3 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 4 at its release position.
+    servo_release_4 = 550.0, "us", 550.0 ..= 2450.0;
+    /// Pulse at which servo 1 has travelled `servo_range`; below the release pulse for a mirrored servo.
+    servo_full_1 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 2 at `servo_range`.
+    servo_full_2 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 3 at `servo_range`.
+    servo_full_3 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Pulse of servo 4 at `servo_range`.
+    servo_full_4 = 2450.0, "us", 550.0 ..= 2450.0;
+    /// Slew of servo 1 (MG996R datasheet, 0.17 s for 60 degrees at 4.8 V).
+    servo_slew_1 = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Slew of servo 2.
+    servo_slew_2 = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Slew of servo 3.
+    servo_slew_3 = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Slew of servo 4.
+    servo_slew_4 = 6.16, "rad/s", 0.5 ..= 20.0;
+    /// Active area of the FSR (Interlink 406 datasheet, 38 mm square).
+    fsr_area = 0.001444, "m2", 0.00005 ..= 0.01;
+    /// Conductance of the FSR per force (Interlink 406 guide: about 10 kOhm at 1 N, assumed linear).
+    fsr_gain = 0.0001, "S/N", 0.00001 ..= 0.01;
+    /// Resistor of the FSR's divider, to ground.
+    fsr_divider = 10000.0, "Ohm", 1000.0 ..= 100000.0;
+    /// Voltage between the FSR of arm 1 and `fsr_divider` at which the converter is at full scale, over the FSR's supply:
+    /// 1 on a bare pad and 3.3 V, 2 on a pad with a divider 1:2.
+    fsr_scale_1 = 1.0, "1", 0.05 ..= 20.0;
+    /// Full scale of the FSR of arm 2.
+    fsr_scale_2 = 1.0, "1", 0.05 ..= 20.0;
+    /// Full scale of the FSR of arm 3.
+    fsr_scale_3 = 1.0, "1", 0.05 ..= 20.0;
+    /// Full scale of the FSR of arm 4.
+    fsr_scale_4 = 1.0, "1", 0.05 ..= 20.0;
+
+    /// Battery voltage over the voltage at its pin; the default is the board's own (docs/boards.md).
+    battery_divider = 11.0, "1", 1.0 ..= 60.0;
+    /// Battery current for each volt at the current sensor's pin; the default is the board's own (docs/boards.md).
+    battery_a_per_v = 40.0, "A/V", 1.0 ..= 1000.0;
+    /// Battery voltage of full thrust: the curve is normalised to it (4S nominal).
+    battery_nominal = 14.8, "V", 6.0 ..= 52.0;
+    /// Usable charge of a fresh flight battery (paper, 1800 mAh).
+    battery_capacity = 6480.0, "A s", 360.0 ..= 200000.0;
+    /// Battery voltage under load at which arming is refused and the pilot is warned.
+    battery_warning = 13.6, "V", 5.0 ..= 52.0;
+    /// Battery voltage under load at which the failsafe lands.
+    battery_critical = 12.6, "V", 5.0 ..= 52.0;
+}

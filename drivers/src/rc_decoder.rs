@@ -1,0 +1,42 @@
+//! What the receiver speaks: the parameter `rc_protocol`.
+
+use embassy_time::Instant;
+use sophie_control::params::{Params, RcProtocol};
+use sophie_tasks::links::RcState;
+use sophie_tasks::ports::RcDecoder;
+
+use crate::{crsf, sbus};
+
+/// The decoder of the receiver in use.
+pub enum Decoder {
+    /// Of CRSF.
+    Crsf(crsf::Decoder),
+    /// Of SBUS.
+    Sbus(sbus::Decoder),
+}
+
+impl Decoder {
+    /// The decoder of the protocol that the parameters name.
+    pub fn from_params(params: &Params) -> Self {
+        match params.rc_protocol {
+            RcProtocol::Crsf => Self::Crsf(crsf::Decoder::new()),
+            RcProtocol::Sbus => Self::Sbus(sbus::Decoder::new()),
+        }
+    }
+}
+
+impl RcDecoder for Decoder {
+    fn take(&mut self, bytes: &[u8], at: Instant) -> Option<RcState> {
+        match self {
+            Self::Crsf(decoder) => decoder.take(bytes, at),
+            Self::Sbus(decoder) => decoder.take(bytes, at),
+        }
+    }
+
+    fn broken(&mut self, at: Instant) {
+        match self {
+            Self::Crsf(decoder) => decoder.broken(at),
+            Self::Sbus(decoder) => decoder.broken(at),
+        }
+    }
+}
