@@ -19,6 +19,7 @@
 pub mod arming;
 pub mod attitude;
 pub mod battery;
+pub mod chain;
 pub mod clamp;
 pub mod decimal;
 pub mod deflection;
