@@ -4,6 +4,7 @@
 //! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (time constant 10 s at
 //! the default) and fades when the specific force is not 1 g. There is no compass: heading is integrated.
 
+use crate::chain::{Attitude, ImuSample};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
 use crate::vector::{Quat, Vec3};
@@ -78,6 +79,20 @@ impl Estimator {
     /// Gyro bias, rad/s.
     pub const fn bias(&self) -> Vec3 {
         self.bias
+    }
+
+    /// One step, and all that comes of it.
+    #[inline(always)]
+    pub fn estimate(&mut self, sample: &ImuSample) -> Attitude {
+        let rate = self.step(sample.gyro, sample.accel, sample.dt);
+        Attitude {
+            q: self.q,
+            rate,
+            accel: sample.accel,
+            gyro_bias: self.bias,
+            calibrated: self.calibrated,
+            dt: sample.dt,
+        }
     }
 
     /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without

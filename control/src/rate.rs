@@ -26,6 +26,15 @@ pub struct Feedback {
     pub yaw_gated: bool,
 }
 
+impl Feedback {
+    /// No mix is known of: nothing may wind up.
+    pub const NOTHING: Self = Self {
+        roll_pitch: 0.0,
+        yaw: 0.0,
+        yaw_gated: true,
+    };
+}
+
 /// The rate loop's state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateLoop {

@@ -7,7 +7,6 @@ pub mod bench_data;
 mod beyond;
 mod chart;
 mod clamp;
-pub mod derivatives;
 mod endurance;
 mod fatigue;
 pub mod fit;

@@ -103,8 +103,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn b_is_stable_and_a_is_not_as_the_paper_says() {
+        let c = |chi, infill, k| AtThrust::new(infill, k, 4.425).yaw_derivative(chi);
+        for infill in [6.0, 6.9, 8.0, 10.0] {
+            for k in [1.0, 5.03, 7.75, 8.4] {
+                assert!(
+                    c(1.0, infill, k) < 0.0 && c(-1.0, infill, k) > 0.0,
+                    "{infill} {k}"
+                );
+            }
+        }
+        // A truly reverses only where C > 1, and stiffer arms mean a smaller derivative.
+        assert!(c(-1.0, 6.9, 1.0) < 1.0 && c(-1.0, 6.9, 7.75) > 1.0);
+        assert!(c(1.0, 6.0, 7.75) < c(1.0, 10.0, 7.75));
+    }
+
+    #[test]
     fn by_hand_at_the_default() {
-        // By hand in derivatives.rs: -3.889 for B; the frozen bound 0.739 at 4.75 Hz, 50 ms, 0.15.
+        // α(4.425) = 7.75·(1.06077·0.275 - 0.05781·(4.425² - 4.15²)) = 1.204° = 0.02102 rad;
+        // slope 7.75·(1.06077 - 0.11562·4.425) = 4.256 °/N = 0.07428 rad/N;
+        // d(T sin α)/dT = 0.02102 + 4.425·0.99978·0.07428 = 0.3496; times b/k_q = 11.125: -3.889 for B, to which the
+        // lean of the drag adds 0.007. The frozen bound is 0.739 at 4.75 Hz, 50 ms, 0.15.
         let at = AtThrust::new(6.9, 7.75, 4.425);
         assert!((at.yaw_derivative(1.0) + 3.889).abs() < 0.01 && at.yaw_derivative(-1.0) > 0.0);
         assert!((frozen_bound(0.05, core::f64::consts::TAU * 4.75, 0.15) - 0.739).abs() < 0.002);

@@ -172,6 +172,16 @@ impl Board {
         self.telemetry.try_read(buffer).unwrap_or(0)
     }
 
+    /// The readings that the inertial sensor holds ready and no task has read yet.
+    #[must_use]
+    pub fn imu_batch(&self) -> Vec<ImuReading, IMU_BATCH> {
+        let batch = self.imu_ready.try_take();
+        if let Some(batch) = &batch {
+            self.imu_ready.signal(batch.clone());
+        }
+        batch.unwrap_or_default()
+    }
+
     /// What the tasks wrote last.
     #[must_use]
     pub fn actuators(&self) -> Actuators {

@@ -6,7 +6,7 @@ use embassy_time::{Duration, Instant};
 use sophie_control::estimator::Estimator;
 
 use crate::deadline::{TaskId, record_run};
-use crate::links::{Attitude, Links};
+use crate::links::Links;
 
 /// Time from data-ready to the estimate.
 pub const DEADLINE: Duration = Duration::from_micros(300);
@@ -24,19 +24,7 @@ pub async fn run(links: &Links) {
     loop {
         let sample = imu.changed().await;
         let started = Instant::now();
-        let s = sample.value;
-        let rate = estimator.step(s.gyro, s.accel, s.dt);
-        links.attitude.send(
-            sample.at,
-            Attitude {
-                q: estimator.attitude(),
-                rate,
-                accel: s.accel,
-                gyro_bias: estimator.bias(),
-                calibrated: estimator.calibrated(),
-                dt: s.dt,
-            },
-        );
+        links.attitude.send(sample.at, estimator.estimate(&sample.value));
         record_run(links, TaskId::Estimator, sample.at, started, DEADLINE);
     }
 }

@@ -5,16 +5,12 @@
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::Refusal;
-use sophie_control::imu_filter::ImuFilter;
-use sophie_control::math;
-use sophie_control::vector::Vec3;
+use sophie_control::chain::Sensing;
 
 use crate::deadline::{TaskId, record_run};
-use crate::links::{ImuSample, Links};
+use crate::links::Links;
 use crate::ports::{Imu, PortError};
 
-/// Rate at which samples are handed on, Hz.
-pub const CONTROL_RATE_HZ: f32 = 1000.0;
 /// Time from data-ready to the handed-on sample.
 pub const DEADLINE: Duration = Duration::from_micros(200);
 /// A sensor that says nothing for this long is tried again.
@@ -31,14 +27,7 @@ const CLEAN: Duration = Duration::from_millis(100);
 /// answers in place of samples is reported against arming, and a data-ready line that its port does without; that it
 /// says nothing at all shows as age.
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {
-    let rate_hz = port.rate_hz();
-    let mut filter = ImuFilter::new(links.params.gyro_cutoff, rate_hz);
-    let p = &links.params;
-    let bias = Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z);
-    let per_output = math::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0);
-    let mut collected = 0.0f32;
-    let mut last_sent: Option<Instant> = None;
-    let mut newest = (Vec3::ZERO, Vec3::ZERO);
+    let mut sensing = Sensing::new(&links.params, port.rate_hz());
     let mut faults = Faults::default();
     loop {
         let batch = match with_timeout(SILENCE, port.read()).await {
@@ -56,26 +45,11 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         let started = Instant::now();
         let released = port.ready_at();
         faults.good(links, started, port.line_silent());
-        let filtered = filter.batch(batch.iter().map(|reading| (reading.gyro, reading.accel - bias)));
-        newest = filtered.newest.unwrap_or(newest);
-        collected += f32::from(filtered.count);
-        if collected + 0.5 < per_output {
+        let readings = batch.iter().map(|reading| (reading.gyro, reading.accel));
+        let Some(sample) = sensing.take(released.as_micros(), readings) else {
             continue;
-        }
-        collected = 0.0;
-        let dt = last_sent.map_or(1.0 / CONTROL_RATE_HZ, |t| {
-            released.saturating_duration_since(t).as_micros() as f32 * 1e-6
-        });
-        last_sent = Some(released);
-        let (gyro, accel) = newest;
-        links.imu.send(
-            released,
-            ImuSample {
-                gyro,
-                accel,
-                dt: math::clamp(dt, 0.5e-3, 5e-3),
-            },
-        );
+        };
+        links.imu.send(released, sample);
         record_run(links, TaskId::Imu, released, started, DEADLINE);
     }
 }

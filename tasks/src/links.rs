@@ -22,14 +22,14 @@ use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::attitude::Target;
+pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 pub use sophie_control::grip::GripState;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
-use sophie_control::vector::{Quat, Vec3};
-use sophie_control::wrench::{PerArm, Wrench};
+use sophie_control::wrench::PerArm;
 
 use crate::deadline::{Level, TaskId};
 use crate::histogram::Histogram;
@@ -92,72 +92,6 @@ impl<T: Clone> Link<T> {
     pub fn receiver(&self) -> Option<embassy_sync::watch::Receiver<'_, Raw, Stamped<T>, RECEIVERS>> {
         self.watch.receiver()
     }
-}
-
-/// Filtered inertial sample.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ImuSample {
-    /// Angular rate, rad/s, body, low-passed; the estimator takes its bias off.
-    pub gyro: Vec3,
-    /// Specific force, m/s², body, the newest, low-passed.
-    pub accel: Vec3,
-    /// Time since the sample before, s, limited to a sane range.
-    pub dt: f32,
-}
-
-/// Estimated motion of the body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Attitude {
-    /// Body to world.
-    pub q: Quat,
-    /// Angular rate without bias, rad/s, body.
-    pub rate: Vec3,
-    /// Specific force, m/s², body.
-    pub accel: Vec3,
-    /// Estimated gyro bias, rad/s.
-    pub gyro_bias: Vec3,
-    /// Calibration at rest has ended.
-    pub calibrated: bool,
-    /// Time since the estimate before, s.
-    pub dt: f32,
-}
-
-/// What the controllers ask of the mixer.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Demand {
-    /// Rotors stopped.
-    #[default]
-    Stop,
-    /// Rotors at idle.
-    Idle,
-    /// This wrench.
-    Wrench {
-        /// The wrench asked for.
-        wrench: Wrench,
-        /// Yaw may be used.
-        yaw: bool,
-    },
-}
-
-/// What the mixer gave.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MixOutput {
-    /// Rotors run.
-    pub running: bool,
-    /// Thrust asked of each rotor, N.
-    pub thrusts: PerArm<f32>,
-    /// Motor commands, 0..1, battery compensated.
-    pub commands: PerArm<f32>,
-    /// Share of the asked yaw, thrust (relative to the range left) and roll/pitch that was given, 0..1.
-    pub given: sophie_control::desaturation::Given,
-    /// Yaw is being given up because the arms' tilt leaves no authority.
-    pub yaw_gated: bool,
-    /// Estimated tilt of each arm, rad.
-    pub tilt: PerArm<f32>,
-    /// Tilt bias of each arm, rad.
-    pub tilt_bias: PerArm<f32>,
-    /// An arm's model is outside its range of validity.
-    pub tilt_fault: bool,
 }
 
 /// Contact pressures.

@@ -3,96 +3,38 @@
 //! Flight level. Deadline: 500 µs after data-ready.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::mixer::{Allocation, Conditions, Mix};
+use sophie_control::chain::{ArmReading, Mixing, Surroundings};
+use sophie_control::mixer::Allocation;
 use sophie_control::params::Params;
-use sophie_control::thrust_curve::ThrustCurve;
 
 use crate::deadline::{TaskId, record_run};
-use crate::links::{Battery, Demand, Links, MixOutput, Setpoint};
+use crate::links::Links;
 
 /// Time from data-ready to the motor commands.
 pub const DEADLINE: Duration = Duration::from_micros(500);
-/// Step time without an estimate, s.
-const NOMINAL_DT: f32 = 1e-3;
 
 /// Allocates at 1 kHz by what `allocation` makes of the parameters; returns only if the link has no receiver left.
 pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) -> A) {
     let Some(mut demand) = links.demand.receiver() else {
         return;
     };
-    let mut mixer = allocation(&links.params);
-    let curve = ThrustCurve::from_params(&links.params);
-    let mut arms_seen = Instant::MIN;
-    let mut readings = [None; 4].into_iter().enumerate();
-    let mut last = Instant::MIN;
+    let mut mixing = Mixing::new(&links.params, allocation(&links.params));
     loop {
         let message = demand.changed().await;
         let started = Instant::now();
-        let dt = (message.at.saturating_duration_since(last).as_micros() as f32 * 1e-6).clamp(0.5e-3, 5e-3);
-        let dt = if last == Instant::MIN { NOMINAL_DT } else { dt };
-        last = message.at;
-        // Without a fresh voltage the last one still is the best guess; without any, nominal.
-        let ratio = links
-            .battery
-            .latest()
-            .map_or(1.0, |b: crate::links::Stamped<Battery>| b.value.ratio);
-        let resting = links
-            .setpoint
-            .latest()
-            .is_some_and(|s| matches!(s.value, Setpoint::Resting { .. }));
-        if let Some(arms) = links.arms.latest()
-            && arms.at > arms_seen
-            && !resting
-        {
-            arms_seen = arms.at;
-            if let Some(arms) = arms.fresh(links.arms.stale_after) {
-                readings = arms.tilt.into_iter().enumerate();
-            }
-        }
-        // One arm a step: all four in one would make it longer than the others.
-        if let Some((arm, Some(tilt))) = readings.next() {
-            mixer.tilt_mut().correct(arm, tilt);
-        }
-        let (mix, running) = match message.value {
-            Demand::Stop => (
-                Mix {
-                    yaw_gated: true,
-                    ..mixer.idle(dt)
-                },
-                false,
-            ),
-            Demand::Idle => (mixer.idle(dt), true),
-            Demand::Wrench { wrench, yaw } => (
-                mixer.mix(
-                    wrench,
-                    Conditions {
-                        yaw,
-                        battery_ratio: ratio,
-                        dt,
-                    },
-                ),
-                true,
-            ),
+        let arms = links.arms.latest().and_then(|message| {
+            let arms = message.fresh(links.arms.stale_after)?;
+            Some(ArmReading {
+                at_us: message.at.as_micros(),
+                tilt: arms.tilt,
+            })
+        });
+        let surroundings = Surroundings {
+            battery_ratio: links.battery.latest().map(|battery| battery.value.ratio),
+            arms,
         };
-        let tilt = mixer.tilt();
-        let (thrusts, commands) = if running {
-            (mix.thrusts, curve.commands(&mix.thrusts, ratio))
-        } else {
-            ([0.0; 4], [0.0; 4])
-        };
-        links.mix.send(
-            message.at,
-            MixOutput {
-                running,
-                thrusts,
-                commands,
-                given: mix.given,
-                yaw_gated: mix.yaw_gated,
-                tilt: tilt.tilt(),
-                tilt_bias: tilt.bias(),
-                tilt_fault: tilt.fault(),
-            },
-        );
+        let mix = mixing.step(message.at.as_micros(), message.value, &surroundings);
+        links.mix.send(message.at, mix);
         record_run(links, TaskId::Mixer, message.at, started, DEADLINE);
     }
 }

@@ -86,7 +86,7 @@ impl Bench {
     /// The wrench that comes of it; yaw is usable.
     fn wrench(&mut self, ms: u64, setpoint: Setpoint) -> Wrench {
         match self.run(ms, setpoint) {
-            Demand::Wrench { wrench, yaw: true } => wrench,
+            Demand::Wrench(wrench) => wrench,
             other => panic!("{other:?}"),
         }
     }
@@ -132,10 +132,7 @@ fn stop_idle_and_a_wrench_pass_as_they_are() {
         pitch: -0.2,
         yaw: 0.03,
     };
-    assert_eq!(
-        bench.run(1, Setpoint::Direct { wrench }),
-        Demand::Wrench { wrench, yaw: true }
-    );
+    assert_eq!(bench.run(1, Setpoint::Direct { wrench }), Demand::Wrench(wrench));
 }
 
 #[test]
@@ -212,7 +209,7 @@ fn on_the_pipe_moments_fade_with_the_thrust_and_yaw_is_given_up() {
     };
     // 0.4 of 2 N at 0.178 m. Unlimited it were 4.5 1/s · 0.3 rad · 10 1/s · 0.021 kg m² = 0.28 N m and twice that.
     for (thrust, most) in [(2.0, 0.1424), (1.0, 0.0712), (0.0, 0.0)] {
-        let Demand::Wrench { wrench, yaw: false } = bench.run(500, resting(thrust)) else {
+        let Demand::Resting(wrench) = bench.run(500, resting(thrust)) else {
             panic!("{:?}", bench.demand())
         };
         assert!(near(wrench.roll, most) && near(wrench.pitch, -most), "{wrench:?}");
@@ -225,7 +222,7 @@ fn on_the_pipe_moments_fade_with_the_thrust_and_yaw_is_given_up() {
         thrust: 17.7,
     };
     let mut bench = Bench::new();
-    let Demand::Wrench { wrench, .. } = bench.run(3000, lean) else {
+    let Demand::Resting(wrench) = bench.run(3000, lean) else {
         panic!("{:?}", bench.demand())
     };
     assert!((wrench.roll - 0.04725).abs() < 1e-3, "{wrench:?}");

@@ -9,15 +9,13 @@ use sophie_tasks::mixer;
 use crate::rig::Rig;
 
 /// A quarter of it is 4.425 N.
-const HOVER: Demand = Demand::Wrench {
-    wrench: Wrench {
-        thrust: 17.7,
-        roll: 0.0,
-        pitch: 0.0,
-        yaw: 0.0,
-    },
-    yaw: true,
+const WEIGHT: Wrench = Wrench {
+    thrust: 17.7,
+    roll: 0.0,
+    pitch: 0.0,
+    yaw: 0.0,
 };
+const HOVER: Demand = Demand::Wrench(WEIGHT);
 
 struct Bench(Rig);
 
@@ -43,7 +41,7 @@ impl Bench {
     }
 
     /// The same with arm angles at 100 Hz that are `age_ms` old.
-    fn with_arms(&mut self, ms: u64, tilt: PerArm<Option<f32>>, age_ms: u64) -> MixOutput {
+    fn with_arms(&mut self, ms: u64, demand: Demand, tilt: PerArm<Option<f32>>, age_ms: u64) -> MixOutput {
         let mut i = 0;
         self.0.run_with(ms, |links, at| {
             if i % 10 == 0 && at.as_millis() >= age_ms {
@@ -51,7 +49,7 @@ impl Bench {
                 links.arms.send(measured, ArmAngles { tilt });
             }
             i += 1;
-            links.demand.send(at, HOVER);
+            links.demand.send(at, demand);
         });
         self.0.links.mix.latest().unwrap().value
     }
@@ -91,13 +89,10 @@ fn a_sagging_battery_gets_larger_commands_for_the_same_thrust() {
     // Full thrust is 8.3 N·0.9² then.
     let most = bench.run(
         3000,
-        Demand::Wrench {
-            wrench: Wrench {
-                thrust: 60.0,
-                ..Wrench::default()
-            },
-            yaw: true,
-        },
+        Demand::Wrench(Wrench {
+            thrust: 60.0,
+            ..Wrench::default()
+        }),
     );
     assert!(
         near(most.thrusts, 6.723, 1e-3) && near(most.commands, 1.0, 1e-3),
@@ -111,7 +106,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     let tilt = bench.run(3000, HOVER).tilt;
     let felt = tilt.map(|t| Some(t + 0.1));
     // 2 % of what is left, 20 times in 0.2 s: 0.1·(1 - 0.98^20) = 0.0332 rad.
-    let learnt = bench.with_arms(200, felt, 0);
+    let learnt = bench.with_arms(200, HOVER, felt, 0);
     assert!(near(learnt.tilt_bias, 0.0332, 2e-3), "{:?}", learnt.tilt_bias);
     assert!(
         learnt
@@ -124,22 +119,23 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     // On the pipe the arms do not hang free.
     let mut bench = Bench::new();
     bench.run(3000, HOVER);
+    let rested = bench.with_arms(1000, Demand::Resting(WEIGHT), felt, 0);
+    assert!(rested.tilt_bias == [0.0; 4] && rested.yaw_gated);
+    // The demand says so, whatever was wanted of control by now.
     let resting = Setpoint::Resting {
         roll: 0.0,
         pitch: 0.0,
         thrust: 17.7,
     };
     bench.0.links.setpoint.send(Instant::now(), resting);
-    assert!(bench.with_arms(1000, felt, 0).tilt_bias == [0.0; 4]);
-    bench.0.links.setpoint.send(Instant::now(), Setpoint::Idle);
-    assert!(bench.with_arms(200, felt, 0).tilt_bias[3] > 0.03);
+    assert!(bench.with_arms(200, HOVER, felt, 0).tilt_bias[3] > 0.03);
 
     // A reading of more than 100 ms ago teaches nothing, one of 90 ms does.
     for (age, learns) in [(90, true), (110, false)] {
         let mut bench = Bench::new();
         bench.run(3000, HOVER);
         assert_eq!(
-            bench.with_arms(200, felt, age).tilt_bias[0] > 0.02,
+            bench.with_arms(200, HOVER, felt, age).tilt_bias[0] > 0.02,
             learns,
             "{age} ms"
         );
@@ -148,7 +144,9 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     // An arm without a reading learns nothing, the others do.
     let mut bench = Bench::new();
     bench.run(3000, HOVER);
-    let bias = bench.with_arms(200, [felt[0], None, felt[2], None], 0).tilt_bias;
+    let bias = bench
+        .with_arms(200, HOVER, [felt[0], None, felt[2], None], 0)
+        .tilt_bias;
     assert!(
         bias[0] > 0.03 && bias[1] == 0.0 && bias[2] > 0.03 && bias[3] == 0.0,
         "{bias:?}"

@@ -12,16 +12,7 @@ use crate::image::Image;
 use crate::{Error, build};
 
 /// Stages of the step in their order, each a function of the counting image.
-const STAGES: [&str; 8] = [
-    "filter",
-    "estimator",
-    "aim",
-    "attitude",
-    "rate",
-    "allocation",
-    "tilt",
-    "commands",
-];
+const STAGES: [&str; 4] = ["filter", "estimator", "control", "mixing"];
 /// Steps of calibration at rest, which do not count (`hil/qemu/cost/src/inputs.rs`), and steps that are looked at.
 const REST: u32 = 2500;
 const STEPS: u32 = 1000;

@@ -30,7 +30,7 @@ const fn stage(name: &'static str, what: &'static str, target: Option<f64>, peer
 }
 
 /// In the order of the table.
-pub const STAGES: [Stage; 11] = [
+pub const STAGES: [Stage; 13] = [
     Stage {
         parts: 3.0,
         ..stage("biquads", "low pass, one biquad-axis", Some(16.0), "22 (PX4)")
@@ -55,6 +55,12 @@ pub const STAGES: [Stage; 11] = [
         Some(250.0),
         "198 (PX4, minimal), 990 (Betaflight), 996 (ArduPilot)",
     ),
+    stage(
+        "control",
+        "control: aim, attitude, rates, loop switching, resting limits",
+        None,
+        "none compares",
+    ),
     stage("tilt", "tilt and slope of four arms", Some(200.0), "none has it"),
     stage(
         "allocation",
@@ -73,6 +79,12 @@ pub const STAGES: [Stage; 11] = [
         "bias of one arm's tilt, four steps in ten",
         None,
         "none has it",
+    ),
+    stage(
+        "mixing",
+        "mixing: tilt, allocation, commands, arms' readings",
+        None,
+        "none compares",
     ),
     stage(
         "whole",

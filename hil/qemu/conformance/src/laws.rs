@@ -3,14 +3,10 @@
 use core::fmt::Arguments;
 
 use sophie_conformance::fold::{Fold, Noise};
-use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
-use sophie_control::estimator::Estimator;
-use sophie_control::imu_filter::ImuFilter;
+use sophie_control::chain::{ArmReading, Command, Demand, FlightChain, Surroundings};
 use sophie_control::math;
-use sophie_control::mixer::{Allocation, Conditions};
 use sophie_control::params::Params;
-use sophie_control::rate::{Feedback, RateLoop};
-use sophie_control::thrust_curve::ThrustCurve;
+use sophie_control::setpoint::Setpoint;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, Wrench};
 use sophie_mixers::{Mixer, Variant};
@@ -21,8 +17,10 @@ const INPUTS: u32 = 4096;
 const STEPS: u32 = 3000;
 const REST: u32 = 3000;
 /// Readings of the inertial sensor in a control step.
-const READINGS: u32 = 4;
-const DT: f32 = 1e-3;
+const READINGS: usize = 4;
+const RATE_HZ: f32 = 4000.0;
+/// Steps for which a kind of setpoint holds.
+const STRETCH: u32 = 250;
 
 /// A function of one number.
 type Function = fn(f32) -> f32;
@@ -65,83 +63,89 @@ fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
     print(format_args!("math atan2: {fold}"));
 }
 
-/// Sensor to motor command, open loop: the inputs are noise about a swaying attitude, so every branch is taken.
+/// Sensor to motor command, open loop: the inputs are noise about a swaying attitude, and every kind of setpoint comes.
 fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     let params = Params::default();
     let mut noise = Noise::new(3);
-    let mut filter = ImuFilter::new(params.gyro_cutoff, 4000.0);
-    let mut estimator = Estimator::new(&params);
-    let mut attitude = AttitudeLoop::new(&params);
-    let mut rate = RateLoop::new(&params, 1000.0);
-    let mut mixer = Mixer::new(variant, Configuration::default(), &params);
-    let curve = ThrustCurve::from_params(&params);
-    let mut feedback = Feedback {
-        roll_pitch: 0.0,
-        yaw: 0.0,
-        yaw_gated: true,
-    };
+    let allocation = Mixer::new(variant, Configuration::default(), &params);
+    let mut chain = FlightChain::new(&params, RATE_HZ, allocation);
     let [mut filtered, mut estimated, mut asked, mut mixed] = [Fold::new(); 4];
+    let mut command = Command::default();
+    let mut surroundings = Surroundings::default();
     for step in 0..REST + STEPS {
         let moving = if step < REST { 0.0 } else { 1.0 };
-        let mut sample = (Vec3::ZERO, Vec3::ZERO);
-        for _ in 0..READINGS {
+        let at_us = 1000 * u64::from(step);
+        let batch: [_; READINGS] = core::array::from_fn(|_| {
             let gyro = vector(&mut noise) * (0.01 + 1.5 * moving);
             let accel = Vec3::new(0.0, 0.0, -math::GRAVITY) + vector(&mut noise) * (0.05 + 2.0 * moving);
-            sample = filter.step(gyro, accel).unwrap_or(sample);
+            (gyro, accel)
+        });
+        if step >= REST {
+            command = Command {
+                setpoint: setpoint(step / STRETCH, &mut noise),
+                at_us,
+            };
+            surroundings.battery_ratio = Some(1.0 + 0.15 * noise.unit());
         }
-        let (gyro, accel) = sample;
-        add(&mut filtered, gyro);
-        add(&mut filtered, accel);
-        let body_rate = estimator.step(gyro, accel, DT);
-        let q = estimator.attitude();
+        if step % 10 == 0 {
+            let tilt = chain.flow.mix.tilt.map(|tilt| Some(tilt + 0.05 * noise.unit()));
+            surroundings.arms = Some(ArmReading { at_us, tilt });
+        }
+        chain.step(at_us, batch, &command, &surroundings);
+        let flow = &chain.flow;
+        add(&mut filtered, flow.sample.gyro);
+        add(&mut filtered, flow.sample.accel);
+        let q = flow.attitude.q;
         for part in [q.w, q.x, q.y, q.z] {
             estimated.add(part.to_bits());
         }
-        if step < REST {
-            continue;
-        }
-        let setpoint = AttitudeSetpoint {
-            roll: 0.5 * noise.unit(),
-            pitch: 0.5 * noise.unit(),
-            yaw_rate: 0.5 * noise.unit(),
-        };
-        attitude.aim(setpoint);
-        let wanted = attitude.step(q, DT);
-        let torque = rate.step(wanted, body_rate, feedback, true, DT);
-        add(&mut asked, torque);
-        let wrench = Wrench {
-            thrust: 18.0 + 16.0 * noise.unit(),
-            roll: torque.x,
-            pitch: torque.y,
-            yaw: torque.z,
-        };
-        if step % 10 == 0 {
-            for (arm, tilt) in mixer.tilt().tilt().into_iter().enumerate() {
-                mixer.tilt_mut().correct(arm, tilt + 0.05 * noise.unit());
+        if let Demand::Wrench(w) | Demand::Resting(w) = flow.demand {
+            for part in [w.thrust, w.roll, w.pitch, w.yaw] {
+                asked.add(part.to_bits());
             }
         }
-        let battery_ratio = 1.0 + 0.15 * noise.unit();
-        let mix = mixer.mix(
-            wrench,
-            Conditions {
-                yaw: true,
-                battery_ratio,
-                dt: DT,
-            },
-        );
-        feedback = Feedback {
-            roll_pitch: mix.given.roll_pitch,
-            yaw: mix.given.yaw,
-            yaw_gated: mix.yaw_gated,
-        };
-        for thrust in mix.thrusts {
-            mixed.add(curve.command(thrust, battery_ratio).to_bits());
+        for command in flow.mix.commands {
+            mixed.add(command.to_bits());
         }
     }
     print(format_args!("{name} filter: {filtered}"));
     print(format_args!("{name} estimator: {estimated}"));
     print(format_args!("{name} control: {asked}"));
     print(format_args!("{name} mixer: {mixed}"));
+}
+
+/// The setpoint of a step of the `stretch`: attitudes for the most part, between them rates, the pipe and off it, a wrench.
+fn setpoint(stretch: u32, noise: &mut Noise) -> Setpoint {
+    let [roll, pitch, yaw_rate] = [0.5 * noise.unit(), 0.5 * noise.unit(), 0.5 * noise.unit()];
+    let thrust = 18.0 + 16.0 * noise.unit();
+    match stretch % 8 {
+        2 => Setpoint::Rate {
+            rate: Vec3::new(roll, pitch, yaw_rate),
+            thrust,
+        },
+        4 => Setpoint::Resting { roll, pitch, thrust },
+        5 => Setpoint::Escape {
+            roll,
+            pitch,
+            yaw_rate,
+            thrust,
+        },
+        6 => Setpoint::Direct {
+            wrench: Wrench {
+                thrust,
+                roll,
+                pitch,
+                yaw: 0.1 * yaw_rate,
+            },
+        },
+        7 => Setpoint::Idle,
+        _ => Setpoint::Angle {
+            roll,
+            pitch,
+            yaw_rate,
+            thrust,
+        },
+    }
 }
 
 fn vector(noise: &mut Noise) -> Vec3 {

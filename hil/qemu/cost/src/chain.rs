@@ -1,225 +1,168 @@
-//! The control path from raw readings to motor commands, stage by stage and at one go.
+//! The flight step from raw readings to motor commands: its stages, its laws one by one, and all of it at one go.
 //!
-//! Each stage is a function that is not inlined, with its inputs and outputs in memory: what a call from a task costs.
+//! Each is a function that is not inlined, with its inputs and outputs in memory: what a call from a task costs. The stages
+//! are those of [`FlightChain`], called in its order; a law is run on a copy of its own, so that nothing is composed here.
 
 use core::hint::black_box;
 
 use sophie_control::attitude::{AttitudeLoop, Target};
-use sophie_control::estimator::Estimator;
-use sophie_control::imu_filter::{AxisFilter, ImuFilter};
+use sophie_control::chain::{Demand, FlightChain, Flow};
+use sophie_control::imu_filter::AxisFilter;
 use sophie_control::mixer::{Allocation, Conditions, Flexible, Mix};
 use sophie_control::params::Params;
-use sophie_control::rate::{Feedback, RateLoop};
+use sophie_control::rate::RateLoop;
 use sophie_control::thrust_curve::ThrustCurve;
-use sophie_control::vector::{Quat, Vec3};
-use sophie_control::wrench::{Configuration, PerArm, Wrench};
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::{Configuration, PerArm};
 
-use crate::inputs::{Inputs, Reading};
+use crate::inputs::Inputs;
 
-/// The laws' states and what they hand on.
-#[derive(Clone)]
-pub struct Chain {
-    pub axes: AxisFilter,
-    pub filter: ImuFilter,
-    pub estimator: Estimator,
-    pub attitude: AttitudeLoop,
-    pub rate: RateLoop,
-    pub mixer: Flexible,
-    pub curve: ThrustCurve,
-    pub flow: Flow,
-}
-
-/// What one stage hands to the next.
-#[derive(Clone, Copy)]
-pub struct Flow {
-    pub accel_bias: Vec3,
-    pub sample: Reading,
-    pub axes: Vec3,
-    pub body_rate: Vec3,
-    pub q: Quat,
-    pub wanted: Vec3,
-    pub target: Target,
-    pub moment: Vec3,
-    pub mix: Mix,
-    pub commands: PerArm<f32>,
-}
-
-impl Chain {
-    /// At rest, with parameters of which the compiler knows nothing.
-    pub fn new() -> Self {
-        let p = black_box(Params::default());
-        let raw_rate = black_box(4000.0);
-        Self {
-            axes: AxisFilter::low_pass(p.gyro_cutoff, raw_rate),
-            filter: ImuFilter::new(p.gyro_cutoff, raw_rate),
-            estimator: Estimator::new(&p),
-            attitude: AttitudeLoop::new(&p),
-            rate: RateLoop::new(&p, black_box(1000.0)),
-            mixer: Flexible::new(black_box(Configuration::B), &p),
-            curve: ThrustCurve::from_params(&p),
-            flow: Flow {
-                accel_bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
-                sample: (Vec3::ZERO, Vec3::ZERO),
-                axes: Vec3::ZERO,
-                body_rate: Vec3::ZERO,
-                q: Quat::IDENTITY,
-                wanted: Vec3::ZERO,
-                target: Target::default(),
-                moment: Vec3::ZERO,
-                mix: Mix {
-                    yaw_gated: true,
-                    ..Mix::default()
-                },
-                commands: [0.0; 4],
-            },
-        }
-    }
-}
-
-/// What the mixer gave, as the rate loop wants to know it.
-#[inline(always)]
-fn feedback(mix: &Mix) -> Feedback {
-    Feedback {
-        roll_pitch: mix.given.roll_pitch,
-        yaw: mix.given.yaw,
-        yaw_gated: mix.yaw_gated,
-    }
+/// At rest, with parameters of which the compiler knows nothing.
+pub fn at_rest() -> FlightChain {
+    let p = black_box(Params::default());
+    let allocation = Flexible::new(black_box(Configuration::B), &p);
+    FlightChain::new(&p, black_box(4000.0), allocation)
 }
 
 /// Nothing but the call.
 #[inline(never)]
 pub fn nothing(_: &mut (), _: &u32) {}
 
-/// Three axes through one biquad each.
+/// First stage: one batch through the filter of the inertial sensor.
 #[inline(never)]
-pub fn axes(c: &mut Chain, i: &Inputs) {
-    let [(gyro, _), ..] = &i.batch;
-    c.flow.axes = c.axes.step(*gyro);
+pub fn filter(c: &mut FlightChain, i: &Inputs) {
+    c.sense(i.at_us, i.batch);
 }
 
-/// One batch through the filter of the inertial sensor.
+/// Second stage: attitude and rate from the filtered sample.
 #[inline(never)]
-pub fn filter(c: &mut Chain, i: &Inputs) {
-    let bias = c.flow.accel_bias;
-    let filtered = c
-        .filter
-        .batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
-    c.flow.sample = filtered.newest.unwrap_or(c.flow.sample);
+pub fn estimator(c: &mut FlightChain, _: &Inputs) {
+    c.estimate();
 }
 
-/// Attitude and rate from the filtered sample.
+/// Third stage: the demand, with loop switching and resting limits.
 #[inline(never)]
-pub fn estimator(c: &mut Chain, i: &Inputs) {
-    let (gyro, accel) = c.flow.sample;
-    c.flow.body_rate = c.estimator.step(gyro, accel, i.dt);
-    c.flow.q = c.estimator.attitude();
+pub fn control(c: &mut FlightChain, i: &Inputs) {
+    c.control(&i.command);
 }
 
-/// What the sticks want, at 100 Hz.
+/// Fourth stage: commands from the demand, with the arms' readings.
 #[inline(never)]
-pub fn aim(c: &mut Chain, i: &Inputs) {
-    if let Some(setpoint) = i.setpoint {
-        c.attitude.aim(setpoint);
-    }
-}
-
-/// Wanted rates from the attitude, and the target that is logged. A yaw that was given up takes the heading along.
-#[inline(never)]
-pub fn attitude(c: &mut Chain, i: &Inputs) {
-    if c.flow.mix.yaw_gated {
-        c.attitude.capture_heading(c.flow.q);
-    }
-    c.flow.wanted = c.attitude.step(c.flow.q, i.dt);
-    c.flow.target = c.attitude.target();
-}
-
-/// Moments from the rates.
-#[inline(never)]
-pub fn rate(c: &mut Chain, i: &Inputs) {
-    let f = &mut c.flow;
-    f.moment = c
-        .rate
-        .step(f.wanted, f.body_rate, feedback(&f.mix), i.integrate, i.dt);
-}
-
-/// Thrusts from moments: Jacobian from the tilt, allocation, desaturation.
-#[inline(never)]
-pub fn allocation(c: &mut Chain, i: &Inputs) {
-    let f = &mut c.flow;
-    let wrench = Wrench {
-        thrust: i.thrust,
-        roll: f.moment.x,
-        pitch: f.moment.y,
-        yaw: f.moment.z,
-    };
-    let conditions = Conditions {
-        yaw: i.yaw,
-        battery_ratio: i.battery_ratio,
-        dt: i.dt,
-    };
-    f.mix = c.mixer.allocate(wrench, conditions);
-}
-
-/// Tilt and slope of the four arms from the thrusts sent.
-#[inline(never)]
-pub fn tilt(c: &mut Chain, i: &Inputs) {
-    c.mixer.follow(&c.flow.mix.thrusts, i.dt);
-}
-
-/// What the sensor of one arm teaches of its tilt, each at 100 Hz.
-#[inline(never)]
-pub fn arm_sensor(c: &mut Chain, i: &Inputs) {
-    teach(&mut c.mixer, i);
-}
-
-#[inline(always)]
-fn teach(mixer: &mut Flexible, i: &Inputs) {
-    if let Some((arm, measured)) = i.arm {
-        mixer.tilt_mut().correct(arm, measured);
-    }
-}
-
-/// Motor commands from thrusts and battery.
-#[inline(never)]
-pub fn commands(c: &mut Chain, i: &Inputs) {
-    c.flow.commands = c.curve.commands(&c.flow.mix.thrusts, i.battery_ratio);
+pub fn mixing(c: &mut FlightChain, i: &Inputs) {
+    c.mix(&i.surroundings);
 }
 
 /// All of it at one go, as one call.
 #[inline(never)]
-pub fn whole(c: &mut Chain, i: &Inputs) {
-    let bias = c.flow.accel_bias;
-    let filtered = c
-        .filter
-        .batch(i.batch.iter().map(|(gyro, accel)| (*gyro, *accel - bias)));
-    c.flow.sample = filtered.newest.unwrap_or(c.flow.sample);
-    let (gyro, accel) = c.flow.sample;
-    let f = &mut c.flow;
-    f.body_rate = c.estimator.step(gyro, accel, i.dt);
-    f.q = c.estimator.attitude();
-    if f.mix.yaw_gated {
-        c.attitude.capture_heading(f.q);
+pub fn whole(c: &mut FlightChain, i: &Inputs) {
+    c.step(i.at_us, i.batch, &i.command, &i.surroundings);
+}
+
+/// The laws of the chain on copies of their own, and what they are given and give.
+pub struct Laws {
+    flow: Flow,
+    axes: AxisFilter,
+    attitude: AttitudeLoop,
+    rate: RateLoop,
+    allocation: Flexible,
+    curve: ThrustCurve,
+    smooth: Vec3,
+    wanted: Vec3,
+    target: Target,
+    moment: Vec3,
+    mix: Mix,
+    commands: PerArm<f32>,
+}
+
+impl Laws {
+    /// At rest.
+    pub fn new(chain: &FlightChain) -> Self {
+        let p = black_box(Params::default());
+        Self {
+            flow: chain.flow,
+            axes: AxisFilter::low_pass(p.gyro_cutoff, black_box(4000.0)),
+            attitude: chain.control.attitude,
+            rate: chain.control.rate,
+            allocation: chain.mixing.allocation,
+            curve: chain.mixing.curve,
+            smooth: Vec3::ZERO,
+            wanted: Vec3::ZERO,
+            target: Target::default(),
+            moment: Vec3::ZERO,
+            mix: Mix::default(),
+            commands: [0.0; 4],
+        }
     }
-    if let Some(setpoint) = i.setpoint {
-        c.attitude.aim(setpoint);
+
+    /// Takes over where `chain` stands.
+    pub fn take(&mut self, chain: &FlightChain) {
+        self.flow = chain.flow;
+        self.attitude = chain.control.attitude;
+        self.rate = chain.control.rate;
+        self.allocation = chain.mixing.allocation;
     }
-    f.wanted = c.attitude.step(f.q, i.dt);
-    f.target = c.attitude.target();
-    f.moment = c
-        .rate
-        .step(f.wanted, f.body_rate, feedback(&f.mix), i.integrate, i.dt);
-    let wrench = Wrench {
-        thrust: i.thrust,
-        roll: f.moment.x,
-        pitch: f.moment.y,
-        yaw: f.moment.z,
-    };
-    let conditions = Conditions {
-        yaw: i.yaw,
-        battery_ratio: i.battery_ratio,
-        dt: i.dt,
-    };
-    f.mix = c.mixer.mix(wrench, conditions);
-    f.commands = c.curve.commands(&f.mix.thrusts, i.battery_ratio);
-    teach(&mut c.mixer, i);
+}
+
+/// Three axes through one biquad each.
+#[inline(never)]
+pub fn axes(l: &mut Laws, i: &Inputs) {
+    let [(gyro, _), ..] = &i.batch;
+    l.smooth = l.axes.step(*gyro);
+}
+
+/// The direction that the sticks want, at 100 Hz.
+#[inline(never)]
+pub fn aim(l: &mut Laws, i: &Inputs) {
+    l.attitude.aim(i.sticks);
+}
+
+/// Wanted rates from the attitude, and the target that is logged. A yaw that was given up takes the heading along.
+#[inline(never)]
+pub fn attitude(l: &mut Laws, _: &Inputs) {
+    let a = &l.flow.attitude;
+    if l.flow.mix.yaw_gated {
+        l.attitude.capture_heading(a.q);
+    }
+    l.wanted = l.attitude.step(a.q, a.dt);
+    l.target = l.attitude.target();
+}
+
+/// Moments from the rates.
+#[inline(never)]
+pub fn rate(l: &mut Laws, i: &Inputs) {
+    let (a, feedback) = (&l.flow.attitude, l.flow.mix.feedback());
+    l.moment = l.rate.step(l.wanted, a.rate, feedback, !i.resting, a.dt);
+}
+
+/// Thrusts from a wrench: Jacobian from the tilt, allocation, desaturation.
+#[inline(never)]
+pub fn allocation(l: &mut Laws, i: &Inputs) {
+    if let Demand::Wrench(wrench) | Demand::Resting(wrench) = l.flow.demand {
+        let conditions = Conditions {
+            yaw: !i.resting,
+            battery_ratio: i.battery_ratio,
+            dt: l.flow.attitude.dt,
+        };
+        l.mix = l.allocation.allocate(wrench, conditions);
+    }
+}
+
+/// Tilt and slope of the four arms from the thrusts sent.
+#[inline(never)]
+pub fn tilt(l: &mut Laws, _: &Inputs) {
+    l.allocation.follow(&l.mix.thrusts, l.flow.attitude.dt);
+}
+
+/// Motor commands from thrusts and battery.
+#[inline(never)]
+pub fn commands(l: &mut Laws, i: &Inputs) {
+    l.commands = l.curve.commands(&l.mix.thrusts, i.battery_ratio);
+}
+
+/// What the sensor of one arm corrects of its tilt, each at 100 Hz.
+#[inline(never)]
+pub fn arm_sensor(l: &mut Laws, i: &Inputs) {
+    if let Some((arm, measured)) = i.arm {
+        l.allocation.tilt_mut().correct(arm, measured);
+    }
 }

@@ -6,7 +6,9 @@
 
 use sophie_conformance::fold::Noise;
 use sophie_control::attitude::AttitudeSetpoint;
+use sophie_control::chain::{ArmReading, Command, Surroundings};
 use sophie_control::math::GRAVITY;
+use sophie_control::setpoint::Setpoint;
 use sophie_control::vector::Vec3;
 
 /// Readings of the inertial sensor in a control step: 4 kHz.
@@ -30,22 +32,31 @@ pub type Reading = (Vec3, Vec3);
 /// Inputs of one control step.
 #[derive(Clone, Copy)]
 pub struct Inputs {
+    /// When the newest reading was ready, µs.
+    pub at_us: u64,
     /// Raw rates (rad/s) and specific forces (m/s²).
     pub batch: [Reading; READINGS],
-    /// Wanted attitude: the sticks speak in one step of ten.
-    pub setpoint: Option<AttitudeSetpoint>,
-    /// Wanted collective thrust, N.
-    pub thrust: f32,
-    /// Yaw may be used.
-    pub yaw: bool,
-    /// The integrators may move.
-    pub integrate: bool,
+    /// What the sticks want of the rotors, renewed in one step of ten.
+    pub command: Command,
+    /// The direction in it, and whether it is renewed in this step.
+    pub sticks: AttitudeSetpoint,
+    pub renewed: bool,
+    /// The vehicle rests on the pipe.
+    pub resting: bool,
     /// Battery voltage over nominal.
     pub battery_ratio: f32,
-    /// What the sensor of one arm read, rad: each speaks in one step of ten, the four one after the other.
+    /// That, and the arms' sensors, which are read in one step of ten and taken one after the other.
+    pub surroundings: Surroundings,
+    /// The arm whose reading is taken in this step, and its tilt, rad.
     pub arm: Option<(usize, f32)>,
-    /// Step time, s.
-    pub dt: f32,
+}
+
+/// Which setpoint flies a stretch.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Angle,
+    Resting,
+    Escape,
 }
 
 /// What one stretch of flight is like.
@@ -54,8 +65,7 @@ struct Stretch {
     noise: f32,
     stick: f32,
     thrust: (f32, f32),
-    yaw: bool,
-    integrate: bool,
+    kind: Kind,
     battery: f32,
 }
 
@@ -65,13 +75,12 @@ const fn stretch(rate: f32, noise: f32, stick: f32, thrust: (f32, f32), battery:
         noise,
         stick,
         thrust,
-        yaw: true,
-        integrate: true,
+        kind: Kind::Angle,
         battery,
     }
 }
 
-const STRETCHES: [Stretch; 8] = [
+const STRETCHES: [Stretch; 9] = [
     // Hover, then gusts on it.
     stretch(0.1, 0.05, 0.05, (17.7, 1.0), 1.05),
     stretch(1.0, 0.3, 0.2, (17.7, 3.0), 1.0),
@@ -83,11 +92,14 @@ const STRETCHES: [Stretch; 8] = [
     stretch(2.0, 0.5, 0.8, (2.0, 2.0), 1.2),
     // Anything, on a battery that is nearly empty.
     stretch(3.0, 1.5, 2.0, (17.0, 17.0), 0.7),
-    // On the pipe: yaw given up, integrators held.
+    // On the pipe: yaw given up, integrators held, moments limited. Then off it.
     Stretch {
-        yaw: false,
-        integrate: false,
+        kind: Kind::Resting,
         ..stretch(0.3, 0.3, 0.1, (6.0, 5.0), 0.95)
+    },
+    Stretch {
+        kind: Kind::Escape,
+        ..stretch(1.0, 0.3, 0.2, (22.0, 3.0), 0.95)
     },
 ];
 
@@ -99,6 +111,9 @@ pub struct Sequence {
     rate: Vec3,
     sticks: Vec3,
     thrust: f32,
+    at_us: u64,
+    command: Command,
+    arms: ArmReading,
 }
 
 impl Sequence {
@@ -111,6 +126,15 @@ impl Sequence {
             rate: Vec3::ZERO,
             sticks: Vec3::ZERO,
             thrust: 0.0,
+            at_us: 0,
+            command: Command {
+                setpoint: Setpoint::Idle,
+                at_us: 0,
+            },
+            arms: ArmReading {
+                at_us: 0,
+                tilt: [None; 4],
+            },
         }
     }
 
@@ -129,21 +153,41 @@ impl Sequence {
         }
         let noise = if resting { 0.01 } else { s.noise };
         let batch = core::array::from_fn(|_| self.read(noise));
+        // 1 ms, and up to 2 % more or less.
+        self.at_us += (1000.0 + 20.0 * self.noise.unit()) as u64;
         let turn = (step % 10) as usize;
-        let arm = (turn < 4).then(|| (turn, 0.2 * self.noise.unit()));
+        let sticks = AttitudeSetpoint {
+            roll: self.sticks.x,
+            pitch: self.sticks.y,
+            yaw_rate: self.sticks.z,
+        };
+        if !resting && turn == STICKS {
+            self.command = Command {
+                setpoint: setpoint(s.kind, sticks, self.thrust),
+                at_us: self.at_us,
+            };
+        }
+        if turn == 0 {
+            self.arms = ArmReading {
+                at_us: self.at_us,
+                tilt: core::array::from_fn(|_| Some(0.2 * self.noise.unit())),
+            };
+        }
+        let arm = self.arms.tilt.get(turn).and_then(|tilt| Some((turn, (*tilt)?)));
+        let battery_ratio = s.battery + 0.02 * self.noise.unit();
         Inputs {
+            at_us: self.at_us,
             batch,
-            setpoint: (turn == STICKS).then_some(AttitudeSetpoint {
-                roll: self.sticks.x,
-                pitch: self.sticks.y,
-                yaw_rate: self.sticks.z,
-            }),
-            thrust: self.thrust,
-            yaw: s.yaw,
-            integrate: s.integrate,
-            battery_ratio: s.battery + 0.02 * self.noise.unit(),
+            command: self.command,
+            sticks,
+            renewed: turn == STICKS,
+            resting: matches!(self.command.setpoint, Setpoint::Resting { .. }),
+            battery_ratio,
+            surroundings: Surroundings {
+                battery_ratio: Some(battery_ratio),
+                arms: Some(self.arms),
+            },
             arm,
-            dt: 1e-3 * (1.0 + 0.02 * self.noise.unit()),
         }
     }
 
@@ -160,5 +204,29 @@ impl Sequence {
 
     fn vector(&mut self) -> Vec3 {
         Vec3::new(self.noise.unit(), self.noise.unit(), self.noise.unit())
+    }
+}
+
+/// The setpoint of a kind.
+const fn setpoint(kind: Kind, sticks: AttitudeSetpoint, thrust: f32) -> Setpoint {
+    let AttitudeSetpoint {
+        roll,
+        pitch,
+        yaw_rate,
+    } = sticks;
+    match kind {
+        Kind::Angle => Setpoint::Angle {
+            roll,
+            pitch,
+            yaw_rate,
+            thrust,
+        },
+        Kind::Resting => Setpoint::Resting { roll, pitch, thrust },
+        Kind::Escape => Setpoint::Escape {
+            roll,
+            pitch,
+            yaw_rate,
+            thrust,
+        },
     }
 }

@@ -4,22 +4,29 @@ use core::fmt::Arguments;
 use core::hint::black_box;
 
 use sophie_conformance::fold::Fold;
+use sophie_control::chain::{Demand, FlightChain};
 
-use crate::chain::{self, Chain};
+use crate::chain::{self, Laws};
 use crate::counter::{self, Tally, gross};
 use crate::inputs::{FLIGHT, Inputs, REST, Sequence};
 
-/// A stage: its name and what to call.
-type Stage = (&'static str, fn(&mut Chain, &Inputs));
+/// A stage or law: its name and what to call.
+type Part<S> = (&'static str, fn(&mut S, &Inputs));
 
-/// In the order of the data. The tilt follows the thrusts, so it comes after the allocation that it serves next.
-const STAGES: [Stage; 10] = [
+/// The stages, each after the laws that it is made of, in the order of the data.
+const FILTER: Part<FlightChain> = ("filter", chain::filter);
+const ESTIMATOR: Part<FlightChain> = ("estimator", chain::estimator);
+const CONTROL: Part<FlightChain> = ("control", chain::control);
+const MIXING: Part<FlightChain> = ("mixing", chain::mixing);
+/// Laws before and in control.
+const BEFORE_CONTROL: [Part<Laws>; 4] = [
     ("biquads", chain::axes),
-    ("filter", chain::filter),
-    ("estimator", chain::estimator),
     ("aim", chain::aim),
     ("attitude", chain::attitude),
     ("rate", chain::rate),
+];
+/// Laws of mixing. The tilt follows the thrusts, so it comes after the allocation that it serves next.
+const BEFORE_MIXING: [Part<Laws>; 4] = [
     ("allocation", chain::allocation),
     ("tilt", chain::tilt),
     ("commands", chain::commands),
@@ -51,35 +58,72 @@ fn overhead() -> u32 {
     nothing
 }
 
+/// Counts of the parts by name, and what one call takes more than its work.
+struct Counts {
+    overhead: u32,
+    tallies: [(&'static str, Tally); 12],
+}
+
+impl Counts {
+    fn new(overhead: u32) -> Self {
+        let stages = [FILTER.0, ESTIMATOR.0, CONTROL.0, MIXING.0];
+        let laws = BEFORE_CONTROL.iter().chain(&BEFORE_MIXING);
+        let mut names = stages.into_iter().chain(laws.map(|(name, _)| *name));
+        let tallies = core::array::from_fn(|_| (names.next().unwrap_or_default(), Tally::new()));
+        Self { overhead, tallies }
+    }
+
+    /// Runs a part, and counts it where it is `due`.
+    fn call<S>(&mut self, (name, work): Part<S>, state: &mut S, inputs: &Inputs, due: bool) {
+        let count = gross(work, state, inputs) - self.overhead;
+        // The arms' sensors are read in four steps of ten, the sticks in one.
+        let due = due
+            && match name {
+                "arm-sensor" => inputs.arm.is_some(),
+                "aim" => inputs.renewed,
+                _ => true,
+            };
+        let mine = self.tallies.iter_mut().find(|(other, _)| *other == name);
+        if let Some((_, tally)) = mine
+            && due
+        {
+            tally.add(count);
+        }
+    }
+}
+
 fn stages(print: &mut dyn FnMut(Arguments<'_>), overhead: u32) -> Fold {
-    let mut chain = Chain::new();
+    let mut chain = chain::at_rest();
+    let mut laws = Laws::new(&chain);
     let mut sequence = Sequence::new();
-    let mut tallies = [Tally::new(); STAGES.len()];
+    let mut counts = Counts::new(overhead);
     let mut fold = Fold::new();
     for step in 0..REST + FLIGHT {
         let inputs = black_box(sequence.next());
-        for ((name, stage), tally) in STAGES.iter().zip(&mut tallies) {
-            let count = gross(*stage, &mut chain, &inputs) - overhead;
-            // The arms' sensors speak in four steps of ten, the sticks in one.
-            let due = match *name {
-                "arm-sensor" => inputs.arm.is_some(),
-                "aim" => inputs.setpoint.is_some(),
-                _ => true,
-            };
-            if step >= REST && due {
-                tally.add(count);
-            }
+        let due = step >= REST;
+        counts.call(FILTER, &mut chain, &inputs, due);
+        counts.call(ESTIMATOR, &mut chain, &inputs, due);
+        laws.take(&chain);
+        for law in BEFORE_CONTROL {
+            counts.call(law, &mut laws, &inputs, due);
         }
+        counts.call(CONTROL, &mut chain, &inputs, due);
+        laws.take(&chain);
+        let asked = matches!(chain.flow.demand, Demand::Wrench(_) | Demand::Resting(_));
+        for law in BEFORE_MIXING {
+            counts.call(law, &mut laws, &inputs, due && asked);
+        }
+        counts.call(MIXING, &mut chain, &inputs, due);
         add(&mut fold, &chain);
     }
-    for ((name, _), tally) in STAGES.iter().zip(&tallies) {
+    for (name, tally) in &counts.tallies {
         line(print, name, tally);
     }
     fold
 }
 
 fn whole(overhead: u32) -> (Fold, Tally) {
-    let mut chain = Chain::new();
+    let mut chain = chain::at_rest();
     let mut sequence = Sequence::new();
     let mut tally = Tally::new();
     let mut fold = Fold::new();
@@ -94,8 +138,8 @@ fn whole(overhead: u32) -> (Fold, Tally) {
     (fold, tally)
 }
 
-fn add(fold: &mut Fold, chain: &Chain) {
-    for command in chain.flow.commands {
+fn add(fold: &mut Fold, chain: &FlightChain) {
+    for command in chain.flow.mix.commands {
         fold.add(command.to_bits());
     }
 }

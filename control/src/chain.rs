@@ -1,0 +1,126 @@
+//! The flight step: from a batch of inertial samples to four motor commands, once a millisecond.
+//!
+//! Four stages, each a type with its own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] turns a
+//! setpoint into a demand, [`Mixing`] turns the demand into commands. On the vehicle each belongs to a task, and what
+//! passes between them to a link; everything else (instruction counts, QEMU, replays) runs the same stages in the same
+//! order as one [`FlightChain`]. A recorded mission gives the same bits through both.
+
+mod control;
+mod messages;
+mod mixing;
+mod sensing;
+mod step_clock;
+
+pub use control::{Command, Control};
+pub use messages::{Attitude, Demand, ImuSample, MixOutput};
+pub use mixing::{ArmReading, Mixing, Surroundings};
+pub use sensing::Sensing;
+pub use step_clock::StepClock;
+
+use crate::attitude::Target;
+use crate::estimator::Estimator;
+use crate::mixer::{Allocation, Flexible};
+use crate::params::Params;
+use crate::rate::Feedback;
+use crate::vector::Vec3;
+
+/// Rate of the step, Hz.
+pub const CONTROL_RATE_HZ: f32 = 1000.0;
+
+/// What the stages handed on in the last step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Flow {
+    /// When the newest sample was ready, µs.
+    pub at_us: u64,
+    /// From sensing to the estimator.
+    pub sample: ImuSample,
+    /// From the estimator to control.
+    pub attitude: Attitude,
+    /// From control to mixing.
+    pub demand: Demand,
+    /// From control to the log.
+    pub target: Target,
+    /// From mixing to the motors, and back to control.
+    pub mix: MixOutput,
+}
+
+/// The stages of the flight step, one after the other.
+#[derive(Clone, Debug)]
+pub struct FlightChain<A = Flexible> {
+    /// First stage.
+    pub sensing: Sensing,
+    /// Second stage.
+    pub estimator: Estimator,
+    /// Third stage.
+    pub control: Control,
+    /// Fourth stage.
+    pub mixing: Mixing<A>,
+    /// What they handed on.
+    pub flow: Flow,
+    /// What the last mix gave; nothing before the first.
+    feedback: Feedback,
+}
+
+impl<A: Allocation> FlightChain<A> {
+    /// A chain at rest for samples at `rate_hz` that allocates by `allocation`.
+    pub fn new(p: &Params, rate_hz: f32, allocation: A) -> Self {
+        Self {
+            sensing: Sensing::new(p, rate_hz),
+            estimator: Estimator::new(p),
+            control: Control::new(p),
+            mixing: Mixing::new(p, allocation),
+            flow: Flow::default(),
+            feedback: Feedback::NOTHING,
+        }
+    }
+
+    /// First stage: takes a batch of rates (rad/s) and specific forces (m/s²), oldest first, the newest ready at `at_us`
+    /// µs. True when a step is due.
+    #[inline(always)]
+    pub fn sense(&mut self, at_us: u64, samples: impl IntoIterator<Item = (Vec3, Vec3)>) -> bool {
+        let sample = self.sensing.take(at_us, samples);
+        if let Some(sample) = sample {
+            self.flow.at_us = at_us;
+            self.flow.sample = sample;
+        }
+        sample.is_some()
+    }
+
+    /// Second stage.
+    #[inline(always)]
+    pub fn estimate(&mut self) {
+        self.flow.attitude = self.estimator.estimate(&self.flow.sample);
+    }
+
+    /// Third stage.
+    #[inline(always)]
+    pub fn control(&mut self, command: &Command) {
+        self.flow.demand = self.control.step(&self.flow.attitude, command, self.feedback);
+        self.flow.target = self.control.target();
+    }
+
+    /// Fourth stage.
+    #[inline(always)]
+    pub fn mix(&mut self, surroundings: &Surroundings) {
+        self.flow.mix = self.mixing.step(self.flow.at_us, self.flow.demand, surroundings);
+        self.feedback = self.flow.mix.feedback();
+    }
+
+    /// All of it. True when a step was due.
+    #[inline(always)]
+    pub fn step(
+        &mut self,
+        at_us: u64,
+        samples: impl IntoIterator<Item = (Vec3, Vec3)>,
+        command: &Command,
+        surroundings: &Surroundings,
+    ) -> bool {
+        let due = self.sense(at_us, samples);
+        if due {
+            self.estimate();
+            self.control(command);
+            self.mix(surroundings);
+        }
+        due
+    }
+}

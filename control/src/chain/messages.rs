@@ -1,0 +1,81 @@
+//! What the stages of the flight step hand on.
+
+use crate::desaturation::Given;
+use crate::rate::Feedback;
+use crate::vector::{Quat, Vec3};
+use crate::wrench::{PerArm, Wrench};
+
+/// Filtered inertial sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImuSample {
+    /// Angular rate, rad/s, body, low-passed; the estimator takes its bias off.
+    pub gyro: Vec3,
+    /// Specific force, m/s², body, the newest, low-passed.
+    pub accel: Vec3,
+    /// Time since the sample before, s, limited to a sane range.
+    pub dt: f32,
+}
+
+/// Estimated motion of the body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Attitude {
+    /// Body to world.
+    pub q: Quat,
+    /// Angular rate without bias, rad/s, body.
+    pub rate: Vec3,
+    /// Specific force, m/s², body.
+    pub accel: Vec3,
+    /// Estimated gyro bias, rad/s.
+    pub gyro_bias: Vec3,
+    /// Calibration at rest has ended.
+    pub calibrated: bool,
+    /// Time since the estimate before, s.
+    pub dt: f32,
+}
+
+/// What control asks of the mixer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Demand {
+    /// Rotors stopped.
+    #[default]
+    Stop,
+    /// Rotors at idle.
+    Idle,
+    /// This wrench, yaw included.
+    Wrench(Wrench),
+    /// This wrench on the pipe: yaw is given up, and the arms do not hang free, so that their sensors correct nothing.
+    Resting(Wrench),
+}
+
+/// What the mixer gave.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MixOutput {
+    /// Rotors run.
+    pub running: bool,
+    /// Thrust asked of each rotor, N.
+    pub thrusts: PerArm<f32>,
+    /// Motor commands, 0..1, battery compensated.
+    pub commands: PerArm<f32>,
+    /// Share of the asked yaw, thrust (relative to the range left) and roll/pitch that was given, 0..1.
+    pub given: Given,
+    /// Yaw is being given up because the arms' tilt leaves no authority.
+    pub yaw_gated: bool,
+    /// Estimated tilt of each arm, rad.
+    pub tilt: PerArm<f32>,
+    /// Tilt bias of each arm, rad.
+    pub tilt_bias: PerArm<f32>,
+    /// An arm's model is outside its range of validity.
+    pub tilt_fault: bool,
+}
+
+impl MixOutput {
+    /// What the rate loop needs of it.
+    #[inline(always)]
+    pub const fn feedback(&self) -> Feedback {
+        Feedback {
+            roll_pitch: self.given.roll_pitch,
+            yaw: self.given.yaw,
+            yaw_gated: self.yaw_gated,
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Time from step to step.
+
+use crate::chain::CONTROL_RATE_HZ;
+use crate::math;
+
+/// Shortest and longest step time that a law is given, s: half and five times the nominal one. A longer gap is a fault that
+/// others report; a law that integrated over it would jump.
+const SHORTEST: f32 = 0.5e-3;
+const LONGEST: f32 = 5e-3;
+
+/// Gives the time of each step from its stamp.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepClock {
+    last_us: Option<u64>,
+}
+
+impl StepClock {
+    /// Time since the step before, s, 0.5 to 5 ms, for a step of `at_us` µs; 1 ms for the first.
+    #[inline(always)]
+    pub fn step(&mut self, at_us: u64) -> f32 {
+        let dt = self.last_us.map_or(1.0 / CONTROL_RATE_HZ, |last| {
+            // 32 bits: a conversion of 64 is a library call on these cores.
+            u32::try_from(at_us.saturating_sub(last)).unwrap_or(u32::MAX) as f32 * 1e-6
+        });
+        self.last_us = Some(at_us);
+        math::clamp(dt, SHORTEST, LONGEST)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_takes_the_time_between_two_stamps_within_sane_limits() {
+        let mut clock = StepClock::default();
+        let mut at = 7;
+        assert!(clock.step(at) == 1e-3);
+        for (us, dt) in [
+            (1000, 1e-3),
+            (1250, 1.25e-3),
+            (100, 0.5e-3),
+            (0, 0.5e-3),
+            (4999, 4.999e-3),
+        ] {
+            at += us;
+            assert!((clock.step(at) - dt).abs() < 1e-9, "{us}");
+        }
+        for gap in [5000, 20_000, u64::from(u32::MAX) + 1000, u64::MAX / 2] {
+            at += gap;
+            assert!(clock.step(at) == 5e-3, "{gap}");
+        }
+        // A stamp of before counts as none at all.
+        assert!(clock.step(1) == 0.5e-3);
+    }
+}

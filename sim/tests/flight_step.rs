@@ -1,0 +1,201 @@
+//! The flight step is one: a mission flown by the tasks, its inputs recorded, gives the same bits in a [`FlightChain`].
+
+use rand_pcg::Pcg64Mcg;
+use sophie_control::chain::{ArmReading, Attitude, Command, Demand, FlightChain, MixOutput, Surroundings};
+use sophie_control::mixer::Flexible;
+use sophie_control::setpoint::Setpoint;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
+use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
+use sophie_sim::flight::fly_with;
+use sophie_sim::flight::stack::Stack;
+use sophie_sim::plant::Plant;
+use sophie_sim::record::Silent;
+use sophie_sim::scenario::Scenario;
+use sophie_tasks::links::{GripState, Links};
+use sophie_tasks::start::Cause;
+
+/// One step as the tasks flew it.
+struct Step {
+    at_us: u64,
+    batch: Vec<(Vec3, Vec3)>,
+    command: Command,
+    surroundings: Surroundings,
+    attitude: Attitude,
+    demand: Demand,
+    mix: MixOutput,
+    /// What the motors got.
+    motors: PerArm<f64>,
+}
+
+/// The stack with a recorder on its links.
+struct Recorded {
+    stack: Stack,
+    tape: Vec<Step>,
+}
+
+/// What control would find on its links now.
+fn command(links: &Links) -> Command {
+    let Some(message) = links.setpoint.latest() else {
+        return Command::default();
+    };
+    Command {
+        setpoint: message
+            .fresh(links.setpoint.stale_after)
+            .unwrap_or(Setpoint::Stop),
+        at_us: message.at.as_micros(),
+    }
+}
+
+/// What the mixer would.
+fn surroundings(links: &Links) -> Surroundings {
+    let arms = links.arms.latest().and_then(|message| {
+        let tilt = message.fresh(links.arms.stale_after)?.tilt;
+        let at_us = message.at.as_micros();
+        Some(ArmReading { at_us, tilt })
+    });
+    Surroundings {
+        battery_ratio: links.battery.latest().map(|battery| battery.value.ratio),
+        arms,
+    }
+}
+
+impl Aircraft for Recorded {
+    fn step_world(&mut self, plant: &mut Plant) {
+        self.stack.step_world(plant);
+    }
+
+    // The flight level answers a batch before the clock moves on, and before what else happens in this millisecond.
+    fn run_until(&mut self, us: u64) -> Result<(), String> {
+        let links = self.stack.links;
+        let batch = self.stack.board.imu_batch();
+        let (command, surroundings) = (command(links), surroundings(links));
+        self.stack.run_until(us)?;
+        let sample = links.imu.latest().ok_or("no sample")?;
+        let mix = links.mix.latest().ok_or("no mix")?;
+        assert_eq!(sample.at, mix.at);
+        self.tape.push(Step {
+            at_us: sample.at.as_micros(),
+            batch: batch
+                .iter()
+                .map(|reading| (reading.gyro, reading.accel))
+                .collect(),
+            command,
+            surroundings,
+            attitude: links.attitude.latest().ok_or("no attitude")?.value,
+            demand: links.demand.latest().ok_or("no demand")?.value,
+            mix: mix.value,
+            motors: self.stack.motors(),
+        });
+        Ok(())
+    }
+
+    fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize {
+        self.stack.take_telemetry(buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.stack.receive(bytes);
+    }
+
+    fn status(&self) -> Option<Said<'_>> {
+        self.stack.status()
+    }
+
+    fn grip(&self) -> Option<GripState> {
+        self.stack.grip()
+    }
+
+    fn belief(&self) -> Belief {
+        self.stack.belief()
+    }
+
+    fn motors(&self) -> PerArm<f64> {
+        self.stack.motors()
+    }
+
+    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+        self.stack.cut(cause, step, at);
+    }
+
+    fn start(&mut self, us: u64) {
+        self.stack.start(us);
+    }
+
+    fn runs(&self) -> bool {
+        self.stack.runs()
+    }
+
+    fn reset(&self) -> Option<Reset> {
+        self.stack.reset()
+    }
+
+    fn resets(&self) -> u32 {
+        self.stack.resets()
+    }
+
+    fn overruns(&self) -> u32 {
+        self.stack.overruns()
+    }
+}
+
+/// The bits of a step's estimate and mix, zeros of either sign apart.
+fn bits(attitude: &Attitude, mix: &MixOutput) -> Vec<u32> {
+    let Attitude {
+        q,
+        rate,
+        gyro_bias,
+        dt,
+        ..
+    } = attitude;
+    let mut numbers = vec![q.w, q.x, q.y, q.z, *dt];
+    for vector in [rate, gyro_bias] {
+        numbers.extend(vector.to_array());
+    }
+    for four in [mix.thrusts, mix.commands, mix.tilt, mix.tilt_bias] {
+        numbers.extend(four);
+    }
+    numbers.extend([mix.given.roll_pitch, mix.given.thrust_shift, mix.given.yaw]);
+    numbers.into_iter().map(f32::to_bits).collect()
+}
+
+#[test]
+fn a_mission_gives_the_same_bits_through_the_tasks_and_through_the_chain() {
+    let scenario = Scenario::default_mission();
+    let recorded = |seeds: &mut Pcg64Mcg| Recorded {
+        stack: Stack::new(&scenario, seeds),
+        tape: vec![],
+    };
+    let (record, Recorded { stack, tape }) = fly_with(&scenario, recorded, &mut Silent);
+    assert!(record.outcome.accomplished, "{}", record.outcome.reason);
+
+    let params = &stack.links.params;
+    let allocation = Flexible::new(scenario.vehicle.configuration, params);
+    let mut chain = FlightChain::new(params, params.imu_rate, allocation);
+    let mut flown = 0;
+    for (ms, step) in tape.iter().enumerate() {
+        let due = chain.step(
+            step.at_us,
+            step.batch.iter().copied(),
+            &step.command,
+            &step.surroundings,
+        );
+        assert!(due, "{ms} ms");
+        let flow = &chain.flow;
+        assert_eq!(flow.demand, step.demand, "{ms} ms, {:?}", step.command);
+        assert_eq!(
+            bits(&flow.attitude, &flow.mix),
+            bits(&step.attitude, &step.mix),
+            "{ms} ms: {:?} and {:?}",
+            flow.mix,
+            step.mix
+        );
+        assert_eq!(flow.mix.commands.map(f64::from), step.motors, "{ms} ms");
+        flown += usize::from(flow.mix.running);
+    }
+    assert!(flown > 30_000, "{flown} ms with turning rotors");
+    let some = |what: fn(&Setpoint) -> bool| tape.iter().any(|step| what(&step.command.setpoint));
+    assert!(some(|s| matches!(s, Setpoint::Angle { .. })) && some(|s| matches!(s, Setpoint::Resting { .. })));
+    let learnt = |step: &Step| step.mix.tilt_bias.iter().all(|bias| bias.abs() > 1e-3);
+    assert!(tape.iter().any(learnt), "no arm's sensor corrected its tilt");
+}
