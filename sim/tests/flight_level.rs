@@ -1,10 +1,8 @@
 //! The flight level alone on the soft vehicle: what each allocation can and cannot do.
 
-mod rig;
-
-use rig::{Rig, Wish, level, vehicle};
 use sophie_control::mixer::Variant::{Flexible, Frozen, Paper, Rigid};
 use sophie_control::wrench::Configuration::{A, B};
+use sophie_sim::flight_level::{Rig, Wish, level, vehicle};
 use sophie_sim::scenario::Scenario;
 
 /// A quarter of a minute with the paper's roll to 25° and back.

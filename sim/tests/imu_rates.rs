@@ -1,11 +1,9 @@
 //! The flight level with the inertial sensor at each of its rates and ranges, closed loop.
 
-#[allow(dead_code, reason = "each test file uses the part of the rig that it needs")]
-mod rig;
-
-use rig::{Rig, Wish, vehicle};
 use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
+#[allow(dead_code, reason = "each test file uses the part of the rig that it needs")]
+use sophie_sim::flight_level::{Rig, Wish, vehicle};
 use sophie_tasks::deadline::TaskId;
 
 /// Leans by 10° to the right for two seconds, and back.

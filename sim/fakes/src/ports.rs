@@ -1,7 +1,5 @@
 //! Scripted ports: they give, fail, or never answer.
 
-#![allow(dead_code, reason = "each test file uses the ports that it needs")]
-
 use std::cell::{Cell, RefCell};
 use std::future::pending;
 use std::rc::Rc;
@@ -52,7 +50,9 @@ const SPIN: u32 = 1000;
 /// A part: how it answers now, and whether a task asked it without ever waiting.
 #[derive(Clone, Default)]
 pub struct Part {
+    /// How it answers.
     pub answer: Rc<Cell<Answer>>,
+    /// A task asked it again and again without ever waiting.
     pub spun: Rc<Cell<bool>>,
     /// Errors given with [`Answer::Errs`], as long as the test does not set it back.
     pub failed: Rc<Cell<u32>>,
@@ -133,7 +133,9 @@ impl ArmImus for FakeArms {
 /// A converter with a frame that the test sets.
 #[derive(Clone, Default)]
 pub struct FakeAnalog {
+    /// The converter.
     pub part: Part,
+    /// What it gives.
     pub frame: Rc<Cell<AnalogFrame>>,
 }
 
@@ -154,7 +156,9 @@ impl Analog for FakeAnalog {
 /// Motors that remember their last commands.
 #[derive(Clone, Default)]
 pub struct FakeMotors {
+    /// The timer.
     pub part: Part,
+    /// The last commands, 0 to 1.
     pub commands: Rc<Cell<PerArm<f32>>>,
 }
 
@@ -170,7 +174,9 @@ impl Motors for FakeMotors {
 /// Servos that remember every pulse.
 #[derive(Clone, Default)]
 pub struct FakeServos {
+    /// The timer.
     pub part: Part,
+    /// Every pulse so far, µs.
     pub pulses: Rc<RefCell<Vec<PerArm<f32>>>>,
 }
 

@@ -10,15 +10,19 @@ use embedded_storage_async::nor_flash::{
 /// What the flash remembers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cells {
+    /// Contents.
     pub bytes: Vec<u8>,
     /// Words written since their erase: a word of 32 bytes carries a checksum and takes one write only.
     written: Vec<bool>,
     /// Words written and pages erased so far.
     pub steps: usize,
+    /// Pages erased.
     pub erases: usize,
+    /// Reads so far.
     pub reads: usize,
     /// The step in the middle of which power goes.
     pub cut_at: Option<usize>,
+    /// Power is off.
     pub dead: bool,
     /// Bits that do not take a 0.
     pub stuck: Option<usize>,
@@ -30,6 +34,7 @@ pub struct Cells {
 #[derive(Clone)]
 pub struct Flash<const WRITE: usize, const PAGE: usize>(pub Rc<RefCell<Cells>>);
 
+/// Power went, or the access is not allowed.
 #[derive(Debug, PartialEq, Eq)]
 pub struct FlashError;
 
@@ -40,10 +45,12 @@ impl NorFlashError for FlashError {
 }
 
 impl<const WRITE: usize, const PAGE: usize> Flash<WRITE, PAGE> {
+    /// An erased flash of so many pages.
     pub fn blank(pages: usize) -> Self {
         Self::holding(vec![0xFF; pages * PAGE])
     }
 
+    /// A flash with these contents.
     pub fn holding(bytes: Vec<u8>) -> Self {
         let written = bytes
             .chunks(WRITE)
@@ -72,6 +79,7 @@ impl<const WRITE: usize, const PAGE: usize> Flash<WRITE, PAGE> {
         Self(Rc::new(RefCell::new(cells)))
     }
 
+    /// All of it, as addresses.
     pub fn range(&self) -> std::ops::Range<u32> {
         0..self.0.borrow().bytes.len() as u32
     }

@@ -1,14 +1,14 @@
-//! A vehicle whose setpoints a test gives: the flight level alone, without pilot and commander.
+//! A vehicle whose setpoints a test or a study gives: the flight level alone, without pilot and commander.
 
+use crate::aim;
+use crate::board::{Board, Port};
+use crate::clock::VirtualTime;
+use crate::plant::Plant;
+use crate::scenario::Scenario;
 use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mixer::Variant;
 use sophie_control::wrench::Configuration;
-use sophie_sim::aim;
-use sophie_sim::board::{Board, Port};
-use sophie_sim::clock::VirtualTime;
-use sophie_sim::plant::Plant;
-use sophie_sim::scenario::Scenario;
 use sophie_tasks::links::{Links, Setpoint};
 
 /// Seconds of a flight that are not judged: take-off.
@@ -33,19 +33,27 @@ pub fn level(_: f64) -> Wish {
 /// Errors after take-off, degrees, and thrust, N.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Errors {
+    /// Largest difference to the roll that was asked for.
     pub worst_roll: f64,
+    /// Largest pitch.
     pub worst_pitch: f64,
+    /// Largest yaw.
     pub worst_yaw: f64,
+    /// Root mean square of the difference to the roll that was asked for.
     pub rms_roll: f64,
+    /// Root mean square of the yaw.
     pub rms_yaw: f64,
     /// Largest less smallest thrust asked of rotor 1.
     pub swing: f64,
 }
 
+/// The vehicle with its flight level.
 pub struct Rig {
     time: VirtualTime,
     board: &'static Board,
+    /// Its links.
     pub links: &'static Links,
+    /// The vehicle.
     pub plant: Plant,
     ms: u64,
 }
@@ -63,6 +71,7 @@ pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Va
 }
 
 impl Rig {
+    /// The vehicle of `scenario` at rest on the ground.
     pub fn new(scenario: &Scenario) -> Self {
         let time = VirtualTime::new();
         let mut rng = Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1);
@@ -86,6 +95,7 @@ impl Rig {
         }
     }
 
+    /// A millisecond with `setpoint`.
     pub fn step(&mut self, setpoint: Setpoint) {
         self.board.step_world(&mut self.plant);
         self.ms += 1;
@@ -96,6 +106,9 @@ impl Rig {
     }
 
     /// Calibrates, climbs to 3 m under a simple height hold and does what `wish` says for `seconds`.
+    ///
+    /// # Panics
+    /// If the gyroscope is not calibrated after 4 s of rest.
     pub fn fly(&mut self, seconds: f64, wish: impl Fn(f64) -> Wish) -> Errors {
         for _ in 0..4000 {
             self.step(Setpoint::Idle);
