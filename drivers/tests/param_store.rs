@@ -6,7 +6,6 @@ mod fake;
 use std::f32::consts::TAU;
 use std::ops::Range;
 
-use fake::flash::Flash;
 use fake::run;
 use proptest::prelude::{ProptestConfig, any};
 use proptest::{prop_assert, prop_assert_eq, proptest};
@@ -14,6 +13,7 @@ use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
+use sophie_fakes::Flash;
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 /// Pages as small as a short log needs, so that it goes round often.

@@ -5,13 +5,10 @@
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
-#[path = "../tests/rig/mod.rs"]
-mod rig;
-
-use rig::{Rig, level, vehicle};
 use sophie_control::mode::Mode;
 use sophie_control::wrench::Configuration::{self, A, B};
 use sophie_sim::flight::fly;
+use sophie_sim::flight_level::{Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{self, Flexible, Frozen, Paper, Rigid};
 use sophie_sim::record::{Sample, Silent};
 

@@ -5,6 +5,7 @@ pub mod arm_bench;
 pub mod board;
 pub mod crsf;
 pub mod flight;
+pub mod flight_level;
 pub mod parallel;
 pub mod pilot;
 pub mod plant;

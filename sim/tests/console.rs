@@ -1,21 +1,16 @@
 //! The console, session by session: what is typed and what is answered.
 
-mod fakes;
-#[allow(dead_code, reason = "the drivers' tests use the rest")]
-#[path = "../../drivers/tests/fake/flash.rs"]
-mod flash;
-
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use embassy_futures::yield_now;
 use embassy_time::{Instant, Timer};
-use fakes::{Answer, BrokenLine, FakeAnalog, FakeImu, FakeLine, Part};
-use flash::Flash;
 use sophie_control::arming::Refusal;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
+use sophie_fakes::Flash;
+use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeImu, FakeLine, Part};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};

@@ -1,14 +1,13 @@
 //! The whole stack on parts that fail: what a silent sensor, a hung task or a dead radio does in flight.
 
-mod fakes;
 mod vehicle;
 
 use embassy_time::Instant;
-use fakes::{Answer, FakeImu, FakeMotors, links};
 use sophie_control::mixer::Flexible;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::Configuration;
+use sophie_fakes::{Answer, FakeImu, FakeMotors, links};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::Setpoint;
 use vehicle::Vehicle;

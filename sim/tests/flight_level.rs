@@ -1,9 +1,7 @@
 //! The flight level alone on the soft vehicle: what each allocation can and cannot do.
 
-mod rig;
-
-use rig::{Rig, Wish, level, vehicle};
 use sophie_control::wrench::Configuration::{A, B};
+use sophie_sim::flight_level::{Rig, Wish, level, vehicle};
 use sophie_sim::mixers::Variant::{Flexible, Frozen, Paper, Rigid};
 use sophie_sim::scenario::Scenario;
 

@@ -171,7 +171,7 @@ fn a_mission_gives_the_same_bits_through_the_tasks_and_through_the_chain() {
 
     let params = &stack.links.params;
     let allocation = Flexible::new(scenario.vehicle.configuration, params);
-    let mut chain = FlightChain::new(params, params.imu_rate, allocation);
+    let mut chain = FlightChain::new(params, params.imu_rate.number(), allocation);
     let mut flown = 0;
     for (ms, step) in tape.iter().enumerate() {
         let due = chain.step(

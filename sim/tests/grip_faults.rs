@@ -1,10 +1,7 @@
 //! The real analog, clamp and servos tasks on four simple arms: what each does when a part fails, and that no
 //! failure ever asks for more force than the limit.
 
-mod fakes;
-
 use embassy_time::Instant;
-use fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
 use sophie_control::deflection::ArmModel;
 use sophie_control::grip::{ArmState, GripState};
 use sophie_control::grip_fault::GripFault;
@@ -12,6 +9,7 @@ use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::tendon::{ForceLimit, REFERENCE_TILT, Reel};
 use sophie_control::wrench::PerArm;
+use sophie_fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForces};
 

@@ -1,13 +1,12 @@
 //! Sensors that are broken, missing or the wrong ones: named on the pilot's display, arming refused until they are
 //! healed, and a flight that continues where it can.
 
-mod fakes;
 mod vehicle;
 
-use fakes::Answer;
 use sophie_control::arming::Refusal;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::rc::Sticks;
+use sophie_fakes::Answer;
 use sophie_tasks::ports::PortError;
 use vehicle::Vehicle;
 

@@ -1,10 +1,7 @@
 //! The flight level with the inertial sensor at each of its rates and ranges, closed loop.
 
-#[allow(dead_code, reason = "each test file uses the part of the rig that it needs")]
-mod rig;
-
-use rig::{Rig, Wish, vehicle};
 use sophie_control::wrench::Configuration;
+use sophie_sim::flight_level::{Rig, Wish, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_tasks::deadline::TaskId;
 

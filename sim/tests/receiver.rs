@@ -1,13 +1,11 @@
 //! The receiver task on a real line: bytes as a UART hands them over, broken in every way that a radio breaks them.
 
-mod fakes;
-
 use embassy_time::Instant;
-use fakes::{Answer, BrokenLine, FakeLine, links};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::rc::{RAW_CENTRE, Sticks};
 use sophie_drivers::crsf::Decoder;
+use sophie_fakes::{Answer, BrokenLine, FakeLine, links};
 use sophie_sim::board::{Board, Port};
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::crsf::{channel_frame, rc_frame};

@@ -1,14 +1,9 @@
 //! The board restarts: what resumes, what stays stopped, and what the pilot sees.
 
-mod fakes;
-
 use std::cell::Cell;
 use std::rc::Rc;
 
 use embassy_time::Instant;
-use fakes::{
-    FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
-};
 use sophie_control::arming::Refusal;
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
@@ -19,6 +14,9 @@ use sophie_control::rc::{ArmChoice, Sticks};
 use sophie_control::tendon::Reel;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::Configuration;
+use sophie_fakes::{
+    FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
+};
 use sophie_sim::clock::VirtualTime;
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Silent};

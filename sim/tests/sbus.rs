@@ -1,10 +1,8 @@
 //! SBUS: the receiver task on its line, the radio lost by the receiver's own word, and a line that speaks the wrong
 //! protocol.
 
-mod fakes;
 mod vehicle;
 
-use fakes::FakeLine;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::{Mode, Reason};
@@ -12,6 +10,7 @@ use sophie_control::params::{Params, RcProtocol};
 use sophie_control::rc::Sticks;
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_drivers::sbus::Frame;
+use sophie_fakes::FakeLine;
 use sophie_sim::crsf::rc_frame;
 use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
@@ -181,7 +180,7 @@ fn telemetry_keeps_off_a_line_that_has_no_way_back() {
     use sophie_tasks::links::Status;
 
     for (params, silent) in [(Params::default(), false), (sbus(), true)] {
-        let (time, links) = (VirtualTime::new(), fakes::links_with(params));
+        let (time, links) = (VirtualTime::new(), sophie_fakes::links_with(params));
         let board: &'static Board = Box::leak(Box::new(Board::new(&mut Pcg64Mcg::seed_from_u64(1))));
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
         for ms in 1..=500 {

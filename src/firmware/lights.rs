@@ -14,7 +14,7 @@ use embassy_time::{Duration, Ticker};
 use sophie_control::mode::Mode;
 use sophie_tasks::links::Links;
 
-use crate::board::LightsPort;
+use sophie_boards::LightsPort;
 
 /// Time between two looks; ten make a pattern.
 const PERIOD: Duration = Duration::from_millis(100);

@@ -1,6 +1,6 @@
 //! What the firmware has besides the tasks of `sophie_tasks`: their static wrappers, the greeting, lights and the log.
 //!
-//! Nothing here knows the chip; that is [`crate::board`]'s.
+//! Nothing here knows the chip; that is [`sophie_boards`]'s.
 
 mod grip;
 mod lights;
@@ -18,10 +18,7 @@ use sophie_tasks::ports::{Loaded, Look};
 use sophie_tasks::start::Start;
 use static_cell::StaticCell;
 
-use crate::board;
-/// How the firmware's runs end.
-pub use crate::board::cortex_m::end::stop_and_restart as end_of_run;
-use crate::board::cortex_m::retained::{self, Kept, Memory, ResetCause};
+use sophie_boards::retained::{self, Kept, Memory, ResetCause};
 
 #[cfg(feature = "trace")]
 pub use self::trace::named;
@@ -31,6 +28,8 @@ pub use self::trace::named;
 pub fn named<T>(_: sophie_tasks::deadline::Level, _: &'static str, token: T) -> T {
     token
 }
+
+sophie_boards::ends_with!(sophie_boards::stop_and_restart);
 
 /// Every link of the vehicle.
 static LINKS: StaticCell<Links> = StaticCell::new();
@@ -46,7 +45,7 @@ pub struct Beginning {
 
 /// Takes the cause of the reset and what the run before left, and the memory for the next. Called once, first of all.
 pub fn begin() -> (Beginning, Memory) {
-    let cause = board::take_reset_cause();
+    let cause = sophie_boards::take_reset_cause();
     let (kept, memory) = retained::start(cause);
     let start = Start::new(cause.told(kept.last_words.is_some()), &kept.copies);
     (Beginning { cause, start, kept }, memory)
@@ -63,7 +62,7 @@ pub fn greet(beginning: &Beginning) {
     defmt::info!(
         "SOPHIE {=str} on {=str}, start after {}",
         env!("CARGO_PKG_VERSION"),
-        board::NAME,
+        sophie_boards::NAME,
         cause
     );
     if kept.faults > 0 {

@@ -12,7 +12,7 @@ use sophie_tasks::ports::Look;
 
 use super::grip::GripReport;
 use super::timing::TimingReport;
-use crate::board::cortex_m::stack;
+use sophie_boards::stack;
 
 /// Time between two looks.
 const PERIOD: Duration = Duration::from_millis(50);

@@ -7,8 +7,7 @@ use sophie_drivers::rc_decoder::Decoder;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::Look;
 
-use crate::board;
-use crate::board::cortex_m::retained::Memory;
+use sophie_boards::retained::Memory;
 
 /// Most self-tests of the inertial sensor at one start.
 const SELF_TESTS: u8 = 3;
@@ -18,7 +17,7 @@ const SELF_TESTS: u8 = 3;
 /// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. One
 /// that fails is repeated, since a vehicle that is being carried fails it too; the last verdict stands.
 #[embassy_executor::task]
-pub async fn imu(links: &'static Links, mut port: board::ImuPort, self_test: bool) -> ! {
+pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
     for _ in 0..if self_test { SELF_TESTS } else { 0 } {
         let result = port.self_test().await;
         links.report(Refusal::ImuSelfTest, result.is_err());
@@ -53,13 +52,13 @@ pub async fn mixer(links: &'static Links) {
 
 /// Flight level: motors.
 #[embassy_executor::task]
-pub async fn motors(links: &'static Links, port: board::MotorsPort) {
+pub async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
     sophie_tasks::motors::run(links, port).await;
 }
 
 /// Steady level: pressure sensors and battery.
 #[embassy_executor::task]
-pub async fn analog(links: &'static Links, port: board::AnalogPort) -> ! {
+pub async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
     sophie_tasks::analog::run(links, port).await
 }
 
@@ -71,13 +70,13 @@ pub async fn clamp(links: &'static Links) -> ! {
 
 /// Steady level: tendon servos.
 #[embassy_executor::task]
-pub async fn servos(links: &'static Links, port: board::ServosPort) -> ! {
+pub async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
     sophie_tasks::servos::run(links, port).await
 }
 
 /// Steady level: receiver.
 #[embassy_executor::task]
-pub async fn rc(links: &'static Links, port: board::ReceiverLine) -> ! {
+pub async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
     sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
 }
 
@@ -89,19 +88,19 @@ pub async fn commander(links: &'static Links) -> ! {
 
 /// Steady level: supervision, watchdog, and what outlives it.
 #[embassy_executor::task]
-pub async fn supervisor(links: &'static Links, port: board::WatchdogPort, memory: Memory) -> ! {
+pub async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
     sophie_tasks::supervisor::run(links, port, memory).await
 }
 
 /// Background: arm sensors.
 #[embassy_executor::task]
-pub async fn arms(links: &'static Links, port: board::ArmsPort) -> ! {
+pub async fn arms(links: &'static Links, port: sophie_boards::ArmsPort) -> ! {
     sophie_tasks::arms::run(links, port).await
 }
 
 /// Background: telemetry to the pilot.
 #[embassy_executor::task]
-pub async fn telemetry(links: &'static Links, port: board::TelemetryLine) -> ! {
+pub async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) -> ! {
     sophie_tasks::telemetry::run(links, port).await
 }
 
@@ -109,17 +108,17 @@ pub async fn telemetry(links: &'static Links, port: board::TelemetryLine) -> ! {
 #[embassy_executor::task]
 pub async fn console(
     links: &'static Links,
-    input: board::ConsoleInput,
-    output: board::ConsoleOutput,
-    storage: board::StoragePort,
-    chip: board::ThisChip,
+    input: sophie_boards::ConsoleInput,
+    output: sophie_boards::ConsoleOutput,
+    storage: sophie_boards::StoragePort,
+    chip: sophie_boards::ThisChip,
 ) -> ! {
     sophie_tasks::console::run(links, input, output, storage, chip).await
 }
 
 /// Background: lights and buzzer.
 #[embassy_executor::task]
-pub async fn lights(links: &'static Links, lights: board::LightsPort) -> ! {
+pub async fn lights(links: &'static Links, lights: sophie_boards::LightsPort) -> ! {
     super::lights::run(links, lights).await
 }
 

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The number before the events is that of the first of them since the start, so that a reader sees what the probe
-//! dropped; each event has eight bytes ([`crate::board::cortex_m::trace`]), low byte first.
+//! dropped; each event has eight bytes ([`sophie_boards::trace`]), low byte first.
 
 use core::cell::RefCell;
 
@@ -18,7 +18,7 @@ use heapless::Vec;
 use sophie_tasks::deadline::Level;
 use sophie_tasks::links::Raw;
 
-use crate::board::cortex_m::trace;
+use sophie_boards::trace;
 
 /// Time between two looks at the ring.
 const PERIOD: Duration = Duration::from_millis(2);

@@ -70,7 +70,7 @@ pub const BOARDS: [Board; 3] = [
         core: "cortex-m7",
         interrupts: 110,
         levels: ["SAI1", "SAI2"],
-        // One bank (RM0410 §3.3.2), as in `memory/cuav-v5.x`.
+        // One bank (RM0410 §3.3.2), as in `boards/memory/cuav-v5.x`.
         flash: &[sectors(4, 32), sectors(1, 128), sectors(7, 256)],
         // FMUv5 is flashed over USB by a loader that itself lies in the flash.
         usb_loader: UsbLoader::OutOfReach("it has no button for BOOT0, and its case leads the pin nowhere"),

@@ -152,14 +152,17 @@ mod tests {
             ),
             ("<u32 as core::fmt::Display>::fmt", Some("core")),
             ("<[u8; 4] as heapless::View>::view", Some("heapless")),
-            ("core::ptr::drop_in_place::<sophie::Board>", Some("core")),
+            ("core::ptr::drop_in_place::<sophie_boards::Board>", Some("core")),
             ("<dyn core::fmt::Write>::write_str", Some("core")),
             ("Reset", None),
             ("", None),
         ] {
             assert_eq!(first_crate(name), owner, "{name}");
         }
-        assert_eq!(owner("_ZN6sophie5board5start17h0123456789abcdefE"), "sophie");
+        assert_eq!(
+            owner("_ZN13sophie_boards5stm325start17h0123456789abcdefE"),
+            "sophie_boards"
+        );
         assert_eq!(owner("_RNvNtCs1234_7mycrate3foo3bar"), "mycrate");
         assert_eq!(owner(".Lanon.a78e62bea.1"), NAMELESS);
         assert_eq!(owner("memcpy"), REST);

@@ -1,7 +1,7 @@
 //! The guard against damaged words in the flash of an H7.
 //!
 //! Power that fails while a parameter is stored leaves a word that this family's error correction cannot mend, and
-//! reading it is a bus fault at every start from then on. `src/board/stm32/flash_ecc.rs` stands between; an image that
+//! reading it is a bus fault at every start from then on. `boards/src/stm32/flash_ecc.rs` stands between; an image that
 //! reads its parameters without it builds and flies until that day.
 
 use crate::Error;
@@ -28,7 +28,7 @@ pub fn check(board: &Board, image: &Image) -> Result<bool, Error> {
         return Ok(true);
     }
     Err(format!(
-        "{} ({}) reads its parameters without the guard against damaged flash (src/board/stm32/flash_ecc.rs): a word that \
+        "{} ({}) reads its parameters without the guard against damaged flash (boards/src/stm32/flash_ecc.rs): a word that \
          power failed in would end every start",
         board.name, board.probe_rs_chip
     )
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn an_h7_that_stores_in_flash_is_refused_without_the_guard() {
-        let guard = "_ZN6sophie5board5stm329flash_ecc11begin_guard17h0123456789abcdefE";
+        let guard = "_ZN13sophie_boards5stm329flash_ecc11begin_guard17h0123456789abcdefE";
         for board in &BOARDS {
             let h7 = board.name == "matek-h743";
             assert_eq!(

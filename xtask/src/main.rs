@@ -12,9 +12,6 @@ mod dma;
 mod flash;
 mod guard;
 mod image;
-#[cfg(test)]
-#[path = "../../src/board/output_pins.rs"]
-mod output_pins;
 mod own_board;
 mod params;
 mod retained;

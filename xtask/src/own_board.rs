@@ -95,7 +95,7 @@ pub fn own_board() -> Result<(), Error> {
         .env("CARGO_TARGET_DIR", build::target_dir());
     let output = cargo.output()?;
     let told = String::from_utf8_lossy(&output.stderr);
-    let wanted = format!("the feature {CHIPLESS} of Cargo.toml names 0 chips");
+    let wanted = format!("the feature {CHIPLESS} of boards/Cargo.toml names 0 chips");
     if output.status.success() || !told.contains(&wanted) {
         return Err(format!("a board whose feature names no chip is not refused for that:\n{told}").into());
     }
@@ -105,25 +105,26 @@ pub fn own_board() -> Result<(), Error> {
 
 /// Writes the files of docs/boards.md, `A board of one's own`, into the copy of the workspace.
 fn write(scratch: &Path) -> Result<(), Error> {
-    let folder = scratch.join("src/board");
-    let mut file = fs::read_to_string(folder.join("matek_h743.rs"))?;
+    let folder = scratch.join("boards");
+    let mut file = fs::read_to_string(folder.join("src/matek_h743.rs"))?;
     for (old, new) in CHANGES {
         replace(&mut file, old, new)?;
     }
     let map = fs::read(folder.join(format!("memory/{ORIGINAL}.x")))?;
-    let mut features = fs::read_to_string(scratch.join("Cargo.toml"))?;
-    let mut list = fs::read_to_string(folder.join("mod.rs"))?;
+    let mut image = fs::read_to_string(scratch.join("Cargo.toml"))?;
+    let mut features = fs::read_to_string(folder.join("Cargo.toml"))?;
+    let mut list = fs::read_to_string(folder.join("src/board.rs"))?;
     for (name, chip) in [(NAME, "stm32h743vi"), (CHIPLESS, "embassy-stm32/stm32h743vi")] {
         put(
-            &folder.join(format!("{}.rs", name.replace('-', "_"))),
+            &folder.join(format!("src/{}.rs", name.replace('-', "_"))),
             file.as_bytes(),
         )?;
         put(&folder.join(format!("memory/{name}.x")), &map)?;
         let anchor = "# Every event of the executors";
-        let line = format!(
-            "{name} = [\"board-matek-h743?/and-another\", \"board-cuav-v5?/and-another\", \"dep:embassy-stm32\", \"{chip}\", \
-             \"embassy-stm32/time-driver-tim2\"]\n{anchor}"
-        );
+        let line = format!("{name} = [\"sophie-boards/{name}\"]\n{anchor}");
+        replace(&mut image, anchor, &line)?;
+        let anchor = "# A chip, one for each board";
+        let line = format!("{name} = [\"{chip}\", \"embassy-stm32/time-driver-tim2\"]\n{anchor}");
         replace(&mut features, anchor, &line)?;
         let anchor = "#[cfg_attr(feature = \"f405\"";
         let path = name.replace('-', "_");
@@ -132,11 +133,12 @@ fn write(scratch: &Path) -> Result<(), Error> {
     }
     // A version of its own, or cargo would take what was built of the copy for what is to be built of the original: both
     // build into one folder, for the crates of others.
-    replace(&mut features, VERSION, &format!("{VERSION}{OF_THE_COPY}"))?;
+    replace(&mut image, VERSION, &format!("{VERSION}{OF_THE_COPY}"))?;
     let lock = fs::read_to_string(scratch.join("Cargo.lock"))?;
     put(&scratch.join("Cargo.lock"), locked(&lock).as_bytes())?;
-    put(&scratch.join("Cargo.toml"), features.as_bytes())?;
-    put(&folder.join("mod.rs"), list.as_bytes())?;
+    put(&scratch.join("Cargo.toml"), image.as_bytes())?;
+    put(&folder.join("Cargo.toml"), features.as_bytes())?;
+    put(&folder.join("src/board.rs"), list.as_bytes())?;
     Ok(())
 }
 

@@ -82,10 +82,10 @@ impl<'a> Rig<'a> {
         let wired = self.wired || self.on == Where::Emulated;
         let cached = self.variant == Variant::DataCache;
         let features = format!(
-            "{}{}{}",
+            "sophie-boards/{}{}{}",
             self.board.name,
             if wired { ",wired" } else { "" },
-            if cached { ",data-cache" } else { "" }
+            if cached { ",sophie-boards/data-cache" } else { "" }
         );
         let elf = build::image(
             "sophie-rig",

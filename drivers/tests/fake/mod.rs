@@ -1,6 +1,5 @@
 //! Stand-ins for chips and their buses, in virtual time.
 
-pub mod flash;
 pub mod fram;
 pub mod i2c;
 pub mod spi;

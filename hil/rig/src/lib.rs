@@ -1,8 +1,8 @@
 //! Tests that run on a real board, through a probe: what they share. The tests are in `tests/rig/`, the wiring in
 //! `hil/README.md`.
 //!
-//! The board's own files are in here, so what is tested are the very drivers, pins and timers that fly. Each test starts
-//! from a reset and takes the board as the firmware does.
+//! The board is the crate that the firmware flies with, so what is tested are the very drivers, pins and timers that
+//! fly. Each test starts from a reset and takes the board as the firmware does.
 //!
 //! What a test finds missing, a jumper or a part outside the board, it logs in a line that begins with `ignored:` and
 //! passes; with the feature `wired` it fails. Empty on the host.
@@ -10,8 +10,6 @@
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(target_os = "none")]
 
-#[path = "../../../src/board/mod.rs"]
-pub mod board;
 pub mod cycles;
 pub mod pads;
 pub mod pulses;
@@ -22,9 +20,11 @@ use board::{WatchdogPort, start_levels};
 use defmt_rtt as _;
 use embassy_executor::SendSpawner;
 use embassy_time::{Duration, Ticker};
+use sophie_boards::{WatchdogPort, start_levels};
 use sophie_tasks::ports::Watchdog;
-use verdict::end_of_run;
 pub use verdict::{absent, passed};
+
+sophie_boards::ends_with!(verdict::end_of_run);
 
 /// Watchdog feed period; the shortest time-out is 200 ms.
 const MEAL: Duration = Duration::from_millis(50);
@@ -32,7 +32,7 @@ const MEAL: Duration = Duration::from_millis(50);
 /// Starts the urgent levels and feeds the watchdog from one of them, for as long as the test runs; returns the flight
 /// level, for what the test itself wants there. Called once.
 pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
-    defmt::info!("{=str}", board::NAME);
+    defmt::info!("{=str}", sophie_boards::NAME);
     resumable_test::leave(resumable_test::ResumableTest::Test);
     let (flight, steady) = start_levels();
     // Only a second call could fail, and `start_levels` panics at one.

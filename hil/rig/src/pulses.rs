@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use crate::cycles;
-use crate::pads::{Pad, WIRING};
+use sophie_boards::{Pad, WIRING};
 
 /// Most pulses of one recording: two DShot frames.
 pub const MOST: usize = 32;

@@ -9,10 +9,9 @@ use critical_section::Mutex;
 use sophie_tasks::ports::Retain;
 use sophie_tasks::retained_state::{WORDS, Words};
 
-use crate::board::cortex_m::retained::{self, Memory};
-use crate::board::stm32::stop_with_core;
-use crate::board::{ResetCause, take_reset_cause};
 use crate::cycles;
+use sophie_boards::retained::{self, Memory};
+use sophie_boards::{ResetCause, stop_with_core, take_reset_cause};
 
 /// What a reset interrupts.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,6 @@ use core::fmt;
 
 use defmt::Display2Format;
 
-use crate::board;
-
 /// A part or a jumper that a test wants is not there: `what`, and where it belongs. The test then has nothing to say.
 ///
 /// # Panics
@@ -25,7 +23,7 @@ pub fn passed() -> ! {
 /// A panic or a fault ends the test, not the chip: the motors stop and the probe gets the verdict.
 pub fn end_of_run(message: fmt::Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
-    board::stop_motors();
+    sophie_boards::stop_motors();
     defmt::error!("{}", Display2Format(&message));
     semihosting::process::abort()
 }

@@ -12,7 +12,7 @@ use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::ports::AnalogFrame;
 
-use crate::fakes::{
+use sophie_fakes::{
     FakeAnalog, FakeArms, FakeImu, FakeMemory, FakeMotors, FakeServos, FakeWatchdog, VOLTS_PER_COUNT,
     links_with,
 };

@@ -5,8 +5,8 @@ use sophie_control::params::Params;
 use sophie_tasks::analog;
 use sophie_tasks::ports::AnalogFrame;
 
-use crate::fakes::{Answer, FakeAnalog};
 use crate::rig::Rig;
+use sophie_fakes::{Answer, FakeAnalog};
 
 /// Light sensors, 16 V and 9.09 A: by the default scales 0.01 V and 0.01 A · 40/11 a count.
 const FRAME: AnalogFrame = AnalogFrame {

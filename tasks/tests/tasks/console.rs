@@ -13,8 +13,8 @@ use sophie_tasks::links::{Battery, Links, RcState, Status};
 use sophie_tasks::ports::{Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError};
 use sophie_tasks::timing::Run;
 
-use crate::fakes::FakeLine;
 use crate::rig::Rig;
+use sophie_fakes::FakeLine;
 
 /// A screen that takes everything at once.
 #[derive(Clone, Default)]

@@ -6,8 +6,6 @@ mod commander;
 mod console;
 mod control;
 mod deadline;
-#[path = "../../../sim/tests/fakes/mod.rs"]
-mod fakes;
 mod imu;
 mod links;
 mod mixer;

@@ -12,8 +12,8 @@ use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::retained_store::RetainedStore;
 use sophie_tasks::start::{Cause, Start};
 
-use crate::fakes::FakeMemory;
 use crate::rig::Rig;
+use sophie_fakes::FakeMemory;
 
 const GRIP: GripMemory = GripMemory::Controlled(ArmChoice::All);
 const BIAS: Vec3 = Vec3::new(0.01, -0.02, 0.03);

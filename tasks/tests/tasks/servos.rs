@@ -10,8 +10,8 @@ use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::servos;
 use sophie_tasks::start::{Cause, Start};
 
-use crate::fakes::FakeServos;
 use crate::rig::Rig;
+use sophie_fakes::FakeServos;
 
 /// Tilt of a closed arm, rad.
 const CLOSED: f32 = -1.2;

@@ -6,8 +6,8 @@ use sophie_tasks::links::{Attitude, Links, MixOutput};
 use sophie_tasks::supervisor;
 use sophie_tasks::timing::Run;
 
-use crate::fakes::{FakeMemory, FakeWatchdog};
 use crate::rig::Rig;
+use sophie_fakes::{FakeMemory, FakeWatchdog};
 
 /// Every watched task and the least number of its runs in 100 ms: half of what its rate gives.
 const WATCHED: [(TaskId, u32); 9] = [

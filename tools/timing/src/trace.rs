@@ -1,7 +1,7 @@
 //! The executors' events as a firmware with the feature `trace` logs them.
 //!
 //! `trace task ADDRESS LEVEL NAME` names a task, `trace NUMBER: [bytes]` holds events from the NUMBERth since the start
-//! on, eight bytes each (`src/board/cortex_m/trace.rs` says how), `trace lost COUNT` counts what the board lost.
+//! on, eight bytes each (`boards/src/cortex_m/trace.rs` says how), `trace lost COUNT` counts what the board lost.
 
 use sophie_tasks::deadline::Level;
 

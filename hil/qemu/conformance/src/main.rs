@@ -10,10 +10,10 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-mod board;
-#[cfg(target_os = "none")]
 mod core_under_test;
 mod laws;
+#[cfg(target_os = "none")]
+mod machine;
 
 #[cfg(not(target_os = "none"))]
 fn main() {
@@ -34,10 +34,6 @@ fn main() -> ! {
         }
     })
 }
-
-/// How a run ends, as in the firmware.
-#[cfg(target_os = "none")]
-use board::cortex_m::end::stop_and_restart as end_of_run;
 
 #[cfg(target_os = "none")]
 #[panic_handler]

@@ -45,7 +45,7 @@ fn main() {
 #[cfg(target_os = "none")]
 #[embedded_test::setup]
 fn setup() {
-    use sophie_rig::board::ResetCause;
+    use sophie_boards::ResetCause;
     use sophie_rig::resumable_test::{ResumableTest, begin};
 
     match begin() {

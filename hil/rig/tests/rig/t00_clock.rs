@@ -5,8 +5,8 @@
 #[embedded_test::tests]
 mod tests {
     use embassy_time::{Duration, Instant};
-    use sophie_rig::pads::WIRING;
-    use sophie_rig::{board, cycles, keep_alive};
+    use sophie_boards::WIRING;
+    use sophie_rig::{cycles, keep_alive};
 
     /// Measured for this long; a tick of the time base is 1 µs.
     const SPAN: Duration = Duration::from_millis(100);
@@ -17,7 +17,7 @@ mod tests {
 
     #[test]
     async fn the_core_runs_at_its_clock() {
-        let board = board::take().await;
+        let board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let (start, first) = (Instant::now(), cycles::now());
         while start.elapsed() < SPAN {}
@@ -33,7 +33,7 @@ mod tests {
     /// Nor while the interrupt that counts its turns waits: the flight level reads it in interrupts.
     #[test]
     async fn the_time_base_never_runs_back() {
-        let board = board::take().await;
+        let board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let (start, mut before) = (Instant::now(), Instant::now());
         while before - start < TURN {

@@ -5,7 +5,7 @@ mod tests {
     use core::sync::atomic::{AtomicU32, Ordering};
 
     use embassy_time::{Duration, Instant, Ticker, Timer};
-    use sophie_rig::{board, keep_alive};
+    use sophie_rig::keep_alive;
 
     const PERIOD: Duration = Duration::from_millis(1);
     /// Latest that an alarm may come in an idle processor, µs. A period of the fastest task is 1000.
@@ -16,7 +16,7 @@ mod tests {
 
     #[test]
     async fn a_millisecond_lasts_a_millisecond() {
-        let board = board::take().await;
+        let board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let worst = worst_lateness(1000).await;
         defmt::info!("alarms: {=u32} us late at worst", worst);
@@ -26,7 +26,7 @@ mod tests {
     /// A background that never yields must not delay the flight level.
     #[test]
     async fn the_flight_level_preempts_the_background() {
-        let board = board::take().await;
+        let board = sophie_boards::take().await;
         let flight = keep_alive(board.watchdog);
         flight.spawn(defmt::unwrap!(beat().ok()));
         Timer::after(PERIOD).await;

@@ -4,7 +4,7 @@
 #[embedded_test::tests]
 mod tests {
     use embassy_time::{Duration, Instant, with_timeout};
-    use sophie_rig::{board, keep_alive};
+    use sophie_rig::keep_alive;
     use sophie_tasks::ports::Imu;
 
     /// From the first call until samples must come.
@@ -12,7 +12,7 @@ mod tests {
     const SPAN: Duration = Duration::from_secs(1);
 
     /// Waits for the first sample.
-    async fn first(imu: &mut board::ImuPort) -> sophie_tasks::ports::ImuReading {
+    async fn first(imu: &mut sophie_boards::ImuPort) -> sophie_tasks::ports::ImuReading {
         let mut last = Err(sophie_tasks::ports::PortError::Timeout);
         let start = Instant::now();
         while start.elapsed() < START_UP {
@@ -31,7 +31,7 @@ mod tests {
     /// The driver compares WHO_AM_I and reads every register that it writes: a sample means that all were right.
     #[test]
     async fn it_answers_by_its_name_and_feels_gravity() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let sample = first(&mut board.imu).await;
         let (force, rate) = (sample.accel.norm_squared(), sample.gyro.norm_squared());
@@ -47,7 +47,7 @@ mod tests {
 
     #[test]
     async fn samples_come_at_their_rate() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         first(&mut board.imu).await;
         let (start, mut count) = (Instant::now(), 0u32);

@@ -3,7 +3,7 @@
 #[embedded_test::tests]
 mod tests {
     use embassy_time::{Duration, Instant, Timer};
-    use sophie_rig::{absent, board, keep_alive};
+    use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::{ArmImus, PortError};
 
     /// Reset, configuration, and the first seconds of rest in which the gyroscope calibrates.
@@ -11,7 +11,7 @@ mod tests {
 
     #[test]
     async fn every_sensor_that_is_plugged_in_feels_gravity() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let mut gravity = [Err(PortError::Absent); 4];
         let start = Instant::now();

@@ -2,10 +2,10 @@
 
 #[embedded_test::tests]
 mod tests {
-    use embassy_stm32::pac::gpio::vals::Pupdr;
     use embassy_time::{Duration, Instant};
-    use sophie_rig::pads::{WIRING, settle};
-    use sophie_rig::{absent, board, keep_alive};
+    use sophie_boards::{Pupdr, WIRING};
+    use sophie_rig::pads::settle;
+    use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Analog;
 
     /// Longest conversion of all inputs: a quarter of the 2 ms between two readings.
@@ -14,7 +14,7 @@ mod tests {
     const HALF: u16 = 2048;
     const TOLERANCE: u16 = 41;
 
-    async fn input(analog: &mut board::AnalogPort) -> u16 {
+    async fn input(analog: &mut sophie_boards::AnalogPort) -> u16 {
         match analog.read().await {
             Ok(frame) => frame.fsr[WIRING.divider.1],
             Err(error) => panic!("{error:?}"),
@@ -23,7 +23,7 @@ mod tests {
 
     #[test]
     async fn every_conversion_is_in_time() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let mut worst = Duration::MIN;
         for _ in 0..500 {
@@ -38,7 +38,7 @@ mod tests {
     /// A divider of two equal resistors, 1 to 10 kOhm each, from 3.3 V to ground, its middle at the pad.
     #[test]
     async fn half_the_supply_is_half_the_scale() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let (pad, _) = WIRING.divider;
         // Without a divider the pad keeps the charge that it was given last.

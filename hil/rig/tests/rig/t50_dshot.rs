@@ -4,19 +4,20 @@
 mod tests {
     use embassy_futures::join::join;
     use embassy_time::Timer;
+    use sophie_boards::WIRING;
     use sophie_drivers::dshot::{BITS, Frame, Speed};
     use sophie_drivers::dshot_decoder::Decoder;
     use sophie_drivers::esc_protocol::EscProtocol;
-    use sophie_rig::pads::{WIRING, joined};
+    use sophie_rig::pads::joined;
     use sophie_rig::pulses::{MOST, Pulse, record};
-    use sophie_rig::{absent, board, keep_alive};
+    use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Motors;
 
     /// What is sent to motor 1: stop, the least throttle, patterns between, all.
     const COMMANDS: [f32; 5] = [0.0, 0.001, 0.333, 0.667, 1.0];
 
     /// The line while `command` is sent, in cycles.
-    async fn sent(motors: &mut board::MotorsPort, command: f32) -> heapless::Vec<Pulse, MOST> {
+    async fn sent(motors: &mut sophie_boards::MotorsPort, command: f32) -> heapless::Vec<Pulse, MOST> {
         // Frame and lead-in of the slowest protocol take 120 µs. The frame leaves by itself: no interrupt may come
         // between two looks at the line.
         let (_, line) = join(motors.write([command, 0.0, 0.0, 0.0]), async {
@@ -28,7 +29,7 @@ mod tests {
 
     #[test]
     async fn a_controller_would_read_every_frame() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let [motor, listener] = WIRING.motor;
         let EscProtocol::DShot(speed) = EscProtocol::from_params(&board.params) else {

@@ -3,9 +3,10 @@
 #[embedded_test::tests]
 mod tests {
     use embassy_time::Timer;
-    use sophie_rig::pads::{WIRING, joined};
+    use sophie_boards::WIRING;
+    use sophie_rig::pads::joined;
     use sophie_rig::pulses::record;
-    use sophie_rig::{absent, board, keep_alive};
+    use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Servos;
 
     /// Widths that are asked for, µs.
@@ -13,7 +14,7 @@ mod tests {
 
     #[test]
     async fn pulses_are_as_long_as_asked_and_as_often() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let [servo, listener] = WIRING.servo;
         assert!(servo.serves_a_peripheral(), "{} is no timer's", servo.name);

@@ -5,9 +5,10 @@
 mod tests {
     use embassy_futures::join::join;
     use embassy_time::{Duration, with_timeout};
+    use sophie_boards::WIRING;
     use sophie_control::params::RcProtocol;
-    use sophie_rig::pads::{WIRING, joined};
-    use sophie_rig::{absent, board, keep_alive};
+    use sophie_rig::pads::joined;
+    use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::{SerialInput, SerialOutput};
 
     /// Length of the receiver's frames with sixteen channels.
@@ -21,7 +22,7 @@ mod tests {
         core::array::from_fn(|place| (place as u8).wrapping_mul(37) ^ number)
     }
 
-    async fn take(line: &mut board::ReceiverLine) -> [u8; LENGTH] {
+    async fn take(line: &mut sophie_boards::ReceiverLine) -> [u8; LENGTH] {
         let mut bytes = [0; LENGTH];
         let mut filled = 0;
         while let Some(room @ [_, ..]) = bytes.get_mut(filled..) {
@@ -35,7 +36,7 @@ mod tests {
 
     #[test]
     async fn what_is_sent_is_received() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         if board.params.rc_protocol != RcProtocol::Crsf {
             return absent(format_args!("CRSF: set rc_protocol to 0"));

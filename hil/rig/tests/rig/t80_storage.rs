@@ -3,7 +3,7 @@
 
 use embassy_executor::Executor;
 use sophie_control::params::Params;
-use sophie_rig::{board, keep_alive};
+use sophie_rig::keep_alive;
 use sophie_tasks::ports::Storage;
 use static_cell::StaticCell;
 
@@ -45,7 +45,7 @@ pub fn restarted(was: f32) -> ! {
 
 #[embassy_executor::task]
 async fn put_back(was: f32) {
-    let mut board = board::take().await;
+    let mut board = sophie_boards::take().await;
     keep_alive(board.watchdog);
     let found = board.params.servo_trim_4;
     let original = Params {
@@ -69,13 +69,13 @@ async fn put_back(was: f32) {
 #[embedded_test::tests]
 mod tests {
     use sophie_control::params::Params;
+    use sophie_rig::keep_alive;
     use sophie_rig::resumable_test::{ResumableTest, leave};
-    use sophie_rig::{board, keep_alive};
     use sophie_tasks::ports::Chip;
 
     #[test]
     async fn a_parameter_outlives_a_reset() {
-        let mut board = board::take().await;
+        let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let original = super::stored(&mut board.storage).await;
         let changed = Params {

@@ -1,5 +1,5 @@
 //! Runs that end: a stack that overflows, an address where nothing is, a fault while one is reported. The very handlers
-//! that fly (`src/board/cortex_m/`) are called; where the firmware restarts the chip, the image continues with the next
+//! that fly (`sophie-fault`) are called; where the firmware restarts the chip, the image continues with the next
 //! line.
 
 use core::arch::{asm, global_asm};
@@ -9,8 +9,6 @@ use core::sync::atomic::Ordering::Relaxed;
 use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use cortex_m::asm::{dsb, isb};
-
-use crate::board::cortex_m::end;
 
 /// First address of the guard below the stack, and the log2 of its bytes. QEMU's machines ignore accesses to where they
 /// have nothing, so the memory protection stands in for that.
@@ -95,7 +93,7 @@ impl fmt::Display for Left {
 
 /// Goes on in `conformance_try`, in thread mode and from whatever handler.
 pub fn go_on() -> ! {
-    end::ENDING.store(false, Relaxed);
+    sophie_fault::ENDING.store(false, Relaxed);
     let stack = CONFORMANCE_STACK.load(Relaxed) as *mut u32;
     // SAFETY: `conformance_try` left its registers above that, and what it called will not go on. In a handler the
     // frame makes the processor return there; in thread mode the same place is jumped to.
@@ -174,7 +172,7 @@ fn try_all(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) {
             "running"
         };
         let mut left = Left::new();
-        let _ = crate::board::cortex_m::retained::with(|words| write!(left, "{words}"));
+        let _ = crate::machine::with_kept(|words| write!(left, "{words}"));
         print(format_args!("{name}: motors {stopped}, kept: {left}"));
     }
     done();
@@ -220,5 +218,5 @@ impl fmt::Display for Unreadable {
 }
 
 extern "C" fn fault_in_a_message() {
-    crate::end_of_run(format_args!("{Unreadable}"))
+    sophie_fault::end_of_run(format_args!("{Unreadable}"))
 }

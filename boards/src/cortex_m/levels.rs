@@ -1,0 +1,51 @@
+//! The three levels of urgency: two interrupt executors above the one of thread mode.
+//!
+//! | level | runs in | priority | may be delayed by |
+//! |---|---|---|---|
+//! | flight | an interrupt vector that no driver owns | 6 | drivers' interrupts (all at 0, microseconds each) |
+//! | steady | a second one | 7 | the flight level |
+//! | background | thread mode | none | both |
+//!
+//! Priorities 0 to 5 stay with the drivers: an executor at or above them would keep the DMA, data-ready and timer
+//! interrupts waiting that it needs itself.
+
+use embassy_stm32::interrupt::Priority;
+
+/// Priority of the flight level's vector.
+pub const FLIGHT: Priority = Priority::P6;
+/// Priority of the steady level's vector.
+pub const STEADY: Priority = Priority::P7;
+
+/// Makes two interrupt vectors of the board the flight and the steady level.
+///
+/// The priority is set before the executor starts: unmasked first, it would run at the reset priority, above all.
+macro_rules! levels_on {
+    ($flight:ident, $steady:ident) => {
+        static FLIGHT_LEVEL: embassy_executor::InterruptExecutor = embassy_executor::InterruptExecutor::new();
+        static STEADY_LEVEL: embassy_executor::InterruptExecutor = embassy_executor::InterruptExecutor::new();
+
+        #[embassy_stm32::interrupt]
+        unsafe fn $flight() {
+            // SAFETY: this is the only place that polls this executor, and it runs in its vector.
+            unsafe { FLIGHT_LEVEL.on_interrupt() }
+        }
+
+        #[embassy_stm32::interrupt]
+        unsafe fn $steady() {
+            // SAFETY: this is the only place that polls this executor, and it runs in its vector.
+            unsafe { STEADY_LEVEL.on_interrupt() }
+        }
+
+        /// Starts the flight and the steady level, in this order.
+        pub fn start_levels() -> (embassy_executor::SendSpawner, embassy_executor::SendSpawner) {
+            use embassy_stm32::interrupt::{self, InterruptExt};
+            interrupt::$flight.set_priority($crate::cortex_m::FLIGHT);
+            interrupt::$steady.set_priority($crate::cortex_m::STEADY);
+            (
+                FLIGHT_LEVEL.start(interrupt::$flight),
+                STEADY_LEVEL.start(interrupt::$steady),
+            )
+        }
+    };
+}
+pub(crate) use levels_on;

@@ -1,0 +1,19 @@
+//! What every Cortex-M board does the same way: levels, stack, caches, restarts, and what outlives the end of a run.
+
+#[cfg(not(family = "f4"))]
+mod cache;
+pub mod end;
+mod fault;
+mod levels;
+pub mod restart;
+pub mod retained;
+pub mod stack;
+#[cfg(feature = "trace")]
+pub mod trace;
+
+#[cfg(not(family = "f4"))]
+pub use cache::{enable_caches, enabled as caches, forget_cached, protected};
+pub(crate) use levels::levels_on;
+pub use levels::{FLIGHT, STEADY};
+
+defmt::timestamp!("{=u64:us}", super::stm32::micros());

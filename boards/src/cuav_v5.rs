@@ -1,0 +1,367 @@
+//! CUAV V5 (FMUv5): STM32F765II at 216 MHz, the paper's autopilot.
+//!
+//! | what | peripheral | DMA stream | connectors |
+//! |---|---|---|---|
+//! | inertial sensor, ICM-20689 | SPI1, EXTI4 | DMA2 2 and 3 | on board |
+//! | motors 1 to 4 | TIM1 | DMA2 5 | AUX 4, 3, 2, 1 |
+//! | servos 1 and 2, 3 and 4 | TIM4, TIM12 | none | AUX 5 and 6, 7 and 8 |
+//! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | GPS, I2C2 |
+//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4), CAP1 (PA5), RSSI (PB0), POWER2 current (PA3); POWER1 |
+//! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
+//! | console | USART2 | none | TELEM1 |
+//! | parameters, FRAM | SPI2 | none | on board |
+//! | lights, sounder | TIM9 | none | on board |
+//! | time | TIM5 | none | |
+//!
+//! Only the AUX outputs are this chip's: the MAIN outputs and the RC input hang on a second one, whose firmware is
+//! not ours. Motor 1 is the timer's first channel, which the board leads to AUX 4. Pins are those that PX4 (`fmu-v5`)
+//! and ArduPilot (`fmuv5`) name.
+
+use assign_resources::assign_resources;
+use embassy_embedded_hal::adapter::BlockingAsync;
+use embassy_stm32::adc::AdcChannel;
+use embassy_stm32::exti::ExtiInput;
+use embassy_stm32::gpio::{Level, Pull};
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::mhz;
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
+use embassy_time::{Duration, Timer};
+use sophie_control::params::Params;
+use sophie_drivers::arm_buses::ArmBuses;
+use sophie_drivers::bno055;
+use sophie_drivers::esc_protocol::EscProtocol;
+use sophie_drivers::fram::Fram;
+use sophie_drivers::icm20689::{self, Icm20689};
+use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_tasks::parameters;
+
+use crate::Board;
+use crate::cortex_m::{enable_caches, levels_on};
+use crate::stm32::{
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, ReadyLine,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, Wiring, console_lines, drive, hold, i2c_bus, look, pad,
+    receiver_line, spi_config,
+};
+
+/// Name in the log.
+pub const NAME: &str = "cuav-v5";
+
+/// Flash sectors that hold parameters: none, an FRAM does.
+const PARAM_SECTORS: u32 = 0;
+/// The data cache is on: all RAM that is used is DTCM, which no cache is before.
+pub const DATA_CACHE: bool = true;
+/// The parameters' defaults of this board: divider and current sensor of the power module that CUAV sells with it
+/// (ArduPilot `fmuv5`: 18.0 and 24.0).
+static DEFAULTS: Params = Params {
+    battery_divider: 18.0,
+    battery_a_per_v: 24.0,
+    ..Params::DEFAULT
+};
+
+/// What `cargo xtask rig` joins (hil/README.md).
+pub const WIRING: Wiring = Wiring {
+    core_hz: 216_000_000,
+    motor: [
+        pad("AUX 4 (PE9)", pac::GPIOE, 9),
+        pad("AUX 7 (PH6)", pac::GPIOH, 6),
+    ],
+    servo: [
+        pad("AUX 5 (PD13)", pac::GPIOD, 13),
+        pad("AUX 8 (PH9)", pac::GPIOH, 9),
+    ],
+    receiver: [
+        pad("TELEM2 TX (PD8)", pac::GPIOD, 8),
+        pad("TELEM2 RX (PD9)", pac::GPIOD, 9),
+    ],
+    divider: (pad("RSSI (PB0)", pac::GPIOB, 0), 2),
+};
+
+/// The vehicle's inertial sensor.
+pub type ImuPort = Icm20689<DmaChip, ReadyLine>;
+/// The arms' inertial sensors.
+pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
+/// Pressure sensors and battery.
+pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
+/// The motors.
+pub type MotorsPort = EscTimer<peripherals::TIM1, peripherals::DMA2_CH5, Irqs>;
+/// The tendon servos.
+pub type ServosPort = ServoPairs<peripherals::TIM4, peripherals::TIM12>;
+/// The watchdog.
+pub type WatchdogPort = Dog<peripherals::IWDG>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<Fram<PlainChip>>;
+/// Lights and buzzer.
+pub type LightsPort = Lights<Tone<peripherals::TIM9>>;
+
+levels_on!(SAI1, SAI2);
+i2c_bus!(LeftArms, Irqs);
+i2c_bus!(RightArms, Irqs);
+
+bind_interrupts! {
+    /// Which handler serves which vector.
+    pub struct Irqs {
+        DMA1_STREAM0 => dma::InterruptHandler<peripherals::DMA1_CH0>;
+        DMA1_STREAM1 => dma::InterruptHandler<peripherals::DMA1_CH1>;
+        DMA1_STREAM2 => dma::InterruptHandler<peripherals::DMA1_CH2>;
+        DMA1_STREAM3 => dma::InterruptHandler<peripherals::DMA1_CH3>;
+        DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
+        DMA1_STREAM7 => dma::InterruptHandler<peripherals::DMA1_CH7>;
+        DMA2_STREAM2 => dma::InterruptHandler<peripherals::DMA2_CH2>;
+        DMA2_STREAM3 => dma::InterruptHandler<peripherals::DMA2_CH3>;
+        DMA2_STREAM4 => dma::InterruptHandler<peripherals::DMA2_CH4>;
+        DMA2_STREAM5 => dma::InterruptHandler<peripherals::DMA2_CH5>;
+        EXTI4 => ReadyStamp, exti::InterruptHandler<interrupt::typelevel::EXTI4>;
+        I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
+        I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
+        I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
+        I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
+        USART3 => usart::InterruptHandler<peripherals::USART3>;
+    }
+}
+
+assign_resources! {
+    imu: ImuParts {
+        spi: SPI1,
+        clock: PG11,
+        data_in: PA6,
+        data_out: PD7,
+        select: PF2,
+        tx_dma: DMA2_CH3,
+        rx_dma: DMA2_CH2,
+        ready: PB4,
+        ready_line: EXTI4,
+    }
+    rails: RailParts {
+        sensors: PE3,
+        peripherals_off: PG4,
+        high_power_off: PF12,
+        other_imu: PF3,
+        other_gyro: PF4,
+        other_accel: PG10,
+    }
+    motors: MotorParts {
+        timer: TIM1,
+        motor_1: PE9,
+        motor_2: PE11,
+        motor_3: PA10,
+        motor_4: PE14,
+        dma: DMA2_CH5,
+    }
+    servos: ServoParts {
+        first: TIM4,
+        servo_1: PD13,
+        servo_2: PD14,
+        second: TIM12,
+        servo_3: PH6,
+        servo_4: PH9,
+    }
+    left_arms: LeftArms {
+        bus: I2C1,
+        clock: PB8,
+        data: PB9,
+        tx_dma: DMA1_CH6,
+        rx_dma: DMA1_CH0,
+    }
+    right_arms: RightArms {
+        bus: I2C2,
+        clock: PF1,
+        data: PF0,
+        tx_dma: DMA1_CH7,
+        rx_dma: DMA1_CH2,
+    }
+    analog: AnalogParts {
+        adc: ADC1,
+        fsr_1: PC4,
+        fsr_2: PA5,
+        fsr_3: PB0,
+        fsr_4: PA3,
+        battery_voltage: PA0,
+        battery_current: PA1,
+        dma: DMA2_CH4,
+    }
+    receiver: ReceiverParts {
+        uart: USART3,
+        rx: PD9,
+        tx: PD8,
+        rx_dma: DMA1_CH1,
+        tx_dma: DMA1_CH3,
+    }
+    console: ConsoleParts {
+        uart: USART2,
+        rx: PD6,
+        tx: PD5,
+    }
+    storage: StorageParts {
+        spi: SPI2,
+        clock: PI1,
+        data_in: PI2,
+        data_out: PI3,
+        select: PF5,
+    }
+    lights: LightParts {
+        green: PC6,
+        red: PB1,
+        tone: TIM9,
+        buzzer: PE5,
+    }
+    watchdog: WatchdogParts {
+        dog: IWDG,
+    }
+}
+
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
+    let p = crate::stm32::start(clocks(), pac::TIM5, first_levels);
+    enable_caches(DATA_CACHE);
+    let parts = split_resources!(p);
+    rails(parts.rails).await;
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = parameters::load(&mut storage).await;
+    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
+    let r = parts.receiver;
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
+    let c = parts.console;
+    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
+    Board {
+        watchdog: Dog::start(parts.watchdog.dog),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
+        arms: ArmBuses::new(
+            ArmBus::new(parts.left_arms),
+            ArmBus::new(parts.right_arms),
+            [bno055::Config::default(); 4],
+        ),
+        analog: analog(parts.analog),
+        servos: servos(parts.servos, &params),
+        receiver,
+        telemetry,
+        console_input,
+        console_output,
+        lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
+        chip,
+    }
+}
+
+/// 16 MHz crystal; core 216 MHz, buses 54 and 108 MHz, timers 108 and 216 MHz.
+fn clocks() -> embassy_stm32::Config {
+    use rcc::*;
+
+    let mut config = embassy_stm32::Config::default();
+    let rcc = &mut config.rcc;
+    rcc.hse = Some(Hse {
+        freq: mhz(16),
+        mode: HseMode::Oscillator,
+    });
+    rcc.pll_src = PllSource::HSE;
+    rcc.pll = Some(Pll {
+        prediv: PllPreDiv::DIV8,
+        mul: PllMul::MUL216,
+        divp: Some(PllPDiv::DIV2),
+        divq: None,
+        divr: None,
+    });
+    rcc.sys = Sysclk::PLL1_P;
+    rcc.ahb_pre = AHBPrescaler::DIV1;
+    rcc.apb1_pre = APBPrescaler::DIV4;
+    rcc.apb2_pre = APBPrescaler::DIV2;
+    rcc.ls = LsConfig::off();
+    config
+}
+
+/// From the sensors' supply to a sensor that answers (ICM-20689 datasheet, start-up time for register access from
+/// power-up: 100 ms at the most).
+const SENSORS_START: Duration = Duration::from_millis(100);
+
+/// Switches the supplies on, keeps the other chips on the sensor's bus from answering, and waits for the sensors.
+async fn rails(p: RailParts) {
+    hold(p.other_imu.into(), Level::High);
+    hold(p.other_gyro.into(), Level::High);
+    hold(p.other_accel.into(), Level::High);
+    hold(p.sensors.into(), Level::High);
+    hold(p.peripherals_off.into(), Level::Low);
+    hold(p.high_power_off.into(), Level::Low);
+    Timer::after(SENSORS_START).await;
+}
+
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
+    // The part takes 8 MHz; 6.75 MHz is the next divider below.
+    let config = spi_config(8_000_000);
+    let bus = Spi::new(
+        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
+    );
+    let ready = ReadyLine(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs));
+    // Marking up, x to the right (ArduPilot: ROTATION_NONE after its driver's swap of x and y).
+    let mounting = Mounting::top_up(Heading::Right);
+    Icm20689::new(
+        Selected::new(bus, p.select),
+        ready,
+        icm20689::Config::from_params(params),
+        mounting,
+    )
+}
+
+fn motors(p: MotorParts, params: &Params) -> MotorsPort {
+    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
+    EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
+}
+
+/// The motors' pins low, whatever drives them: the last resort of a fault handler.
+pub fn stop_motors() {
+    drive(pac::GPIOE, &[9, 11, 14], Level::Low);
+    drive(pac::GPIOA, &[10], Level::Low);
+}
+
+/// What the outputs are until their ports take them: motors, servos and sounder low, no chip selected, every supply on,
+/// as they were before a restart.
+fn first_levels() {
+    stop_motors();
+    drive(pac::GPIOD, &[13, 14], Level::Low);
+    drive(pac::GPIOH, &[6, 9], Level::Low);
+    drive(pac::GPIOE, &[5], Level::Low);
+    drive(pac::GPIOF, &[2, 3, 4, 5], Level::High);
+    drive(pac::GPIOG, &[10], Level::High);
+    drive(pac::GPIOE, &[3], Level::High);
+    drive(pac::GPIOG, &[4], Level::Low);
+    drive(pac::GPIOF, &[12], Level::Low);
+}
+
+fn servos(p: ServoParts, params: &Params) -> ServosPort {
+    ServoPairs::new(
+        p.first,
+        (p.servo_1, p.servo_2),
+        p.second,
+        (p.servo_3, p.servo_4),
+        params,
+    )
+}
+
+fn analog(p: AnalogParts) -> AnalogPort {
+    let channels = [
+        p.fsr_1.degrade_adc(),
+        p.fsr_2.degrade_adc(),
+        p.fsr_3.degrade_adc(),
+        p.fsr_4.degrade_adc(),
+        p.battery_voltage.degrade_adc(),
+        p.battery_current.degrade_adc(),
+    ];
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
+}
+
+fn storage(p: StorageParts) -> StoragePort {
+    // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
+    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, spi_config(20_000_000));
+    let memory = Fram::new(Selected::new(BlockingAsync::new(bus), p.select));
+    BoardStorage::new(memory, &DEFAULTS)
+}
+
+fn lights(p: LightParts) -> LightsPort {
+    Lights {
+        state: Lamp::new(p.green, Level::Low),
+        fault: Lamp::new(p.red, Level::Low),
+        buzzer: Tone::new(p.tone, p.buzzer),
+    }
+}

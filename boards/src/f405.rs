@@ -1,0 +1,322 @@
+//! A custom board with an STM32F405RG at 168 MHz: the smallest chip that holds the stack, and the file to copy for a
+//! board of one's own.
+//!
+//! | what | peripheral | DMA stream | pins |
+//! |---|---|---|---|
+//! | inertial sensor | SPI1, EXTI4 | DMA2 2 and 3 | PA5 clock, PA6 in, PA7 out, PA4 select, PC4 data ready |
+//! | motors 1 to 4 | TIM8 | DMA2 1 | PC6, PC7, PC8, PC9 |
+//! | servos 1 and 2, 3 and 4 | TIM4, TIM12 | none | PB6, PB7; PB14, PB15 |
+//! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | PB8 PB9, PB10 PB11 |
+//! | pressure 1 to 4, battery | ADC1 | DMA2 4 | PC0 to PC3; PA0 voltage, PA1 current |
+//! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
+//! | console | USART2 | none | PA3 in, PA2 out |
+//! | lights, buzzer | | none | PB12 state, PB13 fault, PA8 |
+//! | parameters | flash | none | sectors 1 and 2 |
+//! | time | TIM5 | none | |
+//!
+//! Here a DMA stream serves few requests (RM0090 §10.3.3), and two peripherals must not share one: the compiler refuses a
+//! stream that does not serve its peripheral, and a stream that is used twice.
+
+use assign_resources::assign_resources;
+use embassy_stm32::adc::AdcChannel;
+use embassy_stm32::exti::ExtiInput;
+use embassy_stm32::gpio::{Level, Pull};
+use embassy_stm32::spi::Spi;
+use embassy_stm32::time::mhz;
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
+use sophie_control::params::Params;
+use sophie_drivers::arm_buses::ArmBuses;
+use sophie_drivers::bno055;
+use sophie_drivers::esc_protocol::EscProtocol;
+#[cfg(feature = "imu-icm20689")]
+use sophie_drivers::icm20689 as part;
+#[cfg(not(feature = "imu-icm20689"))]
+use sophie_drivers::icm42688p as part;
+use sophie_drivers::mounting::{Heading, Mounting};
+use sophie_drivers::spi_imu::SpiImu;
+use sophie_tasks::parameters;
+
+use crate::Board;
+use crate::cortex_m::levels_on;
+use crate::stm32::{
+    AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Wiring, accelerator, console_lines, drive, i2c_bus, look,
+    pad, receiver_line, spi_config,
+};
+
+/// Name in the log.
+pub const NAME: &str = "f405";
+
+/// Flash sectors that hold parameters, a bit each.
+const PARAM_SECTORS: u32 = 1 << 1 | 1 << 2;
+/// The parameters' defaults of this board: 1:11 and 40 A/V, as on most boards of this kind.
+static DEFAULTS: Params = Params {
+    battery_divider: 11.0,
+    battery_a_per_v: 40.0,
+    ..Params::DEFAULT
+};
+
+/// What `cargo xtask rig` joins (hil/README.md).
+pub const WIRING: Wiring = Wiring {
+    core_hz: 168_000_000,
+    motor: [pad("PC6", pac::GPIOC, 6), pad("PB14", pac::GPIOB, 14)],
+    servo: [pad("PB6", pac::GPIOB, 6), pad("PB15", pac::GPIOB, 15)],
+    receiver: [pad("PA9", pac::GPIOA, 9), pad("PA10", pac::GPIOA, 10)],
+    divider: (pad("PC1", pac::GPIOC, 1), 1),
+};
+
+/// The vehicle's inertial sensor.
+pub type ImuPort = SpiImu<part::Config, DmaChip, ReadyLine>;
+/// The arms' inertial sensors.
+pub type ArmsPort = ArmBuses<ArmBus<LeftArms>, ArmBus<RightArms>>;
+/// Pressure sensors and battery.
+pub type AnalogPort = AnalogInputs<peripherals::DMA2_CH4, Irqs>;
+/// The motors.
+pub type MotorsPort = EscTimer<peripherals::TIM8, peripherals::DMA2_CH1, Irqs>;
+/// The tendon servos.
+pub type ServosPort = ServoPairs<peripherals::TIM4, peripherals::TIM12>;
+/// The watchdog.
+pub type WatchdogPort = Dog<peripherals::IWDG>;
+/// Where parameters are stored.
+pub type StoragePort = BoardStorage<ParamFlash<0x4000>>;
+/// Lights and buzzer.
+pub type LightsPort = Lights<Lamp>;
+
+levels_on!(CAN1_TX, CAN2_TX);
+i2c_bus!(LeftArms, Irqs);
+i2c_bus!(RightArms, Irqs);
+
+bind_interrupts! {
+    /// Which handler serves which vector.
+    pub struct Irqs {
+        DMA1_STREAM0 => dma::InterruptHandler<peripherals::DMA1_CH0>;
+        DMA1_STREAM2 => dma::InterruptHandler<peripherals::DMA1_CH2>;
+        DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
+        DMA1_STREAM7 => dma::InterruptHandler<peripherals::DMA1_CH7>;
+        DMA2_STREAM1 => dma::InterruptHandler<peripherals::DMA2_CH1>;
+        DMA2_STREAM2 => dma::InterruptHandler<peripherals::DMA2_CH2>;
+        DMA2_STREAM3 => dma::InterruptHandler<peripherals::DMA2_CH3>;
+        DMA2_STREAM4 => dma::InterruptHandler<peripherals::DMA2_CH4>;
+        DMA2_STREAM5 => dma::InterruptHandler<peripherals::DMA2_CH5>;
+        DMA2_STREAM7 => dma::InterruptHandler<peripherals::DMA2_CH7>;
+        EXTI4 => ReadyStamp, exti::InterruptHandler<interrupt::typelevel::EXTI4>;
+        I2C1_EV => i2c::EventInterruptHandler<peripherals::I2C1>;
+        I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
+        I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
+        I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        USART1 => usart::InterruptHandler<peripherals::USART1>;
+        USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
+    }
+}
+
+assign_resources! {
+    imu: ImuParts {
+        spi: SPI1,
+        clock: PA5,
+        data_in: PA6,
+        data_out: PA7,
+        select: PA4,
+        tx_dma: DMA2_CH3,
+        rx_dma: DMA2_CH2,
+        ready: PC4,
+        ready_line: EXTI4,
+    }
+    motors: MotorParts {
+        timer: TIM8,
+        motor_1: PC6,
+        motor_2: PC7,
+        motor_3: PC8,
+        motor_4: PC9,
+        dma: DMA2_CH1,
+    }
+    servos: ServoParts {
+        first: TIM4,
+        servo_1: PB6,
+        servo_2: PB7,
+        second: TIM12,
+        servo_3: PB14,
+        servo_4: PB15,
+    }
+    left_arms: LeftArms {
+        bus: I2C1,
+        clock: PB8,
+        data: PB9,
+        tx_dma: DMA1_CH6,
+        rx_dma: DMA1_CH0,
+    }
+    right_arms: RightArms {
+        bus: I2C2,
+        clock: PB10,
+        data: PB11,
+        tx_dma: DMA1_CH7,
+        rx_dma: DMA1_CH2,
+    }
+    analog: AnalogParts {
+        adc: ADC1,
+        fsr_1: PC0,
+        fsr_2: PC1,
+        fsr_3: PC2,
+        fsr_4: PC3,
+        battery_voltage: PA0,
+        battery_current: PA1,
+        dma: DMA2_CH4,
+    }
+    receiver: ReceiverParts {
+        uart: USART1,
+        rx: PA10,
+        tx: PA9,
+        rx_dma: DMA2_CH5,
+        tx_dma: DMA2_CH7,
+    }
+    console: ConsoleParts {
+        uart: USART2,
+        rx: PA3,
+        tx: PA2,
+    }
+    storage: StorageParts {
+        flash: FLASH,
+    }
+    lights: LightParts {
+        state: PB12,
+        fault: PB13,
+        buzzer: PA8,
+    }
+    watchdog: WatchdogParts {
+        dog: IWDG,
+    }
+}
+
+/// Starts the clocks, loads the parameters and builds every port as they say. Called once.
+pub async fn take() -> Board {
+    let p = crate::stm32::start(clocks(), pac::TIM5, first_levels);
+    accelerator::enable();
+    let parts = split_resources!(p);
+    let mut storage = storage(parts.storage);
+    let (params, loaded) = parameters::load(&mut storage).await;
+    let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
+    let r = parts.receiver;
+    let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
+    let c = parts.console;
+    let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
+    Board {
+        watchdog: Dog::start(parts.watchdog.dog),
+        motors: motors(parts.motors, &params),
+        imu: imu(parts.imu, &params),
+        arms: ArmBuses::new(
+            ArmBus::new(parts.left_arms),
+            ArmBus::new(parts.right_arms),
+            [bno055::Config::default(); 4],
+        ),
+        analog: analog(parts.analog),
+        servos: servos(parts.servos, &params),
+        receiver,
+        telemetry,
+        console_input,
+        console_output,
+        lights: lights(parts.lights),
+        storage,
+        params,
+        loaded,
+        chip,
+    }
+}
+
+/// 8 MHz crystal; core 168 MHz, buses 42 and 84 MHz, timers 84 and 168 MHz.
+fn clocks() -> embassy_stm32::Config {
+    use rcc::*;
+
+    let mut config = embassy_stm32::Config::default();
+    let rcc = &mut config.rcc;
+    rcc.hse = Some(Hse {
+        freq: mhz(8),
+        mode: HseMode::Oscillator,
+    });
+    rcc.pll_src = PllSource::HSE;
+    rcc.pll = Some(Pll {
+        prediv: PllPreDiv::DIV4,
+        mul: PllMul::MUL168,
+        divp: Some(PllPDiv::DIV2),
+        divq: None,
+        divr: None,
+    });
+    rcc.sys = Sysclk::PLL1_P;
+    rcc.ahb_pre = AHBPrescaler::DIV1;
+    rcc.apb1_pre = APBPrescaler::DIV4;
+    rcc.apb2_pre = APBPrescaler::DIV2;
+    rcc.ls = LsConfig::off();
+    config
+}
+
+fn imu(p: ImuParts, params: &Params) -> ImuPort {
+    // The ICM-20689 takes 8 MHz, the ICM-42688-P 24 MHz. Dividers of 84 MHz: 5.25 and 10.5 MHz.
+    let hz = if cfg!(feature = "imu-icm20689") {
+        8_000_000
+    } else {
+        12_500_000
+    };
+    let config = spi_config(hz);
+    let bus = Spi::new(
+        p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
+    );
+    let ready = ReadyLine(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs));
+    // Marking up, x forward; a board of one's own says here how it is.
+    let mounting = Mounting::top_up(Heading::Forward);
+    SpiImu::new(
+        Selected::new(bus, p.select),
+        ready,
+        part::Config::from_params(params),
+        mounting,
+    )
+}
+
+fn motors(p: MotorParts, params: &Params) -> MotorsPort {
+    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);
+    EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))
+}
+
+/// The motors' pins low, whatever drives them: the last resort of a fault handler.
+pub fn stop_motors() {
+    drive(pac::GPIOC, &[6, 7, 8, 9], Level::Low);
+}
+
+/// What the outputs are until their ports take them: motors, servos and buzzer low, the inertial sensor not selected.
+fn first_levels() {
+    stop_motors();
+    drive(pac::GPIOB, &[6, 7, 14, 15], Level::Low);
+    drive(pac::GPIOA, &[8], Level::Low);
+    drive(pac::GPIOA, &[4], Level::High);
+}
+
+fn servos(p: ServoParts, params: &Params) -> ServosPort {
+    ServoPairs::new(
+        p.first,
+        (p.servo_1, p.servo_2),
+        p.second,
+        (p.servo_3, p.servo_4),
+        params,
+    )
+}
+
+fn analog(p: AnalogParts) -> AnalogPort {
+    let channels = [
+        p.fsr_1.degrade_adc(),
+        p.fsr_2.degrade_adc(),
+        p.fsr_3.degrade_adc(),
+        p.fsr_4.degrade_adc(),
+        p.battery_voltage.degrade_adc(),
+        p.battery_current.degrade_adc(),
+    ];
+    AnalogInputs::new(p.adc, channels, p.dma, Irqs)
+}
+
+fn storage(p: StorageParts) -> StoragePort {
+    BoardStorage::new(ParamFlash::new(p.flash), &DEFAULTS)
+}
+
+fn lights(p: LightParts) -> LightsPort {
+    Lights {
+        state: Lamp::new(p.state, Level::High),
+        fault: Lamp::new(p.fault, Level::High),
+        buzzer: Lamp::new(p.buzzer, Level::High),
+    }
+}

@@ -1,0 +1,40 @@
+//! The boards: everything that is specific to a chip, and every line of unsafe code of what flies, is in here.
+//!
+//! A board is one file: clocks, pins, DMA streams and timers, claimed with `assign_resources`, and `Board`'s ports
+//! built from them. `stm32` has what several boards share, `cortex_m` what all do: both go by the chip's family and
+//! never by the board. The memory maps are in `memory/`, and the build script picks the one of the board that a feature
+//! names. Nothing outside names a chip. How a run ends is `sophie-fault`'s.
+//!
+//! On the host there is only the check of a board's pins (`output_pins`), and its tests.
+
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg_attr(
+    target_os = "none",
+    allow(
+        unsafe_code,
+        reason = "registers, vectors and linker symbols; each use has its reason beside it"
+    )
+)]
+
+#[cfg(target_os = "none")]
+mod board;
+#[cfg(target_os = "none")]
+mod cortex_m;
+#[cfg(not(target_os = "none"))]
+pub mod output_pins;
+#[cfg(target_os = "none")]
+mod stm32;
+
+#[cfg(target_os = "none")]
+pub use board::*;
+#[cfg(all(target_os = "none", feature = "trace"))]
+pub use cortex_m::trace;
+#[cfg(target_os = "none")]
+pub use cortex_m::{end::stop_and_restart, retained, retained::ResetCause, stack};
+#[cfg(target_os = "none")]
+pub use sophie_fault::ends_with;
+#[cfg(target_os = "none")]
+pub use stm32::{
+    ConsoleInput, ConsoleOutput, Pad, Pupdr, ReceiverLine, Taken, TelemetryLine, ThisChip, Wiring,
+    stop_with_core, take_reset_cause,
+};

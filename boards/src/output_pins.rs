@@ -1,0 +1,72 @@
+//! Which pins may drive a motor or a servo: none of the debug port, which the chip pulls or drives from its reset on.
+//!
+//! A servo's input that is pulled up is taken for a pulse that never ends by some servos, and a reset happens on the
+//! pipe too. The build script looks at the table of the board that it builds, the tests at those of all.
+
+/// Pins that an STM32 gives to its debug port at reset: SWDIO, JTDI and NJTRST with a pull-up, SWCLK with a pull-down,
+/// JTDO (RM0090 §8.3.2, RM0410 §6.3.2, RM0433 §11.3.2). They stay so until the firmware sets them.
+const DEBUG_PORT: [&str; 5] = ["PA13", "PA14", "PA15", "PB3", "PB4"];
+
+/// Sees that the table of a board file (`assign_resources!`) has `motor_1` to `motor_4` and `servo_1` to `servo_4`, none
+/// of them on a pin of the debug port.
+///
+/// # Errors
+/// One line: the field, its pin, and which pins are not allowed.
+pub fn check(table: &str) -> Result<(), String> {
+    for output in ["motor", "servo"] {
+        for number in 1..=4 {
+            let field = format!("{output}_{number}");
+            let pin = pin_of(table, &field).ok_or_else(|| {
+                format!("names no pin `{field}`: the pins of motors and servos are looked at")
+            })?;
+            if DEBUG_PORT.contains(&pin) {
+                return Err(format!(
+                    "has {field} on {pin}, which the chip pulls or drives by itself from its reset on: allowed is any \
+                     pin but {}",
+                    DEBUG_PORT.join(", ")
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The pin of a field: `servo_1: PB6,` has PB6.
+fn pin_of<'a>(table: &'a str, field: &str) -> Option<&'a str> {
+    table.lines().find_map(|line| {
+        let pin = line.trim().strip_prefix(field)?.strip_prefix(':')?;
+        Some(pin.trim().trim_end_matches(','))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::check;
+
+    /// The tables that are built.
+    const BOARDS: [(&str, &str); 3] = [
+        ("matek-h743", include_str!("matek_h743.rs")),
+        ("cuav-v5", include_str!("cuav_v5.rs")),
+        ("f405", include_str!("f405.rs")),
+    ];
+
+    #[test]
+    fn no_motor_and_no_servo_is_on_a_pin_of_the_debug_port() {
+        for (board, table) in BOARDS {
+            assert_eq!(check(table), Ok(()), "{board}");
+        }
+    }
+
+    #[test]
+    fn a_servo_or_a_motor_on_such_a_pin_is_refused() {
+        let (_, table) = BOARDS[2];
+        for (field, pin, other) in [("servo_1", "PB6", "PB4"), ("motor_3", "PC8", "PA15")] {
+            let moved = table.replace(&format!("{field}: {pin}"), &format!("{field}: {other}"));
+            assert!(moved != table, "{field} is not on {pin}");
+            let refused = check(&moved).unwrap_err();
+            assert!(refused.contains(&format!("{field} on {other}")), "{refused}");
+        }
+        let nameless = table.replace("servo_2:", "second_servo:");
+        assert!(check(&nameless).unwrap_err().contains("no pin `servo_2`"));
+    }
+}

@@ -1,0 +1,50 @@
+//! The chip itself: its restart, its option bytes, and what the start-up looked at.
+
+use sophie_tasks::ports::{Chip, Look, Looks, NotSet};
+use static_cell::StaticCell;
+
+use super::options;
+use super::watchdog;
+use crate::cortex_m::restart::reset;
+use crate::stop_motors;
+
+static LOOKS: StaticCell<Looks> = StaticCell::new();
+
+/// The chip.
+pub struct ThisChip {
+    /// What the start-up looked at.
+    pub looks: &'static [Look],
+}
+
+impl ThisChip {
+    /// The chip in which `looks` were found. Called once.
+    pub fn new(looks: Looks) -> Self {
+        Self {
+            looks: LOOKS.init(looks),
+        }
+    }
+}
+
+impl Chip for ThisChip {
+    fn restart(&mut self) {
+        stop_motors();
+        reset()
+    }
+
+    fn looks(&self) -> &[Look] {
+        self.looks
+    }
+
+    fn brown_out_volts(&self) -> f32 {
+        options::BROWN_OUT_VOLTS
+    }
+
+    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
+        // The write may stall the processor for longer than the watchdog's patience. Only disarmed: nothing is being
+        // watched that could fall.
+        watchdog::be_patient(true).await;
+        let set = options::set_brown_out();
+        watchdog::be_patient(false).await;
+        if set { Ok(()) } else { Err(NotSet) }
+    }
+}

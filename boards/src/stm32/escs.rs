@@ -1,0 +1,277 @@
+//! The motors' speed controllers, as DShot frames or as pulses: on the channels of one timer in any order, or of two.
+//!
+//! A frame or pulse is sent for a command and ends by itself with the pins low: without software there is none, and a
+//! controller stops its motor. The last rows of a DShot frame are zeros, and the timer stops after a pulse.
+
+use embassy_futures::join::join;
+use embassy_stm32::dma::InterruptHandler;
+use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
+use embassy_stm32::interrupt::typelevel::Binding;
+use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
+use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin, UpDma};
+use embassy_stm32::{Peri, rcc};
+use embassy_time::{Duration, Instant, with_timeout};
+use sophie_control::wrench::PerArm;
+use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
+use sophie_drivers::esc_protocol::EscProtocol;
+use sophie_drivers::esc_pwm::EscPulse;
+use sophie_drivers::pwm_timing::PwmTiming;
+use sophie_tasks::ports::Motors;
+use static_cell::ConstStaticCell;
+
+use super::Aligned;
+
+/// The slowest frame takes 120 µs; one that takes this long never ends.
+const LONGEST_FRAME: Duration = Duration::from_micros(500);
+
+/// Rows of compare values that DMA writes into the timer: one for each bit of a frame, and two of zeros. The first of
+/// those is in force when the second has been moved, so the pins are low at the end of the transfer.
+type EscBurst = Aligned<[u16; dshot::BURST + dshot::MOTORS]>;
+
+static DMA_MOTORS: ConstStaticCell<EscBurst> =
+    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
+/// That of a second timer, where there is one.
+static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> =
+    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
+
+/// How commands become compare values.
+#[derive(Clone, Copy)]
+enum Timing {
+    DShot(BitTiming),
+    Pulse(EscPulse, PwmTiming),
+}
+
+/// Speed controllers on channels of a 16-bit timer.
+pub struct EscTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
+    timer: Timer<'static, T>,
+    /// The channel of each motor that is on this timer.
+    channels: PerArm<Option<Channel>>,
+    /// Kept, so that the pins stay the timer's.
+    pins: PerArm<Option<Flex<'static>>>,
+    dma: Peri<'static, D>,
+    irqs: I,
+    burst: &'static mut EscBurst,
+    timing: Timing,
+}
+
+impl<T: GeneralInstance4Channel, D: UpDma<T>, I> EscTimer<T, D, I>
+where
+    u16: Into<T::Word>,
+{
+    /// Motors 1 to 4 on these pins, which stay low until the first command. The pins say the channels, in any order: two
+    /// of one channel do not build. Called once.
+    pub fn new<C1: TimerChannel, C2: TimerChannel, C3: TimerChannel, C4: TimerChannel>(
+        timer: Peri<'static, T>,
+        (one, two, three, four): (
+            Peri<'static, impl TimerPin<T, C1>>,
+            Peri<'static, impl TimerPin<T, C2>>,
+            Peri<'static, impl TimerPin<T, C3>>,
+            Peri<'static, impl TimerPin<T, C4>>,
+        ),
+        dma: Peri<'static, D>,
+        irqs: I,
+        protocol: EscProtocol,
+    ) -> Self {
+        const {
+            let bits = 1 << C1::CHANNEL as u32
+                | 1 << C2::CHANNEL as u32
+                | 1 << C3::CHANNEL as u32
+                | 1 << C4::CHANNEL as u32;
+            assert!(bits == 0b1111, "two motors are on one channel of the timer");
+        }
+        Self::first(timer, dma, irqs, protocol)
+            .motor(0, one)
+            .motor(1, two)
+            .motor(2, three)
+            .motor(3, four)
+    }
+
+    /// The first of two timers, without motors yet. Called once.
+    pub fn first(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: EscProtocol) -> Self {
+        Self::bare(timer, dma, irqs, protocol, DMA_MOTORS.take())
+    }
+
+    /// The second of two timers, without motors yet. Called once.
+    pub fn second(timer: Peri<'static, T>, dma: Peri<'static, D>, irqs: I, protocol: EscProtocol) -> Self {
+        Self::bare(timer, dma, irqs, protocol, DMA_MORE_MOTORS.take())
+    }
+
+    fn bare(
+        timer: Peri<'static, T>,
+        dma: Peri<'static, D>,
+        irqs: I,
+        protocol: EscProtocol,
+        burst: &'static mut EscBurst,
+    ) -> Self {
+        let timing = timing(protocol, rcc::frequency::<T>().0);
+        let timer = Timer::new(timer);
+        let (prescaler, period) = match timing {
+            Timing::DShot(bit) => (0, u32::from(bit.period)),
+            Timing::Pulse(_, t) => (t.prescaler, t.period),
+        };
+        timer.regs_core().psc().write_value(prescaler);
+        // `PwmTiming` and `BitTiming` are made for 16 bits: period - 1 always fits.
+        timer.set_max_compare_value((period.wrapping_sub(1) as u16).into());
+        Self {
+            timer,
+            channels: [None; 4],
+            pins: [const { None }; 4],
+            dma,
+            irqs,
+            burst,
+            timing,
+        }
+    }
+
+    /// Adds motor `index`, 0 to 3, on its pin, which stays low until the first command.
+    pub fn motor<C: TimerChannel>(mut self, index: usize, pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
+        let channel = C::CHANNEL;
+        self.timer
+            .set_output_compare_mode(channel, OutputCompareMode::PwmMode1);
+        self.timer.set_output_compare_preload(channel, true);
+        self.timer.set_compare_value(channel, 0.into());
+        self.timer.enable_channel(channel, true);
+        // Takes prescaler, period and compare values over while the pin is not yet the timer's.
+        self.timer.generate_update_event();
+        self.timer.enable_outputs();
+        let function = pin.af_num();
+        let mut output = Flex::new(pin);
+        output.set_as_af_unchecked(function, AfType::output(OutputType::PushPull, Speed::High));
+        if let (Some(of), Some(kept)) = (self.channels.get_mut(index), self.pins.get_mut(index)) {
+            *of = Some(channel);
+            *kept = Some(output);
+        }
+        self
+    }
+
+    /// Channels with the values of their motors.
+    fn on_channels<V: Copy>(
+        &self,
+        motors: PerArm<V>,
+    ) -> impl Iterator<Item = (Channel, V)> + use<T, D, I, V> {
+        let pairs = self.channels.into_iter().zip(motors);
+        pairs.filter_map(|(channel, value)| Some((channel?, value)))
+    }
+
+    /// One pulse to all motors, now. A command that comes before the last pulse's period is over is passed over, since it
+    /// must neither cut a pulse nor lengthen it: the next one is younger.
+    fn shoot(&mut self, pulse: EscPulse, t: PwmTiming, commands: PerArm<f32>) {
+        let registers = self.timer.regs_core();
+        // In one-pulse mode the counter stops by itself.
+        if registers.cr1().read().cen() {
+            return;
+        }
+        for (channel, command) in self.on_channels(commands) {
+            let counts = pulse.compare(&t, command);
+            self.timer.set_compare_value(channel, (counts as u16).into());
+        }
+        // The pins rise with the first line and the pulse is timed from the last one: less than half a microsecond.
+        critical_section::with(|_| {
+            registers.egr().write(|w| w.set_ug(true));
+            // In force from the end of the period on, when the counter stops at zero: the pins stay low.
+            for (channel, _) in self.on_channels(commands) {
+                self.timer.set_compare_value(channel, 0.into());
+            }
+            registers.cr1().write(|w| {
+                w.set_opm(true);
+                w.set_cen(true);
+            });
+        });
+    }
+
+    /// One frame to all motors, over when this returns; gives its beginning.
+    ///
+    /// The order matters: counter stopped, DMA armed, request enabled, counter started. With the request enabled first,
+    /// an update that comes before the stream is armed is lost, and with it the frame's first bit.
+    async fn send_frame(&mut self, bit: BitTiming, commands: PerArm<f32>) -> Instant
+    where
+        I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
+    {
+        // In the order of the channels, as the timer takes them. A channel without a motor has no pin.
+        let mut frames = [Frame::from_command(0.0); 4];
+        for (channel, command) in self.on_channels(commands) {
+            if let Some(frame) = frames.get_mut(channel.index()) {
+                *frame = Frame::from_command(command);
+            }
+        }
+        fill_burst(&mut self.burst.0, frames, bit);
+        self.timer.stop();
+        self.timer.enable_update_dma(false);
+        self.timer.reset();
+        let rows = &self.burst.0[..];
+        let transfer = self.timer.setup_update_dma_burst(
+            self.dma.reborrow(),
+            self.irqs,
+            Channel::Ch1,
+            Channel::Ch4,
+            rows,
+        );
+        self.timer.enable_update_dma(true);
+        self.timer.start();
+        let began = Instant::now();
+        // A transfer that does not end is given up: the task must go on, and the supervisor sees it late.
+        let _ = with_timeout(LONGEST_FRAME, transfer).await;
+        self.timer.enable_update_dma(false);
+        self.timer.stop();
+        began
+    }
+}
+
+impl<T: GeneralInstance4Channel, D: UpDma<T>, I> Motors for EscTimer<T, D, I>
+where
+    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
+    u16: Into<T::Word>,
+{
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
+        match self.timing {
+            Timing::DShot(bit) => return self.send_frame(bit, commands).await,
+            Timing::Pulse(pulse, t) => self.shoot(pulse, t, commands),
+        }
+        Instant::now()
+    }
+}
+
+/// The motors on two timers, each with a stream of its own.
+pub struct EscTimers<A, B>(A, B);
+
+impl<T, D, I, U, E, J> EscTimers<EscTimer<T, D, I>, EscTimer<U, E, J>>
+where
+    T: GeneralInstance4Channel,
+    D: UpDma<T>,
+    U: GeneralInstance4Channel,
+    E: UpDma<U>,
+{
+    /// Two timers with their motors.
+    ///
+    /// # Panics
+    /// If a motor is on none or on both: a board with such a table never starts, so it is found at the bench.
+    pub fn new(first: EscTimer<T, D, I>, second: EscTimer<U, E, J>) -> Self {
+        for (a, b) in first.channels.iter().zip(&second.channels) {
+            assert!(a.is_some() != b.is_some(), "each motor is on one timer");
+        }
+        Self(first, second)
+    }
+}
+
+impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
+    /// The frames begin within some microseconds of each other.
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
+        let (first, second) = join(self.0.write(commands), self.1.write(commands)).await;
+        first.min(second)
+    }
+}
+
+/// The timer's values for a protocol, on a timer clocked at `clock_hz`.
+///
+/// # Panics
+/// If the clock cannot make the protocol: a board with such a clock never starts, so it is found at the bench.
+fn timing(protocol: EscProtocol, clock_hz: u32) -> Timing {
+    let found = match protocol {
+        EscProtocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(Timing::DShot),
+        EscProtocol::Pulse(pulse) => pulse.timing(clock_hz).map(|t| Timing::Pulse(pulse, t)),
+    };
+    match found {
+        Some(timing) => timing,
+        None => panic!("the motors' timer cannot make the protocol from {clock_hz} Hz"),
+    }
+}

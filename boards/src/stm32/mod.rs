@@ -1,0 +1,72 @@
+//! What the STM32 boards share: the ports of `sophie_tasks` over embassy-stm32's drivers, generic over the instance.
+//!
+//! What differs between chips goes by `family`, which the build script takes from the chip that a board's feature names,
+//! never by the board: a second board with the same chip gets all that the first one has.
+
+#![allow(
+    dead_code,
+    unused_imports,
+    reason = "each board takes the ports that its parts need"
+)]
+
+#[cfg(not(any(family = "f4", family = "f7", family = "h7")))]
+compile_error!(
+    "the ports have been written for the families f4, f7 and h7: see what goes by `family` in boards/src"
+);
+
+#[cfg(family = "f4")]
+pub mod accelerator;
+#[cfg_attr(family = "h7", path = "adc_h7.rs")]
+#[cfg_attr(not(family = "h7"), path = "adc_f4.rs")]
+mod adc;
+mod analog;
+mod chip;
+mod clock;
+mod data_ready;
+mod escs;
+mod flash;
+#[cfg(family = "h7")]
+mod flash_ecc;
+mod i2c_bus;
+mod lights;
+#[cfg_attr(family = "h7", path = "options_h7.rs")]
+#[cfg_attr(not(family = "h7"), path = "options_f4.rs")]
+mod options;
+mod pads;
+mod pulse_timer;
+mod rails;
+mod reset;
+mod serial;
+mod servo_pairs;
+mod servos;
+mod silicon;
+mod spi;
+mod storage;
+mod tone;
+mod watchdog;
+
+pub use analog::AnalogInputs;
+pub use chip::ThisChip;
+pub use clock::{micros, start};
+pub use data_ready::{ReadyLine, ReadyStamp};
+pub use escs::{EscTimer, EscTimers};
+pub use flash::ParamFlash;
+pub(crate) use i2c_bus::i2c_bus;
+pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
+pub use lights::{Lamp, Lights};
+pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
+pub use rails::{drive, hold};
+pub use reset::take_reset_cause;
+pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, console_lines, receiver_line};
+pub use servo_pairs::ServoPairs;
+pub use servos::ServoTimer;
+pub use silicon::look;
+pub use spi::PlainChip;
+pub use spi::{DmaChip, Selected, spi_config};
+pub use storage::BoardStorage;
+pub use tone::Tone;
+pub use watchdog::{Dog, stop_with_core};
+
+/// A buffer that DMA moves in bursts of up to 16 bytes: a burst must not cross a 1 KiB boundary.
+#[repr(C, align(32))]
+pub struct Aligned<T>(pub T);

@@ -1,0 +1,94 @@
+//! Pads as the builder's hand meets them: plain pins, beside and below the drivers that own them. For the tests on a
+//! board, which join some of them by jumpers.
+
+use embassy_stm32::pac::gpio::Gpio;
+use embassy_stm32::pac::gpio::vals::Moder;
+pub use embassy_stm32::pac::gpio::vals::Pupdr;
+
+/// A pad and its pin.
+#[derive(Clone, Copy)]
+pub struct Pad {
+    /// What is printed on the board or its connector, with the pin.
+    pub name: &'static str,
+    port: Gpio,
+    pin: usize,
+}
+
+/// What a board's tests have to know of it besides its drivers: pads that fly anyway, so that every board has them.
+pub struct Wiring {
+    /// Clock of the core, Hz.
+    pub core_hz: u32,
+    /// Motor 1, and the pad it is joined to.
+    pub motor: [Pad; 2],
+    /// Servo 1, and the pad it is joined to.
+    pub servo: [Pad; 2],
+    /// The receiver's line: out, and the input it is joined to.
+    pub receiver: [Pad; 2],
+    /// The pressure sensor's input that gets half the supply, and its number, 0 to 3.
+    pub divider: (Pad, usize),
+}
+
+/// The pad called `name` on `pin` of `port`.
+pub const fn pad(name: &'static str, port: Gpio, pin: usize) -> Pad {
+    Pad { name, port, pin }
+}
+
+/// How a pad was before it was taken; given back when dropped.
+pub struct Taken {
+    pad: Pad,
+    mode: Moder,
+    pull: Pupdr,
+}
+
+impl Pad {
+    /// Takes the pad from whatever drives it; it floats.
+    pub fn take(self) -> Taken {
+        let taken = Taken {
+            pad: self,
+            mode: self.port.moder().read().moder(self.pin),
+            pull: self.port.pupdr().read().pupdr(self.pin),
+        };
+        taken.listen(Pupdr::FLOATING);
+        taken
+    }
+
+    /// A peripheral drives or reads the pad: what the board's own file says of it is true.
+    pub fn serves_a_peripheral(self) -> bool {
+        self.port.moder().read().moder(self.pin) == Moder::ALTERNATE
+    }
+
+    /// Level at the pad.
+    pub fn is_high(self) -> bool {
+        self.port.idr().read().idr(self.pin).to_bits() != 0
+    }
+}
+
+impl Taken {
+    /// Makes the pad an input with a pull.
+    pub fn listen(&self, pull: Pupdr) {
+        let Pad { port, pin, .. } = self.pad;
+        port.moder().modify(|w| w.set_moder(pin, Moder::INPUT));
+        port.pupdr().modify(|w| w.set_pupdr(pin, pull));
+    }
+
+    /// Drives the pad.
+    pub fn drive(&self, high: bool) {
+        let Pad { port, pin, .. } = self.pad;
+        port.bsrr().write(|w| {
+            if high {
+                w.set_bs(pin, true);
+            } else {
+                w.set_br(pin, true);
+            }
+        });
+        port.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));
+    }
+}
+
+impl Drop for Taken {
+    fn drop(&mut self) {
+        let Pad { port, pin, .. } = self.pad;
+        port.pupdr().modify(|w| w.set_pupdr(pin, self.pull));
+        port.moder().modify(|w| w.set_moder(pin, self.mode));
+    }
+}

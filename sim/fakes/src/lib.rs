@@ -1,0 +1,7 @@
+//! What tests give to the tasks and drivers in place of hardware: scripted ports, and a flash whose power fails.
+
+mod flash;
+mod ports;
+
+pub use flash::{Cells, Flash, FlashError};
+pub use ports::*;

@@ -1,0 +1,291 @@
+//! Scripted ports: they give, fail, or never answer.
+
+use std::cell::{Cell, RefCell};
+use std::future::pending;
+use std::rc::Rc;
+
+use embassy_sync::signal::Signal;
+use embassy_time::{Instant, Timer};
+use heapless::Vec as Few;
+use sophie_control::math::GRAVITY;
+use sophie_control::params::Params;
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::PerArm;
+use sophie_tasks::links::{Links, Raw};
+use sophie_tasks::ports::{
+    Analog, AnalogFrame, ArmImus, IMU_BATCH, Imu, ImuReading, Motors, PortError, Retain, SerialInput, Servos,
+    Watchdog,
+};
+use sophie_tasks::retained_state::{WORDS, Words};
+
+/// Links without messages, for as long as the process lives.
+pub fn links() -> &'static Links {
+    links_with(Params::default())
+}
+
+/// The same with these parameters.
+pub fn links_with(params: Params) -> &'static Links {
+    Box::leak(Box::new(Links::new(params)))
+}
+
+/// How a port answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Answer {
+    /// As it should.
+    #[default]
+    Sound,
+    /// With an error, after the time that a reading takes.
+    Fails,
+    /// With an error at once, as a part that was never set up.
+    Refuses,
+    /// With this error, after the time that a reading takes.
+    Errs(PortError),
+    /// Never.
+    Hangs,
+}
+
+/// Port calls without any time between them that no sound task makes.
+const SPIN: u32 = 1000;
+
+/// A part: how it answers now, and whether a task asked it without ever waiting.
+#[derive(Clone, Default)]
+pub struct Part {
+    /// How it answers.
+    pub answer: Rc<Cell<Answer>>,
+    /// A task asked it again and again without ever waiting.
+    pub spun: Rc<Cell<bool>>,
+    /// Errors given with [`Answer::Errs`], as long as the test does not set it back.
+    pub failed: Rc<Cell<u32>>,
+    asked: Rc<Cell<(u64, u32)>>,
+}
+
+impl Part {
+    /// Takes `us` microseconds, then succeeds or fails; or does neither.
+    async fn work(&self, us: u64) -> Result<(), PortError> {
+        let now = Instant::now().as_micros();
+        let (at, count) = self.asked.get();
+        self.asked.set(if at == now { (at, count + 1) } else { (now, 1) });
+        if self.asked.get().1 > SPIN {
+            // On a board nothing else would ever run again; here the test must end.
+            self.spun.set(true);
+            return pending().await;
+        }
+        match self.answer.get() {
+            Answer::Sound => {
+                Timer::after_micros(us).await;
+                Ok(())
+            }
+            Answer::Fails => {
+                Timer::after_micros(us).await;
+                Err(PortError::Timeout)
+            }
+            Answer::Errs(error) => {
+                Timer::after_micros(us).await;
+                self.failed.set(self.failed.get() + 1);
+                Err(error)
+            }
+            Answer::Refuses => Err(PortError::Absent),
+            Answer::Hangs => pending().await,
+        }
+    }
+}
+
+/// An inertial sensor of 1 kHz at rest, level; its data-ready line may be silent.
+#[derive(Clone, Default)]
+pub struct FakeImu(pub Part, pub Rc<Cell<bool>>);
+
+impl Imu for FakeImu {
+    fn rate_hz(&self) -> f32 {
+        1000.0
+    }
+
+    async fn read(&mut self) -> Result<Few<ImuReading, IMU_BATCH>, PortError> {
+        self.0.work(1000).await?;
+        let mut batch = Few::new();
+        let _ = batch.push(ImuReading {
+            gyro: Vec3::ZERO,
+            accel: Vec3::new(0.0, 0.0, -GRAVITY),
+        });
+        Ok(batch)
+    }
+
+    fn ready_at(&self) -> Instant {
+        Instant::now()
+    }
+
+    fn line_silent(&self) -> bool {
+        self.1.get()
+    }
+}
+
+/// Arm sensors that see level arms: their bus, and each of them.
+#[derive(Clone, Default)]
+pub struct FakeArms(pub Part, pub [Part; 4]);
+
+impl ArmImus for FakeArms {
+    async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
+        self.0.work(400).await?;
+        self.1[arm].work(10).await?;
+        Ok(Vec3::new(0.0, 0.0, GRAVITY))
+    }
+}
+
+/// A converter with a frame that the test sets.
+#[derive(Clone, Default)]
+pub struct FakeAnalog {
+    /// The converter.
+    pub part: Part,
+    /// What it gives.
+    pub frame: Rc<Cell<AnalogFrame>>,
+}
+
+/// Battery voltage for each count by the parameters' default divider, V.
+pub const VOLTS_PER_COUNT: f32 = 0.01;
+
+impl Analog for FakeAnalog {
+    fn volts_per_count(&self) -> f32 {
+        VOLTS_PER_COUNT / Params::DEFAULT.battery_divider
+    }
+
+    async fn read(&mut self) -> Result<AnalogFrame, PortError> {
+        self.part.work(30).await?;
+        Ok(self.frame.get())
+    }
+}
+
+/// Motors that remember their last commands.
+#[derive(Clone, Default)]
+pub struct FakeMotors {
+    /// The timer.
+    pub part: Part,
+    /// The last commands, 0 to 1.
+    pub commands: Rc<Cell<PerArm<f32>>>,
+}
+
+impl Motors for FakeMotors {
+    async fn write(&mut self, commands: PerArm<f32>) -> Instant {
+        let began = Instant::now();
+        self.commands.set(commands);
+        let _ = self.part.work(20).await;
+        began
+    }
+}
+
+/// Servos that remember every pulse.
+#[derive(Clone, Default)]
+pub struct FakeServos {
+    /// The timer.
+    pub part: Part,
+    /// Every pulse so far, µs.
+    pub pulses: Rc<RefCell<Vec<PerArm<f32>>>>,
+}
+
+impl FakeServos {
+    /// The pulses on the wires now, µs.
+    pub fn now(&self) -> PerArm<f32> {
+        self.pulses.borrow().last().copied().unwrap_or_default()
+    }
+}
+
+impl Servos for FakeServos {
+    async fn write(&mut self, pulses_us: PerArm<f32>) {
+        self.pulses.borrow_mut().push(pulses_us);
+        let _ = self.part.work(20).await;
+    }
+}
+
+/// A receiver's line: what the test puts on it is there at once.
+#[derive(Clone, Default)]
+pub struct FakeLine {
+    bytes: Rc<RefCell<Vec<u8>>>,
+    news: Rc<Line>,
+}
+
+struct Line(Signal<Raw, ()>);
+
+impl Default for Line {
+    fn default() -> Self {
+        Self(Signal::new())
+    }
+}
+
+impl FakeLine {
+    /// Puts `bytes` on the line.
+    pub fn put(&self, bytes: &[u8]) {
+        self.bytes.borrow_mut().extend_from_slice(bytes);
+        self.news.0.signal(());
+    }
+
+    /// Bytes not yet read.
+    pub fn waiting(&self) -> usize {
+        self.bytes.borrow().len()
+    }
+}
+
+impl SerialInput for FakeLine {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        while self.bytes.borrow().is_empty() {
+            self.news.0.wait().await;
+        }
+        let mut bytes = self.bytes.borrow_mut();
+        let count = bytes.len().min(buffer.len());
+        for (slot, byte) in buffer.iter_mut().zip(bytes.drain(..count)) {
+            *slot = byte;
+        }
+        Ok(count)
+    }
+}
+
+/// A receiver whose line breaks: nothing but errors, or reads without a byte.
+#[derive(Clone, Default)]
+pub struct BrokenLine(pub Part);
+
+impl SerialInput for BrokenLine {
+    async fn read(&mut self, _buffer: &mut [u8]) -> Result<usize, PortError> {
+        self.0.work(100).await?;
+        Ok(0)
+    }
+}
+
+/// A watchdog that remembers when it was fed, µs.
+#[derive(Clone, Default)]
+pub struct FakeWatchdog(pub Rc<RefCell<Vec<u64>>>);
+
+impl FakeWatchdog {
+    /// Feeds from `from_us` on.
+    pub fn fed_since(&self, from_us: u64) -> usize {
+        self.0.borrow().iter().filter(|t| **t >= from_us).count()
+    }
+}
+
+impl Watchdog for FakeWatchdog {
+    fn feed(&mut self) {
+        self.0.borrow_mut().push(Instant::now().as_micros());
+    }
+}
+
+/// Memory that outlives a reset: both copies, and how often each was written.
+#[derive(Clone)]
+pub struct FakeMemory(pub Rc<Cell<([Words; 2], [u32; 2])>>);
+
+impl Default for FakeMemory {
+    fn default() -> Self {
+        Self(Rc::new(Cell::new(([[0; WORDS]; 2], [0; 2]))))
+    }
+}
+
+impl FakeMemory {
+    /// What is in it.
+    pub fn copies(&self) -> [Words; 2] {
+        self.0.get().0
+    }
+}
+
+impl Retain for FakeMemory {
+    fn keep(&mut self, second: bool, words: &Words) {
+        let (mut copies, mut writes) = self.0.get();
+        copies[usize::from(second)] = *words;
+        writes[usize::from(second)] += 1;
+        self.0.set((copies, writes));
+    }
+}

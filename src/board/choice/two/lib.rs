@@ -1,2 +1,0 @@
-//! Nothing: that it is there is all that counts.
-#![no_std]
