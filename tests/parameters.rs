@@ -1,0 +1,48 @@
+//! docs/parameters.md is the table of parameters: `WRITE_DOCS=1 cargo test --test parameters` writes it.
+
+use std::fmt::Write;
+
+use sophie_control::params::{Params, RENAMED};
+use sophie_tasks::parameters::Allowed;
+
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/parameters.md");
+
+fn page() -> String {
+    let mut page = String::from(
+        "# Parameters\n\n\
+         The table of `control/src/params/table.rs`, as this firmware has it; a board may have other defaults for what is\n\
+         soldered to it. They are set at the [console](console.md) and in the `[params]` of a scenario file. What has names\n\
+         takes the name or the number in front of it.\n\n\
+         | name | takes | default | what it is |\n|---|---|---|---|\n",
+    );
+    for row in Params::TABLE {
+        let (name, allowed, default, doc) = (row.name, Allowed(row), row.default, row.doc.trim());
+        let _ = writeln!(page, "| `{name}` | {allowed} | {default} | {doc} |");
+    }
+    page += "\n## Earlier names\n\n\
+             Stored sets, the console and scenario files still take them; numbers are in the old unit and are converted. Of a\n\
+             stored set that has both, the new name counts, since only firmware that knows it can have written it.\n\n\
+             | was | unit | is | unit |\n|---|---|---|---|\n";
+    for renamed in RENAMED {
+        let unit = Params::row(renamed.new).map_or("", |row| row.unit);
+        let _ = writeln!(
+            page,
+            "| `{}` | {} | `{}` | {unit} |",
+            renamed.old, renamed.unit, renamed.new
+        );
+    }
+    page
+}
+
+#[test]
+fn the_page_is_the_table() {
+    let wanted = page();
+    if std::env::var_os("WRITE_DOCS").is_some() {
+        std::fs::write(PAGE, &wanted).unwrap();
+    }
+    let found = std::fs::read_to_string(PAGE).unwrap_or_default();
+    assert!(
+        found == wanted,
+        "docs/parameters.md is old: WRITE_DOCS=1 cargo test --test parameters"
+    );
+}
