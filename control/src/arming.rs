@@ -11,153 +11,105 @@ use crate::wrench::PerArm;
 /// Largest tilt at which the rotors may start, rad (25°).
 pub const TILT_MAX: f32 = crate::math::deg(25.0);
 
-/// A reason why arming is refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Refusal {
-    /// The gyro has not been calibrated at rest.
-    NotCalibrated,
-    /// No fresh attitude.
-    ImuStale,
-    /// No fresh frame from the receiver.
-    RcLost,
-    /// The throttle stick is not at its low end.
-    ThrottleNotLow,
-    /// The vehicle leans by more than [`TILT_MAX`].
-    TiltTooLarge,
-    /// The battery is below the warning voltage, or not measured.
-    BatteryLow,
-    /// The perch switch is on.
-    PerchSwitchOn,
-    /// A pressure sensor of a chosen arm is faulty or silent.
-    FsrFault,
-    /// The arm switch has been on since power-up.
-    SwitchOnAtPowerUp,
-    /// The flight level misses its deadlines.
-    Overruns,
-    /// The tendons are still closed.
-    ArmsClosed,
-    /// The vehicle's inertial sensor does not answer.
-    ImuAbsent,
-    /// Another chip answers in place of the vehicle's inertial sensor.
-    ImuWrongPart,
-    /// The vehicle's inertial sensor gives what it cannot have measured.
-    ImuCorrupt,
-    /// The vehicle's inertial sensor has failed its self-test.
-    ImuSelfTest,
-    /// The sensor on arm 1 gives nothing.
-    ArmSensor1,
-    /// The sensor on arm 2 gives nothing.
-    ArmSensor2,
-    /// The sensor on arm 3 gives nothing.
-    ArmSensor3,
-    /// The sensor on arm 4 gives nothing.
-    ArmSensor4,
-    /// The analog inputs give nothing.
-    AnalogSilent,
-    /// The stored parameters cannot be read: the defaults are in force.
-    StorageUnreadable,
-    /// The parameters do not fit into their storage.
-    StorageFull,
-    /// Parameters are being stored.
-    Storing,
-    /// The supply broke down and the board restarted.
-    BrownOut,
-    /// What the pressure sensor of arm 1 can read ends too near the grip pressure.
-    FsrRange1,
-    /// What the pressure sensor of arm 2 can read ends too near the grip pressure.
-    FsrRange2,
-    /// What the pressure sensor of arm 3 can read ends too near the grip pressure.
-    FsrRange3,
-    /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
-    FsrRange4,
-    /// The chip would go on executing, and executing garbage, when its supply breaks down.
-    BrownOutLevel,
-    /// The start-up found something in the chip that the firmware is not made for.
-    Silicon,
-    /// The memory for parameters holds another firmware's data: the defaults are in force.
-    StorageForeign,
-    /// The data-ready line of the vehicle's inertial sensor is silent; the part is read by the clock.
-    ImuLineSilent,
+/// Declares the arming checks, the most basic first: name, text for the pilot's display, what clears it.
+macro_rules! arming_checks {
+    ($($(#[$doc:meta])+ $name:ident = $text:literal, $cleared:literal;)+) => {
+        /// A reason why arming is refused.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum Refusal { $($(#[$doc])+ $name,)+ }
+
+        impl Refusal {
+            /// Every reason, the most basic first.
+            pub const ALL: [Self; [$($text),+].len()] = [$(Self::$name),+];
+
+            /// For the pilot's display.
+            pub const fn text(self) -> &'static str {
+                match self { $(Self::$name => $text,)+ }
+            }
+
+            /// What ends it, for the table in the docs.
+            #[cfg(test)]
+            pub(crate) const fn cleared_by(self) -> &'static str {
+                match self { $(Self::$name => $cleared,)+ }
+            }
+        }
+    };
 }
 
-impl Refusal {
-    /// Every reason, the most basic first.
-    pub const ALL: [Self; 32] = [
-        Self::BrownOut,
-        Self::BrownOutLevel,
-        Self::Silicon,
-        Self::Storing,
-        Self::StorageForeign,
-        Self::StorageUnreadable,
-        Self::StorageFull,
-        Self::ImuAbsent,
-        Self::ImuWrongPart,
-        Self::ImuSelfTest,
-        Self::ImuCorrupt,
-        Self::ImuLineSilent,
-        Self::RcLost,
-        Self::ImuStale,
-        Self::NotCalibrated,
-        Self::SwitchOnAtPowerUp,
-        Self::ThrottleNotLow,
-        Self::PerchSwitchOn,
-        Self::ArmsClosed,
-        Self::TiltTooLarge,
-        Self::BatteryLow,
-        Self::AnalogSilent,
-        Self::FsrFault,
-        Self::FsrRange1,
-        Self::FsrRange2,
-        Self::FsrRange3,
-        Self::FsrRange4,
-        Self::ArmSensor1,
-        Self::ArmSensor2,
-        Self::ArmSensor3,
-        Self::ArmSensor4,
-        Self::Overruns,
-    ];
+arming_checks! {
+    /// The supply broke down and the board restarted.
+    BrownOut = "supply broke down", "a start with a sound supply";
+    /// The chip would go on executing, and executing garbage, when its supply breaks down.
+    BrownOutLevel = "brown-out level not set", "setting the level (`brownout set`), once for each chip";
+    /// The start-up found something in the chip that the firmware is not made for.
+    Silicon = "chip not as expected", "a chip and a start as expected";
+    /// Parameters are being stored.
+    Storing = "storing parameters", "the end of storing";
+    /// The memory for parameters holds another firmware's data: the defaults are in force.
+    StorageForeign = "storage holds another firmware's data", "`save` from the console";
+    /// The stored parameters cannot be read: the defaults are in force.
+    StorageUnreadable = "stored parameters unreadable", "`save` from the console";
+    /// The parameters do not fit into their storage.
+    StorageFull = "parameter storage full", "`save` that fits";
+    /// The vehicle's inertial sensor does not answer.
+    ImuAbsent = "inertial sensor absent", "the driver, when the part answers";
+    /// Another chip answers in place of the vehicle's inertial sensor.
+    ImuWrongPart = "inertial sensor: wrong chip", "the driver, when the right part answers";
+    /// The vehicle's inertial sensor has failed its self-test.
+    ImuSelfTest = "inertial sensor: self-test failed", "the driver, when a self-test passes";
+    /// The vehicle's inertial sensor gives what it cannot have measured.
+    ImuCorrupt = "inertial sensor garbled", "the driver, when samples are sound";
+    /// The data-ready line of the vehicle's inertial sensor is silent; the part is read by the clock.
+    ImuLineSilent = "inertial sensor: data-ready line silent", "the driver, when edges come again";
+    /// No fresh frame from the receiver.
+    RcLost = "radio lost", "fresh frames";
+    /// No fresh attitude.
+    ImuStale = "inertial sensor silent", "fresh attitudes";
+    /// The gyro has not been calibrated at rest.
+    NotCalibrated = "not calibrated", "a second at rest";
+    /// The arm switch has been on since power-up.
+    SwitchOnAtPowerUp = "arm switch on at power-up", "the pilot: arm switch off";
+    /// The throttle stick is not at its low end.
+    ThrottleNotLow = "throttle not low", "the pilot";
+    /// The perch switch is on.
+    PerchSwitchOn = "perch switch on", "the pilot";
+    /// The tendons are still closed.
+    ArmsClosed = "arms closed", "perch switch on and off, or a grip that holds";
+    /// The vehicle leans by more than [`TILT_MAX`].
+    TiltTooLarge = "tilt too large", "setting it upright";
+    /// The battery is below the warning voltage, or not measured.
+    BatteryLow = "battery low", "another battery";
+    /// The analog inputs give nothing.
+    AnalogSilent = "analog inputs silent", "the driver, when inputs answer";
+    /// A pressure sensor of a chosen arm is faulty or silent.
+    FsrFault = "pressure sensor fault", "the sensor, or another choice of arms";
+    /// What the pressure sensor of arm 1 can read ends too near the grip pressure.
+    FsrRange1 = "pressure sensor 1: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    /// What the pressure sensor of arm 2 can read ends too near the grip pressure.
+    FsrRange2 = "pressure sensor 2: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    /// What the pressure sensor of arm 3 can read ends too near the grip pressure.
+    FsrRange3 = "pressure sensor 3: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
+    FsrRange4 = "pressure sensor 4: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    /// The sensor on arm 1 gives nothing.
+    ArmSensor1 = "arm sensor 1 silent", "the task `arms`, when the sensor answers";
+    /// The sensor on arm 2 gives nothing.
+    ArmSensor2 = "arm sensor 2 silent", "the task `arms`, when the sensor answers";
+    /// The sensor on arm 3 gives nothing.
+    ArmSensor3 = "arm sensor 3 silent", "the task `arms`, when the sensor answers";
+    /// The sensor on arm 4 gives nothing.
+    ArmSensor4 = "arm sensor 4 silent", "the task `arms`, when the sensor answers";
+    /// The flight level misses its deadlines.
+    Overruns = "deadlines missed", "a second without misses";
+}
 
+/// Each has a bit in [`Refusals`].
+const _: () = assert!(Refusal::ALL.len() <= u64::BITS as usize);
+
+impl Refusal {
     /// The pressure sensors' ranges, arm by arm.
     pub const FSR_RANGE: PerArm<Self> = [Self::FsrRange1, Self::FsrRange2, Self::FsrRange3, Self::FsrRange4];
-
-    /// For the pilot's display.
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::NotCalibrated => "not calibrated",
-            Self::ImuStale => "inertial sensor silent",
-            Self::RcLost => "radio lost",
-            Self::ThrottleNotLow => "throttle not low",
-            Self::TiltTooLarge => "tilt too large",
-            Self::BatteryLow => "battery low",
-            Self::PerchSwitchOn => "perch switch on",
-            Self::FsrFault => "pressure sensor fault",
-            Self::SwitchOnAtPowerUp => "arm switch on at power-up",
-            Self::Overruns => "deadlines missed",
-            Self::ArmsClosed => "arms closed",
-            Self::ImuAbsent => "inertial sensor absent",
-            Self::ImuWrongPart => "inertial sensor: wrong chip",
-            Self::ImuCorrupt => "inertial sensor garbled",
-            Self::ImuLineSilent => "inertial sensor: data-ready line silent",
-            Self::ImuSelfTest => "inertial sensor: self-test failed",
-            Self::ArmSensor1 => "arm sensor 1 silent",
-            Self::ArmSensor2 => "arm sensor 2 silent",
-            Self::ArmSensor3 => "arm sensor 3 silent",
-            Self::ArmSensor4 => "arm sensor 4 silent",
-            Self::AnalogSilent => "analog inputs silent",
-            Self::StorageUnreadable => "stored parameters unreadable",
-            Self::StorageFull => "parameter storage full",
-            Self::Storing => "storing parameters",
-            Self::BrownOut => "supply broke down",
-            Self::FsrRange1 => "pressure sensor 1: range too small",
-            Self::FsrRange2 => "pressure sensor 2: range too small",
-            Self::FsrRange3 => "pressure sensor 3: range too small",
-            Self::FsrRange4 => "pressure sensor 4: range too small",
-            Self::BrownOutLevel => "brown-out level not set",
-            Self::Silicon => "chip not as expected",
-            Self::StorageForeign => "storage holds another firmware's data",
-        }
-    }
 
     const fn bit(self) -> u64 {
         1 << self as u8

@@ -1,35 +1,38 @@
-//! The states of the vehicle, and what the mode logic sees and decides.
+//! The modes of the vehicle, what the mode logic sees and what it decides; 100 Hz.
 //!
-//! ```text
-//! Calibrating ─> Disarmed <─> Armed ─> Flight <─> Landed ─> Disarmed
-//!                                       │  ^  \
-//!                     touch, perch on   v  │   ─> Failsafe ─> Disarmed
-//!                                   Contact│
-//!                                       v  │ all arms proven free
-//!                                   Clamping ─> Releasing
-//!                        grip proven,   v        ^
-//!                        rotors stopped Perched ─┘ perch off, throttle up
-//! ```
-//!
-//! From Flight with the perch switch on, Contact, Clamping and Releasing a slide, a closing that is given up or a fall leads
-//! to Escaping, and from there to Flight when the throttle carries, to Failsafe when the throttle is not moved.
-//!
-//! A vehicle that is disarmed with its arms closed (by a person, by a danger, or because the board restarted on the
-//! pipe) becomes Perched by the arming gesture.
+//! Each mode has a file with its state ([`behaviour::Behaviour`]); `context` holds what outlives a state, `transitions`
+//! is the table of what leads from one to the next, in the order of priority, with its conditions in `guards` and the
+//! states' beginnings in `entries`. `docs/modes.md` shows the table.
 
-mod closing;
-mod decide;
+mod armed;
+mod behaviour;
+mod calibrating;
+mod clamping;
+mod contact;
+mod context;
+mod dangers;
 mod demand;
-mod escape;
+mod descent;
+mod disarmed;
+mod entries;
+mod escaping;
 mod failsafe;
+mod flight;
+mod guards;
 mod hold;
+mod landed;
 mod lean;
 mod logic;
-mod look;
+mod perched;
+mod power_up_grip;
 mod reason;
+mod releasing;
 #[cfg(test)]
 mod tests;
+mod transitions;
 
+use self::behaviour::Behaviour;
+use self::context::Step;
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
 use crate::arming::Refusals;
@@ -40,67 +43,86 @@ use crate::setpoint::{ClampCommand, Setpoint};
 use crate::vector::{Quat, Vec3};
 use crate::wrench::PerArm;
 
-/// What the vehicle is doing; the commander alone changes it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Mode {
+/// Declares the modes in the order of a mission: name, file of its state, number in records, name on displays.
+macro_rules! modes {
+    ($($(#[$doc:meta])+ $name:ident in $file:ident = $number:literal, $text:literal;)+) => {
+        /// What the vehicle is doing; the commander alone changes it.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        pub enum Mode { $($(#[$doc])+ $name = $number,)+ }
+
+        impl Mode {
+            /// Every mode, in the order of a mission.
+            pub const ALL: [Self; [$($number),+].len()] = [$(Self::$name),+];
+
+            /// Name for displays and telemetry, at most 12 ASCII characters.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => $text,)+ }
+            }
+        }
+
+        /// A mode with the fields that live in it.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        enum State { $($name($file::$name),)+ }
+
+        impl State {
+            fn mode(&self) -> Mode {
+                match self { $(Self::$name(_) => Mode::$name,)+ }
+            }
+
+            fn behaviour(&self) -> &dyn Behaviour {
+                match self { $(Self::$name(state) => state,)+ }
+            }
+
+            fn behaviour_mut(&mut self) -> &mut dyn Behaviour {
+                match self { $(Self::$name(state) => state,)+ }
+            }
+        }
+
+        /// How a state begins: from the one before, in this step, for this reason.
+        #[derive(Clone, Copy, Debug)]
+        enum Entry { $($name(fn(&State, &mut Step<'_>, Option<Reason>) -> $file::$name),)+ }
+
+        impl Entry {
+            fn enter(self, from: &State, step: &mut Step<'_>, why: Option<Reason>) -> State {
+                match self { $(Self::$name(enter) => State::$name(enter(from, step, why)),)+ }
+            }
+
+            /// The mode that begins.
+            #[cfg(test)]
+            fn mode(self) -> Mode {
+                match self { $(Self::$name(_) => Mode::$name,)+ }
+            }
+        }
+    };
+}
+
+modes! {
     /// Sensors are being calibrated at rest; arming is refused.
     #[default]
-    Calibrating,
+    Calibrating in calibrating = 0, "CALIBRATING";
     /// Motors stopped, ready to be armed.
-    Disarmed,
+    Disarmed in disarmed = 1, "DISARMED";
     /// Rotors idle on the ground, throttle low.
-    Armed,
+    Armed in armed = 2, "ARMED";
     /// Free flight under the pilot's sticks.
-    Flight,
+    Flight in flight = 3, "FLIGHT";
     /// Resting on the pipe with the rotors still helping; attitude held, yaw given up.
-    Contact,
+    Contact in contact = 4, "CONTACT";
     /// Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
-    Clamping,
+    Clamping in clamping = 5, "CLAMPING";
     /// Grip proven, rotors stopped.
-    Perched,
+    Perched in perched = 6, "PERCHED";
     /// Rotors spooled up again, tendons paying out until every arm is proven free.
-    Releasing,
-    /// On the ground again, rotors idle, about to disarm.
-    Landed,
-    /// The pilot is lost or the battery empty: descend, stop on whatever carries.
-    Failsafe,
+    Releasing in releasing = 7, "RELEASING";
     /// Leaving the pipe by itself after a slide or a closing that was given up, until the pilot takes the throttle.
-    Escaping,
+    Escaping in escaping = 10, "ESCAPING";
+    /// On the ground again, rotors idle, about to disarm.
+    Landed in landed = 8, "LANDED";
+    /// The pilot is lost or the battery empty: descend, stop on whatever carries.
+    Failsafe in failsafe = 9, "FAILSAFE";
 }
 
 impl Mode {
-    /// Every mode, in the order of a mission.
-    pub const ALL: [Self; 11] = [
-        Self::Calibrating,
-        Self::Disarmed,
-        Self::Armed,
-        Self::Flight,
-        Self::Contact,
-        Self::Clamping,
-        Self::Perched,
-        Self::Releasing,
-        Self::Escaping,
-        Self::Landed,
-        Self::Failsafe,
-    ];
-
-    /// Name for displays and telemetry, at most 12 ASCII characters.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Calibrating => "CALIBRATING",
-            Self::Disarmed => "DISARMED",
-            Self::Armed => "ARMED",
-            Self::Flight => "FLIGHT",
-            Self::Contact => "CONTACT",
-            Self::Clamping => "CLAMPING",
-            Self::Perched => "PERCHED",
-            Self::Releasing => "RELEASING",
-            Self::Escaping => "ESCAPING",
-            Self::Landed => "LANDED",
-            Self::Failsafe => "FAILSAFE",
-        }
-    }
-
     /// The mode called `name`.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|m| m.name() == name)

@@ -1,12 +1,15 @@
 //! What is held on the pipe: an attitude, a share of the collective, a grip.
 
+use super::context::Context;
 use super::{GripState, Inputs, Reason, Setpoint};
 use crate::grip::{ArmGrip, ArmState};
-use crate::math::clamp_abs;
+use crate::math::{clamp, clamp_abs};
 use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::Wrench;
 
+/// Time of the linear ramp of the collective between the pilot's throttle and nothing, s.
+pub const SPOOL_TIME: f32 = 1.5;
 /// Speed at which a lean at contact is taken out, rad/s.
 const LEVEL_RATE: f32 = 0.2;
 /// Time constant with which the attitude held follows the present one while the rotors spool down, s.
@@ -18,7 +21,7 @@ const LIFT_SHARE: f32 = 0.5;
 const HELD_SHARE: f32 = 0.6;
 
 /// The attitude held on the pipe and the arms that close.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
     /// Roll at contact, rad.
     pub roll: f32,
@@ -31,7 +34,7 @@ pub struct Hold {
 impl Hold {
     /// One step of levelling the roll. The crown of a pipe is an unstable seat: a lean that is merely held
     /// grows as the rotors give the weight back. Pitch stays: it is the slope of the pipe.
-    pub(super) fn levelled(self, dt: f32) -> Self {
+    pub fn levelled(self, dt: f32) -> Self {
         Self {
             roll: self.roll - clamp_abs(self.roll, LEVEL_RATE * dt),
             ..self
@@ -40,7 +43,7 @@ impl Hold {
 
     /// One step of following the present attitude: what the grip holds the rotors need not, and what they do
     /// not do any more cannot end with a jolt when they stop.
-    pub(super) fn following(self, i: &Inputs, dt: f32) -> Self {
+    pub fn following(self, i: &Inputs, dt: f32) -> Self {
         let Some(motion) = i.motion else {
             return self;
         };
@@ -110,7 +113,7 @@ impl Spool {
 }
 
 /// Every chosen arm presses the pipe with a good part of the grip pressure.
-pub(super) fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
+pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
     let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
     grip.is_some_and(|g| {
         g.arms
@@ -121,7 +124,7 @@ pub(super) fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool
 }
 
 /// Why a chosen arm will never hold.
-pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
+pub fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     let grip = grip?;
     let chosen = || {
         grip.arms
@@ -137,4 +140,9 @@ pub(super) fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reaso
     } else {
         None
     }
+}
+
+/// The pilot's collective on the pipe, N: his throttle, no more than a perch takes.
+pub fn perch_thrust(context: &Context) -> f32 {
+    clamp(context.throttle, 0.0, context.params.perch_thr_max) * context.full_thrust()
 }

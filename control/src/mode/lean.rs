@@ -1,9 +1,8 @@
 //! The lean across the pipe: whether the vehicle stays on the crown, slides off it, or hangs too far to let go.
 
-use super::logic::ModeLogic;
-use super::{Inputs, Motion};
+use super::Motion;
 use crate::math::deg;
-use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE};
+use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE, Support};
 
 /// Lean beyond which a vehicle that rests on the pipe leaves it before the arms have begun to close, rad.
 const TOUCH_LEAN: f32 = deg(13.0);
@@ -35,7 +34,15 @@ pub struct Lean {
 }
 
 impl Lean {
-    fn step(&mut self, motion: Option<Motion>, dt: f32) {
+    /// One step of `dt` s with the support and the collective (N) that the rotors had.
+    pub fn step(&mut self, motion: Option<Motion>, support: &Support, collective: f32, dt: f32) {
+        self.follow(motion, dt);
+        let idle = support.force() < LEAVING_FORCE;
+        let low = collective < FALL_SHARE * support.weight();
+        self.falling.step(idle && low, dt);
+    }
+
+    fn follow(&mut self, motion: Option<Motion>, dt: f32) {
         let Some(motion) = motion else {
             (self.sliding, self.leaning) = Default::default();
             return;
@@ -52,34 +59,24 @@ impl Lean {
         self.leaning
             .step(lean > TOUCH_LEAN && outward > -LEVELLING_RATE, dt);
     }
-}
 
-impl ModeLogic {
     /// The lean is beyond what closing arms can hold, or on its way there.
-    pub(super) fn slides(&self) -> bool {
-        self.lean.sliding.time() >= SLIDE_TIME
+    pub fn slides(&self) -> bool {
+        self.sliding.time() >= SLIDE_TIME
     }
 
     /// Leans where a vehicle that means to perch feels the pipe.
-    pub(super) fn slides_at_touch(&self) -> bool {
-        self.lean.leaning.time() >= SLIDE_TIME && self.support.force() > RESTING_FORCE
+    pub fn slides_at_touch(&self, support: &Support) -> bool {
+        self.leaning.time() >= SLIDE_TIME && support.force() > RESTING_FORCE
     }
 
     /// Leans too far for the arms to let go.
-    pub(super) fn leans_too_far(&self) -> bool {
-        self.lean.roll.abs() > RELEASE_LEAN_MAX
-    }
-
-    /// Takes note of lean and support.
-    pub(super) fn watch_lean(&mut self, i: &Inputs, dt: f32) {
-        self.lean.step(i.motion, dt);
-        let idle = self.support.force() < LEAVING_FORCE;
-        let low = self.collective.now() < FALL_SHARE * self.support.weight();
-        self.lean.falling.step(idle && low, dt);
+    pub fn too_far_to_release(&self) -> bool {
+        self.roll.abs() > RELEASE_LEAN_MAX
     }
 
     /// Neither the pipe nor the rotors carry the vehicle.
-    pub(super) fn falls(&self) -> bool {
-        self.lean.falling.time() >= FALL_TIME
+    pub fn falls(&self) -> bool {
+        self.falling.time() >= FALL_TIME
     }
 }

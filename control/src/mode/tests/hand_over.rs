@@ -3,9 +3,9 @@
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;
 use crate::math::GRAVITY;
-use crate::mode::closing::SPOOL_TIME;
 use crate::mode::demand::HAND_OVER_TIME;
 use crate::mode::failsafe::RESUME_TIME;
+use crate::mode::hold::SPOOL_TIME;
 use crate::mode::*;
 use crate::rc::StickMode;
 

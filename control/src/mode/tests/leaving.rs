@@ -3,7 +3,9 @@
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
-use crate::mode::escape::{FREE_MAX, TAKE_OVER_SHARE, TAKE_OVER_TIME};
+use crate::mode::escaping::FREE_MAX;
+use crate::mode::escaping::TAKE_OVER_SHARE;
+use crate::mode::escaping::TAKE_OVER_TIME;
 use crate::mode::*;
 use crate::rc::ArmChoice;
 

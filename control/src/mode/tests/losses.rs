@@ -3,7 +3,9 @@
 
 use super::rig::Rig;
 use crate::grip::ArmState;
-use crate::mode::closing::{FREE_TIME, HOPELESS_TIME, RELEASE_THROTTLE_MIN};
+use crate::mode::clamping::HOPELESS_TIME;
+use crate::mode::releasing::FREE_TIME;
+use crate::mode::releasing::RELEASE_THROTTLE_MIN;
 use crate::mode::*;
 
 /// Every state in which rotors turn, or stand on the pipe.

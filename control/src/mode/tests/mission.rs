@@ -3,8 +3,10 @@
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;
 use crate::math::deg;
-use crate::mode::closing::{FREE_TIME, SPOOL_TIME};
-use crate::mode::logic::{IDLE_MAX, LANDED_TIME};
+use crate::mode::armed::IDLE_MAX;
+use crate::mode::hold::SPOOL_TIME;
+use crate::mode::landed::LANDED_TIME;
+use crate::mode::releasing::FREE_TIME;
 use crate::mode::*;
 use crate::rc::ArmChoice;
 use crate::rc::StickMode;

@@ -3,7 +3,7 @@
 use super::rig::Rig;
 use crate::arming::Refusal;
 use crate::grip::ArmState;
-use crate::mode::look::LOOK_TIME;
+use crate::mode::power_up_grip::AVERAGING_TIME;
 use crate::mode::*;
 use crate::rc::ArmChoice;
 
@@ -252,7 +252,7 @@ fn power_comes_on_with_open_arms_as_ever() {
     for pressure in [0.0, 70.0] {
         let mut r = Rig::found(pressure);
         r.sticks().perch_switch = false;
-        r.stays(LOOK_TIME - 0.02, ClampCommand::Keep);
+        r.stays(AVERAGING_TIME - 0.02, ClampCommand::Keep);
         assert_eq!(r.out.grip_memory, GripMemory::Unknown);
         r.run(0.05);
         assert_eq!(

@@ -3,8 +3,9 @@
 use crate::grip::ArmGrip;
 use crate::grip::ArmState;
 use crate::math::GRAVITY;
-use crate::mode::closing::{SPOOL_TIME, STOP_TIME};
-use crate::mode::logic::CONTACT_TIME;
+use crate::mode::clamping::STOP_TIME;
+use crate::mode::contact::CONTACT_TIME;
+use crate::mode::hold::SPOOL_TIME;
 use crate::mode::*;
 use crate::params::Params;
 use crate::rc::ArmChoice;

@@ -1,7 +1,7 @@
-//! The first look at the arms after power-on: are they closed on something?
+//! The power-up grip check: are the arms closed on something when the power comes on?
 //!
 //! Nothing that is remembered outlives a loss of power, but the arms do: the servos' gears hold them without a pulse,
-//! and the first pulse would open them. So no pulse goes out before the pressure sensors have been looked at.
+//! and the first pulse would open them. So no pulse goes out before the pressure sensors have been read.
 //!
 //! Arms that press are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot has the rotors
 //! carry the vehicle. Their servos are not taken up before: a pulse must name an angle, and that is known from tilt
@@ -9,24 +9,31 @@
 //! stiffness), a third of a grip's force that might be let go of, where doing nothing loses nothing.
 
 use super::Inputs;
-use super::hold::held;
-use super::logic::{ModeLogic, State};
 use crate::grip_memory::GripMemory;
+use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::PerArm;
 
 /// Time over which the pressures are averaged, s.
-pub const LOOK_TIME: f32 = 0.5;
+pub const AVERAGING_TIME: f32 = 0.5;
+
+/// What one arm's sensor has felt since power-on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Felt {
+    /// Pressure over time, Pa s.
+    sum: f32,
+    /// For how long it was felt, s.
+    time: f32,
+}
 
 /// Pressures felt since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Look {
+pub struct PowerUpGripCheck {
     time: f32,
-    /// Pressure over time of each arm, Pa s, and for how long it was felt, s.
-    felt: PerArm<(f32, f32)>,
+    felt: PerArm<Felt>,
 }
 
-impl Look {
+impl PowerUpGripCheck {
     /// Adds `dt` s with each arm's pressure (Pa; `None`: unknown); gives the arms that press more than `least` Pa once
     /// enough was felt. While no sensor at all speaks, nothing is decided.
     fn step(&mut self, pressure: PerArm<Option<f32>>, least: f32, dt: f32) -> Option<PerArm<bool>> {
@@ -34,13 +41,13 @@ impl Look {
             return None;
         }
         self.time += dt;
-        for ((sum, time), pressure) in self.felt.iter_mut().zip(pressure) {
+        for (felt, pressure) in self.felt.iter_mut().zip(pressure) {
             if let Some(pressure) = pressure {
-                *sum += pressure * dt;
-                *time += dt;
+                felt.sum += pressure * dt;
+                felt.time += dt;
             }
         }
-        (self.time >= LOOK_TIME).then(|| self.felt.map(|(sum, time)| sum > least * time))
+        (self.time >= AVERAGING_TIME).then(|| self.felt.map(|felt| felt.sum > least * felt.time))
     }
 }
 
@@ -54,34 +61,19 @@ fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Opt
     }
 }
 
-impl ModeLogic {
-    /// Decides once whether the arms were closed when the power came on.
-    pub(super) fn look_for_grasp(&mut self, i: &Inputs, dt: f32) {
-        let (State::Calibrating { grip_memory } | State::Disarmed { grip_memory }) = &mut self.state else {
-            return;
-        };
-        let (GripMemory::Unknown, Some(grip)) = (*grip_memory, i.grip) else {
-            return;
+impl PowerUpGripCheck {
+    /// The grip of a vehicle at rest: decides once whether the arms were closed when the power came on.
+    pub fn decide(&mut self, grip_memory: GripMemory, i: &Inputs, p: &Params, dt: f32) -> GripMemory {
+        let (GripMemory::Unknown, Some(grip)) = (grip_memory, i.grip) else {
+            return grip_memory;
         };
         let mut pressure = [None; 4];
         for ((slot, arm), fault) in pressure.iter_mut().zip(grip.arms).zip(i.fsr_fault) {
             *slot = (!fault && arm.pressure.is_finite()).then_some(arm.pressure);
         }
-        if let Some(pressed) = self.look.step(pressure, self.params.release_pressure, dt) {
-            *grip_memory = chosen(pressed).map_or(GripMemory::Open, GripMemory::HeldByGears);
-        }
-    }
-
-    /// The arms of `grip_memory` hold something. Of arms that the gears alone hold only some pressure is asked: a weak servo
-    /// has given way to what its friction carries, and still holds.
-    pub(super) fn grasps(&self, i: &Inputs, grip_memory: GripMemory) -> bool {
-        match grip_memory {
-            GripMemory::Controlled(arms) => held(i.grip, arms, &self.params),
-            GripMemory::HeldByGears(arms) => i.grip.is_some_and(|grip| {
-                let mut arms = grip.arms.iter().zip(arms.mask());
-                arms.any(|(arm, chosen)| chosen && arm.pressure > self.params.release_pressure)
-            }),
-            GripMemory::Open | GripMemory::Unknown => false,
+        match self.step(pressure, p.release_pressure, dt) {
+            Some(pressed) => chosen(pressed).map_or(GripMemory::Open, GripMemory::HeldByGears),
+            None => grip_memory,
         }
     }
 }

@@ -1,0 +1,18 @@
+//! Rotors idle on the ground, throttle low.
+
+use super::behaviour::Behaviour;
+use super::context::Context;
+use super::{Inputs, Setpoint};
+
+/// Time for which the rotors may idle before they are stopped, s.
+pub const IDLE_MAX: f32 = 30.0;
+
+/// See [`super::Mode::Armed`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Armed;
+
+impl Behaviour for Armed {
+    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
+        Setpoint::Idle
+    }
+}

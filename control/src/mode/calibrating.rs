@@ -1,0 +1,44 @@
+//! Sensors are being calibrated at rest; arming is refused.
+
+use super::behaviour::Behaviour;
+use super::context::{Context, Step};
+use super::disarmed::first;
+use super::{Inputs, Reason, Setpoint};
+use crate::arming::{Refusal, Refusals};
+use crate::grip_memory::GripMemory;
+
+/// See [`super::Mode::Calibrating`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Calibrating {
+    /// A grip outlives rotors and resets.
+    pub grip_memory: GripMemory,
+}
+
+impl Behaviour for Calibrating {
+    fn observe(&mut self, step: &mut Step<'_>) {
+        self.grip_memory = step.check_power_up_grip(self.grip_memory);
+    }
+
+    fn advance(&mut self, step: &mut Step<'_>) {
+        self.grip_memory = step.context.after_switch(step.inputs.sticks, self.grip_memory);
+    }
+
+    fn grip_memory(&self) -> GripMemory {
+        self.grip_memory
+    }
+
+    fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
+        Setpoint::Stop
+    }
+
+    fn reason(&self, _: &Context, i: &Inputs, _: Refusals) -> Option<Reason> {
+        if i.motion.is_none() {
+            first(i.hardware.with(Refusal::ImuStale))
+        } else if i.hardware.is_empty() {
+            Some(Reason::KeepStill)
+        } else {
+            // A builder must see what is broken without trying to arm.
+            first(i.hardware)
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
+
+use super::behaviour::Behaviour;
+use super::context::{Context, Step};
+use super::hold::{Hold, SPOOL_TIME, Spool, held, hopeless, perch_thrust};
+use super::{Inputs, Reason, Setpoint};
+use crate::grip_memory::GripMemory;
+use crate::math::clamp;
+
+/// Time from the end of the ramp until the rotors stand still, s: six motor time constants.
+pub const STOP_TIME: f32 = 0.3;
+/// Time for which the grip may lack its proof after the rotors have stopped, s.
+const PROOF_TIME: f32 = 3.0;
+/// Time for which a chosen arm may be at its force limit, or faulty, before the closing is given up, s.
+pub const HOPELESS_TIME: f32 = 1.0;
+/// Time beyond `clamp_timeout` for spooling down and proving the grip, s.
+const SPOOL_ALLOWANCE: f32 = 10.0;
+
+/// See [`super::Mode::Clamping`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clamping {
+    pub hold: Hold,
+    pub spool: Spool,
+}
+
+impl Clamping {
+    /// The arms hold with a good part of the grip pressure.
+    pub fn holds(&self, step: &Step<'_>) -> bool {
+        held(step.inputs.grip, self.hold.arms, &step.context.params)
+    }
+
+    /// Why the closing should end, if it should. Without the radio there is no pilot to fly away: a poor grip is then
+    /// better than none.
+    pub fn doubt(&self, step: &Step<'_>) -> Option<Reason> {
+        let sticks = step.inputs.sticks?;
+        let context = &step.context;
+        let limit = context.params.clamp_timeout + if self.spool.down { SPOOL_ALLOWANCE } else { 0.0 };
+        if !sticks.perch_switch && context.perch_switch.seen_on {
+            return Some(Reason::ClosingCancelled);
+        }
+        match hopeless(step.inputs.grip, self.hold.arms) {
+            Some(why) if self.spool.hopeless >= HOPELESS_TIME => Some(why),
+            _ if context.since >= limit => Some(Reason::GripNotProven),
+            _ => None,
+        }
+    }
+
+    /// Why arms that hold are not opened, whatever the doubt.
+    pub fn must_stay(&self, step: &Step<'_>) -> Option<Reason> {
+        if !self.holds(step) {
+            None
+        } else if step.context.lean.too_far_to_release() {
+            // The belly alone would not stay: a poor grip is then better than none.
+            Some(Reason::LeansTooFar)
+        } else if step.context.dangers.line_silent() {
+            // A vehicle that may not fly stays where its arms hold it.
+            Some(Reason::LINE_SILENT)
+        } else {
+            None
+        }
+    }
+
+    /// Radio lost and battery critical: spools down slowly, without proof of grip.
+    pub fn last_resort(step: &Step<'_>) -> bool {
+        step.inputs.sticks.is_none() && step.context.dangers.battery_critical()
+    }
+
+    /// The rotors stand still with the end of this step.
+    pub fn stands(&self, step: &Step<'_>) -> bool {
+        self.spooled(step).still >= STOP_TIME
+    }
+
+    /// The spool's progress at the end of this step.
+    fn spooled(&self, step: &Step<'_>) -> Spool {
+        let mut spool = self.spool;
+        let down = if spool.down {
+            self.holds(step)
+        } else {
+            step.grip_proven()
+        };
+        if down || Self::last_resort(step) {
+            spool.down = true;
+            spool.share = clamp(spool.share - step.dt / SPOOL_TIME, 0.0, 1.0);
+            spool.still = if spool.share <= 0.0 {
+                spool.still + step.dt
+            } else {
+                0.0
+            };
+            spool
+        } else {
+            let share = clamp(spool.share + step.dt / SPOOL_TIME, 0.0, 1.0);
+            Spool {
+                hopeless: spool.hopeless,
+                ..Spool::at(share)
+            }
+        }
+    }
+}
+
+impl Behaviour for Clamping {
+    fn observe(&mut self, step: &mut Step<'_>) {
+        if step.inputs.sticks.is_none() {
+            return;
+        }
+        let hope = hopeless(step.inputs.grip, self.hold.arms);
+        self.spool.hopeless = if hope.is_some() && !step.grip_proven() {
+            self.spool.hopeless + step.dt
+        } else {
+            0.0
+        };
+        if let (Some(_), Some(why)) = (self.doubt(step), self.must_stay(step)) {
+            step.context.note(Some(why));
+        }
+    }
+
+    fn advance(&mut self, step: &mut Step<'_>) {
+        let mut spool = self.spooled(step);
+        if self.spool.down && !spool.down {
+            step.context.note(Some(Reason::GripLostSpooling));
+        }
+        if spool.still >= STOP_TIME + PROOF_TIME {
+            // Holds, but not as it should: carry part of the weight again and let the loop prove it.
+            spool = Spool::at(0.0);
+        }
+        self.spool = spool;
+        self.hold = if spool.down {
+            self.hold.following(step.inputs, step.dt)
+        } else {
+            self.hold.levelled(step.dt)
+        };
+    }
+
+    fn grip_memory(&self) -> GripMemory {
+        GripMemory::Controlled(self.hold.arms)
+    }
+
+    fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
+        if self.spool.stopped() {
+            Setpoint::Stop
+        } else {
+            self.spool.rotors(self.hold, perch_thrust(context))
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Resting on the pipe with the rotors still helping; attitude held, yaw given up.
+
+use super::behaviour::Behaviour;
+use super::context::{Context, Step};
+use super::hold::{Hold, perch_thrust};
+use super::{Inputs, Setpoint};
+
+/// Time on the pipe before the tendons close, s.
+pub const CONTACT_TIME: f32 = 0.3;
+/// Throttle above `perch_thr_max` by which the contact is given up, 1.
+pub const CONTACT_MARGIN: f32 = 0.03;
+
+/// See [`super::Mode::Contact`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    pub hold: Hold,
+}
+
+impl Behaviour for Contact {
+    fn advance(&mut self, step: &mut Step<'_>) {
+        self.hold = self.hold.levelled(step.dt);
+    }
+
+    fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
+        self.hold.rotors(perch_thrust(context))
+    }
+}

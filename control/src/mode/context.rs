@@ -1,0 +1,245 @@
+//! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
+
+use super::dangers::Dangers;
+use super::demand::Collective;
+use super::descent::Probe;
+use super::hold::held;
+use super::lean::Lean;
+use super::power_up_grip::PowerUpGripCheck;
+use super::{Inputs, Reason};
+use crate::arming::{Checks, Gesture, GestureWatch, Refusal, Refusals};
+use crate::grip_memory::GripMemory;
+use crate::math::clamp;
+use crate::params::Params;
+use crate::rc::Sticks;
+use crate::support::{Felt, Support};
+
+/// Time over which gravity is learnt at rest, s, and what may come of it, m/s²: a part's bias of some 40 mg.
+const GRAVITY_TIME: f32 = 0.5;
+const GRAVITY_BOUNDS: (f32, f32) = (9.4, 10.2);
+/// Time for which a reason stays on the pilot's display, s.
+const NOTE_TIME: f32 = 10.0;
+
+/// What a state or a guard looks at in one step.
+#[derive(Debug)]
+pub struct Step<'a> {
+    /// What outlives the state.
+    pub context: &'a mut Context,
+    /// What is seen now.
+    pub inputs: &'a Inputs,
+    /// Time since the step before, s.
+    pub dt: f32,
+}
+
+/// Where the perch switch has been.
+#[derive(Clone, Copy, Debug)]
+pub struct PerchSwitch {
+    /// Off since the last try: on starts the next.
+    pub seen_off: bool,
+    /// On since the arms closed: off opens them.
+    pub seen_on: bool,
+    /// On since the start: where it was left says nothing about what the pilot wants now.
+    pub left_on: bool,
+}
+
+/// What outlives a state.
+#[derive(Clone, Debug)]
+pub struct Context {
+    pub params: Params,
+    /// Time in this mode, s.
+    pub since: f32,
+    pub support: Support,
+    pub dangers: Dangers,
+    gestures: GestureWatch,
+    /// The gesture completed in this step.
+    pub gesture: Option<Gesture>,
+    /// The throttle last seen: held when the radio is lost on the pipe.
+    pub throttle: f32,
+    /// The arm switch has been off since power-up.
+    arm_seen_off: bool,
+    pub perch_switch: PerchSwitch,
+    pub power_up_grip: PowerUpGripCheck,
+    pub lean: Lean,
+    /// Acceleration along world down, m/s².
+    pub sinking: f32,
+    pub collective: Collective,
+    pub probe: Probe,
+    /// A reason and the time for which it is still shown, s.
+    note: (Option<Reason>, f32),
+    /// Specific force at rest, m/s².
+    gravity: f32,
+}
+
+impl Context {
+    pub fn new(params: &Params) -> Self {
+        Self {
+            params: *params,
+            since: 0.0,
+            support: Support::new(params),
+            dangers: Dangers::default(),
+            gestures: GestureWatch::default(),
+            gesture: None,
+            throttle: 0.0,
+            arm_seen_off: false,
+            perch_switch: PerchSwitch {
+                seen_off: false,
+                seen_on: false,
+                left_on: true,
+            },
+            power_up_grip: PowerUpGripCheck::default(),
+            lean: Lean::default(),
+            sinking: 0.0,
+            collective: Collective::default(),
+            probe: Probe::default(),
+            note: (None, 0.0),
+            gravity: crate::math::GRAVITY,
+        }
+    }
+
+    /// Takes in what is seen; `at_rest`: the rotors stand and gravity may be learnt.
+    pub fn observe(&mut self, i: &Inputs, at_rest: bool, dt: f32) {
+        self.since = clamp(self.since + dt, 0.0, 1e6);
+        self.note.1 -= dt;
+        self.gesture = self
+            .gestures
+            .step(i.sticks.as_ref(), self.params.throttle_low, dt);
+        if let Some(s) = i.sticks {
+            self.throttle = clamp(s.throttle, 0.0, 1.0);
+            self.arm_seen_off |= !s.arm_switch;
+            let perch = &mut self.perch_switch;
+            perch.seen_off |= !s.perch_switch;
+            perch.left_on &= s.perch_switch;
+            perch.seen_on |= s.perch_switch && !perch.left_on;
+        }
+        let down = i.motion.map_or(-self.gravity, |m| m.q.rotate(m.accel).z);
+        if at_rest && i.motion.is_some() {
+            // What the accelerometer calls gravity at rest: its bias would otherwise add up in the sink rate.
+            let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
+            self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
+        }
+        let felt = i.motion.map(|m| Felt {
+            specific_force_z: m.accel.z,
+            down: down + self.gravity,
+            rate: m.rate.norm(),
+            lift: i.lift,
+        });
+        self.support.step(felt, dt);
+        self.sinking = felt.map_or(0.0, |f| f.down);
+        self.lean.step(i.motion, &self.support, self.collective.now(), dt);
+        self.dangers.step(i, &self.params, dt);
+    }
+
+    /// Shows `why` for a while.
+    pub fn note(&mut self, why: Option<Reason>) {
+        self.note = (why, NOTE_TIME);
+    }
+
+    /// What just happened, as long as it is shown.
+    pub fn noted(&self) -> Option<Reason> {
+        self.note.0.filter(|_| self.note.1 > 0.0)
+    }
+
+    /// What the pilot reads beside most modes; `radio`: its loss is worth a word.
+    pub fn reason(&self, i: &Inputs, radio: bool) -> Option<Reason> {
+        let note = self.noted();
+        if self.dangers.battery_critical() {
+            Some(Reason::BatteryCritical)
+        } else if radio && i.sticks.is_none() {
+            Some(Reason::RADIO_LOST)
+        } else if note.is_none() && self.dangers.line_silent() {
+            Some(Reason::LINE_SILENT)
+        } else {
+            note
+        }
+    }
+
+    /// Everything against arming with this grip.
+    pub fn refusals(&self, i: &Inputs, grip_memory: GripMemory) -> Refusals {
+        let chosen = grip_memory
+            .arms()
+            .unwrap_or(i.sticks.unwrap_or_default().arms)
+            .mask();
+        let held = grip_memory.arms().is_some() && self.grasps(i, grip_memory);
+        let refusals = Checks {
+            calibrated: i.motion.is_some_and(|m| m.calibrated),
+            cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
+            sticks: i.sticks,
+            switch_seen_off: self.arm_seen_off,
+            battery: i.battery,
+            fsr_fault: i
+                .fsr_fault
+                .iter()
+                .zip(chosen)
+                .any(|(&fault, chosen)| fault && chosen),
+            late: i.late,
+            hardware: i.hardware,
+            arms_closed: grip_memory != GripMemory::Open && !held,
+        }
+        .refusals(&self.params);
+        // The range of a sensor of an unused arm.
+        let refusals = Refusal::FSR_RANGE
+            .into_iter()
+            .zip(chosen)
+            .filter(|(_, chosen)| !chosen)
+            .fold(refusals, |all, (range, _)| all.without(range));
+        if grip_memory.arms().is_some() {
+            // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms are
+            // opened; and no one can reach the battery there to put a broken supply right.
+            refusals
+                .without(Refusal::PerchSwitchOn)
+                .without(Refusal::BrownOut)
+        } else {
+            refusals
+        }
+    }
+
+    /// The arms of `grip_memory` hold something. Of arms that the gears alone hold only some pressure is asked: a weak
+    /// servo has given way to what its friction carries, and still holds.
+    pub fn grasps(&self, i: &Inputs, grip_memory: GripMemory) -> bool {
+        match grip_memory {
+            GripMemory::Controlled(arms) => held(i.grip, arms, &self.params),
+            GripMemory::HeldByGears(arms) => i.grip.is_some_and(|grip| {
+                let mut arms = grip.arms.iter().zip(arms.mask());
+                arms.any(|(arm, chosen)| chosen && arm.pressure > self.params.release_pressure)
+            }),
+            GripMemory::Open | GripMemory::Unknown => false,
+        }
+    }
+
+    /// The grip of a vehicle at rest. A person who holds it opens the arms by the perch switch, on and off again.
+    pub fn after_switch(&self, sticks: Option<Sticks>, grip_memory: GripMemory) -> GripMemory {
+        let off = sticks.is_some_and(|s| !s.perch_switch);
+        if grip_memory.arms().is_some() && off && self.perch_switch.seen_on {
+            GripMemory::Open
+        } else {
+            grip_memory
+        }
+    }
+
+    /// Collective of four rotors at full throttle, N.
+    pub fn full_thrust(&self) -> f32 {
+        4.0 * self.params.thrust_max
+    }
+}
+
+impl Step<'_> {
+    /// The clamp loop has proven the grip.
+    pub fn grip_proven(&self) -> bool {
+        self.inputs.grip.is_some_and(|g| g.proven)
+    }
+
+    /// The clamp loop has proven every arm free.
+    pub fn arms_free(&self) -> bool {
+        self.inputs.grip.is_some_and(|g| g.released)
+    }
+
+    /// One step of the power-up grip check; gives the grip as it is known then.
+    pub fn check_power_up_grip(&mut self, grip_memory: GripMemory) -> GripMemory {
+        let Context {
+            power_up_grip,
+            params,
+            ..
+        } = &mut *self.context;
+        power_up_grip.decide(grip_memory, self.inputs, params, self.dt)
+    }
+}

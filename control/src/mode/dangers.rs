@@ -1,0 +1,81 @@
+//! What may go wrong in any state.
+//!
+//! | trouble | on the ground | in the air | on the pipe |
+//! |---|---|---|---|
+//! | arm switch off | stop | stop | stop, arms stay closed |
+//! | radio lost | stop | level, sink, stop on what carries | keep closing, keep the grip |
+//! | inertial sensor silent | stop | stop | stop, arms stay closed |
+//! | tipped over | stop | stop | stop, arms stay closed |
+//! | battery critical | - | sink, the pilot still steers | reported; release refused |
+//! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
+
+use super::{Inputs, Reason};
+use crate::arming::Refusal;
+use crate::math::deg;
+use crate::params::Params;
+use crate::support::Held;
+
+/// Silence of the inertial sensor after which the rotors stop, s. Control has stopped them before: this makes
+/// it last.
+pub const IMU_LOST_TIME: f32 = 0.05;
+/// Tilt beyond which the vehicle has tipped over, rad, and the time for which it must, s.
+pub const TIPPED_TILT: f32 = deg(100.0);
+/// See [`TIPPED_TILT`].
+pub const TIPPED_TIME: f32 = 0.5;
+/// Time for which the voltage must stay below critical, s: a gust's current peak is no empty battery.
+pub const BATTERY_TIME: f32 = 1.0;
+
+/// Timers of what may go wrong.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Dangers {
+    imu: Held,
+    tipped: Held,
+    battery: Held,
+    /// The inertial sensor's data-ready line is silent; the port has waited long enough before it said so.
+    line_silent: bool,
+}
+
+impl Dangers {
+    /// One step of `dt` s.
+    pub fn step(&mut self, i: &Inputs, p: &Params, dt: f32) {
+        self.imu.step(i.motion.is_none(), dt);
+        let tipped = i
+            .motion
+            .is_some_and(|m| m.q.down_in_body().z < crate::math::cos(TIPPED_TILT));
+        self.tipped.step(tipped, dt);
+        self.battery
+            .step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
+        self.line_silent = i.hardware.contains(Refusal::ImuLineSilent);
+    }
+
+    /// The inertial sensor has been silent for [`IMU_LOST_TIME`].
+    pub fn imu_silent(&self) -> bool {
+        self.imu.time() >= IMU_LOST_TIME
+    }
+
+    /// The vehicle has lain over for [`TIPPED_TIME`].
+    pub fn tipped_over(&self) -> bool {
+        self.tipped.time() >= TIPPED_TIME
+    }
+
+    /// The battery has been critical for [`BATTERY_TIME`].
+    pub fn battery_critical(&self) -> bool {
+        self.battery.time() >= BATTERY_TIME
+    }
+
+    /// The inertial sensor's data-ready line is silent.
+    pub fn line_silent(&self) -> bool {
+        self.line_silent
+    }
+
+    /// Why the vehicle must come down while the pilot still steers, and may not leave a pipe: the more pressing first.
+    pub fn landing(&self) -> Option<Reason> {
+        if self.battery_critical() {
+            Some(Reason::BatteryCritical)
+        } else if self.line_silent {
+            Some(Reason::LINE_SILENT)
+        } else {
+            None
+        }
+    }
+}

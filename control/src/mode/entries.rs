@@ -1,0 +1,197 @@
+//! How a state begins from the one before.
+
+use super::armed::Armed;
+use super::clamping::Clamping;
+use super::contact::Contact;
+use super::context::Step;
+use super::disarmed::Disarmed;
+use super::escaping::Escaping;
+use super::failsafe::Failsafe;
+use super::flight::Flight;
+use super::hold::{Hold, Spool};
+use super::landed::Landed;
+use super::perched::Perched;
+use super::releasing::{Releasing, release_thrust};
+use super::{Reason, State};
+use crate::grip_memory::GripMemory;
+use crate::rc::ArmChoice;
+
+/// Calibration has ended; the grip stays as it is.
+pub fn calibrated(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed {
+    let grip_memory = from.behaviour().grip_memory();
+    Disarmed {
+        grip_memory: step.context.after_switch(step.inputs.sticks, grip_memory),
+    }
+}
+
+/// Rotors off; arms that were closed stay closed, and opening them takes a new and deliberate turn of the switch.
+pub fn stopped(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed {
+    let free = step.arms_free();
+    let grip_memory = match from {
+        State::Releasing(r) if r.opening && free => GripMemory::Open,
+        State::Escaping(_) if free => GripMemory::Open,
+        State::Escaping(_) | State::Clamping(_) | State::Releasing(_) | State::Perched(_) => {
+            step.context.perch_switch.seen_on = false;
+            from.behaviour().grip_memory()
+        }
+        _ => from.behaviour().grip_memory(),
+    };
+    Disarmed { grip_memory }
+}
+
+/// Rotors off on arms that are closed without proof.
+pub fn last_resort(from: &State, _: &mut Step<'_>, _: Option<Reason>) -> Disarmed {
+    Disarmed {
+        grip_memory: from.behaviour().grip_memory(),
+    }
+}
+
+/// Rotors idle.
+pub fn armed(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Armed {
+    Armed
+}
+
+/// The pilot flies.
+pub fn flight(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Flight {
+    Flight
+}
+
+/// On the ground.
+pub fn landed(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Landed {
+    Landed
+}
+
+/// On the pipe, with the pilot's choice of arms.
+pub fn contact(_: &State, step: &mut Step<'_>, _: Option<Reason>) -> Contact {
+    let arms = step.inputs.sticks.unwrap_or_default().arms;
+    Contact {
+        hold: present(step, arms),
+    }
+}
+
+/// The arms begin to close. A radio lost just now finishes the landing that the pilot began.
+pub fn closing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
+    step.context.perch_switch.seen_on = step.inputs.sticks.is_some();
+    Clamping {
+        hold: hold(from),
+        spool: Spool::at(1.0),
+    }
+}
+
+/// The arms stay closed, or close again. Radio lost: hold on; a later release takes a new turn of the switch.
+pub fn closing_again(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Clamping {
+    step.context.perch_switch.seen_on = Releasing::called_back(step) && step.inputs.sticks.is_some();
+    let share = match from {
+        State::Releasing(r) => r.spooled(step.dt),
+        _ => 0.0,
+    };
+    Clamping {
+        hold: hold(from),
+        spool: Spool::at(share),
+    }
+}
+
+/// The arms hold and the rotors stand.
+pub fn perched(from: &State, _: &mut Step<'_>, _: Option<Reason>) -> Perched {
+    Perched {
+        grip_memory: from.behaviour().grip_memory(),
+    }
+}
+
+/// The same, for a danger: opening takes a new turn of the switch.
+pub fn stopped_on_grip(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Perched {
+    step.context.perch_switch.seen_on = false;
+    perched(from, step, why)
+}
+
+/// Armed on purpose with the switch where it is: from here on, off is a wish to go.
+pub fn armed_on_pipe(from: &State, step: &mut Step<'_>, why: Option<Reason>) -> Perched {
+    let perch = &mut step.context.perch_switch;
+    perch.seen_on = step.inputs.sticks.is_some_and(|s| s.perch_switch);
+    perch.left_on = false;
+    perched(from, step, why)
+}
+
+/// The pilot wants to leave: rotors first.
+pub fn releasing(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
+    let grip_memory = from.behaviour().grip_memory();
+    Releasing {
+        hold: present(step, grip_memory.arms().unwrap_or_default()),
+        share: 0.0,
+        free: 0.0,
+        opening: false,
+        kept: matches!(grip_memory, GripMemory::HeldByGears(_)),
+    }
+}
+
+/// The closing ends where the arms carry and the rotors may stand: these spool up first, as on a release.
+pub fn releasing_instead(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
+    step.context.perch_switch.seen_off = false;
+    let share = match from {
+        State::Clamping(c) => c.spool.share,
+        _ => 0.0,
+    };
+    Releasing {
+        hold: hold(from),
+        share,
+        free: 0.0,
+        opening: false,
+        kept: false,
+    }
+}
+
+/// Arms that do not come free while the rotors pull at them: less throttle, and the tendons stay slack.
+pub fn releasing_stuck(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Releasing {
+    let arms = from.behaviour().grip_memory().arms().unwrap_or_default();
+    Releasing {
+        hold: present(step, arms),
+        share: 1.0,
+        free: 0.0,
+        opening: true,
+        kept: false,
+    }
+}
+
+/// Leaves the pipe from which the vehicle slides or falls.
+pub fn sliding(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escaping {
+    let grip_memory = match from {
+        State::Clamping(Clamping { hold, .. }) | State::Releasing(Releasing { hold, .. }) => {
+            GripMemory::Controlled(hold.arms)
+        }
+        _ => GripMemory::Open,
+    };
+    step.context.perch_switch.seen_off = false;
+    Escaping::leaving(step.inputs, grip_memory, None)
+}
+
+/// Leaves the pipe on which the vehicle stands.
+pub fn giving_up(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Escaping {
+    step.context.perch_switch.seen_off = false;
+    let from_thrust = step.context.collective.now();
+    let least = release_thrust(&step.context.params);
+    let grip_memory = from.behaviour().grip_memory();
+    Escaping::leaving(step.inputs, grip_memory, Some(from_thrust.max(least)))
+}
+
+/// The failsafe acts for the reason of the transition.
+pub fn failsafe(_: &State, _: &mut Step<'_>, why: Option<Reason>) -> Failsafe {
+    Failsafe {
+        cause: why.unwrap_or(Reason::RADIO_LOST),
+    }
+}
+
+/// The present attitude, held with `arms`.
+fn present(step: &Step<'_>, arms: ArmChoice) -> Hold {
+    let (roll, pitch, _) = step.inputs.motion.map_or((0.0, 0.0, 0.0), |m| m.q.to_euler());
+    Hold { roll, pitch, arms }
+}
+
+/// What `from` holds on the pipe.
+fn hold(from: &State) -> Hold {
+    match from {
+        State::Contact(Contact { hold })
+        | State::Clamping(Clamping { hold, .. })
+        | State::Releasing(Releasing { hold, .. }) => *hold,
+        _ => Hold::default(),
+    }
+}

@@ -1,0 +1,152 @@
+//! Off the pipe by itself: what follows a closing that is given up, a lean that grows, a release that nothing carries.
+//!
+//! The rotors lift with more than the weight, nearly level, while the tendons pay out. A capped throttle would let a
+//! vehicle with sound rotors fall, and so would the pilot's, which is set to rest on the pipe. So the collective stays
+//! here until the throttle stick says hover; a pilot who never moves it is brought down by the failsafe.
+
+use super::behaviour::Behaviour;
+use super::context::{Context, Step};
+use super::releasing::release_thrust;
+use super::{ClampCommand, Inputs, Setpoint};
+use crate::grip_memory::GripMemory;
+use crate::math::{clamp, clamp_abs, deg};
+use crate::support::HINT_FORCE;
+
+/// Collective while the vehicle does not climb, share of the weight: 3.4 m/s² upwards.
+const LIFT_SHARE: f32 = 1.35;
+/// Least collective, share of the weight.
+const LEAST_SHARE: f32 = 0.9;
+/// Share of the weight for each m/s that the climb rate lacks.
+const CLIMB_GAIN: f32 = 0.7;
+/// Climb rate aimed at until the vehicle is clear, m/s; later the height is kept.
+const CLIMB_RATE: f32 = 0.5;
+/// Time over which the collective rises when the vehicle slides, s: its lean grows e-fold in 0.16 s.
+pub const SLIDE_RAMP: f32 = 0.15;
+/// When it stands it rises later and slower, s: the rotors pull at the tendons with 7 times their thrust, and tendons at
+/// their limit must have paid out before.
+const STAND_DELAY: f32 = 0.25;
+const STAND_RAMP: f32 = 0.5;
+/// Time after the rise in which the vehicle comes clear of the pipe, s; the sticks do not steer before.
+const CLEAR_TIME: f32 = 0.65;
+/// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank,
+/// and a lean across the crown throws it under the pipe.
+const AWAY_LEAN: f32 = deg(8.0);
+/// Time in which arms that open come free, s. Later ones are stuck on the pipe, and the rotors must not pull at them.
+pub const FREE_MAX: f32 = 5.0;
+/// Time in which the pilot must have taken the throttle over, s.
+pub const TAKE_OVER_TIME: f32 = 7.0;
+/// Thrust of the stick by which he takes it over, share of the weight.
+pub const TAKE_OVER_SHARE: f32 = 0.9;
+
+/// See [`super::Mode::Escaping`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Escaping {
+    /// What the tendons still hold: open, or closed until every arm is proven free.
+    grip_memory: GripMemory,
+    /// Roll held until the vehicle is clear, rad.
+    roll: f32,
+    /// Collective from which the slow rise starts, N; `None` on a slide, which lifts at once.
+    from: Option<f32>,
+    /// Climb rate since the escape began, m/s.
+    climb: f32,
+    /// The tendons are paying out.
+    opening: bool,
+}
+
+impl Escaping {
+    /// Leaves the pipe with the arms of `grip_memory` closed or closing, its collective rising slowly from `from` N or,
+    /// without that, at once.
+    pub fn leaving(inputs: &Inputs, grip_memory: GripMemory, from: Option<f32>) -> Self {
+        let lean = inputs.motion.map_or(0.0, |m| m.q.to_euler().0);
+        Self {
+            grip_memory,
+            roll: clamp_abs(lean, AWAY_LEAN),
+            from,
+            climb: 0.0,
+            opening: grip_memory == GripMemory::Open,
+        }
+    }
+
+    /// Arms that have had their time and still hold pull the vehicle down.
+    pub fn stuck(&self, context: &Context) -> bool {
+        self.late(context) && context.support.force() < -HINT_FORCE
+    }
+
+    /// The arms are free, and there was time to leave the pipe. Where nothing pulls the vehicle down it flies, whatever
+    /// an arm's sensors say.
+    pub fn clear(&self, context: &Context) -> bool {
+        let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
+        let free = self.grip_memory == GripMemory::Open || self.late(context);
+        context.since >= ramp + CLEAR_TIME && free
+    }
+
+    /// Arms that hold have had their time.
+    fn late(&self, context: &Context) -> bool {
+        self.grip_memory.arms().is_some() && context.since >= FREE_MAX
+    }
+}
+
+/// The throttle stick carries the vehicle.
+pub fn takes_over(step: &Step<'_>) -> bool {
+    let context = &step.context;
+    step.inputs
+        .sticks
+        .is_some_and(|s| context.full_thrust() * s.throttle >= TAKE_OVER_SHARE * context.support.weight())
+}
+
+impl Behaviour for Escaping {
+    fn observe(&mut self, step: &mut Step<'_>) {
+        let context = &step.context;
+        self.climb -= context.sinking * step.dt;
+        // Below the least throttle of a release only the arms keep the vehicle on the pipe.
+        self.opening |= context.collective.now() >= release_thrust(&context.params);
+        if self.opening && step.arms_free() {
+            self.grip_memory = GripMemory::Open;
+        }
+    }
+
+    fn advance(&mut self, step: &mut Step<'_>) {
+        if self.late(step.context) {
+            self.grip_memory = GripMemory::Open;
+        }
+    }
+
+    fn grip_memory(&self) -> GripMemory {
+        self.grip_memory
+    }
+
+    fn tendons(&self) -> ClampCommand {
+        match self.grip_memory.arms() {
+            Some(arms) if !self.opening => ClampCommand::Close { arms },
+            _ => ClampCommand::Release,
+        }
+    }
+
+    /// Nearly level, climbing until the vehicle is clear; then where the pilot steers.
+    fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
+        let clear = self.clear(context);
+        let wanted = if clear { 0.0 } else { CLIMB_RATE };
+        let share = clamp(1.0 + CLIMB_GAIN * (wanted - self.climb), LEAST_SHARE, LIFT_SHARE);
+        let goal = share * context.support.weight();
+        let thrust = self.from.map_or(goal, |from| {
+            let risen = clamp((context.since - STAND_DELAY) / STAND_RAMP, 0.0, 1.0);
+            from + (goal - from) * risen
+        });
+        let steer = inputs.sticks.filter(|_| clear).unwrap_or_default();
+        let params = &context.params;
+        Setpoint::Escape {
+            roll: if clear {
+                steer.roll * params.stick_angle
+            } else {
+                self.roll
+            },
+            pitch: steer.pitch * params.stick_angle,
+            yaw_rate: steer.yaw * params.stick_yaw_rate,
+            thrust,
+        }
+    }
+
+    fn hand_over_time(&self) -> f32 {
+        SLIDE_RAMP
+    }
+}

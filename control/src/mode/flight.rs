@@ -1,0 +1,51 @@
+//! Free flight under the pilot's sticks.
+
+use super::behaviour::Behaviour;
+use super::context::{Context, Step};
+use super::descent::descent;
+use super::{Inputs, Reason, Setpoint, demand};
+use crate::math::cos;
+
+/// Lean beyond which the arms are not closed, rad. Before the arms hold, a vehicle that leans by θ along a pipe's
+/// flank stays only while sin θ <= μ (cos θ - T/W): 14° at μ 0.6 and 30 % throttle.
+pub const PERCH_LEAN_MAX: f32 = crate::math::deg(11.0);
+
+/// See [`super::Mode::Flight`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight;
+
+impl Flight {
+    /// Perch switch on, throttle down, attitude known.
+    pub fn means_to_perch(step: &Step<'_>) -> bool {
+        let most = step.context.params.perch_thr_max;
+        let wanted = |s: crate::rc::Sticks| s.perch_switch && s.throttle <= most;
+        step.inputs.motion.is_some() && step.inputs.sticks.is_some_and(wanted)
+    }
+
+    /// Nearly level: closing arms would hold.
+    pub fn is_level(step: &Step<'_>) -> bool {
+        let steep = |m: super::Motion| m.q.down_in_body().z < cos(PERCH_LEAN_MAX);
+        !step.inputs.motion.is_some_and(steep)
+    }
+}
+
+impl Behaviour for Flight {
+    fn advance(&mut self, step: &mut Step<'_>) {
+        if !(Self::means_to_perch(step) && step.context.support.resting()) {
+            return;
+        }
+        if !step.context.perch_switch.seen_off {
+            step.context.note(Some(Reason::PerchSwitchNotOff));
+        } else if !Self::is_level(step) {
+            step.context.note(Some(Reason::NotOnCrown));
+        }
+    }
+
+    fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
+        match inputs.sticks {
+            Some(s) => demand::from_sticks(&s, &context.params),
+            // No transition leads here: without the radio it is the failsafe that flies.
+            None => descent(context, None),
+        }
+    }
+}

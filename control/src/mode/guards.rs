@@ -1,0 +1,129 @@
+//! The conditions of the transitions, each with the name under which the table is printed.
+
+use super::clamping::Clamping;
+use super::contact::{CONTACT_MARGIN, CONTACT_TIME};
+use super::context::Step;
+use super::escaping::{TAKE_OVER_TIME, takes_over};
+use super::failsafe::{RESUME_STICK, RESUME_TIME};
+use super::flight::Flight;
+use super::perched::Perched;
+use super::releasing::{FREE_TIME, Releasing};
+use super::{Reason, State};
+use crate::arming::Gesture;
+use crate::rc::Sticks;
+
+/// A condition of a transition.
+#[derive(Clone, Copy, Debug)]
+pub struct Guard {
+    /// For the table in the docs.
+    #[cfg(test)]
+    pub name: &'static str,
+    /// Whether it holds in this state and step.
+    pub holds: fn(&State, &Step<'_>) -> bool,
+}
+
+/// Declares guards: name, text, condition.
+macro_rules! guards {
+    ($($name:ident = $text:literal, $holds:expr;)+) => {
+        $(pub const $name: Guard = Guard {
+            #[cfg(test)]
+            name: $text,
+            holds: $holds,
+        };)+
+    };
+}
+
+guards! {
+    ARM_SWITCH_OFF = "arm switch off", |_, s| sticks(s, |s| !s.arm_switch);
+    IMU_SILENT = "inertial sensor silent", |_, s| s.context.dangers.imu_silent();
+    TIPPED_OVER = "tipped over", |_, s| s.context.dangers.tipped_over();
+    BATTERY_CRITICAL = "battery critical", |_, s| s.context.dangers.battery_critical();
+    LINE_SILENT = "data-ready line silent", |_, s| s.context.dangers.line_silent();
+    MAY_FLY = "nothing forces a landing", |_, s| s.context.dangers.landing().is_none();
+    RADIO_LOST = "radio lost", |_, s| s.inputs.sticks.is_none();
+    RADIO = "radio there", |_, s| s.inputs.sticks.is_some();
+
+    CALIBRATED = "calibrated", |_, s| s.inputs.motion.is_some_and(|m| m.calibrated);
+    ARM_GESTURE = "arming gesture", |_, s| s.context.gesture == Some(Gesture::Arm);
+    DISARM_GESTURE = "disarming gesture", |_, s| s.context.gesture == Some(Gesture::Disarm);
+    CHECKS_PASS = "every arming check passes", |state, s| {
+        s.context.refusals(s.inputs, state.behaviour().grip_memory()).is_empty()
+    };
+    ARMS_CLOSED = "arms closed", |state, s| {
+        let grip_memory = state.behaviour().grip_memory();
+        s.context.after_switch(s.inputs.sticks, grip_memory).arms().is_some()
+    };
+    THROTTLE_UP = "throttle not low", |_, s| sticks(s, |t| t.throttle > s.context.params.throttle_low);
+    THROTTLE_LOW = "throttle low", |_, s| sticks(s, |t| t.throttle <= s.context.params.throttle_low);
+    IDLED = "idle for too long", |_, s| s.context.since >= super::armed::IDLE_MAX;
+    STOOD = "landed long enough", |_, s| s.context.since >= super::landed::LANDED_TIME;
+    GROUNDED = "the ground carries nearly all", |_, s| s.context.support.grounded();
+
+    MEANS_TO_PERCH = "perch switch on, throttle down", |_, s| Flight::means_to_perch(s);
+    SWITCH_TURNED = "perch switch was off since the last try", |_, s| s.context.perch_switch.seen_off;
+    SLIDES_AT_TOUCH = "leans where it feels the pipe", |_, s| s.context.lean.slides_at_touch(&s.context.support);
+    RESTING = "something carries", |_, s| s.context.support.resting();
+    LEVEL = "nearly level", |_, s| Flight::is_level(s);
+    CALLED_OFF = "perch switch off or throttle up", |_, s| {
+        let most = s.context.params.perch_thr_max + CONTACT_MARGIN;
+        sticks(s, |s| !s.perch_switch || s.throttle > most)
+    };
+    SLIDES = "slides", |_, s| s.context.lean.slides();
+    NOT_RESTING = "nothing carries", |_, s| !s.context.support.resting();
+    RESTED = "rested long enough", |_, s| s.context.since >= CONTACT_TIME;
+
+    ARMS_STAY = "arms hold and have not opened", |state, s| match state {
+        State::Clamping(_) => s.grip_proven(),
+        State::Releasing(r) => !r.opening && (r.kept || s.grip_proven()),
+        _ => false,
+    };
+    LOOSE = "arms do not hold", |state, s| match state {
+        State::Clamping(c) => !c.holds(s),
+        State::Releasing(r) => !r.holds(s),
+        _ => true,
+    };
+    DOUBT = "the closing should end", |state, s| closing(state, |c| c.doubt(s).is_some());
+    MAY_LEAVE = "nothing keeps it there", |state, s| closing(state, |c| c.must_stay(s).is_none());
+    SPOOLED_ON_GRIP = "arms hold and rotors spool down", |state, s| closing(state, |c| c.holds(s) && c.spool.down);
+    STANDS = "rotors stand", |state, s| closing(state, |c| c.stands(s));
+    GRIP_PROVEN = "grip proven", |_, s| s.grip_proven();
+    LAST_RESORT = "radio lost and battery critical", |_, s| Clamping::last_resort(s);
+
+    RELEASE_ASKED = "perch switch off again, throttle set", |_, s| Perched::release_asked(s);
+    UPRIGHT = "attitude known, lean small", |_, s| s.inputs.motion.is_some() && !s.context.lean.too_far_to_release();
+
+    ARMS_FREE = "arms free long enough", |state, _| releasing(state, |r| r.free >= FREE_TIME);
+    FALLS = "arms opening and nothing carries", |state, s| releasing(state, |r| r.opening && s.context.lean.falls());
+    HELD_BY_GEARS = "gears alone hold", |state, _| releasing(state, |r| r.kept && !r.opening);
+    CALLED_BACK = "perch switch on again, or radio lost", |_, s| Releasing::called_back(s);
+    NOT_RELEASED = "arms not free", |state, s| releasing(state, |r| !r.released(s));
+    GROUNDED_ON_PIPE = "data-ready line silent before the arms open", |state, s| releasing(state, |r| r.grounded(s));
+    LEANS_TOO_FAR = "leans too far before the arms open", |state, s| releasing(state, |r| r.leans(s));
+
+    STUCK = "arms not free in time, and pulling", |state, s| matches!(state, State::Escaping(e) if e.stuck(s.context));
+    CLEAR = "clear of the pipe", |state, s| matches!(state, State::Escaping(e) if e.clear(s.context));
+    TAKES_OVER = "throttle carries", |_, s| takes_over(s);
+    NOT_TAKEN_OVER = "throttle not moved in time", |_, s| s.context.since >= TAKE_OVER_TIME;
+
+    LOST_RADIO = "acting for the radio", |state, _| acts_for(state, Reason::RADIO_LOST);
+    LOST_PILOT = "acting for the throttle", |state, _| acts_for(state, Reason::NotTakenOver);
+    RESUMES = "radio back at once, or roll or pitch stick moved", |_, s| sticks(s, |t| {
+        t.roll.abs() > RESUME_STICK || t.pitch.abs() > RESUME_STICK || s.context.since <= RESUME_TIME
+    });
+}
+
+fn sticks(step: &Step<'_>, test: impl Fn(&Sticks) -> bool) -> bool {
+    step.inputs.sticks.as_ref().is_some_and(test)
+}
+
+fn closing(state: &State, test: impl Fn(&Clamping) -> bool) -> bool {
+    matches!(state, State::Clamping(c) if test(c))
+}
+
+fn releasing(state: &State, test: impl Fn(&Releasing) -> bool) -> bool {
+    matches!(state, State::Releasing(r) if test(r))
+}
+
+fn acts_for(state: &State, cause: Reason) -> bool {
+    matches!(state, State::Failsafe(f) if f.cause == cause)
+}

@@ -1,0 +1,115 @@
+//! Rotors spooled up again, tendons paying out until every arm is proven free.
+
+use super::behaviour::Behaviour;
+use super::context::{Context, Step};
+use super::hold::{Hold, SPOOL_TIME, held};
+use super::{ClampCommand, Inputs, Reason, Setpoint};
+use crate::grip_memory::GripMemory;
+use crate::math::clamp;
+use crate::params::Params;
+
+/// Least throttle at which the arms are opened: some of the weight is carried when they let go. It is kept while they
+/// open or close again, whatever the stick does.
+pub const RELEASE_THROTTLE_MIN: f32 = 0.2;
+/// Time for which every arm must be free before flight, s.
+pub const FREE_TIME: f32 = 0.3;
+/// Time after which arms that do not come free are reported, s.
+const STUCK_TIME: f32 = 10.0;
+
+/// See [`super::Mode::Releasing`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Releasing {
+    pub hold: Hold,
+    /// Share of the collective that the rotors have reached, 0..1.
+    pub share: f32,
+    /// Time for which every arm has been free, s.
+    pub free: f32,
+    /// The tendons are paying out.
+    pub opening: bool,
+    /// The gears alone hold: the tendons' drives start when they open.
+    pub kept: bool,
+}
+
+impl Releasing {
+    /// The arms hold with a good part of the grip pressure.
+    pub fn holds(&self, step: &Step<'_>) -> bool {
+        held(step.inputs.grip, self.hold.arms, &step.context.params)
+    }
+
+    /// The arms are open and free.
+    pub fn released(&self, step: &Step<'_>) -> bool {
+        self.opening && step.arms_free()
+    }
+
+    /// The pilot turns the perch switch on again, or is lost.
+    pub fn called_back(step: &Step<'_>) -> bool {
+        let seen_off = step.context.perch_switch.seen_off;
+        step.inputs.sticks.is_none_or(|s| s.perch_switch && seen_off)
+    }
+
+    /// The arms have not opened yet, and the vehicle may not fly.
+    pub fn grounded(&self, step: &Step<'_>) -> bool {
+        !self.opening && step.context.dangers.line_silent()
+    }
+
+    /// The lean may have grown since the rotors began to lift: the arms stay closed.
+    pub fn leans(&self, step: &Step<'_>) -> bool {
+        !self.opening && self.spooled(step.dt) >= 1.0 && step.context.lean.too_far_to_release()
+    }
+
+    /// Share of the collective at the end of a step of `dt` s.
+    pub fn spooled(&self, dt: f32) -> f32 {
+        clamp(self.share + dt / SPOOL_TIME, 0.0, 1.0)
+    }
+}
+
+/// Collective below which the arms are not opened, N.
+pub fn release_thrust(p: &Params) -> f32 {
+    4.0 * p.thrust_max * RELEASE_THROTTLE_MIN
+}
+
+impl Behaviour for Releasing {
+    fn observe(&mut self, step: &mut Step<'_>) {
+        self.free = if self.released(step) {
+            self.free + step.dt
+        } else {
+            0.0
+        };
+    }
+
+    fn advance(&mut self, step: &mut Step<'_>) {
+        if step.context.since >= STUCK_TIME {
+            step.context.note(Some(Reason::ArmsStuck));
+        }
+        self.hold = self.hold.levelled(step.dt);
+        self.share = self.spooled(step.dt);
+        self.opening |= self.share >= 1.0;
+    }
+
+    fn grip_memory(&self) -> GripMemory {
+        if self.kept && !self.opening {
+            GripMemory::HeldByGears(self.hold.arms)
+        } else {
+            GripMemory::Controlled(self.hold.arms)
+        }
+    }
+
+    fn tendons(&self) -> ClampCommand {
+        if self.opening {
+            ClampCommand::Release
+        } else if self.kept {
+            ClampCommand::Keep
+        } else {
+            ClampCommand::Close { arms: self.hold.arms }
+        }
+    }
+
+    fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
+        let throttle = clamp(
+            context.throttle,
+            RELEASE_THROTTLE_MIN,
+            context.params.perch_thr_max,
+        );
+        self.hold.rotors(self.share * throttle * context.full_thrust())
+    }
+}

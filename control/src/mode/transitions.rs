@@ -1,0 +1,158 @@
+//! Every transition, the first that applies first: the order of the rows is their priority.
+
+use super::context::Step;
+use super::guards::*;
+use super::{Entry, Mode, Reason, State, entries};
+
+/// What the pilot reads because of a transition.
+#[derive(Clone, Copy, Debug)]
+pub enum Notice {
+    /// What was shown before.
+    Keep,
+    /// Nothing.
+    Clear,
+    /// This, for some seconds.
+    Show(Reason),
+    /// What the function gives, for some seconds: the cause that has ended a state.
+    ShowOf(fn(&State, &Step<'_>) -> Option<Reason>),
+    /// This, by the new state itself for as long as it lasts.
+    Lasting(Reason),
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug)]
+pub struct Transition {
+    /// The modes in which it applies.
+    pub from: &'static [Mode],
+    /// What must hold, all of it.
+    pub when: &'static [Guard],
+    /// The state that begins.
+    pub to: Entry,
+    /// What the pilot reads.
+    pub notice: Notice,
+}
+
+const fn row(from: &'static [Mode], when: &'static [Guard], to: Entry, notice: Notice) -> Transition {
+    Transition {
+        from,
+        when,
+        to,
+        notice,
+    }
+}
+
+use Entry as To;
+use Mode::{
+    Armed, Calibrating, Clamping, Contact, Disarmed, Escaping, Failsafe, Flight, Landed, Perched, Releasing,
+};
+use Notice::{Clear, Keep, Lasting, Show, ShowOf};
+
+/// The modes in which rotors turn.
+const ROTORS: &[Mode] = &[
+    Armed, Flight, Contact, Clamping, Releasing, Escaping, Landed, Failsafe,
+];
+/// The modes in which an arm may hold while rotors turn.
+const CLOSED: &[Mode] = &[Clamping, Releasing];
+const IDLE: &[Mode] = &[Armed, Landed];
+
+/// Why a closing ends.
+const DOUBTED: Notice = ShowOf(|state, step| match state {
+    State::Clamping(c) => c.doubt(step),
+    _ => None,
+});
+/// Why the failsafe has acted.
+const CAUSE: Notice = ShowOf(|state, _| match state {
+    State::Failsafe(f) => Some(f.cause),
+    _ => None,
+});
+
+/// Every transition in the order of priority.
+#[rustfmt::skip]
+pub const TRANSITIONS: &[Transition] = &[
+    // Everything is dropped.
+    row(CLOSED, &[ARM_SWITCH_OFF, ARMS_STAY], To::Perched(entries::stopped_on_grip), Clear),
+    row(ROTORS, &[ARM_SWITCH_OFF], To::Disarmed(entries::stopped), Clear),
+    row(CLOSED, &[IMU_SILENT, ARMS_STAY], To::Perched(entries::stopped_on_grip), Show(Reason::IMU_SILENT)),
+    row(ROTORS, &[IMU_SILENT], To::Disarmed(entries::stopped), Show(Reason::IMU_SILENT)),
+    row(CLOSED, &[TIPPED_OVER, ARMS_STAY], To::Perched(entries::stopped_on_grip), Show(Reason::TippedOver)),
+    row(ROTORS, &[TIPPED_OVER], To::Disarmed(entries::stopped), Show(Reason::TippedOver)),
+    // On the ground.
+    row(&[Calibrating], &[CALIBRATED], To::Disarmed(entries::calibrated), Keep),
+    row(&[Disarmed], &[ARM_GESTURE, CHECKS_PASS, ARMS_CLOSED], To::Perched(entries::armed_on_pipe), Keep),
+    row(&[Disarmed], &[ARM_GESTURE, CHECKS_PASS], To::Armed(entries::armed), Clear),
+    row(IDLE, &[RADIO_LOST], To::Disarmed(entries::stopped), Show(Reason::RADIO_LOST)),
+    row(IDLE, &[LINE_SILENT], To::Disarmed(entries::stopped), Show(Reason::LINE_SILENT)),
+    row(IDLE, &[DISARM_GESTURE], To::Disarmed(entries::stopped), Clear),
+    row(IDLE, &[THROTTLE_UP], To::Flight(entries::flight), Keep),
+    row(&[Armed], &[IDLED], To::Disarmed(entries::stopped), Show(Reason::IdleTooLong)),
+    row(&[Landed], &[STOOD], To::Disarmed(entries::stopped), Clear),
+    // In the air.
+    row(&[Flight], &[RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Flight], &[BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(&[Flight], &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(&[Flight], &[THROTTLE_LOW, GROUNDED], To::Landed(entries::landed), Keep),
+    row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, RESTING, LEVEL], To::Contact(entries::contact), Keep),
+    // Onto the pipe.
+    row(&[Contact], &[CALLED_OFF], To::Flight(entries::flight), Keep),
+    row(&[Contact], &[SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Contact], &[NOT_RESTING, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Contact], &[NOT_RESTING], To::Flight(entries::flight), Keep),
+    row(&[Contact], &[RESTED], To::Clamping(entries::closing), Keep),
+    row(&[Clamping], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Clamping], &[DOUBT, MAY_LEAVE, SPOOLED_ON_GRIP], To::Releasing(entries::releasing_instead), DOUBTED),
+    row(&[Clamping], &[DOUBT, MAY_LEAVE], To::Escaping(entries::giving_up), DOUBTED),
+    row(&[Clamping], &[STANDS, GRIP_PROVEN], To::Perched(entries::perched), Keep),
+    row(&[Clamping], &[STANDS, LAST_RESORT], To::Disarmed(entries::last_resort), Keep),
+    // Off the pipe.
+    row(&[Perched], &[ARM_SWITCH_OFF, DISARM_GESTURE], To::Disarmed(entries::stopped), Keep),
+    row(&[Perched], &[RELEASE_ASKED, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing), Keep),
+    row(&[Releasing], &[ARMS_FREE, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Releasing], &[ARMS_FREE], To::Flight(entries::flight), Keep),
+    row(&[Releasing], &[LOOSE, SLIDES], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Releasing], &[FALLS], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Releasing], &[HELD_BY_GEARS, CALLED_BACK], To::Perched(entries::perched), Keep),
+    row(&[Releasing], &[HELD_BY_GEARS, GROUNDED_ON_PIPE], To::Perched(entries::perched), Keep),
+    row(&[Releasing], &[LEANS_TOO_FAR], To::Clamping(entries::closing_again), Show(Reason::LeansTooFar)),
+    row(&[Releasing], &[CALLED_BACK, NOT_RELEASED], To::Clamping(entries::closing_again), Keep),
+    row(&[Releasing], &[GROUNDED_ON_PIPE], To::Clamping(entries::closing_again), Keep),
+    row(&[Escaping], &[STUCK], To::Releasing(entries::releasing_stuck), Show(Reason::ArmsStuck)),
+    row(&[Escaping], &[CLEAR, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Escaping], &[CLEAR, BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(&[Escaping], &[CLEAR, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(&[Escaping], &[CLEAR, TAKES_OVER], To::Flight(entries::flight), Keep),
+    row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
+    // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On real
+    // ground the probe takes thrust away until most of the weight is carried.
+    row(&[Failsafe], &[GROUNDED], To::Disarmed(entries::stopped), CAUSE),
+    row(&[Failsafe], &[LOST_RADIO, RADIO, BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(&[Failsafe], &[LOST_RADIO, RADIO, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(&[Failsafe], &[LOST_PILOT, RADIO, BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(&[Failsafe], &[LOST_PILOT, RADIO, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
+    row(&[Failsafe], &[LOST_PILOT, TAKES_OVER], To::Flight(entries::flight), Keep),
+    row(&[Failsafe], &[LOST_PILOT, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
+    row(&[Failsafe], &[LOST_RADIO, RESUMES], To::Flight(entries::flight), Keep),
+];
+
+impl Transition {
+    /// The first that applies to `state` in this step.
+    pub fn first(state: &State, step: &Step<'_>) -> Option<&'static Self> {
+        let mode = state.mode();
+        TRANSITIONS
+            .iter()
+            .find(|row| row.from.contains(&mode) && row.when.iter().all(|guard| (guard.holds)(state, step)))
+    }
+
+    /// The state that begins, with what the pilot is to read noted.
+    pub fn enter(&self, from: &State, step: &mut Step<'_>) -> State {
+        let why = match self.notice {
+            Keep | Clear => None,
+            Show(why) | Lasting(why) => Some(why),
+            ShowOf(why) => why(from, step),
+        };
+        if !matches!(self.notice, Keep | Lasting(_)) {
+            step.context.note(why);
+        }
+        self.to.enter(from, step, why)
+    }
+}
