@@ -1,8 +1,10 @@
 //! The loops that close the arms on the pipe and let them go.
 //!
-//! Steady level, 100 Hz, to be done before the next step. What happens when an input is old:
+//! Steady level, 100 Hz, to be done before the next step. A step's forces and judgement carry the time at which its
+//! pressures were converted, or that of its command where no pressure is fresh. What happens when an input is old:
 //!
-//! - the command (200 ms): forces and the last judgement are held; before the first one, what the run before left;
+//! - the command (200 ms): no step is made and nothing is sent, so that forces and judgement age: the servos stay, the
+//!   grip is unknown. Loops and forces are held for the next command; before the first, what the run before left;
 //! - the pressure (20 ms): that arm's force is held and it is faulty until there is one again;
 //! - an arm's tilt (100 ms): its force is held, and after half a second it is faulty;
 //! - the thrusts (10 ms): the motors have stopped by then, so the thrust fed forward is none;
@@ -18,7 +20,7 @@ use sophie_control::grip_memory::GripMemory;
 use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ClampCommand, GripState, Links, TendonForces};
+use crate::links::{ClampCommand, Contact, GripState, Links, Newest, Stamped, TendonForces, TendonOrder};
 
 /// Time between two steps.
 pub const PERIOD: Duration = Duration::from_millis(10);
@@ -27,71 +29,76 @@ pub const PERIOD: Duration = Duration::from_millis(10);
 pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, PERIOD);
     let config = Config::from_params(&links.params);
-    let (mut clamp, mut forces) = begin(links.start.retained);
-    let mut grip = None;
+    let mut clamp = begin(links);
     let mut found = false;
     loop {
         let tick = rate.next().await;
-        if let Some(command) = links.clamp_command.fresh() {
-            let close = match command {
-                ClampCommand::Release | ClampCommand::Keep => [false; 4],
-                ClampCommand::Close { arms } => arms.mask(),
+        let Some(Newest::Fresh(command)) = links.clamp_command.newest() else {
+            continue;
+        };
+        let close = match command.value {
+            ClampCommand::Release | ClampCommand::Keep => [false; 4],
+            ClampCommand::Close { arms } => arms.mask(),
+        };
+        let contact = match links.contact.newest() {
+            Some(Newest::Fresh(contact)) => Some(contact),
+            Some(Newest::Held(_)) | None => None,
+        };
+        let out = clamp.step(&config, close, &inputs(links, contact), tick.dt);
+        let at = contact.map_or(command.at, |contact| contact.at);
+        let grip = GripState {
+            proven: out.proven,
+            released: out.released,
+            arms: out.arms,
+        };
+        if command.value == ClampCommand::Keep {
+            found = grip
+                .arms
+                .iter()
+                .any(|arm| arm.pressure > links.params.release_pressure);
+        } else {
+            let forces = TendonForces {
+                force: out.force,
+                found,
+                stay: out.stay,
             };
-            let out = clamp.step(&config, close, &inputs(links), tick.dt);
-            let pressed = |grip: GripState| {
-                let mut arms = grip.arms.iter();
-                arms.any(|arm| arm.pressure > links.params.release_pressure)
-            };
-            let now = GripState {
-                proven: out.proven,
-                released: out.released,
-                arms: out.arms,
-            };
-            grip = Some(now);
-            if command == ClampCommand::Keep {
-                found = pressed(now);
+            let order = if contact.is_some() {
+                TendonOrder::Measured(forces)
             } else {
-                forces = Some(TendonForces {
-                    force: out.force,
-                    found,
-                    stay: out.stay,
-                });
-            }
+                TendonOrder::Blind(forces)
+            };
+            links.tendons.send(at, order);
         }
-        let now = Instant::now();
-        if let Some(forces) = forces {
-            links.tendons.send(now, forces);
-        }
-        if let Some(grip) = grip {
-            links.grip.send(now, grip);
-        }
+        links.grip.send(at, grip);
     }
 }
 
-/// Loops and forces at the start: those of closed arms go on, all others wait for a command.
-fn begin(retained: Option<RetainedState>) -> (Clamp, Option<TendonForces>) {
-    match retained {
+/// Loops at the start. Those of closed arms continue, and their servos get pulses for where they stand; all others wait
+/// for a command.
+fn begin(links: &Links) -> Clamp {
+    match links.start.retained {
         Some(RetainedState {
             grip_memory: GripMemory::Controlled(_),
             force,
             fault,
             ..
-        }) => (
-            Clamp::resume(force, fault),
-            Some(TendonForces {
+        }) => {
+            let forces = TendonForces {
                 force,
                 found: false,
                 stay: [true; 4],
-            }),
-        ),
-        _ => (Clamp::default(), None),
+            };
+            links.tendons.send(Instant::now(), TendonOrder::Resumed(forces));
+            Clamp::resume(force, fault)
+        }
+        _ => Clamp::default(),
     }
 }
 
-/// What is known of each arm now.
-fn inputs(links: &Links) -> PerArm<ArmInput> {
+/// What is known of each arm now, with the fresh pressures `contact`.
+fn inputs(links: &Links, contact: Option<Stamped<Contact>>) -> PerArm<ArmInput> {
     let mut inputs = [ArmInput::default(); 4];
-    if let Some(contact) = links.contact.fresh() {
+    if let Some(Stamped { value: contact, .. }) = contact {
         for ((input, pressure), fault) in inputs.iter_mut().zip(contact.pressure).zip(contact.fault) {
             input.pressure = if fault {
                 Pressure::Faulty
@@ -100,10 +107,8 @@ fn inputs(links: &Links) -> PerArm<ArmInput> {
             };
         }
     }
-    if let Some(arms) = links.arms.fresh() {
-        for (input, tilt) in inputs.iter_mut().zip(arms.tilt) {
-            input.tilt = tilt;
-        }
+    for (input, tilt) in inputs.iter_mut().zip(links.tilts().values()) {
+        input.tilt = tilt;
     }
     if let Some(mix) = links.mix.fresh().filter(|m| m.running) {
         for (input, thrust) in inputs.iter_mut().zip(mix.thrusts) {

@@ -22,6 +22,7 @@ use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::attitude::Target;
+pub use sophie_control::battery::Battery;
 pub use sophie_control::grip::GripState;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mode::Mode;
@@ -58,6 +59,15 @@ impl<T> Stamped<T> {
     }
 }
 
+/// The newest message of a link as a reader that has a use for old ones sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Newest<T> {
+    /// Measured within the link's limit.
+    Fresh(Stamped<T>),
+    /// Measured longer ago: the last that is known, not what is.
+    Held(Stamped<T>),
+}
+
 /// A link that keeps the newest message.
 pub struct Link<T: Clone> {
     watch: Watch<Raw, Stamped<T>, RECEIVERS>,
@@ -86,6 +96,14 @@ impl<T: Clone> Link<T> {
     /// The newest message, unless it is stale.
     pub fn fresh(&self) -> Option<T> {
         self.latest().and_then(|m| m.fresh(self.stale_after))
+    }
+
+    /// The newest message, fresh and held told apart.
+    pub fn newest(&self) -> Option<Newest<T>> {
+        self.latest().map(|m| match m.clone().fresh(self.stale_after) {
+            Some(_) => Newest::Fresh(m),
+            None => Newest::Held(m),
+        })
     }
 
     /// A receiver that can wait for the next message; `None` when all [`RECEIVERS`] are taken.
@@ -169,24 +187,58 @@ pub struct Contact {
     pub fault: PerArm<bool>,
 }
 
-/// Flight battery.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Battery {
-    /// Voltage under load, V, low-passed.
-    pub voltage: f32,
-    /// Current, A, low-passed.
-    pub current: f32,
-    /// Charge drawn since power-up, A·s.
-    pub used: f32,
-    /// Voltage over nominal, limited to a sane range: what the thrust curve is compensated by.
-    pub ratio: f32,
-}
-
-/// Tilt of the arms as their own sensors see it.
+/// Tilt of the arms as their own sensors see it; the message's time is that of the oldest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmAngles {
-    /// Tilt of each arm, rad, tip up positive; `None` when that sensor gave nothing fresh.
-    pub tilt: PerArm<Option<f32>>,
+    /// Tilt of each arm, rad, tip up positive, with the time at which its sensor was asked; `None` when it gave nothing.
+    pub tilt: PerArm<Option<Stamped<f32>>>,
+}
+
+impl ArmAngles {
+    /// Angles that were all measured at `at`, rad.
+    pub fn at(at: Instant, tilt: PerArm<Option<f32>>) -> Self {
+        Self {
+            tilt: tilt.map(|tilt| tilt.map(|value| Stamped { at, value })),
+        }
+    }
+
+    /// When the oldest of them was measured.
+    pub fn oldest(&self) -> Option<Instant> {
+        self.tilt.iter().flatten().map(|tilt| tilt.at).min()
+    }
+
+    /// Those that are not older than `limit` now.
+    pub fn within(self, limit: Duration) -> Self {
+        Self {
+            tilt: self.tilt.map(|tilt| tilt.filter(|t| t.fresh(limit).is_some())),
+        }
+    }
+
+    /// The angles alone, rad.
+    pub fn values(&self) -> PerArm<Option<f32>> {
+        self.tilt.map(|tilt| tilt.map(|t| t.value))
+    }
+}
+
+/// Forces asked of the tendons, by what they follow from. The message's time is that of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TendonOrder {
+    /// From the pressures that were converted at the message's time.
+    Measured(TendonForces),
+    /// From the command of the message's time alone, since no pressure is fresh: closed arms keep their force, those
+    /// that are to be released lose it.
+    Blind(TendonForces),
+    /// From before a restart, sent once at the start: the servos stay where they are until a command comes.
+    Resumed(TendonForces),
+}
+
+impl TendonOrder {
+    /// The forces, whatever they follow from.
+    pub const fn forces(&self) -> &TendonForces {
+        match self {
+            Self::Measured(forces) | Self::Blind(forces) | Self::Resumed(forces) => forces,
+        }
+    }
 }
 
 /// Tension asked of each tendon.
@@ -247,19 +299,22 @@ pub struct Links {
     pub contact: Link<Contact>,
     /// analog -> mixer, commander. 100 Hz, stale after 500 ms.
     pub battery: Link<Battery>,
-    /// arms -> mixer, servos. 100 Hz, stale after 100 ms.
+    /// arms -> mixer, clamp, servos. 100 Hz, stale after 100 ms, each arm by itself ([`Links::tilts`]).
     pub arms: Link<ArmAngles>,
-    /// commander -> clamp. 100 Hz, stale after 200 ms: forces are held then; before the first nothing is sent.
+    /// commander -> clamp. 100 Hz, stale after 200 ms: nothing is sent then, as before the first.
     pub clamp_command: Link<ClampCommand>,
-    /// clamp -> servos, supervisor. 100 Hz, stale after 200 ms: servos hold then; before the first no pulses.
-    pub tendons: Link<TendonForces>,
-    /// servos -> clamp. Each servo frame (50 to 333 Hz), stale after 200 ms: tension that the servos can be giving now, N.
+    /// clamp -> servos, supervisor. 100 Hz, stale after 200 ms: servos stay then; before the first no pulses. Carries the
+    /// time of what it follows from ([`TendonOrder`]).
+    pub tendons: Link<TendonOrder>,
+    /// servos -> clamp. Each servo frame (50 to 333 Hz), stale after 200 ms: tension that the servos can be giving now, N;
+    /// of the time of the oldest tilt that it was computed from.
     pub tension: Link<PerArm<f32>>,
     /// servos -> supervisor. 50 Hz, stale after 200 ms: angle to which each servo is sent, rad from release.
     pub reel_angle: Link<PerArm<f32>>,
     /// commander -> supervisor. 100 Hz, stale after 200 ms: the grip that must outlive a reset.
     pub grip_memory: Link<GripMemory>,
-    /// clamp -> commander, supervisor. 100 Hz, stale after 100 ms.
+    /// clamp -> commander, supervisor. 100 Hz, stale after 100 ms. Of the time of the pressures, or of the command where
+    /// none is fresh: every closed arm is faulty then.
     pub grip: Link<GripState>,
     /// rc -> commander. As frames come (50 to 500 Hz), stale after 500 ms: failsafe.
     pub rc: Link<RcState>,
@@ -268,6 +323,7 @@ pub struct Links {
     /// every task of the flight level -> log. When one misses its deadline.
     pub missed: Signal<Raw, ()>,
     timing: [Mutex<Raw, RefCell<Record>>; TaskId::COUNT],
+    contact_chain: Mutex<Raw, RefCell<Record>>,
     hardware: Mutex<Raw, Cell<Refusals>>,
 }
 
@@ -304,6 +360,7 @@ impl Links {
             status: Link::new(ms(200)),
             missed: Signal::new(),
             timing: [const { Mutex::new(RefCell::new(Record::new())) }; TaskId::COUNT],
+            contact_chain: Mutex::new(RefCell::new(Record::new())),
             hardware: Mutex::new(Cell::new(match start.cause {
                 Cause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
                 _ => Refusals::NONE,
@@ -328,6 +385,28 @@ impl Links {
         });
     }
 
+    /// Tilt of each arm that was measured within the link's limit, with the time of each.
+    pub fn tilts(&self) -> ArmAngles {
+        let newest = self.arms.latest().map(|m| m.value).unwrap_or_default();
+        newest.within(self.arms.stale_after)
+    }
+
+    /// Records one answer to pressures: released when they were converted, started when the compare values were written,
+    /// ended when the pulse of these begins.
+    pub fn record_contact(&self, run: &Run) {
+        with(&self.contact_chain, |record| record.add(run));
+    }
+
+    /// Timing from the conversion of pressures to the servos' pulse, since power-up.
+    pub fn contact_timing(&self) -> Timing {
+        with(&self.contact_chain, |record| record.totals).unwrap_or_default()
+    }
+
+    /// Histogram of the same since it was taken last.
+    pub fn take_contact_histogram(&self, quantity: Quantity) -> Histogram {
+        with(&self.contact_chain, |record| record.take(quantity)).unwrap_or(Histogram::EMPTY)
+    }
+
     /// Timing of a task since power-up.
     pub fn timing(&self, task: TaskId) -> Timing {
         self.with_record(task, |record| record.totals).unwrap_or_default()
@@ -348,8 +427,11 @@ impl Links {
     }
 
     fn with_record<T>(&self, task: TaskId, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
-        let slot = self.timing.get(task as usize)?;
-        // Borrowed nowhere else: the lock is held for as long.
-        slot.lock(|cell| cell.try_borrow_mut().ok().map(|mut record| f(&mut record)))
+        with(self.timing.get(task as usize)?, f)
     }
+}
+
+fn with<T>(slot: &Mutex<Raw, RefCell<Record>>, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
+    // Borrowed nowhere else: the lock is held for as long.
+    slot.lock(|cell| cell.try_borrow_mut().ok().map(|mut record| f(&mut record)))
 }

@@ -45,9 +45,12 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
             && !resting
         {
             arms_seen = arms.at;
-            if let Some(arms) = arms.fresh(links.arms.stale_after) {
-                readings = arms.tilt.into_iter().enumerate();
-            }
+            readings = arms
+                .value
+                .within(links.arms.stale_after)
+                .values()
+                .into_iter()
+                .enumerate();
         }
         // One arm a step: all four in one would make it longer than the others.
         if let Some((arm, Some(tilt))) = readings.next() {

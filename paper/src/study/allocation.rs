@@ -165,7 +165,7 @@ pub async fn run(links: &Links, kind: Studied, configuration: Configuration) {
             && !resting
         {
             arms_seen = arms.at;
-            for (arm, tilt) in arms.value.tilt.into_iter().enumerate() {
+            for (arm, tilt) in arms.value.values().into_iter().enumerate() {
                 allocator.tilt.correct(arm, tilt.unwrap_or(f32::NAN));
             }
         }

@@ -1,6 +1,7 @@
 //! Each task by itself, on scripted ports, in virtual time.
 
 mod analog;
+mod arms;
 mod clamp;
 mod commander;
 mod console;
