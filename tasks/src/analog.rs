@@ -17,8 +17,6 @@ use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Contact, Links};
 use crate::ports::Analog;
 
-/// Time between two conversions.
-pub const PERIOD: Duration = Duration::from_millis(2);
 /// Time without a conversion after which the inputs count as silent.
 pub const SILENCE: Duration = Duration::from_millis(100);
 /// Conversions for one battery reading.
@@ -26,7 +24,7 @@ const BATTERY_EVERY: u8 = 5;
 
 /// Serves the analog inputs; never returns.
 pub async fn run(links: &Links, mut port: impl Analog) -> ! {
-    let mut rate = FixedRate::new(links, TaskId::Analog, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Analog);
     let scales = FsrScale::all(&links.params);
     for (scale, reason) in scales.iter().zip(Refusal::FSR_RANGE) {
         links.report(reason, !scale.reaches_grip(&links.params));

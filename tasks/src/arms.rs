@@ -15,9 +15,6 @@ use crate::deadline::{FixedRate, TaskId};
 use crate::links::{ArmAngles, Links, Stamped};
 use crate::ports::ArmImus;
 
-/// Time between two rounds.
-pub const PERIOD: Duration = Duration::from_millis(10);
-
 /// Time without a reading after which a sensor counts as silent.
 pub const SILENCE: Duration = Duration::from_secs(1);
 /// Time from power-up in which nothing is silent yet. A BNO055 needs 650 ms before it answers; its driver, which
@@ -35,7 +32,7 @@ const REASONS: PerArm<Refusal> = [
 
 /// Serves the arm sensors; never returns. A sensor that fails leaves `None` for its arm.
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
-    let mut rate = FixedRate::new(links, TaskId::Arms, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Arms);
     let start = Instant::now() + START - SILENCE;
     let mut watches = REASONS.map(|reason| Watch {
         reason,

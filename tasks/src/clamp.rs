@@ -1,20 +1,21 @@
 //! The loops that close the arms on the pipe and let them go.
 //!
 //! Steady level, 100 Hz, to be done before the next step. A step's forces and judgement carry the time at which its
-//! pressures were converted, or that of its command where no pressure is fresh. What happens when an input is old:
+//! pressures were converted, or that of its command where no pressure is fresh. What happens when an
+//! input is stale by its link's limit:
 //!
-//! - the command (200 ms): no step is made and nothing is sent, so that forces and judgement age: the servos stay, the
+//! - the command: no step is made and nothing is sent, so that forces and judgement age: the servos stay, the
 //!   grip is unknown. Loops and forces are held for the next command; before the first, what the run before left;
-//! - the pressure (20 ms): that arm's force is held and it is faulty until there is one again;
-//! - an arm's tilt (100 ms): its force is held, and after half a second it is faulty;
-//! - the thrusts (10 ms): the motors have stopped by then, so the thrust fed forward is none;
-//! - the tension (200 ms): the force asked for counts as given, and nothing is proven free.
+//! - the pressure: that arm's force is held and it is faulty until there is one again;
+//! - an arm's tilt: its force is held, and after half a second it is faulty;
+//! - the thrusts: the motors have stopped by then, so the thrust fed forward is none;
+//! - the tension: the force asked for counts as given, and nothing is proven free.
 //!
 //! No force is sent before one is known: after power-on the arms may be closed, and the servos' gears hold them as long
 //! as no pulse opens them.
 
 use crate::retained_state::RetainedState;
-use embassy_time::{Duration, Instant};
+use embassy_time::Instant;
 use sophie_control::clamp::{ArmInput, Clamp, Config, Pressure};
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::wrench::PerArm;
@@ -22,12 +23,9 @@ use sophie_control::wrench::PerArm;
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{ClampCommand, Contact, GripState, Links, Newest, Stamped, TendonForces, TendonOrder};
 
-/// Time between two steps.
-pub const PERIOD: Duration = Duration::from_millis(10);
-
 /// Runs the clamp loops; never returns.
 pub async fn run(links: &Links) -> ! {
-    let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Clamp);
     let config = Config::from_params(&links.params);
     let mut clamp = begin(links);
     let mut found = false;

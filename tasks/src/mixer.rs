@@ -1,6 +1,6 @@
 //! Allocation, one step for each demand, with the arms' present tilt in it.
 //!
-//! Flight level. Deadline: 500 µs after data-ready.
+//! Flight level. The [`DEADLINE`] counts from data-ready.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::mixer::{Conditions, Mix, Mixer, Variant};
@@ -11,7 +11,7 @@ use crate::deadline::{TaskId, record_run};
 use crate::links::{Battery, Demand, Links, MixOutput, Setpoint};
 
 /// Time from data-ready to the motor commands.
-pub const DEADLINE: Duration = Duration::from_micros(500);
+pub const DEADLINE: Duration = TaskId::Mixer.deadline();
 /// Step time without an estimate, s.
 const NOMINAL_DT: f32 = 1e-3;
 

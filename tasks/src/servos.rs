@@ -2,8 +2,8 @@
 //!
 //! Steady level, at the servos' frame (`servo_frame_rate`, 50 to 333 Hz). Until the first force there are no pulses:
 //! when power comes on on the pipe the gears hold, and nothing moves before the clamp loop knows what it wants. After a
-//! restart the drives continue from the angles that the run before left. Forces whose measurement is older than 200 ms
-//! leave the servos where they are; so does a missing tilt (100 ms) for its arm, unless that arm is to be released.
+//! restart the drives continue from the angles that the run before left. Forces whose measurement is stale leave
+//! the servos where they are; so does a missing tilt for its arm, unless that arm is to be released.
 //!
 //! The task closes the chain from contact pressure to pulse and measures it ([`ChainWatch`]).
 

@@ -7,6 +7,7 @@ mod commander;
 mod console;
 mod control;
 mod deadline;
+mod declarations;
 #[path = "../../../sim/tests/fakes/mod.rs"]
 mod fakes;
 mod imu;
