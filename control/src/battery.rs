@@ -17,16 +17,16 @@ const RATIO_BOUNDS: (f32, f32) = (0.7, 1.25);
 /// Readings beyond these are the converter's, not the battery's: V, A.
 const SANE: (f32, f32) = (60.0, 300.0);
 
-/// One measurement, filtered.
+/// The flight battery as it is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reading {
-    /// Voltage under load, V.
+pub struct Battery {
+    /// Voltage under load, V, low-passed.
     pub voltage: f32,
-    /// Current, A.
+    /// Current, A, low-passed.
     pub current: f32,
-    /// Charge drawn so far, A·s.
+    /// Charge drawn since power-up, A·s.
     pub used: f32,
-    /// Voltage over nominal, within sane bounds.
+    /// Voltage over nominal, limited to a sane range: what the thrust curve is compensated by.
     pub ratio: f32,
 }
 
@@ -43,7 +43,7 @@ impl Monitor {
     /// Adds a measurement of `voltage` V and `current` A, `dt` s after the one before.
     ///
     /// A value that no battery has changes nothing; `None` until there was a sound one.
-    pub fn step(&mut self, p: &Params, voltage: f32, current: f32, dt: f32) -> Option<Reading> {
+    pub fn step(&mut self, p: &Params, voltage: f32, current: f32, dt: f32) -> Option<Battery> {
         let dt = math::clamp(dt, 0.0, 1.0);
         let sane = (0.0..SANE.0).contains(&voltage) && (-SANE.1..SANE.1).contains(&current);
         if sane {
@@ -54,7 +54,7 @@ impl Monitor {
             let filtered = i.step(current, CURRENT_CUTOFF, dt);
             self.add_charge(filtered * dt);
         }
-        self.filters.map(|(v, i)| Reading {
+        self.filters.map(|(v, i)| Battery {
             voltage: v.value(),
             current: i.value(),
             used: self.used + self.fraction,
@@ -78,9 +78,9 @@ mod tests {
 
     use super::*;
 
-    fn run(m: &mut Monitor, voltage: f32, current: f32, seconds: f32) -> Reading {
+    fn run(m: &mut Monitor, voltage: f32, current: f32, seconds: f32) -> Battery {
         let p = Params::default();
-        let mut last = Reading::default();
+        let mut last = Battery::default();
         for _ in 0..(seconds * 100.0) as u32 {
             last = m.step(&p, voltage, current, 0.01).unwrap_or_default();
         }

@@ -35,19 +35,14 @@ impl PwmTiming {
         })
     }
 
-    /// The values of a timer that something else has set up: `period` counts a frame, `frame_hz` frames a
-    /// second.
-    pub fn given(period: u32, frame_hz: f32) -> Self {
-        Self {
-            prescaler: 0,
-            period,
-            counts_per_us: period as f32 * frame_hz * 1e-6,
-        }
-    }
-
     /// Length of a count, µs.
     pub fn count_us(&self) -> f32 {
         1.0 / self.counts_per_us
+    }
+
+    /// What is left of a frame of which `passed` counts have passed, µs, rounded.
+    pub fn left_us(&self, passed: u32) -> u32 {
+        (self.period.saturating_sub(passed) as f32 * self.count_us() + 0.5) as u32
     }
 
     /// Counts of a pulse of `us` µs, for the compare register; 0 (no pulse) for 0, for a negative number and
@@ -104,9 +99,18 @@ mod tests {
     }
 
     #[test]
-    fn a_given_timer_counts_as_its_owner_set_it_up() {
-        let t = PwmTiming::given(20_000, 50.0);
-        assert_eq!(t.compare(1500.0), 1500);
-        assert!((t.count_us() - 1.0).abs() < 1e-6);
+    fn what_is_left_of_a_frame_falls_to_nothing() {
+        // 108 MHz by 33: 65,455 counts of 0.3056 µs are 20 ms.
+        let t = PwmTiming::new(108_000_000, 50).unwrap();
+        assert_eq!((t.prescaler, t.period), (32, 65_455));
+        for (passed, us) in [
+            (0, 20_000),
+            (16_364, 15_000),
+            (65_454, 0),
+            (65_455, 0),
+            (70_000, 0),
+        ] {
+            assert_eq!(t.left_us(passed), us, "{passed}");
+        }
     }
 }

@@ -259,12 +259,14 @@ impl ports::Motors for Port {
 }
 
 impl ports::Servos for Port {
-    async fn write(&mut self, pulses_us: PerArm<f32>) {
+    /// The simulated servo follows the newest width at once: no frame is waited for.
+    async fn write(&mut self, pulses_us: PerArm<f32>) -> Instant {
         let actuators = self.0.actuators.get();
         self.0.actuators.set(Actuators {
             servos: pulses_us.map(f64::from),
             ..actuators
         });
+        Instant::now()
     }
 }
 

@@ -11,7 +11,8 @@ use sophie_control::tendon::{ForceLimit, REFERENCE_TILT, Reel};
 use sophie_control::wrench::PerArm;
 use sophie_fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
 use sophie_sim::clock::VirtualTime;
-use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForces};
+use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForces, TendonOrder};
+use sophie_tasks::timing::Quantity;
 
 /// Tilt of an arm without tendon force, and where its skin meets the pipe, rad.
 const FREE_TILT: f32 = -0.2;
@@ -155,7 +156,7 @@ impl Bench {
             if self.ms.is_multiple_of(10) {
                 let now = Instant::now();
                 let tilt = self.arms.map(|a| a.tilt_alive.then_some(a.tilt));
-                self.links.arms.send(now, ArmAngles { tilt });
+                self.links.arms.send(now, ArmAngles::at(now, tilt));
                 if let Some(command) = self.command {
                     self.links.clamp_command.send(now, command);
                 }
@@ -170,7 +171,10 @@ impl Bench {
     }
 
     fn forces(&self) -> PerArm<f32> {
-        self.links.tendons.latest().map_or([0.0; 4], |t| t.value.force)
+        self.links
+            .tendons
+            .latest()
+            .map_or([0.0; 4], |t| t.value.forces().force)
     }
 
     fn grip(&self) -> GripState {
@@ -258,7 +262,8 @@ fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_i
     time.run_until(2_300_000);
     let pulses = servos.pulses.borrow();
     assert!(pulses.iter().skip(silent + 1).all(|p| *p == [RELEASE_US; 4]));
-    assert_eq!(links.tendons.fresh(), Some(TendonForces::default()));
+    let forces = links.tendons.fresh().map(|order| *order.forces());
+    assert_eq!(forces, Some(TendonForces::default()));
 }
 
 #[test]
@@ -420,14 +425,14 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
     let step = |ms: u64, force: Option<f32>| {
         time.run_until(ms * 1000);
         let (now, tilt) = (Instant::now(), [Some(-0.8); 4]);
-        links.arms.send(now, ArmAngles { tilt });
+        links.arms.send(now, ArmAngles::at(now, tilt));
         if let Some(force) = force {
             links.tendons.send(
                 now,
-                TendonForces {
+                TendonOrder::Measured(TendonForces {
                     force: [force; 4],
                     ..TendonForces::default()
-                },
+                }),
             );
         }
     };
@@ -439,4 +444,24 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
     // A force that is no number is no order to pull.
     (800..1100).for_each(|i| step(10 * i, Some(f32::NAN)));
     assert_eq!(servos.now(), [RELEASE_US; 4]);
+}
+
+#[test]
+fn a_slow_converter_shows_in_the_time_from_pressure_to_pulse() {
+    let quickest = |delay_us: u64| {
+        let mut b = Bench::new();
+        b.converter.delay_us.set(delay_us);
+        b.command = Some(CLOSE);
+        b.run(1.0);
+        let timing = b.links.contact_timing();
+        assert!(timing.runs >= 45 && timing.overruns == 0, "{timing:?}");
+        let us = b.links.take_contact_histogram(Quantity::Response).min();
+        // Converted before it was judged, judged before it was written.
+        assert!(u64::from(us) >= delay_us, "{us}");
+        us
+    };
+    // At 500 Hz the newest pressures are 2 ms old when the clamp steps. A conversion of 5 ms lets the next one begin
+    // after 6 ms: they are 5 to 11 ms old.
+    let (quick, slow) = (quickest(0), quickest(5000));
+    assert!((3000..9000).contains(&(slow - quick)), "{quick} {slow}");
 }

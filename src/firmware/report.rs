@@ -16,7 +16,7 @@ use sophie_boards::stack;
 
 /// Time between two looks.
 const PERIOD: Duration = Duration::from_millis(50);
-/// Looks in a second: one for each task's timing, so that they do not come in one burst.
+/// Looks in a second: one for each task's timing and the chains', so that they do not come in one burst.
 const SECOND: u32 = 20;
 /// Looks between two reports of the stack.
 const STACK_EVERY: u32 = 200;

@@ -3,30 +3,35 @@
 //! ```text
 //! timing estimator: 1000/s, late 28/28/29, run 1/1/2, response 29/29/31 of 300 us, 0 missed
 //! timing chain: 1000/s, 42/43/43/44 us from data-ready to motor frame
+//! timing contact: 50/s, 6143/12287/11020 us from pressure to servo command, 9514/16383/24575/23500 us to its pulse of 35000 us, 0 missed
 //! ```
 //!
-//! Times are half, 99 % and all of the second's runs (too large by less than a quarter; the last is exact); the chain's
-//! first is the shortest. docs/timing.md says what they are of.
+//! Times are half, 99 % and all of the second's runs (too large by less than a quarter; the last is exact); where there
+//! are four, the first is the shortest. docs/timing.md says what they are of.
 
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::histogram::Histogram;
 use sophie_tasks::links::Links;
-use sophie_tasks::timing::Quantity;
+use sophie_tasks::timing::{Quantity, Timing};
 
 /// Missed deadlines already reported.
 #[derive(Default)]
 pub struct TimingReport {
     recorded: [u32; TaskId::COUNT],
     told: [u32; TaskId::COUNT],
+    /// The same of the chain from pressure to servo pulse.
+    contact_recorded: u32,
+    contact_told: u32,
 }
 
 impl TimingReport {
-    /// What is due in the `look`-th look of each second: one task's record, after the last task the deadlines that any
-    /// task missed.
+    /// What is due in the `look`-th look of each second: one task's record, after the last task that of the chain from
+    /// pressure to pulse, and then the deadlines that were missed.
     pub fn second(&mut self, links: &Links, look: u32) {
         match TaskId::ALL.get(look as usize) {
             Some(&task) => self.record(links, task),
-            None if look as usize == TaskId::COUNT => self.missed(links),
+            None if look as usize == TaskId::COUNT => self.contact(links),
+            None if look as usize == TaskId::COUNT + 1 => self.missed(links),
             None => {}
         }
     }
@@ -34,20 +39,37 @@ impl TimingReport {
     /// Names every task that has missed deadlines since it was named last, with its worst times since the start.
     pub fn missed(&mut self, links: &Links) {
         for (task, told) in TaskId::ALL.into_iter().zip(&mut self.told) {
-            let t = links.timing(task);
-            if t.overruns != *told {
-                *told = t.overruns;
-                defmt::warn!(
-                    "{=str}: {=u32} overruns in {=u32} runs; worst: {=u32} us late, {=u32} us response, {=u32} us execution",
-                    task.name(),
-                    t.overruns,
-                    t.runs,
-                    t.worst_lateness_us,
-                    t.worst_response_us,
-                    t.worst_execution_us
-                );
-            }
+            tell(task.name(), &links.timing(task), told);
         }
+        tell("contact", &links.contact_timing(), &mut self.contact_told);
+    }
+
+    /// The chain from the conversion of pressures to the pulse that answers them.
+    fn contact(&mut self, links: &Links) {
+        let [command, pulse] =
+            [Quantity::Lateness, Quantity::Response].map(|quantity| links.take_contact_histogram(quantity));
+        let totals = links.contact_timing();
+        let missed = totals
+            .overruns
+            .wrapping_sub(core::mem::replace(&mut self.contact_recorded, totals.overruns));
+        // No force, no pulse: before the first command, and while no pressure is fresh.
+        if pulse.count() == 0 {
+            return;
+        }
+        let ([c50, c99, c100], [p50, p99, p100]) = (three(&command), three(&pulse));
+        defmt::info!(
+            "timing contact: {=u32}/s, {=u32}/{=u32}/{=u32} us from pressure to servo command, {=u32}/{=u32}/{=u32}/{=u32} us to its pulse of {=u32} us, {=u32} missed",
+            pulse.count(),
+            c50,
+            c99,
+            c100,
+            pulse.min(),
+            p50,
+            p99,
+            p100,
+            totals.deadline_us,
+            missed
+        );
     }
 
     fn record(&mut self, links: &Links, task: TaskId) {
@@ -92,6 +114,22 @@ impl TimingReport {
                 t100
             );
         }
+    }
+}
+
+/// Names what has missed deadlines since it was named last.
+fn tell(name: &str, t: &Timing, told: &mut u32) {
+    if t.overruns != *told {
+        *told = t.overruns;
+        defmt::warn!(
+            "{=str}: {=u32} overruns in {=u32} runs; worst: {=u32} us late, {=u32} us response, {=u32} us execution",
+            name,
+            t.overruns,
+            t.runs,
+            t.worst_lateness_us,
+            t.worst_response_us,
+            t.worst_execution_us
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! Contact pressures and the battery, from the same converter.
 //!
 //! Steady level. Pressures at 500 Hz, the battery at every fifth conversion; a conversion must be over before
-//! the next. A converter that fails publishes nothing: its links go stale, and their readers know what to do.
+//! the next. Messages carry the time at which the conversion was begun, however long it takes. A converter that fails publishes nothing: its links go stale, and their readers know what to do.
 //! After 100 ms without a conversion it is reported against arming, and from the start on a sensor that cannot read
 //! the grip pressure.
 
@@ -14,11 +14,9 @@ use sophie_control::battery::Monitor;
 use sophie_control::fsr::{Fsr, FsrScale};
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{Battery, Contact, Links};
+use crate::links::{Contact, Links};
 use crate::ports::Analog;
 
-/// Time between two conversions.
-pub const PERIOD: Duration = Duration::from_millis(2);
 /// Time without a conversion after which the inputs count as silent.
 pub const SILENCE: Duration = Duration::from_millis(100);
 /// Conversions for one battery reading.
@@ -26,7 +24,7 @@ const BATTERY_EVERY: u8 = 5;
 
 /// Serves the analog inputs; never returns.
 pub async fn run(links: &Links, mut port: impl Analog) -> ! {
-    let mut rate = FixedRate::new(links, TaskId::Analog, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Analog);
     let scales = FsrScale::all(&links.params);
     for (scale, reason) in scales.iter().zip(Refusal::FSR_RANGE) {
         links.report(reason, !scale.reaches_grip(&links.params));
@@ -85,14 +83,8 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
         let (params, volts) = (&links.params, port.volts_per_count());
         let voltage = f32::from(frame.battery_voltage) * (volts * params.battery_divider);
         let current = f32::from(frame.battery_current) * (volts * params.battery_a_per_v);
-        if let Some(r) = battery.step(params, voltage, current, battery_dt) {
-            let message = Battery {
-                voltage: r.voltage,
-                current: r.current,
-                used: r.used,
-                ratio: r.ratio,
-            };
-            links.battery.send(at, message);
+        if let Some(measured) = battery.step(params, voltage, current, battery_dt) {
+            links.battery.send(at, measured);
         }
         battery_dt = 0.0;
     }

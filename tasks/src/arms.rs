@@ -2,7 +2,8 @@
 //!
 //! Background level: the sensors stretch the I2C clock, and nothing in flight waits for them. 100 Hz; a round
 //! of four sensors must end within its period. A sensor that gives nothing for a second is reported against arming;
-//! one that never answers costs its own reading, not those of the others.
+//! one that never answers costs its own reading, not those of the others. Each tilt carries the time at which its own
+//! sensor was asked: a slow sensor does not make the readings after it look older, nor those before it newer.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::arming::Refusal;
@@ -11,11 +12,8 @@ use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::{PerArm, SIDE};
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ArmAngles, Links};
+use crate::links::{ArmAngles, Links, Stamped};
 use crate::ports::ArmImus;
-
-/// Time between two rounds.
-pub const PERIOD: Duration = Duration::from_millis(10);
 
 /// Time without a reading after which a sensor counts as silent.
 pub const SILENCE: Duration = Duration::from_secs(1);
@@ -34,7 +32,7 @@ const REASONS: PerArm<Refusal> = [
 
 /// Serves the arm sensors; never returns. A sensor that fails leaves `None` for its arm.
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
-    let mut rate = FixedRate::new(links, TaskId::Arms, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Arms);
     let start = Instant::now() + START - SILENCE;
     let mut watches = REASONS.map(|reason| Watch {
         reason,
@@ -42,21 +40,26 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
         silent: false,
     });
     loop {
-        rate.next().await;
-        let mut gravity: PerArm<Option<Vec3>> = [None; 4];
+        let round = rate.next().await;
+        let mut gravity: PerArm<Option<Stamped<Vec3>>> = [None; 4];
         for (arm, (g, watch)) in gravity.iter_mut().zip(&mut watches).enumerate() {
+            let at = Instant::now();
             let reading = with_timeout(READING, port.gravity(arm)).await;
-            *g = reading.ok().and_then(Result::ok).filter(plausible);
-            watch.see(links, g.is_some());
+            let reading = reading.ok().and_then(Result::ok).filter(plausible);
+            watch.see(links, reading.is_some());
+            *g = reading.map(|value| Stamped { at, value });
         }
         let Some(body) = links.attitude.fresh().filter(|a| a.calibrated) else {
             continue;
         };
         let mut tilt = [None; 4];
         for ((tilt, gravity), side) in tilt.iter_mut().zip(&gravity).zip(&SIDE) {
-            *tilt = gravity.and_then(|g| arm_tilt(body.q, g, *side));
+            *tilt = gravity.and_then(|Stamped { at, value }| {
+                arm_tilt(body.q, value, *side).map(|value| Stamped { at, value })
+            });
         }
-        links.arms.send(Instant::now(), ArmAngles { tilt });
+        let angles = ArmAngles { tilt };
+        links.arms.send(angles.oldest().unwrap_or(round.started), angles);
     }
 }
 

@@ -1,100 +1,105 @@
 //! The loops that close the arms on the pipe and let them go.
 //!
-//! Steady level, 100 Hz, to be done before the next step. What happens when an input is old:
+//! Steady level, 100 Hz, to be done before the next step. A step's forces and judgement carry the time at which its
+//! pressures were converted, or that of its command where no pressure is fresh. What happens when an
+//! input is stale by its link's limit:
 //!
-//! - the command (200 ms): forces and the last judgement are held; before the first one, what the run before left;
-//! - the pressure (20 ms): that arm's force is held and it is faulty until there is one again;
-//! - an arm's tilt (100 ms): its force is held, and after half a second it is faulty;
-//! - the thrusts (10 ms): the motors have stopped by then, so the thrust fed forward is none;
-//! - the tension (200 ms): the force asked for counts as given, and nothing is proven free.
+//! - the command: no step is made and nothing is sent, so that forces and judgement age: the servos stay, the
+//!   grip is unknown. Loops and forces are held for the next command; before the first, what the run before left;
+//! - the pressure: that arm's force is held and it is faulty until there is one again;
+//! - an arm's tilt: its force is held, and after half a second it is faulty;
+//! - the thrusts: the motors have stopped by then, so the thrust fed forward is none;
+//! - the tension: the force asked for counts as given, and nothing is proven free.
 //!
 //! No force is sent before one is known: after power-on the arms may be closed, and the servos' gears hold them as long
 //! as no pulse opens them.
 
 use crate::retained_state::RetainedState;
-use embassy_time::{Duration, Instant};
+use embassy_time::Instant;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::gripper::{ArmInput, Config, Gripper, Pressure};
 use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ClampCommand, GripState, Links, TendonForces};
-
-/// Time between two steps.
-pub const PERIOD: Duration = Duration::from_millis(10);
+use crate::links::{ClampCommand, Contact, GripState, Links, Newest, Stamped, TendonForces, TendonOrder};
 
 /// Runs the clamp loops; never returns.
 pub async fn run(links: &Links) -> ! {
-    let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Clamp);
     let config = Config::from_params(&links.params);
-    let (mut gripper, mut forces) = begin(links.start.retained);
-    let mut grip = None;
+    let mut gripper = begin(links);
     let mut found = false;
     loop {
         let tick = rate.next().await;
-        if let Some(command) = links.clamp_command.fresh() {
-            let close = match command {
-                ClampCommand::Release | ClampCommand::Keep => [false; 4],
-                ClampCommand::Close { arms } => arms.mask(),
+        let Some(Newest::Fresh(command)) = links.clamp_command.newest() else {
+            continue;
+        };
+        let close = match command.value {
+            ClampCommand::Release | ClampCommand::Keep => [false; 4],
+            ClampCommand::Close { arms } => arms.mask(),
+        };
+        let contact = match links.contact.newest() {
+            Some(Newest::Fresh(contact)) => Some(contact),
+            Some(Newest::Held(_)) | None => None,
+        };
+        let out = gripper.step(&config, &inputs(links, close, contact), tick.dt);
+        let at = contact.map_or(command.at, |contact| contact.at);
+        let grip = GripState {
+            proven: out.proven,
+            released: out.released,
+            arms: out.arms.map(|arm| arm.grip),
+        };
+        if command.value == ClampCommand::Keep {
+            found = grip
+                .arms
+                .iter()
+                .any(|arm| arm.pressure > links.params.release_pressure);
+        } else {
+            let forces = TendonForces {
+                force: out.arms.map(|arm| arm.grip.force),
+                found,
+                stay: out.arms.map(|arm| arm.hold_position),
             };
-            let out = gripper.step(&config, &inputs(links, close), tick.dt);
-            let pressed = |grip: GripState| {
-                let mut arms = grip.arms.iter();
-                arms.any(|arm| arm.pressure > links.params.release_pressure)
-            };
-            let now = GripState {
-                proven: out.proven,
-                released: out.released,
-                arms: out.arms.map(|arm| arm.grip),
-            };
-            grip = Some(now);
-            if command == ClampCommand::Keep {
-                found = pressed(now);
+            let order = if contact.is_some() {
+                TendonOrder::Measured(forces)
             } else {
-                forces = Some(TendonForces {
-                    force: out.arms.map(|arm| arm.grip.force),
-                    found,
-                    stay: out.arms.map(|arm| arm.hold_position),
-                });
-            }
+                TendonOrder::Blind(forces)
+            };
+            links.tendons.send(at, order);
         }
-        let now = Instant::now();
-        if let Some(forces) = forces {
-            links.tendons.send(now, forces);
-        }
-        if let Some(grip) = grip {
-            links.grip.send(now, grip);
-        }
+        links.grip.send(at, grip);
     }
 }
 
-/// Loops and forces at the start: those of closed arms go on, all others wait for a command.
-fn begin(retained: Option<RetainedState>) -> (Gripper, Option<TendonForces>) {
-    match retained {
+/// Loops at the start. Those of closed arms continue, and their servos get pulses for where they stand; all others wait
+/// for a command.
+fn begin(links: &Links) -> Gripper {
+    match links.start.retained {
         Some(RetainedState {
             grip_memory: GripMemory::Controlled(_),
             force,
             fault,
             ..
-        }) => (
-            Gripper::resume(force, fault),
-            Some(TendonForces {
+        }) => {
+            let forces = TendonForces {
                 force,
                 found: false,
                 stay: [true; 4],
-            }),
-        ),
-        _ => (Gripper::default(), None),
+            };
+            links.tendons.send(Instant::now(), TendonOrder::Resumed(forces));
+            Gripper::resume(force, fault)
+        }
+        _ => Gripper::default(),
     }
 }
 
-/// What each arm is to do, and what is known of it now.
-fn inputs(links: &Links, close: PerArm<bool>) -> PerArm<ArmInput> {
+/// What each arm is to do, and what is known of it now, with the fresh pressures `contact`.
+fn inputs(links: &Links, close: PerArm<bool>, contact: Option<Stamped<Contact>>) -> PerArm<ArmInput> {
     let mut inputs = close.map(|close| ArmInput {
         close,
         ..ArmInput::default()
     });
-    if let Some(contact) = links.contact.fresh() {
+    if let Some(Stamped { value: contact, .. }) = contact {
         for ((input, pressure), fault) in inputs.iter_mut().zip(contact.pressure).zip(contact.fault) {
             input.pressure = if fault {
                 Pressure::Faulty
@@ -103,10 +108,8 @@ fn inputs(links: &Links, close: PerArm<bool>) -> PerArm<ArmInput> {
             };
         }
     }
-    if let Some(arms) = links.arms.fresh() {
-        for (input, tilt) in inputs.iter_mut().zip(arms.tilt) {
-            input.tilt = tilt;
-        }
+    for (input, tilt) in inputs.iter_mut().zip(links.tilts().values()) {
+        input.tilt = tilt;
     }
     if let Some(mix) = links.mix.fresh().filter(|m| m.running) {
         for (input, thrust) in inputs.iter_mut().zip(mix.thrusts) {

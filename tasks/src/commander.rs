@@ -11,8 +11,6 @@ use sophie_control::tendon::ForceLimit;
 use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::{Links, MixOutput, Status};
 
-/// Time between two steps.
-pub const PERIOD: Duration = Duration::from_millis(10);
 /// Infill below which the paper's authors did not fly, %.
 const INFILL_FLOWN: f32 = 6.0;
 /// Time over which missed deadlines are counted.
@@ -27,7 +25,7 @@ pub async fn run(links: &Links) -> ! {
         None => ModeLogic::new(&links.params),
     };
     let mut late = Lateness::new();
-    let mut rate = FixedRate::new(links, TaskId::Commander, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Commander);
     loop {
         let tick = rate.next().await;
         let inputs = collect(links, late.step(links, tick.started));

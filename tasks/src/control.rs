@@ -1,6 +1,6 @@
 //! Attitude and rate control, one step for each attitude.
 //!
-//! Flight level. Deadline: 400 µs after data-ready. Without a fresh setpoint the rotors stop.
+//! Flight level. The [`DEADLINE`] counts from data-ready. Without a fresh setpoint the rotors stop.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::chain::{Command, Control};
@@ -10,7 +10,7 @@ use crate::deadline::{TaskId, record_run};
 use crate::links::{Links, MixOutput, Setpoint};
 
 /// Time from data-ready to the demand.
-pub const DEADLINE: Duration = Duration::from_micros(400);
+pub const DEADLINE: Duration = TaskId::Control.deadline();
 
 /// Runs both loops at 1 kHz; returns only if the link has no receiver left.
 pub async fn run(links: &Links) {

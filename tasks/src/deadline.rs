@@ -3,114 +3,9 @@
 use embassy_time::{Duration, Instant, Timer};
 
 use crate::links::Links;
+pub use crate::schedule::{Level, TaskId};
 use crate::timing::Run;
 pub use crate::timing::Timing;
-
-/// How urgent a task is: each level preempts those below it, tasks of one level take turns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// From data-ready to the motor frame.
-    Flight,
-    /// Fixed rates of 50 to 500 Hz.
-    Steady,
-    /// What may wait.
-    Background,
-}
-
-impl Level {
-    /// Name for logs.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Flight => "flight",
-            Self::Steady => "steady",
-            Self::Background => "background",
-        }
-    }
-}
-
-/// Every task whose timing is watched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub enum TaskId {
-    /// Inertial sensor, 1 kHz after decimation.
-    Imu,
-    /// Attitude estimator, 1 kHz.
-    Estimator,
-    /// Attitude and rate control, 1 kHz.
-    Control,
-    /// Allocation, 1 kHz.
-    Mixer,
-    /// Motor output, 1 kHz.
-    Motors,
-    /// Pressure sensors and battery, 500 Hz.
-    Analog,
-    /// Clamp loop, 100 Hz.
-    Clamp,
-    /// Servo output, 50 to 333 Hz.
-    Servos,
-    /// Receiver, as frames come.
-    Rc,
-    /// Mode logic, 100 Hz.
-    Commander,
-    /// Arm sensors, 100 Hz.
-    Arms,
-    /// Telemetry to the pilot, 20 Hz.
-    Telemetry,
-    /// Deadline supervision and watchdog, 100 Hz.
-    Supervisor,
-}
-
-impl TaskId {
-    /// Number of tasks.
-    pub const COUNT: usize = 13;
-
-    /// Every task.
-    pub const ALL: [Self; Self::COUNT] = [
-        Self::Imu,
-        Self::Estimator,
-        Self::Control,
-        Self::Mixer,
-        Self::Motors,
-        Self::Analog,
-        Self::Clamp,
-        Self::Servos,
-        Self::Rc,
-        Self::Commander,
-        Self::Arms,
-        Self::Telemetry,
-        Self::Supervisor,
-    ];
-
-    /// Name for logs.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Imu => "imu",
-            Self::Estimator => "estimator",
-            Self::Control => "control",
-            Self::Mixer => "mixer",
-            Self::Motors => "motors",
-            Self::Analog => "analog",
-            Self::Clamp => "clamp",
-            Self::Servos => "servos",
-            Self::Rc => "rc",
-            Self::Commander => "commander",
-            Self::Arms => "arms",
-            Self::Telemetry => "telemetry",
-            Self::Supervisor => "supervisor",
-        }
-    }
-
-    /// The level that the task runs on.
-    pub const fn level(self) -> Level {
-        match self {
-            Self::Imu | Self::Estimator | Self::Control | Self::Mixer | Self::Motors => Level::Flight,
-            Self::Analog | Self::Clamp | Self::Servos | Self::Rc | Self::Commander | Self::Supervisor => {
-                Level::Steady
-            }
-            Self::Arms | Self::Telemetry => Level::Background,
-        }
-    }
-}
 
 /// Records one run of an event-driven task: released when its input was measured, run from `started` to now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
@@ -165,6 +60,11 @@ pub struct FixedRate<'a> {
 }
 
 impl<'a> FixedRate<'a> {
+    /// The loop of `task` as it is declared. The first release is now.
+    pub fn of(links: &'a Links, task: TaskId) -> Self {
+        Self::new(links, task, task.period(), task.deadline())
+    }
+
     /// A loop of `period` whose work must end within `deadline` of its release. The first release is now.
     pub fn new(links: &'a Links, task: TaskId, period: Duration, deadline: Duration) -> Self {
         Self {

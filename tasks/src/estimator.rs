@@ -1,6 +1,6 @@
 //! Attitude estimation, one step for each inertial sample.
 //!
-//! Flight level. Deadline: 300 µs after the sample's data-ready.
+//! Flight level. The [`DEADLINE`] counts from the data-ready of the sample.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::estimator::Estimator;
@@ -9,7 +9,7 @@ use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
 
 /// Time from data-ready to the estimate.
-pub const DEADLINE: Duration = Duration::from_micros(300);
+pub const DEADLINE: Duration = TaskId::Estimator.deadline();
 
 /// Estimates at 1 kHz; returns only if the link has no receiver left.
 pub async fn run(links: &Links) {

@@ -1,6 +1,6 @@
 //! Inertial sensor: waits for data-ready, filters at the sensor's own rate, hands on at 1 kHz.
 //!
-//! Flight level. Deadline: the filtered sample leaves within 200 µs of the data-ready of its last reading. The transfer
+//! Flight level. The [`DEADLINE`] of the filtered sample counts from the data-ready of its last reading. The transfer
 //! from the part counts as lateness, the filter as execution.
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
@@ -12,7 +12,7 @@ use crate::links::Links;
 use crate::ports::{Imu, PortError};
 
 /// Time from data-ready to the handed-on sample.
-pub const DEADLINE: Duration = Duration::from_micros(200);
+pub const DEADLINE: Duration = TaskId::Imu.deadline();
 /// A sensor that says nothing for this long is tried again.
 pub const SILENCE: Duration = Duration::from_millis(3);
 /// Pause after a failed read.

@@ -36,6 +36,7 @@ pub mod ports;
 pub mod rc;
 pub mod retained_state;
 pub mod retained_store;
+pub mod schedule;
 pub mod servos;
 pub mod start;
 pub mod supervisor;

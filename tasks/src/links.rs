@@ -22,6 +22,7 @@ use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::attitude::Target;
+pub use sophie_control::battery::Battery;
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 pub use sophie_control::grip::GripState;
 use sophie_control::grip_memory::GripMemory;
@@ -31,8 +32,8 @@ use sophie_control::rc::Sticks;
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::wrench::PerArm;
 
-use crate::deadline::{Level, TaskId};
 use crate::histogram::Histogram;
+use crate::schedule::{Level, TaskId};
 use crate::start::{Cause, Start};
 use crate::timing::{Quantity, Record, Run, Timing};
 
@@ -56,6 +57,15 @@ impl<T> Stamped<T> {
     pub fn fresh(self, limit: Duration) -> Option<T> {
         (Instant::now().saturating_duration_since(self.at) <= limit).then_some(self.value)
     }
+}
+
+/// The newest message of a link as a reader that has a use for old ones sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Newest<T> {
+    /// Measured within the link's limit.
+    Fresh(Stamped<T>),
+    /// Measured longer ago: the last that is known, not what is.
+    Held(Stamped<T>),
 }
 
 /// A link that keeps the newest message.
@@ -88,6 +98,14 @@ impl<T: Clone> Link<T> {
         self.latest().and_then(|m| m.fresh(self.stale_after))
     }
 
+    /// The newest message, fresh and held told apart.
+    pub fn newest(&self) -> Option<Newest<T>> {
+        self.latest().map(|m| match m.clone().fresh(self.stale_after) {
+            Some(_) => Newest::Fresh(m),
+            None => Newest::Held(m),
+        })
+    }
+
     /// A receiver that can wait for the next message; `None` when all [`RECEIVERS`] are taken.
     pub fn receiver(&self) -> Option<embassy_sync::watch::Receiver<'_, Raw, Stamped<T>, RECEIVERS>> {
         self.watch.receiver()
@@ -103,24 +121,58 @@ pub struct Contact {
     pub fault: PerArm<bool>,
 }
 
-/// Flight battery.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Battery {
-    /// Voltage under load, V, low-passed.
-    pub voltage: f32,
-    /// Current, A, low-passed.
-    pub current: f32,
-    /// Charge drawn since power-up, A·s.
-    pub used: f32,
-    /// Voltage over nominal, limited to a sane range: what the thrust curve is compensated by.
-    pub ratio: f32,
-}
-
-/// Tilt of the arms as their own sensors see it.
+/// Tilt of the arms as their own sensors see it; the message's time is that of the oldest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmAngles {
-    /// Tilt of each arm, rad, tip up positive; `None` when that sensor gave nothing fresh.
-    pub tilt: PerArm<Option<f32>>,
+    /// Tilt of each arm, rad, tip up positive, with the time at which its sensor was asked; `None` when it gave nothing.
+    pub tilt: PerArm<Option<Stamped<f32>>>,
+}
+
+impl ArmAngles {
+    /// Angles that were all measured at `at`, rad.
+    pub fn at(at: Instant, tilt: PerArm<Option<f32>>) -> Self {
+        Self {
+            tilt: tilt.map(|tilt| tilt.map(|value| Stamped { at, value })),
+        }
+    }
+
+    /// When the oldest of them was measured.
+    pub fn oldest(&self) -> Option<Instant> {
+        self.tilt.iter().flatten().map(|tilt| tilt.at).min()
+    }
+
+    /// Those that are not older than `limit` now.
+    pub fn within(self, limit: Duration) -> Self {
+        Self {
+            tilt: self.tilt.map(|tilt| tilt.filter(|t| t.fresh(limit).is_some())),
+        }
+    }
+
+    /// The angles alone, rad.
+    pub fn values(&self) -> PerArm<Option<f32>> {
+        self.tilt.map(|tilt| tilt.map(|t| t.value))
+    }
+}
+
+/// Forces asked of the tendons, by what they follow from. The message's time is that of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TendonOrder {
+    /// From the pressures that were converted at the message's time.
+    Measured(TendonForces),
+    /// From the command of the message's time alone, since no pressure is fresh: closed arms keep their force, those
+    /// that are to be released lose it.
+    Blind(TendonForces),
+    /// From before a restart, sent once at the start: the servos stay where they are until a command comes.
+    Resumed(TendonForces),
+}
+
+impl TendonOrder {
+    /// The forces, whatever they follow from.
+    pub const fn forces(&self) -> &TendonForces {
+        match self {
+            Self::Measured(forces) | Self::Blind(forces) | Self::Resumed(forces) => forces,
+        }
+    }
 }
 
 /// Tension asked of each tendon.
@@ -158,91 +210,117 @@ pub struct Status {
     pub refusals: Refusals,
 }
 
-/// Every link of one vehicle.
-pub struct Links {
-    /// Parameters, fixed while armed.
-    pub params: Params,
-    /// Why the board started and what the run before left, fixed. start-up -> every task that resumes from it.
-    pub start: Start,
-    /// imu -> estimator. 1 kHz, stale after 5 ms.
-    pub imu: Link<ImuSample>,
-    /// estimator -> control, commander, arms. 1 kHz, stale after 5 ms.
-    pub attitude: Link<Attitude>,
-    /// commander -> control. 100 Hz, stale after 50 ms: rotors stop then.
-    pub setpoint: Link<Setpoint>,
-    /// control -> mixer. 1 kHz, stale after 5 ms.
-    pub demand: Link<Demand>,
-    /// control -> log. 1 kHz, stale after 50 ms: where down is aimed at in body axes, and the wanted heading against the
-    /// present one.
-    pub target: Link<Target>,
-    /// mixer -> motors, control (what it could not give), commander. 1 kHz, stale after 10 ms: motors stop.
-    pub mix: Link<MixOutput>,
-    /// analog -> clamp, commander. 500 Hz, stale after 20 ms.
-    pub contact: Link<Contact>,
-    /// analog -> mixer, commander. 100 Hz, stale after 500 ms.
-    pub battery: Link<Battery>,
-    /// arms -> mixer, servos. 100 Hz, stale after 100 ms.
-    pub arms: Link<ArmAngles>,
-    /// commander -> clamp. 100 Hz, stale after 200 ms: forces are held then; before the first nothing is sent.
-    pub clamp_command: Link<ClampCommand>,
-    /// clamp -> servos, supervisor. 100 Hz, stale after 200 ms: servos hold then; before the first no pulses.
-    pub tendons: Link<TendonForces>,
-    /// servos -> clamp. Each servo frame (50 to 333 Hz), stale after 200 ms: tension that the servos can be giving now, N.
-    pub tension: Link<PerArm<f32>>,
-    /// servos -> supervisor. 50 Hz, stale after 200 ms: angle to which each servo is sent, rad from release.
-    pub reel_angle: Link<PerArm<f32>>,
-    /// commander -> supervisor. 100 Hz, stale after 200 ms: the grip that must outlive a reset.
-    pub grip_memory: Link<GripMemory>,
-    /// clamp -> commander, supervisor. 100 Hz, stale after 100 ms.
-    pub grip: Link<GripState>,
-    /// rc -> commander. As frames come (50 to 500 Hz), stale after 500 ms: failsafe.
-    pub rc: Link<RcState>,
-    /// commander -> telemetry, log. 100 Hz, stale after 200 ms.
-    pub status: Link<Status>,
-    /// every task of the flight level -> log. When one misses its deadline.
-    pub missed: Signal<Raw, ()>,
-    timing: [Mutex<Raw, RefCell<Record>>; TaskId::COUNT],
-    hardware: Mutex<Raw, Cell<Refusals>>,
+/// What is declared of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Declared {
+    /// Its field of [`Links`].
+    pub name: &'static str,
+    /// The message's type.
+    pub message: &'static str,
+    /// The task that sends it; each run does, unless `meaning` says otherwise.
+    pub from: TaskId,
+    /// Who reads it: tasks by their names, or the log.
+    pub to: &'static str,
+    /// Age beyond which a reader must not use it.
+    pub stale_after: Duration,
+    /// What it is, and what its readers do without a fresh one.
+    pub meaning: &'static str,
+}
+
+macro_rules! links {
+    ($(
+        $(#[doc = $meaning:literal])+
+        $name:ident: $message:ty, $from:ident to $to:literal, stale after $stale:literal ms;
+    )*) => {
+        /// Every link of one vehicle.
+        pub struct Links {
+            /// Parameters, fixed while armed.
+            pub params: Params,
+            /// Why the board started and what the run before left, fixed. start-up -> every task that resumes from it.
+            pub start: Start,
+            $(
+                $(#[doc = $meaning])+
+                #[doc = concat!("\n\nFrom [`TaskId::", stringify!($from), "`] to ", $to, ", stale after ", $stale, " ms.")]
+                pub $name: Link<$message>,
+            )*
+            /// every task of the flight level -> log. When one misses its deadline.
+            pub missed: Signal<Raw, ()>,
+            timing: [Mutex<Raw, RefCell<Record>>; TaskId::COUNT],
+            contact_chain: Mutex<Raw, RefCell<Record>>,
+            hardware: Mutex<Raw, Cell<Refusals>>,
+        }
+
+        impl Links {
+            /// Every link, in the order of the declaration.
+            pub const DECLARED: &'static [Declared] = &[$(Declared {
+                name: stringify!($name),
+                message: stringify!($message),
+                from: TaskId::$from,
+                to: $to,
+                stale_after: Duration::from_millis($stale),
+                meaning: concat!($($meaning),+),
+            }),*];
+
+            /// Links without messages after this start.
+            pub const fn starting(params: Params, start: Start) -> Self {
+                Self {
+                    params,
+                    start,
+                    $($name: Link::new(Duration::from_millis($stale)),)*
+                    missed: Signal::new(),
+                    timing: [const { Mutex::new(RefCell::new(Record::new())) }; TaskId::COUNT],
+                    contact_chain: Mutex::new(RefCell::new(Record::new())),
+                    hardware: Mutex::new(Cell::new(match start.cause {
+                        Cause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
+                        _ => Refusals::NONE,
+                    })),
+                }
+            }
+        }
+    };
+}
+
+links! {
+    /// Filtered inertial samples.
+    imu: ImuSample, Imu to "estimator", stale after 5 ms;
+    /// The estimate.
+    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor", stale after 5 ms;
+    /// What the rotors are to do; without it they stop.
+    setpoint: Setpoint, Commander to "control, mixer", stale after 50 ms;
+    /// What the controllers ask of the mixer.
+    demand: Demand, Control to "mixer", stale after 5 ms;
+    /// Where down is aimed at in body axes, and the wanted heading against the present one.
+    target: Target, Control to "log", stale after 50 ms;
+    /// What the mixer gave, and to `control` what it could not give; without it the motors stop.
+    mix: MixOutput, Mixer to "motors, control, clamp, commander, supervisor", stale after 10 ms;
+    /// Contact pressures; without them closed arms keep their force and are faulty.
+    contact: Contact, Analog to "clamp, commander", stale after 20 ms;
+    /// The flight battery, with each fifth conversion; the mixer keeps the last one.
+    battery: Battery, Analog to "mixer, commander, telemetry", stale after 500 ms;
+    /// Tilt of the arms, each with its own time; without one its servo stays.
+    arms: ArmAngles, Arms to "mixer, clamp, servos", stale after 100 ms;
+    /// What the tendons are to do; without it the clamp makes no step and sends nothing.
+    clamp_command: ClampCommand, Commander to "clamp", stale after 200 ms;
+    /// Forces, with the time of what they follow from; without them the servos stay, before the first there are no pulses.
+    tendons: TendonOrder, Clamp to "servos, supervisor", stale after 200 ms;
+    /// Tension that the servos can be giving, N, as old as the oldest tilt in it; without it nothing is proven free.
+    tension: PerArm<f32>, Servos to "clamp", stale after 200 ms;
+    /// Angle to which each servo is sent, rad from release.
+    reel_angle: PerArm<f32>, Servos to "supervisor", stale after 200 ms;
+    /// The grip that must outlive a reset.
+    grip_memory: GripMemory, Commander to "supervisor", stale after 200 ms;
+    /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
+    grip: GripState, Clamp to "commander, supervisor", stale after 100 ms;
+    /// The pilot's wishes, as frames come; without them failsafe.
+    rc: RcState, Rc to "commander", stale after 500 ms;
+    /// The commander's view.
+    status: Status, Commander to "telemetry, log", stale after 200 ms;
 }
 
 impl Links {
     /// Links without messages, after power-on.
     pub const fn new(params: Params) -> Self {
         Self::starting(params, Start::COLD)
-    }
-
-    /// Links without messages after this start.
-    pub const fn starting(params: Params, start: Start) -> Self {
-        const fn ms(n: u64) -> Duration {
-            Duration::from_millis(n)
-        }
-        Self {
-            params,
-            start,
-            imu: Link::new(ms(5)),
-            attitude: Link::new(ms(5)),
-            setpoint: Link::new(ms(50)),
-            demand: Link::new(ms(5)),
-            target: Link::new(ms(50)),
-            mix: Link::new(ms(10)),
-            contact: Link::new(ms(20)),
-            battery: Link::new(ms(500)),
-            arms: Link::new(ms(100)),
-            clamp_command: Link::new(ms(200)),
-            tendons: Link::new(ms(200)),
-            tension: Link::new(ms(200)),
-            reel_angle: Link::new(ms(200)),
-            grip_memory: Link::new(ms(200)),
-            grip: Link::new(ms(100)),
-            rc: Link::new(ms(500)),
-            status: Link::new(ms(200)),
-            missed: Signal::new(),
-            timing: [const { Mutex::new(RefCell::new(Record::new())) }; TaskId::COUNT],
-            hardware: Mutex::new(Cell::new(match start.cause {
-                Cause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
-                _ => Refusals::NONE,
-            })),
-        }
     }
 
     /// What speaks against arming on the hardware's side. drivers' tasks, start-up, console -> commander.
@@ -260,6 +338,28 @@ impl Links {
                 all.without(reason)
             });
         });
+    }
+
+    /// Tilt of each arm that was measured within the link's limit, with the time of each.
+    pub fn tilts(&self) -> ArmAngles {
+        let newest = self.arms.latest().map(|m| m.value).unwrap_or_default();
+        newest.within(self.arms.stale_after)
+    }
+
+    /// Records one answer to pressures: released when they were converted, started when the compare values were written,
+    /// ended when the pulse of these begins.
+    pub fn record_contact(&self, run: &Run) {
+        with(&self.contact_chain, |record| record.add(run));
+    }
+
+    /// Timing from the conversion of pressures to the servos' pulse, since power-up.
+    pub fn contact_timing(&self) -> Timing {
+        with(&self.contact_chain, |record| record.totals).unwrap_or_default()
+    }
+
+    /// Histogram of the same since it was taken last.
+    pub fn take_contact_histogram(&self, quantity: Quantity) -> Histogram {
+        with(&self.contact_chain, |record| record.take(quantity)).unwrap_or(Histogram::EMPTY)
     }
 
     /// Timing of a task since power-up.
@@ -282,8 +382,11 @@ impl Links {
     }
 
     fn with_record<T>(&self, task: TaskId, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
-        let slot = self.timing.get(task as usize)?;
-        // Borrowed nowhere else: the lock is held for as long.
-        slot.lock(|cell| cell.try_borrow_mut().ok().map(|mut record| f(&mut record)))
+        with(self.timing.get(task as usize)?, f)
     }
+}
+
+fn with<T>(slot: &Mutex<Raw, RefCell<Record>>, f: impl FnOnce(&mut Record) -> T) -> Option<T> {
+    // Borrowed nowhere else: the lock is held for as long.
+    slot.lock(|cell| cell.try_borrow_mut().ok().map(|mut record| f(&mut record)))
 }

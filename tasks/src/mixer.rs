@@ -1,6 +1,6 @@
 //! Allocation, one step for each demand, with the arms' present tilt in it.
 //!
-//! Flight level. Deadline: 500 µs after data-ready.
+//! Flight level. The [`DEADLINE`] counts from data-ready.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::chain::{ArmReading, Mixing, Surroundings};
@@ -11,7 +11,7 @@ use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
 
 /// Time from data-ready to the motor commands.
-pub const DEADLINE: Duration = Duration::from_micros(500);
+pub const DEADLINE: Duration = TaskId::Mixer.deadline();
 
 /// Allocates at 1 kHz by what `allocation` makes of the parameters; returns only if the link has no receiver left.
 pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) -> A) {
@@ -22,12 +22,9 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
     loop {
         let message = demand.changed().await;
         let started = Instant::now();
-        let arms = links.arms.latest().and_then(|message| {
-            let arms = message.fresh(links.arms.stale_after)?;
-            Some(ArmReading {
-                at_us: message.at.as_micros(),
-                tilt: arms.tilt,
-            })
+        let arms = links.arms.latest().map(|message| ArmReading {
+            at_us: message.at.as_micros(),
+            tilt: message.value.within(links.arms.stale_after).values(),
         });
         let surroundings = Surroundings {
             battery_ratio: links.battery.latest().map(|battery| battery.value.ratio),

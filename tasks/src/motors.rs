@@ -1,6 +1,6 @@
 //! Motor output, one frame for each mix; stops the motors by itself when mixes stop coming.
 //!
-//! Flight level. Deadline: the frame starts within 600 µs of data-ready. This task's response is therefore that of the
+//! Flight level. The [`DEADLINE`] of the frame counts from data-ready. This task's response is therefore that of the
 //! whole chain.
 
 use embassy_time::{Duration, Instant, with_timeout};
@@ -11,7 +11,7 @@ use crate::ports::Motors;
 use sophie_control::wrench::PerArm;
 
 /// Time from data-ready to the frame.
-pub const DEADLINE: Duration = Duration::from_micros(600);
+pub const DEADLINE: Duration = TaskId::Motors.deadline();
 /// Time after which a frame is given up: ten times the slowest protocol's.
 pub const FRAME_LIMIT: Duration = Duration::from_millis(3);
 

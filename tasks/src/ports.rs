@@ -99,8 +99,9 @@ pub trait Motors {
 
 /// The four tendon servos.
 pub trait Servos {
-    /// Sends one pulse width for each servo, µs; 0 switches the servo's pulse off.
-    async fn write(&mut self, pulses_us: PerArm<f32>);
+    /// Sets one pulse width for each servo, µs; 0 switches the servo's pulse off. Returns when the first pulses of these
+    /// widths begin, mostly in the future: what is written takes effect with the next frame.
+    async fn write(&mut self, pulses_us: PerArm<f32>) -> Instant;
 }
 
 /// A serial line towards the vehicle: the receiver's or the console's.

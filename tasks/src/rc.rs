@@ -14,7 +14,7 @@ use crate::ports::{RcDecoder, SerialInput};
 /// Bytes taken at once: two of the longest frames.
 const BUFFER: usize = 128;
 /// Time from the bytes' arrival by which they must have been decoded.
-const DEADLINE: Duration = Duration::from_millis(2);
+const DEADLINE: Duration = TaskId::Rc.deadline();
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
 

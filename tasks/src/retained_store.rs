@@ -6,7 +6,7 @@
 use crate::retained_state::RetainedState;
 use sophie_control::wrench::PerArm;
 
-use crate::links::Links;
+use crate::links::{Links, TendonOrder};
 use crate::ports::Retain;
 
 /// What was kept last.
@@ -34,7 +34,7 @@ impl<R: Retain> RetainedStore<R> {
         if let Some(angle) = links.reel_angle.fresh() {
             self.retained.angle = angle;
         }
-        if let Some(tendons) = links.tendons.fresh() {
+        if let Some(TendonOrder::Measured(tendons) | TendonOrder::Blind(tendons)) = links.tendons.fresh() {
             // A rotor's thrust bends its arm away from the pipe. The reset stops it, and what the tendon pulled against
             // it would press the pipe.
             let thrusts = links

@@ -2,77 +2,167 @@
 //!
 //! Steady level, at the servos' frame (`servo_frame_rate`, 50 to 333 Hz). Until the first force there are no pulses:
 //! when power comes on on the pipe the gears hold, and nothing moves before the clamp loop knows what it wants. After a
-//! restart the drives go on from the angles that the run before left. Forces older than
-//! 200 ms hold the servos; so does a missing tilt (100 ms) for its arm, unless that arm is to be released.
+//! restart the drives continue from the angles that the run before left. Forces whose measurement is stale leave
+//! the servos where they are; so does a missing tilt for its arm, unless that arm is to be released.
+//!
+//! The task closes the chain from contact pressure to pulse and measures it ([`ChainWatch`]).
 
 use embassy_time::{Duration, Instant};
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::tendon::{Drive, Reel, TendonDrive};
+use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::Links;
+use crate::links::{Links, Newest, Stamped, TendonForces, TendonOrder};
 use crate::ports::Servos;
+use crate::timing::Run;
+
+/// Longest time from the conversion of pressures to the write of the pulse widths that answer them: 2 ms until the
+/// next conversion, 10 ms until the clamp's next step, 3 ms for the conversion and for the tasks of the level that come
+/// first. The wait for the servos' frame comes on top of it: 20 ms at 50 Hz, 3 ms at 333 Hz.
+///
+/// A miss leaves a tendon's force behind what the pressure asks for: at most by 0.3 N for each ms, since the clamp turns
+/// it by 300 N/s at most. From 20 N (67 ms) on its integral waits, and the grip takes longer to close.
+pub const CHAIN_BUDGET: Duration = Duration::from_millis(15);
 
 /// Time between two frames of servos that take `hz` frames a second.
 pub fn period(hz: f32) -> Duration {
     Duration::from_micros((1e6 / hz + 0.5) as u64)
 }
 
+/// Longest time from the conversion of pressures to the beginning of the pulse that answers them.
+pub fn chain_deadline(frame: Duration) -> Duration {
+    CHAIN_BUDGET + frame
+}
+
 /// Serves the servos; never returns.
 pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     let period = period(links.params.servo_frame_rate);
     let mut rate = FixedRate::new(links, TaskId::Servos, period, period);
-    let reels = Reel::all(&links.params);
-    let mut drives = [TendonDrive::new(); 4];
-    // Kept arms are on gears alone: the angle of a servo without pulses is not known.
-    let known = links
-        .start
-        .retained
-        .filter(|w| !matches!(w.grip_memory, GripMemory::HeldByGears(_)));
-    if let Some(retained) = known {
-        for (drive, angle) in drives.iter_mut().zip(retained.angle) {
-            *drive = drive.resume(angle);
-        }
-    }
-    let mut told = false;
+    let mut drives = Drives::new(links);
+    let mut chain = ChainWatch::new(period);
     loop {
         let tick = rate.next().await;
-        if links.tendons.latest().is_none() {
+        let Some(newest) = links.tendons.newest() else {
             port.write([0.0; 4]).await;
             continue;
+        };
+        let tilts = links.tilts();
+        let output = drives.step(&newest, tilts.values(), tick.dt);
+        let written = Instant::now();
+        let began = port.write(output.map(|o| o.pulse_us)).await;
+        if let Newest::Fresh(order) = newest {
+            chain.answered(links, &order, written, began);
         }
-        let forces = links.tendons.fresh();
-        let tilts = links.arms.fresh().unwrap_or_default().tilt;
+        let now = Instant::now();
+        links
+            .tension
+            .send(tilts.oldest().unwrap_or(now), output.map(|o| o.tension));
+        let angles = drives.drives.each_ref().map(TendonDrive::angle);
+        links.reel_angle.send(now, angles);
+    }
+}
+
+/// The drives of the four tendons.
+struct Drives {
+    reels: PerArm<Reel>,
+    drives: PerArm<TendonDrive>,
+    /// An order has come: arms that were found wound have their angle.
+    begun: bool,
+}
+
+impl Drives {
+    fn new(links: &Links) -> Self {
+        let mut drives = [TendonDrive::new(); 4];
+        // Kept arms are on gears alone: the angle of a servo without pulses is not known.
+        let known = links
+            .start
+            .retained
+            .filter(|w| !matches!(w.grip_memory, GripMemory::HeldByGears(_)));
+        if let Some(retained) = known {
+            for (drive, angle) in drives.iter_mut().zip(retained.angle) {
+                *drive = drive.resume(angle);
+            }
+        }
+        Self {
+            reels: Reel::all(&links.params),
+            drives,
+            begun: false,
+        }
+    }
+
+    /// One step of `dt` s by the newest order, with the fresh tilts (rad).
+    fn step(&mut self, newest: &Newest<TendonOrder>, tilts: PerArm<Option<f32>>, dt: f32) -> PerArm<Drive> {
         let mut output = [Drive::default(); 4];
-        match forces {
-            Some(forces) => {
-                if forces.found && !told {
-                    for ((drive, reel), tilt) in drives.iter_mut().zip(&reels).zip(tilts) {
+        let arms = self
+            .drives
+            .iter_mut()
+            .zip(&self.reels)
+            .zip(output.iter_mut().zip(tilts));
+        match newest {
+            Newest::Fresh(Stamped {
+                value: TendonOrder::Measured(forces) | TendonOrder::Blind(forces),
+                ..
+            }) => {
+                let TendonForces { force, found, stay } = *forces;
+                for (((drive, reel), (out, tilt)), (force, stay)) in arms.zip(force.into_iter().zip(stay)) {
+                    if found && !self.begun {
                         drive.seed_from_tilt(reel, tilt);
                     }
-                }
-                told = true;
-                let asked = forces.force.into_iter().zip(forces.stay).zip(tilts);
-                let arms = drives.iter_mut().zip(&reels).zip(output.iter_mut());
-                for (((drive, reel), out), ((force, stay), tilt)) in arms.zip(asked) {
                     *out = if stay {
-                        drive.hold_position(reel, tilt, tick.dt)
+                        drive.hold_position(reel, tilt, dt)
                     } else {
-                        drive.step(reel, force, tilt, tick.dt)
+                        drive.step(reel, force, tilt, dt)
                     };
                 }
             }
-            None => {
-                for ((drive, reel), out) in drives.iter().zip(&reels).zip(output.iter_mut()) {
-                    *out = drive.hold(reel);
+            // Held forces are no order to wind, whatever the arm does.
+            Newest::Fresh(Stamped {
+                value: TendonOrder::Resumed(_),
+                ..
+            })
+            | Newest::Held(_) => {
+                for ((drive, reel), (out, tilt)) in arms {
+                    *out = drive.hold_position(reel, tilt, dt);
                 }
             }
         }
-        port.write(output.map(|o| o.pulse_us)).await;
-        let now = Instant::now();
-        links.tension.send(now, output.map(|o| o.tension));
-        links
-            .reel_angle
-            .send(now, drives.each_ref().map(TendonDrive::angle));
+        self.begun = true;
+        output
+    }
+}
+
+/// Measures from the conversion of pressures to the pulse that answers them, once for each conversion that gets as far.
+///
+/// Lateness is from the conversion until the pulse widths are written, execution what the servos' frame adds until the
+/// first pulse of these widths begins, response both. Conversions that a newer one overtakes never become a pulse, and
+/// forces that do not follow from a pressure are not measured.
+struct ChainWatch {
+    deadline: Duration,
+    /// Conversion that was answered last.
+    last: Option<Instant>,
+}
+
+impl ChainWatch {
+    fn new(frame: Duration) -> Self {
+        Self {
+            deadline: chain_deadline(frame),
+            last: None,
+        }
+    }
+
+    /// The pulse widths of `order` were written at `written`, the first pulse of these begins at `began`.
+    fn answered(&mut self, links: &Links, order: &Stamped<TendonOrder>, written: Instant, began: Instant) {
+        if !matches!(order.value, TendonOrder::Measured(_)) || self.last == Some(order.at) {
+            return;
+        }
+        self.last = Some(order.at);
+        links.record_contact(&Run {
+            released: order.at,
+            started: written,
+            ended: began,
+            deadline: self.deadline,
+            skipped: 0,
+        });
     }
 }

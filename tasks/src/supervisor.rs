@@ -6,8 +6,7 @@
 //! the watchdog unfed: with a period of 200 to 500 ms it then resets the board, which starts
 //! disarmed, with the grip as it was.
 //!
-//! Not watched: rc (a lost radio is the failsafe's business, no fault of the board), arms (its bus may stall;
-//! the mixer lives without) and telemetry.
+//! Which tasks are watched is declared with them ([`crate::schedule`]).
 
 use embassy_time::{Duration, Instant};
 
@@ -15,65 +14,28 @@ use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::Links;
 use crate::ports::{Retain, Watchdog};
 use crate::retained_store::RetainedStore;
+use crate::schedule::Watch;
 
-/// Time between two looks.
-pub const PERIOD: Duration = Duration::from_millis(10);
 /// Looks in a window.
 const WINDOW: u8 = 10;
 /// Time from power-up during which drivers may still be starting.
 pub const BOOT_TIME: Duration = Duration::from_secs(3);
 
-/// A watched task and the least number of its runs in a window: half of what its rate gives.
-struct Watched {
-    task: TaskId,
-    least: u32,
+/// Least number of a watched task's runs in a window: half of what its period gives. `None` of a task that is not
+/// watched. Tasks of the flight level only count once the sensors are calibrated.
+pub const fn least_runs(task: TaskId) -> Option<u32> {
+    let window = TaskId::Supervisor.period().as_ticks() * WINDOW as u64;
+    match task.task().watch {
+        Watch::Watched => Some((window / task.period().as_ticks() / 2) as u32),
+        Watch::Unwatched => None,
+    }
 }
-
-/// Those of the flight level only count once the sensors are calibrated.
-const WATCHED: [Watched; 9] = [
-    Watched {
-        task: TaskId::Imu,
-        least: 50,
-    },
-    Watched {
-        task: TaskId::Estimator,
-        least: 50,
-    },
-    Watched {
-        task: TaskId::Control,
-        least: 50,
-    },
-    Watched {
-        task: TaskId::Mixer,
-        least: 50,
-    },
-    Watched {
-        task: TaskId::Motors,
-        least: 50,
-    },
-    Watched {
-        task: TaskId::Analog,
-        least: 25,
-    },
-    Watched {
-        task: TaskId::Clamp,
-        least: 5,
-    },
-    Watched {
-        task: TaskId::Servos,
-        least: 2,
-    },
-    Watched {
-        task: TaskId::Commander,
-        least: 5,
-    },
-];
 
 /// Watches every task at 100 Hz; never returns.
 pub async fn run(links: &Links, mut watchdog: impl Watchdog, memory: impl Retain) -> ! {
     let mut store = RetainedStore::new(links, memory);
     let mut health = Health::new(links, Instant::now());
-    let mut rate = FixedRate::new(links, TaskId::Supervisor, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Supervisor);
     loop {
         let tick = rate.next().await;
         store.keep(links);
@@ -87,7 +49,7 @@ pub async fn run(links: &Links, mut watchdog: impl Watchdog, memory: impl Retain
 struct Health {
     power_up: Instant,
     looks: u8,
-    runs: [u32; WATCHED.len()],
+    runs: [u32; TaskId::COUNT],
     alive: bool,
     calibrated: bool,
 }
@@ -116,13 +78,11 @@ impl Health {
         if self.looks >= WINDOW {
             self.looks = 0;
             let before = core::mem::replace(&mut self.runs, runs(links));
-            self.alive = WATCHED
-                .iter()
-                .zip(self.runs.iter().zip(before))
-                .all(|(w, (&now, before))| {
-                    now.wrapping_sub(before) >= w.least
-                        || (w.task.level() == Level::Flight && !self.calibrated)
-                });
+            let runs = self.runs.iter().zip(before);
+            self.alive = TaskId::ALL.into_iter().zip(runs).all(|(task, (&now, before))| {
+                least_runs(task).is_none_or(|least| now.wrapping_sub(before) >= least)
+                    || (task.level() == Level::Flight && !self.calibrated)
+            });
         }
         let fresh = links.attitude.fresh().is_some() && links.mix.fresh().is_some();
         let booting = now.saturating_duration_since(self.power_up) < BOOT_TIME;
@@ -130,6 +90,6 @@ impl Health {
     }
 }
 
-fn runs(links: &Links) -> [u32; WATCHED.len()] {
-    WATCHED.each_ref().map(|w| links.timing(w.task).runs)
+fn runs(links: &Links) -> [u32; TaskId::COUNT] {
+    TaskId::ALL.map(|task| links.timing(task).runs)
 }

@@ -12,7 +12,6 @@
 use core::fmt::Write;
 use core::future::pending;
 
-use embassy_time::Duration;
 use heapless::String;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::RcProtocol;
@@ -23,8 +22,6 @@ use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Battery, Links, Status};
 use crate::ports::SerialOutput;
 
-/// Time between two frames.
-pub const PERIOD: Duration = Duration::from_millis(50);
 /// Runs after which the order of the frames repeats.
 const CYCLE: u8 = 10;
 /// The run of each cycle that carries the battery.
@@ -40,7 +37,7 @@ pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
     if links.params.rc_protocol == RcProtocol::Sbus {
         pending::<()>().await;
     }
-    let mut rate = FixedRate::new(links, TaskId::Telemetry, PERIOD, PERIOD);
+    let mut rate = FixedRate::of(links, TaskId::Telemetry);
     let mut slot = 0;
     let mut shown = None;
     loop {

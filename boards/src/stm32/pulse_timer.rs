@@ -4,6 +4,7 @@ use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
 use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin};
+use embassy_time::{Duration, Instant};
 use sophie_drivers::pwm_timing::PwmTiming;
 
 /// A running timer; its outputs are low until they are set. Channels that have no pin are left alone.
@@ -45,5 +46,12 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
     pub fn set(&mut self, channel: Channel, counts: u32) {
         let registers = self.timer.regs_gp16();
         registers.ccr(channel.index()).write(|w| w.set_ccr(counts as u16));
+    }
+
+    /// When the next frame begins, to the microsecond: the pulses that were set last take effect then. A frame that
+    /// begins between their setting and this call is not seen; the one after it is given.
+    pub fn next_frame(&self, timing: &PwmTiming) -> Instant {
+        let passed = self.timer.regs_gp16().cnt().read().cnt();
+        Instant::now() + Duration::from_micros(timing.left_us(u32::from(passed)).into())
     }
 }

@@ -3,6 +3,7 @@
 use embassy_stm32::gpio::Flex;
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin};
 use embassy_stm32::{Peri, rcc};
+use embassy_time::Instant;
 use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
 use sophie_drivers::pwm_timing::PwmTiming;
@@ -48,10 +49,12 @@ impl<T: GeneralInstance4Channel> Pair<T> {
         }
     }
 
-    fn set(&mut self, pulses_us: [f32; 2]) {
+    /// Sets both pulses, µs, and gives when the first ones of these widths begin.
+    fn set(&mut self, pulses_us: [f32; 2]) -> Instant {
         for (channel, pulse) in self.channels.into_iter().zip(pulses_us) {
             self.timer.set(channel, servo_pulse::compare(&self.timing, pulse));
         }
+        self.timer.next_frame(&self.timing)
     }
 }
 
@@ -89,8 +92,9 @@ impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
 }
 
 impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> Servos for ServoPairs<A, B> {
-    async fn write(&mut self, [one, two, three, four]: PerArm<f32>) {
-        self.first.set([one, two]);
-        self.second.set([three, four]);
+    async fn write(&mut self, [one, two, three, four]: PerArm<f32>) -> Instant {
+        // Two timers, two frames: the later one counts.
+        let [first, second] = [self.first.set([one, two]), self.second.set([three, four])];
+        first.max(second)
     }
 }

@@ -1,27 +1,33 @@
 //! The tendon servos: four channels of one timer.
 
-use embassy_stm32::Peri;
-use embassy_stm32::gpio::OutputType;
-use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
+use embassy_stm32::gpio::Flex;
 use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, Channel, GeneralInstance4Channel, TimerPin};
+use embassy_stm32::{Peri, rcc};
+use embassy_time::Instant;
 use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_drivers::servo_pulse;
 use sophie_tasks::ports::Servos;
 
+use super::pulse_timer::PulseTimer;
+
 /// The channels in the order of the servos.
 const SERVOS: [Channel; 4] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
 
 /// Four servos on the channels 1 to 4 of a timer.
 pub struct ServoTimer<T: GeneralInstance4Channel> {
-    pwm: SimplePwm<'static, T>,
+    timer: PulseTimer<T>,
     timing: PwmTiming,
+    /// Kept, so that the pins stay the timer's.
+    _pins: [Flex<'static>; 4],
 }
 
 impl<T: GeneralInstance4Channel> ServoTimer<T> {
     /// Servos on these pins without pulses, with the frames of the parameter `servo_frame_rate`.
+    ///
+    /// # Panics
+    /// If the timer's clock cannot make the frames: a board with such a clock never starts, so it is found at the bench.
     pub fn new(
         timer: Peri<'static, T>,
         (one, two, three, four): (
@@ -32,33 +38,30 @@ impl<T: GeneralInstance4Channel> ServoTimer<T> {
         ),
         params: &Params,
     ) -> Self {
-        let push_pull = OutputType::PushPull;
-        let mut pwm = SimplePwm::new(
+        let frame_hz = (params.servo_frame_rate + 0.5) as u32;
+        let Some(timing) = servo_pulse::timing(rcc::frequency::<T>().0, frame_hz) else {
+            panic!("the timer of the servos cannot make {frame_hz} Hz")
+        };
+        let mut timer = PulseTimer::new(timer, timing);
+        let pins = [
+            timer.output(one),
+            timer.output(two),
+            timer.output(three),
+            timer.output(four),
+        ];
+        Self {
             timer,
-            Some(PwmPin::new(one, push_pull)),
-            Some(PwmPin::new(two, push_pull)),
-            Some(PwmPin::new(three, push_pull)),
-            Some(PwmPin::new(four, push_pull)),
-            Hertz((params.servo_frame_rate + 0.5) as u32),
-            Default::default(),
-        );
-        let timing = PwmTiming::given(pwm.max_duty_cycle(), pwm.get_frequency().0 as f32);
-        for channel in SERVOS {
-            let mut output = pwm.channel(channel);
-            output.set_duty_cycle(0);
-            output.enable();
+            timing,
+            _pins: pins,
         }
-        Self { pwm, timing }
     }
 }
 
 impl<T: GeneralInstance4Channel> Servos for ServoTimer<T> {
-    async fn write(&mut self, pulses_us: PerArm<f32>) {
+    async fn write(&mut self, pulses_us: PerArm<f32>) -> Instant {
         for (channel, pulse) in SERVOS.into_iter().zip(pulses_us) {
-            // Preloaded: a new width takes effect with the next frame, never within a pulse.
-            self.pwm
-                .channel(channel)
-                .set_duty_cycle(servo_pulse::compare(&self.timing, pulse));
+            self.timer.set(channel, servo_pulse::compare(&self.timing, pulse));
         }
+        self.timer.next_frame(&self.timing)
     }
 }

@@ -149,7 +149,7 @@ impl Rig {
         let wide = |v: PerArm<f32>| v.map(f64::from);
         let mix = self.links.mix.latest().map(|m| m.value).unwrap_or_default();
         let target = self.links.target.latest().map(|v| aim::angles(v.value));
-        let measured = self.links.arms.fresh().unwrap_or_default().tilt;
+        let measured = self.links.tilts().values();
         Moment {
             t,
             attitude: self.plant.euler(),

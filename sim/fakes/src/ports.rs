@@ -5,7 +5,7 @@ use std::future::pending;
 use std::rc::Rc;
 
 use embassy_sync::signal::Signal;
-use embassy_time::{Instant, Timer};
+use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec as Few;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
@@ -135,6 +135,8 @@ impl ArmImus for FakeArms {
 pub struct FakeAnalog {
     /// The converter.
     pub part: Part,
+    /// Time that a conversion takes beyond the usual 30 µs, µs.
+    pub delay_us: Rc<Cell<u64>>,
     /// What it gives.
     pub frame: Rc<Cell<AnalogFrame>>,
 }
@@ -148,7 +150,7 @@ impl Analog for FakeAnalog {
     }
 
     async fn read(&mut self) -> Result<AnalogFrame, PortError> {
-        self.part.work(30).await?;
+        self.part.work(30 + self.delay_us.get()).await?;
         Ok(self.frame.get())
     }
 }
@@ -176,6 +178,8 @@ impl Motors for FakeMotors {
 pub struct FakeServos {
     /// The timer.
     pub part: Part,
+    /// What is left of the frame in which widths are written, µs.
+    pub frame_us: Rc<Cell<u64>>,
     /// Every pulse so far, µs.
     pub pulses: Rc<RefCell<Vec<PerArm<f32>>>>,
 }
@@ -188,9 +192,10 @@ impl FakeServos {
 }
 
 impl Servos for FakeServos {
-    async fn write(&mut self, pulses_us: PerArm<f32>) {
+    async fn write(&mut self, pulses_us: PerArm<f32>) -> Instant {
         self.pulses.borrow_mut().push(pulses_us);
         let _ = self.part.work(20).await;
+        Instant::now() + Duration::from_micros(self.frame_us.get())
     }
 }
 

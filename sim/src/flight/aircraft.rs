@@ -100,7 +100,7 @@ pub struct Belief {
     pub thrust_asked: PerArm<f64>,
     /// Tension asked of each tendon, N.
     pub tension_asked: PerArm<f64>,
-    /// Measured contact pressure, Pa.
+    /// Measured contact pressure, Pa; NaN while none is fresh.
     pub pressure: PerArm<f64>,
     /// The rotors could not give all that was asked.
     pub saturated: bool,

@@ -9,7 +9,7 @@ use sophie_control::wrench::{Configuration, PerArm};
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{GripState, Links, Status};
+use sophie_tasks::links::{GripState, Links, Newest, Status};
 use sophie_tasks::start::{Cause, Start};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
@@ -141,17 +141,23 @@ impl Aircraft for Stack {
             let heading = math::wrap_pi(estimate.2 + ahead as f32);
             [roll, pitch, f64::from(heading)]
         });
-        let arms = links.arms.fresh().unwrap_or_default();
-        let contact = links.contact.latest().map(|c| c.value).unwrap_or_default();
-        let tendons = links.tendons.latest().map(|f| f.value).unwrap_or_default();
+        // A held pressure is none that is measured; held forces are what the servos still stand for.
+        let pressure = match links.contact.newest() {
+            Some(Newest::Fresh(contact)) => wide(contact.value.pressure),
+            Some(Newest::Held(_)) | None => [f64::NAN; 4],
+        };
+        let force = links
+            .tendons
+            .latest()
+            .map_or([0.0; 4], |order| order.value.forces().force);
         Belief {
             attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
             setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),
-            tilt_measured: arms.tilt.map(|a| a.map_or(f64::NAN, f64::from)),
+            tilt_measured: links.tilts().values().map(|a| a.map_or(f64::NAN, f64::from)),
             tilt_model: wide(mix.tilt),
             thrust_asked: wide(mix.thrusts),
-            tension_asked: wide(tendons.force),
-            pressure: wide(contact.pressure),
+            tension_asked: wide(force),
+            pressure,
             saturated: mix.running && mix.given.saturated(),
         }
     }
@@ -197,7 +203,7 @@ impl Aircraft for Stack {
             .iter()
             .map(|&task| self.links.timing(task).overruns)
             .sum();
-        self.overruns + now
+        self.overruns + now + self.links.contact_timing().overruns
     }
 }
 
@@ -209,5 +215,24 @@ fn calibrated(params: Params, board: &Board) -> Params {
         accel_bias_y,
         accel_bias_z,
         ..params
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_log_has_no_pressure_while_none_is_fresh() {
+        let scenario = Scenario::default_mission();
+        let mut stack = Stack::new(&scenario, &mut Pcg64Mcg::seed_from_u64(1));
+        assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
+        stack.run_until(50_000).unwrap();
+        assert!(stack.belief().pressure.iter().all(|p| p.is_finite()));
+        // The newest conversion is of 21 ms ago.
+        let contact = stack.links.contact.latest().unwrap();
+        let old = embassy_time::Instant::now() - embassy_time::Duration::from_millis(21);
+        stack.links.contact.send(old, contact.value);
+        assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
     }
 }

@@ -79,10 +79,11 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
             .await;
         // In milliseconds, so that a young start does not divide by zero.
         let up = Instant::now().as_millis().max(1);
-        for task in TaskId::ALL {
-            let t = self.links.timing(task);
+        // After the tasks the chain from contact pressure to servo pulse: late at the command, response at the pulse.
+        let chain = [("contact", self.links.contact_timing())];
+        let tasks = TaskId::ALL.map(|task| (task.name(), self.links.timing(task)));
+        for (name, t) in tasks.into_iter().chain(chain) {
             let rate = u64::from(t.runs) * 1000 / up;
-            let name = task.name();
             self.out
                 .line(format_args!(
                     "{name:11} {rate:>6} {:>15} {:>9} {:>9} {:>9}",

@@ -8,7 +8,7 @@ use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::clamp;
-use sophie_tasks::links::{ArmAngles, ClampCommand, Contact, Links, MixOutput};
+use sophie_tasks::links::{ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::start::{Cause, Start};
 
@@ -42,7 +42,7 @@ impl World {
 
     /// Arms that bend by 0.020152 rad/N, tendons that have what is asked.
     fn speak(&self, links: &Links, at: Instant) {
-        let force = links.tendons.latest().map_or([0.0; 4], |m| m.value.force);
+        let force = force(links).unwrap_or([0.0; 4]);
         if let Some(command) = self.command {
             links.clamp_command.send(at, command);
         }
@@ -54,10 +54,20 @@ impl World {
         for ((slot, force), seen) in tilt.iter_mut().zip(force).zip(self.seen) {
             *slot = seen.then_some(-0.2 - 0.020_152 * force);
         }
-        links.arms.send(at, ArmAngles { tilt });
+        links.arms.send(at, ArmAngles::at(at, tilt));
         links.tension.send(at, force);
         links.mix.send(at, self.mix);
     }
+}
+
+/// Forces of the newest order, however old.
+fn force(links: &Links) -> Option<PerArm<f32>> {
+    links.tendons.latest().map(|m| m.value.forces().force)
+}
+
+/// Forces of an order that is fresh.
+fn fresh(links: &Links) -> Option<TendonForces> {
+    links.tendons.fresh().map(|order| *order.forces())
 }
 
 struct Bench(Rig);
@@ -71,7 +81,7 @@ impl Bench {
 
     fn run(&mut self, ms: u64, world: &World) -> PerArm<f32> {
         self.0.run_with(ms, |links, at| world.speak(links, at));
-        self.0.links.tendons.latest().map_or([-1.0; 4], |m| m.value.force)
+        force(self.0.links).unwrap_or([-1.0; 4])
     }
 
     fn states(&self) -> PerArm<ArmState> {
@@ -101,11 +111,7 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
             );
         }
         bench.run(30, &World::new(command, 500.0));
-        assert_eq!(
-            bench.0.links.tendons.fresh().unwrap().found,
-            found,
-            "{kept:?} {command:?}"
-        );
+        assert_eq!(fresh(bench.0.links).unwrap().found, found, "{kept:?} {command:?}");
     }
     // One arm is enough.
     let mut bench = Bench::new();
@@ -114,7 +120,7 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
     bench.run(300, &world);
     world.command = Some(ClampCommand::Release);
     bench.run(30, &world);
-    assert!(bench.0.links.tendons.fresh().unwrap().found);
+    assert!(fresh(bench.0.links).unwrap().found);
 }
 
 #[test]
@@ -128,11 +134,16 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
     world.command = Some(CLOSE);
     let force = bench.run(1000, &world);
     assert!(force.iter().all(|f| (f - 34.74).abs() < 1.5), "{force:?}");
-    // The command is stale after 200 ms; from then on the forces are held and still published.
+    // The command is stale after 200 ms; from then on forces and judgement are those of the last step and age. The grip
+    // is unknown 100 ms after the last pressure that was judged, the servos stay 200 ms after it.
     world.command = None;
-    let held = bench.run(210, &world);
+    let held = bench.run(200, &world);
+    let stopped = bench.0.links.grip.latest().unwrap().at;
+    bench.run(100, &world);
+    assert!(bench.0.links.grip.fresh().is_none() && bench.0.links.tendons.fresh().is_some());
     assert_eq!(bench.run(1000, &world), held);
-    assert!(bench.0.links.tendons.fresh().is_some() && bench.0.links.grip.fresh().is_some());
+    assert!(bench.0.links.tendons.fresh().is_none() && bench.0.links.grip.fresh().is_none());
+    assert_eq!(bench.0.links.grip.latest().unwrap().at, stopped);
     // Released at 80 N/s: 20 N in a quarter of a second.
     world.command = Some(ClampCommand::Release);
     let force = bench.run(250, &world);
@@ -216,11 +227,60 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
         let mut rig = Rig::starting(Params::default(), start);
         rig.time.spawn(clamp::run(rig.links));
         rig.run(1);
-        let forces = rig.links.tendons.fresh();
+        let order = rig.links.tendons.fresh();
+        assert!(matches!(order, None | Some(TendonOrder::Resumed(_))), "{order:?}");
+        let forces = fresh(rig.links);
         assert_eq!(forces.is_some(), sent, "{grip_memory:?}");
         if let Some(forces) = forces {
             assert_eq!((forces.force, forces.stay), (retained.force, [true; 4]));
             assert!(!forces.found);
         }
     }
+}
+
+#[test]
+fn forces_and_judgement_carry_the_time_of_their_pressures() {
+    let mut bench = Bench::new();
+    let mut world = World::new(CLOSE, 500.0);
+    world.contact = false;
+    // Converted 7 ms before each step of the clamp.
+    bench.0.run_with(300, |links, at| {
+        world.speak(links, at);
+        if at.as_millis() % 10 == 3 {
+            let (pressure, fault) = (world.pressure, world.fault);
+            links.contact.send(at, Contact { pressure, fault });
+        }
+    });
+    let links = bench.0.links;
+    let (tendons, grip) = (links.tendons.latest().unwrap(), links.grip.latest().unwrap());
+    // The last step was at 300 ms.
+    assert_eq!((tendons.at.as_millis(), grip.at.as_millis()), (293, 293));
+    assert!(matches!(tendons.value, TendonOrder::Measured(_)), "{tendons:?}");
+}
+
+#[test]
+fn without_pressures_forces_follow_the_command_and_say_so() {
+    let mut bench = Bench::new();
+    let mut world = World::new(CLOSE, 500.0);
+    let before = bench.run(500, &world);
+    world.contact = false;
+    // The last pressures are of 499 ms: fresh for the steps up to 519 ms.
+    bench.run(60, &world);
+    let links = bench.0.links;
+    let order = links.tendons.latest().unwrap();
+    assert!(matches!(order.value, TendonOrder::Blind(_)), "{order:?}");
+    // The time of the newest command, not of a conversion: the last step was at 560 ms.
+    assert_eq!(order.at.as_millis(), 559);
+    // Every arm is faulty by a judgement of now, not by one of the last pressure's time.
+    assert!(links.grip.fresh().is_some() && bench.states() == [ArmState::Faulty; 4]);
+    let held = force(links).unwrap();
+    assert!(held[0] >= before[0]);
+    // Released blind.
+    world.command = Some(ClampCommand::Release);
+    let after = bench.run(300, &world);
+    assert!(after[0] < held[0], "{held:?} {after:?}");
+    assert!(matches!(
+        bench.0.links.tendons.fresh(),
+        Some(TendonOrder::Blind(_))
+    ));
 }

@@ -294,3 +294,24 @@ fn a_link_that_falls_silent_counts_as_none() {
         ]
     );
 }
+
+#[test]
+fn pressures_that_are_held_are_a_fault_of_every_sensor() {
+    let mut bench = Bench::new();
+    let last = bench.rig.links.contact.latest().unwrap();
+    // Everything else is still said; the pressures stay those of now.
+    let world = bench.world;
+    // 11 ms old at the next step.
+    bench.rig.run_with(10, |links, at| {
+        world.speak(links, at);
+        links.contact.send(last.at, last.value);
+    });
+    assert_eq!(bench.refuses(), []);
+    bench.rig.run_with(20, |links, at| {
+        world.speak(links, at);
+        links.contact.send(last.at, last.value);
+    });
+    assert_eq!(bench.refuses(), [Refusal::FsrFault]);
+    bench.run(20);
+    assert_eq!(bench.refuses(), []);
+}

@@ -291,7 +291,7 @@ fn status_says_how_the_vehicle_is() {
 }
 
 #[test]
-fn timing_has_a_line_for_every_task() {
+fn timing_has_a_line_for_every_task_and_the_contact_chain() {
     let mut bench = Bench::in_mode(Mode::Disarmed);
     bench.rig.run(4_980);
     for _ in 0..500 {
@@ -306,7 +306,8 @@ fn timing_has_a_line_for_every_task() {
     }
     // 500 runs in 5.00 s; every one late.
     let said = bench.says("timing");
-    assert_eq!(said.len(), 1 + TaskId::COUNT);
+    assert_eq!(said.len(), 2 + TaskId::COUNT);
+    assert!(said[1 + TaskId::COUNT].starts_with("contact "), "{said:?}");
     let row: Vec<&str> = said[7].split_whitespace().collect();
     assert_eq!(row, ["clamp", "100", "30", "250", "220", "500"]);
 }

@@ -1,11 +1,13 @@
 //! Each task by itself, on scripted ports, in virtual time.
 
 mod analog;
+mod arms;
 mod clamp;
 mod commander;
 mod console;
 mod control;
 mod deadline;
+mod declarations;
 mod imu;
 mod links;
 mod mixer;

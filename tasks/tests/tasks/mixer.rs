@@ -46,7 +46,7 @@ impl Bench {
         self.0.run_with(ms, |links, at| {
             if i % 10 == 0 && at.as_millis() >= age_ms {
                 let measured = Instant::from_millis(at.as_millis() - age_ms);
-                links.arms.send(measured, ArmAngles { tilt });
+                links.arms.send(measured, ArmAngles::at(measured, tilt));
             }
             i += 1;
             links.demand.send(at, demand);

@@ -7,7 +7,7 @@ use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::vector::Vec3;
-use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForces};
+use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::retained_store::RetainedStore;
 use sophie_tasks::start::{Cause, Start};
@@ -27,7 +27,7 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
         force: [50.0, 51.0, 52.0, 5.0],
         ..TendonForces::default()
     };
-    links.tendons.send(now, forces);
+    links.tendons.send(now, TendonOrder::Measured(forces));
     let mut grip = GripState::default();
     for (arm, fault) in grip.arms.iter_mut().zip([
         None,
@@ -135,4 +135,36 @@ fn nothing_is_kept_before_the_arms_were_looked_at_and_old_messages_change_nothin
     rig.run(201);
     store.keep(rig.links);
     assert_eq!(found(&memory).retained, kept);
+}
+
+#[test]
+fn forces_that_are_resumed_or_old_are_not_kept_as_news() {
+    let kept = RetainedState {
+        grip_memory: GRIP,
+        force: [40.0; 4],
+        ..RetainedState::default()
+    };
+    let start = Start {
+        cause: Cause::Watchdog,
+        retained: Some(kept),
+        sequence: 7,
+    };
+    let (mut rig, memory) = (Rig::starting(Params::default(), start), FakeMemory::default());
+    let mut store = RetainedStore::new(rig.links, memory.clone());
+    let forces = TendonForces {
+        force: [60.0; 4],
+        ..TendonForces::default()
+    };
+    rig.links
+        .tendons
+        .send(Instant::now(), TendonOrder::Resumed(forces));
+    store.keep(rig.links);
+    assert_eq!(found(&memory).retained.unwrap().force, [40.0; 4]);
+    rig.links.tendons.send(Instant::now(), TendonOrder::Blind(forces));
+    rig.run(201);
+    store.keep(rig.links);
+    assert_eq!(found(&memory).retained.unwrap().force, [40.0; 4]);
+    rig.links.tendons.send(Instant::now(), TendonOrder::Blind(forces));
+    store.keep(rig.links);
+    assert_eq!(found(&memory).retained.unwrap().force, [60.0; 4]);
 }

@@ -1,14 +1,15 @@
 //! From forces to pulses: when there are none, how fast they move, and when they stand still.
 
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::PerArm;
-use sophie_tasks::links::{ArmAngles, Links, TendonForces};
+use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::servos;
 use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::timing::Quantity;
 
 use crate::rig::Rig;
 use sophie_fakes::FakeServos;
@@ -29,10 +30,9 @@ fn pulse(angle: f32) -> f32 {
 
 fn speak(links: &Links, at: Instant, forces: Option<TendonForces>, tilt: f32) {
     if let Some(forces) = forces {
-        links.tendons.send(at, forces);
+        links.tendons.send(at, TendonOrder::Measured(forces));
     }
-    let tilt = [Some(tilt); 4];
-    links.arms.send(at, ArmAngles { tilt });
+    links.arms.send(at, ArmAngles::at(at, [Some(tilt); 4]));
 }
 
 fn forces(force: f32, found: bool) -> TendonForces {
@@ -163,4 +163,93 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
         rig.run_with(30, |links, at| speak(links, at, Some(order), CLOSED));
         assert!(near(port.now(), first), "{grip_memory:?}: {:?}", port.now());
     }
+}
+
+/// Sends an order each 10 ms whose pressures were converted `age` ms before, from 1 ms before a servo frame on.
+fn ordered(rig: &mut Rig, ms: u64, age: u64, order: fn(TendonForces) -> TendonOrder) {
+    rig.run_with(ms, |links, at| {
+        links.arms.send(at, ArmAngles::at(at, [Some(CLOSED); 4]));
+        if at.as_millis() % 10 == 9 {
+            links
+                .tendons
+                .send(at - Duration::from_millis(age), order(forces(60.0, false)));
+        }
+    });
+}
+
+#[test]
+fn the_time_from_conversion_to_pulse_is_recorded_once_for_each_conversion_that_becomes_a_pulse() {
+    let (mut rig, port) = started(Start::COLD);
+    // Each pulse begins 5 ms after the write, which takes 20 us.
+    port.frame_us.set(5000);
+    ordered(&mut rig, 1000, 4, TendonOrder::Measured);
+    let timing = rig.links.contact_timing();
+    // Frames at 20 ms to 980 ms: the orders in between are overtaken. That of 1000 ms is being written.
+    assert_eq!((timing.runs, timing.overruns), (49, 0));
+    // 15 ms for the steps before, and a frame of 20 ms.
+    assert_eq!(timing.deadline_us, 35_000);
+    let take = |quantity| rig.links.take_contact_histogram(quantity);
+    let [late, frame, all] = [Quantity::Lateness, Quantity::Execution, Quantity::Response].map(take);
+    assert_eq!((late.min(), late.max()), (5000, 5000));
+    assert_eq!((frame.min(), frame.max()), (5020, 5020));
+    assert_eq!((all.min(), all.max(), all.count()), (10_020, 10_020, 49));
+    // No new conversion, no new answer, whatever the servos' frames.
+    rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
+    assert_eq!(rig.links.contact_timing().runs, 50);
+}
+
+#[test]
+fn a_pulse_that_comes_too_late_is_a_missed_deadline() {
+    for (age, missed) in [(29, 0), (30, 1), (190, 1)] {
+        let (mut rig, port) = started(Start::COLD);
+        port.frame_us.set(4980);
+        rig.run(210);
+        ordered(&mut rig, 20, age, TendonOrder::Measured);
+        let timing = rig.links.contact_timing();
+        assert_eq!((timing.runs, timing.overruns), (1, missed), "{age} ms");
+        assert_eq!(u64::from(timing.worst_response_us), 1000 * (age + 1) + 5000);
+    }
+}
+
+#[test]
+fn forces_that_follow_from_no_pressure_are_obeyed_and_not_measured() {
+    for (order, winds) in [
+        (TendonOrder::Blind as fn(TendonForces) -> TendonOrder, true),
+        (TendonOrder::Resumed, false),
+    ] {
+        let (mut rig, port) = started(Start::COLD);
+        ordered(&mut rig, 500, 4, order);
+        assert_eq!(rig.links.contact_timing().runs, 0);
+        assert_eq!(port.now()[0] > 1000.0, winds, "{:?}", port.now());
+    }
+}
+
+#[test]
+fn forces_of_old_pressures_hold_although_they_were_sent_just_now() {
+    let (mut rig, port) = started(Start::COLD);
+    ordered(&mut rig, 300, 4, TendonOrder::Measured);
+    let held = port.now();
+    assert!(held[0] > 1000.0, "{held:?}");
+    // Fresh orders, of pressures that were converted 201 ms ago.
+    ordered(&mut rig, 20, 201, TendonOrder::Measured);
+    let held = port.now();
+    let runs = rig.links.contact_timing().runs;
+    ordered(&mut rig, 300, 201, TendonOrder::Measured);
+    assert_eq!(port.now(), held);
+    assert_eq!(rig.links.contact_timing().runs, runs);
+}
+
+#[test]
+fn the_tension_is_as_old_as_the_oldest_tilt_in_it() {
+    let (mut rig, _) = started(Start::COLD);
+    rig.run_with(101, |links, at| {
+        links.tendons.send(at, TendonOrder::Measured(forces(60.0, false)));
+        let mut angles = ArmAngles::at(at, [Some(CLOSED); 4]);
+        angles.tilt[2] = (at.as_millis() > 30).then(|| Stamped {
+            at: at - Duration::from_millis(30),
+            value: CLOSED,
+        });
+        links.arms.send(angles.oldest().unwrap(), angles);
+    });
+    assert_eq!(rig.links.tension.latest().unwrap().at.as_millis(), 69);
 }

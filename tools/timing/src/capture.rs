@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::live::{self, Chain, Garbled, Line, Quantiles, Record};
+use crate::live::{self, Chain, Contact, Garbled, Line, Quantiles, Record};
 use crate::source;
 use crate::trace::Trace;
 
@@ -15,6 +15,8 @@ pub struct Capture {
     pub tasks: Vec<Task>,
     /// The chain's seconds.
     pub chain: Vec<Chain>,
+    /// The contact chain's seconds: none of a second without a pulse that answers a pressure.
+    pub contact: Vec<Contact>,
     /// The executors' events, if the firmware logs them.
     pub trace: Trace,
     /// What could not be read and what is left, in a sentence.
@@ -96,6 +98,7 @@ impl Capture {
                 }),
             },
             Some(Line::Chain(chain)) => self.chain.push(chain),
+            Some(Line::Contact(contact)) => self.contact.push(contact),
             None => {}
         }
         Ok(())

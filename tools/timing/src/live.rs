@@ -1,4 +1,4 @@
-//! The records that every firmware logs: one a second of each task, one of the chain, and missed deadlines.
+//! The records that every firmware logs: one a second of each task, one of each chain, and missed deadlines.
 
 /// A line that begins as one about timing and does not go on as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +45,23 @@ pub struct Chain {
     pub times: Quantiles,
 }
 
+/// The second of the chain from the conversion of contact pressures to the servo pulse that answers them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// Conversions that became a pulse.
+    pub pulses: u32,
+    /// From the conversion until the pulse widths were written.
+    pub command: Quantiles,
+    /// The quickest to its pulse, µs.
+    pub min: u32,
+    /// From the conversion to the beginning of the pulse: with the wait for the servos' frame.
+    pub pulse: Quantiles,
+    /// Deadline of the pulse, µs after the conversion.
+    pub deadline: u32,
+    /// Deadlines missed.
+    pub missed: u32,
+}
+
 /// What a line of the log says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Line {
@@ -52,6 +69,8 @@ pub enum Line {
     Record(Record),
     /// Of the chain.
     Chain(Chain),
+    /// Of the contact chain.
+    Contact(Contact),
 }
 
 /// What `line` says of timing; `None` when it is about something else.
@@ -65,10 +84,10 @@ pub fn parse(line: &str) -> Option<Result<Line, Garbled>> {
     if task.contains(' ') {
         return None;
     }
-    let parsed = if task == "chain" {
-        chain(rest).map(Line::Chain)
-    } else {
-        record(task, rest).map(Line::Record)
+    let parsed = match task {
+        "chain" => chain(rest).map(Line::Chain),
+        "contact" => contact(rest).map(Line::Contact),
+        _ => record(task, rest).map(Line::Record),
     };
     Some(parsed.ok_or(Garbled))
 }
@@ -100,6 +119,23 @@ fn chain(rest: &str) -> Option<Chain> {
         frames: frames.parse().ok()?,
         min: min.parse().ok()?,
         times: quantiles(times)?,
+    })
+}
+
+fn contact(rest: &str) -> Option<Contact> {
+    let (pulses, rest) = rest.split_once("/s, ")?;
+    let (command, rest) = rest.split_once(" us from pressure to servo command, ")?;
+    let (times, rest) = rest.split_once(" us to its pulse of ")?;
+    let (deadline, rest) = rest.split_once(" us, ")?;
+    let (missed, _) = rest.split_once(" missed")?;
+    let (min, times) = times.split_once('/')?;
+    Some(Contact {
+        pulses: pulses.parse().ok()?,
+        command: quantiles(command)?,
+        min: min.parse().ok()?,
+        pulse: quantiles(times)?,
+        deadline: deadline.parse().ok()?,
+        missed: missed.parse().ok()?,
     })
 }
 
@@ -148,6 +184,28 @@ mod tests {
             times,
         };
         assert_eq!(chain, Some(Ok(Line::Chain(expected))));
+    }
+
+    #[test]
+    fn the_contact_chain_is_read_to_its_last_number_or_not_at_all() {
+        const LINE: &str = "timing contact: 50/s, 6143/9215/9100 us from pressure to servo command, 9514/16383/17000/16990 us to its pulse of 35000 us, 3 missed";
+        let [p50, p99, max] = [6143, 9215, 9100];
+        let expected = Contact {
+            pulses: 50,
+            command: Quantiles { p50, p99, max },
+            min: 9514,
+            pulse: Quantiles {
+                p50: 16_383,
+                p99: 17_000,
+                max: 16_990,
+            },
+            deadline: 35_000,
+            missed: 3,
+        };
+        assert_eq!(parse(LINE), Some(Ok(Line::Contact(expected))));
+        for end in LINE.find("50/s").unwrap_or(0)..LINE.len() - "missed".len() {
+            assert_eq!(parse(&LINE[..end]), Some(Err(Garbled)), "{}", &LINE[..end]);
+        }
     }
 
     #[test]

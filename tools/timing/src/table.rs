@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::capture::{Capture, worst};
-use crate::live::Quantiles;
+use crate::live::{Contact, Quantiles};
 use crate::replay::{Replay, Task};
 use crate::stats::Sorted;
 
@@ -61,7 +61,21 @@ fn seconds(capture: &Capture) -> String {
             all.max, all.p50, all.p99
         );
     }
-    text
+    text + &contact(&capture.contact)
+}
+
+/// Of the chain from contact pressure to servo pulse; nothing in a log without any.
+fn contact(seconds: &[Contact]) -> String {
+    let (Some(min), Some(last)) = (seconds.iter().map(|c| c.min).min(), seconds.last()) else {
+        return String::new();
+    };
+    let [command, pulse] = [|c: &Contact| c.command, |c: &Contact| c.pulse]
+        .map(|of| worst(&seconds.iter().map(of).collect::<Vec<_>>()));
+    let missed: u64 = seconds.iter().map(|c| u64::from(c.missed)).sum();
+    format!(
+        "pressure to servo pulse: {min} to {} us of {}, half within {}, 99 % within {}, {missed} missed; to its command half within {}, all within {}\n",
+        pulse.max, last.deadline, pulse.p50, pulse.p99, command.p50, command.max
+    )
 }
 
 fn quantiles(q: Quantiles) -> String {

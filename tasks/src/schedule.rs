@@ -1,0 +1,141 @@
+//! Every task once: its name, level, period, deadline, and whether the supervisor watches it.
+//!
+//! This is data, below the links and the loops that use it: the enum, the records of timing, the supervisor's list and
+//! the table of docs/timing.md follow from it. Which port a task takes is said where it is spawned.
+
+use embassy_time::Duration;
+
+/// How urgent a task is: each level preempts those below it, tasks of one level take turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// From data-ready to the motor frame.
+    Flight,
+    /// Fixed rates of 50 to 500 Hz.
+    Steady,
+    /// What may wait.
+    Background,
+}
+
+impl Level {
+    /// Name for logs.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flight => "flight",
+            Self::Steady => "steady",
+            Self::Background => "background",
+        }
+    }
+}
+
+/// Whether a task's standing still leaves the watchdog unfed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watch {
+    /// It does.
+    Watched,
+    /// It does not: flying goes on without it.
+    Unwatched,
+}
+
+/// What is declared of a task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Task {
+    /// Name for logs.
+    pub name: &'static str,
+    /// What it does.
+    pub what: &'static str,
+    /// The level that it runs on.
+    pub level: Level,
+    /// Time between two runs; the longest where it varies.
+    pub period: Duration,
+    /// Time from release by which a run must have ended. What it counts from: docs/timing.md.
+    pub deadline: Duration,
+    /// Whether the supervisor watches it.
+    pub watch: Watch,
+}
+
+macro_rules! tasks {
+    ($(
+        $(#[doc = $what:literal])+
+        $id:ident $name:literal: $level:ident, each $period:literal us, within $deadline:literal us, $watch:ident;
+    )*) => {
+        /// Every task whose timing is measured.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(usize)]
+        pub enum TaskId {
+            $($(#[doc = $what])+ $id,)*
+        }
+
+        impl TaskId {
+            /// Every task, in the order of the declaration.
+            pub const ALL: [Self; [$(Self::$id),*].len()] = [$(Self::$id),*];
+
+            /// What is declared of the task.
+            pub const fn task(self) -> Task {
+                match self {
+                    $(Self::$id => Task {
+                        name: $name,
+                        what: concat!($($what),+),
+                        level: Level::$level,
+                        period: Duration::from_micros($period),
+                        deadline: Duration::from_micros($deadline),
+                        watch: Watch::$watch,
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+tasks! {
+    /// Inertial sensor: samples filtered and decimated.
+    Imu "imu": Flight, each 1000 us, within 200 us, Watched;
+    /// Attitude estimator.
+    Estimator "estimator": Flight, each 1000 us, within 300 us, Watched;
+    /// Attitude and rate control.
+    Control "control": Flight, each 1000 us, within 400 us, Watched;
+    /// Allocation.
+    Mixer "mixer": Flight, each 1000 us, within 500 us, Watched;
+    /// Motor output; its response is that of the whole chain.
+    Motors "motors": Flight, each 1000 us, within 600 us, Watched;
+    /// Pressure sensors and battery.
+    Analog "analog": Steady, each 2000 us, within 2000 us, Watched;
+    /// Clamp loops.
+    Clamp "clamp": Steady, each 10000 us, within 10000 us, Watched;
+    /// Servo output; a frame by `servo_frame_rate`, 20 ms at most.
+    Servos "servos": Steady, each 20000 us, within 20000 us, Watched;
+    /// Receiver, as frames come. A lost radio is the failsafe's business.
+    Rc "rc": Steady, each 20000 us, within 2000 us, Unwatched;
+    /// Mode logic.
+    Commander "commander": Steady, each 10000 us, within 10000 us, Watched;
+    /// Arm sensors. Their bus may stall; the mixer does without.
+    Arms "arms": Background, each 10000 us, within 10000 us, Unwatched;
+    /// Telemetry to the pilot.
+    Telemetry "telemetry": Background, each 50000 us, within 50000 us, Unwatched;
+    /// Deadline supervision and watchdog, which bites when it stands still.
+    Supervisor "supervisor": Steady, each 10000 us, within 10000 us, Unwatched;
+}
+
+impl TaskId {
+    /// Number of tasks.
+    pub const COUNT: usize = Self::ALL.len();
+
+    /// Name for logs.
+    pub const fn name(self) -> &'static str {
+        self.task().name
+    }
+
+    /// The level that the task runs on.
+    pub const fn level(self) -> Level {
+        self.task().level
+    }
+
+    /// Time between two runs; the longest where it varies.
+    pub const fn period(self) -> Duration {
+        self.task().period
+    }
+
+    /// Time from release by which a run must have ended.
+    pub const fn deadline(self) -> Duration {
+        self.task().deadline
+    }
+}

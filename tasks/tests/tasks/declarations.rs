@@ -1,0 +1,110 @@
+//! What is declared of tasks and links, and the tables of the docs that follow from it.
+//!
+//! `SOPHIE_REWRITE_DOCS=1 cargo test --package sophie-tasks --test tasks declarations` rewrites the tables.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use embassy_time::Duration;
+use sophie_tasks::links::Links;
+use sophie_tasks::schedule::{TaskId, Watch};
+use sophie_tasks::supervisor::least_runs;
+
+const REWRITE: &str = "SOPHIE_REWRITE_DOCS";
+
+/// The part of `page` between the marks of `name` is `table`, or becomes it.
+fn holds(page: &str, name: &str, table: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(page);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (begin, end) = (
+        format!("<!-- {name}: begin -->\n"),
+        format!("<!-- {name}: end -->"),
+    );
+    let from = text.find(&begin).unwrap() + begin.len();
+    let to = from + text[from..].find(&end).unwrap();
+    if std::env::var_os(REWRITE).is_some() {
+        std::fs::write(&path, format!("{}{table}{}", &text[..from], &text[to..])).unwrap();
+    } else {
+        assert_eq!(
+            &text[from..to],
+            table,
+            "{page}: {REWRITE}=1 cargo test --package sophie-tasks --test tasks declarations rewrites it"
+        );
+    }
+}
+
+/// In the unit in which it is a whole number: `2 ms`, `600 us`.
+fn shown(time: Duration) -> String {
+    match time.as_micros() {
+        us if us % 1000 == 0 => format!("{} ms", us / 1000),
+        us => format!("{us} us"),
+    }
+}
+
+#[test]
+fn the_table_of_the_tasks_is_their_declaration() {
+    let mut table = String::from(
+        "| task | level | period | deadline | watched | what it does |\n|---|---|---:|---:|---|---|\n",
+    );
+    for id in TaskId::ALL {
+        let task = id.task();
+        let [period, deadline] = [task.period, task.deadline].map(shown);
+        let watched = match task.watch {
+            Watch::Watched => "yes",
+            Watch::Unwatched => "no",
+        };
+        let (name, level, what) = (task.name, task.level.name(), task.what.trim());
+        let _ = writeln!(
+            table,
+            "| `{name}` | {level} | {period} | {deadline} | {watched} | {what} |"
+        );
+    }
+    holds("timing.md", "tasks", &table);
+}
+
+#[test]
+fn the_table_of_the_links_is_their_declaration() {
+    let mut table = String::from(
+        "| link | message | from | to | period | stale after | what it is |\n|---|---|---|---|---:|---:|---|\n",
+    );
+    for link in Links::DECLARED {
+        let [period, stale] = [link.from.period(), link.stale_after].map(shown);
+        let (name, message, from, to) = (link.name, link.message, link.from.name(), link.to);
+        let meaning = link.meaning.trim();
+        let _ = writeln!(
+            table,
+            "| `{name}` | `{message}` | {from} | {to} | {period} | {stale} | {meaning} |"
+        );
+    }
+    holds("architecture.md", "links", &table);
+}
+
+#[test]
+fn every_reader_is_a_task_or_the_log() {
+    for link in Links::DECLARED {
+        for reader in link.to.split(", ") {
+            let known = reader == "log" || TaskId::ALL.iter().any(|task| task.name() == reader);
+            assert!(known, "{}: {reader}", link.name);
+        }
+    }
+}
+
+#[test]
+fn a_link_outlives_two_periods_of_its_sender() {
+    // One message that is missing must not make its readers stop.
+    for link in Links::DECLARED {
+        assert!(link.stale_after >= link.from.period() * 2, "{}", link.name);
+    }
+}
+
+#[test]
+fn a_task_is_declared_once_in_its_place() {
+    for (place, task) in TaskId::ALL.into_iter().enumerate() {
+        assert_eq!(task as usize, place);
+        let same = TaskId::ALL.into_iter().filter(|t| t.name() == task.name());
+        assert_eq!(same.count(), 1, "{}", task.name());
+        assert!(task.deadline() <= task.period());
+        // What is watched must run often enough to be missed within a window.
+        assert!(least_runs(task).is_none_or(|least| least >= 2), "{}", task.name());
+    }
+}
