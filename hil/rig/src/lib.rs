@@ -16,7 +16,6 @@ pub mod pulses;
 pub mod resumable_test;
 mod verdict;
 
-use board::{WatchdogPort, start_levels};
 use defmt_rtt as _;
 use embassy_executor::SendSpawner;
 use embassy_time::{Duration, Ticker};
