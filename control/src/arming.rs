@@ -85,13 +85,13 @@ arming_checks! {
     /// A pressure sensor of a chosen arm is faulty or silent.
     FsrFault = "pressure sensor fault", "the sensor, or another choice of arms";
     /// What the pressure sensor of arm 1 can read ends too near the grip pressure.
-    FsrRange1 = "pressure sensor 1: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    FsrRange1 = "pressure sensor 1: range too small", "a range that reaches the grip, at the next start";
     /// What the pressure sensor of arm 2 can read ends too near the grip pressure.
-    FsrRange2 = "pressure sensor 2: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    FsrRange2 = "pressure sensor 2: range too small", "a range that reaches the grip, at the next start";
     /// What the pressure sensor of arm 3 can read ends too near the grip pressure.
-    FsrRange3 = "pressure sensor 3: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    FsrRange3 = "pressure sensor 3: range too small", "a range that reaches the grip, at the next start";
     /// What the pressure sensor of arm 4 can read ends too near the grip pressure.
-    FsrRange4 = "pressure sensor 4: range too small", "a divider or a parameter that reaches the grip, at the next start";
+    FsrRange4 = "pressure sensor 4: range too small", "a range that reaches the grip, at the next start";
     /// The sensor on arm 1 gives nothing.
     ArmSensor1 = "arm sensor 1 silent", "the task `arms`, when the sensor answers";
     /// The sensor on arm 2 gives nothing.

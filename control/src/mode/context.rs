@@ -183,8 +183,8 @@ impl Context {
             .filter(|(_, chosen)| !chosen)
             .fold(refusals, |all, (range, _)| all.without(range));
         if grip_memory.arms().is_some() {
-            // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms are
-            // opened; and no one can reach the battery there to put a broken supply right.
+            // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms
+            // are opened; and no one can reach the battery there to put a broken supply right.
             refusals
                 .without(Refusal::PerchSwitchOn)
                 .without(Refusal::BrownOut)

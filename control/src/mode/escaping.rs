@@ -28,8 +28,8 @@ const STAND_DELAY: f32 = 0.25;
 const STAND_RAMP: f32 = 0.5;
 /// Time after the rise in which the vehicle comes clear of the pipe, s; the sticks do not steer before.
 const CLEAR_TIME: f32 = 0.65;
-/// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank,
-/// and a lean across the crown throws it under the pipe.
+/// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the
+/// flank, and a lean across the crown throws it under the pipe.
 const AWAY_LEAN: f32 = deg(8.0);
 /// Time in which arms that open come free, s. Later ones are stuck on the pipe, and the rotors must not pull at them.
 pub const FREE_MAX: f32 = 5.0;

@@ -3,8 +3,8 @@
 //! Nothing that is remembered outlives a loss of power, but the arms do: the servos' gears hold them without a pulse,
 //! and the first pulse would open them. So no pulse goes out before the pressure sensors have been read.
 //!
-//! Arms that press are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot has the rotors
-//! carry the vehicle. Their servos are not taken up before: a pulse must name an angle, and that is known from tilt
+//! Arms that press are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot has the
+//! rotors carry the vehicle. Their servos are not taken up before: a pulse must name an angle, and that is known from tilt
 //! and pressure no better than to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of tilt, and a skin of unknown
 //! stiffness), a third of a grip's force that might be let go of, where doing nothing loses nothing.
 

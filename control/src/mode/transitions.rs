@@ -91,7 +91,8 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Flight], &[BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
     row(&[Flight], &[LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
     row(&[Flight], &[THROTTLE_LOW, GROUNDED], To::Landed(entries::landed), Keep),
-    row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SLIDES_AT_TOUCH], To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
+    row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, SLIDES_AT_TOUCH],
+        To::Escaping(entries::sliding), Show(Reason::SlidesOff)),
     row(&[Flight], &[MEANS_TO_PERCH, SWITCH_TURNED, RESTING, LEVEL], To::Contact(entries::contact), Keep),
     // Onto the pipe.
     row(&[Contact], &[CALLED_OFF], To::Flight(entries::flight), Keep),
@@ -122,12 +123,15 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Escaping], &[CLEAR, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
     row(&[Escaping], &[CLEAR, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
-    // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On real
+    // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
+    // real
     // ground the probe takes thrust away until most of the weight is carried.
     row(&[Failsafe], &[GROUNDED], To::Disarmed(entries::stopped), CAUSE),
-    row(&[Failsafe], &[LOST_RADIO, RADIO, BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(&[Failsafe], &[LOST_RADIO, RADIO, BATTERY_CRITICAL],
+        To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
     row(&[Failsafe], &[LOST_RADIO, RADIO, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
-    row(&[Failsafe], &[LOST_PILOT, RADIO, BATTERY_CRITICAL], To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
+    row(&[Failsafe], &[LOST_PILOT, RADIO, BATTERY_CRITICAL],
+        To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
     row(&[Failsafe], &[LOST_PILOT, RADIO, LINE_SILENT], To::Failsafe(entries::failsafe), Lasting(Reason::LINE_SILENT)),
     row(&[Failsafe], &[LOST_PILOT, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Failsafe], &[LOST_PILOT, RADIO_LOST], To::Failsafe(entries::failsafe), Lasting(Reason::RADIO_LOST)),
