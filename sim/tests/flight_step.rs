@@ -49,10 +49,9 @@ fn command(links: &Links) -> Command {
 
 /// What the mixer would.
 fn surroundings(links: &Links) -> Surroundings {
-    let arms = links.arms.latest().and_then(|message| {
-        let tilt = message.fresh(links.arms.stale_after)?.tilt;
-        let at_us = message.at.as_micros();
-        Some(ArmReading { at_us, tilt })
+    let arms = links.arms.latest().map(|message| ArmReading {
+        at_us: message.at.as_micros(),
+        tilt: message.value.within(links.arms.stale_after).values(),
     });
     Surroundings {
         battery_ratio: links.battery.latest().map(|battery| battery.value.ratio),

@@ -4,8 +4,8 @@ use embassy_time::Instant;
 use sophie_tasks::arms;
 use sophie_tasks::links::{Attitude, Links};
 
-use sophie_fakes::{Answer, FakeArms};
 use crate::rig::Rig;
+use sophie_fakes::{Answer, FakeArms};
 
 fn level(links: &Links, at: Instant) {
     let attitude = Attitude {
