@@ -80,6 +80,7 @@ macro_rules! modes {
 
         /// How a state begins: from the one before, in this step, for this reason.
         #[derive(Clone, Copy, Debug)]
+        #[expect(dead_code, reason = "no transition leads to the mode of the start")]
         enum Entry { $($name(fn(&State, &mut Step<'_>, Option<Reason>) -> $file::$name),)+ }
 
         impl Entry {
