@@ -46,4 +46,5 @@ pub mod pwm_timing;
 pub mod registers;
 pub mod self_test;
 pub mod servo_pulse;
+pub mod spi_clock;
 pub mod spi_imu;
