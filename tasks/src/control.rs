@@ -35,13 +35,14 @@ pub async fn run(links: &Links) {
         let setpoint = links.setpoint.latest();
         let asked = setpoint.map(|message| message.at);
         let setpoint = setpoint
-            .and_then(|message| message.fresh(links.setpoint.stale_after))
+            .and_then(|message| message.fresh_at(started, links.setpoint.stale_after))
             .unwrap_or(Setpoint::Stop);
-        let feedback = links.mix.fresh().map_or(NOTHING_GIVEN, |mix| Feedback {
+        let feedback = links.mix.fresh_to(started, |mix| Feedback {
             roll_pitch: mix.given.roll_pitch,
             yaw: mix.given.yaw,
             yaw_gated: mix.yaw_gated,
         });
+        let feedback = feedback.unwrap_or(NOTHING_GIVEN);
         let demand = loops.step(&estimate.value, setpoint, asked, feedback);
         links.demand.send(estimate.at, demand);
         links.target.send(estimate.at, loops.attitude.target());

@@ -12,6 +12,7 @@ use sophie_control::vector::Vec3;
 use crate::deadline::{TaskId, record_run};
 use crate::links::{ImuSample, Links};
 use crate::ports::{Imu, PortError};
+use crate::timing::us;
 
 /// Rate at which samples are handed on, Hz.
 pub const CONTROL_RATE_HZ: f32 = 1000.0;
@@ -42,7 +43,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let mut faults = Faults::default();
     loop {
         let batch = match with_timeout(SILENCE, port.read()).await {
-            Ok(Ok(batch)) if !batch.is_empty() => batch,
+            Ok(Ok(batch)) if !batch.as_ref().is_empty() => batch,
             // A port that fails at once must not keep the flight level from everything below it.
             Ok(failed) => {
                 if let Err(error) = failed {
@@ -56,7 +57,12 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         let started = Instant::now();
         let released = port.ready_at();
         faults.good(links, started, port.line_silent());
-        let filtered = filter.batch(batch.iter().map(|reading| (reading.gyro, reading.accel - bias)));
+        let filtered = filter.batch(
+            batch
+                .as_ref()
+                .iter()
+                .map(|reading| (reading.gyro, reading.accel - bias)),
+        );
         newest = filtered.newest.unwrap_or(newest);
         collected += f32::from(filtered.count);
         if collected + 0.5 < per_output {
@@ -64,7 +70,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         }
         collected = 0.0;
         let dt = last_sent.map_or(1.0 / CONTROL_RATE_HZ, |t| {
-            released.saturating_duration_since(t).as_micros() as f32 * 1e-6
+            us(released.saturating_duration_since(t)) as f32 * 1e-6
         });
         last_sent = Some(released);
         let (gyro, accel) = newest;

@@ -30,6 +30,7 @@ pub mod imu;
 pub mod links;
 pub mod mixer;
 pub mod motors;
+pub mod newest;
 pub mod parameters;
 pub mod ports;
 pub mod rc;

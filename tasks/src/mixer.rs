@@ -8,7 +8,8 @@ use sophie_control::thrust_curve::ThrustCurve;
 use sophie_control::wrench::Configuration;
 
 use crate::deadline::{TaskId, record_run};
-use crate::links::{Battery, Demand, Links, MixOutput, Setpoint};
+use crate::links::{Demand, Links, MixOutput, Setpoint};
+use crate::timing::us;
 
 /// Time from data-ready to the motor commands.
 pub const DEADLINE: Duration = Duration::from_micros(500);
@@ -28,21 +29,17 @@ pub async fn run(links: &Links, variant: Variant, configuration: Configuration) 
     loop {
         let message = demand.changed().await;
         let started = Instant::now();
-        let dt = (message.at.saturating_duration_since(last).as_micros() as f32 * 1e-6).clamp(0.5e-3, 5e-3);
+        let dt = (us(message.at.saturating_duration_since(last)) as f32 * 1e-6).clamp(0.5e-3, 5e-3);
         let dt = if last == Instant::MIN { NOMINAL_DT } else { dt };
         last = message.at;
         // Without a fresh voltage the last one still is the best guess; without any, nominal.
-        let ratio = links
-            .battery
-            .latest()
-            .map_or(1.0, |b: crate::links::Stamped<Battery>| b.value.ratio);
+        let ratio = links.battery.look(|b| b.value.ratio).unwrap_or(1.0);
         let resting = links
             .setpoint
-            .latest()
-            .is_some_and(|s| matches!(s.value, Setpoint::Resting { .. }));
-        if let Some(arms) = links.arms.latest()
-            && arms.at > arms_seen
-            && !resting
+            .look(|s| matches!(s.value, Setpoint::Resting { .. }));
+        if links.arms.look(|arms| arms.at > arms_seen) == Some(true)
+            && resting != Some(true)
+            && let Some(arms) = links.arms.latest()
         {
             arms_seen = arms.at;
             if let Some(arms) = arms.fresh(links.arms.stale_after) {

@@ -11,6 +11,7 @@ mod fakes;
 mod imu;
 mod links;
 mod mixer;
+mod newest;
 mod retained_store;
 mod rig;
 mod servos;
