@@ -288,8 +288,8 @@ async fn rails(p: RailParts) {
 }
 
 fn imu(p: ImuParts, params: &Params) -> ImuPort {
-    // The part takes 8 MHz; 6.75 MHz is the next divider below.
-    let config = spi_config(8_000_000);
+    // 6.75 MHz: the next divider below.
+    let config = spi_config(&p.spi, icm20689::SPI_HZ);
     let bus = Spi::new(
         p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
     );
@@ -353,7 +353,8 @@ fn analog(p: AnalogParts) -> AnalogPort {
 
 fn storage(p: StorageParts) -> StoragePort {
     // Without DMA: its streams serve what flies. The part takes 40 MHz, the bus gives 13.5 MHz.
-    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, spi_config(20_000_000));
+    let config = spi_config(&p.spi, 20_000_000);
+    let bus = Spi::new_blocking(p.spi, p.clock, p.data_out, p.data_in, config);
     let memory = Fram::new(Selected::new(BlockingAsync::new(bus), p.select));
     BoardStorage::new(memory, &DEFAULTS)
 }

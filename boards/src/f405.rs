@@ -248,13 +248,8 @@ fn clocks() -> embassy_stm32::Config {
 }
 
 fn imu(p: ImuParts, params: &Params) -> ImuPort {
-    // The ICM-20689 takes 8 MHz, the ICM-42688-P 24 MHz. Dividers of 84 MHz: 5.25 and 10.5 MHz.
-    let hz = if cfg!(feature = "imu-icm20689") {
-        8_000_000
-    } else {
-        12_500_000
-    };
-    let config = spi_config(hz);
+    // The next divider of 84 MHz below: 21 MHz, and 5.25 MHz for the ICM-20689.
+    let config = spi_config(&p.spi, part::SPI_HZ);
     let bus = Spi::new(
         p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
     );

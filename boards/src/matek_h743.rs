@@ -217,7 +217,7 @@ pub async fn take() -> Board {
     }
 }
 
-/// 8 MHz crystal; core 400 MHz, buses 100 MHz, timers 200 MHz, SPI1 100 MHz, converter 50 MHz (halved inside).
+/// 8 MHz crystal; core 400 MHz, buses 100 MHz, timers 200 MHz, SPI1 48 MHz, converter 50 MHz (halved inside).
 ///
 /// 480 MHz would need the regulator's boost, which only half of the chip revisions have.
 fn clocks() -> embassy_stm32::Config {
@@ -246,9 +246,11 @@ fn clocks() -> embassy_stm32::Config {
         ..pll
     });
     rcc.pll2 = Some(pll);
-    // Not used, but embassy-stm32 0.6 sets the sources of all three from the last one configured: left out, it would
-    // take the source away from the running first one.
-    rcc.pll3 = Some(pll);
+    // The inertial sensor's bus: 48 MHz, of which half is what the part takes; 800 MHz have no such divider.
+    rcc.pll3 = Some(Pll {
+        mul: PllMul::MUL96,
+        ..pll
+    });
     rcc.sys = Sysclk::PLL1_P;
     rcc.ahb_pre = AHBPrescaler::DIV2;
     rcc.apb1_pre = APBPrescaler::DIV2;
@@ -258,12 +260,12 @@ fn clocks() -> embassy_stm32::Config {
     rcc.voltage_scale = VoltageScale::Scale1;
     rcc.ls = LsConfig::off();
     rcc.mux.adcsel = mux::Adcsel::PLL2_P;
+    rcc.mux.spi123sel = mux::Saisel::PLL3_P;
     config
 }
 
 fn imu(p: ImuParts, params: &Params) -> ImuPort {
-    // The part takes 24 MHz; the next divider below.
-    let config = spi_config(12_500_000);
+    let config = spi_config(&p.spi, icm42688p::SPI_HZ);
     let bus = Spi::new(
         p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
     );

@@ -11,6 +11,9 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
+/// Most that the part's SPI is rated for, Hz.
+pub const SPI_HZ: u32 = 8_000_000;
+
 /// The driver of an ICM-20689 behind SPI device `S` with its INT on `D`.
 pub type Icm20689<S, D> = SpiImu<Config, S, D>;
 

@@ -11,6 +11,9 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
+/// Most that the part's SPI is rated for, Hz.
+pub const SPI_HZ: u32 = 24_000_000;
+
 /// The driver of an ICM-42688-P behind SPI device `S` with its INT1 on `D`.
 pub type Icm42688p<S, D> = SpiImu<Config, S, D>;
 

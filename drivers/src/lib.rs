@@ -50,4 +50,5 @@ pub mod registers;
 pub mod sbus;
 pub mod self_test;
 pub mod servo_pulse;
+pub mod spi_clock;
 pub mod spi_imu;

@@ -20,7 +20,7 @@ use embedded_hal_async::spi::SpiDevice;
 use heapless::Vec;
 use sophie_control::math;
 use sophie_control::vector::Vec3;
-use sophie_tasks::ports::{IMU_BATCH, Imu, ImuReading, PortError};
+use sophie_tasks::ports::{Imu, ImuReading, PortError};
 
 use crate::data_ready::DataReady;
 use crate::fault::{Fault, report};
@@ -216,6 +216,8 @@ pub struct SpiImu<C, S, D> {
     since_check: u16,
     gyro: Repeats,
     accel: Repeats,
+    /// The last sample.
+    raw: Raw,
     temperature: f32,
     last_fault: Option<Fault>,
 }
@@ -241,6 +243,11 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
             since_check: 0,
             gyro: Repeats::NEW,
             accel: Repeats::NEW,
+            raw: Raw {
+                accel: [0; 3],
+                gyro: [0; 3],
+                temperature: 0,
+            },
             temperature: 0.0,
             last_fault: None,
         }
@@ -286,27 +293,33 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         self.last_fault
     }
 
-    /// One sample in body axes.
-    async fn sample(&mut self) -> Result<ImuReading, Fault> {
+    /// Takes one sample, in counts: here and below it lies in `self`, not in what is returned, which would be copied at
+    /// each level.
+    async fn sample(&mut self) -> Result<(), Fault> {
         self.bring_up().await?;
-        let raw = loop {
-            let raw = self.next_raw().await?;
+        loop {
+            self.next_raw().await?;
             // A part that hung may still hang after its reset: samples are discarded until the data change.
             if self.gyro.alive || self.chip.watch().stuck_after == 0 {
-                break raw;
+                return Ok(());
             }
-        };
+        }
+    }
+
+    /// The last sample in body axes.
+    fn reading(&mut self) -> ImuReading {
+        let raw = self.raw;
         self.temperature = C::celsius(raw.temperature);
         let gyro_scale = math::deg(self.chip.gyro_range() / 32768.0);
         let accel_scale = self.chip.accel_range() * (math::GRAVITY / 32768.0);
-        Ok(ImuReading {
+        ImuReading {
             gyro: self.mounting.to_body(scaled(raw.gyro, gyro_scale)),
             accel: self.mounting.to_body(scaled(raw.accel, accel_scale)),
-        })
+        }
     }
 
     /// Waits for data-ready, reads the sample, and looks at it and from time to time at the part.
-    async fn next_raw(&mut self) -> Result<Raw, Fault> {
+    async fn next_raw(&mut self) -> Result<(), Fault> {
         if self.waiting {
             self.look_into_silence().await?;
         }
@@ -319,7 +332,8 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
             }
         }
         self.waiting = false;
-        let raw = self.read_raw().await?;
+        self.read_raw().await?;
+        let raw = self.raw;
         let watch = self.chip.watch();
         let accel_limit = watch.stuck_after.saturating_mul(ACCEL_PATIENCE);
         // Both, always: each keeps its own count.
@@ -332,7 +346,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
             self.since_check = 0;
             self.check().await?;
         }
-        Ok(raw)
+        Ok(())
     }
 
     /// Asks the part by the clock until its status says that a sample is new, with an eye on the line.
@@ -463,7 +477,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     }
 
     /// One sample in counts.
-    async fn read_raw(&mut self) -> Result<Raw, Fault> {
+    async fn read_raw(&mut self) -> Result<(), Fault> {
         let bytes: [u8; SAMPLE] = self.registers.read(C::DATA).await?;
         let mut words = [0; SAMPLE / 2];
         for (word, pair) in words.iter_mut().zip(bytes.as_chunks().0) {
@@ -474,7 +488,8 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         if silent_line || raw.gyro == [NO_SAMPLE; 3] || raw.accel == [NO_SAMPLE; 3] {
             return Err(Fault::Garbled);
         }
-        Ok(raw)
+        self.raw = raw;
+        Ok(())
     }
 
     /// The stages of the self-test.
@@ -495,9 +510,11 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         let (mut gyro, mut accel, mut count) = ([0i32; 3], [0i32; 3], 0u16);
         for _ in 0..SELF_TEST_ATTEMPTS {
             Timer::after(SELF_TEST_PERIOD).await;
-            let Ok(raw) = self.read_raw().await else { continue };
-            add(&mut gyro, raw.gyro);
-            add(&mut accel, raw.accel);
+            if self.read_raw().await.is_err() {
+                continue;
+            }
+            add(&mut gyro, self.raw.gyro);
+            add(&mut accel, self.raw.accel);
             count += 1;
             if count == SAMPLES {
                 let mean = |sum: [i32; 3]| sum.map(|s| s as f32 / f32::from(SAMPLES));
@@ -535,18 +552,22 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
 }
 
 impl<C: Chip, S: SpiDevice, D: DataReady> Imu for SpiImu<C, S, D> {
+    type Batch = [ImuReading; 1];
+
     fn rate_hz(&self) -> f32 {
         self.chip.rate_hz()
     }
 
-    async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {
-        let result = self.sample().await;
-        let reading = self.note(result).map_err(|fault| fault.port_error())?;
+    async fn read(&mut self) -> Result<[ImuReading; 1], PortError> {
+        if let Err(fault) = self.sample().await {
+            let _ = self.note::<()>(Err(fault));
+            return Err(fault.port_error());
+        }
         let [pause, _] = PAUSE;
         self.pause = pause;
         self.silences = 0;
         self.garbled = 0;
-        Ok(Vec::from_array([reading]))
+        Ok([self.reading()])
     }
 
     fn ready_at(&self) -> Instant {

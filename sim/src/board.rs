@@ -194,11 +194,13 @@ impl Board {
 pub struct Port(pub &'static Board);
 
 impl ports::Imu for Port {
+    type Batch = Vec<ImuReading, IMU_BATCH>;
+
     fn rate_hz(&self) -> f32 {
         self.0.imu_rate as f32
     }
 
-    async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError> {
+    async fn read(&mut self) -> Result<Self::Batch, PortError> {
         Ok(self.0.imu_ready.wait().await)
     }
 

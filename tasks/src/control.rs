@@ -25,13 +25,13 @@ pub async fn run(links: &Links) {
             .setpoint
             .latest()
             .map_or(Command::default(), |message| Command {
-                setpoint: message
-                    .fresh(links.setpoint.stale_after)
-                    .unwrap_or(Setpoint::Stop),
                 at_us: message.at.as_micros(),
+                setpoint: message
+                    .fresh_at(started, links.setpoint.stale_after)
+                    .unwrap_or(Setpoint::Stop),
             });
-        let mix = links.mix.fresh();
-        let feedback = mix.as_ref().map_or(Feedback::NOTHING, MixOutput::feedback);
+        let feedback = links.mix.fresh_to(started, MixOutput::feedback);
+        let feedback = feedback.unwrap_or(Feedback::NOTHING);
         let demand = control.step(&estimate.value, &command, feedback);
         links.demand.send(estimate.at, demand);
         links.target.send(estimate.at, control.target());

@@ -31,7 +31,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let mut faults = Faults::default();
     loop {
         let batch = match with_timeout(SILENCE, port.read()).await {
-            Ok(Ok(batch)) if !batch.is_empty() => batch,
+            Ok(Ok(batch)) if !batch.as_ref().is_empty() => batch,
             // A port that fails at once must not keep the flight level from everything below it.
             Ok(failed) => {
                 if let Err(error) = failed {
@@ -45,7 +45,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         let started = Instant::now();
         let released = port.ready_at();
         faults.good(links, started, port.line_silent());
-        let readings = batch.iter().map(|reading| (reading.gyro, reading.accel));
+        let readings = batch.as_ref().iter().map(|reading| (reading.gyro, reading.accel));
         let Some(sample) = sensing.take(released.as_micros(), readings) else {
             continue;
         };

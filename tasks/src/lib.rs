@@ -28,6 +28,7 @@ mod decimal;
 pub mod estimator;
 pub mod histogram;
 pub mod imu;
+pub mod last_value;
 pub mod links;
 pub mod mixer;
 pub mod motors;

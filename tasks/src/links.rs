@@ -18,7 +18,6 @@ use core::cell::{Cell, RefCell};
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
-use embassy_sync::watch::Watch;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::attitude::Target;
@@ -33,6 +32,7 @@ pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::wrench::PerArm;
 
 use crate::histogram::Histogram;
+use crate::last_value::{LastValue, Receiver};
 use crate::schedule::{Level, TaskId};
 use crate::start::{Cause, Start};
 use crate::timing::{Quantity, Record, Run, Timing};
@@ -55,7 +55,18 @@ pub struct Stamped<T> {
 impl<T> Stamped<T> {
     /// The value, unless it is older than `limit` now.
     pub fn fresh(self, limit: Duration) -> Option<T> {
-        (Instant::now().saturating_duration_since(self.at) <= limit).then_some(self.value)
+        self.fresh_at(Instant::now(), limit)
+    }
+
+    /// The value, unless it is older than `limit` at `now`.
+    #[inline]
+    pub fn fresh_at(self, now: Instant, limit: Duration) -> Option<T> {
+        self.is_fresh(now, limit).then_some(self.value)
+    }
+
+    #[inline]
+    fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
+        now.saturating_duration_since(self.at) <= limit
     }
 }
 
@@ -70,7 +81,7 @@ pub enum Newest<T> {
 
 /// A link that keeps the newest message.
 pub struct Link<T: Clone> {
-    watch: Watch<Raw, Stamped<T>, RECEIVERS>,
+    newest: LastValue<Stamped<T>>,
     /// Age beyond which a reader must not use the message.
     pub stale_after: Duration,
 }
@@ -78,24 +89,37 @@ pub struct Link<T: Clone> {
 impl<T: Clone> Link<T> {
     const fn new(stale_after: Duration) -> Self {
         Self {
-            watch: Watch::new(),
+            newest: LastValue::new(),
             stale_after,
         }
     }
 
     /// Publishes `value`, measured at `at`.
     pub fn send(&self, at: Instant, value: T) {
-        self.watch.sender().send(Stamped { at, value });
+        self.newest.send(Stamped { at, value });
     }
 
     /// The newest message, however old.
     pub fn latest(&self) -> Option<Stamped<T>> {
-        self.watch.try_get()
+        self.newest.look(Clone::clone)
+    }
+
+    /// What `f` makes of the newest message, however old.
+    #[inline]
+    pub fn look<R>(&self, f: impl FnOnce(&Stamped<T>) -> R) -> Option<R> {
+        self.newest.look(f)
     }
 
     /// The newest message, unless it is stale.
     pub fn fresh(&self) -> Option<T> {
-        self.latest().and_then(|m| m.fresh(self.stale_after))
+        self.fresh_to(Instant::now(), T::clone)
+    }
+
+    /// What `f` makes of the newest message, unless it is stale at `now`.
+    #[inline]
+    pub fn fresh_to<R>(&self, now: Instant, f: impl FnOnce(&T) -> R) -> Option<R> {
+        self.look(|m| m.is_fresh(now, self.stale_after).then(|| f(&m.value)))
+            .flatten()
     }
 
     /// The newest message, fresh and held told apart.
@@ -107,8 +131,8 @@ impl<T: Clone> Link<T> {
     }
 
     /// A receiver that can wait for the next message; `None` when all [`RECEIVERS`] are taken.
-    pub fn receiver(&self) -> Option<embassy_sync::watch::Receiver<'_, Raw, Stamped<T>, RECEIVERS>> {
-        self.watch.receiver()
+    pub fn receiver(&self) -> Option<Receiver<'_, Stamped<T>>> {
+        self.newest.receiver()
     }
 }
 

@@ -27,7 +27,7 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
             tilt: message.value.within(links.arms.stale_after).values(),
         });
         let surroundings = Surroundings {
-            battery_ratio: links.battery.latest().map(|battery| battery.value.ratio),
+            battery_ratio: links.battery.look(|battery| battery.value.ratio),
             arms,
         };
         let mix = mixing.step(message.at.as_micros(), message.value, &surroundings);

@@ -6,7 +6,7 @@
 use embassy_time::{Duration, Instant, with_timeout};
 
 use crate::deadline::{TaskId, record_run_until};
-use crate::links::Links;
+use crate::links::{Links, Stamped};
 use crate::ports::Motors;
 use sophie_control::wrench::PerArm;
 
@@ -23,12 +23,17 @@ pub async fn run(links: &Links, mut port: impl Motors) {
     };
     loop {
         // `fresh` beside the timeout: a mix that was computed from an old sample must not spin a motor.
-        match with_timeout(links.mix.stale_after, mix.changed()).await {
+        // Of a mix only its commands are copied: the rest is for others.
+        let next = mix.changed_to(|mix| Stamped {
+            at: mix.at,
+            value: mix.value.commands,
+        });
+        match with_timeout(links.mix.stale_after, next).await {
             Ok(message) => {
                 let started = Instant::now();
                 let commands = message
-                    .fresh(links.mix.stale_after)
-                    .map_or([0.0; 4], |m| m.commands);
+                    .fresh_at(started, links.mix.stale_after)
+                    .unwrap_or([0.0; 4]);
                 let began = write(&mut port, commands.map(|c| if c.is_finite() { c } else { 0.0 })).await;
                 // A frame that never began is late by all the time that was waited for it.
                 let began = began.unwrap_or_else(Instant::now);

@@ -37,6 +37,9 @@ pub struct ImuReading {
 
 /// The vehicle's inertial sensor.
 pub trait Imu {
+    /// What is handed over at once: no more room than the part's driver fills, since it is copied at each read.
+    type Batch: AsRef<[ImuReading]>;
+
     /// Samples per second: a whole multiple of 1 kHz within 2 %, for which the filters are designed.
     fn rate_hz(&self) -> f32;
 
@@ -45,7 +48,7 @@ pub trait Imu {
     ///
     /// # Errors
     /// A silent or garbled sensor.
-    async fn read(&mut self) -> Result<Vec<ImuReading, IMU_BATCH>, PortError>;
+    async fn read(&mut self) -> Result<Self::Batch, PortError>;
 
     /// When the newest sample that was read was ready in the part: its data-ready, not the end of the transfer. While the
     /// line is silent, when the part was asked for it.

@@ -120,6 +120,7 @@ fn between(from: Instant, to: Instant) -> u32 {
     us(to.saturating_duration_since(from))
 }
 
-fn us(time: Duration) -> u32 {
+/// Whole microseconds; what does not fit is the most that does.
+pub(crate) fn us(time: Duration) -> u32 {
     u32::try_from(time.as_micros()).unwrap_or(u32::MAX)
 }

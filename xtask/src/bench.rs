@@ -39,14 +39,7 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
-        let allowed = EMULATED.join(", ");
-        let (name, rest) = match words {
-            [name, rest @ ..] if !name.starts_with('-') => (*name, rest),
-            _ => return Err(format!("bench: name the board first: allowed is {allowed}")),
-        };
-        let board = EMULATED.contains(&name).then(|| boards::find(name)).flatten();
-        let board = board
-            .ok_or_else(|| format!("bench: no board called `{name}` is emulated: allowed is {allowed}"))?;
+        let (board, rest) = emulated("bench", words)?;
         let mut bench = Self {
             board,
             variant: Variant::Plain,
@@ -96,6 +89,57 @@ impl<'a> Bench<'a> {
             [OsStr::new(self.board.name), "--elf".as_ref(), elf.as_os_str()],
             &self.rest,
         )
+    }
+}
+
+/// The emulated board that `words`, the arguments behind `verb`, begin with, and the other arguments.
+fn emulated<'w, 'a>(verb: &str, words: &'w [&'a str]) -> Result<(&'static Board, &'w [&'a str]), String> {
+    let allowed = EMULATED.join(", ");
+    let (name, rest) = match words {
+        [name, rest @ ..] if !name.starts_with('-') => (*name, rest),
+        _ => return Err(format!("{verb}: name the board first: allowed is {allowed}")),
+    };
+    let board = EMULATED.contains(&name).then(|| boards::find(name)).flatten();
+    let board =
+        board.ok_or_else(|| format!("{verb}: no board called `{name}` is emulated: allowed is {allowed}"))?;
+    Ok((board, rest))
+}
+
+/// Instructions of the control path are to be counted.
+pub struct Chain<'a> {
+    /// The board.
+    pub board: &'static Board,
+    /// How many steps, where that is said.
+    steps: Option<&'a str>,
+}
+
+impl<'a> Chain<'a> {
+    /// What `words`, the arguments behind the verb, ask for.
+    ///
+    /// # Errors
+    /// One line: what is wrong and what is allowed.
+    pub fn parse(words: &[&'a str]) -> Result<Self, String> {
+        let (board, rest) = emulated("chain", words)?;
+        let steps = match rest {
+            [] => None,
+            [steps] if steps.parse::<usize>().is_ok() => Some(*steps),
+            [word] | [_, word, ..] => {
+                return Err(format!(
+                    "chain: `{word}` is not understood: allowed is a number of steps"
+                ));
+            }
+        };
+        Ok(Self { board, steps })
+    }
+
+    /// Builds, flies and prints the counts; the exit status is the emulator's own.
+    ///
+    /// # Errors
+    /// The firmware does not build.
+    pub fn count(&self) -> Result<ExitCode, Error> {
+        let (elf, _) = crate::firmware(self.board, Variant::Plain)?;
+        let steps: Vec<&str> = self.steps.into_iter().collect();
+        emulator("chain", [OsStr::new(self.board.name), elf.as_os_str()], &steps)
     }
 }
 

@@ -61,6 +61,9 @@ usage: cargo xtask VERB
         [--telemetry PORT] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
                      input
+  chain BOARD [STEPS]
+                     build, and count on the emulated board (matek-h743, f405) what steps (100) of the control path execute in
+                     a hover, by part and by function (docs/cost.md)
   rig BOARD [--build|--emulated] [--wired] [--data-cache] [NAME...]
                      build the tests of a board and run them on it through probe-rs, or on the emulated board (matek-h743);
                      --wired fails what the wiring of hil/README.md lacks; names, or parts of them, choose tests
@@ -86,6 +89,7 @@ enum Verb<'a> {
     Backup(backup::Backup<'a>),
     Restore(backup::Backup<'a>),
     Bench(bench::Bench<'a>),
+    Chain(bench::Chain<'a>),
     Rig(rig::Rig<'a>),
     Sizes { tighten: bool },
     Cost(cost::Then),
@@ -95,12 +99,13 @@ enum Verb<'a> {
 }
 
 /// Every verb, in the order of [`USAGE`].
-const VERBS: [&str; 10] = [
+const VERBS: [&str; 11] = [
     "firmware",
     "flash",
     "backup",
     "restore",
     "bench",
+    "chain",
     "rig",
     "sizes",
     "cost",
@@ -131,6 +136,7 @@ impl<'a> Verb<'a> {
             "backup" => Self::Backup(backup::Backup::parse(verb, rest)?),
             "restore" => Self::Restore(backup::Backup::parse(verb, rest)?),
             "bench" => Self::Bench(bench::Bench::parse(rest)?),
+            "chain" => Self::Chain(bench::Chain::parse(rest)?),
             "rig" => Self::Rig(rig::Rig::parse(rest)?),
             "sizes" => Self::Sizes {
                 tighten: one_of(verb, rest, &["--tighten"])?.is_some(),
@@ -210,6 +216,7 @@ fn main() -> ExitCode {
         Verb::Backup(backup) => backup.save(),
         Verb::Restore(backup) => backup.restore(),
         Verb::Bench(bench) => return ended(bench.board, bench.fly()),
+        Verb::Chain(chain) => return ended(chain.board, chain.count()),
         Verb::Rig(rig) => return ended(rig.board, rig.run()),
         Verb::Sizes { tighten } => all_sizes(tighten),
         Verb::Cost(then) => cost::cost(then),
@@ -359,6 +366,14 @@ mod tests {
                 "bench: `b.toml` is a second scenario: allowed is one",
             ),
             (
+                &["chain", "cuav-v5"],
+                "chain: no board called `cuav-v5` is emulated: allowed is matek-h743, f405",
+            ),
+            (
+                &["chain", "f405", "many"],
+                "chain: `many` is not understood: allowed is a number of steps",
+            ),
+            (
                 &["bench", "--json"],
                 "bench: name the board first: allowed is matek-h743, f405",
             ),
@@ -368,7 +383,7 @@ mod tests {
             ),
             (
                 &["fly"],
-                "`fly` is not understood: allowed are firmware, flash, backup, restore, bench, rig, sizes, cost, own-board, conformance, help",
+                "`fly` is not understood: allowed are firmware, flash, backup, restore, bench, chain, rig, sizes, cost, own-board, conformance, help",
             ),
         ] {
             assert_eq!(Verb::parse(words).err().as_deref(), Some(told), "{words:?}");

@@ -1,18 +1,19 @@
 //! One chip on an SPI bus of its own.
 
-use embassy_stm32::Peri;
 use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 use embassy_stm32::spi::mode::Master;
-use embassy_stm32::spi::{Config, MODE_3, Spi};
+use embassy_stm32::spi::{Config, Instance as SpiInstance, MODE_3, Spi};
 use embassy_stm32::time::Hertz;
+use embassy_stm32::{Peri, rcc};
 use embassy_time::Timer;
 use embedded_hal_async::spi::{ErrorType, Operation, SpiBus, SpiDevice};
+use sophie_drivers::spi_clock;
 
-/// Mode 3, which every chip on these boards takes, and the next clock at or below `hz`.
-pub fn spi_config(hz: u32) -> Config {
+/// Mode 3, which every chip on these boards takes, and the fastest clock of bus `T` that is not above `most_hz`.
+pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Config {
     let mut config = Config::default();
     config.mode = MODE_3;
-    config.frequency = Hertz(hz);
+    config.frequency = Hertz(spi_clock::at_most(rcc::frequency::<T>().0, most_hz));
     config
 }
 

@@ -7,6 +7,7 @@ use defmt_decoder::Table;
 use object::{Architecture, Object, ObjectSection, ObjectSymbol};
 
 use crate::boards::EmulatedBoard;
+use crate::chain::Window;
 use crate::loader::Loader;
 
 /// A firmware image.
@@ -27,6 +28,8 @@ pub struct Firmware {
     pub board: &'static EmulatedBoard,
     /// What the chip starts in before it; `None`: nothing.
     pub loader: Option<Loader>,
+    /// Steps whose instructions are counted; `None`: none.
+    pub count: Option<Window>,
 }
 
 impl Firmware {
@@ -119,6 +122,7 @@ impl Firmware {
             bytes,
             board,
             loader: None,
+            count: None,
         })
     }
 }

@@ -11,6 +11,7 @@
 
 pub mod bench;
 pub mod boards;
+pub mod chain;
 pub mod compare;
 pub mod elf;
 pub mod emulator;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use sophie_control::wrench::PerArm;
 
+use crate::chain::Counted;
 use crate::esc::EscStats;
 
 /// What the world puts on the board's wires for the next millisecond.
@@ -108,6 +109,8 @@ pub struct Run {
     pub servos: PerArm<f64>,
     /// Digest of every edge at the motors' pins, every servo pulse and every telemetry byte.
     pub pins_digest: u64,
+    /// Steps whose instructions were counted.
+    pub counted: Counted,
 }
 
 /// An output of the board around its resets.

@@ -95,11 +95,13 @@ impl Part {
 pub struct FakeImu(pub Part, pub Rc<Cell<bool>>);
 
 impl Imu for FakeImu {
+    type Batch = Few<ImuReading, IMU_BATCH>;
+
     fn rate_hz(&self) -> f32 {
         1000.0
     }
 
-    async fn read(&mut self) -> Result<Few<ImuReading, IMU_BATCH>, PortError> {
+    async fn read(&mut self) -> Result<Self::Batch, PortError> {
         self.0.work(1000).await?;
         let mut batch = Few::new();
         let _ = batch.push(ImuReading {

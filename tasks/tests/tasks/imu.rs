@@ -43,11 +43,13 @@ impl Part {
 }
 
 impl Imu for Part {
+    type Batch = Few<ImuReading, IMU_BATCH>;
+
     fn rate_hz(&self) -> f32 {
         self.rate_hz
     }
 
-    async fn read(&mut self) -> Result<Few<ImuReading, IMU_BATCH>, PortError> {
+    async fn read(&mut self) -> Result<Self::Batch, PortError> {
         let (left, error) = self.errors.get();
         if let (Some(error), true) = (error, left > 0) {
             self.errors.set((left - 1, Some(error)));

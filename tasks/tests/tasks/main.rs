@@ -9,6 +9,7 @@ mod control;
 mod deadline;
 mod declarations;
 mod imu;
+mod last_value;
 mod links;
 mod mixer;
 mod parameters;

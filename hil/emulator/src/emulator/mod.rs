@@ -7,6 +7,7 @@ mod board;
 mod chip;
 mod chips;
 pub mod conformance;
+mod count;
 mod deaf;
 mod f405;
 mod h743;
@@ -35,12 +36,14 @@ use self::board::Wired;
 use self::chip::{Chip, Clock, Options};
 use self::chips::icm42688p::Sample;
 use self::chips::line::Line;
+use self::count::{Counter, Marks};
 use self::f405::F405;
 use self::h743::H743;
 use self::outputs::Outputs;
 use self::pads::Pads;
 use self::rtt::Rtt;
 use crate::boards::Kind;
+use crate::chain::Counted;
 use crate::elf::Firmware;
 use crate::esc::{self, Esc};
 use crate::stored;
@@ -131,6 +134,7 @@ impl Emulator {
             digest: Digest::default(),
             pulses: Vec::new(),
             outputs: Outputs::default(),
+            counter: Counter::new(firmware, marks(kind))?,
         };
         let thread = std::thread::Builder::new()
             .name("emulator".to_owned())
@@ -181,6 +185,14 @@ impl Emulator {
                 Err(why) => why,
             }),
         }
+    }
+}
+
+/// Where the control path of a board begins and ends.
+const fn marks(kind: Kind) -> Marks {
+    match kind {
+        Kind::MatekH743 => h743::MARKS,
+        Kind::F405 => f405::MARKS,
     }
 }
 
@@ -237,6 +249,7 @@ fn run<C: Chip>(
         outputs: world.outputs.found,
         servos: world.servos,
         pins_digest: world.digest.0,
+        counted: world.counter.map_or_else(Counted::default, Counter::finish),
     })
 }
 
@@ -324,6 +337,8 @@ struct World {
     pulses: Vec<u64>,
     /// The outputs since each start.
     outputs: Outputs,
+    /// Counts the instructions of the control path, where that is asked for.
+    counter: Option<Counter>,
 }
 
 impl World {
@@ -553,6 +568,13 @@ fn heard(line: Option<&mut Line>) -> Vec<u8> {
 
 impl<C: Chip> Driver<Wired<C>> for World {
     fn on_settled(&mut self, session: &mut Session<Wired<C>>, _: &mut dyn Host, settled: Settled) {
+        if let Some(counter) = &mut self.counter {
+            match settled {
+                Settled::Hit(hit) => counter.on_hit(hit),
+                Settled::Access { access, .. } => counter.on_access(&access),
+                _ => {}
+            }
+        }
         if let Settled::Access { access, .. } = settled
             && access.kind == AccessKind::Write
         {
@@ -583,6 +605,9 @@ impl<C: Chip> Driver<Wired<C>> for World {
         self.pins.send(pins).ok()?;
         let wires = self.wires.recv().ok()?;
         self.write(session, stop, wires, host);
+        if let Some(counter) = &mut self.counter {
+            counter.on_millisecond(self.ms, host);
+        }
         // On its own grid: a stop may come slightly late.
         self.ms += 1;
         Some(VirtualNanos(self.ms * MS))

@@ -6,6 +6,7 @@
 
 #![allow(missing_docs)]
 
+mod chain;
 mod console;
 mod determinism;
 mod faults;

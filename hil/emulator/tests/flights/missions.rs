@@ -90,11 +90,11 @@ fn in_time(flight: &Flight, longest: f64, jitter: f64) {
 #[test]
 fn the_flight_level_is_in_time_while_the_background_is_at_its_worst() {
     let flight = fly(&hover(AIRBORNE + 4.0), 1.0, &background_at_its_worst());
-    in_time(&flight, 60.0, 5.0);
+    in_time(&flight, 30.0, 5.0);
 }
 
 #[test]
 fn so_it_is_on_the_small_board() {
     let flight = fly_small(&hover(AIRBORNE + 4.0), &background_at_its_worst());
-    in_time(&flight, 150.0, 5.0);
+    in_time(&flight, 60.0, 5.0);
 }

@@ -38,6 +38,7 @@ use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
+use super::count::Marks;
 use super::deaf::Deaf;
 use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
@@ -61,6 +62,13 @@ const BUS_COUNTS: [DmaRegister; 2] = [DmaRegister::S0ndtr, DmaRegister::S2ndtr];
 /// data cache on (RM0090 §3.9.8, §3.9.2).
 const CHANGES: u64 = 1 << 16 | 1;
 const DATA_CACHE: u64 = 1 << 10;
+
+/// The control path: data-ready on PC4, the sensor's words by DMA2 stream 2, the motors on TIM8.
+pub const MARKS: Marks = Marks {
+    ready: "EXTI4",
+    received: "DMA2_STREAM2",
+    motors: 0x4001_0400,
+};
 
 /// The pads of `docs/boards.md`.
 pub static PADS: Pads = Pads {

@@ -27,6 +27,7 @@ use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
+use super::count::Marks;
 use super::deaf::Deaf;
 use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
@@ -61,6 +62,13 @@ const S2: AnalogPad = AnalogPad::bare(At(1, 1), 5);
 const RSSI: AnalogPad = AnalogPad::bare(At(2, 5), 8);
 /// For the current of a second battery, 0 to 3.3 V.
 const CU2: AnalogPad = AnalogPad::bare(At(0, 7), 7);
+
+/// The control path: data-ready on PB2, the sensor's words by DMA2 stream 2, the motors on TIM4.
+pub const MARKS: Marks = Marks {
+    ready: "EXTI2",
+    received: "DMA2_STREAM2",
+    motors: 0x4000_0800,
+};
 
 /// The pads of the Matek H743, as `docs/boards.md` wires them.
 pub static MATEK: Pads = Pads {

@@ -1,0 +1,36 @@
+//! The clock of an SPI, which divides its own by powers of two.
+
+/// Dividers that an STM32's SPI has.
+const LEAST: u32 = 2;
+const MOST: u32 = 256;
+
+/// The fastest clock, Hz, not above `most_hz`, that an SPI at `clock_hz` makes; the slowest where none is slow enough.
+///
+/// To be asked for by its exact value: embassy-stm32 0.6 takes another for the nearest divider, which may be too fast (84
+/// MHz by 8, 10.5 MHz, where 8 MHz are asked for).
+pub fn at_most(clock_hz: u32, most_hz: u32) -> u32 {
+    let ratio = clock_hz.div_ceil(most_hz.max(1)).min(MOST);
+    clock_hz / ratio.next_power_of_two().max(LEAST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at_most;
+
+    #[test]
+    fn no_part_is_clocked_above_its_rating() {
+        for (clock, most, found) in [
+            // H743, F405 with either part, F765.
+            (48_000_000, 24_000_000, 24_000_000),
+            (84_000_000, 24_000_000, 21_000_000),
+            (84_000_000, 8_000_000, 5_250_000),
+            (108_000_000, 8_000_000, 6_750_000),
+            (100_000_000, 24_000_000, 12_500_000),
+            (16_000_000, 24_000_000, 8_000_000),
+            (100_000_000, 1, 390_625),
+            (100_000_000, 0, 390_625),
+        ] {
+            assert_eq!(at_most(clock, most), found, "{clock} {most}");
+        }
+    }
+}

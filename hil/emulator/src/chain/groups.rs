@@ -1,0 +1,142 @@
+//! Which part of the control path a function belongs to, by its path.
+
+/// Parts, each with what the demangled names of its functions contain. The first that fits counts: a task's poll names the
+/// executor too, and a driver's names its bus.
+const GROUPS: [(&str, &[&str]); 11] = [
+    ("laws", &["sophie_control::"]),
+    (
+        "deadline records",
+        &[
+            "sophie_tasks::timing::",
+            "sophie_tasks::histogram::",
+            "sophie_tasks::deadline::",
+            "Links>::record",
+        ],
+    ),
+    (
+        "frame: encoding, timer",
+        &["sophie_drivers::dshot::", "escs::EscTimer"],
+    ),
+    (
+        "sensor's driver",
+        &[
+            "sophie_drivers::",
+            "board::stm32::spi::",
+            "data_ready::",
+            "embassy_stm32::exti::",
+            "EXTI",
+        ],
+    ),
+    (
+        "tasks, with what is inlined",
+        &[
+            "TaskStorage<",
+            "sophie_tasks::control::",
+            "sophie_tasks::mixer::",
+            "sophie_tasks::motors::",
+        ],
+    ),
+    (
+        "links",
+        &[
+            "sophie_tasks::links::",
+            "sophie_tasks::newest::",
+            "embassy_sync::watch::",
+            "multi_waker::",
+            "embassy_sync::signal::",
+        ],
+    ),
+    ("critical sections", &["CriticalSection", "critical_section"]),
+    ("copies", &["memcpy", "memmove", "memset", "memclr"]),
+    (
+        "DMA, SPI, their interrupts",
+        &[
+            "embassy_stm32::dma::",
+            "embassy_stm32::spi::",
+            "DMA1_STREAM",
+            "DMA2_STREAM",
+            "embassy_futures::join",
+        ],
+    ),
+    (
+        "executor, wakers, timers",
+        &[
+            "embassy_executor::",
+            "embassy_time",
+            "_embassy_time",
+            "atomic_waker",
+            "SAI3",
+            "CAN1_TX",
+            "waker",
+        ],
+    ),
+    (OTHER, &[""]),
+];
+
+/// What no other part claims.
+pub const OTHER: &str = "other";
+
+/// Names of all parts, in the order of the table.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    GROUPS.iter().map(|(name, _)| *name)
+}
+
+/// The part that the function with this demangled name belongs to.
+#[must_use]
+pub fn group_of(function: &str) -> &'static str {
+    // What a generic function is made for says whose it is, but for the laws: a task's poll names them as well.
+    let own = |pattern: &&str| function.contains(*pattern);
+    let law = |function: &str| {
+        let begin = function.trim_start_matches(['<', '&']);
+        begin.starts_with("sophie_control::")
+    };
+    let found = GROUPS.iter().find(|(name, patterns)| match *name {
+        "laws" => law(function),
+        _ => patterns.iter().any(own),
+    });
+    found.map_or(OTHER, |(name, _)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_are_told_apart_by_their_paths() {
+        for (function, group) in [
+            ("<sophie_control::mixer::Mixer>::allocate", "laws"),
+            (
+                "<embassy_executor::raw::TaskStorage<sophie::firmware::tasks::__imu_task::__imu_task_inner_function::{closure#0}>>::poll",
+                "tasks, with what is inlined",
+            ),
+            ("<sophie_tasks::timing::Record>::add", "deadline records"),
+            ("<sophie_tasks::links::Links>::record", "deadline records"),
+            (
+                "<sophie_tasks::links::Link<sophie_control::setpoint::Setpoint>>::latest",
+                "links",
+            ),
+            ("sophie_drivers::dshot::fill_bits", "frame: encoding, timer"),
+            (
+                "<sophie_drivers::spi_imu::SpiImu<sophie_drivers::icm42688p::Config>>::read_raw::{closure#0}",
+                "sensor's driver",
+            ),
+            ("__aeabi_memcpy8", "copies"),
+            ("compiler_builtins::mem::memcpy", "copies"),
+            (
+                "<embassy_stm32::dma::Channel>::configure",
+                "DMA, SPI, their interrupts",
+            ),
+            ("embassy_executor::raw::waker::wake", "executor, wakers, timers"),
+            ("__aeabi_ul2f", OTHER),
+        ] {
+            assert_eq!(group_of(function), group, "{function}");
+        }
+    }
+
+    #[test]
+    fn every_function_has_a_part_that_is_in_the_table() {
+        for function in ["", "main", "core::ptr::drop_in_place::<u8>", "TIM2"] {
+            assert!(names().any(|name| name == group_of(function)), "{function}");
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! What the control path executes on the flashed images (docs/cost.md).
+
+use sophie_emulator::chain::Window;
+
+use super::*;
+
+/// Most instructions that a step may take between the sensor's transfer and the motor frame.
+const MOST: u64 = 5700;
+/// Steps that are counted, in a hover.
+const STEPS: usize = 40;
+
+/// From the end of the sensor's transfer to the start of the motor frame no step executes more than `most`, and all that
+/// the core executes meanwhile has its function.
+fn executes(image: &Path, board: &str, most: u64) {
+    let mut firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    firmware.count = Some(Window {
+        from_ms: (AIRBORNE * 1e3) as u64,
+        steps: STEPS,
+    });
+    let flight = fly_image(&firmware, &hover(AIRBORNE + 0.3), 1.0, &[]);
+    assert_eq!(flight.gaps, [], "{}", log(&flight));
+    let counted = &flight.board.run.counted;
+    assert_eq!(counted.steps.len(), STEPS, "{}", log(&flight));
+    for step in &counted.steps {
+        assert_eq!(step.acting.values().sum::<u64>(), step.passed);
+    }
+    let acting = counted.acting();
+    // The laws alone are more than this.
+    assert!(acting.mean > 1500.0 && acting.most <= most, "{board}: {acting:?}");
+}
+
+#[test]
+fn the_control_path_keeps_its_budget() {
+    executes(image(), "matek-h743", MOST);
+}

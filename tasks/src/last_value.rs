@@ -1,0 +1,120 @@
+//! Keeps the newest value for readers at every level, who look at it in place: what a reader needs is copied out of the
+//! lock, not the whole message, and interrupts are masked for no longer than that.
+
+use core::cell::RefCell;
+use core::future::poll_fn;
+use core::task::{Context, Poll};
+
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::waitqueue::MultiWakerRegistration;
+
+use crate::links::{RECEIVERS, Raw};
+
+/// A value, and who waits for the next one.
+pub struct LastValue<T> {
+    state: Mutex<Raw, RefCell<State<T>>>,
+}
+
+struct State<T> {
+    value: Option<T>,
+    /// How many were sent, modulo 2^32.
+    sent: u32,
+    receivers: usize,
+    wakers: MultiWakerRegistration<RECEIVERS>,
+}
+
+impl<T> LastValue<T> {
+    /// Without a value.
+    pub const fn new() -> Self {
+        Self {
+            state: Mutex::new(RefCell::new(State {
+                value: None,
+                sent: 0,
+                receivers: 0,
+                wakers: MultiWakerRegistration::new(),
+            })),
+        }
+    }
+
+    /// Replaces the value and wakes who waits.
+    #[inline]
+    pub fn send(&self, value: T) {
+        self.with(|state| {
+            state.value = Some(value);
+            state.sent = state.sent.wrapping_add(1);
+            state.wakers.wake();
+        });
+    }
+
+    /// What `f` makes of the value; `None` before the first.
+    #[inline]
+    pub fn look<R>(&self, f: impl FnOnce(&T) -> R) -> Option<R> {
+        self.with(|state| state.value.as_ref().map(f)).flatten()
+    }
+
+    /// A receiver; `None` when all [`RECEIVERS`] are taken.
+    pub fn receiver(&self) -> Option<Receiver<'_, T>> {
+        self.with(|state| {
+            let free = state.receivers < RECEIVERS;
+            state.receivers += usize::from(free);
+            free.then_some(Receiver {
+                newest: self,
+                seen: 0,
+            })
+        })
+        .flatten()
+    }
+
+    #[inline]
+    fn with<R>(&self, f: impl FnOnce(&mut State<T>) -> R) -> Option<R> {
+        // Borrowed nowhere else: the lock is held for as long.
+        self.state
+            .lock(|state| state.try_borrow_mut().ok().map(|mut state| f(&mut state)))
+    }
+}
+
+/// Waits for values that it has not seen.
+pub struct Receiver<'a, T> {
+    newest: &'a LastValue<T>,
+    /// Value of `sent` at the value seen last.
+    seen: u32,
+}
+
+impl<T> Receiver<'_, T> {
+    /// The next value that was not seen yet; of several, the newest.
+    pub async fn changed(&mut self) -> T
+    where
+        T: Clone,
+    {
+        self.changed_to(T::clone).await
+    }
+
+    /// What `f` makes of the next value that was not seen yet.
+    #[inline]
+    pub async fn changed_to<R>(&mut self, mut f: impl FnMut(&T) -> R) -> R {
+        poll_fn(|cx| self.poll(cx, &mut f)).await
+    }
+
+    #[inline]
+    fn poll<R>(&mut self, cx: &Context<'_>, f: &mut impl FnMut(&T) -> R) -> Poll<R> {
+        let seen = &mut self.seen;
+        let found = self.newest.with(|state| match &state.value {
+            Some(value) if state.sent != *seen => {
+                *seen = state.sent;
+                Some(f(value))
+            }
+            _ => {
+                state.wakers.register(cx.waker());
+                None
+            }
+        });
+        found.flatten().map_or(Poll::Pending, Poll::Ready)
+    }
+}
+
+impl<T> Drop for Receiver<'_, T> {
+    fn drop(&mut self) {
+        self.newest
+            .with(|state| state.receivers = state.receivers.saturating_sub(1));
+    }
+}
