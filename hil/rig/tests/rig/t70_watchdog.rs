@@ -23,7 +23,6 @@ pub fn bitten(us: u32) -> ! {
 #[embedded_test::tests]
 mod tests {
     use embassy_time::{Instant, Timer};
-    use sophie_rig::board;
     use sophie_rig::resumable_test::{ResumableTest, leave};
     use sophie_tasks::ports::Watchdog;
 
