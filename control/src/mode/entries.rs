@@ -39,13 +39,6 @@ pub fn stopped(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed
     Disarmed { grip_memory }
 }
 
-/// Rotors off on arms that are closed without proof.
-pub fn last_resort(from: &State, _: &mut Step<'_>, _: Option<Reason>) -> Disarmed {
-    Disarmed {
-        grip_memory: from.behaviour().grip_memory(),
-    }
-}
-
 /// Rotors idle.
 pub fn armed(_: &State, _: &mut Step<'_>, _: Option<Reason>) -> Armed {
     Armed

@@ -104,7 +104,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Clamping], &[DOUBT, MAY_LEAVE, SPOOLED_ON_GRIP], To::Releasing(entries::releasing_instead), DOUBTED),
     row(&[Clamping], &[DOUBT, MAY_LEAVE], To::Escaping(entries::giving_up), DOUBTED),
     row(&[Clamping], &[STANDS, GRIP_PROVEN], To::Perched(entries::perched), Keep),
-    row(&[Clamping], &[STANDS, LAST_RESORT], To::Disarmed(entries::last_resort), Keep),
+    row(&[Clamping], &[STANDS, LAST_RESORT], To::Disarmed(entries::stopped), Keep),
     // Off the pipe.
     row(&[Perched], &[ARM_SWITCH_OFF, DISARM_GESTURE], To::Disarmed(entries::stopped), Keep),
     row(&[Perched], &[RELEASE_ASKED, MAY_FLY, UPRIGHT], To::Releasing(entries::releasing), Keep),

@@ -225,6 +225,16 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
         ClampCommand::Close { arms: ArmChoice::All },
         "no proof, no battery, no radio: hold on"
     );
+    // A receiver that comes back with the switch off does not drop the vehicle: opening takes a new turn of it.
+    let closed = ClampCommand::Close { arms: ArmChoice::All };
+    for (perch_switch, tendons) in [(false, closed), (true, closed), (false, ClampCommand::Release)] {
+        *r.sticks() = Sticks {
+            perch_switch,
+            ..Sticks::default()
+        };
+        r.expect(0.5, Mode::Disarmed);
+        assert_eq!(r.out.tendons, tendons, "perch switch {perch_switch}");
+    }
 }
 
 #[test]
