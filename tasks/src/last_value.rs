@@ -23,6 +23,12 @@ struct State<T> {
     wakers: MultiWakerRegistration<RECEIVERS>,
 }
 
+impl<T> Default for LastValue<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<T> LastValue<T> {
     /// Without a value.
     pub const fn new() -> Self {

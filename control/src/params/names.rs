@@ -130,6 +130,6 @@ mod tests {
             assert!(default.to_bits() == row.default.to_bits(), "{old}: {default}");
         }
         // The law's cut-off, rad/s.
-        assert!(TAU * Params::DEFAULT.setpoint_lpf_hz == 10.0);
+        const { assert!(TAU * Params::DEFAULT.setpoint_lpf_hz == 10.0) };
     }
 }
