@@ -5,7 +5,7 @@
 //! restart the drives continue from the angles that the run before left. Forces whose measurement is stale leave
 //! the servos where they are; so does a missing tilt for its arm, unless that arm is to be released.
 //!
-//! The task closes the chain from contact pressure to pulse and measures it ([`ChainWatch`]).
+//! The task closes the chain from contact pressure to pulse and measures it (`ChainWatch`).
 
 use embassy_time::{Duration, Instant};
 use sophie_control::grip_memory::GripMemory;
