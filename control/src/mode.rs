@@ -1,6 +1,6 @@
 //! The modes of the vehicle, what the mode logic sees and what it decides; 100 Hz.
 //!
-//! Each mode has a file with its state ([`behaviour::Behaviour`]); `context` holds what outlives a state, `transitions`
+//! Each mode has a file with its state (`behaviour::Behaviour`); `context` holds what outlives a state, `transitions`
 //! is the table of what leads from one to the next, in the order of priority, with its conditions in `guards` and the
 //! states' beginnings in `entries`. `docs/modes.md` shows the table.
 

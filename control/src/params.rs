@@ -1,4 +1,4 @@
-//! Every number that a pilot or builder may change, in one [table]: name, unit, range, default, source.
+//! Every number that a pilot or builder may change, in one `table`: name, unit, range, default, source.
 
 mod choices;
 mod names;
