@@ -7,7 +7,7 @@ use sophie_sim::plant::GRAVITY;
 use sophie_sim::plant::tendon::ServoSpec;
 use sophie_sim::scenario::ServoProfile;
 
-use super::clamp::{bench, closing_thrust};
+use super::clamp::{closing_thrust, mean_closing};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::printed::Printed;
 use super::statics::root;
@@ -222,7 +222,7 @@ fn inspection(s: &mut Section, p: &Printed) -> Chart {
     let infills: Vec<f64> = p.table_5.iter().map(|r| r.infill_percent).collect();
     let servo = ServoSpec::from(ServoProfile::Paper);
     let forces = parallel::each(&infills, |i| {
-        let closed = bench(*i, PIPE, servo, closing_thrust(p));
+        let closed = mean_closing(*i, PIPE, servo, closing_thrust(p));
         closed
             .closure
             .map_or(f64::NAN, |_| sophie_report::units::kgcm(closed.steady))

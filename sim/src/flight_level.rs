@@ -5,14 +5,24 @@ use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
 use crate::mixers::{Mixer, Variant};
 use crate::plant::Plant;
+use crate::plant::contact::Pose;
 use crate::scenario::Scenario;
 use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
+use sophie_control::mixer::Allocation;
+use sophie_control::params::Params;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::{Links, Setpoint};
 
 /// Seconds of a flight that are not judged: take-off.
 const SETTLE: f64 = 5.0;
+/// Height of the hover, m.
+const HEIGHT: f64 = 3.0;
+/// Weight that [`Rig::fly`] holds, N, and the largest thrust that it asks for, N.
+const WEIGHT: f64 = 17.7;
+const THRUST_MAX: f64 = 30.0;
+/// Rest before take-off in which the gyroscope is calibrated, ms.
+const REST_MS: usize = 4000;
 
 /// What is asked of the vehicle at a time, s.
 pub struct Wish {
@@ -73,17 +83,47 @@ pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Va
 impl Rig {
     /// The vehicle of `scenario` at rest on the ground.
     pub fn new(scenario: &Scenario) -> Self {
-        let time = VirtualTime::new();
-        let mut rng = Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1);
+        let mut rng = seeded(scenario);
         let plant = Plant::new(scenario, rng.clone());
-        let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, &mut rng)));
-        let links: &'static Links = Box::leak(Box::new(Links::new(scenario.params)));
+        let board = Board::configured(&scenario.params, &mut rng);
         let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
-        let mixer = move |p: &_| Mixer::new(variant, configuration, p);
+        Self::assembled(plant, board, scenario.params, move |p: &_| {
+            Mixer::new(variant, configuration, p)
+        })
+    }
+
+    /// The same under `allocation`, with the accelerometer's bias measured on a bench and set in the parameters.
+    pub fn calibrated<A: Allocation + 'static>(
+        scenario: &Scenario,
+        allocation: impl FnOnce(&Params) -> A + 'static,
+    ) -> Self {
+        let mut rng = seeded(scenario);
+        let plant = Plant::new(scenario, rng.clone());
+        let board = Board::new(&mut rng);
+        let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
+        let params = Params {
+            accel_bias_x,
+            accel_bias_y,
+            accel_bias_z,
+            ..scenario.params
+        };
+        Self::assembled(plant, board, params, allocation)
+    }
+
+    fn assembled<A: Allocation + 'static>(
+        plant: Plant,
+        board: Board,
+        params: Params,
+        allocation: impl FnOnce(&Params) -> A + 'static,
+    ) -> Self {
+        let time = VirtualTime::new();
+        // Leaked, as a flight's are: tasks borrow them as `'static`.
+        let board: &'static Board = Box::leak(Box::new(board));
+        let links: &'static Links = Box::leak(Box::new(Links::new(params)));
         time.spawn(sophie_tasks::imu::run(links, Port(board)));
         time.spawn(sophie_tasks::estimator::run(links));
         time.spawn(sophie_tasks::control::run(links));
-        time.spawn(sophie_tasks::mixer::run(links, mixer));
+        time.spawn(sophie_tasks::mixer::run(links, allocation));
         time.spawn(sophie_tasks::motors::run(links, Port(board)));
         time.spawn(sophie_tasks::arms::run(links, Port(board)));
         time.spawn(sophie_tasks::analog::run(links, Port(board)));
@@ -111,60 +151,115 @@ impl Rig {
     /// # Panics
     /// If the gyroscope is not calibrated after 4 s of rest.
     pub fn fly(&mut self, seconds: f64, wish: impl Fn(f64) -> Wish) -> Errors {
-        for _ in 0..4000 {
+        for _ in 0..REST_MS {
             self.step(Setpoint::Idle);
         }
         assert!(
             self.links.attitude.latest().is_some_and(|a| a.value.calibrated),
             "not calibrated at rest"
         );
-        let mut e = Errors::default();
-        let (mut sum, mut n) = (0.0, 0.0);
-        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        let mut hold = HeightHold::new(WEIGHT, THRUST_MAX);
+        let mut judged = Judged::default();
         for i in 0..(seconds * 1000.0) as usize {
             let t = i as f64 * 1e-3;
-            let pose = *self.plant.pose();
-            let climb = (3.0 + pose.position.z).clamp(-1.0, 1.0);
-            let error = climb + pose.velocity.z;
-            sum = (sum + error * 1e-3).clamp(-2.0, 2.0);
-            let thrust = (17.7 + 5.0 * error + 2.0 * sum) * (t / 1.0).min(1.0);
+            let thrust = hold.thrust(self.plant.pose(), t);
             let Wish { roll, yaw_rate } = wish(t);
             self.step(Setpoint::Angle {
                 roll,
                 pitch: 0.0,
                 yaw_rate,
-                thrust: thrust.clamp(0.0, 30.0) as f32,
+                thrust,
             });
-            if t < SETTLE {
-                continue;
+            if t >= SETTLE {
+                judged.add(self);
             }
-            let [r, p, y] = self.plant.euler();
-            let target = self
-                .links
-                .target
-                .latest()
-                .map_or(0.0, |v| aim::angles(v.value)[0]);
-            n += 1.0;
-            e.worst_roll = e.worst_roll.max((r - target).abs());
-            e.worst_pitch = e.worst_pitch.max(p.abs());
-            e.worst_yaw = e.worst_yaw.max(y.abs());
-            e.rms_roll += (r - target).powi(2);
-            e.rms_yaw += y.powi(2);
-            let thrust = self
-                .links
-                .mix
-                .latest()
-                .map_or(0.0, |m| f64::from(m.value.thrusts[0]));
-            low = low.min(thrust);
-            high = high.max(thrust);
         }
+        judged.errors()
+    }
+}
+
+/// The errors of plant and board that the scenario's seed stands for.
+fn seeded(scenario: &Scenario) -> Pcg64Mcg {
+    Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1)
+}
+
+/// Holds 3 m with a thrust that grows over the first second.
+pub struct HeightHold {
+    weight: f64,
+    thrust_max: f64,
+    /// Integral of the height's error, m s.
+    sum: f64,
+}
+
+impl HeightHold {
+    /// For a vehicle of `weight` (N) that is asked for `thrust_max` (N) at most.
+    pub fn new(weight: f64, thrust_max: f64) -> Self {
+        Self {
+            weight,
+            thrust_max,
+            sum: 0.0,
+        }
+    }
+
+    /// Thrust of the next millisecond (N), `t` s after take-off.
+    pub fn thrust(&mut self, pose: &Pose, t: f64) -> f32 {
+        let error = (HEIGHT + pose.position.z).clamp(-1.0, 1.0) + pose.velocity.z;
+        self.sum = (self.sum + error * 1e-3).clamp(-2.0, 2.0);
+        let thrust = (self.weight + 5.0 * error + 2.0 * self.sum) * t.min(1.0);
+        thrust.clamp(0.0, self.thrust_max) as f32
+    }
+}
+
+/// What the errors of a flight are gathered from, rad and N.
+struct Judged {
+    worst: [f64; 3],
+    square_roll: f64,
+    square_yaw: f64,
+    lowest: f64,
+    highest: f64,
+    count: f64,
+}
+
+impl Default for Judged {
+    fn default() -> Self {
+        Self {
+            worst: [0.0; 3],
+            square_roll: 0.0,
+            square_yaw: 0.0,
+            lowest: f64::MAX,
+            highest: f64::MIN,
+            count: 0.0,
+        }
+    }
+}
+
+impl Judged {
+    /// Takes a millisecond.
+    fn add(&mut self, rig: &Rig) {
+        let [roll, pitch, yaw] = rig.plant.euler();
+        let target = rig.links.target.latest();
+        let off = roll - target.map_or(0.0, |v| aim::angles(v.value)[0]);
+        for (worst, angle) in self.worst.iter_mut().zip([off, pitch, yaw]) {
+            *worst = worst.max(angle.abs());
+        }
+        self.square_roll += off.powi(2);
+        self.square_yaw += yaw.powi(2);
+        let mix = rig.links.mix.latest();
+        let thrust = mix.map_or(0.0, |m| f64::from(m.value.thrusts[0]));
+        self.lowest = self.lowest.min(thrust);
+        self.highest = self.highest.max(thrust);
+        self.count += 1.0;
+    }
+
+    fn errors(&self) -> Errors {
+        let [worst_roll, worst_pitch, worst_yaw] = self.worst.map(f64::to_degrees);
         Errors {
-            worst_roll: e.worst_roll.to_degrees(),
-            worst_pitch: e.worst_pitch.to_degrees(),
-            worst_yaw: e.worst_yaw.to_degrees(),
-            rms_roll: (e.rms_roll / n).sqrt().to_degrees(),
-            rms_yaw: (e.rms_yaw / n).sqrt().to_degrees(),
-            swing: high - low,
+            worst_roll,
+            worst_pitch,
+            worst_yaw,
+            rms_roll: (self.square_roll / self.count).sqrt().to_degrees(),
+            rms_yaw: (self.square_yaw / self.count).sqrt().to_degrees(),
+            swing: self.highest - self.lowest,
         }
     }
 }

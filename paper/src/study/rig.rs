@@ -1,26 +1,24 @@
-//! A vehicle whose setpoints an experiment gives: the flight level alone, without pilot and commander.
+//! Experiments on the flight level alone: takes off, does what is asked, and records the truth every millisecond.
 
-use embassy_time::Instant;
 use glam::DVec3;
-use rand_pcg::Pcg64Mcg;
-use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
-use sophie_tasks::links::{Links, Setpoint};
+use sophie_sim::aim;
+use sophie_sim::flight_level::{HeightHold, Rig};
+use sophie_sim::mixers::Mixer;
+use sophie_sim::plant::GRAVITY;
+use sophie_sim::scenario::Scenario;
+use sophie_tasks::links::Setpoint;
 
 use super::allocation::Studied;
-use sophie_sim::aim;
-use sophie_sim::board::{Board, Port};
-use sophie_sim::clock::VirtualTime;
-use sophie_sim::mixers::Mixer;
-use sophie_sim::plant::{GRAVITY, Plant};
-use sophie_sim::scenario::Scenario;
 
 /// Time at rest before take-off, s: the gyroscope is calibrated.
 const REST: f64 = 4.0;
 /// Time from take-off until the experiment begins, s.
 pub const SETTLE: f64 = 6.0;
-/// Height of the hover, m.
-const HEIGHT: f64 = 3.0;
+/// Largest thrust that the height hold asks for, N.
+const THRUST_MAX: f64 = 40.0;
+/// Time from take-off in which the heading may slip: yaw is gated while the rotors spool up, s.
+const SPOOL_UP: f64 = 2.0;
 /// Roll or pitch from which the vehicle counts as lost, rad.
 const UPSET: f64 = 1.4;
 /// Heading error from which the vehicle counts as lost, rad.
@@ -76,93 +74,48 @@ pub struct Flown {
     pub lost: Option<f64>,
 }
 
-/// The vehicle.
-struct Rig {
-    time: VirtualTime,
-    board: &'static Board,
-    links: &'static Links,
-    plant: Plant,
-    ms: u64,
+/// The vehicle of `scenario`, `studied` in its mixer's place.
+fn rig(scenario: &Scenario, studied: Option<Studied>) -> Rig {
+    let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
+    match studied {
+        None => Rig::calibrated(scenario, move |p| Mixer::new(variant, configuration, p)),
+        Some(kind) => Rig::calibrated(scenario, move |p| kind.allocation(configuration, p)),
+    }
 }
 
-impl Rig {
-    fn new(scenario: &Scenario, studied: Option<Studied>) -> Self {
-        let time = VirtualTime::new();
-        let mut rng = Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1);
-        let plant = Plant::new(scenario, rng.clone());
-        // Leaked, as a flight's are: tasks borrow them as `'static`.
-        let board: &'static Board = Box::leak(Box::new(Board::new(&mut rng)));
-        let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
-        let params = Params {
-            accel_bias_x,
-            accel_bias_y,
-            accel_bias_z,
-            ..scenario.params
-        };
-        let links: &'static Links = Box::leak(Box::new(Links::new(params)));
-        let configuration = scenario.vehicle.configuration;
-        time.spawn(sophie_tasks::imu::run(links, Port(board)));
-        time.spawn(sophie_tasks::estimator::run(links));
-        time.spawn(sophie_tasks::control::run(links));
-        match studied {
-            None => {
-                let variant = scenario.mixer;
-                let mixer = move |p: &_| Mixer::new(variant, configuration, p);
-                time.spawn(sophie_tasks::mixer::run(links, mixer));
-            }
-            Some(kind) => {
-                let allocation = move |p: &_| kind.allocation(configuration, p);
-                time.spawn(sophie_tasks::mixer::run(links, allocation));
-            }
-        }
-        time.spawn(sophie_tasks::motors::run(links, Port(board)));
-        time.spawn(sophie_tasks::arms::run(links, Port(board)));
-        time.spawn(sophie_tasks::analog::run(links, Port(board)));
-        Self {
-            time,
-            board,
-            links,
-            plant,
-            ms: 0,
-        }
-    }
+/// Upset, spinning, or, once the heading is to be kept, far off it.
+fn lost(rig: &Rig, heading: Option<f64>) -> bool {
+    let [roll, pitch, yaw] = rig.plant.euler();
+    let off = heading.map_or(0.0, |wanted| (yaw - wanted).sin().atan2((yaw - wanted).cos()));
+    let upset = roll.abs() > UPSET || pitch.abs() > UPSET || off.abs() > SPUN;
+    let omega = rig.plant.pose().omega;
+    upset || !omega.is_finite() || omega.z.abs() > SPIN
+}
 
-    fn step(&mut self, setpoint: Setpoint) {
-        self.board.step_world(&mut self.plant);
-        self.ms += 1;
-        self.links
-            .setpoint
-            .send(Instant::from_micros(self.ms * 1000), setpoint);
-        self.time.run_until(self.ms * 1000);
+/// What is true and what is measured `t` s into the experiment, with `heading` (rad) asked for.
+fn moment(rig: &Rig, t: f64, heading: f64) -> Moment {
+    let wide = |v: PerArm<f32>| v.map(f64::from);
+    let mix = rig.links.mix.latest().map(|m| m.value).unwrap_or_default();
+    let target = rig.links.target.latest().map(|v| aim::angles(v.value));
+    let measured = rig.links.tilts().values();
+    Moment {
+        t,
+        attitude: rig.plant.euler(),
+        target: target.map_or([f64::NAN; 3], |[roll, pitch, _]| [roll, pitch, heading]),
+        velocity: rig.plant.pose().velocity,
+        rate: rig.plant.pose().omega,
+        tilt: rig.plant.tilt(),
+        tilt_measured: measured.map(|a| a.map_or(f64::NAN, f64::from)),
+        bias: wide(mix.tilt_bias),
+        thrust: rig.plant.thrust(),
+        asked: wide(mix.thrusts),
     }
+}
 
-    /// Upset, spinning, or, once the heading is to be kept, far off it.
-    fn lost(&self, heading: Option<f64>) -> bool {
-        let [roll, pitch, yaw] = self.plant.euler();
-        let off = heading.map_or(0.0, |wanted| (yaw - wanted).sin().atan2((yaw - wanted).cos()));
-        let upset = roll.abs() > UPSET || pitch.abs() > UPSET || off.abs() > SPUN;
-        let omega = self.plant.pose().omega;
-        upset || !omega.is_finite() || omega.z.abs() > SPIN
-    }
-
-    fn moment(&self, t: f64, heading: f64) -> Moment {
-        let wide = |v: PerArm<f32>| v.map(f64::from);
-        let mix = self.links.mix.latest().map(|m| m.value).unwrap_or_default();
-        let target = self.links.target.latest().map(|v| aim::angles(v.value));
-        let measured = self.links.tilts().values();
-        Moment {
-            t,
-            attitude: self.plant.euler(),
-            target: target.map_or([f64::NAN; 3], |[roll, pitch, _]| [roll, pitch, heading]),
-            velocity: self.plant.pose().velocity,
-            rate: self.plant.pose().omega,
-            tilt: self.plant.tilt(),
-            tilt_measured: measured.map(|a| a.map_or(f64::NAN, f64::from)),
-            bias: wide(mix.tilt_bias),
-            thrust: self.plant.thrust(),
-            asked: wide(mix.thrusts),
-        }
-    }
+/// Heading that the controller aims at, rad.
+fn aimed_heading(rig: &Rig) -> f64 {
+    let target = rig.links.target.latest();
+    rig.plant.euler()[2] + target.map_or(0.0, |v| f64::from(v.value.ahead))
 }
 
 /// Takes `scenario`'s vehicle off to a hover at 3 m under a simple height hold, then does what `wish` says for
@@ -170,50 +123,34 @@ impl Rig {
 ///
 /// Deterministic: the same scenario gives the same flight to the bit.
 pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: impl Fn(f64) -> Wish) -> Flown {
-    let mut rig = Rig::new(scenario, studied);
+    let mut rig = rig(scenario, studied);
     for _ in 0..(REST * 1e3) as usize {
         rig.step(Setpoint::Idle);
     }
-    let weight = scenario.vehicle.body.mass * GRAVITY;
+    let mut hold = HeightHold::new(scenario.vehicle.body.mass * GRAVITY, THRUST_MAX);
     let mut flown = Flown {
         moments: Vec::with_capacity((seconds * 1e3) as usize),
         lost: None,
     };
-    let (mut sum, mut heading) = (0.0, None);
+    let mut heading = None;
     for i in 0..((SETTLE + seconds) * 1e3) as usize {
         let since_take_off = i as f64 * 1e-3;
         let t = since_take_off - SETTLE;
-        let pose = *rig.plant.pose();
-        let error = (HEIGHT + pose.position.z).clamp(-1.0, 1.0) + pose.velocity.z;
-        sum = (sum + error * 1e-3_f64).clamp(-2.0, 2.0);
-        let thrust = (weight + 5.0 * error + 2.0 * sum) * since_take_off.min(1.0);
-        let Wish {
-            roll,
-            yaw_rate,
-            moment,
-            push,
-        } = if t >= 0.0 { wish(t) } else { Wish::default() };
-        (rig.plant.moment, rig.plant.push) = (moment, push);
+        let thrust = hold.thrust(rig.plant.pose(), since_take_off);
+        let wish = if t >= 0.0 { wish(t) } else { Wish::default() };
+        (rig.plant.moment, rig.plant.push) = (wish.moment, wish.push);
         rig.step(Setpoint::Angle {
-            roll: roll as f32,
+            roll: wish.roll as f32,
             pitch: 0.0,
-            yaw_rate: yaw_rate as f32,
-            thrust: thrust.clamp(0.0, 40.0) as f32,
+            yaw_rate: wish.yaw_rate as f32,
+            thrust,
         });
         if t >= 0.0 {
-            let wanted = heading.get_or_insert_with(|| {
-                let ahead = rig
-                    .links
-                    .target
-                    .latest()
-                    .map_or(0.0, |v| f64::from(v.value.ahead));
-                rig.plant.euler()[2] + ahead
-            });
-            *wanted += yaw_rate * 1e-3;
-            flown.moments.push(rig.moment(t, *wanted));
+            let wanted = heading.get_or_insert_with(|| aimed_heading(&rig));
+            *wanted += wish.yaw_rate * 1e-3;
+            flown.moments.push(moment(&rig, t, *wanted));
         }
-        // Spinning up, the heading may slip while yaw is gated.
-        if since_take_off > 2.0 && rig.lost(heading) {
+        if since_take_off > SPOOL_UP && lost(&rig, heading) {
             flown.lost = Some(t);
             break;
         }
