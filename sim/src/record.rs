@@ -77,7 +77,7 @@ pub struct Sample {
     pub tension_asked: PerArm<f64>,
     /// True contact pressure at each sensor, Pa.
     pub pressure: PerArm<f64>,
-    /// Measured contact pressure, Pa.
+    /// Measured contact pressure, Pa; NaN where none is fresh.
     pub pressure_measured: PerArm<f64>,
     /// Battery voltage under load, V.
     pub battery_voltage: f64,

@@ -11,7 +11,7 @@ use sophie_control::tendon::{ForceLimit, REFERENCE_TILT, Reel};
 use sophie_control::wrench::PerArm;
 use sophie_fakes::{Answer, FakeAnalog, FakeServos, links, links_with};
 use sophie_sim::clock::VirtualTime;
-use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForces, TendonOrder};
+use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::timing::Quantity;
 
 /// Tilt of an arm without tendon force, and where its skin meets the pipe, rad.
@@ -174,7 +174,7 @@ impl Bench {
         self.links
             .tendons
             .latest()
-            .map_or([0.0; 4], |t| t.value.forces().force)
+            .map_or([0.0; 4], |t| t.value.forces().arms.map(|arm| arm.force))
     }
 
     fn grip(&self) -> GripState {
@@ -291,7 +291,8 @@ fn a_shorted_sensor_freezes_its_arm_and_no_other() {
     b.arms[2].pin = Some(SHORTED);
     b.run(0.004);
     let contact = b.links.contact.fresh().unwrap();
-    assert_eq!(contact.fault, [false, false, true, false]);
+    let faulty = contact.arms.map(|arm| arm.is_err());
+    assert_eq!(faulty, [false, false, true, false]);
     b.run(0.03);
     assert_eq!(b.state(2), ArmState::Faulty);
     b.run(3.0);
@@ -430,8 +431,8 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
             links.tendons.send(
                 now,
                 TendonOrder::Measured(TendonForces {
-                    force: [force; 4],
-                    ..TendonForces::default()
+                    arms: [TendonForce { force, stay: false }; 4],
+                    found: false,
                 }),
             );
         }

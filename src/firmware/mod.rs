@@ -1,8 +1,10 @@
-//! What the firmware has besides the tasks of `sophie_tasks`: their static wrappers, the greeting, lights and the log.
+//! What the firmware has besides the tasks of `sophie_tasks`: their static wrappers, their levels, the greeting,
+//! lights and the log.
 //!
 //! Nothing here knows the chip; that is [`sophie_boards`]'s.
 
 mod grip;
+mod levels;
 mod lights;
 mod report;
 pub mod tasks;
@@ -20,14 +22,7 @@ use static_cell::StaticCell;
 
 use sophie_boards::retained::{self, Kept, Memory, ResetCause};
 
-#[cfg(feature = "trace")]
-pub use self::trace::named;
-
-/// Keeps what a task is called and where it runs; used by the trace alone.
-#[cfg(not(feature = "trace"))]
-pub fn named<T>(_: sophie_tasks::deadline::Level, _: &'static str, token: T) -> T {
-    token
-}
+pub use self::levels::Levels;
 
 sophie_boards::ends_with!(sophie_boards::stop_and_restart);
 

@@ -1,4 +1,5 @@
-//! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`.
+//! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`,
+//! their levels are declared in [`sophie_tasks::schedule`].
 
 use sophie_control::arming::Refusal;
 use sophie_control::mixer::Flexible;
@@ -12,7 +13,7 @@ use sophie_boards::retained::Memory;
 /// Most self-tests of the inertial sensor at one start.
 const SELF_TESTS: u8 = 3;
 
-/// Flight level: inertial sensor.
+/// Inertial sensor.
 ///
 /// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. One
 /// that fails is repeated, since a vehicle that is being carried fails it too; the last verdict stands.
@@ -32,79 +33,79 @@ pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_t
     sophie_tasks::imu::run(links, port).await
 }
 
-/// Flight level: attitude.
+/// Attitude.
 #[embassy_executor::task]
 pub async fn estimator(links: &'static Links) {
     sophie_tasks::estimator::run(links).await;
 }
 
-/// Flight level: attitude and rate control.
+/// Attitude and rate control.
 #[embassy_executor::task]
 pub async fn control(links: &'static Links) {
     sophie_tasks::control::run(links).await;
 }
 
-/// Flight level: allocation.
+/// Allocation.
 #[embassy_executor::task]
 pub async fn mixer(links: &'static Links) {
     sophie_tasks::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
 }
 
-/// Flight level: motors.
+/// Motors.
 #[embassy_executor::task]
 pub async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
     sophie_tasks::motors::run(links, port).await;
 }
 
-/// Steady level: pressure sensors and battery.
+/// Pressure sensors and battery.
 #[embassy_executor::task]
 pub async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
     sophie_tasks::analog::run(links, port).await
 }
 
-/// Steady level: clamp loops.
+/// Clamp loops.
 #[embassy_executor::task]
 pub async fn clamp(links: &'static Links) -> ! {
     sophie_tasks::clamp::run(links).await
 }
 
-/// Steady level: tendon servos.
+/// Tendon servos.
 #[embassy_executor::task]
 pub async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
     sophie_tasks::servos::run(links, port).await
 }
 
-/// Steady level: receiver.
+/// Receiver.
 #[embassy_executor::task]
 pub async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
     sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
 }
 
-/// Steady level: mode logic.
+/// Mode logic.
 #[embassy_executor::task]
 pub async fn commander(links: &'static Links) -> ! {
     sophie_tasks::commander::run(links).await
 }
 
-/// Steady level: supervision, watchdog, and what outlives it.
+/// Supervision, watchdog, and what outlives it.
 #[embassy_executor::task]
 pub async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
     sophie_tasks::supervisor::run(links, port, memory).await
 }
 
-/// Background: arm sensors.
+/// Arm sensors.
 #[embassy_executor::task]
 pub async fn arms(links: &'static Links, port: sophie_boards::ArmsPort) -> ! {
     sophie_tasks::arms::run(links, port).await
 }
 
-/// Background: telemetry to the pilot.
+/// Telemetry to the pilot.
 #[embassy_executor::task]
 pub async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) -> ! {
     sophie_tasks::telemetry::run(links, port).await
 }
 
-/// Background: the builder's console.
+/// The builder's console.
 #[embassy_executor::task]
 pub async fn console(
     links: &'static Links,
@@ -116,13 +117,13 @@ pub async fn console(
     sophie_tasks::console::run(links, input, output, storage, chip).await
 }
 
-/// Background: lights and buzzer.
+/// Lights and buzzer.
 #[embassy_executor::task]
 pub async fn lights(links: &'static Links, lights: sophie_boards::LightsPort) -> ! {
     super::lights::run(links, lights).await
 }
 
-/// Background: the log.
+/// The log.
 #[embassy_executor::task]
 pub async fn report(links: &'static Links, looks: &'static [Look]) -> ! {
     super::report::run(links, looks).await

@@ -1,9 +1,9 @@
 //! Contact pressures and the battery, from the same converter.
 //!
-//! Steady level. Pressures at 500 Hz, the battery at every fifth conversion; a conversion must be over before
-//! the next. Messages carry the time at which the conversion was begun, however long it takes. A converter that fails publishes nothing: its links go stale, and their readers know what to do.
-//! After 100 ms without a conversion it is reported against arming, and from the start on a sensor that cannot read
-//! the grip pressure.
+//! Pressures in each run, the battery in every fifth; a conversion must be over before the next. Messages carry the time
+//! at which the conversion was begun, however long it takes. A converter that fails publishes nothing: its links go
+//! stale, and their readers know what to do. After 100 ms without a conversion it is reported against arming, and from
+//! the start on a sensor that cannot read the grip pressure.
 
 use core::pin::pin;
 
@@ -16,6 +16,7 @@ use sophie_control::fsr::{Fsr, FsrScale};
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Contact, Links};
 use crate::ports::Analog;
+use crate::silence::SilenceWatch;
 
 /// Time without a conversion after which the inputs count as silent.
 pub const SILENCE: Duration = Duration::from_millis(100);
@@ -29,13 +30,12 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     for (scale, reason) in scales.iter().zip(Refusal::FSR_RANGE) {
         links.report(reason, !scale.reaches_grip(&links.params));
     }
-    let mut sensors = [Fsr::default(); 4];
+    let mut sensors = scales.map(Sensor::new);
     let mut battery = Monitor::default();
     let mut battery_dt = 0.0;
     let mut until_battery = BATTERY_EVERY;
     let mut sensor_dt = 0.0;
-    let mut last_good = Instant::now();
-    let mut silent = false;
+    let mut watch = SilenceWatch::new(Refusal::AnalogSilent, SILENCE, Instant::now());
     loop {
         let tick = rate.next().await;
         sensor_dt += tick.dt;
@@ -43,34 +43,24 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
         let at = Instant::now();
         let conversion = {
             let mut conversion = pin!(port.read());
-            match select(&mut conversion, Timer::at(last_good + SILENCE)).await {
+            match select(&mut conversion, Timer::at(watch.due())).await {
                 Either::First(result) => result,
                 Either::Second(()) => {
-                    watch(links, &mut silent, true);
+                    watch.look(links, Instant::now());
                     // A converter that never ends holds its task: the supervisor sees to that.
                     conversion.await
                 }
             }
         };
         let Ok(frame) = conversion else {
-            watch(
-                links,
-                &mut silent,
-                at.saturating_duration_since(last_good) >= SILENCE,
-            );
+            watch.look(links, at);
             continue;
         };
-        last_good = at;
-        watch(links, &mut silent, false);
+        watch.heard(links, at);
 
         let mut contact = Contact::default();
-        let slots = contact.pressure.iter_mut().zip(contact.fault.iter_mut());
-        let readings = sensors.iter_mut().zip(&scales).zip(frame.fsr);
-        for (((sensor, scale), counts), (pressure, fault)) in readings.zip(slots) {
-            match sensor.step(scale, counts, sensor_dt) {
-                Ok(p) => *pressure = p,
-                Err(_) => *fault = true,
-            }
+        for ((arm, sensor), counts) in contact.arms.iter_mut().zip(&mut sensors).zip(frame.fsr) {
+            *arm = sensor.fsr.step(&sensor.scale, counts, sensor_dt);
         }
         sensor_dt = 0.0;
         links.contact.send(at, contact);
@@ -90,10 +80,17 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     }
 }
 
-/// Reports silence when it begins and when it ends.
-fn watch(links: &Links, known: &mut bool, silent: bool) {
-    if *known != silent {
-        *known = silent;
-        links.report(Refusal::AnalogSilent, silent);
+/// One arm's pressure sensor.
+struct Sensor {
+    scale: FsrScale,
+    fsr: Fsr,
+}
+
+impl Sensor {
+    fn new(scale: FsrScale) -> Self {
+        Self {
+            scale,
+            fsr: Fsr::default(),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The arms' own inertial sensors: tilt of each arm against the body.
 //!
-//! Background level: the sensors stretch the I2C clock, and nothing in flight waits for them. 100 Hz; a round
-//! of four sensors must end within its period. A sensor that gives nothing for a second is reported against arming;
+//! In the background, since the sensors stretch the I2C clock and nothing in flight waits for them; a round of four
+//! sensors must end within its period. A sensor that gives nothing for a second is reported against arming;
 //! one that never answers costs its own reading, not those of the others. Each tilt carries the time at which its own
 //! sensor was asked: a slow sensor does not make the readings after it look older, nor those before it newer.
 
@@ -14,6 +14,7 @@ use sophie_control::wrench::{PerArm, SIDE};
 use crate::deadline::{FixedRate, TaskId};
 use crate::links::{ArmAngles, Links, Stamped};
 use crate::ports::ArmImus;
+use crate::silence::SilenceWatch;
 
 /// Time without a reading after which a sensor counts as silent.
 pub const SILENCE: Duration = Duration::from_secs(1);
@@ -34,11 +35,7 @@ const REASONS: PerArm<Refusal> = [
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Arms);
     let start = Instant::now() + START - SILENCE;
-    let mut watches = REASONS.map(|reason| Watch {
-        reason,
-        last: start,
-        silent: false,
-    });
+    let mut watches = REASONS.map(|reason| SilenceWatch::new(reason, SILENCE, start));
     loop {
         let round = rate.next().await;
         let mut gravity: PerArm<Option<Stamped<Vec3>>> = [None; 4];
@@ -46,7 +43,11 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
             let at = Instant::now();
             let reading = with_timeout(READING, port.gravity(arm)).await;
             let reading = reading.ok().and_then(Result::ok).filter(plausible);
-            watch.see(links, reading.is_some());
+            let now = Instant::now();
+            match reading {
+                Some(_) => watch.heard(links, now),
+                None => watch.look(links, now),
+            }
             *g = reading.map(|value| Stamped { at, value });
         }
         let Some(body) = links.attitude.fresh().filter(|a| a.calibrated) else {
@@ -60,29 +61,6 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
         }
         let angles = ArmAngles { tilt };
         links.arms.send(angles.oldest().unwrap_or(round.started), angles);
-    }
-}
-
-/// What is known of one sensor's answers.
-struct Watch {
-    reason: Refusal,
-    /// When it last gave a reading.
-    last: Instant,
-    silent: bool,
-}
-
-impl Watch {
-    fn see(&mut self, links: &Links, reading: bool) {
-        let now = Instant::now();
-        if reading {
-            // One that came before the start was over must not bring its end forward.
-            self.last = self.last.max(now);
-        }
-        let silent = now.saturating_duration_since(self.last) >= SILENCE;
-        if silent != self.silent {
-            self.silent = silent;
-            links.report(self.reason, silent);
-        }
     }
 }
 

@@ -1,8 +1,7 @@
 //! The loops that close the arms on the pipe and let them go.
 //!
-//! Steady level, 100 Hz, to be done before the next step. A step's forces and judgement carry the time at which its
-//! pressures were converted, or that of its command where no pressure is fresh. What happens when an
-//! input is stale by its link's limit:
+//! To be done before the next step. A step's forces and judgement carry the time at which its pressures were
+//! converted, or that of its command where no pressure is fresh. What happens when an input is stale by its link's limit:
 //!
 //! - the command: no step is made and nothing is sent, so that forces and judgement age: the servos stay, the
 //!   grip is unknown. Loops and forces are held for the next command; before the first, what the run before left;
@@ -21,7 +20,9 @@ use sophie_control::gripper::{ArmInput, Config, Gripper, Pressure};
 use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{ClampCommand, Contact, GripState, Links, Newest, Stamped, TendonForces, TendonOrder};
+use crate::links::{
+    ClampCommand, Contact, GripState, Links, Newest, Stamped, TendonForce, TendonForces, TendonOrder,
+};
 
 /// Runs the clamp loops; never returns.
 pub async fn run(links: &Links) -> ! {
@@ -56,9 +57,11 @@ pub async fn run(links: &Links) -> ! {
                 .any(|arm| arm.pressure > links.params.release_pressure);
         } else {
             let forces = TendonForces {
-                force: out.arms.map(|arm| arm.grip.force),
+                arms: out.arms.map(|arm| TendonForce {
+                    force: arm.grip.force,
+                    stay: arm.hold_position,
+                }),
                 found,
-                stay: out.arms.map(|arm| arm.hold_position),
             };
             let order = if contact.is_some() {
                 TendonOrder::Measured(forces)
@@ -82,9 +85,8 @@ fn begin(links: &Links) -> Gripper {
             ..
         }) => {
             let forces = TendonForces {
-                force,
+                arms: force.map(|force| TendonForce { force, stay: true }),
                 found: false,
-                stay: [true; 4],
             };
             links.tendons.send(Instant::now(), TendonOrder::Resumed(forces));
             Gripper::resume(force, fault)
@@ -100,12 +102,8 @@ fn inputs(links: &Links, close: PerArm<bool>, contact: Option<Stamped<Contact>>)
         ..ArmInput::default()
     });
     if let Some(Stamped { value: contact, .. }) = contact {
-        for ((input, pressure), fault) in inputs.iter_mut().zip(contact.pressure).zip(contact.fault) {
-            input.pressure = if fault {
-                Pressure::Faulty
-            } else {
-                Pressure::Known(pressure)
-            };
+        for (input, pressure) in inputs.iter_mut().zip(contact.arms) {
+            input.pressure = pressure.map_or(Pressure::Faulty, Pressure::Known);
         }
     }
     for (input, tilt) in inputs.iter_mut().zip(links.tilts().values()) {

@@ -1,7 +1,6 @@
 //! The commander: everything's health in, the mode and what follows from it out.
 //!
-//! 100 Hz, steady level. A miss costs one step of a state machine whose shortest timer is 50 ms; rotors stop
-//! when its setpoint has been silent for 50 ms.
+//! A miss costs one step of a state machine whose shortest timer is 50 ms; rotors stop when its setpoint is stale.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::math::cos;
@@ -83,7 +82,10 @@ fn collect(links: &Links, late: bool) -> Inputs {
         }),
         lift: links.mix.fresh().map_or(0.0, |mix| lift(&mix)),
         grip: links.grip.fresh(),
-        fsr_fault: links.contact.fresh().map_or([true; 4], |c| c.fault),
+        fsr_fault: links
+            .contact
+            .fresh()
+            .map_or([true; 4], |contact| contact.arms.map(|arm| arm.is_err())),
         battery: links.battery.fresh().map(|b| b.voltage),
         late,
         hardware: links.hardware(),

@@ -1,6 +1,6 @@
 //! The console: a line for builders, over any terminal program at 115,200 baud.
 //!
-//! Background level, no deadline. Parameters in force are fixed; what is set here goes into a working copy, which `save`
+//! It has no deadline. Parameters in force are fixed; what is set here goes into a working copy, which `save`
 //! stores and a restart puts in force. A terminal that takes nothing loses its text and delays no other task; a line that
 //! carries noise is read as lines that mean nothing.
 

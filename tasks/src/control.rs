@@ -1,6 +1,6 @@
 //! Attitude and rate control, one step for each attitude.
 //!
-//! Flight level. The [`DEADLINE`] counts from data-ready. Without a fresh setpoint the rotors stop.
+//! The [`DEADLINE`] counts from data-ready. Without a fresh setpoint the rotors stop.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::chain::{Command, Control};

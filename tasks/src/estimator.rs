@@ -1,6 +1,6 @@
 //! Attitude estimation, one step for each inertial sample.
 //!
-//! Flight level. The [`DEADLINE`] counts from the data-ready of the sample.
+//! The [`DEADLINE`] counts from the data-ready of the sample.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::estimator::Estimator;

@@ -1,6 +1,6 @@
 //! Inertial sensor: waits for data-ready, filters at the sensor's own rate, hands on at 1 kHz.
 //!
-//! Flight level. The [`DEADLINE`] of the filtered sample counts from the data-ready of its last reading. The transfer
+//! The [`DEADLINE`] of the filtered sample counts from the data-ready of its last reading. The transfer
 //! from the part counts as lateness, the filter as execution.
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};

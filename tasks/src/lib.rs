@@ -1,7 +1,8 @@
 //! The concurrent tasks of the SOPHIE flight stack.
 //!
 //! Each task is a plain `async fn` over borrowed [`links::Links`] and a port of [`ports`]: the firmware wraps
-//! it in a static task, the host spawns it on its own executor. No task owns a global.
+//! it in a static task, the host spawns it on its own executor. No task owns a global. Level, period and deadline of each
+//! are declared in [`schedule`], its messages in [`links`].
 
 #![no_std]
 #![deny(
@@ -39,6 +40,7 @@ pub mod retained_state;
 pub mod retained_store;
 pub mod schedule;
 pub mod servos;
+pub mod silence;
 pub mod start;
 pub mod supervisor;
 pub mod telemetry;

@@ -23,6 +23,7 @@ use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::attitude::Target;
 pub use sophie_control::battery::Battery;
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
+use sophie_control::fsr::FsrFault;
 pub use sophie_control::grip::GripState;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mode::{Mode, Reason};
@@ -137,12 +138,17 @@ impl<T: Clone> Link<T> {
 }
 
 /// Contact pressures.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Pressure at each arm's sensor, Pa.
-    pub pressure: PerArm<f32>,
-    /// Sensor open, shorted or out of range.
-    pub fault: PerArm<bool>,
+    /// Pressure at each arm's sensor, Pa, or what is wrong with the sensor.
+    pub arms: PerArm<Result<f32, FsrFault>>,
+}
+
+impl Default for Contact {
+    /// Sound sensors that feel nothing.
+    fn default() -> Self {
+        Self { arms: [Ok(0.0); 4] }
+    }
 }
 
 /// Tilt of the arms as their own sensors see it; the message's time is that of the oldest.
@@ -199,15 +205,22 @@ impl TendonOrder {
     }
 }
 
-/// Tension asked of each tendon.
+/// What is asked of the tendons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TendonForces {
-    /// Tension, N; 0 is slack.
-    pub force: PerArm<f32>,
+    /// Of each one.
+    pub arms: PerArm<TendonForce>,
     /// The tendons were found wound when the power came on: where their servos stand is to be taken from the tilt.
     pub found: bool,
-    /// Servos that are to stay where they are, whatever the force.
-    pub stay: PerArm<bool>,
+}
+
+/// What is asked of one tendon.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TendonForce {
+    /// Tension, N; 0 is slack.
+    pub force: f32,
+    /// The servo is to stay where it is, whatever the force.
+    pub stay: bool,
 }
 
 /// State of the radio link.

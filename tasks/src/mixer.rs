@@ -1,6 +1,6 @@
 //! Allocation, one step for each demand, with the arms' present tilt in it.
 //!
-//! Flight level. The [`DEADLINE`] counts from data-ready.
+//! The [`DEADLINE`] counts from data-ready.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::chain::{ArmReading, Mixing, Surroundings};

@@ -1,6 +1,6 @@
 //! Motor output, one frame for each mix; stops the motors by itself when mixes stop coming.
 //!
-//! Flight level. The [`DEADLINE`] of the frame counts from data-ready. This task's response is therefore that of the
+//! The [`DEADLINE`] of the frame counts from data-ready. This task's response is therefore that of the
 //! whole chain.
 
 use embassy_time::{Duration, Instant, with_timeout};

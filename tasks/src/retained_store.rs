@@ -1,4 +1,4 @@
-//! Keeps what must outlive a reset. The supervisor runs it at 100 Hz.
+//! Keeps what must outlive a reset. The supervisor runs it.
 //!
 //! What it keeps is at most 30 ms old (a servo's frame and a run of its own), over which a winding servo turns 0.2 rad
 //! and one that holds not at all. A message that is stale or silent leaves what was kept as it is.
@@ -43,8 +43,8 @@ impl<R: Retain> RetainedStore<R> {
                 .filter(|m| m.running)
                 .map_or([0.0; 4], |m| m.thrusts);
             let per_thrust = links.params.arm_d / links.params.tendon_lever;
-            for ((slot, force), thrust) in self.retained.force.iter_mut().zip(tendons.force).zip(thrusts) {
-                *slot = force - per_thrust * thrust;
+            for ((slot, asked), thrust) in self.retained.force.iter_mut().zip(tendons.arms).zip(thrusts) {
+                *slot = asked.force - per_thrust * thrust;
             }
         }
         if let Some(grip) = links.grip.fresh() {

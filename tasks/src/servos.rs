@@ -1,6 +1,6 @@
 //! The tendon servos: forces asked for become pulses, and the tension that they can be giving is published.
 //!
-//! Steady level, at the servos' frame (`servo_frame_rate`, 50 to 333 Hz). Until the first force there are no pulses:
+//! At the servos' frame (`servo_frame_rate`, 50 to 333 Hz). Until the first force there are no pulses:
 //! when power comes on on the pipe the gears hold, and nothing moves before the clamp loop knows what it wants. After a
 //! restart the drives continue from the angles that the run before left. Forces whose measurement is stale leave
 //! the servos where they are; so does a missing tilt for its arm, unless that arm is to be released.
@@ -13,7 +13,7 @@ use sophie_control::tendon::{Drive, Reel, TendonDrive};
 use sophie_control::wrench::PerArm;
 
 use crate::deadline::{FixedRate, TaskId};
-use crate::links::{Links, Newest, Stamped, TendonForces, TendonOrder};
+use crate::links::{Links, Newest, Stamped, TendonForce, TendonOrder};
 use crate::ports::Servos;
 use crate::timing::Run;
 
@@ -39,7 +39,7 @@ pub fn chain_deadline(frame: Duration) -> Duration {
 pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     let period = period(links.params.servo_frame_rate);
     let mut rate = FixedRate::new(links, TaskId::Servos, period, period);
-    let mut drives = Drives::new(links);
+    let mut tendons = Tendons::new(links);
     let mut chain = ChainWatch::new(period);
     loop {
         let tick = rate.next().await;
@@ -48,7 +48,7 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
             continue;
         };
         let tilts = links.tilts();
-        let output = drives.step(&newest, tilts.values(), tick.dt);
+        let output = tendons.step(&newest, tilts.values(), tick.dt);
         let written = Instant::now();
         let began = port.write(output.map(|o| o.pulse_us)).await;
         if let Newest::Fresh(order) = newest {
@@ -58,62 +58,72 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
         links
             .tension
             .send(tilts.oldest().unwrap_or(now), output.map(|o| o.tension));
-        let angles = drives.drives.each_ref().map(TendonDrive::angle);
-        links.reel_angle.send(now, angles);
+        links.reel_angle.send(now, tendons.angles());
     }
 }
 
-/// The drives of the four tendons.
-struct Drives {
-    reels: PerArm<Reel>,
-    drives: PerArm<TendonDrive>,
+/// One tendon: its reel and the drive of its servo.
+struct Tendon {
+    reel: Reel,
+    drive: TendonDrive,
+}
+
+impl Tendon {
+    /// One step of `dt` s as `asked`, with the tilt (rad) of its arm.
+    fn step(&mut self, asked: TendonForce, tilt: Option<f32>, dt: f32) -> Drive {
+        if asked.stay {
+            self.stay(tilt, dt)
+        } else {
+            self.drive.step(&self.reel, asked.force, tilt, dt)
+        }
+    }
+
+    /// One step of `dt` s that leaves the servo where it is.
+    fn stay(&mut self, tilt: Option<f32>, dt: f32) -> Drive {
+        self.drive.hold_position(&self.reel, tilt, dt)
+    }
+}
+
+/// The four tendons.
+struct Tendons {
+    arms: PerArm<Tendon>,
     /// An order has come: arms that were found wound have their angle.
     begun: bool,
 }
 
-impl Drives {
+impl Tendons {
     fn new(links: &Links) -> Self {
-        let mut drives = [TendonDrive::new(); 4];
+        let mut arms = Reel::all(&links.params).map(|reel| Tendon {
+            reel,
+            drive: TendonDrive::new(),
+        });
         // Kept arms are on gears alone: the angle of a servo without pulses is not known.
         let known = links
             .start
             .retained
             .filter(|w| !matches!(w.grip_memory, GripMemory::HeldByGears(_)));
         if let Some(retained) = known {
-            for (drive, angle) in drives.iter_mut().zip(retained.angle) {
-                *drive = drive.resume(angle);
+            for (tendon, angle) in arms.iter_mut().zip(retained.angle) {
+                tendon.drive = tendon.drive.resume(angle);
             }
         }
-        Self {
-            reels: Reel::all(&links.params),
-            drives,
-            begun: false,
-        }
+        Self { arms, begun: false }
     }
 
     /// One step of `dt` s by the newest order, with the fresh tilts (rad).
     fn step(&mut self, newest: &Newest<TendonOrder>, tilts: PerArm<Option<f32>>, dt: f32) -> PerArm<Drive> {
         let mut output = [Drive::default(); 4];
-        let arms = self
-            .drives
-            .iter_mut()
-            .zip(&self.reels)
-            .zip(output.iter_mut().zip(tilts));
+        let arms = self.arms.iter_mut().zip(tilts).zip(&mut output);
         match newest {
             Newest::Fresh(Stamped {
                 value: TendonOrder::Measured(forces) | TendonOrder::Blind(forces),
                 ..
             }) => {
-                let TendonForces { force, found, stay } = *forces;
-                for (((drive, reel), (out, tilt)), (force, stay)) in arms.zip(force.into_iter().zip(stay)) {
-                    if found && !self.begun {
-                        drive.seed_from_tilt(reel, tilt);
+                for (((tendon, tilt), out), asked) in arms.zip(forces.arms) {
+                    if forces.found && !self.begun {
+                        tendon.drive.seed_from_tilt(&tendon.reel, tilt);
                     }
-                    *out = if stay {
-                        drive.hold_position(reel, tilt, dt)
-                    } else {
-                        drive.step(reel, force, tilt, dt)
-                    };
+                    *out = tendon.step(asked, tilt, dt);
                 }
             }
             // Held forces are no order to wind, whatever the arm does.
@@ -122,13 +132,18 @@ impl Drives {
                 ..
             })
             | Newest::Held(_) => {
-                for ((drive, reel), (out, tilt)) in arms {
-                    *out = drive.hold_position(reel, tilt, dt);
+                for ((tendon, tilt), out) in arms {
+                    *out = tendon.stay(tilt, dt);
                 }
             }
         }
         self.begun = true;
         output
+    }
+
+    /// Angle to which each servo is sent, rad from release.
+    fn angles(&self) -> PerArm<f32> {
+        self.arms.each_ref().map(|tendon| tendon.drive.angle())
     }
 }
 

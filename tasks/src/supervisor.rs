@@ -1,7 +1,7 @@
 //! The supervisor: the watchdog is fed only while everything runs that flying needs, and what must outlive its bite
 //! is kept.
 //!
-//! 100 Hz, steady level, so that a flight level that never yields starves it too. A window of 100 ms in which
+//! Below the flight level, so that one that never yields starves it too. A window of 100 ms in which
 //! a task has made less than half of its runs, or a flight level that has gone stale after calibration, leaves
 //! the watchdog unfed: with a period of 200 to 500 ms it then resets the board, which starts
 //! disarmed, with the grip as it was.
@@ -31,7 +31,7 @@ pub const fn least_runs(task: TaskId) -> Option<u32> {
     }
 }
 
-/// Watches every task at 100 Hz; never returns.
+/// Watches every task; never returns.
 pub async fn run(links: &Links, mut watchdog: impl Watchdog, memory: impl Retain) -> ! {
     let mut store = RetainedStore::new(links, memory);
     let mut health = Health::new(links, Instant::now());

@@ -1,6 +1,6 @@
 //! Telemetry to the pilot's transmitter, over the receiver's serial line.
 //!
-//! 20 Hz, background: one frame a run, so that the thin downlink never queues. SBUS has no way back: with it nothing
+//! One frame a run, so that the thin downlink never queues. SBUS has no way back: with it nothing
 //! is sent.
 //!
 //! | frame | type | rate |

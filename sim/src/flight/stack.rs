@@ -143,13 +143,13 @@ impl Aircraft for Stack {
         });
         // A held pressure is none that is measured; held forces are what the servos still stand for.
         let pressure = match links.contact.newest() {
-            Some(Newest::Fresh(contact)) => wide(contact.value.pressure),
+            Some(Newest::Fresh(contact)) => wide(contact.value.arms.map(|arm| arm.unwrap_or(0.0))),
             Some(Newest::Held(_)) | None => [f64::NAN; 4],
         };
         let force = links
             .tendons
             .latest()
-            .map_or([0.0; 4], |order| order.value.forces().force);
+            .map_or([0.0; 4], |order| order.value.forces().arms.map(|arm| arm.force));
         Belief {
             attitude: [estimate.0, estimate.1, estimate.2].map(f64::from),
             setpoint: target.filter(|_| mix.running).unwrap_or([f64::NAN; 3]),

@@ -1,6 +1,7 @@
 //! What the clamp task makes of commands and of inputs that are old.
 
 use embassy_time::Instant;
+use sophie_control::fsr::FsrFault;
 use sophie_control::grip::ArmState;
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
@@ -8,7 +9,9 @@ use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::clamp;
-use sophie_tasks::links::{ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForces, TendonOrder};
+use sophie_tasks::links::{
+    ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForce, TendonForces, TendonOrder,
+};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::start::{Cause, Start};
 
@@ -40,6 +43,19 @@ impl World {
         }
     }
 
+    /// What the sensors give.
+    fn pressed(&self) -> Contact {
+        let mut contact = Contact {
+            arms: self.pressure.map(Ok),
+        };
+        for (arm, fault) in contact.arms.iter_mut().zip(self.fault) {
+            if fault {
+                *arm = Err(FsrFault::Short);
+            }
+        }
+        contact
+    }
+
     /// Arms that bend by 0.020152 rad/N, tendons that have what is asked.
     fn speak(&self, links: &Links, at: Instant) {
         let force = force(links).unwrap_or([0.0; 4]);
@@ -47,8 +63,7 @@ impl World {
             links.clamp_command.send(at, command);
         }
         if self.contact {
-            let (pressure, fault) = (self.pressure, self.fault);
-            links.contact.send(at, Contact { pressure, fault });
+            links.contact.send(at, self.pressed());
         }
         let mut tilt = [None; 4];
         for ((slot, force), seen) in tilt.iter_mut().zip(force).zip(self.seen) {
@@ -62,7 +77,10 @@ impl World {
 
 /// Forces of the newest order, however old.
 fn force(links: &Links) -> Option<PerArm<f32>> {
-    links.tendons.latest().map(|m| m.value.forces().force)
+    links
+        .tendons
+        .latest()
+        .map(|m| m.value.forces().arms.map(|arm| arm.force))
 }
 
 /// Forces of an order that is fresh.
@@ -232,7 +250,8 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
         let forces = fresh(rig.links);
         assert_eq!(forces.is_some(), sent, "{grip_memory:?}");
         if let Some(forces) = forces {
-            assert_eq!((forces.force, forces.stay), (retained.force, [true; 4]));
+            let asked = retained.force.map(|force| TendonForce { force, stay: true });
+            assert_eq!(forces.arms, asked);
             assert!(!forces.found);
         }
     }
@@ -247,8 +266,7 @@ fn forces_and_judgement_carry_the_time_of_their_pressures() {
     bench.0.run_with(300, |links, at| {
         world.speak(links, at);
         if at.as_millis() % 10 == 3 {
-            let (pressure, fault) = (world.pressure, world.fault);
-            links.contact.send(at, Contact { pressure, fault });
+            links.contact.send(at, world.pressed());
         }
     });
     let links = bench.0.links;

@@ -7,7 +7,7 @@ use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::vector::Vec3;
-use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForces, TendonOrder};
+use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::retained_store::RetainedStore;
 use sophie_tasks::start::{Cause, Start};
@@ -24,8 +24,8 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     links.grip_memory.send(now, GRIP);
     links.reel_angle.send(now, [2.0, 2.1, 2.2, 2.3]);
     let forces = TendonForces {
-        force: [50.0, 51.0, 52.0, 5.0],
-        ..TendonForces::default()
+        arms: [50.0, 51.0, 52.0, 5.0].map(|force| TendonForce { force, stay: false }),
+        found: false,
     };
     links.tendons.send(now, TendonOrder::Measured(forces));
     let mut grip = GripState::default();
@@ -152,8 +152,11 @@ fn forces_that_are_resumed_or_old_are_not_kept_as_news() {
     let (mut rig, memory) = (Rig::starting(Params::default(), start), FakeMemory::default());
     let mut store = RetainedStore::new(rig.links, memory.clone());
     let forces = TendonForces {
-        force: [60.0; 4],
-        ..TendonForces::default()
+        arms: [TendonForce {
+            force: 60.0,
+            stay: false,
+        }; 4],
+        found: false,
     };
     rig.links
         .tendons

@@ -5,7 +5,7 @@ use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::PerArm;
-use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForces, TendonOrder};
+use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::servos;
 use sophie_tasks::start::{Cause, Start};
@@ -37,9 +37,8 @@ fn speak(links: &Links, at: Instant, forces: Option<TendonForces>, tilt: f32) {
 
 fn forces(force: f32, found: bool) -> TendonForces {
     TendonForces {
-        force: [force; 4],
+        arms: [TendonForce { force, stay: false }; 4],
         found,
-        stay: [false; 4],
     }
 }
 
@@ -131,7 +130,9 @@ fn an_arm_that_is_to_stay_stays_whatever_its_force() {
         speak(links, at, Some(forces(60.0, false)), CLOSED)
     });
     let mut order = forces(0.0, false);
-    order.stay = [false, true, false, true];
+    for (arm, stay) in order.arms.iter_mut().zip([false, true, false, true]) {
+        arm.stay = stay;
+    }
     rig.run_with(2000, |links, at| speak(links, at, Some(order), CLOSED));
     let [a, b, c, d] = port.now();
     assert!(
@@ -158,8 +159,13 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
             retained: Some(retained),
             sequence: 1,
         });
-        let mut order = forces(0.0, false);
-        order.stay = [true; 4];
+        let order = TendonForces {
+            arms: [TendonForce {
+                force: 0.0,
+                stay: true,
+            }; 4],
+            found: false,
+        };
         rig.run_with(30, |links, at| speak(links, at, Some(order), CLOSED));
         assert!(near(port.now(), first), "{grip_memory:?}: {:?}", port.now());
     }

@@ -54,7 +54,7 @@ pub const STACK: &[(&str, Field, &str)] = &[
     ("tilt_model_deg", Field::Arms, "by the model in the mixer"),
     ("thrust_asked", Field::Arms, "N"),
     ("tension_asked", Field::Arms, "N"),
-    ("pressure_measured", Field::Arms, "Pa"),
+    ("pressure_measured", Field::Arms, "Pa; null where none is fresh"),
     ("throttle", Field::Number, "the pilot's, 0 to 1"),
     (
         "saturated",

@@ -137,7 +137,11 @@ fn sample(t: f64, phases: &[Phase]) -> Sample {
         tension: force,
         tension_asked: force.map(|f| f * 1.02),
         pressure,
-        pressure_measured: pressure.map(|p| p + 25.0 * noise(6.0) * closed),
+        pressure_measured: if t > 0.0 {
+            pressure.map(|p| p + 25.0 * noise(6.0) * closed)
+        } else {
+            [f64::NAN; 4]
+        },
         battery_voltage: 16.6 - 0.012 * t - 0.08 * mean,
         throttle: mean / 8.3,
         saturated: index == 3 && u < 0.03,

@@ -1,0 +1,47 @@
+//! The executors of the levels, and which task goes to which: as the tasks are declared.
+
+use embassy_executor::{SendSpawner, SpawnToken, Spawner};
+use sophie_tasks::schedule::{Level, TaskId};
+
+/// The three executors.
+pub struct Levels {
+    flight: SendSpawner,
+    steady: SendSpawner,
+    background: Spawner,
+}
+
+impl Levels {
+    /// Starts the executors above `background`.
+    pub fn new(background: Spawner) -> Self {
+        let (flight, steady) = sophie_boards::start_levels();
+        Self {
+            flight,
+            steady,
+            background,
+        }
+    }
+
+    /// Spawns the task that is declared as `task`, on the level of its declaration.
+    pub fn spawn<S: Send>(&self, task: TaskId, token: SpawnToken<S>) {
+        let token = named(task.level(), task.name(), token);
+        match task.level() {
+            Level::Flight => self.flight.spawn(token),
+            Level::Steady => self.steady.spawn(token),
+            Level::Background => self.background.spawn(token),
+        }
+    }
+
+    /// Spawns a task without a deadline in the background.
+    pub fn spawn_unmeasured<S>(&self, name: &'static str, token: SpawnToken<S>) {
+        self.background.spawn(named(Level::Background, name, token));
+    }
+}
+
+/// Keeps what a task is called and where it runs; used by the trace alone.
+#[cfg(not(feature = "trace"))]
+fn named<T>(_: Level, _: &'static str, token: T) -> T {
+    token
+}
+
+#[cfg(feature = "trace")]
+use super::trace::named;
