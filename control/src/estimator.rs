@@ -82,7 +82,8 @@ impl Estimator {
     }
 
     /// One step, and all that comes of it.
-    #[inline(always)]
+    // On its own: not for size with its caller.
+    #[inline(never)]
     pub fn estimate(&mut self, sample: &ImuSample) -> Attitude {
         let rate = self.step(sample.gyro, sample.accel, sample.dt);
         Attitude {
@@ -97,8 +98,7 @@ impl Estimator {
 
     /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without
     /// its bias.
-    // On its own: not for size with its caller.
-    #[inline(never)]
+    #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
         if !self.calibrated {
             self.calibrate(gyro, accel, dt);

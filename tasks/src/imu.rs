@@ -45,8 +45,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         let started = Instant::now();
         let released = port.ready_at();
         faults.good(links, started, port.line_silent());
-        let readings = batch.as_ref().iter().map(|reading| (reading.gyro, reading.accel));
-        let Some(sample) = sensing.take(released.as_micros(), readings) else {
+        let Some(sample) = sensing.take(released.as_micros(), batch.as_ref()) else {
             continue;
         };
         links.imu.send(released, sample);

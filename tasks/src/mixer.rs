@@ -30,7 +30,7 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
             battery_ratio: links.battery.look(|battery| battery.value.ratio),
             arms,
         };
-        let mix = mixing.step(message.at.as_micros(), message.value, &surroundings);
+        let mix = mixing.step(message.at.as_micros(), &message.value, &surroundings);
         links.mix.send(message.at, mix);
         record_run(links, TaskId::Mixer, message.at, started, DEADLINE);
     }

@@ -1,5 +1,8 @@
 //! Third stage: attitude and rate loop, which of them runs, and what is kept of them when that changes.
 
+#[cfg(test)]
+mod tests;
+
 use crate::attitude::{AttitudeLoop, AttitudeSetpoint, Target};
 use crate::chain::{Attitude, CONTROL_RATE_HZ, Demand};
 use crate::math;
@@ -80,7 +83,7 @@ impl Control {
     /// The demand that leads from `a` to `command`; `feedback` is what the last mix gave.
     // On its own: not for size with its caller.
     #[inline(never)]
-    pub fn step(&mut self, a: &Attitude, command: &Command, feedback: Feedback) -> Demand {
+    pub fn step(&mut self, a: &Attitude, command: &Command, feedback: &Feedback) -> Demand {
         self.switch(a, &command.setpoint);
         if feedback.yaw_gated {
             self.attitude.capture_heading(a.q);
@@ -118,7 +121,7 @@ impl Control {
                 (self.turn(a, angle, command.at_us), thrust, true)
             }
         };
-        let moment = self.rate.step(wanted, a.rate, feedback, !resting, a.dt);
+        let moment = self.rate.step(wanted, a.rate, *feedback, !resting, a.dt);
         if resting {
             Demand::Resting(self.while_resting(moment, thrust))
         } else {
