@@ -76,18 +76,18 @@ impl<A: Allocation> FlightChain<A> {
     /// First stage: takes a batch of readings, oldest first, the newest ready at `at_us` µs. True when a step is due.
     #[inline(always)]
     pub fn sense(&mut self, at_us: u64, readings: &[ImuReading]) -> bool {
-        let sample = self.sensing.take(at_us, readings);
-        if let Some(sample) = sample {
+        let due = self.sensing.take(at_us, readings, &mut self.flow.sample);
+        if due {
             self.flow.at_us = at_us;
-            self.flow.sample = sample;
         }
-        sample.is_some()
+        due
     }
 
     /// Second stage.
     #[inline(always)]
     pub fn estimate(&mut self) {
-        self.flow.attitude = self.estimator.estimate(&self.flow.sample);
+        self.estimator
+            .estimate(&self.flow.sample, &mut self.flow.attitude);
     }
 
     /// Third stage.
@@ -100,7 +100,10 @@ impl<A: Allocation> FlightChain<A> {
     /// Fourth stage.
     #[inline(always)]
     pub fn mix(&mut self, surroundings: &Surroundings) {
-        self.flow.mix = self.mixing.step(self.flow.at_us, &self.flow.demand, surroundings);
+        let Flow {
+            at_us, demand, mix, ..
+        } = &mut self.flow;
+        self.mixing.step(*at_us, demand, surroundings, mix);
         self.feedback = self.flow.mix.feedback();
     }
 

@@ -81,10 +81,10 @@ pub trait Allocation {
         at_us: u64,
         demand: &Demand,
         surroundings: &Surroundings,
-    ) -> MixOutput
-    where
+        out: &mut MixOutput,
+    ) where
         Self: Sized,
     {
-        mixing.compose(at_us, demand, surroundings)
+        mixing.compose(at_us, demand, surroundings, out);
     }
 }

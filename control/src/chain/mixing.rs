@@ -50,15 +50,22 @@ impl<A: Allocation> Mixing<A> {
         }
     }
 
-    /// Commands for `demand`, whose sample was ready at `at_us` µs.
+    /// Commands for `demand`, whose sample was ready at `at_us` µs, in the place that keeps them: a message this long is
+    /// dear to copy.
     #[inline(always)]
-    pub fn step(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings) -> MixOutput {
-        A::step_mixing(self, at_us, demand, surroundings)
+    pub fn step(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings, out: &mut MixOutput) {
+        A::step_mixing(self, at_us, demand, surroundings, out);
     }
 
     /// What [`Allocation::step_mixing`] does.
     #[inline(always)]
-    pub(crate) fn compose(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings) -> MixOutput {
+    pub(crate) fn compose(
+        &mut self,
+        at_us: u64,
+        demand: &Demand,
+        surroundings: &Surroundings,
+        out: &mut MixOutput,
+    ) {
         let dt = self.clock.step(at_us);
         let ratio = surroundings.battery_ratio.unwrap_or(1.0);
         // On the pipe the arms do not hang free.
@@ -87,7 +94,7 @@ impl<A: Allocation> Mixing<A> {
             ([0.0; 4], [0.0; 4])
         };
         let tilt = self.allocation.tilt();
-        MixOutput {
+        *out = MixOutput {
             running,
             thrusts,
             commands,
@@ -96,7 +103,7 @@ impl<A: Allocation> Mixing<A> {
             tilt: tilt.tilt(),
             tilt_bias: tilt.bias(),
             tilt_fault: tilt.fault(),
-        }
+        };
     }
 }
 

@@ -140,7 +140,8 @@ impl Allocation for Flexible {
         at_us: u64,
         demand: &Demand,
         surroundings: &Surroundings,
-    ) -> MixOutput {
-        mixing.compose(at_us, demand, surroundings)
+        out: &mut MixOutput,
+    ) {
+        mixing.compose(at_us, demand, surroundings, out);
     }
 }

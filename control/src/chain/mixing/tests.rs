@@ -36,7 +36,7 @@ impl Bench {
         let mut mix = MixOutput::default();
         for _ in 0..steps {
             self.at_us += 1000;
-            mix = self.mixing.step(self.at_us, demand, surroundings);
+            self.mixing.step(self.at_us, demand, surroundings, &mut mix);
         }
         mix
     }
