@@ -12,7 +12,7 @@ mod sensing;
 mod step_clock;
 
 pub use control::{Command, Control};
-pub use messages::{Attitude, Demand, ImuSample, MixOutput};
+pub use messages::{Attitude, Demand, ImuReading, ImuSample, MixOutput};
 pub use mixing::{ArmReading, Mixing, Surroundings};
 pub use sensing::Sensing;
 pub use step_clock::StepClock;
@@ -22,7 +22,6 @@ use crate::estimator::Estimator;
 use crate::mixer::{Allocation, Flexible};
 use crate::params::Params;
 use crate::rate::Feedback;
-use crate::vector::Vec3;
 
 /// Rate of the step, Hz.
 pub const CONTROL_RATE_HZ: f32 = 1000.0;
@@ -74,35 +73,37 @@ impl<A: Allocation> FlightChain<A> {
         }
     }
 
-    /// First stage: takes a batch of rates (rad/s) and specific forces (m/s²), oldest first, the newest ready at `at_us`
-    /// µs. True when a step is due.
+    /// First stage: takes a batch of readings, oldest first, the newest ready at `at_us` µs. True when a step is due.
     #[inline(always)]
-    pub fn sense(&mut self, at_us: u64, samples: impl IntoIterator<Item = (Vec3, Vec3)>) -> bool {
-        let sample = self.sensing.take(at_us, samples);
-        if let Some(sample) = sample {
+    pub fn sense(&mut self, at_us: u64, readings: &[ImuReading]) -> bool {
+        let due = self.sensing.take(at_us, readings, &mut self.flow.sample);
+        if due {
             self.flow.at_us = at_us;
-            self.flow.sample = sample;
         }
-        sample.is_some()
+        due
     }
 
     /// Second stage.
     #[inline(always)]
     pub fn estimate(&mut self) {
-        self.flow.attitude = self.estimator.estimate(&self.flow.sample);
+        self.estimator
+            .estimate(&self.flow.sample, &mut self.flow.attitude);
     }
 
     /// Third stage.
     #[inline(always)]
     pub fn control(&mut self, command: &Command) {
-        self.flow.demand = self.control.step(&self.flow.attitude, command, self.feedback);
+        self.flow.demand = self.control.step(&self.flow.attitude, command, &self.feedback);
         self.flow.target = self.control.target();
     }
 
     /// Fourth stage.
     #[inline(always)]
     pub fn mix(&mut self, surroundings: &Surroundings) {
-        self.flow.mix = self.mixing.step(self.flow.at_us, self.flow.demand, surroundings);
+        let Flow {
+            at_us, demand, mix, ..
+        } = &mut self.flow;
+        self.mixing.step(*at_us, demand, surroundings, mix);
         self.feedback = self.flow.mix.feedback();
     }
 
@@ -111,11 +112,11 @@ impl<A: Allocation> FlightChain<A> {
     pub fn step(
         &mut self,
         at_us: u64,
-        samples: impl IntoIterator<Item = (Vec3, Vec3)>,
+        readings: &[ImuReading],
         command: &Command,
         surroundings: &Surroundings,
     ) -> bool {
-        let due = self.sense(at_us, samples);
+        let due = self.sense(at_us, readings);
         if due {
             self.estimate();
             self.control(command);

@@ -81,24 +81,24 @@ impl Estimator {
         self.bias
     }
 
-    /// One step, and all that comes of it.
-    #[inline(always)]
-    pub fn estimate(&mut self, sample: &ImuSample) -> Attitude {
+    /// One step, and all that comes of it, in the place that keeps it: a message this long is dear to copy.
+    // On its own: not for size with its caller.
+    #[inline(never)]
+    pub fn estimate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
         let rate = self.step(sample.gyro, sample.accel, sample.dt);
-        Attitude {
+        *attitude = Attitude {
             q: self.q,
             rate,
             accel: sample.accel,
             gyro_bias: self.bias,
             calibrated: self.calibrated,
             dt: sample.dt,
-        }
+        };
     }
 
     /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without
     /// its bias.
-    // On its own: not for size with its caller.
-    #[inline(never)]
+    #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
         if !self.calibrated {
             self.calibrate(gyro, accel, dt);

@@ -3,6 +3,7 @@
 //! [`ImuFilter::batch`] is called at 1 kHz by the task `imu` with the sensor's samples of the last millisecond (4 kHz, or
 //! the part's nearest; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
 
+use crate::chain::ImuReading;
 use crate::filter::Coefficients;
 use crate::vector::Vec3;
 
@@ -47,15 +48,6 @@ impl AxisFilter {
     }
 }
 
-/// What a batch of samples came to.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Filtered {
-    /// Newest rates (rad/s) and specific forces (m/s²); `None` when no sample was finite.
-    pub newest: Option<(Vec3, Vec3)>,
-    /// Finite samples.
-    pub count: u8,
-}
-
 /// Filter of the vehicle's inertial sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImuFilter {
@@ -77,35 +69,48 @@ impl ImuFilter {
         }
     }
 
-    /// Takes the samples (rad/s, m/s²) of a batch, oldest first, as [`Self::step`] takes one.
+    /// Takes the readings of a batch, oldest first, with `accel_bias` (m/s²) off the specific force; such as are not
+    /// finite are left out. The newest that comes out goes to `newest`; gives how many were finite.
     #[inline(always)]
-    pub fn batch(&mut self, samples: impl IntoIterator<Item = (Vec3, Vec3)>) -> Filtered {
-        // A copy of its own stays in registers from sample to sample.
-        let mut filter = *self;
-        let mut filtered = Filtered::default();
-        for (gyro, accel) in samples {
-            if let Some(newest) = filter.step(gyro, accel) {
-                filtered.newest = Some(newest);
-                filtered.count += 1;
+    pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u8 {
+        if !self.started {
+            self.start_at_first(readings, accel_bias);
+        }
+        // Copies of their own stay in registers from reading to reading.
+        let (mut filter, mut last) = (*self, *newest);
+        let mut finite = 0;
+        for ImuReading { gyro, accel } in readings {
+            if let Some(filtered) = filter.smooth(*gyro, *accel - accel_bias) {
+                last = filtered;
+                finite += 1;
             }
         }
-        *self = filter;
-        filtered
+        (*self, *newest) = (filter, last);
+        finite
     }
 
-    /// Takes one sample (rad/s, m/s²) and gives the filtered one; a sample that is not finite is left out.
+    /// Takes the first reading that is finite as the constant input so far.
+    #[cold]
+    #[inline(never)]
+    fn start_at_first(&mut self, readings: &[ImuReading], accel_bias: Vec3) {
+        let mut unbiased = readings.iter().map(|r| (r.gyro, r.accel - accel_bias));
+        if let Some((gyro, accel)) = unbiased.find(|(gyro, accel)| (*gyro + *accel).is_finite()) {
+            self.start(gyro, accel);
+        }
+    }
+
+    /// One reading (rad/s, m/s²) filtered; one that is not finite is left out.
     #[inline(always)]
-    pub fn step(&mut self, gyro: Vec3, accel: Vec3) -> Option<(Vec3, Vec3)> {
+    fn smooth(&mut self, gyro: Vec3, accel: Vec3) -> Option<ImuReading> {
         if !(gyro + accel).is_finite() {
             return None;
         }
-        if !self.started {
-            self.start(gyro, accel);
-        }
-        Some((self.gyro.step(gyro), self.accel.step(accel)))
+        Some(ImuReading {
+            gyro: self.gyro.step(gyro),
+            accel: self.accel.step(accel),
+        })
     }
 
-    #[cold]
     fn start(&mut self, gyro: Vec3, accel: Vec3) {
         self.gyro.reset(gyro);
         self.accel.reset(accel);
@@ -117,17 +122,43 @@ impl ImuFilter {
 mod tests {
     use super::*;
 
+    /// What one reading gives, if it is finite.
+    fn one(f: &mut ImuFilter, gyro: Vec3, accel: Vec3) -> Option<ImuReading> {
+        let mut newest = ImuReading::default();
+        (f.batch(&[ImuReading { gyro, accel }], Vec3::ZERO, &mut newest) == 1).then_some(newest)
+    }
+
     #[test]
     fn starts_without_a_transient_and_drops_bad_samples() {
         let mut f = ImuFilter::new(90.0, 4000.0);
         let (g, a) = (Vec3::new(0.1, -0.2, 0.3), Vec3::new(0.0, 0.5, -9.8));
         for _ in 0..2000 {
-            let (g2, a2) = f.step(g, a).expect("finite");
-            assert!((g2 - g).norm() < 1e-3 && (a2 - a).norm() < 1e-2);
+            let out = one(&mut f, g, a).expect("finite");
+            assert!((out.gyro - g).norm() < 1e-3 && (out.accel - a).norm() < 1e-2);
         }
-        assert!(f.step(Vec3::new(f32::NAN, 0.0, 0.0), a).is_none());
-        let (gyro, _) = f.step(g, a).expect("finite");
-        assert!(gyro.to_array().iter().all(|x| x.is_finite()));
+        assert!(one(&mut f, Vec3::new(f32::NAN, 0.0, 0.0), a).is_none());
+        let out = one(&mut f, g, a).expect("finite");
+        assert!(out.gyro.to_array().iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn a_batch_starts_at_its_first_good_reading_and_gives_its_last() {
+        let bias = Vec3::new(0.0, 0.0, 0.2);
+        let bad = ImuReading {
+            gyro: Vec3::new(0.0, f32::INFINITY, 0.0),
+            accel: Vec3::ZERO,
+        };
+        let good = ImuReading {
+            gyro: Vec3::new(0.1, -0.2, 0.3),
+            accel: Vec3::new(0.0, 0.5, -9.8),
+        };
+        let mut f = ImuFilter::new(90.0, 4000.0);
+        let kept = good;
+        let mut newest = kept;
+        assert!(f.batch(&[bad; 3], bias, &mut newest) == 0 && newest == kept);
+        assert!(f.batch(&[bad, good, good, bad], bias, &mut newest) == 2);
+        assert!((newest.gyro - good.gyro).norm() < 1e-4, "{newest:?}");
+        assert!((newest.accel - (good.accel - bias)).norm() < 1e-3, "{newest:?}");
     }
 
     /// Gain and delay (s) of the gyro's filter for a sine of `hz`, as seen at its output of 1 kHz, with samples at
@@ -141,10 +172,10 @@ mod tests {
         for i in 1..=(2.0 * rate_hz) as usize {
             let t = i as f64 / rate_hz;
             let x = f64::sin(turn * t) as f32;
-            let (y, _) = f.step(Vec3::new(x, 0.0, 0.0), Vec3::ZERO).expect("finite");
+            let out = one(&mut f, Vec3::new(x, 0.0, 0.0), Vec3::ZERO).expect("finite");
             if i.is_multiple_of(per_output) && t > 1.0 {
-                in_phase += f64::from(y.x) * f64::sin(turn * t);
-                quadrature += f64::from(y.x) * f64::cos(turn * t);
+                in_phase += f64::from(out.gyro.x) * f64::sin(turn * t);
+                quadrature += f64::from(out.gyro.x) * f64::cos(turn * t);
                 n += 1;
             }
         }

@@ -11,6 +11,7 @@ pub use flexible::Flexible;
 pub use limits::Limits;
 pub use split::{Split, moment_patterns, stiff};
 
+use crate::chain::{Demand, MixOutput, Mixing, Surroundings};
 use crate::desaturation::Given;
 use crate::tilt::TiltModel;
 use crate::wrench::{PerArm, Wrench};
@@ -41,7 +42,7 @@ pub struct Conditions {
 pub trait Allocation {
     /// The thrusts for the wrench `w` (N, N·m), at the present tilt of the arms. A wrench that is not finite counts as
     /// none: idle.
-    fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix;
+    fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix;
 
     /// Rotors at idle.
     fn at_idle(&self) -> Mix;
@@ -57,7 +58,7 @@ pub trait Allocation {
 
     /// One step: [`Self::allocate`], then [`Self::follow`].
     #[inline(always)]
-    fn mix(&mut self, w: Wrench, c: Conditions) -> Mix {
+    fn mix(&mut self, w: &Wrench, c: Conditions) -> Mix {
         let mix = self.allocate(w, c);
         self.follow(&mix.thrusts, c.dt);
         mix
@@ -68,5 +69,22 @@ pub trait Allocation {
         let mix = self.at_idle();
         self.follow(&mix.thrusts, dt);
         mix
+    }
+
+    /// One step of the `mixing` that owns such an allocation; [`Mixing::step`] says what it is given and gives.
+    ///
+    /// Generic code is built with its caller, on a board for size. The allocation that flies repeats this method without
+    /// inlining, so that it is built with this crate, for speed.
+    #[inline(always)]
+    fn step_mixing(
+        mixing: &mut Mixing<Self>,
+        at_us: u64,
+        demand: &Demand,
+        surroundings: &Surroundings,
+        out: &mut MixOutput,
+    ) where
+        Self: Sized,
+    {
+        mixing.compose(at_us, demand, surroundings, out);
     }
 }

@@ -41,13 +41,13 @@ pub struct RateLoop {
     p: Vec3,
     i: Vec3,
     d: Vec3,
+    /// Rate of the step before; without one there is no slope yet.
+    last: Vec3,
+    started: bool,
     d_rate: f32,
     inertia: Vec3,
     integral: Vec3,
     derivative: [LowPass; 3],
-    /// Rate of the step before; without one there is no slope yet.
-    last: Vec3,
-    started: bool,
     notch: Biquad,
 }
 

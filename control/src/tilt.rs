@@ -72,7 +72,7 @@ impl TiltModel {
         }
         let model = self.model;
         let (gain, lag_gain) = (LowPass::gain(self.cutoff, dt), LowPass::gain(self.lag_rate, dt));
-        let mut fault = false;
+        let mut doubtful: f32 = 0.0;
         for (arm, thrust) in self.arms.iter_mut().zip(commanded) {
             let thrust = arm.thrust.blend(*thrust, gain);
             arm.lagged.blend(thrust, lag_gain);
@@ -81,9 +81,10 @@ impl TiltModel {
             let valid = tilt.abs() <= VALID_TILT;
             arm.tilt = if valid { tilt } else { arm.tilt };
             arm.follow = thrust * model.slope(thrust);
-            fault |= !valid & (thrust > LEARN_THRUST);
+            let unknown = if valid { 0.0 } else { thrust };
+            doubtful = if unknown > doubtful { unknown } else { doubtful };
         }
-        self.fault = fault;
+        self.fault = doubtful > LEARN_THRUST;
     }
 
     /// Takes the tilt (rad) that the sensor of `arm` (0 to 3) measured, at 100 Hz, while the arm hangs free in the air.
@@ -111,24 +112,32 @@ impl TiltModel {
     /// Low-passed thrust of each rotor, N, >= 0.
     #[inline]
     pub fn thrusts(&self) -> PerArm<f32> {
-        self.arms.map(|a| a.thrust.value())
+        self.each(|arm| arm.thrust.value())
     }
 
     /// Tilt of each arm, rad, tip up positive, within ±[`VALID_TILT`].
     #[inline]
     pub fn tilt(&self) -> PerArm<f32> {
-        self.arms.map(|a| a.tilt)
+        self.each(|arm| arm.tilt)
     }
 
     /// T dα/dT of each arm, rad: how far a relative change of its thrust tilts it.
     #[inline]
     pub fn follow(&self) -> PerArm<f32> {
-        self.arms.map(|a| a.follow)
+        self.each(|arm| arm.follow)
     }
 
     /// Bias of each arm against the model, rad, tip up positive, within the parameters' limit.
+    #[inline]
     pub fn bias(&self) -> PerArm<f32> {
-        self.arms.map(|a| a.bias)
+        self.each(|arm| arm.bias)
+    }
+
+    /// By reference: mapped by value, the arms would be copied first.
+    #[inline(always)]
+    fn each(&self, what: impl Fn(&Arm) -> f32) -> PerArm<f32> {
+        let [first, second, third, fourth] = &self.arms;
+        [what(first), what(second), what(third), what(fourth)]
     }
 
     /// A flying arm is outside the model's range of validity, and its last valid tilt is held.

@@ -32,7 +32,7 @@ pub async fn run(links: &Links) {
             });
         let feedback = links.mix.fresh_to(started, MixOutput::feedback);
         let feedback = feedback.unwrap_or(Feedback::NOTHING);
-        let demand = control.step(&estimate.value, &command, feedback);
+        let demand = control.step(&estimate.value, &command, &feedback);
         links.demand.send(estimate.at, demand);
         links.target.send(estimate.at, control.target());
         record_run(links, TaskId::Control, estimate.at, started, DEADLINE);

@@ -3,6 +3,7 @@
 //! The [`DEADLINE`] counts from the data-ready of the sample.
 
 use embassy_time::{Duration, Instant};
+use sophie_control::chain::Attitude;
 use sophie_control::estimator::Estimator;
 
 use crate::deadline::{TaskId, record_run};
@@ -21,10 +22,12 @@ pub async fn run(links: &Links) {
         Some(bias) => Estimator::resume(&links.params, bias),
         None => Estimator::new(&links.params),
     };
+    let mut attitude = Attitude::default();
     loop {
         let sample = imu.changed().await;
         let started = Instant::now();
-        links.attitude.send(sample.at, estimator.estimate(&sample.value));
+        estimator.estimate(&sample.value, &mut attitude);
+        links.attitude.send(sample.at, attitude);
         record_run(links, TaskId::Estimator, sample.at, started, DEADLINE);
     }
 }

@@ -5,7 +5,7 @@
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::Refusal;
-use sophie_control::chain::Sensing;
+use sophie_control::chain::{ImuSample, Sensing};
 
 use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
@@ -28,6 +28,7 @@ const CLEAN: Duration = Duration::from_millis(100);
 /// says nothing at all shows as age.
 pub async fn run(links: &Links, mut port: impl Imu) -> ! {
     let mut sensing = Sensing::new(&links.params, port.rate_hz());
+    let mut sample = ImuSample::default();
     let mut faults = Faults::default();
     loop {
         let batch = match with_timeout(SILENCE, port.read()).await {
@@ -45,10 +46,9 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
         let started = Instant::now();
         let released = port.ready_at();
         faults.good(links, started, port.line_silent());
-        let readings = batch.as_ref().iter().map(|reading| (reading.gyro, reading.accel));
-        let Some(sample) = sensing.take(released.as_micros(), readings) else {
+        if !sensing.take(released.as_micros(), batch.as_ref(), &mut sample) {
             continue;
-        };
+        }
         links.imu.send(released, sample);
         record_run(links, TaskId::Imu, released, started, DEADLINE);
     }

@@ -3,7 +3,7 @@
 //! The [`DEADLINE`] counts from data-ready.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::chain::{ArmReading, Mixing, Surroundings};
+use sophie_control::chain::{ArmReading, MixOutput, Mixing, Surroundings};
 use sophie_control::mixer::Allocation;
 use sophie_control::params::Params;
 
@@ -19,6 +19,7 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
         return;
     };
     let mut mixing = Mixing::new(&links.params, allocation(&links.params));
+    let mut mix = MixOutput::default();
     loop {
         let message = demand.changed().await;
         let started = Instant::now();
@@ -30,7 +31,7 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
             battery_ratio: links.battery.look(|battery| battery.value.ratio),
             arms,
         };
-        let mix = mixing.step(message.at.as_micros(), message.value, &surroundings);
+        mixing.step(message.at.as_micros(), &message.value, &surroundings, &mut mix);
         links.mix.send(message.at, mix);
         record_run(links, TaskId::Mixer, message.at, started, DEADLINE);
     }

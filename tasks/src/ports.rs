@@ -3,6 +3,7 @@
 use embassy_time::Instant;
 use heapless::{String, Vec};
 use sophie_control::arming::Refusal;
+pub use sophie_control::chain::ImuReading;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
@@ -25,15 +26,6 @@ pub enum PortError {
 
 /// Most samples that an inertial sensor hands over at once.
 pub const IMU_BATCH: usize = 8;
-
-/// One sample of the vehicle's inertial sensor in body axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ImuReading {
-    /// Angular rate, rad/s.
-    pub gyro: Vec3,
-    /// Specific force, m/s²: (0, 0, -9.81) at rest and level.
-    pub accel: Vec3,
-}
 
 /// The vehicle's inertial sensor.
 pub trait Imu {

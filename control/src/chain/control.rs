@@ -1,5 +1,8 @@
 //! Third stage: attitude and rate loop, which of them runs, and what is kept of them when that changes.
 
+#[cfg(test)]
+mod tests;
+
 use crate::attitude::{AttitudeLoop, AttitudeSetpoint, Target};
 use crate::chain::{Attitude, CONTROL_RATE_HZ, Demand};
 use crate::math;
@@ -26,6 +29,8 @@ pub struct Command {
 enum Kind {
     None,
     Attitude,
+    /// The same, as the vehicle leaves the pipe by itself.
+    Escape,
     Rate,
     Direct,
 }
@@ -35,10 +40,21 @@ impl Kind {
     const fn of(setpoint: &Setpoint) -> Self {
         match setpoint {
             Setpoint::Stop | Setpoint::Idle => Self::None,
-            Setpoint::Angle { .. } | Setpoint::Escape { .. } | Setpoint::Resting { .. } => Self::Attitude,
+            Setpoint::Angle { .. } | Setpoint::Resting { .. } => Self::Attitude,
+            Setpoint::Escape { .. } => Self::Escape,
             Setpoint::Rate { .. } => Self::Rate,
             Setpoint::Direct { .. } => Self::Direct,
         }
+    }
+
+    /// The attitude loop runs.
+    const fn turns(self) -> bool {
+        matches!(self, Self::Attitude | Self::Escape)
+    }
+
+    /// The rate loop runs.
+    const fn integrates(self) -> bool {
+        self.turns() || matches!(self, Self::Rate)
     }
 }
 
@@ -52,8 +68,6 @@ pub struct Control {
     /// Sideways and fore-aft lever of a rotor, m.
     levers: [f32; 2],
     kind: Kind,
-    /// The vehicle leaves the pipe by itself.
-    escapes: bool,
     /// When what the attitude loop aims at was given, µs.
     aimed: Option<u64>,
 }
@@ -66,7 +80,6 @@ impl Control {
             rate: RateLoop::new(p, CONTROL_RATE_HZ),
             levers: [p.arm_d, p.arm_b],
             kind: Kind::None,
-            escapes: false,
             aimed: None,
         }
     }
@@ -80,8 +93,11 @@ impl Control {
     /// The demand that leads from `a` to `command`; `feedback` is what the last mix gave.
     // On its own: not for size with its caller.
     #[inline(never)]
-    pub fn step(&mut self, a: &Attitude, command: &Command, feedback: Feedback) -> Demand {
-        self.switch(a, &command.setpoint);
+    pub fn step(&mut self, a: &Attitude, command: &Command, feedback: &Feedback) -> Demand {
+        let kind = Kind::of(&command.setpoint);
+        if kind != self.kind {
+            self.change_to(kind, a);
+        }
         if feedback.yaw_gated {
             self.attitude.capture_heading(a.q);
         }
@@ -118,7 +134,7 @@ impl Control {
                 (self.turn(a, angle, command.at_us), thrust, true)
             }
         };
-        let moment = self.rate.step(wanted, a.rate, feedback, !resting, a.dt);
+        let moment = self.rate.step(wanted, a.rate, *feedback, !resting, a.dt);
         if resting {
             Demand::Resting(self.while_resting(moment, thrust))
         } else {
@@ -131,32 +147,16 @@ impl Control {
         }
     }
 
-    /// Resets what another kind of setpoint makes stale.
-    #[inline(always)]
-    fn switch(&mut self, a: &Attitude, setpoint: &Setpoint) {
-        let kind = Kind::of(setpoint);
-        if kind != self.kind {
-            self.change_to(kind, a);
-        }
-        let escapes = matches!(setpoint, Setpoint::Escape { .. });
-        if escapes && !self.escapes {
-            // What the integrals hold was wound up against the pipe: in the air it would throw the vehicle to that side.
-            self.rate.reset();
-        }
-        self.escapes = escapes;
-    }
-
     /// A loop is reset on activation, at the vehicle's attitude: its state is stale.
     #[cold]
     fn change_to(&mut self, kind: Kind, a: &Attitude) {
-        if kind == Kind::Attitude {
+        if kind.turns() && !self.kind.turns() {
             self.attitude.reset(a.q);
             self.aimed = None;
         }
-        if !matches!(
-            (self.kind, kind),
-            (Kind::Attitude, Kind::Rate) | (Kind::Rate, Kind::Attitude)
-        ) {
+        let lasts = kind.integrates() && self.kind.integrates();
+        // What the integrals hold on the pipe was wound up against it: in the air it would throw the vehicle to that side.
+        if !lasts || kind == Kind::Escape {
             self.rate.reset();
         }
         self.kind = kind;

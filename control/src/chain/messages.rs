@@ -5,6 +5,15 @@ use crate::rate::Feedback;
 use crate::vector::{Quat, Vec3};
 use crate::wrench::{PerArm, Wrench};
 
+/// One sample of the vehicle's inertial sensor in body axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImuReading {
+    /// Angular rate, rad/s.
+    pub gyro: Vec3,
+    /// Specific force, m/s²: (0, 0, -9.81) at rest and level.
+    pub accel: Vec3,
+}
+
 /// Filtered inertial sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImuSample {

@@ -1,13 +1,14 @@
 //! Fourth stage: the arms' tilt, allocation, motor commands.
 
-use core::array::IntoIter;
-use core::iter::Enumerate;
+#[cfg(test)]
+mod tests;
 
 use crate::chain::{Demand, MixOutput, StepClock};
 use crate::mixer::{Allocation, Conditions, Flexible};
 use crate::params::Params;
 use crate::thrust_curve::ThrustCurve;
-use crate::wrench::{PerArm, Wrench};
+use crate::tilt::TiltModel;
+use crate::wrench::PerArm;
 
 /// What the arms' own sensors measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,9 +36,7 @@ pub struct Mixing<A = Flexible> {
     /// From thrusts to commands.
     pub curve: ThrustCurve,
     clock: StepClock,
-    /// When the readings taken last were measured, µs, and those that have not corrected their arm yet.
-    seen_us: u64,
-    readings: Enumerate<IntoIter<Option<f32>, 4>>,
+    readings: Readings,
 }
 
 impl<A: Allocation> Mixing<A> {
@@ -47,42 +46,55 @@ impl<A: Allocation> Mixing<A> {
             allocation,
             curve: ThrustCurve::from_params(p),
             clock: StepClock::default(),
-            seen_us: 0,
-            readings: [None; 4].into_iter().enumerate(),
+            readings: Readings::default(),
         }
     }
 
-    /// Commands for `demand`, whose sample was ready at `at_us` µs.
+    /// Commands for `demand`, whose sample was ready at `at_us` µs, in the place that keeps them: a message this long is
+    /// dear to copy.
     #[inline(always)]
-    pub fn step(&mut self, at_us: u64, demand: Demand, surroundings: &Surroundings) -> MixOutput {
+    pub fn step(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings, out: &mut MixOutput) {
+        A::step_mixing(self, at_us, demand, surroundings, out);
+    }
+
+    /// What [`Allocation::step_mixing`] does.
+    #[inline(always)]
+    pub(crate) fn compose(
+        &mut self,
+        at_us: u64,
+        demand: &Demand,
+        surroundings: &Surroundings,
+        out: &mut MixOutput,
+    ) {
         let dt = self.clock.step(at_us);
         let ratio = surroundings.battery_ratio.unwrap_or(1.0);
         // On the pipe the arms do not hang free.
         if !matches!(demand, Demand::Resting(_)) {
-            self.take(surroundings.arms.as_ref());
+            self.readings.take(surroundings.arms.as_ref());
         }
-        self.correct_tilt();
-        let mut wrench = |wrench: Wrench, yaw: bool| {
-            let conditions = Conditions {
-                yaw,
-                battery_ratio: ratio,
-                dt,
-            };
-            self.allocation.mix(wrench, conditions)
+        self.readings.correct_one(self.allocation.tilt_mut());
+        let (wrench, yaw) = match demand {
+            Demand::Wrench(wrench) => (Some(wrench), true),
+            Demand::Resting(wrench) => (Some(wrench), false),
+            Demand::Idle | Demand::Stop => (None, false),
         };
-        let mix = match demand {
-            Demand::Wrench(w) => wrench(w, true),
-            Demand::Resting(w) => wrench(w, false),
-            Demand::Idle | Demand::Stop => self.allocation.idle(dt),
+        let conditions = Conditions {
+            yaw,
+            battery_ratio: ratio,
+            dt,
         };
-        let running = demand != Demand::Stop;
+        let mix = match wrench {
+            Some(wrench) => self.allocation.mix(wrench, conditions),
+            None => self.allocation.idle(dt),
+        };
+        let running = *demand != Demand::Stop;
         let (thrusts, commands) = if running {
             (mix.thrusts, self.curve.commands(&mix.thrusts, ratio))
         } else {
             ([0.0; 4], [0.0; 4])
         };
         let tilt = self.allocation.tilt();
-        MixOutput {
+        *out = MixOutput {
             running,
             thrusts,
             commands,
@@ -91,25 +103,44 @@ impl<A: Allocation> Mixing<A> {
             tilt: tilt.tilt(),
             tilt_bias: tilt.bias(),
             tilt_fault: tilt.fault(),
-        }
+        };
     }
+}
 
+/// The readings of the arms' sensors that have not corrected their arm yet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Readings {
+    /// When those taken last were measured, µs.
+    seen_us: u64,
+    tilt: PerArm<Option<f32>>,
+    /// Arm whose turn it is; 4 when all have had theirs.
+    arm: usize,
+}
+
+impl Readings {
     /// Takes each reading once.
     #[inline(always)]
     fn take(&mut self, arms: Option<&ArmReading>) {
         if let Some(arms) = arms
             && arms.at_us > self.seen_us
         {
-            self.seen_us = arms.at_us;
-            self.readings = arms.tilt.into_iter().enumerate();
+            *self = Self {
+                seen_us: arms.at_us,
+                tilt: arms.tilt,
+                arm: 0,
+            };
         }
     }
 
     /// One arm a step: all four in one would make it longer than the others.
     #[inline(always)]
-    pub fn correct_tilt(&mut self) {
-        if let Some((arm, Some(tilt))) = self.readings.next() {
-            self.allocation.tilt_mut().correct(arm, tilt);
+    fn correct_one(&mut self, model: &mut TiltModel) {
+        let Some(reading) = self.tilt.get(self.arm) else {
+            return;
+        };
+        if let Some(tilt) = reading {
+            model.correct(self.arm, *tilt);
         }
+        self.arm += 1;
     }
 }

@@ -1,6 +1,6 @@
 //! First stage: filters the inertial sensor at its own rate and hands on at the control rate.
 
-use crate::chain::{CONTROL_RATE_HZ, ImuSample, StepClock};
+use crate::chain::{CONTROL_RATE_HZ, ImuReading, ImuSample, StepClock};
 use crate::imu_filter::ImuFilter;
 use crate::math;
 use crate::params::Params;
@@ -14,7 +14,6 @@ pub struct Sensing {
     /// Samples that make a step, and those that have come since the last.
     per_step: f32,
     collected: f32,
-    newest: (Vec3, Vec3),
     clock: StepClock,
 }
 
@@ -26,31 +25,28 @@ impl Sensing {
             accel_bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
             per_step: math::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0),
             collected: 0.0,
-            newest: (Vec3::ZERO, Vec3::ZERO),
             clock: StepClock::default(),
         }
     }
 
-    /// Takes a batch of rates (rad/s) and specific forces (m/s²), oldest first, the newest ready at `at_us` µs; gives the
-    /// filtered sample when as many have come as make a step. Samples that are not finite do not count.
-    #[inline(always)]
-    pub fn take(&mut self, at_us: u64, samples: impl IntoIterator<Item = (Vec3, Vec3)>) -> Option<ImuSample> {
-        let bias = self.accel_bias;
-        let samples = samples.into_iter();
-        let filtered = self
-            .filter
-            .batch(samples.map(|(gyro, accel)| (gyro, accel - bias)));
-        self.newest = filtered.newest.unwrap_or(self.newest);
-        self.collected += f32::from(filtered.count);
+    /// Takes a batch of readings, oldest first, the newest ready at `at_us` µs. `sample` is the one given last; it is
+    /// filtered on. True when as many readings have come as make a step; such as are not finite do not count.
+    // On its own: not for size with its caller.
+    #[inline(never)]
+    pub fn take(&mut self, at_us: u64, readings: &[ImuReading], sample: &mut ImuSample) -> bool {
+        let mut newest = ImuReading {
+            gyro: sample.gyro,
+            accel: sample.accel,
+        };
+        let finite = self.filter.batch(readings, self.accel_bias, &mut newest);
+        sample.gyro = newest.gyro;
+        sample.accel = newest.accel;
+        self.collected += f32::from(finite);
         if self.collected + 0.5 < self.per_step {
-            return None;
+            return false;
         }
         self.collected = 0.0;
-        let (gyro, accel) = self.newest;
-        Some(ImuSample {
-            gyro,
-            accel,
-            dt: self.clock.step(at_us),
-        })
+        sample.dt = self.clock.step(at_us);
+        true
     }
 }

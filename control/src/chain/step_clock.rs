@@ -18,13 +18,23 @@ impl StepClock {
     /// Time since the step before, s, 0.5 to 5 ms, for a step of `at_us` µs; 1 ms for the first.
     #[inline(always)]
     pub fn step(&mut self, at_us: u64) -> f32 {
-        let dt = self.last_us.map_or(1.0 / CONTROL_RATE_HZ, |last| {
+        let dt = match self.last_us {
             // 32 bits: a conversion of 64 is a library call on these cores.
-            u32::try_from(at_us.saturating_sub(last)).unwrap_or(u32::MAX) as f32 * 1e-6
-        });
+            Some(last) => match u32::try_from(at_us.wrapping_sub(last)) {
+                Ok(gap_us) => gap_us as f32 * 1e-6,
+                Err(_) => odd_gap(last, at_us),
+            },
+            None => 1.0 / CONTROL_RATE_HZ,
+        };
         self.last_us = Some(at_us);
         math::clamp(dt, SHORTEST, LONGEST)
     }
+}
+
+/// Step time (s) after more than an hour, or backwards.
+#[cold]
+const fn odd_gap(last_us: u64, at_us: u64) -> f32 {
+    if at_us < last_us { SHORTEST } else { LONGEST }
 }
 
 #[cfg(test)]

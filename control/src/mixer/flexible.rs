@@ -6,6 +6,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::chain::{Demand, MixOutput, Mixing, Surroundings};
 use crate::desaturation::Patterns;
 use crate::effectiveness::{Effectiveness, Geometry, Inverse, Load};
 use crate::math;
@@ -49,13 +50,13 @@ impl Flexible {
 
     /// T = Tt + J⁻¹ (w - w(Tt)), J the static Jacobian at the low-passed thrusts Tt.
     #[inline(always)]
-    fn quasi_static(&self, w: Wrench, yaw_usable: bool) -> Split {
+    fn quasi_static(&self, wrench: &Wrench, yaw_usable: bool) -> Split {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
         // In A yaw works the other way round: it is allocated as in B, with the moment reversed.
         let geometry = self.as_b;
         let w = Wrench {
-            yaw: self.chi * w.yaw,
-            ..w
+            yaw: self.chi * wrench.yaw,
+            ..*wrench
         };
         let mut e = Effectiveness::quasi_static(&geometry, &tilt, &self.tilt.follow());
         // The authority fades with its own quasi-static gain, and no entry may pass zero: the inverse of a
@@ -67,7 +68,7 @@ impl Flexible {
         let fade = if yaw_usable { fade } else { 0.0 };
         e.yaw = e.yaw.map(|y| if y > least { y } else { least });
         let Some(inverse) = Inverse::new(&e) else {
-            return self.without_yaw(w);
+            return self.without_yaw(wrench);
         };
         let now = Load::given(&geometry, &thrusts, &tilt);
         let half = 0.5 * w.thrust;
@@ -91,10 +92,10 @@ impl Flexible {
 
     /// No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
     #[cold]
-    fn without_yaw(&self, w: Wrench) -> Split {
+    fn without_yaw(&self, w: &Wrench) -> Split {
         Split {
             fade: 0.0,
-            ..stiff(&self.geometry, Wrench { yaw: 0.0, ..w }, [0.0; 4])
+            ..stiff(&self.geometry, Wrench { yaw: 0.0, ..*w }, [0.0; 4])
         }
     }
 }
@@ -102,7 +103,7 @@ impl Flexible {
 impl Allocation for Flexible {
     // On its own: inlined into a caller that is built for size, its loops would not be unrolled and cost twice as much.
     #[inline(never)]
-    fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
+    fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
             return self.limits.at_idle();
         }
@@ -131,5 +132,16 @@ impl Allocation for Flexible {
     #[inline(always)]
     fn tilt_mut(&mut self) -> &mut TiltModel {
         &mut self.tilt
+    }
+
+    #[inline(never)]
+    fn step_mixing(
+        mixing: &mut Mixing<Self>,
+        at_us: u64,
+        demand: &Demand,
+        surroundings: &Surroundings,
+        out: &mut MixOutput,
+    ) {
+        mixing.compose(at_us, demand, surroundings, out);
     }
 }

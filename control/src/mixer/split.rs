@@ -17,11 +17,12 @@ pub struct Split {
 /// The moments of `w` split into patterns, and what a newton of thrust takes; without the collective.
 #[inline(always)]
 pub fn moment_patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
+    // A sum with -0 is the other number itself, so that it takes no instruction.
     let moments = Load::of(
         geometry,
         Wrench {
-            thrust: 0.0,
-            yaw: 0.0,
+            thrust: -0.0,
+            yaw: -0.0,
             ..w
         },
     );
@@ -30,7 +31,8 @@ pub fn moment_patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Pat
         shift: inverse.solve(Load {
             front: 0.5,
             rear: 0.5,
-            ..Load::default()
+            roll: -0.0,
+            yaw: -0.0,
         }),
         roll_pitch: inverse.solve(moments),
         yaw: inverse.solve_yaw(w.yaw),

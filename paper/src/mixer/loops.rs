@@ -63,7 +63,7 @@ fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     let (mut low, mut high) = (f32::MAX, f32::MIN);
     for i in 0..20_000 {
         let mix = mixer.mix(
-            w,
+            &w,
             Conditions {
                 yaw: true,
                 battery_ratio: 1.0,

@@ -45,7 +45,7 @@ impl<L> WithLimits<L> {
 }
 
 impl<L: Law> Allocation for WithLimits<L> {
-    fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
+    fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
             return self.limits.at_idle();
         }
@@ -54,7 +54,7 @@ impl<L: Law> Allocation for WithLimits<L> {
             yaw: self.limits.open_yaw(self.tilt.thrusts()) && c.yaw,
             battery_ratio: Limits::battery_ratio(c.battery_ratio),
         };
-        let split = self.law.split(w, &situation);
+        let split = self.law.split(*w, &situation);
         self.limits.give(split, situation.yaw, situation.battery_ratio)
     }
 

@@ -78,7 +78,7 @@ impl Mixer {
 }
 
 impl Allocation for Mixer {
-    fn allocate(&mut self, w: Wrench, c: Conditions) -> Mix {
+    fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix {
         self.chosen_mut().allocate(w, c)
     }
 

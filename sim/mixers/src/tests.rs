@@ -27,9 +27,9 @@ fn conditions() -> Conditions {
 
 fn settled(variant: Variant, w: Wrench) -> (Mixer, Mix) {
     let mut m = Mixer::new(variant, Configuration::B, &Params::default());
-    let mut mix = m.mix(w, conditions());
+    let mut mix = m.mix(&w, conditions());
     for _ in 0..3000 {
-        mix = m.mix(w, conditions());
+        mix = m.mix(&w, conditions());
     }
     (m, mix)
 }
@@ -82,7 +82,7 @@ fn the_frozen_inverse_limit_cycles_where_c_is_large() {
         let w = Wrench { yaw: 0.03, ..HOVER };
         let (mut low, mut high) = (f32::MAX, f32::MIN);
         for i in 0..8000 {
-            let mix = m.mix(w, conditions());
+            let mix = m.mix(&w, conditions());
             if i > 4000 {
                 low = low.min(mix.thrusts[0]);
                 high = high.max(mix.thrusts[0]);
@@ -139,8 +139,8 @@ fn yaw_moves_no_rotor_by_more_than_its_limit() {
         let (m, _) = settled(variant, HOVER);
         for yaw in [yaw, -yaw] {
             let (mut a, mut b) = (m, m);
-            let still = a.mix(HOVER, conditions());
-            let turning = b.mix(Wrench { yaw, ..HOVER }, conditions());
+            let still = a.mix(&HOVER, conditions());
+            let turning = b.mix(&Wrench { yaw, ..HOVER }, conditions());
             let most = turning
                 .thrusts
                 .iter()
@@ -161,7 +161,7 @@ proptest! {
             for [t, l, p, n] in &bits {
                 let f = f32::from_bits;
                 let w = Wrench { thrust: f(*t), roll: f(*l), pitch: f(*p), yaw: f(*n) };
-                let mix = m.mix(w, Conditions { yaw: true, battery_ratio: f(*n), dt: 1e-3 });
+                let mix = m.mix(&w, Conditions { yaw: true, battery_ratio: f(*n), dt: 1e-3 });
                 prop_assert!(mix.thrusts.iter().all(|t| (0.25..=8.3).contains(t)), "{:?}", mix);
                 for (arm, measured) in [*t, *l, *p, *n, *t].into_iter().enumerate() {
                     m.tilt_mut().correct(arm, f(measured));

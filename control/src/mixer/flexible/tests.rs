@@ -22,9 +22,9 @@ fn conditions() -> Conditions {
 
 fn settled(w: Wrench) -> (Flexible, Mix) {
     let mut m = Flexible::new(Configuration::B, &Params::default());
-    let mut mix = m.mix(w, conditions());
+    let mut mix = m.mix(&w, conditions());
     for _ in 0..3000 {
-        mix = m.mix(w, conditions());
+        mix = m.mix(&w, conditions());
     }
     (m, mix)
 }
@@ -43,8 +43,8 @@ fn yaw_moves_no_rotor_by_more_than_its_limit_and_the_rest_is_reported() {
     let (m, _) = settled(HOVER);
     for yaw in [0.8, -0.8] {
         let (mut a, mut b) = (m, m);
-        let still = a.mix(HOVER, conditions());
-        let turning = b.mix(Wrench { yaw, ..HOVER }, conditions());
+        let still = a.mix(&HOVER, conditions());
+        let turning = b.mix(&Wrench { yaw, ..HOVER }, conditions());
         let by = |i: usize| (turning.thrusts[i] - still.thrusts[i]).abs();
         let most = (0..4).map(by).fold(0.0, f32::max);
         assert!((most - limit).abs() < 0.02, "{yaw}: {most}");
@@ -84,9 +84,9 @@ fn it_gives_the_wrench_in_a_as_well() {
         yaw: 0.02,
     };
     let mut m = Flexible::new(Configuration::A, &p);
-    let mut mix = m.mix(w, conditions());
+    let mut mix = m.mix(&w, conditions());
     for _ in 0..3000 {
-        mix = m.mix(w, conditions());
+        mix = m.mix(&w, conditions());
     }
     let model = *m.tilt().model();
     let got = Geometry::from_params(&p, Configuration::A)
@@ -103,7 +103,7 @@ fn yaw_is_gated_during_spool_up_and_never_kicks() {
     for i in 0..4000 {
         let thrust = 1.0 + 18.0 * i as f32 / 4000.0;
         let mix = m.mix(
-            Wrench {
+            &Wrench {
                 thrust,
                 yaw: 0.05,
                 ..Wrench::default()
@@ -129,8 +129,8 @@ fn yaw_keeps_within_its_limit_on_every_rotor_of_a_rolling_vehicle() {
         let (m, _) = settled(w);
         for yaw in [0.8, -0.8] {
             let (mut a, mut b) = (m, m);
-            let still = a.mix(w, conditions());
-            let turning = b.mix(Wrench { yaw, ..w }, conditions());
+            let still = a.mix(&w, conditions());
+            let turning = b.mix(&Wrench { yaw, ..w }, conditions());
             let by = |i: usize| (turning.thrusts[i] - still.thrusts[i]).abs();
             let most = (0..4).map(by).fold(0.0, f32::max);
             assert!((most - limit).abs() < 0.02, "{roll} {yaw}: {most}");
@@ -147,7 +147,7 @@ fn a_sagging_battery_lowers_the_limit() {
     };
     for _ in 0..3000 {
         let mix = m.mix(
-            Wrench {
+            &Wrench {
                 thrust: 40.0,
                 ..Wrench::default()
             },
@@ -170,7 +170,7 @@ fn giving_yaw_up_leaves_no_yaw_pattern_behind() {
             ..conditions()
         };
         mix = m.mix(
-            Wrench {
+            &Wrench {
                 thrust,
                 ..Wrench::default()
             },
@@ -192,7 +192,7 @@ proptest! {
         for [t, l, p, n] in &bits {
             let f = f32::from_bits;
             let w = Wrench { thrust: f(*t), roll: f(*l), pitch: f(*p), yaw: f(*n) };
-            let mix = m.mix(w, Conditions { yaw: true, battery_ratio: f(*n), dt: 1e-3 });
+            let mix = m.mix(&w, Conditions { yaw: true, battery_ratio: f(*n), dt: 1e-3 });
             prop_assert!(mix.thrusts.iter().all(|t| (0.25..=8.3).contains(t)), "{:?}", mix);
             for (arm, measured) in [*t, *l, *p, *n, *t].into_iter().enumerate() {
                 m.tilt_mut().correct(arm, f(measured));

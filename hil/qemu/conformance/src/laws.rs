@@ -3,7 +3,7 @@
 use core::fmt::Arguments;
 
 use sophie_conformance::fold::{Fold, Noise};
-use sophie_control::chain::{ArmReading, Command, Demand, FlightChain, Surroundings};
+use sophie_control::chain::{ArmReading, Command, Demand, FlightChain, ImuReading, Surroundings};
 use sophie_control::math;
 use sophie_control::params::Params;
 use sophie_control::setpoint::Setpoint;
@@ -78,7 +78,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
         let batch: [_; READINGS] = core::array::from_fn(|_| {
             let gyro = vector(&mut noise) * (0.01 + 1.5 * moving);
             let accel = Vec3::new(0.0, 0.0, -math::GRAVITY) + vector(&mut noise) * (0.05 + 2.0 * moving);
-            (gyro, accel)
+            ImuReading { gyro, accel }
         });
         if step >= REST {
             command = Command {
@@ -91,7 +91,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
             let tilt = chain.flow.mix.tilt.map(|tilt| Some(tilt + 0.05 * noise.unit()));
             surroundings.arms = Some(ArmReading { at_us, tilt });
         }
-        chain.step(at_us, batch, &command, &surroundings);
+        chain.step(at_us, &batch, &command, &surroundings);
         let flow = &chain.flow;
         add(&mut filtered, flow.sample.gyro);
         add(&mut filtered, flow.sample.accel);

@@ -31,7 +31,7 @@ pub fn nothing(_: &mut (), _: &u32) {}
 /// First stage: one batch through the filter of the inertial sensor.
 #[inline(never)]
 pub fn filter(c: &mut FlightChain, i: &Inputs) {
-    c.sense(i.at_us, i.batch.iter().copied());
+    c.sense(i.at_us, &i.batch);
 }
 
 /// Second stage: attitude and rate from the filtered sample.
@@ -55,7 +55,7 @@ pub fn mixing(c: &mut FlightChain, i: &Inputs) {
 /// All of it at one go, as one call.
 #[inline(never)]
 pub fn whole(c: &mut FlightChain, i: &Inputs) {
-    c.step(i.at_us, i.batch.iter().copied(), &i.command, &i.surroundings);
+    c.step(i.at_us, &i.batch, &i.command, &i.surroundings);
 }
 
 /// The laws of the chain on copies of their own, and what they are given and give.
@@ -106,8 +106,8 @@ impl Laws {
 /// Three axes through one biquad each.
 #[inline(never)]
 pub fn axes(l: &mut Laws, i: &Inputs) {
-    let [(gyro, _), ..] = &i.batch;
-    l.smooth = l.axes.step(*gyro);
+    let [first, ..] = &i.batch;
+    l.smooth = l.axes.step(first.gyro);
 }
 
 /// The direction that the sticks want, at 100 Hz.
@@ -143,7 +143,7 @@ pub fn allocation(l: &mut Laws, i: &Inputs) {
             battery_ratio: i.battery_ratio,
             dt: l.flow.attitude.dt,
         };
-        l.mix = l.allocation.allocate(wrench, conditions);
+        l.mix = l.allocation.allocate(&wrench, conditions);
     }
 }
 

@@ -6,7 +6,7 @@
 
 use sophie_conformance::fold::Noise;
 use sophie_control::attitude::AttitudeSetpoint;
-use sophie_control::chain::{ArmReading, Command, Surroundings};
+use sophie_control::chain::{ArmReading, Command, ImuReading, Surroundings};
 use sophie_control::math::GRAVITY;
 use sophie_control::setpoint::Setpoint;
 use sophie_control::vector::Vec3;
@@ -26,16 +26,13 @@ const STICKS: usize = 5;
 /// One reading of this many is no number.
 const BAD: u32 = 4001;
 
-/// One reading of the inertial sensor.
-pub type Reading = (Vec3, Vec3);
-
 /// Inputs of one control step.
 #[derive(Clone, Copy)]
 pub struct Inputs {
     /// When the newest reading was ready, µs.
     pub at_us: u64,
     /// Raw rates (rad/s) and specific forces (m/s²).
-    pub batch: [Reading; READINGS],
+    pub batch: [ImuReading; READINGS],
     /// What the sticks want of the rotors, renewed in one step of ten.
     pub command: Command,
     /// The direction in it, and whether it is renewed in this step.
@@ -192,14 +189,14 @@ impl Sequence {
     }
 
     /// One reading about the held rate, `noise` rad/s and five times as many m/s² off.
-    fn read(&mut self, noise: f32) -> Reading {
+    fn read(&mut self, noise: f32) -> ImuReading {
         self.reading += 1;
         let mut gyro = self.rate + self.vector() * noise;
         let accel = Vec3::new(0.0, 0.0, -GRAVITY) + self.vector() * (5.0 * noise);
         if self.reading.is_multiple_of(BAD) {
             gyro.y = f32::NAN;
         }
-        (gyro, accel)
+        ImuReading { gyro, accel }
     }
 
     fn vector(&mut self) -> Vec3 {

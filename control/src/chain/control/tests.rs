@@ -1,0 +1,174 @@
+use super::*;
+
+const THRUST: f32 = 10.0;
+/// All was given: nothing keeps the integrals from moving.
+const GIVEN: Feedback = Feedback {
+    roll_pitch: 1.0,
+    yaw: 1.0,
+    yaw_gated: false,
+};
+
+/// The loops with the attitude that they are given: level and at rest.
+struct Bench {
+    control: Control,
+    attitude: Attitude,
+    feedback: Feedback,
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self {
+            control: Control::new(&Params::default()),
+            attitude: Attitude {
+                calibrated: true,
+                dt: 1e-3,
+                ..Attitude::default()
+            },
+            feedback: GIVEN,
+        }
+    }
+
+    /// Runs `steps` with what was given at `at_us` µs.
+    fn run(&mut self, steps: usize, setpoint: Setpoint, at_us: u64) -> Demand {
+        let command = Command { setpoint, at_us };
+        let mut demand = Demand::Stop;
+        for _ in 0..steps {
+            demand = self.control.step(&self.attitude, &command, &self.feedback);
+        }
+        demand
+    }
+}
+
+fn roll_to(roll: f32) -> Setpoint {
+    Setpoint::Angle {
+        roll,
+        pitch: 0.0,
+        yaw_rate: 0.0,
+        thrust: THRUST,
+    }
+}
+
+fn escape_to(roll: f32) -> Setpoint {
+    Setpoint::Escape {
+        roll,
+        pitch: 0.0,
+        yaw_rate: 0.0,
+        thrust: THRUST,
+    }
+}
+
+fn resting(thrust: f32) -> Setpoint {
+    Setpoint::Resting {
+        roll: 0.3,
+        pitch: -0.3,
+        thrust,
+    }
+}
+
+const ROLLING: Setpoint = Setpoint::Rate {
+    rate: Vec3::new(0.5, 0.0, 0.0),
+    thrust: THRUST,
+};
+
+#[test]
+fn a_direction_is_aimed_at_once_for_each_time_it_was_given() {
+    let mut bench = Bench::new();
+    bench.run(2000, roll_to(0.2), 1000);
+    let aimed = bench.control.target().down.y;
+    assert!((aimed - 0.198_67).abs() < 1e-4, "{aimed}");
+    // Of the same time it is the same direction, whatever it says; of another it is not.
+    bench.run(2000, roll_to(-0.2), 1000);
+    assert!((bench.control.target().down.y - aimed).abs() < 1e-6);
+    bench.run(2000, roll_to(-0.2), 2000);
+    assert!((bench.control.target().down.y + aimed).abs() < 1e-4);
+}
+
+#[test]
+fn the_attitude_loop_starts_from_the_present_attitude_and_aims_anew() {
+    let mut bench = Bench::new();
+    bench.run(2000, roll_to(0.2), 1000);
+    // Turned by hand to 0.4 rad while the rotors idle: nothing is left of the direction filtered before, though it comes
+    // with the same time.
+    bench.run(1, Setpoint::Idle, 2000);
+    bench.attitude.q = crate::vector::Quat::from_euler(0.4, 0.0, 0.0);
+    bench.run(1, roll_to(0.2), 1000);
+    let started = bench.control.target().down.y;
+    assert!((started - 0.389_42).abs() < 3e-3, "{started}");
+    bench.run(2000, roll_to(0.2), 1000);
+    let aimed = bench.control.target().down.y;
+    assert!((aimed - 0.198_67).abs() < 2e-3, "{aimed}");
+}
+
+#[test]
+fn what_was_wound_up_goes_with_every_change_but_one_between_rate_and_angle() {
+    let (stop, idle) = (Setpoint::Stop, Setpoint::Idle);
+    let direct = Setpoint::Direct {
+        wrench: Wrench::default(),
+    };
+    for (between, then, kept) in [
+        (ROLLING, roll_to(0.0), true),
+        (roll_to(0.0), ROLLING, true),
+        (resting(5.0), roll_to(0.0), true),
+        (stop, ROLLING, false),
+        (idle, roll_to(0.0), false),
+        (direct, ROLLING, false),
+        (escape_to(0.0), roll_to(0.0), false),
+    ] {
+        let mut bench = Bench::new();
+        bench.run(1000, ROLLING, 0);
+        let wound = bench.control.rate.integral().x;
+        assert!((wound - 4.0).abs() < 0.01, "{wound}");
+        bench.run(1, between, 0);
+        bench.run(1, then, 0);
+        let left = bench.control.rate.integral().x;
+        assert!(left.abs() > 3.9 || !kept, "{between:?}, {then:?}: {left}");
+        assert!(left.abs() < 0.1 || kept, "{between:?}, {then:?}: {left}");
+    }
+}
+
+#[test]
+fn an_escape_forgets_what_was_wound_up_when_it_begins_and_not_while_it_lasts() {
+    let mut bench = Bench::new();
+    bench.attitude.rate = Vec3::new(0.1, 0.0, 0.0);
+    bench.run(500, roll_to(0.0), 0);
+    let wound = bench.control.rate.integral().x;
+    bench.run(1, escape_to(0.0), 0);
+    assert!(wound < -0.3 && bench.control.rate.integral().x > -0.01, "{wound}");
+    bench.run(499, escape_to(0.0), 0);
+    let lasting = bench.control.rate.integral().x;
+    assert!((lasting - wound).abs() < 0.02, "{lasting}, {wound}");
+    // A second one is a beginning.
+    bench.run(1, roll_to(0.0), 0);
+    bench.run(1, escape_to(0.0), 0);
+    assert!(bench.control.rate.integral().x > -0.01);
+}
+
+#[test]
+fn on_the_pipe_each_moment_keeps_within_its_own_lever() {
+    let p = Params::default();
+    let mut bench = Bench::new();
+    for thrust in [2.0, 1.0, 0.0] {
+        let Demand::Resting(wrench) = bench.run(500, resting(thrust), 0) else {
+            panic!("not at rest")
+        };
+        let share = 0.4 * thrust;
+        assert!((wrench.roll - share * p.arm_d).abs() < 1e-6, "{wrench:?}");
+        assert!((wrench.pitch + share * p.arm_b).abs() < 1e-6, "{wrench:?}");
+        assert!(wrench.yaw == 0.0 && wrench.thrust == thrust);
+    }
+    assert!(bench.control.rate.integral() == Vec3::ZERO);
+}
+
+#[test]
+fn a_gated_yaw_takes_the_heading_along() {
+    let turned = crate::vector::Quat::from_euler(0.0, 0.0, 0.2);
+    for (yaw_gated, ahead) in [(true, 0.0), (false, -0.2)] {
+        let mut bench = Bench::new();
+        bench.run(1, roll_to(0.0), 0);
+        bench.feedback.yaw_gated = yaw_gated;
+        bench.attitude.q = turned;
+        bench.run(1, roll_to(0.0), 0);
+        let is = bench.control.target().ahead;
+        assert!((is - ahead).abs() < 5e-3, "{yaw_gated}: {is}");
+    }
+}
