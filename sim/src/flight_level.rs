@@ -15,7 +15,7 @@ use sophie_tasks::links::{Links, Setpoint};
 const SETTLE: f64 = 5.0;
 
 /// What is asked of the vehicle at a time, s.
-pub struct Wish {
+pub struct Maneuver {
     /// Roll, rad.
     pub roll: f32,
     /// Yaw rate, rad/s.
@@ -23,8 +23,8 @@ pub struct Wish {
 }
 
 /// Hover.
-pub fn level(_: f64) -> Wish {
-    Wish {
+pub fn level(_: f64) -> Maneuver {
+    Maneuver {
         roll: 0.0,
         yaw_rate: 0.0,
     }
@@ -110,7 +110,7 @@ impl Rig {
     ///
     /// # Panics
     /// If the gyroscope is not calibrated after 4 s of rest.
-    pub fn fly(&mut self, seconds: f64, wish: impl Fn(f64) -> Wish) -> Errors {
+    pub fn fly(&mut self, seconds: f64, wish: impl Fn(f64) -> Maneuver) -> Errors {
         for _ in 0..4000 {
             self.step(Setpoint::Idle);
         }
@@ -128,7 +128,7 @@ impl Rig {
             let error = climb + pose.velocity.z;
             sum = (sum + error * 1e-3).clamp(-2.0, 2.0);
             let thrust = (17.7 + 5.0 * error + 2.0 * sum) * (t / 1.0).min(1.0);
-            let Wish { roll, yaw_rate } = wish(t);
+            let Maneuver { roll, yaw_rate } = wish(t);
             self.step(Setpoint::Angle {
                 roll,
                 pitch: 0.0,

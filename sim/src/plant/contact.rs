@@ -159,6 +159,15 @@ pub struct Touch {
     pub depth: f64,
 }
 
+/// Motion of a point, NED.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointMotion {
+    /// m.
+    pub position: DVec3,
+    /// m/s.
+    pub velocity: DVec3,
+}
+
 /// The state of one point that can touch: the deflection of its bristle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactPoint {
@@ -166,15 +175,9 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// Advances by `dt` s with the point at `position` and `velocity` (NED, m, m/s).
-    pub fn force(
-        &mut self,
-        dt: f64,
-        pad: &Pad,
-        position: DVec3,
-        velocity: DVec3,
-        surface: &Surface,
-    ) -> Touch {
+    /// Advances by `dt` s.
+    pub fn force(&mut self, dt: f64, pad: &Pad, motion: PointMotion, surface: &Surface) -> Touch {
+        let PointMotion { position, velocity } = motion;
         let Some((depth, n)) = surface.probe(position) else {
             self.bristle = DVec3::ZERO;
             return Touch::default();
@@ -248,7 +251,15 @@ impl Belly {
         let mut load = BodyLoad::default();
         for (point, r) in self.points.iter_mut().zip(Self::PADS) {
             let velocity = pose.point_velocity(r, DVec3::ZERO);
-            let touch = point.force(dt, &BELLY, pose.point(r), velocity, surface);
+            let touch = point.force(
+                dt,
+                &BELLY,
+                PointMotion {
+                    position: pose.point(r),
+                    velocity,
+                },
+                surface,
+            );
             let force = pose.to_body(touch.force);
             load.force_body += force;
             load.moment_body += r.cross(force);
@@ -317,7 +328,15 @@ impl ArmSkin {
         for (station, s) in stations.iter_mut().zip(STATIONS) {
             let (r, by_alpha) = self.point(alpha, s);
             let velocity = pose.point_velocity(r, by_alpha * alpha_rate);
-            let touch = station.force(dt, &SKIN, pose.point(r), velocity, &Surface::Pipe(*pipe));
+            let touch = station.force(
+                dt,
+                &SKIN,
+                PointMotion {
+                    position: pose.point(r),
+                    velocity,
+                },
+                &Surface::Pipe(*pipe),
+            );
             let force = pose.to_body(touch.force);
             load.force_body += force;
             load.moment_body += r.cross(force);
@@ -358,9 +377,15 @@ impl ArmTip {
         let r = DVec3::new(self.x, self.side * ARM_LENGTH * cos, HINGE_Z - ARM_LENGTH * sin);
         let by_alpha = DVec3::new(0.0, -self.side * ARM_LENGTH * sin, -ARM_LENGTH * cos);
         let velocity = pose.point_velocity(r, by_alpha * alpha_rate);
-        let touch = self
-            .point
-            .force(dt, &TIP, pose.point(r), velocity, &Surface::Ground(0.0));
+        let touch = self.point.force(
+            dt,
+            &TIP,
+            PointMotion {
+                position: pose.point(r),
+                velocity,
+            },
+            &Surface::Ground(0.0),
+        );
         let force = pose.to_body(touch.force);
         SkinLoad {
             force_body: force,
@@ -478,17 +503,20 @@ mod tests {
         let mut touch = Touch::default();
         for _ in 0..1000 {
             position += velocity * DT;
-            touch = p.force(DT, &BELLY, position, velocity, &Surface::Ground(0.5));
+            touch = p.force(
+                DT,
+                &BELLY,
+                PointMotion { position, velocity },
+                &Surface::Ground(0.5),
+            );
         }
         assert!((touch.normal - 4.0).abs() < 1e-9 && (touch.force.y + 2.0).abs() < 1e-9);
         // A surface never pulls: leaving fast, the damper is cut off.
-        let out = p.force(
-            DT,
-            &BELLY,
+        let motion = PointMotion {
             position,
-            DVec3::new(0.0, 0.0, -1.0),
-            &Surface::Ground(0.5),
-        );
+            velocity: DVec3::new(0.0, 0.0, -1.0),
+        };
+        let out = p.force(DT, &BELLY, motion, &Surface::Ground(0.5));
         assert!(out.normal == 0.0 && out.force.length() < 1e-12);
     }
 

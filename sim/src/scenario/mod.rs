@@ -117,7 +117,7 @@ pub struct World {
 pub struct Pilot {
     /// Reaction delay, s.
     pub delay: f64,
-    /// Bandwidth of the hands, Hz.
+    /// Bandwidth of the pilot's sticks, Hz.
     pub bandwidth: f64,
     /// RMS error of the seen position, m.
     pub eye_noise: f64,
