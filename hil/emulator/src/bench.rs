@@ -16,7 +16,7 @@ use sophie_sim::crsf::Telemetry;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
@@ -346,7 +346,7 @@ impl Aircraft for Bench<'_> {
     }
 
     // The processor stands still until its watchdog bites. Scenarios with another cause are refused beforehand.
-    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+    fn cut(&mut self, cause: StartCause, step: usize, at: f64) {
         self.wires.faults.push(BoardFault::Hang(true));
         self.reset = Some(Reset { cause, step, at });
         self.cuts += 1;

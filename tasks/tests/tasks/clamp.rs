@@ -10,7 +10,7 @@ use sophie_control::wrench::PerArm;
 use sophie_tasks::clamp;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 
 use crate::rig::Rig;
 
@@ -220,7 +220,7 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
             ..RetainedState::default()
         };
         let start = Start {
-            cause: Cause::Watchdog,
+            cause: StartCause::Watchdog,
             retained: Some(retained),
             sequence: 1,
         };
