@@ -43,21 +43,24 @@ pub struct Limits {
     pub gyro_offset_dps: f32,
 }
 
-/// Mean outputs and factory codes of one part, in counts.
+/// Mean outputs and factory codes of one sensor's axes, in counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Response {
+    /// Mean output at rest.
+    pub rest: [f32; 3],
+    /// Mean output while actuated.
+    pub actuated: [f32; 3],
+    /// Factory codes; 0 where there is none.
+    pub codes: [u8; 3],
+}
+
+/// What was measured of one part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// Gyroscope at rest.
-    pub gyro_rest: [f32; 3],
-    /// Gyroscope actuated.
-    pub gyro_actuated: [f32; 3],
-    /// Accelerometer at rest.
-    pub accel_rest: [f32; 3],
-    /// Accelerometer actuated.
-    pub accel_actuated: [f32; 3],
-    /// Factory codes of the gyroscope; 0 where there is none.
-    pub gyro_codes: [u8; 3],
-    /// Factory codes of the accelerometer.
-    pub accel_codes: [u8; 3],
+    /// Gyroscope.
+    pub gyro: Response,
+    /// Accelerometer.
+    pub accel: Response,
 }
 
 /// Responses of a part that passed, in percent of the factory's (of the least allowed where there is none).
@@ -75,7 +78,7 @@ pub struct SelfTest {
 /// # Errors
 /// The first axis that does not respond as it should, or whose gyroscope is far from zero at rest.
 pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
-    for (axis, rest) in (0u8..).zip(m.gyro_rest) {
+    for (axis, rest) in (0u8..).zip(m.gyro.rest) {
         let limit = limits.gyro_offset_dps * COUNTS_PER_DPS;
         // A NaN is in no range.
         if !(-limit..=limit).contains(&rest) {
@@ -85,34 +88,23 @@ pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
     let gyro_absolute = [limits.gyro_min_dps * COUNTS_PER_DPS, f32::INFINITY];
     let accel_absolute = limits.accel_g.map(|g| g * COUNTS_PER_G);
     Ok(SelfTest {
-        gyro: sensor(
-            Sensor::Gyro,
-            m.gyro_rest,
-            m.gyro_actuated,
-            m.gyro_codes,
-            limits.gyro_ratio_max,
-            gyro_absolute,
-        )?,
-        accel: sensor(
-            Sensor::Accel,
-            m.accel_rest,
-            m.accel_actuated,
-            m.accel_codes,
-            limits.accel_ratio_max,
-            accel_absolute,
-        )?,
+        gyro: sensor(Sensor::Gyro, &m.gyro, limits.gyro_ratio_max, gyro_absolute)?,
+        accel: sensor(Sensor::Accel, &m.accel, limits.accel_ratio_max, accel_absolute)?,
     })
 }
 
 /// Judges one sensor; `absolute` are its limits, counts, for a part without factory codes.
 fn sensor(
     sensor: Sensor,
-    rest: [f32; 3],
-    actuated: [f32; 3],
-    codes: [u8; 3],
+    measured: &Response,
     ratio_max: f32,
     absolute: [f32; 2],
 ) -> Result<[u16; 3], Fault> {
+    let &Response {
+        rest,
+        actuated,
+        codes,
+    } = measured;
     // One axis without a code: the maker takes none of them for programmed.
     let coded = codes.iter().all(|&c| c != 0);
     let [least, greatest] = absolute;
@@ -160,12 +152,16 @@ mod tests {
         let gyro = factory_response(100);
         let accel = factory_response(120);
         Measured {
-            gyro_rest: [50.0, -30.0, 10.0],
-            gyro_actuated: [50.0 + gyro, -30.0 - gyro, 10.0 + 0.9 * gyro],
-            accel_rest: [0.0, 100.0, 16384.0],
-            accel_actuated: [accel, 100.0 + accel, 16384.0 + accel],
-            gyro_codes: [100; 3],
-            accel_codes: [120; 3],
+            gyro: Response {
+                rest: [50.0, -30.0, 10.0],
+                actuated: [50.0 + gyro, -30.0 - gyro, 10.0 + 0.9 * gyro],
+                codes: [100; 3],
+            },
+            accel: Response {
+                rest: [0.0, 100.0, 16384.0],
+                actuated: [accel, 100.0 + accel, 16384.0 + accel],
+                codes: [120; 3],
+            },
         }
     }
 
@@ -193,7 +189,7 @@ mod tests {
     #[test]
     fn a_dead_axis_is_named() {
         let mut m = good();
-        m.accel_actuated[1] = m.accel_rest[1] + 5.0;
+        m.accel.actuated[1] = m.accel.rest[1] + 5.0;
         let fault = judge(&m, &LIMITS).unwrap_err();
         assert_eq!(
             fault,
@@ -204,24 +200,24 @@ mod tests {
             }
         );
         let mut m = good();
-        m.gyro_actuated[0] = f32::NAN;
+        m.gyro.actuated[0] = f32::NAN;
         assert!(judge(&m, &LIMITS).is_err());
         let mut m = good();
-        m.gyro_rest[2] = 21.0 * COUNTS_PER_DPS;
+        m.gyro.rest[2] = 21.0 * COUNTS_PER_DPS;
         assert_eq!(judge(&m, &LIMITS).unwrap_err(), Fault::Offset { axis: 2 });
     }
 
     #[test]
     fn without_codes_absolute_limits_hold() {
         let mut m = good();
-        m.gyro_codes[1] = 0;
-        m.accel_codes = [0; 3];
+        m.gyro.codes[1] = 0;
+        m.accel.codes = [0; 3];
         for axis in 0..3 {
-            m.gyro_actuated[axis] = m.gyro_rest[axis] + 61.0 * COUNTS_PER_DPS;
-            m.accel_actuated[axis] = m.accel_rest[axis] + 0.3 * COUNTS_PER_G;
+            m.gyro.actuated[axis] = m.gyro.rest[axis] + 61.0 * COUNTS_PER_DPS;
+            m.accel.actuated[axis] = m.accel.rest[axis] + 0.3 * COUNTS_PER_G;
         }
         assert!(judge(&m, &LIMITS).is_ok());
-        m.gyro_actuated[0] = m.gyro_rest[0] + 59.0 * COUNTS_PER_DPS;
+        m.gyro.actuated[0] = m.gyro.rest[0] + 59.0 * COUNTS_PER_DPS;
         assert!(judge(&m, &LIMITS).is_err());
     }
 }

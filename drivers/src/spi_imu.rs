@@ -495,11 +495,11 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     /// The stages of the self-test.
     async fn actuate(&mut self) -> Result<SelfTest, Fault> {
         let mut m = Measured::default();
-        (m.gyro_rest, m.accel_rest) = self.stage(Stage::Rest).await?;
-        (m.gyro_actuated, _) = self.stage(Stage::Gyro).await?;
-        (_, m.accel_actuated) = self.stage(Stage::Accel).await?;
-        m.gyro_codes = self.codes(C::GYRO_CODES).await?;
-        m.accel_codes = self.codes(C::ACCEL_CODES).await?;
+        (m.gyro.rest, m.accel.rest) = self.stage(Stage::Rest).await?;
+        (m.gyro.actuated, _) = self.stage(Stage::Gyro).await?;
+        (_, m.accel.actuated) = self.stage(Stage::Accel).await?;
+        m.gyro.codes = self.codes(C::GYRO_CODES).await?;
+        m.accel.codes = self.codes(C::ACCEL_CODES).await?;
         judge(&m, &C::SELF_TEST)
     }
 

@@ -2,7 +2,7 @@
 
 use super::model::{Axis, Chart, Look, Series};
 use sophie_report::scale::ticks;
-use sophie_report::svg::{escape, line, path, rect, short, text};
+use sophie_report::svg::{Rect, escape, line, path, rect, short, text};
 
 /// Size of the drawing, px; it scales with the page.
 const WIDTH: f64 = 520.0;
@@ -99,7 +99,16 @@ pub fn draw(chart: &Chart) -> String {
         ))
     );
     let (left, right, bottom) = (LEFT, WIDTH - RIGHT, HEIGHT - BOTTOM);
-    svg += &rect(left, TOP, right - left, bottom - TOP, "field", "");
+    svg += &rect(
+        Rect {
+            x: left,
+            y: TOP,
+            width: right - left,
+            height: bottom - TOP,
+        },
+        "field",
+        "",
+    );
     for tile in &chart.tiles {
         svg += &tile_svg(&f, tile);
     }
@@ -163,7 +172,13 @@ fn tile_svg(f: &Frame, tile: &super::model::Tile) -> String {
     } else {
         format!("t{}", (tile.shade * 5.0).round().clamp(0.0, 5.0))
     };
-    let mut out = rect(x, y, w, h, &format!("tile {class}"), &tile.text);
+    let area = Rect {
+        x,
+        y,
+        width: w,
+        height: h,
+    };
+    let mut out = rect(area, &format!("tile {class}"), &tile.text);
     if !tile.text.is_empty() {
         out += &text(x + 0.5 * w, y + 0.5 * h + 4.0, "in-tile mid", &tile.text);
     }

@@ -8,10 +8,10 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::fsr::{Fsr, FsrScale};
-use sophie_control::grip::ArmState;
+use sophie_control::grip::{ArmGrip, ArmState};
 use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
-use sophie_control::tendon::{Reel, TendonDrive};
+use sophie_control::tendon::{Drive, Reel, TendonDrive};
 
 use crate::plant::arm::{Arm, ArmSpec, TIP_MASS};
 use crate::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose};
@@ -27,6 +27,19 @@ const PADS: (f64, f64) = (0.03, 0.6e-3);
 const TILT_NOISE: f64 = 0.004;
 /// Time constant of the rotor, s.
 const ROTOR_TAU: f64 = 0.05;
+/// Steps of the plant between two samples of the pressure sensor, 500 Hz.
+const FSR_STEPS: u64 = 4;
+/// Steps of the plant between two runs of the gripper, 100 Hz.
+const GRIPPER_STEPS: u64 = 20;
+/// Steps of the plant between two orders to the servo, 50 Hz.
+const DRIVE_STEPS: u64 = 40;
+/// The body, fixed.
+const BODY: Pose = Pose {
+    position: DVec3::ZERO,
+    attitude: DQuat::IDENTITY,
+    velocity: DVec3::ZERO,
+    omega: DVec3::ZERO,
+};
 
 /// A closing to be tried.
 #[derive(Clone, Copy, Debug)]
@@ -76,46 +89,7 @@ pub struct Closed {
 /// Closes one arm. Once it holds, its rotor is stopped within 1.5 s, as on a perch.
 #[must_use]
 pub fn close(what: &Closing) -> Closed {
-    let params = Params {
-        infill: what.infill as f32,
-        servo_stall: what.servo.stall as f32,
-        servo_slew_1: what.servo.slew as f32,
-        servo_range: what.servo.range as f32,
-        ..Params::default()
-    };
-    let mut rng = Pcg64Mcg::seed_from_u64(what.seed);
-    let radius = 0.5 * what.diameter;
-    let mut arm = Arm::new(
-        0,
-        ArmSpec::new(what.infill, f64::from(params.gain_k), 1.0, 0.0, 0.15),
-    );
-    let mut tendon = Tendon::new(what.servo, TendonSpec::default());
-    let mut skin = ArmSkin::new(0);
-    let mut sensor = FsrSensor::new(&mut rng);
-    let pose = Pose {
-        position: DVec3::ZERO,
-        attitude: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-        omega: DVec3::ZERO,
-    };
-    let pipe = Pipe {
-        north: 0.0,
-        half_length: 1.0,
-        east: 0.0,
-        down: BELLY_Z + (radius * radius - PADS.0 * PADS.0).sqrt() - PADS.1,
-        radius,
-        friction: 0.6,
-    };
-    let (config, scale, reel) = (
-        Config::from_params(&params),
-        FsrScale::from_params(&params, 0),
-        Reel::from_params(&params, 0),
-    );
-    let (mut fsr, mut gripper, mut drive) = (Fsr::default(), ArmGripper::default(), TendonDrive::new());
-    let mut driven = drive.hold(&reel);
-    let (mut sensed, mut tilts, mut measured) = (Pressure::Stale, VecDeque::new(), None);
-    let (mut asked, mut thrust) = (what.thrust, what.thrust);
-    let mut grip = sophie_control::grip::ArmGrip::default();
+    let mut bench = ArmBench::new(what);
     let mut out = Closed {
         samples: vec![],
         closure: None,
@@ -123,58 +97,155 @@ pub fn close(what: &Closing) -> Closed {
         peak: 0.0,
         state: ArmState::Free,
     };
-    let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
     for step in 1..=((REST + what.seconds) / STEP) as u64 {
         let t = step as f64 * STEP - REST;
-        let (alpha, rate) = (arm.tilt, arm.rate);
-        thrust += (asked - thrust) * STEP / ROTOR_TAU;
-        let load = skin.step(STEP, alpha, rate, &pose, &pipe);
-        let moment = tendon.step(STEP, f64::from(driven.pulse_us), alpha) + load.moment_alpha;
-        arm.load(thrust, moment, DVec3::new(0.0, 0.0, GRAVITY), true);
-        arm.integrate(STEP, arm.generalised / inertia);
-        if grip.state == ArmState::Holding {
-            out.closure = out.closure.or(grip.closure.map(f64::from));
-            asked = (asked - what.thrust * STEP / 1.5).max(0.0);
+        let tilt = bench.arm.tilt;
+        let pressure = bench.move_arm();
+        if bench.grip.state == ArmState::Holding {
+            out.closure = out.closure.or(bench.grip.closure.map(f64::from));
+            bench.thrust_asked = (bench.thrust_asked - what.thrust * STEP / 1.5).max(0.0);
         }
-        if step.is_multiple_of(4) {
-            let counts = sensor.sample(load.pressure, 0.002, &mut rng);
-            sensed = fsr
-                .step(&scale, counts, 0.002)
-                .map_or(Pressure::Faulty, Pressure::Known);
+        bench.run_stack(step, t >= 0.0, pressure, tilt);
+        if step.is_multiple_of(GRIPPER_STEPS) && t >= 0.0 {
+            let torque = bench.tendon.servo_torque();
+            out.samples.push(BenchSample {
+                t,
+                pressure,
+                torque,
+                tilt,
+            });
+            out.peak = out.peak.max(torque);
         }
-        if step.is_multiple_of(20) {
-            let noise: f64 = StandardNormal.sample(&mut rng);
-            tilts.push_back(alpha + TILT_NOISE * noise);
-            if tilts.len() > 2 {
-                measured = tilts.pop_front().map(|late: f64| late as f32);
-            }
-            let input = ArmInput {
-                close: t >= 0.0,
-                pressure: sensed,
-                thrust: asked as f32,
-                tension: Some(driven.tension),
-                tilt: measured,
-            };
-            grip = gripper.step(&config, &input, 0.01);
-            if t >= 0.0 {
-                let torque = tendon.servo_torque();
-                out.samples.push(BenchSample {
-                    t,
-                    pressure: load.pressure,
-                    torque,
-                    tilt: alpha,
-                });
-                out.peak = out.peak.max(torque);
-            }
-        }
-        if step.is_multiple_of(40) {
-            driven = drive.step(&reel, grip.force, measured, 0.02);
+        if step.is_multiple_of(DRIVE_STEPS) {
+            bench.drive_servo();
         }
     }
     let last: Vec<f64> = out.samples.iter().rev().take(100).map(|s| s.torque).collect();
     out.steady = last.iter().sum::<f64>() / last.len().max(1) as f64;
-    out.state = grip.state;
+    out.state = bench.grip.state;
     out
+}
+
+/// The arm on its pipe, with what flies of the stack.
+struct ArmBench {
+    rng: Pcg64Mcg,
+    pipe: Pipe,
+    arm: Arm,
+    tendon: Tendon,
+    skin: ArmSkin,
+    sensor: FsrSensor,
+    /// Thrust, N, and the one that it follows.
+    thrust: f64,
+    thrust_asked: f64,
+    /// Tilts on their way through the arm sensor, rad.
+    tilts: VecDeque<f64>,
+
+    config: Config,
+    scale: FsrScale,
+    reel: Reel,
+    fsr: Fsr,
+    gripper: ArmGripper,
+    drive: TendonDrive,
+    /// What the stack has last measured, decided and ordered.
+    pressure: Pressure,
+    tilt: Option<f32>,
+    grip: ArmGrip,
+    order: Drive,
+}
+
+impl ArmBench {
+    fn new(what: &Closing) -> Self {
+        let params = Params {
+            infill: what.infill as f32,
+            servo_stall: what.servo.stall as f32,
+            servo_slew_1: what.servo.slew as f32,
+            servo_range: what.servo.range as f32,
+            ..Params::default()
+        };
+        let mut rng = Pcg64Mcg::seed_from_u64(what.seed);
+        let sensor = FsrSensor::new(&mut rng);
+        let spec = ArmSpec::new(what.infill, f64::from(params.gain_k), 1.0, 0.0, 0.15);
+        let reel = Reel::from_params(&params, 0);
+        let drive = TendonDrive::new();
+        let order = drive.hold(&reel);
+        Self {
+            rng,
+            pipe: pipe(0.5 * what.diameter),
+            arm: Arm::new(0, spec),
+            tendon: Tendon::new(what.servo, TendonSpec::default()),
+            skin: ArmSkin::new(0),
+            sensor,
+            thrust: what.thrust,
+            thrust_asked: what.thrust,
+            tilts: VecDeque::new(),
+            config: Config::from_params(&params),
+            scale: FsrScale::from_params(&params, 0),
+            reel,
+            fsr: Fsr::default(),
+            gripper: ArmGripper::default(),
+            drive,
+            pressure: Pressure::Stale,
+            tilt: None,
+            grip: ArmGrip::default(),
+            order,
+        }
+    }
+
+    /// Moves rotor, tendon and arm by a step of the plant; gives the true pressure at the sensor, Pa.
+    fn move_arm(&mut self) -> f64 {
+        let (alpha, rate) = (self.arm.tilt, self.arm.rate);
+        self.thrust += (self.thrust_asked - self.thrust) * STEP / ROTOR_TAU;
+        let load = self.skin.step(STEP, alpha, rate, &BODY, &self.pipe);
+        let pulled = self.tendon.step(STEP, f64::from(self.order.pulse_us), alpha);
+        let moment = pulled + load.moment_alpha;
+        self.arm
+            .load(self.thrust, moment, DVec3::new(0.0, 0.0, GRAVITY), true);
+        let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
+        self.arm.integrate(STEP, self.arm.generalised / inertia);
+        load.pressure
+    }
+
+    /// Runs the pressure sensor's filter and the gripper where they are due; `pressure` (Pa) and `tilt` (rad) are true.
+    fn run_stack(&mut self, step: u64, close: bool, pressure: f64, tilt: f64) {
+        if step.is_multiple_of(FSR_STEPS) {
+            let counts = self.sensor.sample(pressure, 0.002, &mut self.rng);
+            self.pressure = self
+                .fsr
+                .step(&self.scale, counts, 0.002)
+                .map_or(Pressure::Faulty, Pressure::Known);
+        }
+        if step.is_multiple_of(GRIPPER_STEPS) {
+            let noise: f64 = StandardNormal.sample(&mut self.rng);
+            self.tilts.push_back(tilt + TILT_NOISE * noise);
+            if self.tilts.len() > 2 {
+                self.tilt = self.tilts.pop_front().map(|late| late as f32);
+            }
+            let input = ArmInput {
+                close,
+                pressure: self.pressure,
+                thrust: self.thrust_asked as f32,
+                tension: Some(self.order.tension),
+                tilt: self.tilt,
+            };
+            self.grip = self.gripper.step(&self.config, &input, 0.01);
+        }
+    }
+
+    fn drive_servo(&mut self) {
+        self.order = self.drive.step(&self.reel, self.grip.force, self.tilt, 0.02);
+    }
+}
+
+/// The pipe of `radius` m that the body sits on.
+fn pipe(radius: f64) -> Pipe {
+    Pipe {
+        north: 0.0,
+        half_length: 1.0,
+        east: 0.0,
+        down: BELLY_Z + (radius * radius - PADS.0 * PADS.0).sqrt() - PADS.1,
+        radius,
+        friction: 0.6,
+    }
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ const THRUST_MAX: f64 = 30.0;
 const REST_MS: usize = 4000;
 
 /// What is asked of the vehicle at a time, s.
-pub struct Wish {
+pub struct Maneuver {
     /// Roll, rad.
     pub roll: f32,
     /// Yaw rate, rad/s.
@@ -33,8 +33,8 @@ pub struct Wish {
 }
 
 /// Hover.
-pub fn level(_: f64) -> Wish {
-    Wish {
+pub fn level(_: f64) -> Maneuver {
+    Maneuver {
         roll: 0.0,
         yaw_rate: 0.0,
     }
@@ -150,7 +150,7 @@ impl Rig {
     ///
     /// # Panics
     /// If the gyroscope is not calibrated after 4 s of rest.
-    pub fn fly(&mut self, seconds: f64, wish: impl Fn(f64) -> Wish) -> Errors {
+    pub fn fly(&mut self, seconds: f64, wish: impl Fn(f64) -> Maneuver) -> Errors {
         for _ in 0..REST_MS {
             self.step(Setpoint::Idle);
         }
@@ -163,7 +163,7 @@ impl Rig {
         for i in 0..(seconds * 1000.0) as usize {
             let t = i as f64 * 1e-3;
             let thrust = hold.thrust(self.plant.pose(), t);
-            let Wish { roll, yaw_rate } = wish(t);
+            let Maneuver { roll, yaw_rate } = wish(t);
             self.step(Setpoint::Angle {
                 roll,
                 pitch: 0.0,

@@ -1,18 +1,18 @@
 //! The flight level alone on the soft vehicle: what each allocation can and cannot do.
 
 use sophie_control::wrench::Configuration::{A, B};
-use sophie_sim::flight_level::{Rig, Wish, level, vehicle};
+use sophie_sim::flight_level::{Maneuver, Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{Flexible, Frozen, Paper, Rigid};
 use sophie_sim::scenario::Scenario;
 
 /// A quarter of a minute with the paper's roll to 25° and back.
-fn doublet(t: f64) -> Wish {
+fn doublet(t: f64) -> Maneuver {
     let roll = match t {
         8.0..9.5 => 25f32.to_radians(),
         9.5..11.0 => -25f32.to_radians(),
         _ => 0.0,
     };
-    Wish { roll, yaw_rate: 0.0 }
+    Maneuver { roll, yaw_rate: 0.0 }
 }
 
 #[test]
@@ -27,7 +27,7 @@ fn it_hovers() {
 #[test]
 fn it_turns_with_the_stick() {
     let mut rig = Rig::new(&Scenario::default_mission());
-    rig.fly(12.0, |t| Wish {
+    rig.fly(12.0, |t| Maneuver {
         roll: 0.0,
         yaw_rate: if (5.0..9.0).contains(&t) { 0.4 } else { 0.0 },
     });
@@ -123,7 +123,7 @@ fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
         (Setpoint::Direct { wrench: moment }, 0.5, 3.0, 15.0),
     ] {
         let mut rig = Rig::new(&Scenario::default_mission());
-        rig.fly(10.0, |_| Wish {
+        rig.fly(10.0, |_| Maneuver {
             roll: 0.0,
             yaw_rate: 0.0,
         });

@@ -15,7 +15,7 @@ use sophie_sim::plant::Plant;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
 use sophie_tasks::links::{ArmAngles, GripState, Links};
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 
 /// One step as the tasks flew it.
 struct Step {
@@ -133,7 +133,7 @@ impl Aircraft for Recorded {
         self.stack.motors()
     }
 
-    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+    fn cut(&mut self, cause: StartCause, step: usize, at: f64) {
         self.stack.cut(cause, step, at);
     }
 

@@ -1,13 +1,13 @@
 //! The flight level with the inertial sensor at each of its rates and ranges, closed loop.
 
 use sophie_control::wrench::Configuration;
-use sophie_sim::flight_level::{Rig, Wish, vehicle};
+use sophie_sim::flight_level::{Maneuver, Rig, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_tasks::deadline::TaskId;
 
 /// Leans by 10° to the right for two seconds, and back.
-fn lean(t: f64) -> Wish {
-    Wish {
+fn lean(t: f64) -> Maneuver {
+    Maneuver {
         roll: if (8.0..10.0).contains(&t) { 0.1745 } else { 0.0 },
         yaw_rate: 0.0,
     }

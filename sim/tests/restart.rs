@@ -24,7 +24,7 @@ use sophie_sim::scenario::{Overrides, Scenario};
 use sophie_tasks::links::{Links, RcState};
 use sophie_tasks::ports::AnalogFrame;
 use sophie_tasks::retained_state::{RetainedState, WORDS, Words};
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 
 /// Counts of a pressure of some 950 Pa with the default sensor.
 const PRESSED: u16 = 2000;
@@ -57,7 +57,7 @@ struct Vehicle {
 
 impl Vehicle {
     /// Started for `cause` with `copies` in its memory and `counts` at the pressure sensors.
-    fn start(cause: Cause, copies: [Words; 2], counts: [u16; 4]) -> Self {
+    fn start(cause: StartCause, copies: [Words; 2], counts: [u16; 4]) -> Self {
         let time = VirtualTime::new();
         let start = Start::new(cause, &copies);
         let links: &'static Links = Box::leak(Box::new(Links::starting(Params::default(), start)));
@@ -105,7 +105,7 @@ impl Vehicle {
     /// Restarted by the watchdog with `retained` in its memory.
     fn retained(retained: RetainedState, counts: [u16; 4]) -> Self {
         let copy = retained.to_words(7).expect("a sane one");
-        Self::start(Cause::Watchdog, [[0; WORDS], copy], counts)
+        Self::start(StartCause::Watchdog, [[0; WORDS], copy], counts)
     }
 
     fn run(&mut self, ms: u64) {
@@ -195,9 +195,9 @@ fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
 #[test]
 fn a_start_off_the_pipe_is_as_ever_after_half_a_second_of_looking() {
     for (cause, copies) in [
-        (Cause::PowerOn, [[0xFFFF_FFFF; WORDS]; 2]),
-        (Cause::Watchdog, [[0x5A5A_5A5A; WORDS]; 2]),
-        (Cause::PowerOn, [held().to_words(1).unwrap(); 2]),
+        (StartCause::PowerOn, [[0xFFFF_FFFF; WORDS]; 2]),
+        (StartCause::Watchdog, [[0x5A5A_5A5A; WORDS]; 2]),
+        (StartCause::PowerOn, [held().to_words(1).unwrap(); 2]),
     ] {
         let mut v = Vehicle::start(cause, copies, [0; 4]);
         v.run(480);
@@ -235,16 +235,16 @@ fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
         for bit in [0, 9, 21, 31] {
             let mut bad = copy;
             bad[word] ^= 1 << bit;
-            let start = Start::new(Cause::Fault, &[bad; 2]);
+            let start = Start::new(StartCause::Fault, &[bad; 2]);
             assert!(start.retained.is_none() && start.sequence == 0);
         }
     }
     let mut bad = copy;
     bad[4] ^= 1;
     for (cause, copies) in [
-        (Cause::Fault, [bad; 2]),
-        (Cause::BrownOut, [copy; 2]),
-        (Cause::PowerOn, [[7; WORDS]; 2]),
+        (StartCause::Fault, [bad; 2]),
+        (StartCause::BrownOut, [copy; 2]),
+        (StartCause::PowerOn, [[7; WORDS]; 2]),
     ] {
         let mut v = Vehicle::start(cause, copies, [PRESSED, 0, PRESSED, 0]);
         v.run(6000);
@@ -258,7 +258,7 @@ fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
             GripMemory::HeldByGears(ArmChoice::Front)
         );
         // The next reset finds them kept, and leaves them so.
-        let mut again = Vehicle::start(Cause::Watchdog, v.memory.copies(), [PRESSED, 0, PRESSED, 0]);
+        let mut again = Vehicle::start(StartCause::Watchdog, v.memory.copies(), [PRESSED, 0, PRESSED, 0]);
         again.run(1000);
         assert_eq!(again.status().0, Mode::Disarmed, "calibrated already");
         again.arm();
@@ -272,7 +272,7 @@ fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
 fn resets_one_after_the_other_move_nothing() {
     let mut copies = [held().to_words(1).unwrap(), [0; WORDS]];
     for ms in (1..120).map(|i| 1 + i * 37 % 400) {
-        let mut v = Vehicle::start(Cause::Fault, copies, [PRESSED, 0, PRESSED, 0]);
+        let mut v = Vehicle::start(StartCause::Fault, copies, [PRESSED, 0, PRESSED, 0]);
         v.run(ms);
         for arm in [0, 2] {
             assert!(
@@ -308,7 +308,7 @@ fn a_fault_that_an_arm_keeps_until_release_is_kept_over_the_reset() {
 
 #[test]
 fn a_brown_out_forbids_arming_on_the_ground_and_says_so() {
-    let mut v = Vehicle::start(Cause::BrownOut, [[0; WORDS]; 2], [0; 4]);
+    let mut v = Vehicle::start(StartCause::BrownOut, [[0; WORDS]; 2], [0; 4]);
     v.sticks.perch_switch = false;
     v.run(3000);
     v.arm();
@@ -322,10 +322,10 @@ fn a_brown_out_forbids_arming_on_the_ground_and_says_so() {
     );
     assert!(v.links.hardware().contains(Refusal::BrownOut));
     for (cause, warning) in [
-        (Cause::Fault, "restarted after a fault"),
-        (Cause::Watchdog, "restarted by the watchdog"),
-        (Cause::Asked, ""),
-        (Cause::PowerOn, ""),
+        (StartCause::Fault, "restarted after a fault"),
+        (StartCause::Watchdog, "restarted by the watchdog"),
+        (StartCause::Software, ""),
+        (StartCause::PowerOn, ""),
     ] {
         let mut v = Vehicle::start(cause, [[0; WORDS]; 2], [0; 4]);
         v.run(3000);

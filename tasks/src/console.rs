@@ -20,6 +20,7 @@ use sophie_control::params::Params;
 
 use self::command::{Command, HELP, parse};
 use self::line::{CHUNK, Echo, Line, LineError};
+pub use self::nearest::edits;
 use self::output::Output;
 use crate::links::{Links, Status};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};

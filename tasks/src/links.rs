@@ -35,7 +35,7 @@ use sophie_control::wrench::PerArm;
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};
 use crate::schedule::{Level, TaskId};
-use crate::start::{Cause, Start};
+use crate::start::{Start, StartCause};
 use crate::timing::{Quantity, Record, Run, Timing};
 
 /// The mutex of every link: tasks of different priority meet here on the board.
@@ -308,7 +308,7 @@ macro_rules! links {
                     timing: [const { Mutex::new(RefCell::new(Record::new())) }; TaskId::COUNT],
                     contact_chain: Mutex::new(RefCell::new(Record::new())),
                     hardware: Mutex::new(Cell::new(match start.cause {
-                        Cause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
+                        StartCause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
                         _ => Refusals::NONE,
                     })),
                 }

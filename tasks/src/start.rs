@@ -4,7 +4,7 @@ use crate::retained_state::{RetainedState, Words};
 
 /// Why the board started.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Cause {
+pub enum StartCause {
     /// Power was switched on.
     #[default]
     PowerOn,
@@ -14,11 +14,11 @@ pub enum Cause {
     Watchdog,
     /// The firmware gave up: a panic or a fault of the processor.
     Fault,
-    /// Somebody asked for it: a command, a button, the probe.
-    Asked,
+    /// On request: a command, the reset button, the debug probe.
+    Software,
 }
 
-impl Cause {
+impl StartCause {
     /// What is left in memory is noise.
     pub const fn loses_memory(self) -> bool {
         matches!(self, Self::PowerOn | Self::BrownOut)
@@ -27,7 +27,7 @@ impl Cause {
     /// What the pilot must know of it; empty when there is nothing.
     pub const fn warning(self) -> &'static str {
         match self {
-            Self::PowerOn | Self::Asked => "",
+            Self::PowerOn | Self::Software => "",
             Self::BrownOut => "restarted by a brown-out",
             Self::Watchdog => "restarted by the watchdog",
             Self::Fault => "restarted after a fault",
@@ -39,7 +39,7 @@ impl Cause {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Why it started.
-    pub cause: Cause,
+    pub cause: StartCause,
     /// Retained state of the run before, when it is valid.
     pub retained: Option<RetainedState>,
     /// Number of the last copy that was kept; the next one takes the next.
@@ -49,13 +49,13 @@ pub struct Start {
 impl Start {
     /// Power-on, with nothing left.
     pub const COLD: Self = Self {
-        cause: Cause::PowerOn,
+        cause: StartCause::PowerOn,
         retained: None,
         sequence: 0,
     };
 
     /// A start for `cause` with these two copies in memory.
-    pub fn new(cause: Cause, copies: &[Words; 2]) -> Self {
+    pub fn new(cause: StartCause, copies: &[Words; 2]) -> Self {
         let kept = if cause.loses_memory() {
             None
         } else {
@@ -85,11 +85,11 @@ mod tests {
         };
         let copy = retained.to_words(8).unwrap_or_default();
         for (cause, believed) in [
-            (Cause::PowerOn, false),
-            (Cause::BrownOut, false),
-            (Cause::Watchdog, true),
-            (Cause::Fault, true),
-            (Cause::Asked, true),
+            (StartCause::PowerOn, false),
+            (StartCause::BrownOut, false),
+            (StartCause::Watchdog, true),
+            (StartCause::Fault, true),
+            (StartCause::Software, true),
         ] {
             let start = Start::new(cause, &[copy, [0; 16]]);
             assert_eq!(start.retained, believed.then_some(retained), "{cause:?}");

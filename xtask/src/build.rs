@@ -55,46 +55,62 @@ impl Variant {
 /// No toolchain, or the build failed (and said why).
 pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
     let (feature, variables): (_, &[_]) = match variant {
-        Variant::Plain => return image("sophie", &["--features", board.name], &[], board.core, board.name),
+        Variant::Plain => ("", &[]),
         Variant::Trace => ("trace", &[("DEFMT_RTT_BUFFER_SIZE", TRACE_BUFFER)]),
         Variant::DataCache => ("data-cache", &[]),
     };
-    image(
-        "sophie",
-        &["--features", &format!("{},{feature}", board.name)],
+    let (features, kept) = if feature.is_empty() {
+        (board.name.to_owned(), board.name.to_owned())
+    } else {
+        (
+            format!("{},{feature}", board.name),
+            format!("{}-{feature}", board.name),
+        )
+    };
+    image(&Recipe {
+        package: "sophie",
+        arguments: &["--features", &features],
         variables,
-        board.core,
-        &format!("{}-{feature}", board.name),
-    )
+        core: board.core,
+        kept: &kept,
+    })
 }
 
-/// Builds the image of `package` for a `core`, with the profile and the flags that all images have; returns the path of
-/// its ELF, kept under a name that ends in `kept`.
+/// What an image is built of. The profile and the flags are the same for all images.
+#[derive(Clone, Copy, Debug)]
+pub struct Recipe<'a> {
+    /// Package with the binary.
+    pub package: &'a str,
+    /// Further arguments of `cargo build`.
+    pub arguments: &'a [&'a str],
+    /// Environment variables of the build: name and value.
+    pub variables: &'a [(&'a str, &'a str)],
+    /// The processor's core, as rustc calls it.
+    pub core: &'a str,
+    /// What the name of the ELF ends in.
+    pub kept: &'a str,
+}
+
+/// Builds an image of this workspace; returns the path of its ELF.
 ///
 /// # Errors
 /// No toolchain, or the build failed (and said why).
-pub fn image(
-    package: &str,
-    arguments: &[&str],
-    variables: &[(&str, &str)],
-    core: &str,
-    kept: &str,
-) -> Result<PathBuf, Error> {
-    image_in(root(), package, arguments, variables, core, kept)
+pub fn image(recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
+    image_in(root(), recipe)
 }
 
 /// [`image`] of the workspace in `folder`.
 ///
 /// # Errors
 /// As there.
-pub fn image_in(
-    folder: &Path,
-    package: &str,
-    arguments: &[&str],
-    variables: &[(&str, &str)],
-    core: &str,
-    kept: &str,
-) -> Result<PathBuf, Error> {
+pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
+    let &Recipe {
+        package,
+        arguments,
+        variables,
+        core,
+        kept,
+    } = recipe;
     let toolchain = toolchain::find()?;
     eprintln!("{kept}: {}", toolchain.name);
 

@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::build::Recipe;
 use crate::cost::{CORES, Core};
 use crate::{Error, build};
 
@@ -23,7 +24,13 @@ pub fn conformance() -> Result<(), Error> {
         } else {
             &[]
         };
-        let elf = build::image("sophie-conformance", features, &[], core.cpu, core.cpu)?;
+        let elf = build::image(&Recipe {
+            package: "sophie-conformance",
+            arguments: features,
+            variables: &[],
+            core: core.cpu,
+            kept: core.cpu,
+        })?;
         let qemu = output(&mut qemu(core, &elf))?;
         let emulated = output(&mut emulated(core, &elf))?;
         let host = qemu

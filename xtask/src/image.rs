@@ -65,6 +65,42 @@ pub struct Image {
     pub vectors: Vec<u32>,
 }
 
+/// The named symbols of an image.
+#[derive(Default)]
+struct Symbols {
+    statics: Vec<Static>,
+    functions: Vec<Static>,
+    addresses: HashMap<String, u64>,
+}
+
+impl Symbols {
+    fn of(file: &ElfFile32<'_, object::Endianness>, sections: &[Section]) -> Self {
+        let mut symbols = Self::default();
+        for symbol in file.symbols() {
+            let Ok(name) = symbol.name() else { continue };
+            // The log's texts are symbols too, in sections that never reach the chip.
+            let on_chip = |s: &Section| (s.address..s.address + s.size).contains(&symbol.address());
+            if symbol.kind() == SymbolKind::Data && sections.iter().any(on_chip) {
+                symbols.statics.push(Static {
+                    name: name.into(),
+                    address: symbol.address(),
+                    size: symbol.size(),
+                });
+            }
+            if symbol.kind() == SymbolKind::Text {
+                symbols.functions.push(Static {
+                    name: name.into(),
+                    // Without the bit that says Thumb.
+                    address: symbol.address() & !1,
+                    size: symbol.size(),
+                });
+            }
+            symbols.addresses.insert(name.to_string(), symbol.address());
+        }
+        symbols
+    }
+}
+
 impl Image {
     /// Reads the ELF at `path`.
     ///
@@ -106,37 +142,18 @@ impl Image {
                 });
             }
         }
-        let mut statics = Vec::new();
-        let mut functions = Vec::new();
-        let mut symbols = HashMap::new();
-        for symbol in file.symbols() {
-            let Ok(name) = symbol.name() else { continue };
-            // The log's texts are symbols too, in sections that never reach the chip.
-            let on_chip = |s: &Section| (s.address..s.address + s.size).contains(&symbol.address());
-            if symbol.kind() == SymbolKind::Data && sections.iter().any(on_chip) {
-                statics.push(Static {
-                    name: name.into(),
-                    address: symbol.address(),
-                    size: symbol.size(),
-                });
-            }
-            if symbol.kind() == SymbolKind::Text {
-                functions.push(Static {
-                    name: name.into(),
-                    // Without the bit that says Thumb.
-                    address: symbol.address() & !1,
-                    size: symbol.size(),
-                });
-            }
-            symbols.insert(name.to_string(), symbol.address());
-        }
+        let Symbols {
+            statics,
+            functions,
+            addresses,
+        } = Symbols::of(&file, &sections);
         Ok(Self {
             entry: file.entry(),
             sections,
             loads,
             statics,
             functions,
-            symbols,
+            symbols: addresses,
             vectors: words.iter().map(|word| u32::from_le_bytes(*word)).collect(),
         })
     }

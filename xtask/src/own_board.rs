@@ -9,6 +9,7 @@ use std::process::Command;
 use std::{env, fs};
 
 use crate::boards::{self, Board};
+use crate::build::Recipe;
 use crate::toolchain::{self, TARGET};
 use crate::{Error, build};
 
@@ -79,7 +80,14 @@ pub fn own_board() -> Result<(), Error> {
         name: NAME,
         ..*original
     };
-    let elf = build::image_in(&scratch, "sophie", &["--features", NAME], &[], board.core, NAME)?;
+    let recipe = Recipe {
+        package: "sophie",
+        arguments: &["--features", NAME],
+        variables: &[],
+        core: board.core,
+        kept: NAME,
+    };
+    let elf = build::image_in(&scratch, &recipe)?;
     crate::check(&board, &elf)?;
 
     let toolchain = toolchain::find()?;

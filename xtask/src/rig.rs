@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use crate::boards::{self, Board};
-use crate::build::Variant;
+use crate::build::{Recipe, Variant};
 use crate::tools::{self, PROBE_RS};
 use crate::{Error, build};
 
@@ -87,13 +87,13 @@ impl<'a> Rig<'a> {
             if wired { ",wired" } else { "" },
             if cached { ",sophie-boards/data-cache" } else { "" }
         );
-        let elf = build::image(
-            "sophie-rig",
-            &["--test", "rig", "--features", &features],
-            &[],
-            self.board.core,
-            &format!("{}{}", self.board.name, if cached { "-data-cache" } else { "" }),
-        )?;
+        let elf = build::image(&Recipe {
+            package: "sophie-rig",
+            arguments: &["--test", "rig", "--features", &features],
+            variables: &[],
+            core: self.board.core,
+            kept: &format!("{}{}", self.board.name, if cached { "-data-cache" } else { "" }),
+        })?;
         crate::check(self.board, &elf)?;
         match self.on {
             Where::Built => {

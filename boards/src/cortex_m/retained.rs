@@ -11,7 +11,7 @@ use core::fmt::{self, Write};
 use heapless::String;
 use sophie_tasks::ports::Retain;
 use sophie_tasks::retained_state::{WORDS as STATE_WORDS, Words};
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 
 /// Why the chip was reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
@@ -32,13 +32,13 @@ pub enum ResetCause {
 
 impl ResetCause {
     /// The tasks' view; `fault` when a message of the run before says that it gave up.
-    pub fn told(self, fault: bool) -> Cause {
+    pub fn told(self, fault: bool) -> StartCause {
         match self {
-            Self::PowerOn => Cause::PowerOn,
-            Self::BrownOut => Cause::BrownOut,
-            _ if fault => Cause::Fault,
-            Self::Watchdog => Cause::Watchdog,
-            Self::Software | Self::Pin | Self::Unknown => Cause::Asked,
+            Self::PowerOn => StartCause::PowerOn,
+            Self::BrownOut => StartCause::BrownOut,
+            _ if fault => StartCause::Fault,
+            Self::Watchdog => StartCause::Watchdog,
+            Self::Software | Self::Pin | Self::Unknown => StartCause::Software,
         }
     }
 }

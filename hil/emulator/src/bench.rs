@@ -16,7 +16,7 @@ use sophie_sim::crsf::Telemetry;
 use sophie_sim::flight::aircraft::{Aircraft, Belief, Reset, Said};
 use sophie_sim::plant::{Actuators, Plant};
 use sophie_sim::scenario::Scenario;
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 use sophie_tasks::telemetry::parse_mode_text;
 use uf_crsf::{CrsfParser, Packet};
 
@@ -27,7 +27,7 @@ use crate::plan::Plan;
 use crate::sensors::Sensors;
 use crate::terminal::Sockets;
 use crate::tilt::{TiltError, Tilts};
-use crate::wires::{Digest, Fault, Pins, Run, Wires};
+use crate::wires::{BoardFault, Digest, Pins, Run, Wires};
 
 /// Height at which the arms hang free in the air, m.
 const AIRBORNE: f64 = 0.3;
@@ -102,19 +102,27 @@ pub struct Finished {
     pub malformed: u32,
 }
 
+/// How a board is run.
+pub struct Setup {
+    /// Instructions a cycle of the core clock.
+    pub speed: f64,
+    /// What goes wrong on the way.
+    pub plan: Plan,
+    /// The serial lines that are on a socket.
+    pub sockets: Sockets,
+}
+
 impl<'a> Bench<'a> {
-    /// A vehicle with `firmware` in its board, which runs `speed` instructions a cycle with the parameters of `scenario`
-    /// and a calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to
-    /// `told`; `sockets` has the serial lines that are on one.
+    /// A vehicle with `firmware` in its board, which runs as `setup` has it with the parameters of `scenario` and a
+    /// calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to `logged`.
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
-        speed: f64,
-        plan: Plan,
-        sockets: Sockets,
+        setup: Setup,
         rng: &mut Pcg64Mcg,
-        told: impl FnMut(&Line) + 'a,
+        logged: impl FnMut(&Line) + 'a,
     ) -> Self {
+        let Setup { speed, plan, sockets } = setup;
         let sensors = Sensors::new(&scenario.params, rng);
         let [accel_bias_x, accel_bias_y, accel_bias_z] = sensors.calibration;
         let params = Params {
@@ -133,7 +141,7 @@ impl<'a> Bench<'a> {
             pins: Pins::default(),
             log: Log::new(&firmware.table),
             sockets,
-            told: Box::new(told),
+            told: Box::new(logged),
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
             status: None,
@@ -338,8 +346,8 @@ impl Aircraft for Bench<'_> {
     }
 
     // The processor stands still until its watchdog bites. Scenarios with another cause are refused beforehand.
-    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
-        self.wires.faults.push(Fault::Hang(true));
+    fn cut(&mut self, cause: StartCause, step: usize, at: f64) {
+        self.wires.faults.push(BoardFault::Hang(true));
         self.reset = Some(Reset { cause, step, at });
         self.cuts += 1;
         self.dead = true;

@@ -42,56 +42,7 @@ impl Firmware {
         let wrong = |what: String| format!("{}: {what}", path.display());
         let wanted = format!("wanted is what `cargo xtask firmware {}` builds", board.name);
         let file = object::File::parse(&*bytes).map_err(|_| wrong(format!("is no ELF file; {wanted}")))?;
-        if file.architecture() != Architecture::Arm || file.is_64() {
-            let found = file.architecture();
-            return Err(wrong(format!(
-                "is built for {found:?}, not for a 32-bit Arm; {wanted}"
-            )));
-        }
-        let section = |name| file.section_by_name(name);
-        let vectors =
-            section(".vector_table").ok_or_else(|| wrong(format!("has no vector table; {wanted}")))?;
-        if vectors.address() != board.flash.0 {
-            let found = vectors.address();
-            return Err(wrong(format!(
-                "has its vector table at {found:#010x}, not at {:#010x}; {wanted}",
-                board.flash.0
-            )));
-        }
-        let stack = vectors
-            .data()
-            .ok()
-            .and_then(|data| Some(u64::from(u32::from_le_bytes(data.get(..4)?.try_into().ok()?))))
-            .unwrap_or(0);
-        if !board
-            .ram
-            .iter()
-            .any(|(first, end)| (first + 4..=*end).contains(&stack))
-        {
-            return Err(wrong(format!(
-                "starts its stack at {stack:#010x}, where an {} has no RAM; {wanted}",
-                board.chip
-            )));
-        }
-        // The name that the image greets with: boards of other chips also start at this flash address.
-        let named = |name: &[u8]| {
-            let mut data = file
-                .sections()
-                .filter(|s| s.address() != 0)
-                .filter_map(|s| s.data().ok());
-            data.any(|bytes| bytes.windows(name.len()).any(|window| window == name))
-        };
-        if !named(board.name.as_bytes()) {
-            return Err(wrong(format!("does not call itself {}; {wanted}", board.name)));
-        }
-        for section in file.sections() {
-            let end = section.address() + section.size();
-            if section.address() >= board.flash.0 && section.address() < board.flash.1 && end > board.flash.1
-            {
-                let name = section.name().unwrap_or("?").to_owned();
-                return Err(wrong(format!("has {name} beyond the end of the flash; {wanted}")));
-            }
-        }
+        check(&file, board).map_err(|what| wrong(format!("{what}; {wanted}")))?;
         let symbol = |name: &str| {
             let mut symbols = file.symbols();
             symbols.find(|s| s.name() == Ok(name)).map(|s| s.address())
@@ -125,6 +76,58 @@ impl Firmware {
             count: None,
         })
     }
+}
+
+/// Whether `file` is an image for `board`; otherwise what is wrong with it.
+fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
+    if file.architecture() != Architecture::Arm || file.is_64() {
+        let found = file.architecture();
+        return Err(format!("is built for {found:?}, not for a 32-bit Arm"));
+    }
+    let vectors = file
+        .section_by_name(".vector_table")
+        .ok_or("has no vector table")?;
+    if vectors.address() != board.flash.0 {
+        let found = vectors.address();
+        return Err(format!(
+            "has its vector table at {found:#010x}, not at {:#010x}",
+            board.flash.0
+        ));
+    }
+    let stack = vectors
+        .data()
+        .ok()
+        .and_then(|data| Some(u64::from(u32::from_le_bytes(data.get(..4)?.try_into().ok()?))))
+        .unwrap_or(0);
+    if !board
+        .ram
+        .iter()
+        .any(|(first, end)| (first + 4..=*end).contains(&stack))
+    {
+        return Err(format!(
+            "starts its stack at {stack:#010x}, where an {} has no RAM",
+            board.chip
+        ));
+    }
+    // The name that the image greets with: boards of other chips also start at this flash address.
+    let named = |name: &[u8]| {
+        let mut data = file
+            .sections()
+            .filter(|s| s.address() != 0)
+            .filter_map(|s| s.data().ok());
+        data.any(|bytes| bytes.windows(name.len()).any(|window| window == name))
+    };
+    if !named(board.name.as_bytes()) {
+        return Err(format!("does not call itself {}", board.name));
+    }
+    for section in file.sections() {
+        let end = section.address() + section.size();
+        if section.address() >= board.flash.0 && section.address() < board.flash.1 && end > board.flash.1 {
+            let name = section.name().unwrap_or("?").to_owned();
+            return Err(format!("has {name} beyond the end of the flash"));
+        }
+    }
+    Ok(())
 }
 
 /// The name of the task whose pool is called `symbol`: in mangled names each part has its length before it.

@@ -4,11 +4,9 @@ use sophie_sim::flight::fly_with;
 use sophie_sim::record::{FlightRecord, Observer};
 use sophie_sim::scenario::Scenario;
 
-use crate::bench::{Bench, Finished};
+use crate::bench::{Bench, Finished, Setup};
 use crate::elf::Firmware;
 use crate::log;
-use crate::plan::Plan;
-use crate::terminal::Sockets;
 use crate::wires::Gap;
 use crate::{flyable, gaps};
 
@@ -39,22 +37,19 @@ impl Flight {
     }
 }
 
-/// Flies `scenario` with `firmware` on a board that runs `speed` instructions a cycle; `plan` goes wrong on the way.
-/// `sockets` has the serial lines that are on one. Each line of the log is passed to `told`.
+/// Flies `scenario` with `firmware` on a board as `setup` has it. Each line of the log is passed to `logged`.
 ///
 /// # Errors
 /// One line: why the scenario cannot be flown, or the emulator failed.
 pub fn fly(
     firmware: &Firmware,
     scenario: &Scenario,
-    speed: f64,
-    plan: Plan,
-    sockets: Sockets,
-    told: impl FnMut(&log::Line),
+    setup: Setup,
+    logged: impl FnMut(&log::Line),
     observer: &mut dyn Observer,
 ) -> Result<Flight, String> {
     flyable::check(scenario)?;
-    let make = |rng: &mut _| Bench::new(firmware, scenario, speed, plan, sockets, rng, told);
+    let make = |rng: &mut _| Bench::new(firmware, scenario, setup, rng, logged);
     let (record, bench) = fly_with(scenario, make, observer);
     let board = bench.finish()?;
     let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();

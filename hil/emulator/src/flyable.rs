@@ -3,7 +3,7 @@
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::{Scenario, Step, keys};
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 
 /// Refuses a scenario that needs another image.
 ///
@@ -27,7 +27,7 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
     }
     for step in &scenario.steps {
         if let Step::Reset { cause, .. } = step
-            && *cause != Cause::Watchdog
+            && *cause != StartCause::Watchdog
         {
             return Err(format!(
                 "{name}: step {}: the bench cannot cut the power: allowed is a reset by the watchdog",

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind;
+use sophie_emulator::bench::Setup;
 use sophie_emulator::boards;
 use sophie_emulator::compare;
 use sophie_emulator::elf::Firmware;
@@ -16,7 +17,7 @@ use sophie_emulator::flyable;
 use sophie_emulator::plan::{Plan, Trouble};
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::{Sockets, Terminal};
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
 use sophie_report::terminal::output::OutDir;
@@ -131,14 +132,18 @@ fn run(args: &Args) -> Result<bool, String> {
         args.board,
         args.speed
     ));
-    let factory = args.factory.then_some((0, Trouble::Board(Fault::FactoryOptions)));
-    let plan = Plan::new(factory);
+    let factory = args
+        .factory
+        .then_some((0, Trouble::Board(BoardFault::FactoryOptions)));
+    let setup = Setup {
+        speed: args.speed,
+        plan: Plan::new(factory),
+        sockets,
+    };
     let flight = flight::fly(
         &firmware,
         &scenario,
-        args.speed,
-        plan,
-        sockets,
+        setup,
         |line| {
             if !EACH_SECOND.iter().any(|begin| line.text.starts_with(begin)) {
                 console.say(&line.to_string());
@@ -146,14 +151,27 @@ fn run(args: &Args) -> Result<bool, String> {
         },
         &mut Lines::new(&console),
     )?;
+    write(args, &scenario, &flight, &out, &console)?;
+    complain_of(&flight);
+    Ok(flight.passed())
+}
+
+/// Writes the flight's files, and prints what came of it beside the same flight on the host.
+fn write(
+    args: &Args,
+    scenario: &Scenario,
+    flight: &Flight,
+    out: &OutDir,
+    console: &Console,
+) -> Result<(), String> {
     // A second's work beside the minutes of the emulation.
-    let host = sophie_sim::flight::fly(&scenario, &mut Silent);
-    let mut value = told(args, &flight);
+    let host = sophie_sim::flight::fly(scenario, &mut Silent);
+    let mut value = told(args, flight);
     value["host"] = compare::value(&host);
     let besides = Besides {
         name: "bench",
         value,
-        lines: [compare::lines(&host, &flight.record), lines(&flight)].concat(),
+        lines: [compare::lines(&host, &flight.record), lines(flight)].concat(),
     };
     let text: String = flight
         .board
@@ -164,7 +182,12 @@ fn run(args: &Args) -> Result<bool, String> {
     let logs = [text.into_bytes(), flight.board.log.clone()];
     let logs: Vec<_> = LOG_FILES.into_iter().zip(logs).collect();
     let _ = out.write(&logs)?;
-    finish(&flight.record, Some(&besides), &out, &console, args.json)?;
+    finish(&flight.record, Some(&besides), out, console, args.json)?;
+    Ok(())
+}
+
+/// Says on stderr why the flight did not pass.
+fn complain_of(flight: &Flight) {
     if !flight.record.outcome.accomplished {
         let reason = console::one_line(&flight.record.outcome.reason);
         complain(PROGRAM, &format!("not accomplished: {reason}"));
@@ -178,7 +201,6 @@ fn run(args: &Args) -> Result<bool, String> {
             ),
         );
     }
-    Ok(flight.passed())
 }
 
 /// What the bench knows besides the flight, for programs.

@@ -3,13 +3,13 @@
 use sophie_sim::sensors::fsr::FsrBreak;
 
 use crate::sensors::Sensors;
-use crate::wires::Fault;
+use crate::wires::BoardFault;
 
 /// Something that goes wrong, or is mended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
     /// At the board itself.
-    Board(Fault),
+    Board(BoardFault),
     /// The lead of this arm's pressure sensor (0 to 3) breaks, touches its neighbour, or is mended.
     Fsr(usize, Option<FsrBreak>),
     /// The receiver sends nothing (true), or again.
@@ -43,7 +43,7 @@ impl Plan {
     }
 
     /// Does what is due at `ms`.
-    pub fn apply(&mut self, ms: u64, sensors: &mut Sensors, faults: &mut Vec<Fault>) {
+    pub fn apply(&mut self, ms: u64, sensors: &mut Sensors, faults: &mut Vec<BoardFault>) {
         while let Some((at, trouble)) = self.troubles.get(self.next)
             && *at <= ms
         {

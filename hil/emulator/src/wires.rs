@@ -22,12 +22,12 @@ pub struct Wires {
     /// Bytes that are typed at the console.
     pub console: Vec<u8>,
     /// What breaks or is mended now.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<BoardFault>,
 }
 
 /// Something done to the board, from now on unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub enum BoardFault {
     /// The inertial sensor is unplugged (true) or plugged in again.
     ImuUnplugged(bool),
     /// The data-ready line of the inertial sensor is cut (true) or joined again; its bus is sound.

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use sophie_control::wrench::PerArm;
 
 use sophie_sim::plant::arm::{Arm, ArmSpec};
-use sophie_sim::plant::body::{Body, BodySpec};
+use sophie_sim::plant::body::{Body, BodySpec, Load};
 use sophie_sim::plant::contact::Pose;
 use sophie_sim::plant::rotor::{Rotor, RotorSpec};
 use sophie_sim::plant::{GRAVITY, STEP};
@@ -61,7 +61,15 @@ impl Trial {
             velocity: DVec3::ZERO,
             omega: DVec3::ZERO,
         };
-        let a = body.accelerate(&pose, DVec3::ZERO, drag, DVec3::ZERO, arms.each_ref());
+        let a = body.accelerate(
+            &pose,
+            Load {
+                force: DVec3::ZERO,
+                moment: drag,
+            },
+            DVec3::ZERO,
+            arms.each_ref(),
+        );
         let moment = a.angular * DVec3::from_array(spec.inertia);
         [-a.linear.z * spec.mass, moment.x, moment.y, moment.z]
     }

@@ -3,7 +3,7 @@
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::GripState;
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 
 use crate::plant::Plant;
 
@@ -40,7 +40,7 @@ pub trait Aircraft {
 
     /// The board goes dead for `cause` in the mission's step `step`, `at` s after power-up: no task runs, no pin moves,
     /// until [`Self::start`].
-    fn cut(&mut self, cause: Cause, step: usize, at: f64);
+    fn cut(&mut self, cause: StartCause, step: usize, at: f64);
 
     /// The board starts again, `us` µs after power-up.
     fn start(&mut self, us: u64);
@@ -67,7 +67,7 @@ pub trait Aircraft {
 #[derive(Clone, Copy, Debug)]
 pub struct Reset {
     /// Why.
-    pub cause: Cause,
+    pub cause: StartCause,
     /// Step of the mission in which it happened.
     pub step: usize,
     /// When the board went dead, s after power-up.

@@ -5,6 +5,7 @@ use sophie_control::mode::Mode;
 use sophie_control::tendon::ForceLimit;
 use sophie_control::wrench::PerArm;
 
+use super::Snapshot;
 use super::aircraft::Aircraft;
 use crate::plant::Plant;
 use crate::plant::contact::BELLY_Z;
@@ -77,14 +78,26 @@ impl Judge {
         }
     }
 
-    /// Looks at the truth at `t` s while the pilot is at `step`; gives the reason when the mission failed.
-    pub fn step(
-        &mut self,
-        t: f64,
-        step: Option<(usize, &Step)>,
-        plant: &Plant,
-        stack: &impl Aircraft,
-    ) -> Option<String> {
+    /// Looks at the truth now; gives the reason when the mission failed.
+    pub fn step(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        if let Some(why) = self.harmed(now).or_else(|| self.badly_rolled(now)) {
+            return Some(why);
+        }
+        if let Some(why) = self.after_reset(now.t(), now.step, now.plant, now.stack) {
+            return Some(why);
+        }
+        let grip = now.stack.grip().is_some_and(|g| g.proven);
+        let just_proven = grip && !self.proven;
+        self.proven = grip;
+        if just_proven && let Some(why) = self.badly_held(now.plant, 1.0) {
+            return Some(format!("the grip was proven wrongly: {why}"));
+        }
+        self.let_go(now)
+    }
+
+    /// A crash, or more pressure or tension than the vehicle bears.
+    fn harmed(&self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        let (t, plant, stack) = (now.t(), now.plant, now.stack);
         let pose = plant.pose();
         if !pose.position.is_finite() || !pose.omega.is_finite() {
             return Some("the simulation diverged".to_owned());
@@ -113,8 +126,12 @@ impl Judge {
                 "tendon {arm} pulled with {torque} N m at the servo, allowed {allowed}"
             ));
         }
+        None
+    }
 
-        let index = step.map(|(i, _)| i);
+    /// A roll that ended short of what the step wants.
+    fn badly_rolled(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        let index = now.step.map(|(i, _)| i);
         if index != self.last_step {
             self.last_step = index;
             self.hold_start = None;
@@ -129,24 +146,20 @@ impl Judge {
                 ));
             }
         }
-        if let Some((_, Step::Roll { angle, .. })) = step {
-            let [roll, ..] = plant.euler();
+        if let Some((_, Step::Roll { angle, .. })) = now.step {
+            let [roll, ..] = now.plant.euler();
             let (_, [right, left]) = self.roll.get_or_insert((*angle, [0.0; 2]));
             *right = right.max(roll);
             *left = left.max(-roll);
         }
+        None
+    }
 
-        if let Some(why) = self.after_reset(t, step, plant, stack) {
-            return Some(why);
-        }
-        let grip = stack.grip().is_some_and(|g| g.proven);
-        let just_proven = grip && !self.proven;
-        self.proven = grip;
-        if just_proven && let Some(why) = self.badly_held(plant, 1.0) {
-            return Some(format!("the grip was proven wrongly: {why}"));
-        }
+    /// A perch that does not last through a hold.
+    fn let_go(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
+        let (t, plant, stack) = (now.t(), now.plant, now.stack);
         // Without the radio a perched vehicle must hold as well as with it.
-        let holds = match step {
+        let holds = match now.step {
             Some((_, Step::Hold { .. })) => true,
             Some((_, Step::RadioOff { .. })) => self.hold_start.is_some() || stack.mode() == Mode::Perched,
             _ => false,
@@ -154,7 +167,8 @@ impl Judge {
         if !holds {
             return None;
         }
-        let (start, place) = *self.hold_start.get_or_insert((t, pose.position));
+        let position = plant.pose().position;
+        let (start, place) = *self.hold_start.get_or_insert((t, position));
         if stack.mode() != Mode::Perched {
             return Some(format!(
                 "left the perch during the hold: mode {}",
@@ -164,7 +178,7 @@ impl Judge {
         if plant.thrust().iter().any(|thrust| *thrust > STOPPED) && t - start > SETTLE {
             return Some("a rotor turned during the hold".to_owned());
         }
-        let slip = (pose.position - place).length();
+        let slip = (position - place).length();
         if slip > SLIP {
             return Some(format!(
                 "slipped {:.0} mm on the pipe, allowed {:.0}",

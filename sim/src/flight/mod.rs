@@ -15,11 +15,11 @@ use sophie_control::params::RcProtocol;
 
 use self::aircraft::Aircraft;
 use self::judge::Judge;
-use self::recorder::Recorder;
+use self::recorder::{Ending, Recorder};
 use self::stack::Stack;
-use crate::pilot::{Pilot, Seen};
+use crate::pilot::{Pilot, PilotOutput, Seen};
 use crate::plant::Plant;
-use crate::record::{Event, FlightRecord, Observer, Outcome};
+use crate::record::{FlightRecord, Observer, Outcome};
 use crate::sbus::Receiver;
 use crate::scenario::{Scenario, Step};
 
@@ -27,6 +27,23 @@ use crate::scenario::{Scenario, Step};
 const PROGRESS_MS: u64 = 250;
 /// Bytes of telemetry taken at once.
 const TELEMETRY_BYTES: usize = 256;
+
+/// A flight at one millisecond.
+struct Snapshot<'a, A> {
+    /// Time since power-up, ms.
+    ms: u64,
+    /// The step that the pilot is at, and its index.
+    step: Option<(usize, &'a Step)>,
+    plant: &'a Plant,
+    stack: &'a A,
+}
+
+impl<A> Snapshot<'_, A> {
+    /// Time since power-up, s.
+    fn t(&self) -> f64 {
+        self.ms as f64 * 1e-3
+    }
+}
 
 /// Flies `scenario` with the tasks in virtual time, telling `observer` what happens.
 ///
@@ -53,8 +70,7 @@ pub fn fly_with<A: Aircraft>(
     let mut recorder = Recorder::new(scenario);
     let mut judge = Judge::new(scenario);
     let mut telemetry = [0u8; TELEMETRY_BYTES];
-    let protocol = scenario.params.rc_protocol;
-    let mut sbus = Receiver::default();
+    let mut uplink = Uplink::new(scenario);
 
     let limit_ms = (scenario.time_limit * 1e3) as u64;
     let mut outcome = Outcome {
@@ -68,24 +84,13 @@ pub fn fly_with<A: Aircraft>(
         let t = ms as f64 * 1e-3;
         stack.step_world(&mut plant);
         let received = stack.take_telemetry(&mut telemetry);
-        if protocol == RcProtocol::Sbus
+        if !uplink.answers()
             && let Some(said) = stack.status()
         {
             pilot.hear(said.mode, said.reason);
         }
         let output = pilot.step(1e-3, seen(&plant, t), &telemetry[..received]);
-        match protocol {
-            RcProtocol::Crsf => {
-                if let Some(frame) = &output.rc_bytes {
-                    stack.receive(frame);
-                }
-            }
-            RcProtocol::Sbus => {
-                if let Some(frame) = sbus.step(1e-3, output.channels) {
-                    stack.receive(&frame);
-                }
-            }
-        }
+        uplink.send(&output, &mut stack);
         if let Err(why) = stack.run_until(ms * 1000) {
             outcome.reason = format!("{why} (at {t:.1} s)");
             break;
@@ -95,10 +100,21 @@ pub fn fly_with<A: Aircraft>(
         if output.step != began.0 {
             began = (output.step, t);
         }
-        let judged = judge.step(t, step, &plant, &stack);
+        let judged = judge.step(&Snapshot {
+            ms,
+            step,
+            plant: &plant,
+            stack: &stack,
+        });
         plant.push = push(step, t - began.1);
         reset(step, began, ms, &mut stack);
-        recorder.step(ms, step, &plant, &stack, pilot.throttle(), observer);
+        let now = Snapshot {
+            ms,
+            step,
+            plant: &plant,
+            stack: &stack,
+        };
+        recorder.step(&now, pilot.throttle(), observer);
         if ms.is_multiple_of(PROGRESS_MS) {
             observer.progress(t, stack.mode(), -plant.pose().position.z);
         }
@@ -115,19 +131,49 @@ pub fn fly_with<A: Aircraft>(
         let step = scenario.steps.get(began.0);
         outcome.reason += &why::detail(scenario, step, recorder.samples(), &outcome.reason);
     }
-    let event = Event {
-        t: ms as f64 * 1e-3,
-        text: outcome.reason.clone(),
-    };
-    let record = recorder.finish(
-        scenario,
-        &stack,
+    let ending = Ending {
         outcome,
-        event,
-        wall.elapsed().as_secs_f64(),
-        observer,
-    );
+        t: ms as f64 * 1e-3,
+        wall_seconds: wall.elapsed().as_secs_f64(),
+    };
+    let record = recorder.finish(scenario, &stack, ending, observer);
     (record, stack)
+}
+
+/// The radio from the pilot to the receiver that the scenario's vehicle has.
+enum Uplink {
+    Crsf,
+    Sbus(Receiver),
+}
+
+impl Uplink {
+    fn new(scenario: &Scenario) -> Self {
+        match scenario.params.rc_protocol {
+            RcProtocol::Crsf => Self::Crsf,
+            RcProtocol::Sbus => Self::Sbus(Receiver::default()),
+        }
+    }
+
+    /// There is a way back. Without one the pilot hears the vehicle's log instead of reading his display.
+    fn answers(&self) -> bool {
+        matches!(self, Self::Crsf)
+    }
+
+    /// Hands the pilot's output of this millisecond to the receiver.
+    fn send(&mut self, output: &PilotOutput, stack: &mut impl Aircraft) {
+        match self {
+            Self::Crsf => {
+                if let Some(frame) = &output.rc_bytes {
+                    stack.receive(frame);
+                }
+            }
+            Self::Sbus(receiver) => {
+                if let Some(frame) = receiver.step(1e-3, output.channels) {
+                    stack.receive(&frame);
+                }
+            }
+        }
+    }
 }
 
 /// What the pilot can see of the vehicle.

@@ -3,6 +3,7 @@
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
 
+use super::Snapshot;
 use super::aircraft::{Aircraft, Said};
 use crate::plant::Plant;
 use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample};
@@ -38,6 +39,28 @@ struct Current {
     saturated: u32,
 }
 
+/// How a flight ended.
+pub struct Ending {
+    /// Whether the mission was accomplished, and why not.
+    pub outcome: Outcome,
+    /// Time since power-up, s.
+    pub t: f64,
+    /// Time that the simulation took, s.
+    pub wall_seconds: f64,
+}
+
+/// What closes a phase.
+struct PhaseEnd {
+    /// Time since power-up, s.
+    t: f64,
+    /// Its step was done.
+    done: bool,
+    /// Battery, V.
+    voltage: f64,
+    /// Missed deadlines since power-up.
+    overruns: u32,
+}
+
 impl Recorder {
     /// An empty record of `scenario`.
     pub fn new(scenario: &Scenario) -> Self {
@@ -59,26 +82,24 @@ impl Recorder {
         }
     }
 
-    /// Looks at the flight `ms` milliseconds after power-up.
-    pub fn step(
-        &mut self,
-        ms: u64,
-        step: Option<(usize, &Step)>,
-        plant: &Plant,
-        stack: &impl Aircraft,
-        throttle: f64,
-        observer: &mut dyn Observer,
-    ) {
-        let t = ms as f64 * 1e-3;
-        if step.map(|(i, _)| i) != self.current.as_ref().map(|c| c.index) {
-            self.end_phase(t, true, plant.battery_voltage(), stack, observer);
-            if let Some((index, step)) = step {
+    /// Looks at the flight now; the pilot's throttle stick stands at `throttle`, 0..1.
+    pub fn step(&mut self, now: &Snapshot<'_, impl Aircraft>, throttle: f64, observer: &mut dyn Observer) {
+        let (t, plant, stack) = (now.t(), now.plant, now.stack);
+        if now.step.map(|(i, _)| i) != self.current.as_ref().map(|c| c.index) {
+            let end = PhaseEnd {
+                t,
+                done: true,
+                voltage: plant.battery_voltage(),
+                overruns: stack.overruns(),
+            };
+            self.end_phase(&end, observer);
+            if let Some((index, step)) = now.step {
                 observer.step_began(t, index, self.steps, step.name());
                 self.begin_phase(t, index, step, stack);
             }
         }
         self.watch_stack(t, plant, stack, observer);
-        if ms.is_multiple_of(SAMPLE_MS) {
+        if now.ms.is_multiple_of(SAMPLE_MS) {
             let sample = sample(t, plant, stack, throttle);
             self.digest.add(&sample);
             self.account(&sample);
@@ -96,15 +117,22 @@ impl Recorder {
         mut self,
         scenario: &Scenario,
         stack: &impl Aircraft,
-        outcome: Outcome,
-        last: Event,
-        wall_seconds: f64,
+        ending: Ending,
         observer: &mut dyn Observer,
     ) -> FlightRecord {
-        let voltage = self.samples.last().map_or(0.0, |s| s.battery_voltage);
-        self.end_phase(last.t, outcome.accomplished, voltage, stack, observer);
-        let sim_seconds = last.t;
-        self.note(last, observer);
+        let Ending {
+            outcome,
+            t,
+            wall_seconds,
+        } = ending;
+        let end = PhaseEnd {
+            t,
+            done: outcome.accomplished,
+            voltage: self.samples.last().map_or(0.0, |s| s.battery_voltage),
+            overruns: stack.overruns(),
+        };
+        self.end_phase(&end, observer);
+        self.say(t, outcome.reason.clone(), observer);
         FlightRecord {
             scenario: scenario.clone(),
             outcome,
@@ -112,7 +140,7 @@ impl Recorder {
             phases: self.phases,
             events: self.events,
             grip: self.grip,
-            sim_seconds,
+            sim_seconds: t,
             wall_seconds,
             overruns: stack.overruns(),
             digest: self.digest.0,
@@ -139,23 +167,16 @@ impl Recorder {
         });
     }
 
-    fn end_phase(
-        &mut self,
-        t: f64,
-        done: bool,
-        voltage: f64,
-        stack: &impl Aircraft,
-        observer: &mut dyn Observer,
-    ) {
+    fn end_phase(&mut self, end: &PhaseEnd, observer: &mut dyn Observer) {
         let Some(mut current) = self.current.take() else {
             return;
         };
-        current.phase.end = t;
-        current.phase.done = done;
-        current.phase.battery_voltage = voltage;
-        current.phase.overruns = stack.overruns() - current.overruns_before;
+        current.phase.end = end.t;
+        current.phase.done = end.done;
+        current.phase.battery_voltage = end.voltage;
+        current.phase.overruns = end.overruns - current.overruns_before;
         current.phase.saturation = f64::from(current.saturated) / f64::from(current.samples.max(1));
-        observer.step_ended(t, &current.phase);
+        observer.step_ended(end.t, &current.phase);
         self.phases.push(current.phase);
     }
 

@@ -10,7 +10,7 @@ use sophie_drivers::rc_decoder::Decoder;
 use sophie_mixers::{Mixer, Variant};
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{GripState, Links, Newest, Status};
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 
 use super::aircraft::{Aircraft, Belief, Reset, Said};
 use crate::aim;
@@ -167,7 +167,7 @@ impl Aircraft for Stack {
     }
 
     // What outlives it is what was kept, unless power went too.
-    fn cut(&mut self, cause: Cause, step: usize, at: f64) {
+    fn cut(&mut self, cause: StartCause, step: usize, at: f64) {
         self.overruns = self.overruns();
         self.running = None;
         self.board.reset();

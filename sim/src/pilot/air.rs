@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::guidance::Vertical;
-use super::hands::Wish;
-use super::mind::{HEADING, Mind, Phase, Progress, View};
+use super::mission::{HEADING, Mission, Phase, Progress, View};
+use super::stick_dynamics::StickTarget;
 
 /// Share of the roll angle at which a side counts as reached, and by which the stick goes beyond it: the last
 /// degree of the vehicle's lag would else never come.
@@ -17,7 +17,7 @@ const RECOVERED_SPEED: f64 = 0.3;
 const REACHED: f64 = 0.25;
 const REACHED_SPEED: f64 = 0.25;
 
-impl Mind {
+impl Mission {
     pub(super) fn hover(&mut self, v: &View<'_>, seconds: f64, dt: f64) -> Progress {
         if self.phase == Phase::Start {
             self.spot = v.seen.position.truncate();
@@ -64,7 +64,7 @@ impl Mind {
             .guidance
             .climb(Vertical::Height(self.height), angle.cos(), dt);
         let yaw = self.guidance.rudder(&v.seen, HEADING);
-        Progress::Going(Wish {
+        Progress::Going(StickTarget {
             roll: side * ROLL_LEAD * angle / self.stick_angle,
             yaw,
             throttle,

@@ -2,8 +2,8 @@
 
 use sophie_control::mode::Mode;
 
-use super::hands::Wish;
-use super::mind::{Mind, Phase, Progress, View};
+use super::mission::{Mission, Phase, Progress, View};
+use super::stick_dynamics::StickTarget;
 
 /// Throttle at which the paper's vehicle is sure to leave the ground.
 const TAKE_OFF: f64 = 0.85;
@@ -32,27 +32,27 @@ const SWITCH_OFF: f64 = 0.5;
 const GESTURE: f64 = 2.0;
 const GESTURE_AGAIN: f64 = 3.0;
 
-impl Mind {
+impl Mission {
     pub(super) fn arm(&mut self, v: &View<'_>) -> Progress {
         match (self.phase, v.mode) {
             // Left on over a restart: it must have been off.
             (Phase::Start, Some(Mode::Disarmed)) if self.arm_switch => {
                 self.arm_switch = false;
                 self.enter(Phase::Throttle);
-                Progress::Going(Wish::default())
+                Progress::Going(StickTarget::default())
             }
             (Phase::Start, Some(Mode::Disarmed)) | (Phase::Throttle, _)
                 if self.phase == Phase::Start || self.phase_time > SWITCH_OFF =>
             {
                 self.arm_switch = true;
                 self.enter(Phase::Gesture);
-                Progress::Going(Wish::default())
+                Progress::Going(StickTarget::default())
             }
             (Phase::Gesture, Some(Mode::Armed | Mode::Perched)) => {
                 self.enter(Phase::Wait);
-                Progress::Going(Wish::default())
+                Progress::Going(StickTarget::default())
             }
-            (Phase::Gesture, _) => Progress::Going(Wish {
+            (Phase::Gesture, _) => Progress::Going(StickTarget {
                 // Refused for now: let go and try again.
                 yaw: if self.phase_time % GESTURE_AGAIN < GESTURE {
                     1.0
@@ -61,8 +61,8 @@ impl Mind {
                 },
                 ..Default::default()
             }),
-            (Phase::Wait, _) if self.phase_time > 0.5 => Progress::Done(Wish::default()),
-            _ => Progress::Going(Wish::default()),
+            (Phase::Wait, _) if self.phase_time > 0.5 => Progress::Done(StickTarget::default()),
+            _ => Progress::Going(StickTarget::default()),
         }
     }
 
@@ -124,15 +124,17 @@ impl Mind {
 
     pub(super) fn disarm(&mut self, v: &View<'_>) -> Progress {
         match (self.phase, v.mode) {
-            (Phase::Wait, Some(Mode::Disarmed)) if self.phase_time > 0.5 => Progress::Done(Wish::default()),
-            (Phase::Wait, _) => Progress::Going(Wish::default()),
+            (Phase::Wait, Some(Mode::Disarmed)) if self.phase_time > 0.5 => {
+                Progress::Done(StickTarget::default())
+            }
+            (Phase::Wait, _) => Progress::Going(StickTarget::default()),
             (_, Some(Mode::Disarmed)) => {
                 // Switched off only now: the gesture is the way of a pilot who trusts his vehicle.
                 self.arm_switch = false;
                 self.enter(Phase::Wait);
-                Progress::Going(Wish::default())
+                Progress::Going(StickTarget::default())
             }
-            _ => Progress::Going(Wish {
+            _ => Progress::Going(StickTarget {
                 yaw: -1.0,
                 ..Default::default()
             }),

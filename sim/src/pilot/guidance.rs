@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3};
 use sophie_control::params::Params;
 
 use super::Seen;
-use super::eyes::Foresight;
-use super::hands::Wish;
+use super::perception::Foresight;
+use super::stick_dynamics::StickTarget;
 
 /// Gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
@@ -44,6 +44,17 @@ const THROTTLE_SLEW: f64 = 0.8;
 /// Heading error to yaw rate, 1/s.
 const HEADING_GAIN: f64 = 0.4;
 
+/// Where to go.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    /// North and east, m.
+    pub target: DVec2,
+    /// Height, or how fast it changes.
+    pub vertical: Vertical,
+    /// Heading of the nose, rad.
+    pub heading: f64,
+}
+
 /// How the height is flown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Vertical {
@@ -65,7 +76,7 @@ pub struct Guidance {
     wind: DVec2,
     throttle: f64,
     foresight: Foresight,
-    /// Where the vehicle will be when the hands act: position and velocity, NED.
+    /// Where the vehicle will be when the sticks act: position and velocity, NED.
     ahead: (DVec3, DVec3),
 }
 
@@ -92,7 +103,7 @@ impl Guidance {
         self.strength
     }
 
-    /// Position, m, and velocity, m/s, NED, that the vehicle will have when the hands act.
+    /// Position, m, and velocity, m/s, NED, that the vehicle will have when the sticks act.
     pub fn ahead(&self) -> (DVec3, DVec3) {
         self.ahead
     }
@@ -117,10 +128,10 @@ impl Guidance {
         self.ahead = self.foresight.ahead(seen, dt);
     }
 
-    /// Steers to `target` (north, east, m) with the nose at `heading` (rad).
-    pub fn steer(&mut self, seen: &Seen, target: DVec2, vertical: Vertical, heading: f64, dt: f64) -> Wish {
+    /// Steers along `course` for `dt` s.
+    pub fn steer(&mut self, seen: &Seen, course: &Course, dt: f64) -> StickTarget {
         let (position, velocity) = self.ahead;
-        let away = target - position.truncate();
+        let away = course.target - position.truncate();
         let speed = (away * POSITION_GAIN).clamp_length_max(SPEED_MAX);
         let error = speed - velocity.truncate();
         if away.length() < WIND_NEAR {
@@ -129,11 +140,11 @@ impl Guidance {
         let level = (error * SPEED_GAIN + self.wind).clamp_length_max(ACCELERATION_MAX);
         let body = DVec2::from_angle(-seen.yaw).rotate(level);
         let (pitch, roll) = (-(body.x / GRAVITY).atan(), (body.y / GRAVITY).atan());
-        Wish {
+        StickTarget {
             roll: roll / self.stick_angle,
             pitch: pitch / self.stick_angle,
-            yaw: self.rudder(seen, heading),
-            throttle: self.climb(vertical, roll.cos() * pitch.cos(), dt),
+            yaw: self.rudder(seen, course.heading),
+            throttle: self.climb(course.vertical, roll.cos() * pitch.cos(), dt),
             ..Default::default()
         }
     }

@@ -1,19 +1,20 @@
 //! The simulated pilot: flies the steps of a scenario with sticks alone.
 //!
 //! He sees the vehicle from outside (position, speed, attitude: late and with errors) and the transmitter's
-//! display, or hears the log read aloud where there is no telemetry; he has hands of limited bandwidth. What leaves him are channel frames of the radio. He knows
-//! nothing else, and the flight stack learns nothing of him but those bytes.
+//! display, or hears the log read aloud where there is no telemetry; his sticks move with a limited bandwidth. What
+//! leaves him are channel frames of the radio. He knows nothing else, and the flight stack learns nothing of him but
+//! those bytes.
 
 mod air;
-mod eyes;
 mod ground;
 mod guidance;
-mod hands;
 mod limits;
-mod mind;
+mod mission;
+mod perception;
 mod perch;
 mod radio;
 mod referee;
+mod stick_dynamics;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -26,10 +27,10 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
 use sophie_control::rc::CHANNELS;
 
-use self::eyes::Eyes;
-use self::hands::{Hands, Wish};
-use self::mind::{Mind, Progress, View};
+use self::mission::{Mission, Progress, View};
+use self::perception::Perception;
 use self::referee::Referee;
+use self::stick_dynamics::{StickDynamics, StickTarget};
 use crate::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};
 use crate::record::Outcome;
 use crate::scenario::{Scenario, Step};
@@ -90,13 +91,13 @@ pub struct Pilot {
     /// Time since the last frame, s.
     elapsed: f64,
     telemetry: Telemetry,
-    eyes: Eyes,
+    perception: Perception,
     /// What the display showed over the last reaction time.
     display: VecDeque<Option<Mode>>,
     display_delay: usize,
-    mind: Mind,
-    hands: Hands,
-    wish: Wish,
+    mission: Mission,
+    sticks: StickDynamics,
+    wish: StickTarget,
     referee: Referee,
 }
 
@@ -112,12 +113,12 @@ impl Pilot {
             outcome: None,
             elapsed: 0.0,
             telemetry: Telemetry::default(),
-            eyes: Eyes::new(limits.delay, limits.eye_noise, rng),
+            perception: Perception::new(limits.delay, limits.eye_noise, rng),
             display: VecDeque::new(),
             display_delay: (limits.delay * FRAME_HZ) as usize,
-            mind: Mind::new(scenario),
-            hands: Hands::new(limits.bandwidth, scenario.arms),
-            wish: Wish::default(),
+            mission: Mission::new(scenario),
+            sticks: StickDynamics::new(limits.bandwidth, scenario.arms),
+            wish: StickTarget::default(),
             referee: Referee::default(),
         }
     }
@@ -128,14 +129,14 @@ impl Pilot {
             step: self.index,
             ..Default::default()
         };
-        if self.mind.transmits() {
+        if self.mission.transmits() {
             self.telemetry.take(telemetry_bytes);
         } else {
             self.telemetry.darken();
         }
         if self.outcome.is_none()
             && self.index > 0
-            && let Some(why) = self.referee.judge(&seen, mind::HEADING, dt)
+            && let Some(why) = self.referee.judge(&seen, mission::HEADING, dt)
         {
             self.fail(&why, &mut out);
         }
@@ -145,8 +146,8 @@ impl Pilot {
             if self.outcome.is_none() {
                 self.think(seen, 1.0 / FRAME_HZ, &mut out);
             }
-            let sticks = self.hands.move_to(&self.wish, 1.0 / FRAME_HZ);
-            if self.mind.transmits() {
+            let sticks = self.sticks.move_to(&self.wish, 1.0 / FRAME_HZ);
+            if self.mission.transmits() {
                 out.rc_bytes = Some(rc_frame(&sticks));
                 out.channels = Some(sticks.to_channels());
             }
@@ -157,7 +158,7 @@ impl Pilot {
 
     /// Somebody reads the vehicle's log aloud: with a receiver that has no way back the display shows nothing.
     pub fn hear(&mut self, mode: Mode, reason: &str) {
-        if self.mind.transmits() {
+        if self.mission.transmits() {
             self.telemetry.tell(mode, reason);
         }
     }
@@ -171,7 +172,7 @@ impl Pilot {
     /// Throttle stick, 0..1.
     #[must_use]
     pub fn throttle(&self) -> f64 {
-        self.hands.at()[3]
+        self.sticks.at()[3]
     }
 
     /// What the transmitter's display shows.
@@ -181,7 +182,7 @@ impl Pilot {
     }
 
     fn think(&mut self, now: Seen, dt: f64, out: &mut PilotOutput) {
-        let seen = self.eyes.look(now, dt);
+        let seen = self.perception.look(now, dt);
         self.display.push_back(self.telemetry.mode);
         while self.display.len() > self.display_delay + 1 {
             self.display.pop_front();
@@ -197,7 +198,7 @@ impl Pilot {
         };
         if !self.begun {
             self.begun = true;
-            self.mind.begin(&seen);
+            self.mission.begin(&seen);
             out.events.push(StepEvent::Began(self.index));
         }
         let view = View {
@@ -206,7 +207,7 @@ impl Pilot {
             mode,
             text: &self.telemetry.reason,
         };
-        match self.mind.fly(&step, &view, self.hands.at(), dt) {
+        match self.mission.fly(&step, &view, self.sticks.at(), dt) {
             Progress::Going(wish) => self.wish = wish,
             Progress::Done(wish) => {
                 self.wish = wish;

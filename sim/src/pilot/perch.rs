@@ -2,8 +2,8 @@
 
 use sophie_control::mode::{Mode, Reason};
 
-use super::hands::Wish;
-use super::mind::{Mind, Phase, Progress, View};
+use super::mission::{Mission, Phase, Progress, View};
+use super::stick_dynamics::StickTarget;
 
 /// Height over the pipe from which it is approached, and to which the vehicle goes after a release, m.
 const OVER: f64 = 1.0;
@@ -67,7 +67,7 @@ const GRIP_LOST_TIME: f64 = 1.0;
 /// Rise at which the vehicle is clear of the pipe and the sticks are used again, m.
 const CLEAR: f64 = 0.06;
 
-impl Mind {
+impl Mission {
     /// Share of the throttles on the pipe that is given: less with stronger rotors, which would lift the vehicle off,
     /// never more, since the stack takes more than `perch_thr_max` for flying on.
     fn lightly(&self) -> f64 {
@@ -117,9 +117,8 @@ impl Mind {
 
     /// Descends onto the pipe, and up again for another try when it would be missed. True once it carries.
     /// `throttle` is where that stick is.
-    fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (Wish, bool) {
+    fn approach(&mut self, v: &View<'_>, throttle: f64, dt: f64) -> (StickTarget, bool) {
         let over = v.height() - self.pipe_top;
-        let (firm, firm_ease) = (FIRM_THROTTLE * self.lightly(), FIRM_EASE * self.lightly());
         let off = v.seen.position.truncate() - self.pipe;
         if self.phase == Phase::GoAround {
             let wish = self.go_to(v, self.pipe, self.pipe_top + OVER_AGAIN, dt);
@@ -148,21 +147,7 @@ impl Mind {
                 }
                 (self.climb_over(v, self.pipe, -LAST_DESCENT, dt), false)
             }
-            Phase::Plant => {
-                let stands = over < STANDS && v.seen.velocity.z.abs() < STOPPED;
-                // Most of the weight is still on the rotors: without the trim it would slide.
-                let (roll, pitch) = self.guidance.trim(&v.seen);
-                let wish = Wish {
-                    roll,
-                    pitch,
-                    ..self.throttle_to(firm, firm_ease, dt)
-                };
-                let felt = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
-                if felt {
-                    self.height = v.height();
-                }
-                (wish, felt)
-            }
+            Phase::Plant => self.plant(v, dt),
             Phase::GoAround => (self.climb_over(v, self.pipe, DESCENT, dt), false),
             _ => {
                 if self.phase != Phase::Descend {
@@ -182,6 +167,24 @@ impl Mind {
                 (self.climb_over(v, self.pipe, rate, dt), false)
             }
         }
+    }
+
+    /// Puts the weight onto the pipe, the sticks at their trim. True once the pipe carries.
+    fn plant(&mut self, v: &View<'_>, dt: f64) -> (StickTarget, bool) {
+        let (firm, firm_ease) = (FIRM_THROTTLE * self.lightly(), FIRM_EASE * self.lightly());
+        let stands = v.height() - self.pipe_top < STANDS && v.seen.velocity.z.abs() < STOPPED;
+        // Most of the weight is still on the rotors: without the trim it would slide.
+        let (roll, pitch) = self.guidance.trim(&v.seen);
+        let wish = StickTarget {
+            roll,
+            pitch,
+            ..self.throttle_to(firm, firm_ease, dt)
+        };
+        let felt = self.held_for(stands && self.throttle <= firm, STOPPED_TIME, dt);
+        if felt {
+            self.height = v.height();
+        }
+        (wish, felt)
     }
 
     pub(super) fn clamp(&mut self, v: &View<'_>, throttle: f64, stick: f64, dt: f64) -> Progress {
@@ -253,7 +256,7 @@ impl Mind {
         if self.held_for(v.shows(Reason::GripLost), GRIP_LOST_TIME, dt) {
             return Progress::Failed(format!("grip lost after {:.1} s", self.step_time));
         }
-        let wish = Wish::default();
+        let wish = StickTarget::default();
         if self.step_time >= seconds {
             Progress::Done(wish)
         } else {

@@ -3,8 +3,8 @@
 
 use sophie_control::mode::{Mode, Reason};
 
-use super::hands::Wish;
-use super::mind::{Mind, Phase, Progress, View};
+use super::mission::{Mission, Phase, Progress, View};
+use super::stick_dynamics::StickTarget;
 use crate::scenario::Step;
 
 /// Roll stick that says "I have you", share of its travel: beyond the 0.3 that ends the failsafe.
@@ -12,7 +12,7 @@ const TAKE_OVER: f64 = 0.45;
 /// Time for which the display must show a restarted vehicle, s.
 const SHOWN: f64 = 1.0;
 
-impl Mind {
+impl Mission {
     /// Sticks let go, the throttle where it is: whatever comes back must find the vehicle as it was.
     /// `throttle` is where that stick is.
     pub(super) fn radio_off(&mut self, v: &View<'_>, seconds: f64, throttle: f64) -> Progress {
@@ -23,9 +23,9 @@ impl Mind {
         if self.step_time >= seconds && self.phase == Phase::Silent {
             self.enter(Phase::Wait);
         }
-        let wish = Wish {
+        let wish = StickTarget {
             throttle: self.throttle,
-            ..Wish::default()
+            ..StickTarget::default()
         };
         if self.phase == Phase::Wait && v.mode.is_some() {
             Progress::Done(wish)
@@ -41,9 +41,9 @@ impl Mind {
             self.throttle = throttle;
             self.enter(Phase::Wait);
         }
-        let wish = Wish {
+        let wish = StickTarget {
             throttle: self.throttle,
-            ..Wish::default()
+            ..StickTarget::default()
         };
         let disarmed = self.step_time > over + SHOWN && v.mode == Some(Mode::Disarmed);
         if self.held_for(disarmed, SHOWN, dt) {
@@ -54,10 +54,10 @@ impl Mind {
     }
 
     /// The sticks with which the pilot takes a vehicle back that sinks because it has not heard of him.
-    pub(super) fn take_over(step: &Step, v: &View<'_>, wish: Wish) -> Wish {
+    pub(super) fn take_over(step: &Step, v: &View<'_>, wish: StickTarget) -> StickTarget {
         let flies = matches!(step, Step::Hover { .. } | Step::FlyTo { .. });
         if flies && v.mode == Some(Mode::Failsafe) && v.shows(Reason::RADIO_LOST) {
-            Wish {
+            StickTarget {
                 roll: TAKE_OVER,
                 ..wish
             }

@@ -39,24 +39,49 @@ pub struct ArmSpec {
     damping: f64,
 }
 
+/// How an arm was printed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmPrint {
+    /// A1, A2, B1, B2 of Eq. 1: °/N, °/(N %), °/N², °/(N² %).
+    pub coefficients: [f64; 4],
+    /// %.
+    pub infill: f64,
+    /// Gain on Eq. 1's elastic term.
+    pub gain_k: f64,
+    /// Compliance over the nominal one.
+    pub gain: f64,
+    /// Tilt against the nominal one, rad.
+    pub offset: f64,
+    /// Damping ratio in hover.
+    pub zeta: f64,
+}
+
 impl ArmSpec {
     /// An arm of infill `infill` (%) with the gain `gain_k` on Eq. 1's elastic term, itself softer by `gain`
     /// and bent by `offset` (rad) against the nominal one, with the damping ratio `zeta` in hover.
     #[must_use]
     pub fn new(infill: f64, gain_k: f64, gain: f64, offset: f64, zeta: f64) -> Self {
-        Self::with(TABLE_1, infill, gain_k, gain, offset, zeta)
+        Self::of(&ArmPrint {
+            coefficients: TABLE_1,
+            infill,
+            gain_k,
+            gain,
+            offset,
+            zeta,
+        })
     }
 
-    /// The same with coefficients A1, A2, B1, B2 of its own in Eq. 1 (°/N, °/(N %), °/N², °/(N² %)).
+    /// The arm of this print.
     #[must_use]
-    pub fn with(
-        [a1, a2, b1, b2]: [f64; 4],
-        infill: f64,
-        gain_k: f64,
-        gain: f64,
-        offset: f64,
-        zeta: f64,
-    ) -> Self {
+    pub fn of(print: &ArmPrint) -> Self {
+        let &ArmPrint {
+            coefficients: [a1, a2, b1, b2],
+            infill,
+            gain_k,
+            gain,
+            offset,
+            zeta,
+        } = print;
         let nominal_linear = (gain_k * (a1 + a2 * infill)).to_radians();
         let nominal_quadratic = (gain_k * (b1 + b2 * infill)).to_radians();
         let (linear, quadratic) = (nominal_linear * gain, nominal_quadratic * gain);

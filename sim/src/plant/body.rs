@@ -36,6 +36,23 @@ pub struct BodyState {
     pub pose: Pose,
 }
 
+/// Load on the vehicle at the origin, body axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// N.
+    pub force: DVec3,
+    /// N·m.
+    pub moment: DVec3,
+}
+
+impl Load {
+    /// Adds a force (N) with its moment (N·m) about the origin.
+    pub fn add(&mut self, force: DVec3, moment: DVec3) {
+        self.force += force;
+        self.moment += moment;
+    }
+}
+
 /// Accelerations of one step.
 #[derive(Clone, Copy, Debug)]
 pub struct Accelerations {
@@ -86,21 +103,14 @@ impl Body {
         }
     }
 
-    /// Accelerations under a force (N) and moment (N·m) from outside at the origin, body axes, without
-    /// gravity and thrusts, which come from `gravity` (m/s², body) and the loaded `arms`.
+    /// Accelerations under a load from outside, without gravity and thrusts, which come from `gravity` (m/s², body)
+    /// and the loaded `arms`.
     #[must_use]
-    pub fn accelerate(
-        &self,
-        pose: &Pose,
-        force: DVec3,
-        moment: DVec3,
-        gravity: DVec3,
-        arms: [&Arm; 4],
-    ) -> Accelerations {
+    pub fn accelerate(&self, pose: &Pose, load: Load, gravity: DVec3, arms: [&Arm; 4]) -> Accelerations {
         let w = pose.omega;
         let inertia_tip = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
-        let mut force = force + self.mass * (gravity - w.cross(w.cross(self.centre)));
-        let mut moment = moment + self.mass * self.centre.cross(gravity) - w.cross(self.inertia * w);
+        let mut force = load.force + self.mass * (gravity - w.cross(w.cross(self.centre)));
+        let mut moment = load.moment + self.mass * self.centre.cross(gravity) - w.cross(self.inertia * w);
         if !self.coupled {
             for arm in arms {
                 let thrust = arm.normal() * arm.thrust;
@@ -271,7 +281,15 @@ mod tests {
             for arm in &mut arms {
                 arm.load(thrust, 0.0, g, true);
             }
-            let acc = body.accelerate(&pose, DVec3::ZERO, moment(i as f64 * STEP), g, arms.each_ref());
+            let acc = body.accelerate(
+                &pose,
+                Load {
+                    force: DVec3::ZERO,
+                    moment: moment(i as f64 * STEP),
+                },
+                g,
+                arms.each_ref(),
+            );
             for (arm, a) in arms.iter_mut().zip(acc.arms) {
                 arm.integrate(STEP, a);
             }

@@ -16,9 +16,9 @@ use glam::{DQuat, DVec3};
 use rand_pcg::Pcg64Mcg;
 use sophie_control::wrench::PerArm;
 
-use self::arm::{Arm, ArmSpec};
+use self::arm::{Arm, ArmPrint, ArmSpec};
 use self::battery::Battery;
-use self::body::{Body, BodyState};
+use self::body::{Body, BodyState, Load};
 use self::contact::{ArmSkin, ArmTip, Belly, Pipe, Pose, Surface};
 use self::gust::Gust;
 use self::rotor::Rotor;
@@ -80,14 +80,14 @@ pub struct Plant {
 #[must_use]
 pub fn arm_spec(vehicle: &Vehicle, arm: usize) -> ArmSpec {
     let v = vehicle;
-    ArmSpec::with(
-        v.arm_coefficients,
-        v.infill,
-        v.gain_k,
-        v.arm_gain[arm],
-        v.arm_offset[arm],
-        v.arm_damping,
-    )
+    ArmSpec::of(&ArmPrint {
+        coefficients: v.arm_coefficients,
+        infill: v.infill,
+        gain_k: v.gain_k,
+        gain: v.arm_gain[arm],
+        offset: v.arm_offset[arm],
+        zeta: v.arm_damping,
+    })
     .level_at(v.arm_level_share * v.rotor.thrust_max)
 }
 
@@ -146,23 +146,22 @@ impl Plant {
         let gravity_body = pose.to_body(DVec3::new(0.0, 0.0, GRAVITY));
 
         // Everything from outside on the body: gravity is added by the solver.
-        let mut force = pose.to_body(self.push - pose.velocity * DRAG + self.gust.force());
-        let mut moment = self.gust.moment() + self.moment;
+        let mut load = Load {
+            force: pose.to_body(self.push - pose.velocity * DRAG + self.gust.force()),
+            moment: self.gust.moment() + self.moment,
+        };
         self.gust.step(STEP);
         let near_ground = pose.position.z > -NEAR;
         if near_ground {
-            let load = self
-                .ground_belly
-                .step(STEP, &pose, &Surface::Ground(GROUND_FRICTION));
-            force += load.force_body;
-            moment += load.moment_body;
+            let surface = Surface::Ground(GROUND_FRICTION);
+            let belly = self.ground_belly.step(STEP, &pose, &surface);
+            load.add(belly.force_body, belly.moment_body);
         }
         let across = pose.position - DVec3::new(pose.position.x, self.pipe.east, self.pipe.down);
         let near_pipe = across.length_squared() < (self.pipe.radius + NEAR).powi(2);
         if near_pipe {
-            let load = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));
-            force += load.force_body;
-            moment += load.moment_body;
+            let belly = self.pipe_belly.step(STEP, &pose, &Surface::Pipe(self.pipe));
+            load.add(belly.force_body, belly.moment_body);
         }
 
         let mut current = 0.0;
@@ -174,30 +173,23 @@ impl Plant {
             let mut moment_alpha = limb.tendon.step(STEP, *servo, alpha);
             limb.pressure = 0.0;
             if near_pipe {
-                let load = limb.skin.step(STEP, alpha, alpha_rate, &pose, &self.pipe);
-                force += load.force_body;
-                moment += load.moment_body;
-                moment_alpha += load.moment_alpha;
-                limb.pressure = load.pressure;
+                let skin = limb.skin.step(STEP, alpha, alpha_rate, &pose, &self.pipe);
+                load.add(skin.force_body, skin.moment_body);
+                moment_alpha += skin.moment_alpha;
+                limb.pressure = skin.pressure;
             }
             if near_ground {
-                let load = limb.tip.step(STEP, alpha, alpha_rate, &pose);
-                force += load.force_body;
-                moment += load.moment_body;
-                moment_alpha += load.moment_alpha;
+                let tip = limb.tip.step(STEP, alpha, alpha_rate, &pose);
+                load.add(tip.force_body, tip.moment_body);
+                moment_alpha += tip.moment_alpha;
             }
-            moment += limb.rotor.drag_moment(limb.arm.normal());
+            load.moment += limb.rotor.drag_moment(limb.arm.normal());
             limb.arm.load(thrust, moment_alpha, gravity_body, self.coupled);
         }
         self.battery.step(STEP, current);
 
-        let acceleration = self.body.accelerate(
-            &pose,
-            force,
-            moment,
-            gravity_body,
-            self.limbs.each_ref().map(|l| &l.arm),
-        );
+        let arms = self.limbs.each_ref().map(|l| &l.arm);
+        let acceleration = self.body.accelerate(&pose, load, gravity_body, arms);
         self.specific_force = acceleration.linear - gravity_body;
         for (limb, alpha_acceleration) in self.limbs.iter_mut().zip(acceleration.arms) {
             limb.arm.integrate(STEP, alpha_acceleration);

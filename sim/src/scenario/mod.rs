@@ -23,7 +23,7 @@ pub use steps::{STEPS, StepKind, StepNumber};
 use sophie_control::params::Params;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
@@ -117,7 +117,7 @@ pub struct World {
 pub struct Pilot {
     /// Reaction delay, s.
     pub delay: f64,
-    /// Bandwidth of the hands, Hz.
+    /// Bandwidth of the pilot's sticks, Hz.
     pub bandwidth: f64,
     /// RMS error of the seen position, m.
     pub eye_noise: f64,
@@ -191,7 +191,7 @@ pub enum Step {
     /// The board is reset; done once the display shows it disarmed.
     Reset {
         /// Why: whether what was kept in memory is lost.
-        cause: Cause,
+        cause: StartCause,
         /// Time from the start of the step, s.
         after: f64,
         /// Time for which the board is dead, s.

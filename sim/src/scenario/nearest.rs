@@ -24,24 +24,13 @@ fn distance(a: &str, b: &str) -> usize {
     edits(name_a, name_b) + usize::from(table_a != table_b)
 }
 
-/// Edits (insert, delete, replace) that lead from `a` to `b`; adding a unit at the end counts one.
+/// Edits (insert, delete, replace) that lead from `a` to `b`; adding a unit at the end counts one, a name too long to be
+/// a typing error as many as a long one has letters.
 fn edits(a: &str, b: &str) -> usize {
     if b.strip_prefix(a).is_some_and(|rest| rest.starts_with('_')) {
         return 1;
     }
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    // Very long keys are no typing errors; their tail decides nothing.
-    for (i, ca) in a.chars().take(64).enumerate() {
-        let mut next = vec![i + 1];
-        for (j, cb) in b.iter().enumerate() {
-            let at = |row: &[usize], k: usize| row.get(k).copied().unwrap_or(usize::MAX - 1);
-            let replace = at(&row, j) + usize::from(ca != *cb);
-            next.push(replace.min(at(&row, j + 1) + 1).min(at(&next, j) + 1));
-        }
-        row = next;
-    }
-    row.last().copied().unwrap_or(0)
+    sophie_tasks::console::edits(a.as_bytes(), b.as_bytes()).unwrap_or(a.len().max(b.len()))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 
 use super::Step;
 use super::keys::Range;
-use sophie_tasks::start::Cause;
+use sophie_tasks::start::StartCause;
 
 /// One kind of step.
 pub struct StepKind {
@@ -45,7 +45,7 @@ const RESET: &[StepNumber] = &[
     number("push_n", Range::new(0.0, 20.0, "N"), 0.0),
 ];
 
-fn reset(cause: Cause, [after, off, push]: [f64; 3]) -> Step {
+fn reset(cause: StartCause, [after, off, push]: [f64; 3]) -> Step {
     Step::Reset {
         cause,
         after,
@@ -144,12 +144,12 @@ pub const STEPS: &[StepKind] = &[
     StepKind {
         name: "reset",
         numbers: RESET,
-        build: |numbers| reset(Cause::Watchdog, numbers),
+        build: |numbers| reset(StartCause::Watchdog, numbers),
     },
     StepKind {
         name: "power-cycle",
         numbers: RESET,
-        build: |numbers| reset(Cause::PowerOn, numbers),
+        build: |numbers| reset(StartCause::PowerOn, numbers),
     },
 ];
 

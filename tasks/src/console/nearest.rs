@@ -13,8 +13,8 @@ pub(super) fn nearest(word: &str, names: impl Iterator<Item = &'static str>) -> 
         .map(|(_, name)| name)
 }
 
-/// Letters to insert, delete or replace to turn `a` into `b`; `None` for names too long to be any of ours.
-fn edits(a: &[u8], b: &[u8]) -> Option<usize> {
+/// Bytes to insert, delete or replace to turn `a` into `b`; `None` when one is longer than 32 bytes, as no name here is.
+pub fn edits(a: &[u8], b: &[u8]) -> Option<usize> {
     let mut row = [0; LENGTH + 1];
     let row = row.get_mut(..=b.len())?;
     if a.len() > LENGTH {

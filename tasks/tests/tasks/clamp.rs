@@ -13,7 +13,7 @@ use sophie_tasks::links::{
     ArmAngles, ClampCommand, Contact, Links, MixOutput, TendonForce, TendonForces, TendonOrder,
 };
 use sophie_tasks::retained_state::RetainedState;
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 
 use crate::rig::Rig;
 
@@ -238,7 +238,7 @@ fn after_a_restart_closed_arms_are_sent_their_force_at_once_and_all_others_nothi
             ..RetainedState::default()
         };
         let start = Start {
-            cause: Cause::Watchdog,
+            cause: StartCause::Watchdog,
             retained: Some(retained),
             sequence: 1,
         };

@@ -11,7 +11,7 @@ use sophie_control::vector::Vec3;
 use sophie_tasks::commander;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Attitude, Battery, Contact, Links, MixOutput, RcState};
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 use sophie_tasks::timing::Run;
 
 use crate::rig::Rig;
@@ -67,7 +67,7 @@ fn running(thrust: f32, tilt: f32) -> MixOutput {
 
 impl Bench {
     /// On the ground, disarmed, with nothing against arming.
-    fn starting(params: Params, cause: Cause) -> Self {
+    fn starting(params: Params, cause: StartCause) -> Self {
         let start = Start { cause, ..Start::COLD };
         let rig = Rig::starting(params, start);
         rig.time.spawn(commander::run(rig.links));
@@ -82,7 +82,7 @@ impl Bench {
     }
 
     fn new() -> Self {
-        Self::starting(Params::default(), Cause::PowerOn)
+        Self::starting(Params::default(), StartCause::PowerOn)
     }
 
     fn run(&mut self, ms: u64) {
@@ -250,15 +250,19 @@ fn what_must_be_known_is_said_where_it_matters() {
         ..Params::default()
     };
     for (params, cause, warning) in [
-        (Params::default(), Cause::PowerOn, ""),
-        (Params::default(), Cause::Asked, ""),
-        (Params::default(), Cause::Watchdog, "restarted by the watchdog"),
+        (Params::default(), StartCause::PowerOn, ""),
+        (Params::default(), StartCause::Software, ""),
+        (
+            Params::default(),
+            StartCause::Watchdog,
+            "restarted by the watchdog",
+        ),
         // 85 % of 2.0 N m are less than the 2.452 that are wanted.
-        (weak, Cause::PowerOn, "servo weaker than the force limit"),
-        (infill(5.9), Cause::PowerOn, "infill below what was flown"),
-        (infill(6.0), Cause::PowerOn, ""),
+        (weak, StartCause::PowerOn, "servo weaker than the force limit"),
+        (infill(5.9), StartCause::PowerOn, "infill below what was flown"),
+        (infill(6.0), StartCause::PowerOn, ""),
         // The restart is the more urgent.
-        (infill(5.9), Cause::Fault, "restarted after a fault"),
+        (infill(5.9), StartCause::Fault, "restarted after a fault"),
     ] {
         let mut bench = Bench::starting(params, cause);
         assert_eq!(bench.warning(), warning);

@@ -5,7 +5,7 @@ use sophie_control::arming::{Refusal, Refusals};
 use sophie_control::params::Params;
 use sophie_tasks::deadline::{Level, TaskId};
 use sophie_tasks::links::Setpoint;
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 use sophie_tasks::timing::{Quantity, Run};
 
 use crate::rig::Rig;
@@ -74,16 +74,22 @@ fn reports_stand_side_by_side_until_they_are_taken_back() {
 #[test]
 fn only_a_brown_out_forbids_arming_from_the_start() {
     for cause in [
-        Cause::PowerOn,
-        Cause::BrownOut,
-        Cause::Watchdog,
-        Cause::Fault,
-        Cause::Asked,
+        StartCause::PowerOn,
+        StartCause::BrownOut,
+        StartCause::Watchdog,
+        StartCause::Fault,
+        StartCause::Software,
     ] {
         let start = Start { cause, ..Start::COLD };
         let hardware = Rig::starting(Params::default(), start).links.hardware();
-        assert_eq!(hardware.contains(Refusal::BrownOut), cause == Cause::BrownOut);
-        assert_eq!(hardware.iter().count(), usize::from(cause == Cause::BrownOut));
+        assert_eq!(
+            hardware.contains(Refusal::BrownOut),
+            cause == StartCause::BrownOut
+        );
+        assert_eq!(
+            hardware.iter().count(),
+            usize::from(cause == StartCause::BrownOut)
+        );
     }
 }
 

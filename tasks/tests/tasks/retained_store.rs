@@ -10,7 +10,7 @@ use sophie_control::vector::Vec3;
 use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::retained_store::RetainedStore;
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 
 use crate::rig::Rig;
 use sophie_fakes::FakeMemory;
@@ -57,7 +57,7 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
 
 /// What the run after a reset would find.
 fn found(memory: &FakeMemory) -> Start {
-    Start::new(Cause::Watchdog, &memory.copies())
+    Start::new(StartCause::Watchdog, &memory.copies())
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn copies_are_written_by_turns_and_numbered_on_from_the_run_before() {
         ..RetainedState::default()
     };
     let start = Start {
-        cause: Cause::Watchdog,
+        cause: StartCause::Watchdog,
         retained: Some(retained),
         sequence: 7,
     };
@@ -145,7 +145,7 @@ fn forces_that_are_resumed_or_old_are_not_kept_as_news() {
         ..RetainedState::default()
     };
     let start = Start {
-        cause: Cause::Watchdog,
+        cause: StartCause::Watchdog,
         retained: Some(kept),
         sequence: 7,
     };

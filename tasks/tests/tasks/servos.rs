@@ -8,7 +8,7 @@ use sophie_control::wrench::PerArm;
 use sophie_tasks::links::{ArmAngles, Links, Stamped, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::retained_state::RetainedState;
 use sophie_tasks::servos;
-use sophie_tasks::start::{Cause, Start};
+use sophie_tasks::start::{Start, StartCause};
 use sophie_tasks::timing::Quantity;
 
 use crate::rig::Rig;
@@ -155,7 +155,7 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
             ..RetainedState::default()
         };
         let (mut rig, port) = started(Start {
-            cause: Cause::Watchdog,
+            cause: StartCause::Watchdog,
             retained: Some(retained),
             sequence: 1,
         });

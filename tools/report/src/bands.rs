@@ -2,8 +2,8 @@
 
 use sophie_sim::record::FlightRecord;
 
-use super::plot::{LEFT, Span};
-use super::svg::{rect, text};
+use super::svg::{Rect, rect, text};
+use super::time_axis::{LEFT, Span};
 
 /// Height of one band, px.
 pub const BAND: f64 = 17.0;
@@ -22,15 +22,14 @@ pub fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
         start = end;
         let until = record.samples.get(end).map_or(last.t, |s| s.t);
         let name = first.mode.name();
-        out += &block(
-            span,
-            first.t,
-            until,
-            top,
-            &format!("mode m-{}", name.to_lowercase()),
-            name,
-            name,
-        );
+        let block = Block {
+            from: first.t,
+            to: until,
+            class: &format!("mode m-{}", name.to_lowercase()),
+            label: name,
+            tip: name,
+        };
+        out += &block.draw(span, top);
     }
     for (i, phase) in record.phases.iter().enumerate() {
         let number = (i + 1).to_string();
@@ -40,27 +39,48 @@ pub fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
         } else {
             &number
         };
-        out += &block(span, phase.start, phase.end, top + BAND, "step", named, &tip);
+        let block = Block {
+            from: phase.start,
+            to: phase.end,
+            class: "step",
+            label: named,
+            tip: &tip,
+        };
+        out += &block.draw(span, top + BAND);
     }
     out += &text(LEFT - 7.0, top + 12.5, "tick end", "mode");
     out + &text(LEFT - 7.0, top + BAND + 12.5, "tick end", "step")
 }
 
-fn block(span: Span, from: f64, to: f64, top: f64, class: &str, label: &str, tip: &str) -> String {
-    if to < span.from || from > span.to {
-        return String::new();
+/// A mode or a step of the flight on its band.
+struct Block<'a> {
+    /// When it began and ended, s.
+    from: f64,
+    to: f64,
+    class: &'a str,
+    /// Shown where there is room for it.
+    label: &'a str,
+    tip: &'a str,
+}
+
+impl Block<'_> {
+    fn draw(&self, span: Span, top: f64) -> String {
+        if self.to < span.from || self.from > span.to {
+            return String::new();
+        }
+        let (left, right) = (span.x(self.from.max(span.from)), span.x(self.to.min(span.to)));
+        let area = Rect {
+            x: left,
+            y: top,
+            width: right - left,
+            height: BAND,
+        };
+        let mut out = rect(area, self.class, self.tip);
+        if wide(span, self.from, self.to, self.label) {
+            out += &text((left + right) / 2.0, top + 12.5, "band-label mid", self.label);
+        }
+        out
     }
-    let (from, to) = (from.max(span.from), to.min(span.to));
-    let mut out = rect(span.x(from), top, span.x(to) - span.x(from), BAND, class, tip);
-    if wide(span, from, to, label) {
-        out += &text(
-            (span.x(from) + span.x(to)) / 2.0,
-            top + 12.5,
-            "band-label mid",
-            label,
-        );
-    }
-    out
 }
 
 /// Whether a label fits between two times.

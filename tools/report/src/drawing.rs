@@ -2,8 +2,8 @@
 
 use sophie_sim::record::{FlightRecord, Sample};
 
-use super::moments::Moment;
-use super::svg::{line, path, rect, short, text};
+use super::moments::KeyMoment;
+use super::svg::{Rect, line, path, rect, short, text};
 
 /// Size of a drawing, px.
 const WIDTH: f64 = 320.0;
@@ -27,13 +27,22 @@ const MOTOR_HEIGHT: f64 = 0.035;
 const THRUST_SCALE: f64 = 0.018;
 
 /// Draws one moment.
-pub fn draw(record: &FlightRecord, moment: &Moment<'_>) -> String {
+pub fn draw(record: &FlightRecord, moment: &KeyMoment<'_>) -> String {
     let view = View::new(record, moment);
     let mut svg = format!(
         "<svg class=\"scene\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">",
         super::svg::escape(&moment.title)
     );
-    svg += &rect(0.0, 0.0, WIDTH, HEIGHT, "sky", "");
+    svg += &rect(
+        Rect {
+            x: 0.0,
+            y: 0.0,
+            width: WIDTH,
+            height: HEIGHT,
+        },
+        "sky",
+        "",
+    );
     svg += &view.pipe(record);
     // The front arms are the far ones.
     for arm in [0, 2] {
@@ -58,7 +67,7 @@ struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    fn new(record: &FlightRecord, moment: &Moment<'a>) -> Self {
+    fn new(record: &FlightRecord, moment: &KeyMoment<'a>) -> Self {
         let (world, sample) = (&record.scenario.world, moment.sample);
         let centre = if moment.at_pipe {
             (world.pipe_position[1], world.pipe_top + BELLY_Z)
@@ -181,8 +190,16 @@ impl<'a> View<'a> {
         let (below, _) = self.world(self.sample.position[1], 0.0);
         let height = -self.sample.position[2] - BELLY_Z;
         if level < HEIGHT - GROUND {
-            return rect(0.0, level, WIDTH, HEIGHT - level, "ground", "")
-                + &line(0.0, level, WIDTH, level, "ground-line");
+            return rect(
+                Rect {
+                    x: 0.0,
+                    y: level,
+                    width: WIDTH,
+                    height: HEIGHT - level,
+                },
+                "ground",
+                "",
+            ) + &line(0.0, level, WIDTH, level, "ground-line");
         }
         let top = HEIGHT - GROUND;
         let x = if below < WIDTH / 2.0 { WIDTH - 30.0 } else { 30.0 };
@@ -193,8 +210,16 @@ impl<'a> View<'a> {
             (x, top - 13.0),
         ];
         let label = format!("belly {height:.2} m over the ground");
-        rect(0.0, top, WIDTH, GROUND, "ground", "")
-            + &line(0.0, top, WIDTH, top, "ground-line")
+        rect(
+            Rect {
+                x: 0.0,
+                y: top,
+                width: WIDTH,
+                height: GROUND,
+            },
+            "ground",
+            "",
+        ) + &line(0.0, top, WIDTH, top, "ground-line")
             + &line(x, top - 38.0, x, top - 26.0, "measure")
             + &format!("<path class=\"measure\" d=\"{}\"/>", path(zigzag))
             + &arrow((x, top - 13.0), (x, top - 1.0), "measure")

@@ -3,7 +3,8 @@
 use sophie_sim::record::{FlightRecord, Sample};
 
 use super::grip_figure::{closing, grip};
-use super::plot::{Panel, Span, Trace, figure};
+use super::plot::{Panel, Trace, figure};
+use super::time_axis::Span;
 use super::units::deg;
 
 /// CSS class and meaning of each kind of line.

@@ -4,7 +4,8 @@ use sophie_control::tendon::ForceLimit;
 use sophie_sim::record::FlightRecord;
 
 use super::figures::{ARM, Figure, arm_legend, arm_series};
-use super::plot::{Panel, Span, Trace, figure};
+use super::plot::{Panel, Trace, figure};
+use super::time_axis::Span;
 use super::units::tension_kgcm;
 
 /// Tendon force and contact pressure of the four arms.

@@ -19,4 +19,5 @@ pub mod svg;
 mod synthetic;
 mod tables;
 pub mod terminal;
+mod time_axis;
 pub mod units;

@@ -5,7 +5,7 @@ use sophie_sim::scenario::Step;
 
 /// One moment.
 #[derive(Clone, Debug)]
-pub struct Moment<'a> {
+pub struct KeyMoment<'a> {
     /// What is shown.
     pub title: String,
     /// The vehicle then.
@@ -17,7 +17,7 @@ pub struct Moment<'a> {
 }
 
 /// Hover, roll, touch, clamped, hold and released, as far as the flight came; the end if it failed.
-pub fn key_moments(record: &FlightRecord) -> Vec<Moment<'_>> {
+pub fn key_moments(record: &FlightRecord) -> Vec<KeyMoment<'_>> {
     type Pick = fn(&FlightRecord, &Phase) -> Option<usize>;
     let wanted: [(&str, &str, bool, Pick); 6] = [
         ("hover", "Hover", false, middle),
@@ -32,7 +32,7 @@ pub fn key_moments(record: &FlightRecord) -> Vec<Moment<'_>> {
         let phase = record.phases.iter().find(|p| p.name == step && p.done);
         let index = phase.and_then(|p| pick(record, p));
         if let Some(sample) = index.and_then(|i| record.samples.get(i)) {
-            moments.push(Moment {
+            moments.push(KeyMoment {
                 title: title.to_owned(),
                 sample,
                 push: 0.0,
@@ -53,7 +53,7 @@ pub fn key_moments(record: &FlightRecord) -> Vec<Moment<'_>> {
     if !record.outcome.accomplished
         && let Some(sample) = record.samples.last()
     {
-        moments.push(Moment {
+        moments.push(KeyMoment {
             title: "End of the flight".to_owned(),
             sample,
             push: 0.0,

@@ -7,7 +7,7 @@ use sophie_sim::scenario::keys;
 use super::attitude_error::{Worst, attitude_errors};
 use super::drawing::draw;
 use super::figures::{self, Figure};
-use super::moments::{Moment, key_moments};
+use super::moments::{KeyMoment, key_moments};
 use super::svg::escape;
 use super::tables;
 use super::units::{deg, kgcm};
@@ -140,7 +140,7 @@ fn scenes(record: &FlightRecord) -> String {
     section("Key moments", note, &(out + "</div>"))
 }
 
-fn caption(moment: &Moment<'_>) -> String {
+fn caption(moment: &KeyMoment<'_>) -> String {
     let s = moment.sample;
     let tilts: Vec<String> = s.tilt.iter().map(|a| tables::signed(deg(*a))).collect();
     format!(

@@ -4,13 +4,10 @@ use sophie_sim::record::FlightRecord;
 
 use super::bands::{BAND, bands};
 use super::scale::{thin, tick_step, ticks};
-use super::svg::{line, path, rect, short, text};
+use super::svg::{Rect, line, path, rect, short, text};
+use super::time_axis::{LEFT, RIGHT, Span, WIDTH};
 
-/// Size of the drawing, px; it scales with the page.
-const WIDTH: f64 = 1000.0;
-/// Room for the titles on the left, px.
-pub const LEFT: f64 = 74.0;
-const RIGHT: f64 = 14.0;
+/// Distance between two panels, px.
 const GAP: f64 = 22.0;
 
 /// One curve.
@@ -56,35 +53,6 @@ impl Default for Panel<'_> {
     }
 }
 
-/// The part of the flight that is shown.
-#[derive(Clone, Copy, Debug)]
-pub struct Span {
-    /// First time, s.
-    pub from: f64,
-    /// Last time, s.
-    pub to: f64,
-}
-
-impl Span {
-    /// The whole flight.
-    pub fn all(record: &FlightRecord) -> Self {
-        Self {
-            from: 0.0,
-            to: record.sim_seconds.max(1.0),
-        }
-    }
-
-    /// Horizontal place of a time, px.
-    pub fn x(self, t: f64) -> f64 {
-        LEFT + (t - self.from) / (self.to - self.from) * (WIDTH - LEFT - RIGHT)
-    }
-
-    /// Whether a time is shown.
-    pub fn contains(self, t: f64) -> bool {
-        (self.from..=self.to).contains(&t)
-    }
-}
-
 /// A figure of panels, one below the other.
 pub fn figure(record: &FlightRecord, span: Span, title: &str, panels: &[Panel<'_>]) -> String {
     let panels_height: f64 = panels.iter().map(|p| p.height + GAP).sum();
@@ -126,16 +94,24 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
     let (low, high) = limits(record, span, panel);
     let y = |v: f64| top + panel.height - (v - low) / (high - low) * panel.height;
     let (left, right, bottom) = (LEFT, WIDTH - RIGHT, top + panel.height);
-    let mut out = rect(left, top, right - left, panel.height, "field", "");
+    let mut out = rect(
+        Rect {
+            x: left,
+            y: top,
+            width: right - left,
+            height: panel.height,
+        },
+        "field",
+        "",
+    );
     if let Some((a, b)) = panel.target {
-        out += &rect(
-            left,
-            y(b.min(high)),
-            right - left,
-            y(a.max(low)) - y(b.min(high)),
-            "target",
-            "",
-        );
+        let shaded = Rect {
+            x: left,
+            y: y(b.min(high)),
+            width: right - left,
+            height: y(a.max(low)) - y(b.min(high)),
+        };
+        out += &rect(shaded, "target", "");
     }
     for t in times {
         out += &line(span.x(*t), top, span.x(*t), bottom, "grid");
@@ -160,7 +136,16 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
         .filter(|(a, b)| *b >= span.from && *a <= span.to)
     {
         let (a, b) = (span.x(a.max(span.from)), span.x(b.min(span.to)));
-        out += &rect(a, top, (b - a).max(1.5), 5.0, "mark", "");
+        out += &rect(
+            Rect {
+                x: a,
+                y: top,
+                width: (b - a).max(1.5),
+                height: 5.0,
+            },
+            "mark",
+            "",
+        );
     }
     for trace in &panel.traces {
         let points = thin(record, span, &trace.values)

@@ -2,7 +2,7 @@
 
 use sophie_sim::record::FlightRecord;
 
-use super::plot::Span;
+use super::time_axis::Span;
 
 /// Columns into which a curve is thinned: about two to a pixel of the drawing.
 const COLUMNS: usize = 460;

@@ -61,8 +61,24 @@ pub fn fixed(record: &FlightRecord) -> Value {
         "color": colour([0.22, 0.27, 0.35], 1.0),
     });
     let entities = [
-        entity(0.0, "world", "pipe", json!([]), json!([pipe]), json!([])),
-        entity(0.0, "vehicle", "body", json!([body]), json!([]), json!([])),
+        entity(
+            0.0,
+            "world",
+            "pipe",
+            Shapes {
+                cylinders: vec![pipe],
+                ..Shapes::default()
+            },
+        ),
+        entity(
+            0.0,
+            "vehicle",
+            "body",
+            Shapes {
+                cubes: vec![body],
+                ..Shapes::default()
+            },
+        ),
     ];
     json!({ "deletions": [], "entities": entities })
 }
@@ -101,7 +117,7 @@ pub fn vehicle(s: &Sample) -> Value {
     }
     json!({
         "deletions": [],
-        "entities": [entity(s.t, "vehicle", "arms", json!([]), json!(rotors), json!(lines))],
+        "entities": [entity(s.t, "vehicle", "arms", Shapes { cylinders: rotors, lines, ..Shapes::default() })],
     })
 }
 
@@ -116,7 +132,15 @@ fn arm_point(x: f64, side: f64, tilt: f64, u: f64, lift: f64) -> Value {
     point(x, side * (out - lift * sin), up + lift * cos - HINGE_Z)
 }
 
-fn entity(t: f64, frame: &str, id: &str, cubes: Value, cylinders: Value, lines: Value) -> Value {
+/// The shapes of an entity.
+#[derive(Default)]
+struct Shapes {
+    cubes: Vec<Value>,
+    cylinders: Vec<Value>,
+    lines: Vec<Value>,
+}
+
+fn entity(t: f64, frame: &str, id: &str, shapes: Shapes) -> Value {
     json!({
         "timestamp": stamp(t),
         "frame_id": frame,
@@ -125,10 +149,10 @@ fn entity(t: f64, frame: &str, id: &str, cubes: Value, cylinders: Value, lines: 
         "frame_locked": true,
         "metadata": [],
         "arrows": [],
-        "cubes": cubes,
+        "cubes": shapes.cubes,
         "spheres": [],
-        "cylinders": cylinders,
-        "lines": lines,
+        "cylinders": shapes.cylinders,
+        "lines": shapes.lines,
         "triangles": [],
         "texts": [],
         "models": [],

@@ -76,8 +76,21 @@ pub fn line(x1: f64, y1: f64, x2: f64, y2: f64, class: &str) -> String {
     )
 }
 
+/// A rectangle, px.
+#[derive(Clone, Copy, Debug)]
+pub struct Rect {
+    /// Left edge.
+    pub x: f64,
+    /// Top edge.
+    pub y: f64,
+    /// Width; a negative one is 0.
+    pub width: f64,
+    /// Height; a negative one is 0.
+    pub height: f64,
+}
+
 /// A rectangle with a tooltip (none if empty).
-pub fn rect(x: f64, y: f64, w: f64, h: f64, class: &str, tip: &str) -> String {
+pub fn rect(at: Rect, class: &str, tip: &str) -> String {
     let tip = if tip.is_empty() {
         String::new()
     } else {
@@ -85,10 +98,10 @@ pub fn rect(x: f64, y: f64, w: f64, h: f64, class: &str, tip: &str) -> String {
     };
     format!(
         "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"{class}\">{tip}</rect>",
-        short(x, 1),
-        short(y, 1),
-        short(w.max(0.0), 1),
-        short(h.max(0.0), 1)
+        short(at.x, 1),
+        short(at.y, 1),
+        short(at.width.max(0.0), 1),
+        short(at.height.max(0.0), 1)
     )
 }
 

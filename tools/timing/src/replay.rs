@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use sophie_tasks::deadline::Level;
 
 use crate::stats::Sorted;
-use crate::trace::{Kind, Trace};
+use crate::trace::{Event, Kind, Trace};
 
 /// Gaps between the polls of one run are shorter than those between runs by at least this factor.
 const APART: f64 = 4.0;
@@ -89,13 +89,24 @@ enum Frame {
     Poll(Poll),
 }
 
-impl Replay {
-    /// Plays `trace` back.
-    #[must_use]
-    pub fn of(trace: &Trace) -> Self {
+/// What is known between two events.
+struct Player {
+    replay: Replay,
+    /// Task of an address.
+    index: HashMap<u32, usize>,
+    /// What is under way, the outermost first.
+    stack: Vec<Frame>,
+    /// When a task was made ready and by which exception.
+    ready: HashMap<usize, (u64, u16)>,
+    quiet_since: Option<u64>,
+    last: Option<u64>,
+}
+
+impl Player {
+    fn new(trace: &Trace) -> Self {
         let mut names: Vec<_> = trace.names.iter().collect();
         names.sort_by_key(|n| n.level);
-        let mut replay = Self::default();
+        let mut replay = Replay::default();
         let mut index = HashMap::new();
         for name in names {
             index.insert(name.address, replay.tasks.len());
@@ -105,10 +116,105 @@ impl Replay {
                 runs: Vec::new(),
             });
         }
-        let mut stack: Vec<Frame> = Vec::new();
-        let mut ready: HashMap<usize, (u64, u16)> = HashMap::new();
-        let mut quiet_since: Option<u64> = None;
-        let mut last: Option<u64> = None;
+        Self {
+            replay,
+            index,
+            stack: Vec::new(),
+            ready: HashMap::new(),
+            quiet_since: None,
+            last: None,
+        }
+    }
+
+    /// Events are missing here: whatever was under way may have ended unseen.
+    fn cut(&mut self) {
+        self.stack.clear();
+        self.ready.clear();
+        self.quiet_since = None;
+        self.last = None;
+    }
+
+    fn play(&mut self, event: &Event) {
+        self.replay.covered += self.last.map_or(0, |last| event.at - last);
+        self.last = Some(event.at);
+        match event.kind {
+            Kind::Ready => {
+                let task = self.task(event.address);
+                self.ready.entry(task).or_insert((event.at, event.exception));
+                *self.replay.wakes.entry(event.exception).or_default() += 1;
+            }
+            Kind::Begin => self.begin(event),
+            Kind::End => {
+                if let Some(Frame::Poll(poll)) = self.stack.pop_if(|f| matches!(f, Frame::Poll(_))) {
+                    let poll = Poll {
+                        end: event.at,
+                        ..poll
+                    };
+                    self.replay.ended(&self.stack, poll);
+                }
+            }
+            Kind::Idle => self.idle(event),
+        }
+    }
+
+    /// The task at this address, without a name when the trace has none.
+    fn task(&mut self, address: u32) -> usize {
+        let tasks = &mut self.replay.tasks;
+        *self.index.entry(address).or_insert_with(|| {
+            tasks.push(Task {
+                name: format!("{address:05x}"),
+                level: None,
+                runs: Vec::new(),
+            });
+            tasks.len() - 1
+        })
+    }
+
+    /// An executor polls a task.
+    fn begin(&mut self, event: &Event) {
+        let task = self.task(event.address);
+        let same =
+            |f: &Frame| matches!(f, Frame::Executor { exception, .. } if *exception == event.exception);
+        if !self.stack.last().is_some_and(same) {
+            if self.stack.is_empty() {
+                self.replay.idle += self.quiet_since.take().map_or(0, |since| event.at - since);
+            }
+            self.stack.push(Frame::Executor {
+                exception: event.exception,
+                start: event.at,
+            });
+        }
+        let at_once = (event.at, event.exception);
+        let (ready, waker) = self.ready.remove(&task).unwrap_or(at_once);
+        self.stack.push(Frame::Poll(Poll {
+            task,
+            ready,
+            waker,
+            begin: event.at,
+            end: event.at,
+            preempted: 0,
+        }));
+    }
+
+    /// An executor has nothing left to poll.
+    fn idle(&mut self, event: &Event) {
+        let top = self.stack.pop_if(|f| matches!(f, Frame::Executor { .. }));
+        if let Some(Frame::Executor { start, .. }) = top
+            && let Some(Frame::Poll(below)) = self.stack.last_mut()
+        {
+            below.preempted += event.at - start;
+        }
+        if self.stack.is_empty() {
+            self.quiet_since = Some(event.at);
+        }
+    }
+}
+
+impl Replay {
+    /// Plays `trace` back.
+    #[must_use]
+    pub fn of(trace: &Trace) -> Self {
+        let mut player = Player::new(trace);
         let mut gaps = trace.gaps.iter().peekable();
         for (number, event) in trace.events.iter().enumerate() {
             let mut cut = false;
@@ -116,77 +222,12 @@ impl Replay {
                 cut = true;
             }
             if cut {
-                // Whatever was under way may have ended unseen.
-                stack.clear();
-                ready.clear();
-                quiet_since = None;
-                last = None;
+                player.cut();
             }
-            replay.covered += last.map_or(0, |last| event.at - last);
-            last = Some(event.at);
-            let mut task = || {
-                *index.entry(event.address).or_insert_with(|| {
-                    replay.tasks.push(Task {
-                        name: format!("{:05x}", event.address),
-                        level: None,
-                        runs: Vec::new(),
-                    });
-                    replay.tasks.len() - 1
-                })
-            };
-            match event.kind {
-                Kind::Ready => {
-                    ready.entry(task()).or_insert((event.at, event.exception));
-                    *replay.wakes.entry(event.exception).or_default() += 1;
-                }
-                Kind::Begin => {
-                    let task = task();
-                    let same = |f: &Frame| matches!(f, Frame::Executor { exception, .. } if *exception == event.exception);
-                    if !stack.last().is_some_and(same) {
-                        if stack.is_empty() {
-                            replay.idle += quiet_since.take().map_or(0, |since| event.at - since);
-                        }
-                        stack.push(Frame::Executor {
-                            exception: event.exception,
-                            start: event.at,
-                        });
-                    }
-                    let (ready, waker) = ready.remove(&task).unwrap_or((event.at, event.exception));
-                    stack.push(Frame::Poll(Poll {
-                        task,
-                        ready,
-                        waker,
-                        begin: event.at,
-                        end: event.at,
-                        preempted: 0,
-                    }));
-                }
-                Kind::End => {
-                    if let Some(Frame::Poll(poll)) = stack.pop_if(|f| matches!(f, Frame::Poll(_))) {
-                        replay.ended(
-                            &stack,
-                            Poll {
-                                end: event.at,
-                                ..poll
-                            },
-                        );
-                    }
-                }
-                Kind::Idle => {
-                    let top = stack.pop_if(|f| matches!(f, Frame::Executor { .. }));
-                    if let Some(Frame::Executor { start, .. }) = top
-                        && let Some(Frame::Poll(below)) = stack.last_mut()
-                    {
-                        below.preempted += event.at - start;
-                    }
-                    if stack.is_empty() {
-                        quiet_since = Some(event.at);
-                    }
-                }
-            }
+            player.play(event);
         }
-        replay.group();
-        replay
+        player.replay.group();
+        player.replay
     }
 
     fn ended(&mut self, below: &[Frame], poll: Poll) {

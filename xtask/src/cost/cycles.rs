@@ -8,6 +8,7 @@ use std::process::Stdio;
 
 use super::instruction::Instruction;
 use super::{CORES, Core, qemu};
+use crate::build::Recipe;
 use crate::image::Image;
 use crate::{Error, build};
 
@@ -42,7 +43,13 @@ struct Sum {
 /// No toolchain or no QEMU, or an image did not get as far as the steps that are looked at.
 pub fn cycles() -> Result<(), Error> {
     for core in &CORES {
-        let elf = build::image("sophie-cost", &[], &[], core.cpu, core.cpu)?;
+        let elf = build::image(&Recipe {
+            package: "sophie-cost",
+            arguments: &[],
+            variables: &[],
+            core: core.cpu,
+            kept: core.cpu,
+        })?;
         let sum = execute(core, &elf)?;
         println!("{STEPS} steps on an {}: a step, and an instruction", core.name);
         let row = |what: &str, n: u64| {

@@ -9,6 +9,7 @@ mod table;
 
 use serde::Serialize;
 
+use crate::build::Recipe;
 use crate::{Error, build};
 
 /// The cores that the boards have.
@@ -76,7 +77,13 @@ pub fn cost(then: Then) -> Result<(), Error> {
     let mut counts = Vec::new();
     let mut commands = Vec::new();
     for core in &CORES {
-        let elf = build::image("sophie-cost", &[], &[], core.cpu, core.cpu)?;
+        let elf = build::image(&Recipe {
+            package: "sophie-cost",
+            arguments: &[],
+            variables: &[],
+            core: core.cpu,
+            kept: core.cpu,
+        })?;
         let run = qemu::run(core, &elf)?;
         counts.extend(run.counts);
         commands.extend(run.commands);

@@ -10,9 +10,9 @@ use super::chip::{Chip, Options};
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
+use super::edge_probe::Edge;
 use super::pads::{At, Pads};
 use super::serial::Setup;
-use super::tap::Edge;
 
 /// The board.
 #[derive(Debug)]

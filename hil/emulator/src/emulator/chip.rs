@@ -12,9 +12,9 @@ use rigless::time::VirtualNanos;
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
+use super::edge_probe::Edge;
 use super::pads::{At, Pads, ServoPin};
 use super::serial::Setup;
-use super::tap::Edge;
 
 /// What the option bytes are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

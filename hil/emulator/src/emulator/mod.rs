@@ -6,18 +6,18 @@
 mod board;
 mod chip;
 mod chips;
+mod clock_stretch;
 pub mod conformance;
 mod count;
-mod deaf;
+mod edge_probe;
 mod f405;
 mod h743;
+mod ignore_dma;
 mod outputs;
 mod pads;
 pub mod rig;
 mod rtt;
 mod serial;
-mod stretched;
-mod tap;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -47,7 +47,7 @@ use crate::chain::Counted;
 use crate::elf::Firmware;
 use crate::esc::{self, Esc};
 use crate::stored;
-use crate::wires::{Digest, Fault, Gap, Hung, Latency, Pins, Run, Wires};
+use crate::wires::{BoardFault, Digest, Gap, Hung, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
 /// Registers of all ports of either processor: first address, and first one beyond (RM0433 table 8, RM0090 table 1).
@@ -320,7 +320,7 @@ struct World {
     /// A word of RAM that no image uses.
     spare: u64,
     /// Faults that this part cannot have.
-    impossible: Vec<Fault>,
+    impossible: Vec<BoardFault>,
     /// The supply is down.
     dark: bool,
     escs: PerArm<Esc>,
@@ -433,47 +433,47 @@ impl World {
     /// Breaks or mends something; false where the emulator cannot.
     fn inflict<C: Chip>(
         &mut self,
-        fault: Fault,
+        fault: BoardFault,
         session: &mut Session<Wired<C>>,
         stop: Stop,
         host: &mut dyn Host,
     ) -> bool {
         let board = session.board_mut();
         match fault {
-            Fault::ImuUnplugged(out) => board.silence_imu(out),
-            Fault::DataReadyCut(cut) => board.cut_data_ready(cut),
-            Fault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
-            Fault::PadDivider(sensor, divider) => board.divide(sensor, divider),
-            Fault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
-            Fault::ClockHeld(bus, us) => return board.hold_clock(bus, us),
-            Fault::Supply(false) => {
+            BoardFault::ImuUnplugged(out) => board.silence_imu(out),
+            BoardFault::DataReadyCut(cut) => board.cut_data_ready(cut),
+            BoardFault::ImuWord(mask) => board.flip_imu_word(u64::from(mask)),
+            BoardFault::PadDivider(sensor, divider) => board.divide(sensor, divider),
+            BoardFault::ArmUnplugged(arm, out) => board.silence_arm(arm, out),
+            BoardFault::ClockHeld(bus, us) => return board.hold_clock(bus, us),
+            BoardFault::Supply(false) => {
                 board.brown_out();
                 session.reset_by_pin(stop.at, stop.instruction_count, host);
                 self.dark = true;
                 host.hold(true);
             }
-            Fault::Supply(true) => {
+            BoardFault::Supply(true) => {
                 self.dark = false;
                 host.hold(false);
             }
-            Fault::TaskHung(name) => return self.hang(name, host),
-            Fault::StackOverflow(name) => return self.replace(name, RECURSION, host),
-            Fault::LockUp(name) => return self.replace(name, LOCK_UP, host),
-            Fault::CorruptParameters => {
+            BoardFault::TaskHung(name) => return self.hang(name, host),
+            BoardFault::StackOverflow(name) => return self.replace(name, RECURSION, host),
+            BoardFault::LockUp(name) => return self.replace(name, LOCK_UP, host),
+            BoardFault::CorruptParameters => {
                 let (first, end) = self.params;
                 let mut words = (first..end).step_by(4);
                 return words.all(|at| host.program(at, Width::W32, at ^ NOISE).is_ok());
             }
-            Fault::ForeignParameters => {
+            BoardFault::ForeignParameters => {
                 let (first, _) = self.params;
                 let mut words = board.foreign().iter().zip((first..).step_by(4));
                 return words.all(|(word, at)| host.program(at, Width::W32, *word).is_ok());
             }
-            Fault::FactoryOptions => board.chip.set_options(Options::Factory),
-            Fault::FirstRevision => board.chip.age(),
-            Fault::NoCrystal => board.chip.stop_clock(Clock::Crystal),
-            Fault::NoPll => board.chip.stop_clock(Clock::Pll),
-            Fault::Hang(still) => {
+            BoardFault::FactoryOptions => board.chip.set_options(Options::Factory),
+            BoardFault::FirstRevision => board.chip.age(),
+            BoardFault::NoCrystal => board.chip.stop_clock(Clock::Crystal),
+            BoardFault::NoPll => board.chip.stop_clock(Clock::Pll),
+            BoardFault::Hang(still) => {
                 host.hold(still);
                 self.still = still.then_some(stop.at.0);
                 self.hung = still.then_some(Hung {
@@ -481,7 +481,7 @@ impl World {
                     high: self.high,
                 });
             }
-            Fault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
+            BoardFault::ResetPin => session.reset_by_pin(stop.at, stop.instruction_count, host),
         }
         true
     }

@@ -4,8 +4,9 @@ use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::Duration;
 
+use sophie_emulator::bench::Setup;
 use sophie_emulator::terminal::{Sockets, Terminal};
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
@@ -47,7 +48,7 @@ fn terminal(option: &'static str) -> (u16, Terminal) {
 fn at_the_console<T: Send + 'static>(
     firmware: &Firmware,
     seconds: f64,
-    fault: Option<Fault>,
+    fault: Option<BoardFault>,
     telemetry: Option<Terminal>,
     session: impl FnOnce(&mut TcpStream) -> T + Send + 'static,
 ) -> (Flight, T) {
@@ -67,7 +68,12 @@ fn at_the_console<T: Send + 'static>(
         console: Some(console),
         telemetry,
     };
-    let flight = flight::fly(firmware, &scenario, 1.0, plan, sockets, |_| (), &mut Silent).unwrap();
+    let setup = Setup {
+        speed: 1.0,
+        plan,
+        sockets,
+    };
+    let flight = flight::fly(firmware, &scenario, setup, |_| (), &mut Silent).unwrap();
     let given = user.join().unwrap_or_else(|_| panic!("{}", log(&flight)));
     (flight, given)
 }
@@ -146,7 +152,7 @@ fn the_brown_out_level_is_set(image: &Path, board: &str) {
         )
     };
     let (flight, (before, after, _)) =
-        at_the_console(&firmware, 8.0, Some(Fault::FactoryOptions), None, session);
+        at_the_console(&firmware, 8.0, Some(BoardFault::FactoryOptions), None, session);
     assert!(
         before.contains("brown-out level 0, expected 3"),
         "{board}: {before}"

@@ -1,6 +1,6 @@
 //! Parts that fail at their wires: what the log says and what the pins do.
 
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 use sophie_sim::sensors::fsr::FsrBreak;
 
 use super::*;
@@ -29,7 +29,7 @@ fn sound_before(flight: Flight) -> Flight {
 
 #[test]
 fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board() {
-    let flight = with(Trouble::Board(Fault::ImuUnplugged(true)), AIRBORNE + 2.0);
+    let flight = with(Trouble::Board(BoardFault::ImuUnplugged(true)), AIRBORNE + 2.0);
     assert!(
         told(&flight, AIRBORNE, "ICM-42688-P: no answer").is_some(),
         "{}",
@@ -74,9 +74,9 @@ fn ended_by_the_watchdog(flight: &Flight, within: f64, stopped_by: f64) {
 }
 
 /// Cuts the data-ready line of the inertial sensor.
-const CUT: Trouble = Trouble::Board(Fault::DataReadyCut(true));
+const CUT: Trouble = Trouble::Board(BoardFault::DataReadyCut(true));
 /// Joins it again.
-const JOINED: Trouble = Trouble::Board(Fault::DataReadyCut(false));
+const JOINED: Trouble = Trouble::Board(BoardFault::DataReadyCut(false));
 /// What the mode then says.
 const LINE: &str = "inertial sensor: data-ready line silent";
 
@@ -138,7 +138,7 @@ fn a_flipped_word_of_the_inertial_sensor_now_and_then_is_flown_through() {
     let words = (0..40).map(|n| {
         (
             AIRBORNE + 0.2 * f64::from(n),
-            Trouble::Board(Fault::ImuWord(0x40)),
+            Trouble::Board(BoardFault::ImuWord(0x40)),
         )
     });
     let troubles: Vec<_> = words.collect();
@@ -149,8 +149,8 @@ fn a_flipped_word_of_the_inertial_sensor_now_and_then_is_flown_through() {
 #[test]
 fn a_silenced_arm_sensor_is_named_and_flown_without() {
     let troubles = [
-        (AIRBORNE, Trouble::Board(Fault::ArmUnplugged(2, true))),
-        (AIRBORNE + 3.0, Trouble::Board(Fault::ArmUnplugged(2, false))),
+        (AIRBORNE, Trouble::Board(BoardFault::ArmUnplugged(2, true))),
+        (AIRBORNE + 3.0, Trouble::Board(BoardFault::ArmUnplugged(2, false))),
     ];
     let flight = fly_small(&hop(), &troubles);
     assert!(told(&flight, AIRBORNE, "BNO055").is_some(), "{}", log(&flight));
@@ -178,13 +178,13 @@ fn a_sagging_battery_ends_in_the_failsafe() {
 
 #[test]
 fn a_processor_that_stands_still_is_reset_by_its_watchdog_with_the_motors_stopped() {
-    let flight = with(Trouble::Board(Fault::Hang(true)), AIRBORNE + 1.5);
+    let flight = with(Trouble::Board(BoardFault::Hang(true)), AIRBORNE + 1.5);
     ended_by_the_watchdog(&flight, 0.5, 0.4);
 }
 
 #[test]
 fn a_pulled_reset_pin_is_told_as_such() {
-    let flight = with_small(Trouble::Board(Fault::ResetPin), AIRBORNE + 2.0);
+    let flight = with_small(Trouble::Board(BoardFault::ResetPin), AIRBORNE + 2.0);
     assert!(
         told(&flight, AIRBORNE, "start after Pin").is_some(),
         "{}",
@@ -200,7 +200,7 @@ fn a_pulled_reset_pin_is_told_as_such() {
 #[test]
 fn a_bus_whose_clock_is_held_keeps_the_background_only() {
     // 300 us a byte: a reading of one sensor takes four milliseconds.
-    let troubles = [(AIRBORNE, Trouble::Board(Fault::ClockHeld(0, 300)))];
+    let troubles = [(AIRBORNE, Trouble::Board(BoardFault::ClockHeld(0, 300)))];
     let flight = fly(&hover(AIRBORNE + 3.0), 1.0, &troubles);
     assert!(
         running(&flight, AIRBORNE - 0.5, f64::INFINITY),
@@ -218,13 +218,13 @@ fn a_bus_whose_clock_is_held_keeps_the_background_only() {
 
 #[test]
 fn a_task_that_hangs_ends_in_a_reset_by_the_watchdog_with_the_motors_stopped() {
-    let flight = with(Trouble::Board(Fault::TaskHung("commander")), AIRBORNE + 2.0);
+    let flight = with(Trouble::Board(BoardFault::TaskHung("commander")), AIRBORNE + 2.0);
     ended_by_the_watchdog(&flight, 1.0, 0.2);
 }
 
 /// In a hover a task's stack overflows: the motors stop, and the next start reports why.
 fn overflows(task: &'static str, small: bool) {
-    let trouble = Trouble::Board(Fault::StackOverflow(task));
+    let trouble = Trouble::Board(BoardFault::StackOverflow(task));
     let troubles = [(AIRBORNE, trouble)];
     let scenario = hover(AIRBORNE + 0.6);
     let flight = if small {
@@ -276,7 +276,7 @@ fn so_does_one_of_the_background_on_the_small_board() {
 
 #[test]
 fn a_fault_within_a_fault_locks_up_and_ends_by_the_watchdog_with_the_motors_stopped() {
-    let flight = with_small(Trouble::Board(Fault::LockUp("control")), AIRBORNE + 1.2);
+    let flight = with_small(Trouble::Board(BoardFault::LockUp("control")), AIRBORNE + 1.2);
     ended_by_the_watchdog(&flight, 0.6, 0.4);
 }
 
@@ -284,8 +284,8 @@ fn a_fault_within_a_fault_locks_up_and_ends_by_the_watchdog_with_the_motors_stop
 fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() {
     let troubles = [
         (AIRBORNE, Trouble::BatteryShare(0.4)),
-        (AIRBORNE + 0.02, Trouble::Board(Fault::Supply(false))),
-        (AIRBORNE + 0.1, Trouble::Board(Fault::Supply(true))),
+        (AIRBORNE + 0.02, Trouble::Board(BoardFault::Supply(false))),
+        (AIRBORNE + 0.1, Trouble::Board(BoardFault::Supply(true))),
         (AIRBORNE + 0.1, Trouble::BatteryShare(1.0)),
     ];
     let flight = fly(&hover(AIRBORNE + 2.5), 1.0, &troubles);

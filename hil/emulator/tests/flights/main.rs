@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use sophie_emulator::bench::Setup;
 use sophie_emulator::boards;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
@@ -115,9 +116,11 @@ fn fly_image(firmware: &Firmware, scenario: &Scenario, speed: f64, troubles: &[(
     flight::fly(
         firmware,
         scenario,
-        speed,
-        plan,
-        Sockets::default(),
+        Setup {
+            speed,
+            plan,
+            sockets: Sockets::default(),
+        },
         |_| (),
         &mut Silent,
     )

@@ -1,4 +1,4 @@
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 use sophie_sim::sensors::fsr::FsrBreak;
 
 use super::*;
@@ -49,12 +49,12 @@ fn the_small_board_flies_in_time() {
 fn background_at_its_worst() -> Vec<(f64, Trouble)> {
     let mut troubles = Vec::new();
     for bus in 0..2 {
-        troubles.push((AIRBORNE, Trouble::Board(Fault::ClockHeld(bus, 300))));
+        troubles.push((AIRBORNE, Trouble::Board(BoardFault::ClockHeld(bus, 300))));
     }
     for turn in 0..40u32 {
         let t = AIRBORNE + 0.1 * f64::from(turn);
         let (arm, lost) = (turn as usize / 2 % 4, turn % 2 == 0);
-        troubles.push((t, Trouble::Board(Fault::ArmUnplugged(arm, lost))));
+        troubles.push((t, Trouble::Board(BoardFault::ArmUnplugged(arm, lost))));
         troubles.push((t + 0.05, Trouble::Fsr(arm, lost.then_some(FsrBreak::Short))));
     }
     troubles

@@ -1,12 +1,12 @@
 //! What a reset does to a board's outputs.
 
-use sophie_emulator::wires::{Fault, Output};
+use sophie_emulator::wires::{BoardFault, Output};
 
 use super::*;
 
 /// Two seconds, with the reset pin pulled at the first one; and what became of the outputs.
 fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
-    let flight = fly(&hover(2.2), &[(1.0, Trouble::Board(Fault::ResetPin))]);
+    let flight = fly(&hover(2.2), &[(1.0, Trouble::Board(BoardFault::ResetPin))]);
     for output in &flight.board.run.outputs {
         // For docs/boards.md.
         println!("{output:?}");

@@ -1,14 +1,14 @@
 //! Pads of the pressure sensors that the board has put a divider behind.
 
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
 /// The pads that the Matek's sensors 1 and 3 hung on before, AirS and VB2, and their dividers (ArduPilot `MatekH743`,
 /// PX4 `matek/h743-slim`).
 const OLD_PADS: [(f64, Trouble); 2] = [
-    (0.0, Trouble::Board(Fault::PadDivider(0, 2))),
-    (0.0, Trouble::Board(Fault::PadDivider(2, 11))),
+    (0.0, Trouble::Board(BoardFault::PadDivider(0, 2))),
+    (0.0, Trouble::Board(BoardFault::PadDivider(2, 11))),
 ];
 
 /// The short perch in still air, which is over in a minute: the pilot touches at the first try.

@@ -1,7 +1,7 @@
 //! Parameters that are stored in the chip's flash.
 
 use sophie_control::params::{MotorProtocol, RcProtocol};
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
@@ -49,7 +49,11 @@ fn the_small_board_flies_what_is_stored() {
 #[test]
 fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
     let scenario = start(|s| s.params.motor_protocol = MotorProtocol::Dshot600);
-    let flight = fly(&scenario, 1.0, &[(0.0, Trouble::Board(Fault::CorruptParameters))]);
+    let flight = fly(
+        &scenario,
+        1.0,
+        &[(0.0, Trouble::Board(BoardFault::CorruptParameters))],
+    );
     assert!(
         told(&flight, 0.0, "parameters: 0 from storage").is_some(),
         "{}",
@@ -77,8 +81,8 @@ fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
 #[test]
 fn storage_that_is_corrupted_in_flight_speaks_after_the_next_reset() {
     let troubles = [
-        (6.5, Trouble::Board(Fault::CorruptParameters)),
-        (7.5, Trouble::Board(Fault::ResetPin)),
+        (6.5, Trouble::Board(BoardFault::CorruptParameters)),
+        (7.5, Trouble::Board(BoardFault::ResetPin)),
     ];
     let scenario = start(|s| s.time_limit = 8.5);
     let flight = fly(&scenario, 1.0, &troubles);

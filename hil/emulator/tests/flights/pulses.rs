@@ -1,7 +1,7 @@
 //! Motor controllers that take pulses: how often they get one, and that none begins once the software stands still.
 
 use sophie_control::params::MotorProtocol;
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
@@ -13,7 +13,7 @@ const END: f64 = STILL + 0.18;
 fn hung(protocol: MotorProtocol, small: bool) -> Flight {
     let mut scenario = hover(END);
     scenario.params.motor_protocol = protocol;
-    let troubles = [(STILL, Trouble::Board(Fault::Hang(true)))];
+    let troubles = [(STILL, Trouble::Board(BoardFault::Hang(true)))];
     let flight = if small {
         fly_small(&scenario, &troubles)
     } else {

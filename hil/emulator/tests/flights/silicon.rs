@@ -1,7 +1,7 @@
 //! What the start-up looks at in the chip, and what it does where a clock never comes.
 
 use sophie_emulator::silicon::{self, Look};
-use sophie_emulator::wires::Fault;
+use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
@@ -12,7 +12,7 @@ const BOARDS: [(&str, [&str; 2]); 2] = [
 ];
 
 /// `seconds` s on the ground, disarmed, with `fault` from before the first instruction on.
-fn on_the_bench(board: &str, seconds: f64, fault: Option<Fault>) -> Flight {
+fn on_the_bench(board: &str, seconds: f64, fault: Option<BoardFault>) -> Flight {
     let scenario = Scenario {
         time_limit: seconds,
         ..scenario("hover.toml")
@@ -61,7 +61,7 @@ fn every_look_at_a_sound_chip_is_as_expected() {
 #[test]
 fn a_chip_without_a_brown_out_level_does_not_arm() {
     for (board, _) in BOARDS {
-        let flight = on_the_bench(board, 1.5, Some(Fault::FactoryOptions));
+        let flight = on_the_bench(board, 1.5, Some(BoardFault::FactoryOptions));
         let level = look(&flight, "brown-out level");
         assert_eq!((level.read.as_str(), level.ok), ("0", false), "{board}");
         assert!(
@@ -75,7 +75,7 @@ fn a_chip_without_a_brown_out_level_does_not_arm() {
 
 #[test]
 fn a_first_revision_flies_without_prefetch_or_not_at_all() {
-    let flight = on_the_bench("f405", 1.5, Some(Fault::FirstRevision));
+    let flight = on_the_bench("f405", 1.5, Some(BoardFault::FirstRevision));
     let caches = look(&flight, "flash acceleration");
     assert_eq!((caches.read.as_str(), caches.ok), ("prefetch- I+ D+", true));
     assert_eq!(
@@ -85,7 +85,7 @@ fn a_first_revision_flies_without_prefetch_or_not_at_all() {
         log(&flight)
     );
 
-    let flight = on_the_bench("matek-h743", 1.5, Some(Fault::FirstRevision));
+    let flight = on_the_bench("matek-h743", 1.5, Some(BoardFault::FirstRevision));
     let revision = look(&flight, "revision");
     assert_eq!((revision.read.as_str(), revision.ok), ("0x450 0x1003", false));
     assert!(
@@ -98,7 +98,7 @@ fn a_first_revision_flies_without_prefetch_or_not_at_all() {
 #[test]
 fn another_firmwares_parameters_are_named_with_what_to_do() {
     // The emulator does not let the F405's flash be written.
-    let flight = on_the_bench("matek-h743", 1.5, Some(Fault::ForeignParameters));
+    let flight = on_the_bench("matek-h743", 1.5, Some(BoardFault::ForeignParameters));
     for words in [
         "the storage holds ArduPilot's data; 'save' at the console replaces them",
         "arming blocked: storage holds another firmware's data",
@@ -110,7 +110,7 @@ fn another_firmwares_parameters_are_named_with_what_to_do() {
 }
 
 /// A clock that never comes ends in a message and a reset, again and again, with the motors' pins low.
-fn never_starts(board: &str, fault: Fault, message: &str, by: &str) {
+fn never_starts(board: &str, fault: BoardFault, message: &str, by: &str) {
     let flight = on_the_bench(board, 1.2, Some(fault));
     assert!(
         told(&flight, 0.0, message).is_some(),
@@ -130,11 +130,11 @@ fn never_starts(board: &str, fault: Fault, message: &str, by: &str) {
 #[test]
 fn a_crystal_that_does_not_start_is_told_and_resets_the_board() {
     let message = "the run before ended with: the 8 MHz crystal does not start";
-    never_starts("f405", Fault::NoCrystal, message, "IWDG");
+    never_starts("f405", BoardFault::NoCrystal, message, "IWDG");
 }
 
 #[test]
 fn a_pll_that_never_locks_is_told_and_ends_by_the_watchdog() {
     let message = "the run before ended with: the clocks did not start: a PLL does not lock";
-    never_starts("f405", Fault::NoPll, message, "IWDG");
+    never_starts("f405", BoardFault::NoPll, message, "IWDG");
 }

@@ -38,12 +38,12 @@ use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
+use super::clock_stretch::ClockStretch;
 use super::count::Marks;
-use super::deaf::Deaf;
+use super::edge_probe::{Edge, EdgeProbe};
+use super::ignore_dma::IgnoreDma;
 use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
-use super::stretched::Stretched;
-use super::tap::{Edge, Tap};
 
 /// Supply and converter reference, mV.
 const SUPPLY: u32 = 3300;
@@ -185,10 +185,10 @@ fn motor_timer() -> Tim<Advanced> {
 #[derive(Debug)]
 pub struct F405 {
     inner: Stm32f427,
-    motors: Tap<Advanced>,
-    servos: Deaf<TwoChannels>,
+    motors: EdgeProbe<Advanced>,
+    servos: IgnoreDma<TwoChannels>,
     dma: Dma,
-    buses: [Stretched<DmaI2c>; 2],
+    buses: [ClockStretch<DmaI2c>; 2],
     exti: Exti,
     syscfg: Syscfg,
     slots: Slots,
@@ -243,12 +243,12 @@ impl F405 {
         let buses = BUS_COUNTS.map(|count| {
             let count = generated::DMA1.base + u64::from(count.spec().offset);
             // Its place is taken by `Mcu::split`.
-            Stretched::new(DmaI2c::new(I2c::with_clock(HSI_HZ), count))
+            ClockStretch::new(DmaI2c::new(I2c::with_clock(HSI_HZ), count))
         });
         let mut part = Self {
             inner,
-            motors: Tap::new(motor_timer),
-            servos: Deaf(tim12()),
+            motors: EdgeProbe::new(motor_timer),
+            servos: IgnoreDma(tim12()),
             dma: controller(),
             buses,
             exti: Exti::default(),
@@ -401,7 +401,7 @@ impl Mcu for F405 {
         }
         self.motors.restart(at);
         self.mark_revision();
-        self.servos = Deaf(tim12());
+        self.servos = IgnoreDma(tim12());
         if std::mem::take(&mut self.browned_out) {
             // The emulator knows no brown-out: its flag is set beside the pin's (RM0090 §7.3.21).
             let file = self.inner.bus_mut().slot_mut(self.slots.clocks).registers_mut();

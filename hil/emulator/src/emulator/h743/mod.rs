@@ -27,12 +27,12 @@ use super::chip::{CRYSTAL_READY, Chip, Clock, Options, PLL_LOCKED, same_on_this_
 use super::chips::bno055::Bno055;
 use super::chips::icm42688p::Imu;
 use super::chips::line::Line;
+use super::clock_stretch::ClockStretch;
 use super::count::Marks;
-use super::deaf::Deaf;
+use super::edge_probe::{Edge, EdgeProbe};
+use super::ignore_dma::IgnoreDma;
 use super::pads::{AnalogPad, At, Pads, ServoPin, TimerPins};
 use super::serial::Setup;
-use super::stretched::Stretched;
-use super::tap::{Edge, Tap};
 
 /// Supply and converter reference, mV.
 const SUPPLY: u32 = 3300;
@@ -135,10 +135,10 @@ fn motor_timer() -> Tim<General> {
 #[derive(Debug)]
 pub struct H743 {
     inner: Stm32h743,
-    time: Deaf<General>,
-    motors: Tap<General>,
+    time: IgnoreDma<General>,
+    motors: EdgeProbe<General>,
     watchdog: Watchdog,
-    buses: [Stretched<I2c>; 2],
+    buses: [ClockStretch<I2c>; 2],
     slots: Slots,
     pulses: u64,
     /// The next reset is by a supply that broke down.
@@ -187,11 +187,11 @@ impl H743 {
         };
         Ok(Self {
             inner,
-            time: Deaf(Tim::new(TIMERS[TIME_TIMER])),
-            motors: Tap::new(motor_timer),
+            time: IgnoreDma(Tim::new(TIMERS[TIME_TIMER])),
+            motors: EdgeProbe::new(motor_timer),
             watchdog: Watchdog::default(),
             // Their places are taken by `Mcu::split`.
-            buses: [(); 2].map(|()| Stretched::new(I2c::with_kernel_clock(HSI_HZ))),
+            buses: [(); 2].map(|()| ClockStretch::new(I2c::with_kernel_clock(HSI_HZ))),
             slots,
             pulses: 0,
             browned_out: false,
@@ -351,7 +351,7 @@ impl Mcu for H743 {
             Device::reset(own);
         }
         self.watchdog = Watchdog::default();
-        self.time = Deaf(Tim::new(TIMERS[TIME_TIMER]));
+        self.time = IgnoreDma(Tim::new(TIMERS[TIME_TIMER]));
         self.motors.restart(at);
         self.mark_revision();
         if std::mem::take(&mut self.browned_out) {

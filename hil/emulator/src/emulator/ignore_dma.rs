@@ -1,4 +1,4 @@
-//! A timer that does not listen to requests.
+//! A timer that ignores DMA requests.
 
 use rigless::device::{Device, DeviceContext, RegisterFile, RequestChange};
 use rigless::soc::RegisterSpec;
@@ -8,9 +8,9 @@ use rigless::time::{EventId, VirtualNanos};
 /// Every model hears every request, and a timer looks each one up among its wires: a third of the run's time for one
 /// timer. One whose requests are served by the burst's register, or that has none, need not listen.
 #[derive(Debug)]
-pub struct Deaf<F: Family>(pub Tim<F>);
+pub struct IgnoreDma<F: Family>(pub Tim<F>);
 
-impl<F: Family> Device for Deaf<F>
+impl<F: Family> Device for IgnoreDma<F>
 where
     Tim<F>: Device,
 {

@@ -18,7 +18,7 @@ pub struct Edge {
 
 /// A timer and the edges at its outputs that have not been taken yet.
 #[derive(Debug)]
-pub struct Tap<F: Family> {
+pub struct EdgeProbe<F: Family> {
     tim: Tim<F>,
     make: fn() -> Tim<F>,
     high: [bool; 4],
@@ -26,7 +26,7 @@ pub struct Tap<F: Family> {
     pub edges: Vec<Edge>,
 }
 
-impl<F: Family> Tap<F> {
+impl<F: Family> EdgeProbe<F> {
     /// The timer that `make` gives, now and after each reset.
     pub fn new(make: fn() -> Tim<F>) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl<F: Family> Tap<F> {
     }
 }
 
-impl<F: Family> Device for Tap<F>
+impl<F: Family> Device for EdgeProbe<F>
 where
     Tim<F>: Device,
 {
@@ -99,7 +99,7 @@ where
         self.look(file, c.now());
     }
 
-    // As with [`super::deaf::Deaf`]: a burst through DMAR serves its request by itself.
+    // As with [`super::ignore_dma::IgnoreDma`]: a burst through DMAR serves its request by itself.
     fn on_request(&mut self, _: RequestChange, _: &mut RegisterFile, _: &mut DeviceContext<'_>) {}
 
     fn on_clock(&mut self, hz: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {

@@ -5,7 +5,7 @@ use rigless::time::{EventId, VirtualNanos};
 
 /// The interface: what ends on the wire ends later by the time that a chip holds the clock.
 #[derive(Debug)]
-pub struct Stretched<D> {
+pub struct ClockStretch<D> {
     /// The interface with chips that hold nothing.
     pub inner: D,
     /// How long a chip holds the clock low after each byte, ns.
@@ -14,7 +14,7 @@ pub struct Stretched<D> {
     held: Option<(EventId, EventId)>,
 }
 
-impl<D> Stretched<D> {
+impl<D> ClockStretch<D> {
     /// `inner`, with chips that hold nothing.
     pub fn new(inner: D) -> Self {
         Self {
@@ -25,7 +25,7 @@ impl<D> Stretched<D> {
     }
 }
 
-impl<D: Device> Device for Stretched<D> {
+impl<D: Device> Device for ClockStretch<D> {
     type Register = D::Register;
 
     fn read(&mut self, r: D::Register, file: &mut RegisterFile, c: &mut DeviceContext<'_>) -> Option<u64> {

@@ -15,9 +15,9 @@ const VELOCITY_ERROR: f64 = 2.0;
 /// RMS error of the seen heading, rad (assumed, 0.5°).
 const YAW_ERROR: f64 = 0.009;
 
-/// The eyes.
+/// The pilot's view of the vehicle.
 #[derive(Clone, Debug)]
-pub struct Eyes {
+pub struct Perception {
     delay: f64,
     noise: f64,
     rng: Pcg64Mcg,
@@ -27,8 +27,8 @@ pub struct Eyes {
     queue: VecDeque<Seen>,
 }
 
-impl Eyes {
-    /// Eyes that see `delay` s late with an RMS error of `noise` m.
+impl Perception {
+    /// A view `delay` s late with an RMS error of `noise` m.
     pub fn new(delay: f64, noise: f64, rng: Pcg64Mcg) -> Self {
         Self {
             delay,
@@ -41,7 +41,7 @@ impl Eyes {
         }
     }
 
-    /// Looks at the vehicle as it is now, `dt` s after the last look; returns what reaches the mind.
+    /// Looks at the vehicle as it is now, `dt` s after the last look; returns what the pilot sees.
     pub fn look(&mut self, now: Seen, dt: f64) -> Seen {
         let keep = (1.0 - dt / ERROR_TIME).max(0.0);
         let push = (1.0 - keep * keep).sqrt();
@@ -79,7 +79,7 @@ pub struct Foresight {
 /// Time that the vehicle takes to lean, s, and to change its thrust: what a pilot knows of his vehicle.
 const LEAN_TIME: f64 = 0.35;
 const THRUST_TIME: f64 = 0.08;
-/// Time by which he steers ahead of the present, s: his hands and half of the lean.
+/// Time by which he steers ahead of the present, s: that of his sticks and half of the lean.
 const AHEAD_LEVEL: f64 = 0.25;
 const AHEAD_DOWN: f64 = 0.12;
 
@@ -94,7 +94,7 @@ impl Foresight {
         }
     }
 
-    /// Notes what the hands ask for now: accelerations, m/s², without the trims that only hold against the wind
+    /// Notes what the sticks ask for now: accelerations, m/s², without the trims that only hold against the wind
     /// and the weight.
     pub fn note(&mut self, t: f64, level: DVec2, down: f64, dt: f64) {
         self.level += (level - self.level) * (dt / (dt + LEAN_TIME));
@@ -110,7 +110,7 @@ impl Foresight {
         *self = Self::new(self.delay);
     }
 
-    /// Position and velocity, NED, that the vehicle will have when the hands act, from what is seen.
+    /// Position and velocity, NED, that the vehicle will have when the sticks act, from what is seen.
     pub fn ahead(&self, seen: &Seen, dt: f64) -> (DVec3, DVec3) {
         let (mut position, mut velocity) = (seen.position, seen.velocity);
         for (_, level, down) in &self.past {

@@ -1,12 +1,12 @@
-//! The pilot's mind: what he remembers over a mission, and the moves that several steps share.
+//! The pilot's course through the mission: what is remembered over its steps, and the moves that several of them share.
 
 use glam::DVec2;
 use sophie_control::mode::{Mode, Reason};
 
 use super::Seen;
-use super::guidance::{Guidance, Vertical};
-use super::hands::Wish;
+use super::guidance::{Course, Guidance, Vertical};
 use super::limits;
+use super::stick_dynamics::StickTarget;
 use crate::scenario::{Scenario, Step};
 
 /// Heading flown throughout, rad: the nose to the north, along the pipe.
@@ -15,7 +15,7 @@ pub const HEADING: f64 = 0.0;
 /// What the pilot goes by in one step.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// The vehicle as it reaches his mind.
+    /// Delayed, noisy state of the vehicle, as the pilot model sees it.
     pub seen: Seen,
     /// Time now, s.
     pub now: f64,
@@ -51,9 +51,9 @@ impl View<'_> {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
     /// Not done; the sticks wanted.
-    Going(Wish),
+    Going(StickTarget),
     /// Done; the sticks wanted.
-    Done(Wish),
+    Done(StickTarget),
     /// Given up, with one line why.
     Failed(String),
 }
@@ -87,9 +87,9 @@ pub enum Phase {
     Silent,
 }
 
-/// The mind.
+/// What the pilot remembers over a mission.
 #[derive(Clone, Debug)]
-pub struct Mind {
+pub struct Mission {
     pub(super) guidance: Guidance,
     pub(super) pipe: DVec2,
     pub(super) pipe_top: f64,
@@ -114,7 +114,7 @@ pub struct Mind {
     pub(super) trouble: Option<String>,
 }
 
-impl Mind {
+impl Mission {
     /// A pilot who has read the scenario.
     pub fn new(scenario: &Scenario) -> Self {
         let [north, east] = scenario.world.pipe_position;
@@ -233,8 +233,8 @@ impl Mind {
         })
     }
 
-    fn switches(&self, wish: Wish) -> Wish {
-        Wish {
+    fn switches(&self, wish: StickTarget) -> StickTarget {
+        StickTarget {
             arm_switch: self.arm_switch,
             perch_switch: self.perch_switch,
             ..wish
@@ -254,22 +254,22 @@ impl Mind {
     }
 
     /// Flies to `target` at `height`.
-    pub(super) fn go_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> Wish {
+    pub(super) fn go_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> StickTarget {
         self.guidance
-            .steer(&v.seen, target, Vertical::Height(height), HEADING, dt)
+            .steer(&v.seen, &course(target, Vertical::Height(height)), dt)
     }
 
     /// Climbs (or sinks) at `rate` m/s over `target`.
-    pub(super) fn climb_over(&mut self, v: &View<'_>, target: DVec2, rate: f64, dt: f64) -> Wish {
+    pub(super) fn climb_over(&mut self, v: &View<'_>, target: DVec2, rate: f64, dt: f64) -> StickTarget {
         self.guidance
-            .steer(&v.seen, target, Vertical::Climb(rate), HEADING, dt)
+            .steer(&v.seen, &course(target, Vertical::Climb(rate)), dt)
     }
 
     /// Sticks let go, throttle moved by hand towards `goal` at `rate` 1/s.
-    pub(super) fn throttle_to(&mut self, goal: f64, rate: f64, dt: f64) -> Wish {
+    pub(super) fn throttle_to(&mut self, goal: f64, rate: f64, dt: f64) -> StickTarget {
         self.throttle += (goal - self.throttle).clamp(-rate * dt, rate * dt);
         self.guidance.stand(self.throttle);
-        Wish {
+        StickTarget {
             throttle: self.throttle,
             ..Default::default()
         }
@@ -304,5 +304,14 @@ impl Mind {
             Step::Land => format!("height {:.2} m, {}", v.height(), v.shown()),
             _ => v.shown(),
         }
+    }
+}
+
+/// To `target` (north, east, m) with the nose at [`HEADING`].
+fn course(target: DVec2, vertical: Vertical) -> Course {
+    Course {
+        target,
+        vertical,
+        heading: HEADING,
     }
 }

@@ -1,4 +1,4 @@
-//! The pilot's hands: sticks that move with a limited bandwidth, switches that are flipped.
+//! The pilot's sticks, which move with a limited bandwidth, and switches, which are flipped at once.
 
 use core::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 
 /// What the pilot wants the sticks to be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wish {
+pub struct StickTarget {
     /// Right positive, -1..1.
     pub roll: f64,
     /// Nose up positive, -1..1.
@@ -21,17 +21,17 @@ pub struct Wish {
     pub perch_switch: bool,
 }
 
-/// The hands.
+/// The sticks and switches.
 #[derive(Clone, Debug)]
-pub struct Hands {
+pub struct StickDynamics {
     bandwidth: f64,
     arms: ArmChoice,
     /// Where the sticks are: roll, pitch, yaw, throttle.
     sticks: [f64; 4],
 }
 
-impl Hands {
-    /// Hands of `bandwidth` Hz; the switch for the arms is set before the flight.
+impl StickDynamics {
+    /// Sticks with a bandwidth of `bandwidth` Hz; the switch for the arms is set before the flight.
     pub fn new(bandwidth: f64, arms: ArmChoice) -> Self {
         Self {
             bandwidth,
@@ -46,7 +46,7 @@ impl Hands {
     }
 
     /// Moves towards `wish` for `dt` s.
-    pub fn move_to(&mut self, wish: &Wish, dt: f64) -> Sticks {
+    pub fn move_to(&mut self, wish: &StickTarget, dt: f64) -> Sticks {
         let k = dt / (dt + 1.0 / (2.0 * PI * self.bandwidth));
         let goals = [wish.roll, wish.pitch, wish.yaw, wish.throttle];
         let lows = [-1.0, -1.0, -1.0, 0.0];

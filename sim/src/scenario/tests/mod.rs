@@ -1,0 +1,247 @@
+//! Scenarios that are good are read right; what is refused is in `refusals`.
+
+mod refusals;
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use sophie_control::params::{Params, RcProtocol};
+use sophie_control::rc::ArmChoice;
+use sophie_control::wrench::Configuration;
+use sophie_mixers::Variant;
+
+use super::keys::{KEYS, Kind};
+use super::*;
+use crate::plant::{Actuators, Plant};
+
+fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+    Scenario::parse(text, "perch.toml", &Overrides::default())
+}
+
+fn complaint(text: &str) -> String {
+    let line = parse(text).expect_err(text).to_string();
+    assert!(!line.contains('\n') && line.len() < 500, "{line}");
+    line
+}
+
+#[test]
+fn the_default_mission_states_the_defaults() {
+    let mission = Scenario::default_mission();
+    let empty = Scenario::empty();
+    assert_eq!(format!("{:?}", mission.vehicle), format!("{:?}", empty.vehicle));
+    assert_eq!(format!("{:?}", mission.world), format!("{:?}", empty.world));
+    assert_eq!(format!("{:?}", mission.pilot), format!("{:?}", empty.pilot));
+    assert_eq!(
+        mission.params,
+        Params {
+            infill: 6.9,
+            gain_k: 7.75,
+            ..Params::default()
+        }
+    );
+    assert_eq!(
+        (mission.mixer, mission.arms, mission.seed),
+        (Variant::Flexible, ArmChoice::All, 1)
+    );
+    assert_eq!(mission.time_limit, empty.time_limit);
+    let names: Vec<&str> = mission.steps.iter().map(Step::name).collect();
+    assert_eq!(
+        names.join(" "),
+        "arm take-off hover roll fly-to-pipe touch perch hold release fly-to land disarm"
+    );
+    assert_eq!(mission.steps.get(6), Some(&Step::Perch { throttle: 0.3 }));
+    // A file without steps flies the same ones, and a step without numbers has the same numbers.
+    assert_eq!(parse("").unwrap().steps, mission.steps);
+    let bare: Vec<String> = names.iter().map(|n| format!("{{ do = \"{n}\" }}")).collect();
+    assert_eq!(
+        parse(&format!("steps = [{}]", bare.join(", "))).unwrap().steps,
+        mission.steps
+    );
+}
+
+#[test]
+fn the_default_mission_shows_every_key() {
+    for key in KEYS.iter().filter(|k| k.name != "expect.reason") {
+        let name = key.name.rsplit('.').next().unwrap();
+        assert!(
+            MISSION.lines().any(|l| l.starts_with(&format!("{name} = "))),
+            "{name}"
+        );
+    }
+    for kind in STEPS {
+        assert!(
+            MISSION.contains(&format!("do = \"{}\"", kind.name)),
+            "{}",
+            kind.name
+        );
+        for number in kind.numbers {
+            assert!(MISSION.contains(number.key), "{}", number.key);
+        }
+    }
+}
+
+#[test]
+fn numbers_are_converted_once() {
+    let s = parse(
+        "steps = [{ do = 'arm' }, { do = 'take-off', height_m = 4 }, { do = 'roll', angle_deg = 18 }]\n\
+         [vehicle]\narm_offset_deg = [0, 1.8, 0, -1.8]\nbattery_charge_percent = 50\n",
+    )
+    .unwrap();
+    assert!((s.vehicle.arm_offset[1] - 0.01 * core::f64::consts::PI).abs() < 1e-12);
+    assert_eq!(s.vehicle.battery_charge, 0.5);
+    assert!(matches!(s.steps.get(2), Some(Step::Roll { angle, .. }) if (angle - 0.314_159).abs() < 1e-6));
+}
+
+#[test]
+fn the_stack_believes_the_vehicle_unless_told_otherwise() {
+    let s = parse("[vehicle]\ninfill = 8\ngain_k = 5\nservo = 'mg996r'").unwrap();
+    assert_eq!(
+        (s.params.infill, s.params.gain_k, s.params.servo_stall),
+        (8.0, 5.0, 0.922)
+    );
+    let s = parse(
+        "[vehicle]\nmass_kg = 2\ninertia_kgm2 = [0.03, 0.05, 0.07]\ntorque_ratio_m = 0.018\n\
+         motor_tau_s = 0.04\nthrust_max_n = 10\n[params]\nmotor_tau = 0.06",
+    )
+    .unwrap();
+    assert_eq!(
+        (s.vehicle.body.inertia, s.vehicle.rotor.time_constant),
+        ([0.03, 0.05, 0.07], 0.04)
+    );
+    let p = &s.params;
+    assert_eq!((p.mass, p.thrust_max, p.torque_ratio), (2.0, 10.0, 0.018));
+    assert_eq!(
+        (p.inertia_roll, p.inertia_pitch, p.inertia_yaw, p.motor_tau),
+        (0.03, 0.05, 0.07, 0.06)
+    );
+    let s = parse("[vehicle]\ninfill = 8\n[params]\ninfill = 6\nrate_p = 9").unwrap();
+    assert_eq!(
+        (s.vehicle.infill, s.params.infill, s.params.rate_p),
+        (8.0, 6.0, 9.0)
+    );
+}
+
+#[test]
+fn the_command_line_wins_over_the_file() {
+    let overrides = Overrides {
+        infill: Some(9.0),
+        gain_k: Some(2.0),
+        configuration: Some(Configuration::A),
+        mixer: Some(Variant::Paper),
+        arms: Some(ArmChoice::Rear),
+        seed: Some(77),
+    };
+    let text = "seed = 3\nmixer = 'rigid'\narms = 'front'\n[vehicle]\ninfill = 8\nconfiguration = 'B'";
+    let s = Scenario::parse(text, "f", &overrides).unwrap();
+    assert_eq!((s.vehicle.infill, s.vehicle.gain_k, s.seed), (9.0, 2.0, 77));
+    assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
+    assert_eq!(
+        (s.vehicle.configuration, s.mixer, s.arms),
+        (Configuration::A, Variant::Paper, ArmChoice::Rear)
+    );
+}
+
+#[test]
+fn every_number_takes_its_bounds_and_nothing_beyond() {
+    for key in KEYS {
+        let Kind::Number(range, _) = &key.kind else {
+            continue;
+        };
+        let text = |value: f64| {
+            let (table, name) = key.name.rsplit_once('.').unwrap_or(("", key.name));
+            let head = if table.is_empty() {
+                String::new()
+            } else {
+                format!("[{table}]\n")
+            };
+            // Room for the largest pipe.
+            let room = if name == "pipe_diameter_m" {
+                "pipe_top_m = 5\n"
+            } else {
+                ""
+            };
+            let slim = if name == "pipe_top_m" {
+                "pipe_diameter_m = 0.2\n"
+            } else {
+                ""
+            };
+            format!("{head}{room}{slim}{name} = {value:?}\n").replace("NaN", "nan")
+        };
+        assert!(
+            parse(&text(range.min)).is_ok() && parse(&text(range.max)).is_ok(),
+            "{}",
+            key.name
+        );
+        for bad in [range.min - 1e-3, range.max + 1e-3, f64::NAN, f64::INFINITY] {
+            assert!(
+                matches!(parse(&text(bad)), Err(ScenarioError::BadValue { .. })),
+                "{} {bad}",
+                key.name
+            );
+        }
+    }
+}
+
+#[test]
+fn a_vehicle_that_loads_can_be_stepped() {
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    let (mut loaded, mut refused) = (0, 0);
+    for draw in 0..240 {
+        let mut text = String::from("[vehicle]\n");
+        for key in KEYS.iter().filter(|key| key.name.starts_with("vehicle.")) {
+            let mut any = |range: &keys::Range| rng.random_range(range.min..=range.max);
+            let value = match &key.kind {
+                // Most arms near the paper's, or hardly any would rise.
+                Kind::PerArm(..) if key.name.ends_with("coefficients") && draw % 8 != 0 => {
+                    let mut near = |x: f64| x * rng.random_range(0.2..3.0);
+                    format!("{:?}", crate::plant::arm::TABLE_1.map(&mut near))
+                }
+                Kind::Number(range, _) => format!("{:?}", any(range)),
+                Kind::PerArm(range, _) => format!("{:?}", [(); 4].map(|()| any(range))),
+                Kind::PerAxis(ranges, _) => format!("{:?}", ranges.each_ref().map(any)),
+                Kind::Flag(_) => rng.random::<bool>().to_string(),
+                _ => continue,
+            };
+            let (_, name) = key.name.split_once('.').unwrap();
+            text += &format!("{name} = {value}\n");
+        }
+        let Ok(scenario) = parse(&text) else {
+            refused += 1;
+            continue;
+        };
+        loaded += 1;
+        let mut plant = Plant::new(&scenario, Pcg64Mcg::seed_from_u64(loaded));
+        let mut actuators = Actuators {
+            servos: [550.0; 4],
+            ..Default::default()
+        };
+        for step in 0..2000 {
+            if step % 100 == 0 {
+                actuators.motors = [(); 4].map(|()| rng.random_range(0.0..1.0));
+            }
+            plant.step(&actuators);
+        }
+        let state = (plant.pose().position, plant.tilt(), plant.specific_force());
+        let finite = state.0.is_finite() && state.1.iter().all(|t| t.abs() < 6.3) && state.2.length() < 1e4;
+        assert!(finite, "{state:?} of\n{text}");
+    }
+    println!("{loaded} flown, {refused} refused");
+    assert!(loaded > 40 && refused > 20, "{loaded} flown, {refused} refused");
+}
+
+#[test]
+fn old_names_of_parameters_and_names_of_their_values_are_read() {
+    let params = |text: &str| {
+        Scenario::parse(&format!("[params]\n{text}"), "old.toml", &Overrides::default())
+            .unwrap()
+            .params
+    };
+    let old = params("receiver_protocol = 1\nperch_throttle_max = 0.5\nsetpoint_cutoff = 20");
+    assert_eq!(
+        old,
+        params("rc_protocol = 'sbus'\nperch_thr_max = 0.5\nsetpoint_lpf_hz = 3.1830988")
+    );
+    assert_eq!(old.rc_protocol, RcProtocol::Sbus);
+    assert_eq!(params("receiver_protocol = 'sbus'").rc_protocol, RcProtocol::Sbus);
+    assert_eq!(params("motor_protocol = 'pwm'"), params("motor_protocol = 400"));
+    assert_eq!(params("setpoint_cutoff = 10"), params(""), "the default");
+}
