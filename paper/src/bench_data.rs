@@ -73,60 +73,75 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
             names()
         ));
     };
-    commas(&header).map_err(|why| format!("{file}:{number}: {why}"))?;
+    let order = columns(&header).map_err(|why| format!("{file}:{number}: {why}"))?;
     let header_line = number;
+    let (mut points, mut bad): (Vec<Point>, Vec<BadLine>) = (vec![], vec![]);
+    for (number, line) in lines {
+        match row(&line, &order) {
+            Ok(point) => points.push(point),
+            Err(why) => bad.push(BadLine { number, why }),
+        }
+    }
+    if let Some((first, others)) = bad.split_first() {
+        return Err(format!(
+            "{file}:{}: {}{}",
+            first.number,
+            first.why,
+            bad_as_well(others)
+        ));
+    }
+    if points.is_empty() {
+        return Err(format!(
+            "{file}:{header_line}: no row stands below the header: allowed are at least {MIN_ROWS}"
+        ));
+    }
+    Ok(points)
+}
+
+/// A line that was refused.
+struct BadLine {
+    number: usize,
+    why: String,
+}
+
+/// The lines that are bad besides the first, in words.
+fn bad_as_well(others: &[BadLine]) -> String {
+    if others.is_empty() {
+        return String::new();
+    }
+    let numbers: Vec<String> = others.iter().take(8).map(|b| b.number.to_string()).collect();
+    let dots = if others.len() > 8 { ", ..." } else { "" };
+    format!(" (bad as well: lines {}{dots})", numbers.join(", "))
+}
+
+/// The places in [`COLUMNS`] of the header's names.
+fn columns(header: &str) -> Result<Vec<usize>, String> {
+    commas(header)?;
     let header: Vec<&str> = header.split(',').map(str::trim).collect();
     if header.iter().all(|cell| cell.parse::<f64>().is_ok()) {
         return Err(format!(
-            "{file}:{number}: a row of numbers where the header should be: allowed is a header with {}",
+            "a row of numbers where the header should be: allowed is a header with {}",
             names()
         ));
     }
     let mut order = vec![];
     for name in &header {
         let Some(column) = COLUMNS.iter().position(|c| c.0 == *name) else {
-            return Err(format!(
-                "{file}:{number}: column '{name}' is not known: allowed are {}",
-                names()
-            ));
+            return Err(format!("column '{name}' is not known: allowed are {}", names()));
         };
         if order.contains(&column) {
-            return Err(format!(
-                "{file}:{number}: column '{name}' stands twice: allowed is once"
-            ));
+            return Err(format!("column '{name}' stands twice: allowed is once"));
         }
         order.push(column);
     }
     if let Some(missing) = (0..3).find(|c| !order.contains(c)) {
         return Err(format!(
-            "{file}:{number}: column '{}' is missing: needed are {}",
+            "column '{}' is missing: needed are {}",
             COLUMNS[missing].0,
             names()
         ));
     }
-    let (mut points, mut bad): (Vec<Point>, Vec<(usize, String)>) = (vec![], vec![]);
-    for (number, line) in lines {
-        match row(&line, &order) {
-            Ok(point) => points.push(point),
-            Err(why) => bad.push((number, why)),
-        }
-    }
-    let Some((number, why)) = bad.first() else {
-        if points.is_empty() {
-            return Err(format!(
-                "{file}:{header_line}: no row stands below the header: allowed are at least {MIN_ROWS}"
-            ));
-        }
-        return Ok(points);
-    };
-    let others: Vec<String> = bad.iter().skip(1).take(8).map(|(n, _)| n.to_string()).collect();
-    let rest = if others.is_empty() {
-        String::new()
-    } else {
-        let dots = if bad.len() > 9 { ", ..." } else { "" };
-        format!(" (bad as well: lines {}{dots})", others.join(", "))
-    };
-    Err(format!("{file}:{number}: {why}{rest}"))
+    Ok(order)
 }
 
 fn names() -> String {

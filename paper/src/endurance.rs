@@ -298,7 +298,8 @@ fn inspection(s: &mut Section, p: &Printed) -> Chart {
     }
 }
 
-fn table_6(s: &mut Section, p: &Printed) {
+/// Table VI as printed, with Table V below it.
+fn printed_robots(p: &Printed) -> Table {
     let mut t = Table::new(
         "Table VI as printed; specific strength of Tables V and VI is quoted, not computed: it is a material test",
         &[
@@ -324,7 +325,12 @@ fn table_6(s: &mut Section, p: &Printed) {
             num(r.strength_knm_per_kg, 2),
         ]);
     }
-    s.table(t);
+    t
+}
+
+/// Table VI against Table V and the text.
+fn table_6(s: &mut Section, p: &Printed) {
+    s.table(printed_robots(p));
     let (Some(sophie), Some(semi), Some(mhyro)) = (p.table_6.first(), p.table_6.get(1), p.table_6.get(2))
     else {
         return;

@@ -56,83 +56,126 @@ fn seen(flown: &Flown) -> (f64, f64) {
     (middle, spread.sqrt())
 }
 
-/// Material degradation.
-pub fn section(p: &Printed) -> Section {
-    let mut s = Section::new("fatigue", "Section V-C: an arm that loses stiffness");
-    let infill = p.text.infill_percent;
-    let kinds = [
-        ("flexible with arm IMUs", Variant::Flexible, true),
-        ("flexible, model alone", Variant::Flexible, false),
-        ("rigid", Variant::Rigid, true),
-    ];
-    let mut jobs: Vec<(usize, Job)> = vec![];
-    for (i, (_, mixer, sensors)) in kinds.iter().enumerate() {
-        for worn in WORN {
-            jobs.push((
-                i,
-                Job {
-                    infill,
-                    worn,
-                    mixer: *mixer,
-                    sensors: *sensors,
-                },
-            ));
+/// A mixer that flies the worn arm.
+struct Kind {
+    name: &'static str,
+    mixer: Variant,
+    sensors: bool,
+}
+
+const KINDS: [Kind; 3] = [
+    Kind {
+        name: "flexible with arm IMUs",
+        mixer: Variant::Flexible,
+        sensors: true,
+    },
+    Kind {
+        name: "flexible, model alone",
+        mixer: Variant::Flexible,
+        sensors: false,
+    },
+    Kind {
+        name: "rigid",
+        mixer: Variant::Rigid,
+        sensors: true,
+    },
+];
+
+/// Every kind over the wear.
+struct Flights {
+    /// Place in [`KINDS`] and hover of each flight.
+    jobs: Vec<(usize, Job)>,
+    flown: Vec<Flown>,
+}
+
+impl Flights {
+    fn fly(infill: f64) -> Self {
+        let mut jobs: Vec<(usize, Job)> = vec![];
+        for (i, kind) in KINDS.iter().enumerate() {
+            let job = |worn| Job {
+                infill,
+                worn,
+                mixer: kind.mixer,
+                sensors: kind.sensors,
+            };
+            jobs.extend(WORN.map(|worn| (i, job(worn))));
         }
+        let flown = parallel::each(&jobs, |(_, job)| hover(*job));
+        Self { jobs, flown }
     }
-    let flights = parallel::each(&jobs, |(_, job)| hover(*job));
-    let get = |kind: usize, worn: f64| {
-        let at = jobs.iter().position(|(i, j)| *i == kind && j.worn == worn);
-        at.and_then(|i| flights.get(i))
+
+    fn of(&self, kind: usize, worn: f64) -> Option<&Flown> {
+        let at = self.jobs.iter().position(|(i, j)| *i == kind && j.worn == worn);
+        at.and_then(|i| self.flown.get(i))
+    }
+
+    /// What each flight comes to.
+    fn table(&self, infill: f64) -> Table {
+        let mut t = Table::new(
+            &format!("25 s of hover in gusts, ρ {infill} %, arm 1 softer"),
+            &[
+                "mixer",
+                "compliance of arm 1",
+                "yaw RMS °",
+                "mean of it °",
+                "roll RMS °",
+                "spread of mean thrusts N",
+                "lost",
+            ],
+        );
+        for ((kind, job), f) in self.jobs.iter().zip(&self.flown) {
+            t.row([
+                KINDS[*kind].name.into(),
+                num(job.worn, 1),
+                or_lost(error(f, 2), 2),
+                num(heading(f), 2),
+                or_lost(error(f, 0), 2),
+                num(apart(f), 2),
+                lost_when(f),
+            ]);
+        }
+        t
+    }
+}
+
+/// Largest less smallest mean thrust of the rotors, N.
+fn apart(f: &Flown) -> f64 {
+    let thrusts: Vec<f64> = (0..4).map(|i| mean(&f.moments, |m| m.thrust[i])).collect();
+    thrusts.iter().copied().fold(f64::MIN, f64::max) - thrusts.iter().copied().fold(f64::MAX, f64::min)
+}
+
+/// A bias of arm 1 over its wear, degrees.
+struct OnBoard {
+    worn: f64,
+    /// True tilt less the model's.
+    truth: f64,
+    learnt: f64,
+    /// Spread of the means over the windows.
+    spread: f64,
+}
+
+/// What the arm's own sensor shows of its wear.
+fn on_board(flights: &Flights, infill: f64) -> Vec<OnBoard> {
+    let model = sophie_control::deflection::ArmModel::from_params(&Params {
+        infill: infill as f32,
+        ..Params::default()
+    });
+    let of = |worn: f64| {
+        let f = flights.of(0, worn)?;
+        let settled: Vec<Moment> = f.moments.iter().filter(|m| m.t > 5.0).copied().collect();
+        let off = |m: &Moment| m.tilt[0] - f64::from(model.angle(m.thrust[0] as f32));
+        let (learnt, spread) = seen(f);
+        Some(OnBoard {
+            worn,
+            truth: mean(&settled, off).to_degrees(),
+            learnt,
+            spread,
+        })
     };
+    WORN.into_iter().filter_map(of).collect()
+}
 
-    s.text(format!(
-        "The paper reports fibre ruptures after {:.0} to {:.0} bending cycles and deflections \"above expectations\", without a \
-         law or a size. Here arm 1 is made softer by up to half, the other three stay new, and the stack goes on believing \
-         in the new arm. Compliance in the place of cycles is our choice.",
-        p.text.fatigue_cycles[0], p.text.fatigue_cycles[1]
-    ));
-    let mut t = Table::new(
-        &format!("25 s of hover in gusts, ρ {infill} %, arm 1 softer"),
-        &[
-            "mixer",
-            "compliance of arm 1",
-            "yaw RMS °",
-            "mean of it °",
-            "roll RMS °",
-            "spread of mean thrusts N",
-            "lost",
-        ],
-    );
-    for ((kind, job), f) in jobs.iter().zip(&flights) {
-        let thrusts: Vec<f64> = (0..4).map(|i| mean(&f.moments, |m| m.thrust[i])).collect();
-        let spread = thrusts.iter().copied().fold(f64::MIN, f64::max)
-            - thrusts.iter().copied().fold(f64::MAX, f64::min);
-        t.row([
-            kinds[*kind].0.into(),
-            num(job.worn, 1),
-            or_lost(error(f, 2), 2),
-            num(heading(f), 2),
-            or_lost(error(f, 0), 2),
-            num(spread, 2),
-            lost_when(f),
-        ]);
-    }
-    s.table(t);
-    s.text(
-        "The rigid mixer's smaller yaw error is not a better allocation: in B its yaw commands come out 1 - C times larger, \
-         so its loop is that much faster. What the wear does to each is how its own rows grow.",
-    );
-
-    let new = get(0, 1.0).map(seen).unwrap_or((0.0, f64::NAN));
-    let noise = 3.0 * new.1;
-    let biases: Vec<(f64, f64)> = WORN
-        .iter()
-        .filter_map(|w| Some((*w, get(0, *w).map(seen)?.0)))
-        .collect();
-    let first = biases
-        .iter()
-        .find(|(_, b)| (b - new.0).abs() > noise)
-        .map_or(f64::NAN, |b| b.0);
+fn on_board_table(seen: &[OnBoard]) -> Table {
     let mut t = Table::new(
         "What the comparison of measured and modelled α sees on board, means over 5 s",
         &[
@@ -142,28 +185,27 @@ pub fn section(p: &Printed) -> Section {
             "spread of 5 s means °",
         ],
     );
-    let mut truth = vec![];
-    for worn in WORN {
-        let Some(f) = get(0, worn) else { continue };
-        let model = sophie_control::deflection::ArmModel::from_params(&Params {
-            infill: infill as f32,
-            ..Params::default()
-        });
-        let settled: Vec<Moment> = f.moments.iter().filter(|m| m.t > 5.0).copied().collect();
-        let off = mean(&settled, |m| {
-            m.tilt[0] - f64::from(model.angle(m.thrust[0] as f32))
-        })
-        .to_degrees();
-        truth.push((worn, off));
-        let (bias, spread) = seen(f);
-        t.row([num(worn, 1), num(off, 2), num(bias, 2), num(spread, 2)]);
+    for at in seen {
+        t.row([
+            num(at.worn, 1),
+            num(at.truth, 2),
+            num(at.learnt, 2),
+            num(at.spread, 2),
+        ]);
     }
-    s.table(t);
-    let line = |kind: usize, f: &dyn Fn(&Flown) -> f64| {
-        WORN.iter()
-            .filter_map(|w| Some((*w, f(get(kind, *w)?))))
-            .collect::<Vec<_>>()
+    t
+}
+
+/// Yaw error of each kind, and the bias on board with the `level` (°) above which it is seen.
+fn figure(s: &mut Section, flights: &Flights, seen: &[OnBoard], level: f64) {
+    let yaw = |kind: usize| {
+        let flown = |worn: f64| {
+            let yaw = error(flights.of(kind, worn)?, 2);
+            Some((worn, yaw.unwrap_or(f64::NAN)))
+        };
+        WORN.into_iter().filter_map(flown).collect()
     };
+    let kinds = KINDS.iter().enumerate();
     s.figure(
         "Left: yaw error as arm 1 softens. Right: what the arm's own sensor tells of it; above the dashed level it is more \
          than three spreads of the new arm's.",
@@ -172,11 +214,7 @@ pub fn section(p: &Printed) -> Section {
                 title: "Flight with a worn arm".to_owned(),
                 x: Axis::new("compliance of arm 1 over new"),
                 y: Axis::new("yaw error RMS (°)").with(&[0.0]),
-                series: kinds
-                    .iter()
-                    .enumerate()
-                    .map(|(i, k)| Series::new(k.0, i, Look::Line, line(i, &|f| error(f, 2).unwrap_or(f64::NAN))))
-                    .collect(),
+                series: kinds.map(|(i, k)| Series::new(k.name, i, Look::Line, yaw(i))).collect(),
                 ..Chart::default()
             },
             Chart {
@@ -184,27 +222,46 @@ pub fn section(p: &Printed) -> Section {
                 x: Axis::new("compliance of arm 1 over new"),
                 y: Axis::new("α1 above the model (°)").with(&[0.0]),
                 series: vec![
-                    Series::new("true", 7, Look::Dashed, truth),
-                    Series::new("learnt by the mixer", 0, Look::Dots, biases.clone()),
+                    Series::new("true", 7, Look::Dashed, seen.iter().map(|s| (s.worn, s.truth)).collect()),
+                    Series::new("learnt by the mixer", 0, Look::Dots, seen.iter().map(|s| (s.worn, s.learnt)).collect()),
                 ],
-                levels: vec![(new.0 + noise, "three spreads above the new arm".to_owned())],
+                levels: vec![(level, "three spreads above the new arm".to_owned())],
                 ..Chart::default()
             },
         ],
     );
+}
+
+/// Material degradation.
+pub fn section(p: &Printed) -> Section {
+    let mut s = Section::new("fatigue", "Section V-C: an arm that loses stiffness");
+    let infill = p.text.infill_percent;
+    let flights = Flights::fly(infill);
+    s.text(format!(
+        "The paper reports fibre ruptures after {:.0} to {:.0} bending cycles and deflections \"above expectations\", without a \
+         law or a size. Here arm 1 is made softer by up to half, the other three stay new, and the stack goes on believing \
+         in the new arm. Compliance in the place of cycles is our choice.",
+        p.text.fatigue_cycles[0], p.text.fatigue_cycles[1]
+    ));
+    s.table(flights.table(infill));
+    s.text(
+        "The rigid mixer's smaller yaw error is not a better allocation: in B its yaw commands come out 1 - C times larger, \
+         so its loop is that much faster. What the wear does to each is how its own rows grow.",
+    );
+    let seen = on_board(&flights, infill);
+    let (new, noise) = seen
+        .first()
+        .map_or((0.0, f64::NAN), |s| (s.learnt, 3.0 * s.spread));
+    let shows = seen.iter().find(|s| (s.learnt - new).abs() > noise);
+    let first = shows.map_or(f64::NAN, |s| s.worn);
+    s.table(on_board_table(&seen));
+    figure(&mut s, &flights, &seen, new + noise);
     let [with_model, without] = soft_airframes(&mut s, p);
     let off = |kind: usize| {
-        get(kind, 1.5)
-            .and_then(|f| error(f, 2))
-            .map_or("lost".to_owned(), |e| format!("{e:.1}°"))
+        let yaw = flights.of(kind, 1.5).and_then(|f| error(f, 2));
+        yaw.map_or("lost".to_owned(), |e| format!("{e:.1}°"))
     };
-    let apart = get(0, 1.5).map_or(f64::NAN, |f| {
-        let thrusts = (0..4).map(|i| mean(&f.moments, |m| m.thrust[i]));
-        let (low, high) = thrusts.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
-            (l.min(t), h.max(t))
-        });
-        high - low
-    });
+    let apart = flights.of(0, 1.5).map_or(f64::NAN, apart);
     s.finding = format!(
         "The paper's mechanism is there, but mild in this model: one arm half as soft again drives the rotors {apart:.1} N \
          apart in hover, with a yaw error of {} RMS (flexible, arm IMUs), {} (flexible, model alone) and {} (rigid, a faster loop). On board \

@@ -91,6 +91,22 @@ pub fn infill(points: &[Point]) -> f64 {
 /// The section of the fit.
 pub fn section(points: &[Point], fit: &Fit) -> Section {
     let mut s = Section::new("fit", "Eq. 1 fitted to bench data");
+    s.table(coefficients(fit));
+    s.text(format!(
+        "K is the gain that the paper's Table I would need; its shape leaves {:.2}° RMS where the fit leaves {:.2}°. A \
+         C_P without an interval was not measured (no power ratio below 0.95) and is assumed.",
+        fit.gain.1, fit.residual
+    ));
+    for warning in warnings(points, fit) {
+        s.text(format!("Warning: {warning}."));
+    }
+    curves(&mut s, points, fit);
+    s.finding = format!("{} points, residual {:.2}° RMS.", points.len(), fit.residual);
+    s
+}
+
+/// The coefficients with their intervals.
+fn coefficients(fit: &Fit) -> Table {
     let show = |f: &Fitted| {
         [
             f.name.into(),
@@ -116,17 +132,12 @@ pub fn section(points: &[Point], fit: &Fit) -> Section {
             num(f64::NAN, 0),
         ]);
     }
-    let (k, with_k) = &fit.gain;
-    t.row(show(k));
-    s.table(t);
-    s.text(format!(
-        "K is the gain that the paper's Table I would need; its shape leaves {with_k:.2}° RMS where the fit leaves {:.2}°. A \
-         C_P without an interval was not measured (no power ratio below 0.95) and is assumed.",
-        fit.residual
-    ));
-    for warning in warnings(points, fit) {
-        s.text(format!("Warning: {warning}."));
-    }
+    t.row(show(&fit.gain.0));
+    t
+}
+
+/// The fit among the points, and what it leaves of them.
+fn curves(s: &mut Section, points: &[Point], fit: &Fit) {
     let mut infills: Vec<f64> = points.iter().map(|p| p.infill).collect();
     infills.sort_by(f64::total_cmp);
     infills.dedup_by(|a, b| (*a - *b).abs() < 0.05);
@@ -169,8 +180,6 @@ pub fn section(points: &[Point], fit: &Fit) -> Section {
             },
         ],
     );
-    s.finding = format!("{} points, residual {:.2}° RMS.", points.len(), fit.residual);
-    s
 }
 
 /// The lines that give a board's console the parameters of the file `text`.

@@ -33,18 +33,9 @@ pub fn inertia(p: &Printed, d: f64, b: f64) -> [f64; 3] {
 /// Table II.
 pub fn section(p: &Printed) -> Section {
     let mut s = Section::new("table2", "Table II: the mass budget");
-    let d = Params::default();
     let mass = p.mass();
     let hover = mass * GRAVITY / 4.0;
-    let nominal = p.text.motor_thrust_g * 1e-3 * GRAVITY;
-    let computed = inertia(p, f64::from(d.arm_d), f64::from(d.arm_b));
-    let arm_rod = p.table_2.first().map_or(0.0, |r| r.mass_g * 1e-3) / 3.0;
-    let tip = p
-        .table_2
-        .iter()
-        .find(|r| r.equipment == "Propulsion")
-        .map_or(0.0, |r| r.mass_g * 1e-3)
-        + arm_rod;
+    let nominal = nominal_thrust(p);
     s.finding = format!(
         "The rows add up to {mass:.3} kg, hover takes {hover:.3} N a rotor. The nominal thrust of {:.0} g a motor is \
          {:.3} of that: the four motors at their nominal thrust just carry the vehicle, so the 25° roll needs their largest.",
@@ -62,17 +53,57 @@ pub fn section(p: &Printed) -> Section {
             why: "sum of the six rows".to_owned(),
         }],
     );
+    s.table(shares(p));
+    s.table(rigid_body(p));
+    let tip = tip_mass(p);
+    s.text(format!(
+        "The tip is the one that does not fit: Table II puts {tip:.3} kg on a hinge at the centre line, the plant flies \
+         {TIP_MASS} kg so that the bending mode is at 5 Hz. The paper gives neither a frequency nor where the arm bends; \
+         with the whole {tip:.3} kg the mode would be at {:.1} Hz.",
+        5.0 * (TIP_MASS / tip).sqrt()
+    ));
+    let [a, b] = p.text.weight_saving_percent;
+    s.text(format!(
+        "\"Reduced by {a:.0} % and {b:.0} %\" against the two rigid vehicles means that those weigh {:.2} and {:.2} kg; the \
+         paper does not print their masses.",
+        mass / (1.0 - 0.01 * a),
+        mass / (1.0 - 0.01 * b)
+    ));
+    s
+}
+
+/// Thrust that Table II prints for a motor, N.
+fn nominal_thrust(p: &Printed) -> f64 {
+    p.text.motor_thrust_g * 1e-3 * GRAVITY
+}
+
+/// Mass that an arm's tip carries by Table II: the propulsion and a third of the arm, kg.
+fn tip_mass(p: &Printed) -> f64 {
+    let arm_rod = p.table_2.first().map_or(0.0, |r| r.mass_g * 1e-3) / 3.0;
+    let propulsion = p.table_2.iter().find(|r| r.equipment == "Propulsion");
+    propulsion.map_or(0.0, |r| r.mass_g * 1e-3) + arm_rod
+}
+
+/// What each row has of the mass.
+fn shares(p: &Printed) -> Table {
     let mut t = Table::new("Shares of the mass", &["equipment", "mass kg", "share %"]);
     for row in &p.table_2 {
         let kg = row.mass_g * 1e-3 * f64::from(row.count);
         t.row([
             row.equipment.as_str().into(),
             num(kg, 3),
-            num(100.0 * kg / mass, 1),
+            num(100.0 * kg / p.mass(), 1),
         ]);
     }
-    s.table(t);
+    t
+}
 
+/// Inertia, thrust and tip mass: what follows from Table II and what flies.
+fn rigid_body(p: &Printed) -> Table {
+    let d = Params::default();
+    let weight = p.mass() * GRAVITY;
+    let hover = weight / 4.0;
+    let computed = inertia(p, f64::from(d.arm_d), f64::from(d.arm_b));
     let mut t = Table::new(
         "Rigid-body numbers",
         &["quantity", "value", "unit", "used in flight", "source"],
@@ -88,25 +119,25 @@ pub fn section(p: &Printed) -> Section {
         ]);
     }
     for (what, value, unit, used, source) in [
-        ("weight", mass * GRAVITY, "N", mass * GRAVITY, "Table II"),
+        ("weight", weight, "N", weight, "Table II"),
         ("hover thrust of a rotor", hover, "N", hover, "Table II"),
         (
             "largest thrust of all over weight",
-            f64::from(d.thrust_max) * 4.0 / (mass * GRAVITY),
+            f64::from(d.thrust_max) * 4.0 / weight,
             "",
             f64::NAN,
             "8.3 N a rotor, assumed",
         ),
         (
             "nominal thrust of all over weight",
-            nominal / hover,
+            nominal_thrust(p) / hover,
             "",
             f64::NAN,
             "450 g printed, Table II",
         ),
         (
             "mass carried by an arm's tip",
-            tip,
+            tip_mass(p),
             "kg",
             TIP_MASS,
             "propulsion and a third of the arm, Table II",
@@ -120,19 +151,5 @@ pub fn section(p: &Printed) -> Section {
             source.into(),
         ]);
     }
-    s.table(t);
-    s.text(format!(
-        "The tip is the one that does not fit: Table II puts {tip:.3} kg on a hinge at the centre line, the plant flies \
-         {TIP_MASS} kg so that the bending mode is at 5 Hz. The paper gives neither a frequency nor where the arm bends; \
-         with the whole {tip:.3} kg the mode would be at {:.1} Hz.",
-        5.0 * (TIP_MASS / tip).sqrt()
-    ));
-    let [a, b] = p.text.weight_saving_percent;
-    s.text(format!(
-        "\"Reduced by {a:.0} % and {b:.0} %\" against the two rigid vehicles means that those weigh {:.2} and {:.2} kg; the \
-         paper does not print their masses.",
-        mass / (1.0 - 0.01 * a),
-        mass / (1.0 - 0.01 * b)
-    ));
-    s
+    t
 }

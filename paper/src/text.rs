@@ -1,6 +1,6 @@
 //! The sections as text for a terminal.
 
-use super::model::{Block, Cell, Section};
+use super::model::{self, Block, Cell, Class, Comparison, Section};
 use super::page::{deviation, value};
 use sophie_report::terminal::table::{Align, Table};
 
@@ -14,64 +14,61 @@ pub fn lines(number: usize, s: &Section) -> Vec<String> {
     for block in &s.blocks {
         match block {
             Block::Text(_) | Block::Figure(_) => {}
-            Block::Comparisons(caption, rows) => {
-                out.push(String::new());
-                let mut t = Table::new(&[
-                    (caption, Align::Left),
-                    ("printed", Align::Right),
-                    ("here", Align::Right),
-                    ("unit", Align::Left),
-                    ("deviation", Align::Right),
-                    ("class", Align::Left),
-                ]);
-                for r in rows {
-                    let mark = if r.class == super::model::Class::Inconsistent {
-                        " *"
-                    } else {
-                        ""
-                    };
-                    t.row([
-                        r.what.clone(),
-                        value(r.printed),
-                        value(r.here),
-                        r.unit.to_owned(),
-                        deviation(r),
-                        format!("{}{mark}", r.class.word()),
-                    ]);
-                }
-                out.extend(t.lines());
-                let mut told: Vec<&str> = vec![];
-                for r in rows
-                    .iter()
-                    .filter(|r| r.class == super::model::Class::Inconsistent)
-                {
-                    if !told.contains(&r.why.as_str()) {
-                        told.push(&r.why);
-                        out.extend(wrapped(&format!("* {}", r.why)));
-                    }
-                }
-            }
-            Block::Table(table) => {
-                out.push(String::new());
-                out.push(table.caption.clone());
-                let align = |i: usize| {
-                    let words = table.rows.iter().any(|r| matches!(r.get(i), Some(Cell::Text(_))));
-                    if words { Align::Left } else { Align::Right }
-                };
-                let columns: Vec<(&str, Align)> = table
-                    .columns
-                    .iter()
-                    .enumerate()
-                    .map(|(i, c)| (c.as_str(), align(i)))
-                    .collect();
-                let mut t = Table::new(&columns);
-                for row in &table.rows {
-                    t.row(row.iter().map(Cell::shown));
-                }
-                out.extend(t.lines());
-            }
+            Block::Comparisons(caption, rows) => out.extend(comparisons(caption, rows)),
+            Block::Table(table) => out.extend(table_lines(table)),
         }
     }
+    out
+}
+
+/// Printed numbers beside ours, and below them why some contradict themselves, each reason once.
+fn comparisons(caption: &str, rows: &[Comparison]) -> Vec<String> {
+    let mut t = Table::new(&[
+        (caption, Align::Left),
+        ("printed", Align::Right),
+        ("here", Align::Right),
+        ("unit", Align::Left),
+        ("deviation", Align::Right),
+        ("class", Align::Left),
+    ]);
+    let inconsistent = |r: &Comparison| r.class == Class::Inconsistent;
+    for r in rows {
+        let mark = if inconsistent(r) { " *" } else { "" };
+        t.row([
+            r.what.clone(),
+            value(r.printed),
+            value(r.here),
+            r.unit.to_owned(),
+            deviation(r),
+            format!("{}{mark}", r.class.word()),
+        ]);
+    }
+    let mut out = vec![String::new()];
+    out.extend(t.lines());
+    let mut reasons: Vec<&str> = vec![];
+    for r in rows.iter().filter(|r| inconsistent(r)) {
+        if !reasons.contains(&r.why.as_str()) {
+            reasons.push(&r.why);
+            out.extend(wrapped(&format!("* {}", r.why)));
+        }
+    }
+    out
+}
+
+/// A table under its caption; columns of numbers stand to the right.
+fn table_lines(table: &model::Table) -> Vec<String> {
+    let align = |i: usize| {
+        let words = table.rows.iter().any(|r| matches!(r.get(i), Some(Cell::Text(_))));
+        if words { Align::Left } else { Align::Right }
+    };
+    let columns = table.columns.iter().enumerate();
+    let columns: Vec<(&str, Align)> = columns.map(|(i, c)| (c.as_str(), align(i))).collect();
+    let mut t = Table::new(&columns);
+    for row in &table.rows {
+        t.row(row.iter().map(Cell::shown));
+    }
+    let mut out = vec![String::new(), table.caption.clone()];
+    out.extend(t.lines());
     out
 }
 

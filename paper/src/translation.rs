@@ -8,7 +8,7 @@ use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
 use sophie_sim::plant::GRAVITY;
 
-use super::flights::vehicle;
+use super::flights::{delta_alpha, delta_thrust, vehicle};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 use super::printed::Printed;
 use super::roll::sideways;
@@ -92,17 +92,73 @@ fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
     flown
 }
 
+/// A roll to either side that was flown.
+struct Rolled {
+    /// The arms carry their tip mass.
+    coupled: bool,
+    /// Heading, rad.
+    heading: f64,
+    /// Every moment with the force that an equation has to give.
+    truth: Vec<(Moment, DVec3)>,
+}
+
 /// Eqs. 5 to 8.
 pub fn section(p: &Printed) -> Section {
     let mut s = Section::new("eq5", "Eqs. 5 to 8: translational dynamics");
     let (mass, angle) = (p.mass(), p.text.roll_deg.to_radians());
-    let jobs = [
-        (false, 0.0),
-        (false, 90f64.to_radians()),
-        (true, 0.0),
-        (true, 90f64.to_radians()),
-    ];
-    let flights = parallel::each(&jobs, |(coupled, heading)| manoeuvre(*coupled, *heading, angle));
+    let east = 90f64.to_radians();
+    let jobs = [(false, 0.0), (false, east), (true, 0.0), (true, east)];
+    let flights = parallel::each(&jobs, |(coupled, heading)| Rolled {
+        coupled: *coupled,
+        heading: *heading,
+        truth: truth(&manoeuvre(*coupled, *heading, angle), mass),
+    });
+    s.table(errors(&flights, mass));
+    s.text(
+        "The paper's axes read as x east, y north, z down (its rigid terms are then right for x and y). Its flexible terms \
+         use the body's forward axis: (cθ sψ, cθ cψ, -sθ) instead of the sideways one (sψ sθ sφ + cψ cφ, cψ sθ sφ - sψ cφ, \
+         cθ sφ). So they vanish at ψ = 0, where Eq. 8 has them, and push along the nose at ψ = 90°. Eq. 7 repeats the rigid \
+         term of Eq. 6 and lacks gravity. Going from f_x to Eq. 8 the sign changes: f_x = -α1T1 - α2T2 + α3T3 + α4T4 is \
+         negative where Eq. 8 says +Δα ΔT, and the first-order part (T1+T3) Δα is lost on the way.",
+    );
+    s.figure(
+        "Arms that follow their thrust alone, roll to 25° and -25°. Flown and derived lie on each other.",
+        vec![
+            forces("Sideways (x) at heading 0°", &flights[0], 0, mass),
+            forces("Sideways (y) at heading 90°", &flights[1], 1, mass),
+            forces("Downwards (z) at heading 0°", &flights[0], 2, mass),
+            flexible_term(&flights[0]),
+        ],
+    );
+    let massless = flights.iter().filter(|f| !f.coupled);
+    let worst_derived = massless
+        .flat_map(|f| [0, 1, 2].map(|axis| f.rms(axis, |m| derived(m, mass))))
+        .fold(0.0, f64::max);
+    s.finding = format!(
+        "As derived, the equations give the flown force within {worst_derived:.3} N RMS. As printed, Eqs. 5 and 6 have the \
+         flexible force along the nose, Eq. 7 lacks gravity, and Eq. 8 keeps the smaller of two terms."
+    );
+    s
+}
+
+impl Rolled {
+    /// RMS error (N) of an equation on an axis.
+    fn rms(&self, axis: usize, equation: impl Fn(&Moment) -> DVec3) -> f64 {
+        let square = |(m, force): &(Moment, DVec3)| (equation(m)[axis] - force[axis]).powi(2);
+        let sum = self.truth.iter().map(square).sum::<f64>();
+        (sum / self.truth.len().max(1) as f64).sqrt()
+    }
+
+    /// A value over the time since the first moment, every 5 ms.
+    fn curve(&self, value: impl Fn(&Moment, &DVec3) -> f64) -> Vec<(f64, f64)> {
+        let start = self.truth.first().map_or(0.0, |(m, _)| m.t);
+        let shown = self.truth.iter().step_by(5);
+        shown.map(|(m, force)| (m.t - start, value(m, force))).collect()
+    }
+}
+
+/// What each equation is wrong by.
+fn errors(flights: &[Rolled], mass: f64) -> Table {
     let mut t = Table::new(
         "Error of the force, RMS over a roll to 25° on either side, N",
         &[
@@ -115,114 +171,75 @@ pub fn section(p: &Printed) -> Section {
             "largest true force",
         ],
     );
-    let mut worst_derived: f64 = 0.0;
-    for ((coupled, heading), flown) in jobs.iter().zip(&flights) {
-        let all = truth(flown, mass);
+    for flight in flights {
+        let arms = if flight.coupled {
+            "carry their tip mass"
+        } else {
+            "follow thrust alone"
+        };
         for (axis, name) in ["x (east), Eq. 5", "y (north), Eq. 6", "z (down), Eq. 7"]
-            .iter()
+            .into_iter()
             .enumerate()
         {
-            let rms = |f: &dyn Fn(&Moment) -> DVec3| {
-                (all.iter()
-                    .map(|(m, force)| (f(m)[axis] - force[axis]).powi(2))
-                    .sum::<f64>()
-                    / all.len().max(1) as f64)
-                    .sqrt()
-            };
-            let derived_error = rms(&|m| derived(m, mass));
-            if !coupled {
-                worst_derived = worst_derived.max(derived_error);
-            }
+            let forces = flight.truth.iter().map(|(_, f)| f[axis].abs());
             t.row([
-                if *coupled {
-                    "carry their tip mass"
-                } else {
-                    "follow thrust alone"
-                }
-                .into(),
-                format!("{:.0}°", heading.to_degrees()).into(),
-                (*name).into(),
-                num(rms(&printed), 3),
-                num(derived_error, 3),
-                num(rms(&|m| rigid(m, mass)), 3),
-                num(all.iter().map(|(_, f)| f[axis].abs()).fold(0.0, f64::max), 2),
+                arms.into(),
+                format!("{:.0}°", flight.heading.to_degrees()).into(),
+                name.into(),
+                num(flight.rms(axis, printed), 3),
+                num(flight.rms(axis, |m| derived(m, mass)), 3),
+                num(flight.rms(axis, |m| rigid(m, mass)), 3),
+                num(forces.fold(0.0, f64::max), 2),
             ]);
         }
     }
-    s.table(t);
-    s.text(
-        "The paper's axes read as x east, y north, z down (its rigid terms are then right for x and y). Its flexible terms \
-         use the body's forward axis: (cθ sψ, cθ cψ, -sθ) instead of the sideways one (sψ sθ sφ + cψ cφ, cψ sθ sφ - sψ cφ, \
-         cθ sφ). So they vanish at ψ = 0, where Eq. 8 has them, and push along the nose at ψ = 90°. Eq. 7 repeats the rigid \
-         term of Eq. 6 and lacks gravity. Going from f_x to Eq. 8 the sign changes: f_x = -α1T1 - α2T2 + α3T3 + α4T4 is \
-         negative where Eq. 8 says +Δα ΔT, and the first-order part (T1+T3) Δα is lost on the way.",
-    );
-    let chart = |i: usize, axis: usize, title: &str, y: &str| {
-        let all = flights.get(i).map(|f| truth(f, mass)).unwrap_or_default();
-        let start = all.first().map_or(0.0, |(m, _)| m.t);
-        let of = |f: &dyn Fn(&Moment, &DVec3) -> f64| {
-            all.iter()
-                .step_by(5)
-                .map(|(m, force)| (m.t - start, f(m, force)))
-                .collect::<Vec<_>>()
-        };
-        Chart {
-            title: title.to_owned(),
-            x: Axis::new("time (s)"),
-            y: Axis::new(y),
-            series: vec![
-                Series::new(
-                    "flown: mass times acceleration",
-                    7,
-                    Look::Line,
-                    of(&|_, f| f[axis]),
-                ),
-                Series::new("derived", 0, Look::Dashed, of(&|m, _| derived(m, mass)[axis])),
-                Series::new("printed", 1, Look::Line, of(&|m, _| printed(m)[axis])),
-                Series::new("rigid", 2, Look::Dashed, of(&|m, _| rigid(m, mass)[axis])),
-            ],
-            ..Chart::default()
-        }
-    };
-    let flexible = {
-        let all = flights.first().map(|f| truth(f, mass)).unwrap_or_default();
-        let start = all.first().map_or(0.0, |(m, _)| m.t);
-        let of =
-            |f: &dyn Fn(&Moment) -> f64| all.iter().step_by(5).map(|(m, _)| (m.t - start, f(m))).collect();
-        Chart {
-            title: "The flexible term alone, heading 0°".to_owned(),
-            x: Axis::new("time (s)"),
-            y: Axis::new("sideways force (N)"),
-            series: vec![
-                Series::new("true: Σ ± T sin α", 0, Look::Line, of(&sideways)),
-                Series::new(
-                    "Eq. 8: Δα ΔT, two pairs",
-                    1,
-                    Look::Line,
-                    of(&|m| 2.0 * super::flights::delta_alpha(m) * super::flights::delta_thrust(m)),
-                ),
-                Series::new(
-                    "first order: (T1+T3) Δα",
-                    2,
-                    Look::Dashed,
-                    of(&|m| 0.5 * m.thrust.iter().sum::<f64>() * super::flights::delta_alpha(m)),
-                ),
-            ],
-            ..Chart::default()
-        }
-    };
-    s.figure(
-        "Arms that follow their thrust alone, roll to 25° and -25°. Flown and derived lie on each other.",
-        vec![
-            chart(0, 0, "Sideways (x) at heading 0°", "force (N)"),
-            chart(1, 1, "Sideways (y) at heading 90°", "force (N)"),
-            chart(0, 2, "Downwards (z) at heading 0°", "force (N)"),
-            flexible,
+    t
+}
+
+/// The force on an axis: flown and by each equation.
+fn forces(title: &str, flight: &Rolled, axis: usize, mass: f64) -> Chart {
+    let by = |equation: &dyn Fn(&Moment) -> DVec3| flight.curve(|m, _| equation(m)[axis]);
+    Chart {
+        title: title.to_owned(),
+        x: Axis::new("time (s)"),
+        y: Axis::new("force (N)"),
+        series: vec![
+            Series::new(
+                "flown: mass times acceleration",
+                7,
+                Look::Line,
+                flight.curve(|_, f| f[axis]),
+            ),
+            Series::new("derived", 0, Look::Dashed, by(&|m| derived(m, mass))),
+            Series::new("printed", 1, Look::Line, by(&printed)),
+            Series::new("rigid", 2, Look::Dashed, by(&|m| rigid(m, mass))),
         ],
-    );
-    s.finding = format!(
-        "As derived, the equations give the flown force within {worst_derived:.3} N RMS. As printed, Eqs. 5 and 6 have the \
-         flexible force along the nose, Eq. 7 lacks gravity, and Eq. 8 keeps the smaller of two terms."
-    );
-    s
+        ..Chart::default()
+    }
+}
+
+/// The sideways force of the leaning arms alone.
+fn flexible_term(flight: &Rolled) -> Chart {
+    let of = |value: &dyn Fn(&Moment) -> f64| flight.curve(|m, _| value(m));
+    Chart {
+        title: "The flexible term alone, heading 0°".to_owned(),
+        x: Axis::new("time (s)"),
+        y: Axis::new("sideways force (N)"),
+        series: vec![
+            Series::new("true: Σ ± T sin α", 0, Look::Line, of(&sideways)),
+            Series::new(
+                "Eq. 8: Δα ΔT, two pairs",
+                1,
+                Look::Line,
+                of(&|m| 2.0 * delta_alpha(m) * delta_thrust(m)),
+            ),
+            Series::new(
+                "first order: (T1+T3) Δα",
+                2,
+                Look::Dashed,
+                of(&|m| 0.5 * m.thrust.iter().sum::<f64>() * delta_alpha(m)),
+            ),
+        ],
+        ..Chart::default()
+    }
 }
