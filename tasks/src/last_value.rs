@@ -10,7 +10,8 @@ use embassy_sync::waitqueue::MultiWakerRegistration;
 
 use crate::links::{RECEIVERS, Raw};
 
-/// A value, and who waits for the next one.
+/// A value, and who waits for the next one. What is called with the value in place must not use the same `LastValue`: it
+/// is locked meanwhile and would look empty.
 pub struct LastValue<T> {
     state: Mutex<Raw, RefCell<State<T>>>,
 }
@@ -65,7 +66,8 @@ impl<T> LastValue<T> {
             state.receivers += usize::from(free);
             free.then_some(Receiver {
                 newest: self,
-                seen: 0,
+                // Whatever is there is new to it.
+                seen: state.sent.wrapping_sub(1),
             })
         })
         .flatten()
@@ -122,5 +124,40 @@ impl<T> Drop for Receiver<'_, T> {
     fn drop(&mut self) {
         self.newest
             .with(|state| state.receivers = state.receivers.saturating_sub(1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use embassy_futures::poll_once;
+    // Brings the critical section that tests on a host run in.
+    use sophie_clock as _;
+
+    use super::*;
+
+    /// As after 2^32 - 1 messages: 49 days at 1 kHz.
+    fn about_to_wrap() -> LastValue<u32> {
+        let link = LastValue::new();
+        link.with(|state: &mut State<u32>| state.sent = u32::MAX);
+        link
+    }
+
+    #[test]
+    fn every_value_is_seen_when_the_number_of_values_wraps() {
+        let link = about_to_wrap();
+        let mut receiver = link.receiver().unwrap();
+        assert!(poll_once(receiver.changed()).is_pending());
+        for value in 0..3 {
+            link.send(value);
+            assert_eq!(poll_once(receiver.changed()), Poll::Ready(value));
+            assert!(poll_once(receiver.changed()).is_pending());
+        }
+    }
+
+    #[test]
+    fn a_new_receiver_sees_the_value_whose_number_is_zero() {
+        let link = about_to_wrap();
+        link.send(7);
+        assert_eq!(poll_once(link.receiver().unwrap().changed()), Poll::Ready(7));
     }
 }

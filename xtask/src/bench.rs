@@ -224,4 +224,11 @@ mod tests {
             "bench: no board called `cuav-v5` is emulated: allowed is matek-h743, f405"
         );
     }
+    #[test]
+    fn steps_may_be_asked_for() {
+        for (words, steps) in [(&["f405"][..], None), (&["f405", "7"], Some("7"))] {
+            let chain = Chain::parse(words).ok().unwrap();
+            assert_eq!((chain.board.name, chain.steps), ("f405", steps));
+        }
+    }
 }

@@ -1,6 +1,11 @@
 //! The newest value, and who waits for the next.
 
-use core::task::Poll;
+use core::future::Future;
+use core::pin::pin;
+use core::task::{Context, Poll};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::task::{Wake, Waker};
 
 use embassy_futures::poll_once;
 use sophie_tasks::last_value::LastValue;
@@ -30,4 +35,75 @@ fn receivers_are_limited_and_given_back() {
     assert!(all.iter().all(Option::is_some) && link.receiver().is_none());
     drop(all);
     assert!(link.receiver().is_some());
+}
+
+/// A task that counts how often it is woken.
+#[derive(Default)]
+struct Woken(AtomicUsize);
+
+impl Wake for Woken {
+    fn wake(self: Arc<Self>) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+impl Woken {
+    fn times(&self) -> usize {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Polls once as the task `of`.
+fn poll_as<F: Future>(of: &Arc<Woken>, future: F) -> Poll<F::Output> {
+    pin!(future).poll(&mut Context::from_waker(&Waker::from(of.clone())))
+}
+
+#[test]
+fn a_value_wakes_all_who_wait_and_no_other() {
+    let link = LastValue::new();
+    let tasks: [Arc<Woken>; RECEIVERS] = core::array::from_fn(|_| Arc::default());
+    let mut receivers: [_; RECEIVERS] = core::array::from_fn(|_| link.receiver().unwrap());
+    for (task, receiver) in tasks.iter().zip(&mut receivers).skip(1) {
+        // Twice, as a task that is polled for another reason does.
+        assert!(poll_as(task, receiver.changed()).is_pending());
+        assert!(poll_as(task, receiver.changed()).is_pending());
+    }
+    link.send(5);
+    // Waiting is over: the second value wakes who has asked again.
+    assert_eq!(poll_as(&tasks[1], receivers[1].changed()), Poll::Ready(5));
+    assert!(poll_as(&tasks[1], receivers[1].changed()).is_pending());
+    link.send(6);
+    let times: [usize; RECEIVERS] = core::array::from_fn(|i| tasks[i].times());
+    assert_eq!(times[..2], [0, 2]);
+    assert!(times[2..].iter().all(|n| *n == 1), "{times:?}");
+    assert_eq!(poll_as(&tasks[0], receivers[0].changed()), Poll::Ready(6));
+}
+
+#[test]
+fn who_waits_is_woken_even_when_more_tasks_have_asked_than_there_is_room() {
+    let link = LastValue::<u8>::new();
+    let waiting = Arc::<Woken>::default();
+    let mut receiver = link.receiver().unwrap();
+    assert!(poll_as(&waiting, receiver.changed()).is_pending());
+    // Waits that were given up leave their tasks behind.
+    for _ in 0..RECEIVERS {
+        let given_up = Arc::<Woken>::default();
+        assert!(poll_as(&given_up, link.receiver().unwrap().changed()).is_pending());
+    }
+    // Put out for want of room, it was woken to ask again.
+    assert_eq!(waiting.times(), 1);
+    assert!(poll_as(&waiting, receiver.changed()).is_pending());
+    link.send(1);
+    assert_eq!(waiting.times(), 2);
+}
+
+#[test]
+fn a_wait_that_is_given_up_loses_no_value() {
+    let link = LastValue::new();
+    let mut receiver = link.receiver().unwrap();
+    assert!(poll_once(receiver.changed()).is_pending());
+    link.send(3);
+    // A future that is dropped before it is polled has seen nothing.
+    drop(receiver.changed());
+    assert_eq!(poll_once(receiver.changed()), Poll::Ready(3));
 }

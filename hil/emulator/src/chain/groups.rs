@@ -21,7 +21,7 @@ const GROUPS: [(&str, &[&str]); 11] = [
         "sensor's driver",
         &[
             "sophie_drivers::",
-            "board::stm32::spi::",
+            "sophie_boards::stm32::spi::",
             "data_ready::",
             "embassy_stm32::exti::",
             "EXTI",
@@ -40,7 +40,7 @@ const GROUPS: [(&str, &[&str]); 11] = [
         "links",
         &[
             "sophie_tasks::links::",
-            "sophie_tasks::newest::",
+            "sophie_tasks::last_value::",
             "embassy_sync::watch::",
             "multi_waker::",
             "embassy_sync::signal::",
@@ -114,6 +114,15 @@ mod tests {
             (
                 "<sophie_tasks::links::Link<sophie_control::setpoint::Setpoint>>::latest",
                 "links",
+            ),
+            ("<sophie_tasks::last_value::LastValue<u8>>::send", "links"),
+            (
+                "<sophie_boards::stm32::escs::EscTimer<u8>>::write",
+                "frame: encoding, timer",
+            ),
+            (
+                "<sophie_boards::stm32::spi::Selected<u8>>::transfer",
+                "sensor's driver",
             ),
             ("sophie_drivers::dshot::fill_bits", "frame: encoding, timer"),
             (
