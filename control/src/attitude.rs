@@ -106,8 +106,9 @@ impl AttitudeLoop {
     /// Restarts from the attitude `q` (unit, body to world): wanted is where the vehicle is until something else is,
     /// and the first step does not jump.
     pub fn reset(&mut self, q: Quat) {
-        self.wanted = q.down_in_body();
-        self.down = Smooth::at(self.wanted);
+        let down = q.down_in_body();
+        self.wanted = down;
+        self.down = Smooth::at(down);
         self.wanted_yaw_rate = 0.0;
         self.capture_heading(q);
     }

@@ -72,7 +72,7 @@ impl ImuFilter {
     /// Takes the readings of a batch, oldest first, with `accel_bias` (m/s²) off the specific force; such as are not
     /// finite are left out. The newest that comes out goes to `newest`; gives how many were finite.
     #[inline(always)]
-    pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u8 {
+    pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u32 {
         if !self.started {
             self.start_at_first(readings, accel_bias);
         }
@@ -80,8 +80,12 @@ impl ImuFilter {
         let (mut filter, mut last) = (*self, *newest);
         let mut finite = 0;
         for ImuReading { gyro, accel } in readings {
-            if let Some(filtered) = filter.smooth(*gyro, *accel - accel_bias) {
-                last = filtered;
+            let unbiased = ImuReading {
+                gyro: *gyro,
+                accel: *accel - accel_bias,
+            };
+            if unbiased.is_finite() {
+                last = filter.smooth(unbiased);
                 finite += 1;
             }
         }
@@ -93,28 +97,21 @@ impl ImuFilter {
     #[cold]
     #[inline(never)]
     fn start_at_first(&mut self, readings: &[ImuReading], accel_bias: Vec3) {
-        let mut unbiased = readings.iter().map(|r| (r.gyro, r.accel - accel_bias));
-        if let Some((gyro, accel)) = unbiased.find(|(gyro, accel)| (*gyro + *accel).is_finite()) {
-            self.start(gyro, accel);
+        let finite = |r: &&ImuReading| (r.gyro + (r.accel - accel_bias)).is_finite();
+        if let Some(first) = readings.iter().find(finite) {
+            self.gyro.reset(first.gyro);
+            self.accel.reset(first.accel - accel_bias);
+            self.started = true;
         }
     }
 
-    /// One reading (rad/s, m/s²) filtered; one that is not finite is left out.
+    /// A finite reading filtered.
     #[inline(always)]
-    fn smooth(&mut self, gyro: Vec3, accel: Vec3) -> Option<ImuReading> {
-        if !(gyro + accel).is_finite() {
-            return None;
+    fn smooth(&mut self, reading: ImuReading) -> ImuReading {
+        ImuReading {
+            gyro: self.gyro.step(reading.gyro),
+            accel: self.accel.step(reading.accel),
         }
-        Some(ImuReading {
-            gyro: self.gyro.step(gyro),
-            accel: self.accel.step(accel),
-        })
-    }
-
-    fn start(&mut self, gyro: Vec3, accel: Vec3) {
-        self.gyro.reset(gyro);
-        self.accel.reset(accel);
-        self.started = true;
     }
 }
 

@@ -14,6 +14,14 @@ pub struct ImuReading {
     pub accel: Vec3,
 }
 
+impl ImuReading {
+    /// True when every component is finite. Tests their sum: false as well where that overflows.
+    #[inline(always)]
+    pub fn is_finite(&self) -> bool {
+        (self.gyro + self.accel).is_finite()
+    }
+}
+
 /// Filtered inertial sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImuSample {

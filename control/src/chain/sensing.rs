@@ -11,9 +11,9 @@ use crate::vector::Vec3;
 pub struct Sensing {
     filter: ImuFilter,
     accel_bias: Vec3,
-    /// Samples that make a step, and those that have come since the last.
-    per_step: f32,
-    collected: f32,
+    /// Readings that make a step, and those that have come since the last.
+    per_step: u32,
+    collected: u32,
     clock: StepClock,
 }
 
@@ -23,8 +23,8 @@ impl Sensing {
         Self {
             filter: ImuFilter::new(p.gyro_cutoff, rate_hz),
             accel_bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
-            per_step: math::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0),
-            collected: 0.0,
+            per_step: (math::clamp(rate_hz / CONTROL_RATE_HZ, 1.0, 64.0) + 0.5) as u32,
+            collected: 0,
             clock: StepClock::default(),
         }
     }
@@ -41,11 +41,11 @@ impl Sensing {
         let finite = self.filter.batch(readings, self.accel_bias, &mut newest);
         sample.gyro = newest.gyro;
         sample.accel = newest.accel;
-        self.collected += f32::from(finite);
-        if self.collected + 0.5 < self.per_step {
+        self.collected += finite;
+        if self.collected < self.per_step {
             return false;
         }
-        self.collected = 0.0;
+        self.collected = 0;
         sample.dt = self.clock.step(at_us);
         true
     }
