@@ -135,7 +135,8 @@ impl Counted {
     #[must_use]
     pub fn tables(&self, functions: &Functions) -> String {
         let mut text = format!("{} steps, instructions of each\n\n", self.steps.len());
-        let parts: [(&str, fn(&Step) -> &Counts); 2] = [
+        type Part = fn(&Step) -> &Counts;
+        let parts: [(&str, Part); 2] = [
             ("end of the sensor's transfer to start of the motor frame", |s| {
                 &s.acting
             }),
