@@ -46,8 +46,8 @@ const CHANGES: [(&str, &str); 9] = [
     ),
     (
         "    let pins = (p.motor_1, p.motor_2, p.motor_3, p.motor_4);\n    \
-         EscTimer::new(p.timer, pins, p.dma, Irqs, Protocol::from_params(params))\n",
-        "    let protocol = Protocol::from_params(params);\n    EscTimers::new(\n        \
+         EscTimer::new(p.timer, pins, p.dma, Irqs, EscProtocol::from_params(params))\n",
+        "    let protocol = EscProtocol::from_params(params);\n    EscTimers::new(\n        \
          EscTimer::first(p.timer, p.dma, Irqs, protocol).motor(0, p.motor_1).motor(3, p.motor_4),\n        \
          EscTimer::second(p.second, p.more_dma, Irqs, protocol).motor(1, p.motor_2).motor(2, p.motor_3),\n    )\n",
     ),
