@@ -270,9 +270,10 @@ fn below(path: &Path) -> Vec<PathBuf> {
 #[test]
 fn an_interrupted_run_leaves_nothing_behind() {
     let temp = Temp::new("interrupt");
-    let long =
-        b"steps = [{ do = 'arm' }, { do = 'take-off', height_m = 1 }, { do = 'hover', seconds = 600 }]\n\
-                 time_limit_s = 3000\n";
+    // Most of an hour on the pipe, which no battery ends: the signal comes before the flight is over on a busy machine too.
+    let long = b"steps = [{ do = 'arm' }, { do = 'take-off' }, { do = 'fly-to-pipe' }, { do = 'touch' }, { do = 'clamp' }, \
+                 { do = 'perch' }, { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }, \
+                 { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }]\ntime_limit_s = 3000\n";
     let long = temp.file("long.toml", long);
     for args in [
         &["fly", &*long, "--out", "deep/out"][..],

@@ -6,6 +6,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use sophie_emulator::bench::Setup;
 use sophie_emulator::boards;
 use sophie_emulator::chain::{Functions, Window};
 use sophie_emulator::elf::Firmware;
@@ -87,6 +88,10 @@ fn fly(firmware: &Firmware, steps: usize) -> Result<Flight, String> {
         ],
         ..Scenario::default_mission_with(&overrides)
     };
-    let (plan, sockets) = (Plan::default(), Sockets::default());
-    flight::fly(firmware, &scenario, 1.0, plan, sockets, |_| (), &mut Silent)
+    let setup = Setup {
+        speed: 1.0,
+        plan: Plan::default(),
+        sockets: Sockets::default(),
+    };
+    flight::fly(firmware, &scenario, setup, |_| (), &mut Silent)
 }
