@@ -323,7 +323,7 @@ links! {
     /// The estimate.
     attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor", stale after 5 ms;
     /// What the rotors are to do; without it they stop.
-    setpoint: Setpoint, Commander to "control, mixer", stale after 50 ms;
+    setpoint: Setpoint, Commander to "control", stale after 50 ms;
     /// What the controllers ask of the mixer.
     demand: Demand, Control to "mixer", stale after 5 ms;
     /// Where down is aimed at in body axes, and the wanted heading against the present one.

@@ -24,20 +24,15 @@ use super::Aligned;
 /// The slowest frame takes 120 µs; one that takes this long never ends.
 const LONGEST_FRAME: Duration = Duration::from_micros(500);
 
-/// Compare values of a frame and what follows it: a row for each bit and three of zeros. The first row is written to the
-/// timer, so that the frame begins when its counter starts and not a bit later; DMA moves the others. The first row of
-/// zeros is in force when the second has been moved, so the pins are low at the end of the transfer; the third makes the
-/// transfer whole bursts of the stream's buffer.
-type EscBurst = Aligned<[u16; dshot::BURST + 2 * dshot::MOTORS]>;
+/// Rows of compare values that DMA writes into the timer: one for each bit of a frame, and two of zeros. The first of
+/// those is in force when the second has been moved, so the pins are low at the end of the transfer.
+type EscBurst = Aligned<[u16; dshot::BURST + dshot::MOTORS]>;
 
 static DMA_MOTORS: ConstStaticCell<EscBurst> =
-    ConstStaticCell::new(Aligned([0; dshot::BURST + 2 * dshot::MOTORS]));
+    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
 /// That of a second timer, where there is one.
 static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> =
-    ConstStaticCell::new(Aligned([0; dshot::BURST + 2 * dshot::MOTORS]));
-
-/// A timer's channels, in the order of a row.
-const CHANNELS: [Channel; dshot::MOTORS] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
+    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
 
 /// How commands become compare values.
 #[derive(Clone, Copy)]
@@ -186,9 +181,8 @@ where
 
     /// One frame to all motors, over when this returns; gives its beginning.
     ///
-    /// The order matters: counter stopped, first bit written, DMA armed, request enabled, update, counter started. The update
-    /// puts the first bit in force and asks for the second; with the request enabled before the stream is armed, that
-    /// would be lost.
+    /// The order matters: counter stopped, DMA armed, request enabled, counter started. With the request enabled first,
+    /// an update that comes before the stream is armed is lost, and with it the frame's first bit.
     async fn send_frame(&mut self, bit: BitTiming, commands: PerArm<f32>) -> Instant
     where
         I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
@@ -204,10 +198,7 @@ where
         self.timer.stop();
         self.timer.enable_update_dma(false);
         self.timer.reset();
-        let [one, two, three, four, rows @ ..] = &self.burst.0;
-        for (channel, compare) in CHANNELS.into_iter().zip([one, two, three, four]) {
-            self.timer.set_compare_value(channel, (*compare).into());
-        }
+        let rows = &self.burst.0[..];
         let transfer = self.timer.setup_update_dma_burst(
             self.dma.reborrow(),
             self.irqs,
@@ -216,13 +207,8 @@ where
             rows,
         );
         self.timer.enable_update_dma(true);
-        let registers = self.timer.regs_core();
-        let began = critical_section::with(|_| {
-            // The pins rise with the first line and the bit is timed from the second one: some ten nanoseconds.
-            registers.egr().write(|w| w.set_ug(true));
-            registers.cr1().modify(|w| w.set_cen(true));
-            Instant::now()
-        });
+        self.timer.start();
+        let began = Instant::now();
         // A transfer that does not end is given up: the task must go on, and the supervisor sees it late.
         let _ = with_timeout(LONGEST_FRAME, transfer).await;
         self.timer.enable_update_dma(false);
