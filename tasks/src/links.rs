@@ -123,7 +123,7 @@ impl<T: Clone> Link<T> {
             .flatten()
     }
 
-    /// The newest message, fresh and held told apart.
+    /// The newest message, marked as fresh or held.
     pub fn newest(&self) -> Option<Newest<T>> {
         self.latest().map(|m| match m.clone().fresh(self.stale_after) {
             Some(_) => Newest::Fresh(m),

@@ -23,9 +23,12 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
     loop {
         let message = demand.changed().await;
         let started = Instant::now();
-        let arms = links.arms.latest().map(|message| ArmReading {
-            at_us: message.at.as_micros(),
-            tilt: message.value.within(links.arms.stale_after).values(),
+        // Copied only while it is new: nine steps of ten have no use for it.
+        let new = links.arms.look(|angles| mixing.awaits(angles.at.as_micros()));
+        let angles = new.filter(|new| *new).and_then(|_| links.arms.latest());
+        let arms = angles.map(|angles| ArmReading {
+            at_us: angles.at.as_micros(),
+            tilt: angles.value.within(links.arms.stale_after).values(),
         });
         let surroundings = Surroundings {
             battery_ratio: links.battery.look(|battery| battery.value.ratio),

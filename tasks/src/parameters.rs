@@ -1,4 +1,4 @@
-//! The parameters at start-up (the defaults, and over them what is stored), and what people are told that they take.
+//! The parameters at start-up (the defaults, and over them what is stored), and the ranges shown to people.
 
 use core::fmt;
 

@@ -32,7 +32,7 @@ impl Level {
 pub enum Watch {
     /// It does.
     Watched,
-    /// It does not: flying goes on without it.
+    /// It does not: the vehicle flies without it.
     Unwatched,
 }
 

@@ -24,7 +24,7 @@ pub struct ArmReading {
 pub struct Surroundings {
     /// Battery voltage over nominal, the last that was measured, however old: still the best guess. Without any, nominal.
     pub battery_ratio: Option<f32>,
-    /// The last reading of the arms' sensors, unless it is too old.
+    /// The last reading of the arms' sensors, `None` for each that is too old; those that were taken may be left out.
     pub arms: Option<ArmReading>,
 }
 
@@ -48,6 +48,12 @@ impl<A: Allocation> Mixing<A> {
             clock: StepClock::default(),
             readings: Readings::default(),
         }
+    }
+
+    /// True for readings that are newer than those taken last, measured at `at_us` µs.
+    #[inline(always)]
+    pub fn awaits(&self, at_us: u64) -> bool {
+        at_us > self.readings.seen_us
     }
 
     /// Commands for `demand`, whose sample was ready at `at_us` µs, in the place that keeps them: a message this long is

@@ -11,7 +11,7 @@ pub trait Behaviour {
     /// Before the transitions are looked through: brings up to date what their guards ask of this state.
     fn observe(&mut self, _step: &mut Step<'_>) {}
 
-    /// After them, when none applies: goes on within this state.
+    /// After them, when none applies: a step within this state.
     fn advance(&mut self, _step: &mut Step<'_>) {}
 
     /// The grip that must outlive a reset: from the first step of closing until every arm is proven free.

@@ -1,6 +1,6 @@
 //! What is declared of tasks and links, and the tables of the docs that follow from it.
 //!
-//! `SOPHIE_REWRITE_DOCS=1 cargo test --package sophie-tasks --test tasks declarations` rewrites the tables.
+//! `WRITE_DOCS=1 cargo test --package sophie-tasks --test tasks declarations` rewrites the tables.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -10,7 +10,7 @@ use sophie_tasks::links::Links;
 use sophie_tasks::schedule::{TaskId, Watch};
 use sophie_tasks::supervisor::least_runs;
 
-const REWRITE: &str = "SOPHIE_REWRITE_DOCS";
+const REWRITE: &str = "WRITE_DOCS";
 
 /// The part of `page` between the marks of `name` is `table`, or becomes it.
 fn holds(page: &str, name: &str, table: &str) {
