@@ -71,7 +71,8 @@ pub fn print(rows: &[(&Board, Sizes)]) {
 /// What is too large or out of date, each on its line.
 pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let path = build::root().join("xtask/ceilings.toml");
-    let mut ceilings: BTreeMap<String, Ceiling> = toml::from_str(&fs::read_to_string(&path)?)?;
+    let text = fs::read_to_string(&path)?;
+    let mut ceilings: BTreeMap<String, Ceiling> = toml::from_str(&text)?;
     let mut complaints = Vec::new();
     for (board, size) in rows {
         let limit = Ceiling {
@@ -103,7 +104,12 @@ pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let stacks: Vec<_> = rows.iter().map(|(board, s)| (board.name, s.stack)).collect();
     let updated = with_table(&page, &ceilings, &stacks)?;
     if tighten {
-        let head = "# Most that a board's firmware may take, bytes. `cargo xtask sizes` compares; `--tighten` lowers.\n";
+        // The reasons of the ceilings stand above them, and stay.
+        let head: String = text
+            .lines()
+            .take_while(|line| line.starts_with('#'))
+            .map(|line| format!("{line}\n"))
+            .collect();
         fs::write(&path, format!("{head}\n{}", toml::to_string(&ceilings)?))?;
         fs::write(&page_path, updated)?;
     } else if updated != page {
@@ -134,11 +140,16 @@ fn with_table(
         String::from("\n| board | flash, KiB | static RAM, KiB | stack, KiB |\n|---|---:|---:|---:|\n");
     for &(name, stack) in stacks {
         let ceiling = ceilings.get(name).ok_or("a board without ceiling")?;
-        let (flash, ram) = (ceiling.flash / 1024, ceiling.ram / 1024);
-        table += &format!("| `{name}` | {flash} | {ram} | {} |\n", stack / 1024);
+        table += &format!("{} {} |\n", row(name, ceiling), stack / 1024);
     }
     table += &format!("| limit | {} | {} | |\n", FLASH_LIMIT / 1024, RAM_LIMIT / 1024);
     Ok(format!("{head}{BEGIN}{table}{END}{tail}"))
+}
+
+/// A board's row up to its stack, which only an image knows.
+fn row(name: &str, ceiling: &Ceiling) -> String {
+    let (flash, ram) = (ceiling.flash / 1024, ceiling.ram / 1024);
+    format!("| `{name}` | {flash} | {ram} |")
 }
 
 /// A few per cent of room, in whole KiB: compilers differ.
@@ -149,6 +160,20 @@ fn rounded(size: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_page_shows_the_ceilings_that_are_compared_with() {
+        let read = |name| fs::read_to_string(build::root().join(name)).unwrap();
+        let ceilings: BTreeMap<String, Ceiling> = toml::from_str(&read("xtask/ceilings.toml")).unwrap();
+        let page = read(PAGE);
+        for (name, ceiling) in &ceilings {
+            let row = row(name, ceiling);
+            assert!(
+                page.contains(&row),
+                "{PAGE}: no row `{row}`; `cargo xtask sizes --tighten` writes it"
+            );
+        }
+    }
 
     #[test]
     fn the_table_is_replaced_and_nothing_else() {
