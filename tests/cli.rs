@@ -289,8 +289,9 @@ fn an_interrupted_run_leaves_nothing_behind() {
         while first.trim().is_empty() {
             assert!(lines.read_line(&mut first).unwrap() > 0, "{args:?} said nothing");
         }
+        // Ends it as Ctrl-C does, which the jobs that a script starts in its background ignore.
         let status = Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
+            .args(["-TERM", &child.id().to_string()])
             .status()
             .unwrap();
         assert!(status.success());
