@@ -9,13 +9,24 @@ fn start(seed: u64) -> Scenario {
     }
 }
 
-#[test]
-fn one_seed_is_one_run_to_the_last_edge_at_a_pin() {
-    let [first, second, other] = [1, 1, 2].map(|seed| fly(&start(seed), 1.0, &[]));
+/// One seed is one run to the last edge at a pin, and another seed is another.
+fn repeats(fly: impl Fn(&Scenario) -> Flight) {
+    let [first, second, other] = [1, 1, 2].map(|seed| fly(&start(seed)));
     assert!(told(&first, 0.0, "FLIGHT").is_some(), "{}", log(&first));
     assert_eq!(first.board.lines, second.board.lines);
     assert_eq!(first.board.run.pins_digest, second.board.run.pins_digest);
     assert_eq!(first.digest(), second.digest());
     assert_eq!(first.record.digest, second.record.digest);
     assert_ne!(first.board.run.pins_digest, other.board.run.pins_digest);
+}
+
+#[test]
+fn one_seed_is_one_run_on_the_small_board() {
+    repeats(|scenario| fly_small(scenario, &[]));
+}
+
+#[test]
+#[ignore = "campaign: minutes of emulated flight"]
+fn one_seed_is_one_run_on_the_reference_board() {
+    repeats(|scenario| fly(scenario, 1.0, &[]));
 }
