@@ -35,7 +35,7 @@ impl EscPulse {
 
     /// Timer values for a timer clocked at `clock_hz`.
     pub fn timing(self, clock_hz: u32) -> Option<PwmTiming> {
-        PwmTiming::new(clock_hz, 1_000_000 / self.period_us())
+        PwmTiming::new(clock_hz, self.period_us())
     }
 
     /// Pulse of a motor command, µs: the stop pulse for 0 and for anything that is not a positive number,

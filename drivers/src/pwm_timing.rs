@@ -18,16 +18,19 @@ impl PwmTiming {
     /// Counts at the end of a frame that no pulse may fill: two pulses must not run into one.
     const REST: u32 = 2;
 
-    /// The finest values for `frame_hz` frames a second on a 16-bit timer that is clocked at `clock_hz`;
-    /// `None` for a rate that it cannot make.
-    pub fn new(clock_hz: u32, frame_hz: u32) -> Option<Self> {
-        let per_frame = clock_hz.checked_div(frame_hz)?;
-        let divider = per_frame.div_ceil(Self::COUNTS).max(1);
+    /// Values for frames of `frame_us` µs on a 16-bit timer that is clocked at `clock_hz`; `None` for frames that it cannot
+    /// make. The finest ones that make them exactly, so that frames keep their phase to the board's clock for good: a
+    /// rounding of 1e-7 would shift them by 0.4 ms an hour. Where that takes more than twice the finest count, the finest.
+    pub fn new(clock_hz: u32, frame_us: u32) -> Option<Self> {
+        // In millionths of a clock, of which a count has `MICRO` times the divider.
+        const MICRO: u64 = 1_000_000;
+        let frame = u64::from(clock_hz) * u64::from(frame_us);
+        let least = frame.div_ceil(MICRO * u64::from(Self::COUNTS)).max(1);
+        let exact = (least..=2 * least).find(|divider| frame.is_multiple_of(divider * MICRO));
+        let divider = exact.unwrap_or(least);
         let prescaler = u16::try_from(divider - 1).ok()?;
-        let rate = frame_hz.checked_mul(divider)?;
-        let period = (clock_hz.checked_add(rate / 2)?)
-            .checked_div(rate)?
-            .min(Self::COUNTS);
+        let count = divider * MICRO;
+        let period = u32::try_from((frame + count / 2) / count).ok()?.min(Self::COUNTS);
         (period > Self::REST).then(|| Self {
             prescaler,
             period,
@@ -38,6 +41,11 @@ impl PwmTiming {
     /// Length of a count, µs.
     pub fn count_us(&self) -> f32 {
         1.0 / self.counts_per_us
+    }
+
+    /// Counts of a frame after `us` µs of it, within it.
+    pub fn passed(&self, us: u32) -> u32 {
+        ((us as f32 * self.counts_per_us) as u32).min(self.period - 1)
     }
 
     /// What is left of a frame of which `passed` counts have passed, µs, rounded.
@@ -68,49 +76,55 @@ mod tests {
             216_000_000,
             240_000_000,
         ] {
-            for hz in [50, 100, 200, 333, 400, 1000, 2000] {
-                let t = PwmTiming::new(clock, hz).unwrap();
-                assert!(t.period <= 65536, "{clock} {hz}: {t:?}");
-                let frame_us = t.period as f32 * t.count_us();
-                assert!(
-                    (frame_us * hz as f32 * 1e-6 - 1.0).abs() < 1e-3,
-                    "{clock} {hz}: {t:?}"
+            for frame_us in [20_000, 10_000, 5000, 3003, 2500, 1000, 500] {
+                let t = PwmTiming::new(clock, frame_us).unwrap();
+                assert!(t.period <= 65536, "{clock} {frame_us}: {t:?}");
+                let clocks = u64::from(t.period) * (u64::from(t.prescaler) + 1);
+                assert_eq!(
+                    clocks * 1_000_000,
+                    u64::from(clock) * u64::from(frame_us),
+                    "{t:?}"
                 );
-                // Half a count of rounding at most; a count is at most 0.31 µs, at 50 Hz.
+                // Half a count of rounding at most; a count is at most a third of a µs, at 50 Hz.
                 for us in [125.0, 250.0f32] {
                     assert!((t.compare(us) as f32 * t.count_us() - us).abs() <= 0.51 * t.count_us());
                 }
-                assert!(t.count_us() < 0.32);
+                assert!(t.count_us() < 0.334);
             }
         }
     }
 
     #[test]
     fn nonsense_makes_no_pulse_and_no_endless_one() {
-        let t = PwmTiming::new(168_000_000, 400).unwrap();
+        let t = PwmTiming::new(168_000_000, 2500).unwrap();
         for us in [0.0, -5.0, f32::NAN, f32::NEG_INFINITY] {
             assert_eq!(t.compare(us), 0);
         }
         assert!(t.compare(1e9) < t.period && t.compare(f32::INFINITY) < t.period);
         assert!(PwmTiming::new(168_000_000, 0).is_none());
-        assert!(PwmTiming::new(100, 400).is_none());
-        assert!(PwmTiming::new(240_000_000, 1).is_some_and(|t| t.period <= 65536));
-        assert!(PwmTiming::new(u32::MAX, 1).is_none());
+        assert!(PwmTiming::new(100, 2500).is_none());
+        assert!(PwmTiming::new(240_000_000, 1_000_000).is_some_and(|t| t.period <= 65536));
+        assert!(
+            PwmTiming::new(u32::MAX, 1_000_000).is_none() && PwmTiming::new(u32::MAX, u32::MAX).is_none()
+        );
     }
 
     #[test]
     fn what_is_left_of_a_frame_falls_to_nothing() {
-        // 108 MHz by 33: 65,455 counts of 0.3056 µs are 20 ms.
-        let t = PwmTiming::new(108_000_000, 50).unwrap();
-        assert_eq!((t.prescaler, t.period), (32, 65_455));
+        // 108 MHz by 36: 60,000 counts of a third of a µs are 20 ms.
+        let t = PwmTiming::new(108_000_000, 20_000).unwrap();
+        assert_eq!((t.prescaler, t.period), (35, 60_000));
         for (passed, us) in [
             (0, 20_000),
-            (16_364, 15_000),
-            (65_454, 0),
-            (65_455, 0),
+            (15_000, 15_000),
+            (59_999, 0),
+            (60_000, 0),
             (70_000, 0),
         ] {
             assert_eq!(t.left_us(passed), us, "{passed}");
+        }
+        for (us, passed) in [(0, 0), (1, 3), (5000, 15_000), (19_999, 59_997), (20_000, 59_999)] {
+            assert_eq!(t.passed(us), passed, "{us}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Servo pulses: microseconds to counts, at the frame rate that the servo takes.
+//! Servo pulses: microseconds to counts, in the frames that the servo takes.
 
 use sophie_control::math;
 
@@ -6,13 +6,13 @@ use crate::pwm_timing::PwmTiming;
 
 /// Shortest and longest pulse that a servo gets, µs. The drive's own range lies inside; these catch nonsense.
 pub const LIMITS_US: [f32; 2] = [400.0, 2600.0];
-/// Lowest and highest frame rate, Hz: analog servos take 50, digital ones up to 333.
-pub const FRAME_HZ: core::ops::RangeInclusive<u32> = 50..=333;
+/// Shortest and longest frame, µs: analog servos take 50 a second, digital ones up to 333.
+pub const FRAME_US: core::ops::RangeInclusive<u32> = 3003..=20_000;
 
-/// Timer values for servos on a timer clocked at `clock_hz`; `None` for a rate outside [`FRAME_HZ`].
-pub fn timing(clock_hz: u32, frame_hz: u32) -> Option<PwmTiming> {
-    if FRAME_HZ.contains(&frame_hz) {
-        PwmTiming::new(clock_hz, frame_hz)
+/// Timer values for servos on a timer clocked at `clock_hz`; `None` for frames outside [`FRAME_US`].
+pub fn timing(clock_hz: u32, frame_us: u32) -> Option<PwmTiming> {
+    if FRAME_US.contains(&frame_us) {
+        PwmTiming::new(clock_hz, frame_us)
     } else {
         None
     }
@@ -35,8 +35,8 @@ mod tests {
 
     #[test]
     fn pulses_are_limited_and_none_is_none() {
-        for hz in [50, 100, 333] {
-            let t = timing(108_000_000, hz).unwrap();
+        for frame in [20_000, 10_000, 3003] {
+            let t = timing(108_000_000, frame).unwrap();
             for (us, expected) in [
                 (1500.0, 1500.0),
                 (100.0, 400.0),
@@ -44,12 +44,12 @@ mod tests {
                 (f32::INFINITY, 2600.0),
             ] {
                 let counted = compare(&t, us) as f32 * t.count_us();
-                assert!((counted - expected).abs() < 0.2, "{hz} {us}: {counted}");
+                assert!((counted - expected).abs() < 0.2, "{frame} {us}: {counted}");
             }
             for us in [0.0, -1500.0, f32::NAN] {
                 assert_eq!(compare(&t, us), 0);
             }
         }
-        assert!(timing(108_000_000, 49).is_none() && timing(108_000_000, 400).is_none());
+        assert!(timing(108_000_000, 20_001).is_none() && timing(108_000_000, 3002).is_none());
     }
 }

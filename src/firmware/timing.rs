@@ -3,7 +3,7 @@
 //! ```text
 //! timing estimator: 1000/s, late 28/28/29, run 1/1/2, response 29/29/31 of 300 us, 0 missed
 //! timing chain: 1000/s, 42/43/43/44 us from data-ready to motor frame
-//! timing contact: 50/s, 6143/12287/11020 us from pressure to servo command, 9514/16383/24575/23500 us to its pulse of 35000 us, 0 missed
+//! timing contact: 50/s, 901/901/901 us from pressure to servo command, 1498/1499/1499/1499 us to its pulse of 3500 us, 0 missed
 //! ```
 //!
 //! Times are half, 99 % and all of the second's runs (too large by less than a quarter; the last is exact); where there

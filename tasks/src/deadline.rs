@@ -33,6 +33,14 @@ pub fn record_run_until(
     );
 }
 
+/// First instant from `now` on that is `phase` and a whole number of `period`s of the board's clock.
+pub fn begins_next(now: Instant, period: Duration, phase: Duration) -> Instant {
+    let period = period.as_ticks().max(1);
+    let passed = (now.as_ticks() % period + period - phase.as_ticks() % period) % period;
+    let left = if passed == 0 { 0 } else { period - passed };
+    now + Duration::from_ticks(left)
+}
+
 /// Start of a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
@@ -60,19 +68,20 @@ pub struct FixedRate<'a> {
 }
 
 impl<'a> FixedRate<'a> {
-    /// The loop of `task` as it is declared. The first release is now.
+    /// The loop of `task` as it is declared.
     pub fn of(links: &'a Links, task: TaskId) -> Self {
         Self::new(links, task, task.period(), task.deadline())
     }
 
-    /// A loop of `period` whose work must end within `deadline` of its release. The first release is now.
+    /// A loop of `period` whose work must end within `deadline` of its release. Periods begin at the task's phase of the
+    /// board's clock: whatever the order in which tasks are spawned, one that reads another's message runs after it.
     pub fn new(links: &'a Links, task: TaskId, period: Duration, deadline: Duration) -> Self {
         Self {
             links,
             task,
             period,
             deadline,
-            next: Instant::now(),
+            next: begins_next(Instant::now(), period, task.phase()),
             current: None,
             skipped: 0,
         }

@@ -47,16 +47,28 @@ pub struct Task {
     pub level: Level,
     /// Time between two runs; the longest where it varies.
     pub period: Duration,
+    /// When its periods begin by the board's clock, so that a task runs after the one that it reads; `None` for a task
+    /// that follows an input.
+    pub phase: Option<Duration>,
     /// Time from release by which a run must have ended. What it counts from: docs/timing.md.
     pub deadline: Duration,
     /// Whether the supervisor watches it.
     pub watch: Watch,
 }
 
+macro_rules! optional {
+    () => {
+        None
+    };
+    ($value:expr) => {
+        Some($value)
+    };
+}
+
 macro_rules! tasks {
     ($(
         $(#[doc = $what:literal])+
-        $id:ident $name:literal: $level:ident, each $period:literal us, within $deadline:literal us, $watch:ident;
+        $id:ident $name:literal: $level:ident, each $period:literal us $(at $phase:literal us)?, within $deadline:literal us, $watch:ident;
     )*) => {
         /// Every task whose timing is measured.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +89,7 @@ macro_rules! tasks {
                         what: concat!($($what),+),
                         level: Level::$level,
                         period: Duration::from_micros($period),
+                        phase: optional!($(Duration::from_micros($phase))?),
                         deadline: Duration::from_micros($deadline),
                         watch: Watch::$watch,
                     },)*
@@ -98,21 +111,21 @@ tasks! {
     /// Motor output; its response is that of the whole chain.
     Motors "motors": Flight, each 1000 us, within 600 us, Watched;
     /// Pressure sensors and battery.
-    Analog "analog": Steady, each 2000 us, within 2000 us, Watched;
+    Analog "analog": Steady, each 2000 us at 0 us, within 2000 us, Watched;
     /// Clamp loops.
-    Clamp "clamp": Steady, each 10000 us, within 10000 us, Watched;
+    Clamp "clamp": Steady, each 10000 us at 600 us, within 10000 us, Watched;
     /// Servo output; a frame by `servo_frame_rate`, 20 ms at most.
-    Servos "servos": Steady, each 20000 us, within 20000 us, Watched;
+    Servos "servos": Steady, each 20000 us at 900 us, within 20000 us, Watched;
     /// Receiver, as frames come. A lost radio is the failsafe's business.
     Rc "rc": Steady, each 20000 us, within 2000 us, Unwatched;
     /// Mode logic.
-    Commander "commander": Steady, each 10000 us, within 10000 us, Watched;
+    Commander "commander": Steady, each 10000 us at 300 us, within 10000 us, Watched;
     /// Arm sensors. Their bus may stall; the mixer does without.
-    Arms "arms": Background, each 10000 us, within 10000 us, Unwatched;
+    Arms "arms": Background, each 10000 us at 0 us, within 10000 us, Unwatched;
     /// Telemetry to the pilot.
-    Telemetry "telemetry": Background, each 50000 us, within 50000 us, Unwatched;
+    Telemetry "telemetry": Background, each 50000 us at 0 us, within 50000 us, Unwatched;
     /// Deadline supervision and watchdog, which bites when it stands still.
-    Supervisor "supervisor": Steady, each 10000 us, within 10000 us, Unwatched;
+    Supervisor "supervisor": Steady, each 10000 us at 1200 us, within 10000 us, Unwatched;
 }
 
 impl TaskId {
@@ -132,6 +145,14 @@ impl TaskId {
     /// Time between two runs; the longest where it varies.
     pub const fn period(self) -> Duration {
         self.task().period
+    }
+
+    /// When its periods begin by the board's clock; 0 for a task that follows an input.
+    pub const fn phase(self) -> Duration {
+        match self.task().phase {
+            Some(phase) => phase,
+            None => Duration::MIN,
+        }
     }
 
     /// Time from release by which a run must have ended.

@@ -17,22 +17,29 @@ use crate::links::{Links, Newest, Stamped, TendonForce, TendonOrder};
 use crate::ports::Servos;
 use crate::timing::Run;
 
-/// Longest time from the conversion of pressures to the write of the pulse widths that answer them: 2 ms until the
-/// next conversion, 10 ms until the clamp's next step, 3 ms for the conversion and for the tasks of the level that come
-/// first. The wait for the servos' frame comes on top of it: 20 ms at 50 Hz, 3 ms at 333 Hz.
-///
-/// A miss leaves a tendon's force behind what the pressure asks for: at most by 0.3 N for each ms, since the clamp turns
-/// it by 300 N/s at most. From 20 N (67 ms) on its integral waits, and the grip takes longer to close.
-pub const CHAIN_BUDGET: Duration = Duration::from_millis(15);
+/// When the servos' frames begin by the board's clock: time enough after the task's own start to write the pulse widths,
+/// which take effect with the next frame. A port with frames of its own puts them there.
+pub const FRAME_AT: Duration = Duration::from_micros(1500);
 
 /// Time between two frames of servos that take `hz` frames a second.
 pub fn period(hz: f32) -> Duration {
     Duration::from_micros((1e6 / hz + 0.5) as u64)
 }
 
-/// Longest time from the conversion of pressures to the beginning of the pulse that answers them.
+/// Longest time from the conversion of pressures to the beginning of the pulse that answers them: to the frame of the
+/// clamp's step, and 2 ms for a conversion that the clamp sees only as the one before. Frames that do not keep the
+/// clamp's phase (all but 50, 100 and 200 Hz) are up to one frame later.
+///
+/// A miss leaves a tendon's force behind what the pressure asks for: at most by 0.3 N for each ms, since the clamp turns
+/// it by 300 N/s at most. From 20 N (67 ms) on its integral waits, and the grip takes longer to close.
 pub fn chain_deadline(frame: Duration) -> Duration {
-    CHAIN_BUDGET + frame
+    let in_phase = FRAME_AT + TaskId::Analog.period();
+    let (frame_us, clamp_us) = (frame.as_micros().max(1), TaskId::Clamp.period().as_micros());
+    if frame_us.is_multiple_of(clamp_us) || clamp_us.is_multiple_of(frame_us) {
+        in_phase
+    } else {
+        in_phase + frame
+    }
 }
 
 /// Serves the servos; never returns.

@@ -6,6 +6,7 @@ use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin};
 use embassy_time::{Duration, Instant};
 use sophie_drivers::pwm_timing::PwmTiming;
+use sophie_tasks::deadline::begins_next;
 
 /// A running timer; its outputs are low until they are set. Channels that have no pin are left alone.
 pub struct PulseTimer<T: GeneralInstance4Channel> {
@@ -25,6 +26,18 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         timer.enable_outputs();
         timer.start();
         Self { timer }
+    }
+
+    /// Moves the frames so that one of each `frame` begins at `phase` of the board's clock. For before the outputs: a
+    /// pulse under way would change its length.
+    pub fn put_frames_at(&mut self, timing: &PwmTiming, frame: Duration, phase: Duration) {
+        critical_section::with(|_| {
+            let now = Instant::now();
+            let left = begins_next(now, frame, phase) - now;
+            let passed = (frame - left).as_micros() % frame.as_micros().max(1);
+            let counts = timing.passed(passed as u32);
+            self.timer.regs_gp16().cnt().write(|w| w.set_cnt(counts as u16));
+        });
     }
 
     /// Makes `pin` the output of its channel. The pin is the timer's as long as what is returned lives.

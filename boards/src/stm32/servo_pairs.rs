@@ -1,8 +1,8 @@
 //! The tendon servos where no timer has four free channels: two on one timer, two on another.
 
+use embassy_stm32::Peri;
 use embassy_stm32::gpio::Flex;
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin};
-use embassy_stm32::{Peri, rcc};
 use embassy_time::Instant;
 use sophie_control::params::Params;
 use sophie_control::wrench::PerArm;
@@ -11,6 +11,7 @@ use sophie_drivers::servo_pulse;
 use sophie_tasks::ports::Servos;
 
 use super::pulse_timer::PulseTimer;
+use super::servos::timer_with_frames;
 
 /// Two servos on two channels of a timer.
 struct Pair<T: GeneralInstance4Channel> {
@@ -28,7 +29,7 @@ impl<T: GeneralInstance4Channel> Pair<T> {
             Peri<'static, impl TimerPin<T, C1>>,
             Peri<'static, impl TimerPin<T, C2>>,
         ),
-        frame_hz: u32,
+        params: &Params,
     ) -> Self {
         const {
             assert!(
@@ -36,10 +37,7 @@ impl<T: GeneralInstance4Channel> Pair<T> {
                 "two servos are on one channel of a timer"
             );
         }
-        let Some(timing) = servo_pulse::timing(rcc::frequency::<T>().0, frame_hz) else {
-            panic!("a timer of the servos cannot make {frame_hz} Hz")
-        };
-        let mut timer = PulseTimer::new(timer, timing);
+        let (mut timer, timing) = timer_with_frames(timer, params);
         let pins = [timer.output(one), timer.output(two)];
         Self {
             timer,
@@ -69,7 +67,7 @@ impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
     /// channels, in any order: two of one channel do not build.
     ///
     /// # Panics
-    /// If a clock cannot make the frames: a board with such a clock never starts, so it is found at the bench.
+    /// As [`timer_with_frames`].
     pub fn new<C1: TimerChannel, C2: TimerChannel, C3: TimerChannel, C4: TimerChannel>(
         first: Peri<'static, A>,
         one_two: (
@@ -83,10 +81,9 @@ impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
         ),
         params: &Params,
     ) -> Self {
-        let frame_hz = (params.servo_frame_rate + 0.5) as u32;
         Self {
-            first: Pair::new(first, one_two, frame_hz),
-            second: Pair::new(second, three_four, frame_hz),
+            first: Pair::new(first, one_two, params),
+            second: Pair::new(second, three_four, params),
         }
     }
 }

@@ -9,11 +9,32 @@ use sophie_control::wrench::PerArm;
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_drivers::servo_pulse;
 use sophie_tasks::ports::Servos;
+use sophie_tasks::servos;
 
 use super::pulse_timer::PulseTimer;
 
 /// The channels in the order of the servos.
 const SERVOS: [Channel; 4] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
+
+/// `timer` with the frames of the parameter `servo_frame_rate`, at [`servos::FRAME_AT`] of the board's clock.
+///
+/// # Panics
+/// If the timer's clock cannot make the frames: a board with such a clock never starts, so it is found at the bench.
+pub(super) fn timer_with_frames<T: GeneralInstance4Channel>(
+    timer: Peri<'static, T>,
+    params: &Params,
+) -> (PulseTimer<T>, PwmTiming) {
+    let frame = servos::period(params.servo_frame_rate);
+    let Some(timing) = servo_pulse::timing(rcc::frequency::<T>().0, frame.as_micros() as u32) else {
+        panic!(
+            "a timer of the servos cannot make frames of {} us",
+            frame.as_micros()
+        )
+    };
+    let mut timer = PulseTimer::new(timer, timing);
+    timer.put_frames_at(&timing, frame, servos::FRAME_AT);
+    (timer, timing)
+}
 
 /// Four servos on the channels 1 to 4 of a timer.
 pub struct ServoTimer<T: GeneralInstance4Channel> {
@@ -27,7 +48,7 @@ impl<T: GeneralInstance4Channel> ServoTimer<T> {
     /// Servos on these pins without pulses, with the frames of the parameter `servo_frame_rate`.
     ///
     /// # Panics
-    /// If the timer's clock cannot make the frames: a board with such a clock never starts, so it is found at the bench.
+    /// As [`timer_with_frames`].
     pub fn new(
         timer: Peri<'static, T>,
         (one, two, three, four): (
@@ -38,11 +59,7 @@ impl<T: GeneralInstance4Channel> ServoTimer<T> {
         ),
         params: &Params,
     ) -> Self {
-        let frame_hz = (params.servo_frame_rate + 0.5) as u32;
-        let Some(timing) = servo_pulse::timing(rcc::frequency::<T>().0, frame_hz) else {
-            panic!("the timer of the servos cannot make {frame_hz} Hz")
-        };
-        let mut timer = PulseTimer::new(timer, timing);
+        let (mut timer, timing) = timer_with_frames(timer, params);
         let pins = [
             timer.output(one),
             timer.output(two),

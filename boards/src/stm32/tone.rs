@@ -8,8 +8,8 @@ use sophie_drivers::pwm_timing::PwmTiming;
 use super::lights::Switch;
 use super::pulse_timer::PulseTimer;
 
-/// Pitch, Hz: about where such sounders are loudest.
-const PITCH_HZ: u32 = 2700;
+/// Length of a wave, µs: about 2.7 kHz, where such sounders are loudest.
+const WAVE_US: u32 = 370;
 
 /// A sounder on the first channel of a timer.
 pub struct Tone<T: GeneralInstance4Channel> {
@@ -26,8 +26,8 @@ impl<T: GeneralInstance4Channel> Tone<T> {
     /// # Panics
     /// If the clock cannot make the tone: a board with such a clock never starts, so it is found at the bench.
     pub fn new(timer: Peri<'static, T>, pin: Peri<'static, impl TimerPin<T, Ch1>>) -> Self {
-        let Some(timing) = PwmTiming::new(rcc::frequency::<T>().0, PITCH_HZ) else {
-            panic!("the sounder's timer cannot make {PITCH_HZ} Hz")
+        let Some(timing) = PwmTiming::new(rcc::frequency::<T>().0, WAVE_US) else {
+            panic!("the sounder's timer cannot make waves of {WAVE_US} us")
         };
         let mut timer = PulseTimer::new(timer, timing);
         let pin = timer.output(pin);

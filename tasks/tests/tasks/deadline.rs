@@ -6,7 +6,7 @@ use std::rc::Rc;
 use embassy_time::{Duration, Instant, Timer};
 use sophie_clock::VirtualTime;
 use sophie_control::params::Params;
-use sophie_tasks::deadline::{FixedRate, TaskId, Tick};
+use sophie_tasks::deadline::{FixedRate, TaskId, Tick, begins_next};
 use sophie_tasks::links::Links;
 
 const PERIOD: Duration = Duration::from_millis(1);
@@ -19,7 +19,7 @@ fn run(ms: u64, work: impl Fn(usize) -> u64 + 'static) -> (Vec<Tick>, &'static L
     let ticks = Rc::new(RefCell::new(Vec::new()));
     let seen = ticks.clone();
     time.spawn(async move {
-        let mut rate = FixedRate::new(links, TaskId::Clamp, PERIOD, DEADLINE);
+        let mut rate = FixedRate::new(links, TaskId::Analog, PERIOD, DEADLINE);
         for n in 0.. {
             let tick = rate.next().await;
             seen.borrow_mut().push(tick);
@@ -42,7 +42,7 @@ fn an_idle_loop_keeps_its_rate_exactly() {
             .all(|(i, t)| t.started == Instant::from_millis(i as u64))
     );
     assert!(ticks.iter().all(|t| (t.dt - 1e-3).abs() < 1e-9));
-    let timing = links.timing(TaskId::Clamp);
+    let timing = links.timing(TaskId::Analog);
     assert_eq!(
         (
             timing.overruns,
@@ -61,7 +61,7 @@ fn a_stall_is_counted_and_never_made_up_for_by_a_burst() {
     assert!(starts.windows(2).all(|w| w[1] - w[0] >= 500), "burst: {starts:?}");
     // Served late at 14.5 ms, then in phase again.
     assert_eq!(&starts[10..13], &[10_000, 14_500, 15_000]);
-    let timing = links.timing(TaskId::Clamp);
+    let timing = links.timing(TaskId::Analog);
     // The long run itself, three releases that passed unserved, and the late run: it ended 0.55 ms after its release.
     assert_eq!(timing.overruns, 1 + 3 + 1);
     assert_eq!(timing.worst_response_us, 4500);
@@ -71,12 +71,60 @@ fn a_stall_is_counted_and_never_made_up_for_by_a_burst() {
 #[test]
 fn a_run_that_ends_after_its_deadline_is_an_overrun() {
     let (_, links) = run(100, |n| if n % 10 == 0 { 500 } else { 50 });
-    assert_eq!(links.timing(TaskId::Clamp).overruns, 10);
+    assert_eq!(links.timing(TaskId::Analog).overruns, 10);
 }
 
 #[test]
 fn a_loop_that_is_always_too_slow_settles_at_a_divided_rate() {
     let (ticks, links) = run(100, |_| 1500);
     assert!((60..=70).contains(&ticks.len()), "{}", ticks.len());
-    assert!(links.timing(TaskId::Clamp).overruns as usize >= ticks.len() - 1);
+    assert!(links.timing(TaskId::Analog).overruns as usize >= ticks.len() - 1);
+}
+
+#[test]
+fn periods_begin_at_the_tasks_phase_whenever_it_is_spawned() {
+    for spawned in [0, 1, 599, 600, 601, 9_999, 123_456] {
+        let time = VirtualTime::new();
+        let links: &'static Links = Box::leak(Box::new(Links::new(Params::default())));
+        let seen = Rc::new(RefCell::new(Vec::new()));
+        for task in [TaskId::Servos, TaskId::Clamp, TaskId::Analog] {
+            let seen = seen.clone();
+            time.spawn(async move {
+                Timer::after_micros(spawned).await;
+                let mut rate = FixedRate::of(links, task);
+                loop {
+                    let tick = rate.next().await;
+                    assert_eq!(tick.started, tick.released);
+                    seen.borrow_mut().push((tick.started.as_micros(), task));
+                }
+            });
+        }
+        time.run_until(spawned + 100_000);
+        let seen = seen.borrow();
+        for &(started, task) in seen.iter() {
+            assert_eq!(
+                started % task.period().as_micros(),
+                task.phase().as_micros(),
+                "{task:?}"
+            );
+        }
+        // A conversion, the step that reads it, the pulses that follow from that: within a millisecond, each frame.
+        let in_order = seen.windows(3).filter(|three| {
+            let [(converted, a), (_, b), (written, c)] = three else {
+                return false;
+            };
+            [*a, *b, *c] == [TaskId::Analog, TaskId::Clamp, TaskId::Servos] && written - converted < 1000
+        });
+        let count = in_order.count();
+        assert!((4..=6).contains(&count), "spawned at {spawned} us: {seen:?}");
+    }
+}
+
+#[test]
+fn a_phase_beyond_the_period_wraps() {
+    let [period, phase] = [Duration::from_micros(3003), Duration::from_micros(3103)];
+    for (now, next) in [(0, 100), (100, 100), (101, 3103), (3103, 3103), (6005, 6106)] {
+        let next = Instant::from_micros(next);
+        assert_eq!(begins_next(Instant::from_micros(now), period, phase), next);
+    }
 }

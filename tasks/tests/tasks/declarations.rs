@@ -44,11 +44,12 @@ fn shown(time: Duration) -> String {
 #[test]
 fn the_table_of_the_tasks_is_their_declaration() {
     let mut table = String::from(
-        "| task | level | period | deadline | watched | what it does |\n|---|---|---:|---:|---|---|\n",
+        "| task | level | period | begins at | deadline | watched | what it does |\n|---|---|---:|---:|---:|---|---|\n",
     );
     for id in TaskId::ALL {
         let task = id.task();
         let [period, deadline] = [task.period, task.deadline].map(shown);
+        let phase = task.phase.map(shown).unwrap_or_default();
         let watched = match task.watch {
             Watch::Watched => "yes",
             Watch::Unwatched => "no",
@@ -56,7 +57,7 @@ fn the_table_of_the_tasks_is_their_declaration() {
         let (name, level, what) = (task.name, task.level.name(), task.what.trim());
         let _ = writeln!(
             table,
-            "| `{name}` | {level} | {period} | {deadline} | {watched} | {what} |"
+            "| `{name}` | {level} | {period} | {phase} | {deadline} | {watched} | {what} |"
         );
     }
     holds("timing.md", "tasks", &table);

@@ -171,11 +171,11 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
     }
 }
 
-/// Sends an order each 10 ms whose pressures were converted `age` ms before, from 1 ms before a servo frame on.
+/// Sends an order each 10 ms whose pressures were converted `age` ms before; `servos` reads it 0.9 ms later.
 fn ordered(rig: &mut Rig, ms: u64, age: u64, order: fn(TendonForces) -> TendonOrder) {
     rig.run_with(ms, |links, at| {
         links.arms.send(at, ArmAngles::at(at, [Some(CLOSED); 4]));
-        if at.as_millis() % 10 == 9 {
+        if at.as_millis() % 10 == 0 && at.as_millis() >= age {
             links
                 .tendons
                 .send(at - Duration::from_millis(age), order(forces(60.0, false)));
@@ -186,34 +186,51 @@ fn ordered(rig: &mut Rig, ms: u64, age: u64, order: fn(TendonForces) -> TendonOr
 #[test]
 fn the_time_from_conversion_to_pulse_is_recorded_once_for_each_conversion_that_becomes_a_pulse() {
     let (mut rig, port) = started(Start::COLD);
-    // Each pulse begins 5 ms after the write, which takes 20 us.
-    port.frame_us.set(5000);
-    ordered(&mut rig, 1000, 4, TendonOrder::Measured);
+    // Each pulse begins 0.5 ms after the write, which takes 20 us.
+    port.frame_us.set(500);
+    ordered(&mut rig, 1000, 1, TendonOrder::Measured);
     let timing = rig.links.contact_timing();
-    // Frames at 20 ms to 980 ms: the orders in between are overtaken. That of 1000 ms is being written.
+    // Frames of 20 ms to 980 ms: the orders in between are overtaken.
     assert_eq!((timing.runs, timing.overruns), (49, 0));
-    // 15 ms for the steps before, and a frame of 20 ms.
-    assert_eq!(timing.deadline_us, 35_000);
+    // To the frame after the clamp's step, and a conversion that it saw too late.
+    assert_eq!(timing.deadline_us, 3500);
     let take = |quantity| rig.links.take_contact_histogram(quantity);
     let [late, frame, all] = [Quantity::Lateness, Quantity::Execution, Quantity::Response].map(take);
-    assert_eq!((late.min(), late.max()), (5000, 5000));
-    assert_eq!((frame.min(), frame.max()), (5020, 5020));
-    assert_eq!((all.min(), all.max(), all.count()), (10_020, 10_020, 49));
+    assert_eq!((late.min(), late.max()), (1900, 1900));
+    assert_eq!((frame.min(), frame.max()), (520, 520));
+    assert_eq!((all.min(), all.max(), all.count()), (2420, 2420, 49));
     // No new conversion, no new answer, whatever the servos' frames.
     rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
     assert_eq!(rig.links.contact_timing().runs, 50);
 }
 
 #[test]
+fn frames_out_of_the_clamps_phase_have_a_longer_deadline() {
+    for (hz, us) in [
+        (50.0, 3500),
+        (100.0, 3500),
+        (200.0, 3500),
+        (333.0, 6503),
+        (60.0, 20_167),
+    ] {
+        assert_eq!(
+            servos::chain_deadline(servos::period(hz)).as_micros(),
+            us,
+            "{hz} Hz"
+        );
+    }
+}
+
+#[test]
 fn a_pulse_that_comes_too_late_is_a_missed_deadline() {
-    for (age, missed) in [(29, 0), (30, 1), (190, 1)] {
+    for (age, missed) in [(2, 0), (3, 1), (190, 1)] {
         let (mut rig, port) = started(Start::COLD);
-        port.frame_us.set(4980);
+        port.frame_us.set(480);
         rig.run(210);
         ordered(&mut rig, 20, age, TendonOrder::Measured);
         let timing = rig.links.contact_timing();
         assert_eq!((timing.runs, timing.overruns), (1, missed), "{age} ms");
-        assert_eq!(u64::from(timing.worst_response_us), 1000 * (age + 1) + 5000);
+        assert_eq!(u64::from(timing.worst_response_us), 1000 * age + 1400);
     }
 }
 
@@ -257,5 +274,5 @@ fn the_tension_is_as_old_as_the_oldest_tilt_in_it() {
         });
         links.arms.send(angles.oldest().unwrap(), angles);
     });
-    assert_eq!(rig.links.tension.latest().unwrap().at.as_millis(), 69);
+    assert_eq!(rig.links.tension.latest().unwrap().at.as_millis(), 70);
 }

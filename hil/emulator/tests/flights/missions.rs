@@ -1,9 +1,40 @@
 use sophie_emulator::wires::BoardFault;
 use sophie_sim::sensors::fsr::FsrBreak;
+use sophie_timing::live::{self, Contact, Line};
 
 use super::*;
 
+/// Each second's record of the chain from contact pressure to servo pulse.
+fn contact(flight: &Flight) -> Vec<Contact> {
+    let lines = flight.board.lines.iter();
+    let read = lines.filter_map(|line| live::parse(&line.text));
+    read.filter_map(|line| match line.unwrap() {
+        Line::Contact(contact) => Some(contact),
+        Line::Record(_) | Line::Chain(_) => None,
+    })
+    .collect()
+}
+
+/// Every conversion that a servo answers has its pulse within the deadline, in at least `seconds` of the flight.
+fn answers_contact_in_time(flight: &Flight, seconds: usize) {
+    let all = contact(flight);
+    // Servos at 50 Hz; the first record and the last are of parts of a second.
+    let whole = all.iter().filter(|second| second.pulses >= 49);
+    assert!(whole.count() >= seconds, "{all:?}");
+    for second in &all {
+        assert!(
+            second.missed == 0 && second.pulse.max <= second.deadline && second.deadline == 3500,
+            "{second:?}"
+        );
+    }
+    // For docs/timing.md.
+    let command = all.iter().map(|second| second.command.max).max();
+    let pulse = all.iter().map(|second| second.pulse.max).max();
+    println!("contact: {command:?} us to the command, {pulse:?} us to the pulse at most");
+}
+
 #[test]
+#[ignore = "campaign: minutes of emulated flight"]
 fn the_image_perches_at_half_an_instruction_a_cycle() {
     let flight = fly(&scenario("perch-short.toml"), 0.5, &[]);
     assert!(
@@ -22,7 +53,24 @@ fn the_image_perches_at_half_an_instruction_a_cycle() {
     let latency = flight.board.run.latency_us;
     assert!(latency.count > 20_000 && latency.worst < 250.0, "{latency:?}");
     assert_eq!(flight.record.grip.len(), 4);
+    answers_contact_in_time(&flight, 60);
     assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
+}
+
+#[test]
+#[ignore = "campaign: minutes of emulated flight"]
+fn the_small_board_perches() {
+    let flight = fly_small(&scenario("perch-short.toml"), &[]);
+    assert!(
+        flight.passed(),
+        "{:?} {:?}\n{}",
+        flight.record.outcome,
+        flight.gaps,
+        log(&flight)
+    );
+    assert!(flight.board.overruns.is_empty(), "{:?}", flight.board.overruns);
+    assert_eq!(flight.record.grip.len(), 4);
+    answers_contact_in_time(&flight, 60);
 }
 
 #[test]
@@ -41,6 +89,7 @@ fn the_small_board_flies_in_time() {
     }
     let latency = flight.board.run.latency_us;
     assert!(latency.count > 10_000 && latency.worst <= 150.0, "{latency:?}");
+    answers_contact_in_time(&flight, 15);
     assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
 }
 
@@ -84,6 +133,7 @@ fn in_time(flight: &Flight, longest: f64, jitter: f64) {
         latency.count > 5_000 && latency.worst <= longest && latency.worst - latency.mean() <= jitter,
         "{latency:?}"
     );
+    answers_contact_in_time(flight, 3);
     assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
 }
 
