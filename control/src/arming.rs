@@ -74,8 +74,8 @@ arming_checks! {
     ThrottleNotLow = "throttle not low", "the pilot";
     /// The perch switch is on.
     PerchSwitchOn = "perch switch on", "the pilot";
-    /// The tendons are still closed.
-    ArmsClosed = "arms closed", "perch switch on and off, or a grip that holds";
+    /// The arms are closed and do not hold, or are not proven free.
+    ArmsClosed = "arms closed", "perch switch on and off, until every arm is free; or a grip that holds";
     /// The vehicle leans by more than [`TILT_MAX`].
     TiltTooLarge = "tilt too large", "setting it upright";
     /// The battery is below the warning voltage, or not measured.
@@ -183,7 +183,7 @@ pub struct Checks {
     pub fsr_fault: bool,
     /// The flight level misses its deadlines.
     pub late: bool,
-    /// The tendons are closed.
+    /// The arms are closed and do not hold, or are not proven free.
     pub arms_closed: bool,
     /// What the drivers, the storage and the start report.
     pub hardware: Refusals,

@@ -159,7 +159,12 @@ impl Context {
             .arms()
             .unwrap_or(i.sticks.unwrap_or_default().arms)
             .mask();
-        let held = grip_memory.arms().is_some() && self.grasps(i, grip_memory);
+        // Arms that open still pull at the pipe, and so would rotors at them: free is what is proven free.
+        let arms_closed = match grip_memory {
+            GripMemory::Open => !i.grip.is_some_and(|grip| grip.released),
+            GripMemory::Controlled(_) | GripMemory::HeldByGears(_) => !self.grasps(i, grip_memory),
+            GripMemory::Unknown => true,
+        };
         let refusals = Checks {
             calibrated: i.motion.is_some_and(|m| m.calibrated),
             cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
@@ -173,7 +178,7 @@ impl Context {
                 .any(|(&fault, chosen)| fault && chosen),
             late: i.late,
             hardware: i.hardware,
-            arms_closed: grip_memory != GripMemory::Open && !held,
+            arms_closed,
         }
         .refusals(&self.params);
         // The range of a sensor of an unused arm.

@@ -293,6 +293,7 @@ fn a_link_that_falls_silent_counts_as_none() {
             Refusal::RcLost,
             Refusal::ImuStale,
             Refusal::NotCalibrated,
+            Refusal::ArmsClosed,
             Refusal::BatteryLow,
             Refusal::FsrFault
         ]

@@ -153,6 +153,8 @@ proptest! {
                 if [Mode::Disarmed, Mode::Perched].contains(&before) && rotors.spin() {
                     prop_assert!(sticks.is_some_and(|s| s.arm_switch));
                     prop_assert!([Mode::Armed, Mode::Releasing].contains(&mode), "{before:?} -> {mode:?}");
+                    let free = r.inputs.grip.is_some_and(|g| g.released);
+                    prop_assert!(mode == Mode::Releasing || free, "started while arms were not free");
                 }
             }
         }
