@@ -35,7 +35,7 @@ use self::behaviour::Behaviour;
 use self::context::Step;
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
-use crate::arming::Refusals;
+use crate::arming::ArmingInhibits;
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
@@ -161,7 +161,7 @@ pub struct Inputs {
     /// The flight level misses its deadlines.
     pub late: bool,
     /// What the drivers, the storage and the start report against arming.
-    pub hardware: Refusals,
+    pub hardware: ArmingInhibits,
 }
 
 impl Inputs {
@@ -203,5 +203,5 @@ pub struct Outputs {
     /// Why arming is refused, the failsafe acts or the last state was left; `None` when nothing is wrong.
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
-    pub refusals: Refusals,
+    pub inhibits: ArmingInhibits,
 }

@@ -1,7 +1,7 @@
 //! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`,
 //! their levels are declared in [`sophie_tasks::schedule`].
 
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::mixer::Flexible;
 use sophie_control::wrench::Configuration;
 use sophie_drivers::rc_decoder::Decoder;
@@ -21,7 +21,7 @@ const SELF_TESTS: u8 = 3;
 pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
     for _ in 0..if self_test { SELF_TESTS } else { 0 } {
         let result = port.self_test().await;
-        links.report(Refusal::ImuSelfTest, result.is_err());
+        links.report(ArmingInhibit::ImuSelfTest, result.is_err());
         match result {
             Ok(_) => {
                 defmt::info!("imu: self-test passed");

@@ -34,7 +34,7 @@ pub async fn run(links: &Links) -> ! {
             tendons,
             grip_memory,
             reason,
-            refusals,
+            inhibits,
             ..
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
@@ -47,7 +47,7 @@ pub async fn run(links: &Links) -> ! {
                 mode,
                 reason,
                 warning,
-                refusals,
+                inhibits,
             },
         );
     }

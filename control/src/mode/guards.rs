@@ -47,7 +47,7 @@ guards! {
     CALIBRATED = "calibrated", |_, s| s.inputs.motion.is_some_and(|m| m.calibrated);
     ARM_GESTURE = "arming gesture", |_, s| s.context.gesture == Some(Gesture::Arm);
     DISARM_GESTURE = "disarming gesture", |_, s| s.context.gesture == Some(Gesture::Disarm);
-    CHECKS_PASS = "every arming check passes", |state, s| s.context.refusals(s.inputs, at_rest(state, s)).is_empty();
+    CHECKS_PASS = "every arming check passes", |state, s| s.context.inhibits(s.inputs, at_rest(state, s)).is_empty();
     ARMS_CLOSED = "arms closed", |state, s| at_rest(state, s).arms().is_some();
     THROTTLE_UP = "throttle not low", |_, s| sticks(s, |t| t.throttle > s.context.params.throttle_low);
     THROTTLE_LOW = "throttle low", |_, s| sticks(s, |t| t.throttle <= s.context.params.throttle_low);

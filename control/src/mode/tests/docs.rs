@@ -7,7 +7,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 use std::{fs, println};
 
-use crate::arming::Refusal;
+use crate::arming::ArmingInhibit;
 use crate::mode::transitions::{Notice, TRANSITIONS, Transition};
 use crate::mode::*;
 
@@ -71,7 +71,7 @@ fn transitions() -> String {
 
 fn checks() -> String {
     let mut text = String::from("| check | the pilot reads | cleared by |\n|---|---|---|\n");
-    for check in Refusal::ALL {
+    for check in ArmingInhibit::ALL {
         writeln!(
             text,
             "| `{check:?}` | {} | {} |",
