@@ -128,6 +128,11 @@ impl Mode {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
+
+    /// The rotors stand in it. In every other mode they may turn, and what drops everything applies.
+    pub const fn rotors_stand(self) -> bool {
+        matches!(self, Self::Calibrating | Self::Disarmed | Self::Perched)
+    }
 }
 
 /// Estimated motion, as far as the mode logic needs it.

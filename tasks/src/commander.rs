@@ -57,9 +57,7 @@ pub async fn run(links: &Links) -> ! {
 fn warning(links: &Links, mode: Mode) -> &'static str {
     if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         "arm tilt beyond its model"
-    } else if matches!(mode, Mode::Calibrating | Mode::Disarmed | Mode::Perched)
-        && !links.start.cause.warning().is_empty()
-    {
+    } else if mode.rotors_stand() && !links.start.cause.warning().is_empty() {
         links.start.cause.warning()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
         "servo weaker than the force limit"

@@ -135,7 +135,7 @@ proptest! {
                 let (before, grip_memory) = (r.out.mode, r.out.grip_memory);
                 r.step();
                 let Outputs { mode, rotors, tendons, reason, .. } = r.out;
-                let still = [Mode::Calibrating, Mode::Disarmed, Mode::Perched].contains(&mode);
+                let still = mode.rotors_stand();
                 prop_assert!(!(still && rotors.spin()), "{mode:?} {rotors:?}");
                 prop_assert!(mode != Mode::Perched || tendons != ClampCommand::Release);
                 prop_assert!(mode != Mode::Clamping || tendons != ClampCommand::Release);
