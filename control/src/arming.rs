@@ -14,12 +14,12 @@ pub const TILT_MAX: f32 = crate::math::deg(25.0);
 /// Declares the arming checks, the most basic first: name, text for the pilot's display, what clears it.
 macro_rules! arming_checks {
     ($($(#[$doc:meta])+ $name:ident = $text:literal, $cleared:literal;)+) => {
-        /// A reason why arming is refused.
+        /// A reason for which arming is refused.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
-        pub enum Refusal { $($(#[$doc])+ $name,)+ }
+        pub enum ArmingInhibit { $($(#[$doc])+ $name,)+ }
 
-        impl Refusal {
+        impl ArmingInhibit {
             /// Every reason, the most basic first.
             pub const ALL: [Self; [$($text),+].len()] = [$(Self::$name),+];
 
@@ -74,8 +74,8 @@ arming_checks! {
     ThrottleNotLow = "throttle not low", "the pilot";
     /// The perch switch is on.
     PerchSwitchOn = "perch switch on", "the pilot";
-    /// The tendons are still closed.
-    ArmsClosed = "arms closed", "perch switch on and off, or a grip that holds";
+    /// The arms are closed and do not hold, or are not proven free.
+    ArmsClosed = "arms closed", "perch switch on and off, until every arm is free; or a grip that holds";
     /// The vehicle leans by more than [`TILT_MAX`].
     TiltTooLarge = "tilt too large", "setting it upright";
     /// The battery is below the warning voltage, or not measured.
@@ -104,10 +104,10 @@ arming_checks! {
     Overruns = "deadlines missed", "a second without misses";
 }
 
-/// Each has a bit in [`Refusals`].
-const _: () = assert!(Refusal::ALL.len() <= u64::BITS as usize);
+/// Each has a bit in [`ArmingInhibits`].
+const _: () = assert!(ArmingInhibit::ALL.len() <= u64::BITS as usize);
 
-impl Refusal {
+impl ArmingInhibit {
     /// The pressure sensors' ranges, arm by arm.
     pub const FSR_RANGE: PerArm<Self> = [Self::FsrRange1, Self::FsrRange2, Self::FsrRange3, Self::FsrRange4];
 
@@ -118,9 +118,9 @@ impl Refusal {
 
 /// The reasons that hold now.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Refusals(u64);
+pub struct ArmingInhibits(u64);
 
-impl Refusals {
+impl ArmingInhibits {
     /// No reason.
     pub const NONE: Self = Self(0);
 
@@ -130,12 +130,12 @@ impl Refusals {
     }
 
     /// These and `reason`.
-    pub const fn with(self, reason: Refusal) -> Self {
+    pub const fn with(self, reason: ArmingInhibit) -> Self {
         Self(self.0 | reason.bit())
     }
 
     /// These without `reason`.
-    pub const fn without(self, reason: Refusal) -> Self {
+    pub const fn without(self, reason: ArmingInhibit) -> Self {
         Self(self.0 & !reason.bit())
     }
 
@@ -145,23 +145,23 @@ impl Refusals {
     }
 
     /// True when `reason` holds.
-    pub const fn contains(self, reason: Refusal) -> bool {
+    pub const fn contains(self, reason: ArmingInhibit) -> bool {
         self.0 & reason.bit() != 0
     }
 
     /// The most basic reason.
-    pub fn first(self) -> Option<Refusal> {
+    pub fn first(self) -> Option<ArmingInhibit> {
         self.iter().next()
     }
 
     /// Every reason that holds, the most basic first.
-    pub fn iter(self) -> impl Iterator<Item = Refusal> {
-        Refusal::ALL.into_iter().filter(move |&r| self.contains(r))
+    pub fn iter(self) -> impl Iterator<Item = ArmingInhibit> {
+        ArmingInhibit::ALL.into_iter().filter(move |&r| self.contains(r))
     }
 }
 
-impl FromIterator<Refusal> for Refusals {
-    fn from_iter<I: IntoIterator<Item = Refusal>>(reasons: I) -> Self {
+impl FromIterator<ArmingInhibit> for ArmingInhibits {
+    fn from_iter<I: IntoIterator<Item = ArmingInhibit>>(reasons: I) -> Self {
         Self(reasons.into_iter().fold(0, |bits, r| bits | r.bit()))
     }
 }
@@ -183,40 +183,43 @@ pub struct Checks {
     pub fsr_fault: bool,
     /// The flight level misses its deadlines.
     pub late: bool,
-    /// The tendons are closed.
+    /// The arms are closed and do not hold, or are not proven free.
     pub arms_closed: bool,
     /// What the drivers, the storage and the start report.
-    pub hardware: Refusals,
+    pub hardware: ArmingInhibits,
 }
 
 impl Checks {
     /// Every reason against arming now.
-    pub fn refusals(&self, params: &Params) -> Refusals {
+    pub fn inhibits(&self, params: &Params) -> ArmingInhibits {
         let sticks = self.sticks.unwrap_or_default();
         // Written as "not good", so that a NaN refuses.
         let upright = self.cos_tilt.is_none_or(|c| c >= cos(TILT_MAX));
         let charged = self.battery.is_some_and(|v| v >= params.battery_warning);
         let reasons = [
-            (Refusal::RcLost, self.sticks.is_none()),
-            (Refusal::ImuStale, self.cos_tilt.is_none()),
-            (Refusal::NotCalibrated, !self.calibrated),
+            (ArmingInhibit::RcLost, self.sticks.is_none()),
+            (ArmingInhibit::ImuStale, self.cos_tilt.is_none()),
+            (ArmingInhibit::NotCalibrated, !self.calibrated),
             (
-                Refusal::SwitchOnAtPowerUp,
+                ArmingInhibit::SwitchOnAtPowerUp,
                 self.sticks.is_some() && !self.switch_seen_off,
             ),
-            (Refusal::ThrottleNotLow, sticks.throttle > params.throttle_low),
-            (Refusal::PerchSwitchOn, sticks.perch_switch),
-            (Refusal::ArmsClosed, self.arms_closed),
-            (Refusal::TiltTooLarge, !upright),
-            (Refusal::BatteryLow, !charged),
-            (Refusal::FsrFault, self.fsr_fault),
-            (Refusal::Overruns, self.late),
+            (
+                ArmingInhibit::ThrottleNotLow,
+                sticks.throttle > params.throttle_low,
+            ),
+            (ArmingInhibit::PerchSwitchOn, sticks.perch_switch),
+            (ArmingInhibit::ArmsClosed, self.arms_closed),
+            (ArmingInhibit::TiltTooLarge, !upright),
+            (ArmingInhibit::BatteryLow, !charged),
+            (ArmingInhibit::FsrFault, self.fsr_fault),
+            (ArmingInhibit::Overruns, self.late),
         ];
         reasons
             .into_iter()
             .filter(|&(_, holds)| holds)
             .map(|(r, _)| r)
-            .collect::<Refusals>()
+            .collect::<ArmingInhibits>()
             .and(self.hardware)
     }
 }
@@ -242,10 +245,10 @@ mod tests {
 
     #[test]
     fn every_reason_has_a_bit_and_a_short_text_of_its_own() {
-        for (i, a) in Refusal::ALL.into_iter().enumerate() {
-            assert!(Refusals::NONE.with(a).iter().eq([a]), "{a:?}");
+        for (i, a) in ArmingInhibit::ALL.into_iter().enumerate() {
+            assert!(ArmingInhibits::NONE.with(a).iter().eq([a]), "{a:?}");
             assert!(!a.text().is_empty() && a.text().len() <= 40, "{a:?}");
-            for b in Refusal::ALL.into_iter().skip(i + 1) {
+            for b in ArmingInhibit::ALL.into_iter().skip(i + 1) {
                 assert!(a != b && a.text() != b.text(), "{a:?} {b:?}");
             }
         }
@@ -254,7 +257,7 @@ mod tests {
     #[test]
     fn each_check_refuses_for_its_own_reason_alone() {
         let p = Params::default();
-        assert!(good().refusals(&p).is_empty());
+        assert!(good().inhibits(&p).is_empty());
         let stick = |s| {
             Some(Sticks {
                 arm_switch: true,
@@ -267,21 +270,21 @@ mod tests {
                     calibrated: false,
                     ..good()
                 },
-                Refusal::NotCalibrated,
+                ArmingInhibit::NotCalibrated,
             ),
             (
                 Checks {
                     cos_tilt: None,
                     ..good()
                 },
-                Refusal::ImuStale,
+                ArmingInhibit::ImuStale,
             ),
             (
                 Checks {
                     sticks: None,
                     ..good()
                 },
-                Refusal::RcLost,
+                ArmingInhibit::RcLost,
             ),
             (
                 Checks {
@@ -291,35 +294,35 @@ mod tests {
                     }),
                     ..good()
                 },
-                Refusal::ThrottleNotLow,
+                ArmingInhibit::ThrottleNotLow,
             ),
             (
                 Checks {
                     cos_tilt: Some(f32::cos(deg(26.0))),
                     ..good()
                 },
-                Refusal::TiltTooLarge,
+                ArmingInhibit::TiltTooLarge,
             ),
             (
                 Checks {
                     cos_tilt: Some(f32::NAN),
                     ..good()
                 },
-                Refusal::TiltTooLarge,
+                ArmingInhibit::TiltTooLarge,
             ),
             (
                 Checks {
                     battery: Some(13.5),
                     ..good()
                 },
-                Refusal::BatteryLow,
+                ArmingInhibit::BatteryLow,
             ),
             (
                 Checks {
                     battery: None,
                     ..good()
                 },
-                Refusal::BatteryLow,
+                ArmingInhibit::BatteryLow,
             ),
             (
                 Checks {
@@ -329,34 +332,34 @@ mod tests {
                     }),
                     ..good()
                 },
-                Refusal::PerchSwitchOn,
+                ArmingInhibit::PerchSwitchOn,
             ),
             (
                 Checks {
                     fsr_fault: true,
                     ..good()
                 },
-                Refusal::FsrFault,
+                ArmingInhibit::FsrFault,
             ),
             (
                 Checks {
                     switch_seen_off: false,
                     ..good()
                 },
-                Refusal::SwitchOnAtPowerUp,
+                ArmingInhibit::SwitchOnAtPowerUp,
             ),
-            (Checks { late: true, ..good() }, Refusal::Overruns),
+            (Checks { late: true, ..good() }, ArmingInhibit::Overruns),
             (
                 Checks {
                     arms_closed: true,
                     ..good()
                 },
-                Refusal::ArmsClosed,
+                ArmingInhibit::ArmsClosed,
             ),
         ];
         for (checks, reason) in cases {
-            let refusals = checks.refusals(&p);
-            assert!(refusals.iter().eq([reason]), "{checks:?}");
+            let inhibits = checks.inhibits(&p);
+            assert!(inhibits.iter().eq([reason]), "{checks:?}");
             assert!(!reason.text().is_empty() && reason.text().len() <= 30);
         }
     }

@@ -35,7 +35,7 @@ use self::behaviour::Behaviour;
 use self::context::Step;
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
-use crate::arming::Refusals;
+use crate::arming::ArmingInhibits;
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
@@ -128,6 +128,11 @@ impl Mode {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
+
+    /// The rotors stand in it. In every other mode they may turn, and what drops everything applies.
+    pub const fn rotors_stand(self) -> bool {
+        matches!(self, Self::Calibrating | Self::Disarmed | Self::Perched)
+    }
 }
 
 /// Estimated motion, as far as the mode logic needs it.
@@ -161,7 +166,7 @@ pub struct Inputs {
     /// The flight level misses its deadlines.
     pub late: bool,
     /// What the drivers, the storage and the start report against arming.
-    pub hardware: Refusals,
+    pub hardware: ArmingInhibits,
 }
 
 impl Inputs {
@@ -203,5 +208,5 @@ pub struct Outputs {
     /// Why arming is refused, the failsafe acts or the last state was left; `None` when nothing is wrong.
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
-    pub refusals: Refusals,
+    pub inhibits: ArmingInhibits,
 }

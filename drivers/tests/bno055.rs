@@ -10,7 +10,7 @@ use std::rc::Rc;
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use fake::i2c::{Bus, Chip, Failure};
 use fake::run;
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_drivers::arm_buses::ArmBuses;
@@ -357,11 +357,15 @@ fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
             // A wire falls off, a bus hangs: one chip, then both of the other side.
             chips[1].borrow_mut().failure = Failure::Missing;
             let _ = with_timeout(Duration::from_millis(1100), task.as_mut()).await;
-            assert!(links.hardware().iter().eq([Refusal::ArmSensor2]));
+            assert!(links.hardware().iter().eq([ArmingInhibit::ArmSensor2]));
             chips[2].borrow_mut().failure = Failure::Stretched;
             chips[3].borrow_mut().failure = Failure::Stretched;
             let _ = with_timeout(Duration::from_millis(1200), task.as_mut()).await;
-            let all = [Refusal::ArmSensor2, Refusal::ArmSensor3, Refusal::ArmSensor4];
+            let all = [
+                ArmingInhibit::ArmSensor2,
+                ArmingInhibit::ArmSensor3,
+                ArmingInhibit::ArmSensor4,
+            ];
             assert!(links.hardware().iter().eq(all));
             for chip in &chips {
                 chip.borrow_mut().failure = Failure::None;

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use embassy_time::{Duration, Instant, with_timeout};
 use fake::run;
 use fake::spi::{Bus, DataReady, Failure, Kind, Part};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
 use sophie_drivers::fault::Fault;
 use sophie_drivers::mounting::Mounting;
@@ -260,7 +260,7 @@ fn the_imu_task_keeps_its_rate_over_a_cut_line_reports_it_and_takes_it_back() {
         let mut task = pin!(sophie_tasks::imu::run(&links, driver));
         let _ = with_timeout(Duration::from_secs(1), task.as_mut()).await;
         part.borrow_mut().failure = Failure::LineCut;
-        let reason = Refusal::ImuLineSilent;
+        let reason = ArmingInhibit::ImuLineSilent;
         let mut last = links.imu.latest().unwrap().at;
         let (mut longest, mut count, mut told) = (0, 0, None);
         for ms in 0..2000u32 {

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use fake::run;
 use fake::spi::{Bus, DataReady, Failure, Kind, Part};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
@@ -513,16 +513,16 @@ fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
 
 #[test]
 fn the_imu_task_reports_what_the_driver_finds_and_takes_it_back() {
-    let cases: [(Spoil, Refusal); 4] = [
-        (|p| p.failure = Failure::Ones, Refusal::ImuAbsent),
-        (|p| p.failure = Failure::Zeros, Refusal::ImuAbsent),
-        (|p| p.failure = Failure::Bus, Refusal::ImuCorrupt),
+    let cases: [(Spoil, ArmingInhibit); 4] = [
+        (|p| p.failure = Failure::Ones, ArmingInhibit::ImuAbsent),
+        (|p| p.failure = Failure::Zeros, ArmingInhibit::ImuAbsent),
+        (|p| p.failure = Failure::Bus, ArmingInhibit::ImuCorrupt),
         (
             |p| {
                 p.kind = Kind::Icm20689;
                 p.reset();
             },
-            Refusal::ImuWrongPart,
+            ArmingInhibit::ImuWrongPart,
         ),
     ];
     for (spoil, reason) in cases {

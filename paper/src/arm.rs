@@ -4,7 +4,7 @@ use sophie_control::deflection::ArmModel;
 use sophie_control::params::Params;
 
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
-use super::printed::{Printed, Table1};
+use super::printed::{Printed, Roll, Table1};
 
 /// Infills that are drawn, %.
 pub const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
@@ -43,27 +43,108 @@ pub fn identify(p: &Printed) -> Identified {
     }
 }
 
+/// The arm as this stack flies it, and the gains that the paper leaves open.
+struct Flown<'a> {
+    printed: &'a Printed,
+    /// The gain that is flown.
+    k: f64,
+    /// Largest thrust of a rotor, N; at half of it the arm is level.
+    top: f64,
+    identified: Identified,
+}
+
+impl<'a> Flown<'a> {
+    fn new(printed: &'a Printed) -> Self {
+        let d = Params::default();
+        Self {
+            printed,
+            k: f64::from(d.gain_k),
+            top: f64::from(d.thrust_max),
+            identified: identify(printed),
+        }
+    }
+
+    /// Least and largest gain that Table III allows: T3 = 0, and ΔT/(T1 + T3) as the text has it.
+    fn allowed(&self) -> (f64, f64) {
+        let id = &self.identified;
+        let share = self.printed.text.delta_thrust_share;
+        (id.product / id.sum, id.product / (share * id.sum))
+    }
+
+    /// The gain that "α < 40° for ρ > 5 %" means, read with α0 = 0 at the largest thrust.
+    fn gain_of_limit(&self) -> f64 {
+        self.printed.eq_1.valid_tilt_deg / self.most_elastic(self.printed.eq_1.valid_infill_percent)
+    }
+
+    /// Largest literal bending of an arm over the thrusts, degrees.
+    fn most_elastic(&self, infill: f64) -> f64 {
+        let bent = self.thrusts().map(|t| elastic(self.printed, infill, t));
+        bent.fold(0.0, f64::max)
+    }
+
+    /// Thrusts that are drawn, N.
+    fn thrusts(&self) -> impl Iterator<Item = f64> + use<> {
+        let top = self.top;
+        (0..=166).map(move |i| f64::from(i) * top / 166.0)
+    }
+
+    /// An arm that is level at half throttle.
+    fn model(&self, infill: f64, k: f64) -> ArmModel {
+        ArmModel::new(infill as f32, k as f32, (0.5 * self.top) as f32)
+    }
+
+    /// Tilt of an arm, degrees, at a thrust (N).
+    fn tilt(&self, infill: f64, k: f64, thrust: f64) -> f64 {
+        f64::from(self.model(infill, k).angle(thrust as f32)).to_degrees()
+    }
+
+    /// `f` (degrees) over the thrusts.
+    fn curve(&self, name: String, colour: usize, look: Look, f: impl Fn(f64) -> f64) -> Series {
+        Series::new(name, colour, look, self.thrusts().map(|t| (t, f(t))).collect())
+    }
+
+    /// A chart of tilt over thrust.
+    fn chart(title: String, series: Vec<Series>) -> Chart {
+        Chart {
+            title,
+            x: Axis::new("thrust of the rotor (N)"),
+            y: Axis::new("arm tilt α (°, tip up positive)"),
+            series,
+            ..Chart::default()
+        }
+    }
+}
+
 /// Eq. 1 and Table I.
 pub fn section(p: &Printed) -> Section {
     let mut s = Section::new("eq1", "Eq. 1 and Table I: the arm");
-    let d = Params::default();
-    let k = f64::from(d.gain_k);
-    let (half, top) = (0.5 * f64::from(d.thrust_max), f64::from(d.thrust_max));
-    let id = identify(p);
-    let thrusts: Vec<f64> = (0..=166).map(|i| f64::from(i) * top / 166.0).collect();
-    let model = |infill: f64, k: f64| ArmModel::new(infill as f32, k as f32, half as f32);
-    let tilt = |infill: f64, k: f64, t: f64| f64::from(model(infill, k).angle(t as f32)).to_degrees();
+    let flown = Flown::new(p);
+    s.finding = finding(&flown);
+    s.text(what_the_gain_rests_on(&flown));
+    let mut rows = calibrated(&flown);
+    rows.extend(literal_rows(&flown));
+    s.compare("Table III's Δα_max from Eq. 1", rows);
+    s.figure(
+        "Left to right, top to bottom: the arm as flown; the same with a weak battery (solid C_P 1.6, dashed 1.8); the \
+         family of gains that Table III allows; what Table III fixes: the three printed differences lie on one value of \
+         K (T1 - T3), whatever K.",
+        vec![over_infill(&flown), over_battery(&flown), over_gain(&flown), what_table_3_identifies(&flown)],
+    );
+    s.table(table(&flown));
+    s.text(format!(
+        "The parabola of Eq. 1 turns down within the rotor's range at ρ 4 % and little above it at 6 %: more thrust would \
+         then bend the arm less. Nothing measured stands behind that; the plant goes on straight from where the compliance \
+         has fallen to 15 %. At ρ {:.1} % the linear coefficient vanishes: Table I does not extrapolate.",
+        -p.table_1.a1 / p.table_1.a2
+    ));
+    s
+}
 
-    let literal_top = thrusts.iter().map(|t| elastic(p, 6.0, *t)).fold(0.0, f64::max);
-    let share = p.text.delta_thrust_share;
-    let (k_least, k_most) = (id.product / id.sum, id.product / (share * id.sum));
-    // "α < 40° for ρ > 5 %", read with α0 = 0 at the largest thrust.
-    let k_from_limit = p.eq_1.valid_tilt_deg
-        / thrusts
-            .iter()
-            .map(|t| elastic(p, p.eq_1.valid_infill_percent, *t))
-            .fold(0.0, f64::max);
-    s.finding = format!(
+fn finding(flown: &Flown<'_>) -> String {
+    let (p, id, k) = (flown.printed, &flown.identified, flown.k);
+    let literal_top = flown.most_elastic(6.0);
+    let (k_least, k_most) = flown.allowed();
+    format!(
         "Taken literally (K = 1) Eq. 1 bends an arm of 6 % by at most {literal_top:.1}°; Table III prints differences of \
          up to {:.1}° between arms. A gain K on the elastic term mends it: all three rows follow from K (T1 - T3) = \
          {:.1} N and T1 + T3 = {:.2} N, so K lies between {k_least:.1} (T3 = 0) and {k_most:.1} (ΔT/(T1+T3) = 3/5). The \
@@ -74,138 +155,151 @@ pub fn section(p: &Printed) -> Section {
             .fold(0.0, f64::max),
         id.product,
         id.sum
-    );
-    s.text(format!(
+    )
+}
+
+fn what_the_gain_rests_on(flown: &Flown<'_>) -> String {
+    let Flown {
+        printed: p, k, top, ..
+    } = *flown;
+    let k_from_limit = flown.gain_of_limit();
+    format!(
         "What K rests on: three numbers of Table III, fitted by two (X = K (T1 - T3) and T1 + T3), so one check is left. \
          Only the product with the thrust difference is seen, never K itself. A second, independent hint: the text says \
          α < {:.0}° for ρ > {:.0} %; with α0 = 0 and {top:.1} N that means K = {k_from_limit:.1}. α0 is not printed: it is \
-         set so that the arm is level at half throttle ({half:.2} N), which is what \"positive when T > 50 %\" asks for. \
+         set so that the arm is level at half throttle ({:.2} N), which is what \"positive when T > 50 %\" asks for. \
          These two readings of α0 exclude each other: level at half throttle, an arm of 5 % never passes {:.0}°.",
         p.eq_1.valid_tilt_deg,
         p.eq_1.valid_infill_percent,
-        thrusts.iter().map(|t| tilt(p.eq_1.valid_infill_percent, k, *t)).fold(0.0, f64::max),
-    ));
+        0.5 * top,
+        flown
+            .thrusts()
+            .map(|t| flown.tilt(p.eq_1.valid_infill_percent, k, t))
+            .fold(0.0, f64::max),
+    )
+}
 
-    let mut rows = vec![];
-    // The two thrusts behind the table, at the gain that is flown.
-    let difference = id.product / k;
-    let (t1, t3) = (0.5 * (id.sum + difference), 0.5 * (id.sum - difference));
-    for row in &p.table_3 {
-        rows.push(Comparison {
-            what: format!("Δα_max at ρ {} %", row.infill_percent),
-            unit: "°",
-            printed: row.delta_alpha_max_deg,
-            here: tilt(row.infill_percent, k, t1) - tilt(row.infill_percent, k, t3),
-            class: Class::Calibrated,
-            why: format!("T1 {t1:.2} N and T3 {t3:.2} N by least squares over the three rows, K {k}"),
-        });
-    }
-    for row in &p.table_3 {
-        rows.push(Comparison {
-            what: format!("the same, K = 1, ρ {} %", row.infill_percent),
-            unit: "°",
-            printed: row.delta_alpha_max_deg,
-            here: tilt(row.infill_percent, 1.0, t1) - tilt(row.infill_percent, 1.0, t3),
-            class: Class::Inconsistent,
-            why: "Eq. 1 with the coefficients of Table I as printed, in degrees and newtons, bends the arms eight times \
-                  less than Table III says"
-                .to_owned(),
-        });
-    }
-    s.compare("Table III's Δα_max from Eq. 1", rows);
+/// The two thrusts behind Table III at the gain that is flown, N.
+fn thrusts_of_table_3(flown: &Flown<'_>) -> (f64, f64) {
+    let id = &flown.identified;
+    let difference = id.product / flown.k;
+    (0.5 * (id.sum + difference), 0.5 * (id.sum - difference))
+}
 
-    let curve = |name: String, colour: usize, look: Look, f: &dyn Fn(f64) -> f64| {
-        Series::new(name, colour, look, thrusts.iter().map(|t| (*t, f(*t))).collect())
+/// Table III at the gain that is flown.
+fn calibrated(flown: &Flown<'_>) -> Vec<Comparison> {
+    let (t1, t3) = thrusts_of_table_3(flown);
+    let k = flown.k;
+    let row = |row: &Roll| Comparison {
+        what: format!("Δα_max at ρ {} %", row.infill_percent),
+        unit: "°",
+        printed: row.delta_alpha_max_deg,
+        here: flown.tilt(row.infill_percent, k, t1) - flown.tilt(row.infill_percent, k, t3),
+        class: Class::Calibrated,
+        why: format!("T1 {t1:.2} N and T3 {t3:.2} N by least squares over the three rows, K {k}"),
     };
-    let over_rho = |k: f64| {
-        INFILLS
-            .iter()
-            .enumerate()
-            .map(|(i, infill)| curve(format!("ρ {infill} %"), i, Look::Line, &|t| tilt(*infill, k, t)))
-            .collect::<Vec<_>>()
+    flown.printed.table_3.iter().map(row).collect()
+}
+
+/// Table III with Eq. 1 as it is printed.
+fn literal_rows(flown: &Flown<'_>) -> Vec<Comparison> {
+    let (t1, t3) = thrusts_of_table_3(flown);
+    let row = |row: &Roll| {
+        Comparison {
+        what: format!("the same, K = 1, ρ {} %", row.infill_percent),
+        unit: "°",
+        printed: row.delta_alpha_max_deg,
+        here: flown.tilt(row.infill_percent, 1.0, t1) - flown.tilt(row.infill_percent, 1.0, t3),
+        class: Class::Inconsistent,
+        why: "Eq. 1 with the coefficients of Table I as printed, in degrees and newtons, bends the arms eight times \
+              less than Table III says"
+            .to_owned(),
+    }
     };
-    let limit = (p.eq_1.valid_tilt_deg, "paper: model valid to 40°".to_owned());
-    let chart = |title: String, series: Vec<Series>| Chart {
-        title,
-        x: Axis::new("thrust of the rotor (N)"),
-        y: Axis::new("arm tilt α (°, tip up positive)"),
+    flown.printed.table_3.iter().map(row).collect()
+}
+
+fn over_infill(flown: &Flown<'_>) -> Chart {
+    let k = flown.k;
+    let line = |(i, infill): (usize, f64)| {
+        flown.curve(format!("ρ {infill} %"), i, Look::Line, |t| {
+            flown.tilt(infill, k, t)
+        })
+    };
+    let series = INFILLS.into_iter().enumerate().map(line).collect();
+    let limit = (
+        flown.printed.eq_1.valid_tilt_deg,
+        "paper: model valid to 40°".to_owned(),
+    );
+    Chart {
+        levels: vec![limit],
+        ..Flown::chart(format!("Eq. 1 over infill, K {k}"), series)
+    }
+}
+
+fn over_battery(flown: &Flown<'_>) -> Chart {
+    let (p, k) = (flown.printed, flown.k);
+    let infill = p.text.infill_percent;
+    let arm = flown.model(infill, k);
+    let mut series = vec![];
+    for (colour, ratio) in [1.0, 0.9, 0.8].into_iter().enumerate() {
+        for (c_p, look) in p.eq_1.power_exponent.iter().zip([Look::Line, Look::Dashed]) {
+            let factor = f64::powf(ratio, *c_p);
+            let name = format!("P/P0 {ratio}, C_P {c_p}");
+            series.push(flown.curve(name, colour, look, |t| {
+                f64::from(arm.offset + arm.elastic(t as f32) * factor as f32).to_degrees()
+            }));
+        }
+    }
+    Flown::chart(format!("Eq. 1 over battery power, ρ {infill} %, K {k}"), series)
+}
+
+fn over_gain(flown: &Flown<'_>) -> Chart {
+    let infill = flown.printed.text.infill_percent;
+    let (k_least, k_most) = flown.allowed();
+    let line =
+        |(i, k): (usize, f64)| flown.curve(format!("K {k:.2}"), i, Look::Line, |t| flown.tilt(infill, k, t));
+    let gains = [k_least, 6.7, flown.k, k_most];
+    let mut series: Vec<Series> = gains.into_iter().enumerate().map(line).collect();
+    series.push(flown.curve("K 1 (literal)".to_owned(), 7, Look::Dashed, |t| {
+        flown.tilt(infill, 1.0, t)
+    }));
+    Flown::chart(format!("The family of K at ρ {infill} %"), series)
+}
+
+fn what_table_3_identifies(flown: &Flown<'_>) -> Chart {
+    let (p, id) = (flown.printed, &flown.identified);
+    let products: Vec<f64> = (0..=80).map(f64::from).collect();
+    let mut series = vec![];
+    for (i, row) in p.table_3.iter().enumerate() {
+        let (a, b) = literal(&p.table_1, row.infill_percent);
+        let per_product = a + b * id.sum;
+        series.push(Series::new(
+            format!("ρ {} %", row.infill_percent),
+            i,
+            Look::Line,
+            products.iter().map(|x| (*x, x * per_product)).collect(),
+        ));
+        series.push(Series::new(
+            if i == 0 { "Table III" } else { "" },
+            i,
+            Look::Printed,
+            vec![(id.product, row.delta_alpha_max_deg)],
+        ));
+    }
+    Chart {
+        title: "What Table III identifies".to_owned(),
+        x: Axis::new("K (T1 - T3) (N)"),
+        y: Axis::new("difference of tilt Δα (°)"),
         series,
         ..Chart::default()
-    };
-    let battery: Vec<Series> = [(1.0, 0), (0.9, 1), (0.8, 2)]
-        .iter()
-        .flat_map(|(ratio, colour)| {
-            p.eq_1
-                .power_exponent
-                .iter()
-                .zip([Look::Line, Look::Dashed])
-                .map(move |(c_p, look)| {
-                    let factor = f64::powf(*ratio, *c_p);
-                    (*ratio, *colour, *c_p, look, factor)
-                })
-        })
-        .map(|(ratio, colour, c_p, look, factor)| {
-            let m = model(p.text.infill_percent, k);
-            let name = format!("P/P0 {ratio}, C_P {c_p}");
-            curve(name, colour, look, &|t| {
-                f64::from(m.offset + m.elastic(t as f32) * factor as f32).to_degrees()
-            })
-        })
-        .collect();
-    let family: Vec<Series> = [k_least, 6.7, k, k_most]
-        .iter()
-        .enumerate()
-        .map(|(i, k)| {
-            curve(format!("K {k:.2}"), i, Look::Line, &|t| {
-                tilt(p.text.infill_percent, *k, t)
-            })
-        })
-        .chain([curve("K 1 (literal)".to_owned(), 7, Look::Dashed, &|t| {
-            tilt(p.text.infill_percent, 1.0, t)
-        })])
-        .collect();
-    let products: Vec<f64> = (0..=80).map(f64::from).collect();
-    let table_3: Vec<Series> = p
-        .table_3
-        .iter()
-        .enumerate()
-        .flat_map(|(i, row)| {
-            let (a, b) = literal(&p.table_1, row.infill_percent);
-            let per_product = a + b * id.sum;
-            [
-                Series::new(
-                    format!("ρ {} %", row.infill_percent),
-                    i,
-                    Look::Line,
-                    products.iter().map(|x| (*x, x * per_product)).collect(),
-                ),
-                Series::new(
-                    if i == 0 { "Table III" } else { "" },
-                    i,
-                    Look::Printed,
-                    vec![(id.product, row.delta_alpha_max_deg)],
-                ),
-            ]
-        })
-        .collect();
-    s.figure(
-        "Left to right, top to bottom: the arm as flown; the same with a weak battery (solid C_P 1.6, dashed 1.8); the \
-         family of gains that Table III allows; what Table III fixes: the three printed differences lie on one value of \
-         K (T1 - T3), whatever K.",
-        vec![
-            Chart { levels: vec![limit], ..chart(format!("Eq. 1 over infill, K {k}"), over_rho(k)) },
-            chart(format!("Eq. 1 over battery power, ρ {} %, K {k}", p.text.infill_percent), battery),
-            chart(format!("The family of K at ρ {} %", p.text.infill_percent), family),
-            Chart {
-                title: "What Table III identifies".to_owned(),
-                x: Axis::new("K (T1 - T3) (N)"),
-                y: Axis::new("difference of tilt Δα (°)"),
-                series: table_3,
-                ..Chart::default()
-            },
-        ],
-    );
+    }
+}
 
+fn table(flown: &Flown<'_>) -> Table {
+    let Flown {
+        printed: p, k, top, ..
+    } = *flown;
     let mut t = Table::new(
         "Eq. 1 over infill, as flown",
         &[
@@ -223,20 +317,13 @@ pub fn section(p: &Printed) -> Section {
         t.row([
             num(infill, 1),
             num(k * (a + 2.0 * b * hover), 2),
-            num(tilt(infill, k, 0.0), 1),
-            num(tilt(infill, k, hover), 1),
-            num(tilt(infill, k, top), 1),
+            num(flown.tilt(infill, k, 0.0), 1),
+            num(flown.tilt(infill, k, hover), 1),
+            num(flown.tilt(infill, k, top), 1),
             num(-a / (2.0 * b), 1),
         ]);
     }
-    s.table(t);
-    s.text(format!(
-        "The parabola of Eq. 1 turns down within the rotor's range at ρ 4 % and little above it at 6 %: more thrust would \
-         then bend the arm less. Nothing measured stands behind that; the plant goes on straight from where the compliance \
-         has fallen to 15 %. At ρ {:.1} % the linear coefficient vanishes: Table I does not extrapolate.",
-        -p.table_1.a1 / p.table_1.a2
-    ));
-    s
+    t
 }
 
 /// Eq. 1's elastic part, literally, degrees.

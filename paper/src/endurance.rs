@@ -9,7 +9,7 @@ use sophie_sim::scenario::ServoProfile;
 
 use super::clamp::{closing_thrust, mean_closing};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
-use super::printed::Printed;
+use super::printed::{Endurance, Printed};
 use super::statics::root;
 use sophie_sim::parallel;
 
@@ -24,10 +24,30 @@ const ELECTRONICS: f64 = 6.0;
 const USABLE: f64 = 0.8;
 /// Nominal voltages of the flight battery (4S) and the servo battery (2S), V.
 const FLIGHT_VOLTAGE: f64 = 14.8;
-/// MG996R at 6 V (datasheet): stall torque (kgcm), current at stall and without load (A).
-const MG996R: (f64, f64, f64) = (11.0, 2.5, 0.17);
+/// MG996R at 6 V (datasheet).
+const MG996R: Servo = Servo {
+    stall: 11.0,
+    stall_current: 2.5,
+    idle_current: 0.17,
+};
 /// Pipe of the inspection times, m.
 const PIPE: f64 = 0.30;
+
+/// What a servo's datasheet says.
+struct Servo {
+    /// Stall torque, kgcm.
+    stall: f64,
+    /// Current at stall and without load, A.
+    stall_current: f64,
+    idle_current: f64,
+}
+
+impl Servo {
+    /// Current at a torque (kgcm), A: a line from no load to stall.
+    fn current(&self, torque: f64) -> f64 {
+        self.idle_current + (self.stall_current - self.idle_current) * torque / self.stall
+    }
+}
 
 /// Ideal power of hover, W: four discs, momentum theory, thrusts leaning by `tilt` rad.
 fn ideal_power(mass: f64, tilt: f64) -> f64 {
@@ -74,16 +94,73 @@ fn fit(p: &Printed, energy: f64) -> Fudge {
     }
 }
 
+/// Flight time by both power models.
+struct Flight<'a> {
+    printed: &'a Printed,
+    /// What the battery holds, J.
+    energy: f64,
+    fudge: Fudge,
+}
+
+impl<'a> Flight<'a> {
+    fn new(printed: &'a Printed) -> Self {
+        let energy = printed.text.flight_battery_mah * 3.6 * FLIGHT_VOLTAGE;
+        Self {
+            printed,
+            energy,
+            fudge: fit(printed, energy),
+        }
+    }
+
+    /// Ideal power at an infill, W, with the mass of the calibrated model.
+    fn power(&self, infill: f64) -> f64 {
+        let mass = self.printed.mass() + self.fudge.slope * (infill - self.printed.text.infill_percent);
+        ideal_power(mass, 0.0)
+    }
+
+    /// Flight time without any loss, min.
+    fn ideal(&self, infill: f64) -> f64 {
+        self.energy / 60.0 / self.power(infill)
+    }
+
+    /// Flight time of the calibrated model, min.
+    fn fitted(&self, infill: f64) -> f64 {
+        self.fudge.efficiency * self.energy / 60.0 / self.power(infill)
+    }
+
+    /// Flight time with usual losses on this share of the charge, min.
+    fn honest(&self, infill: f64, share: f64) -> f64 {
+        share * self.energy / 60.0 / (self.power(infill) / (FIGURE_OF_MERIT * DRIVE) + ELECTRONICS)
+    }
+}
+
 /// Endurance.
 pub fn section(p: &Printed) -> Section {
     let mut s = Section::new("table5", "Tables V and VI: endurance");
-    let energy = p.text.flight_battery_mah * 3.6 * FLIGHT_VOLTAGE;
-    let fudge = fit(p, energy);
-    let mass = |infill: f64| p.mass() + fudge.slope * (infill - p.text.infill_percent);
-    let fitted = |infill: f64| fudge.efficiency * energy / 60.0 / ideal_power(mass(infill), 0.0);
-    let honest = |infill: f64, share: f64| {
-        share * energy / 60.0 / (ideal_power(mass(infill), 0.0) / (FIGURE_OF_MERIT * DRIVE) + ELECTRONICS)
-    };
+    let flight = Flight::new(p);
+    s.text(power_of_hover(&flight));
+    let mut rows = calibrated(&flight);
+    rows.extend(predicted(&flight));
+    s.compare("Table V: flight time", rows);
+    lean_at_four_percent(&mut s, &flight);
+    let inspection = Inspection::new(p);
+    s.table(inspection.table());
+    s.compare("Table V: inspection time", inspection.comparisons());
+    table_6(&mut s, p);
+    s.figure(
+        "Flight time over infill: printed, fudged, honest; inspection time by the current of an MG996R at 6 V and as printed.",
+        vec![flight_chart(&flight), inspection.chart()],
+    );
+    s.finding = finding(&flight);
+    s
+}
+
+fn power_of_hover(flight: &Flight<'_>) -> String {
+    let Flight {
+        printed: p,
+        energy,
+        fudge,
+    } = flight;
     let printed_mass = p
         .table_2
         .iter()
@@ -91,7 +168,7 @@ pub fn section(p: &Printed) -> Section {
         .map(|r| r.mass_g * 1e-3 * f64::from(r.count))
         .sum::<f64>();
     let ideal = energy / 60.0 / ideal_power(p.mass(), 0.0);
-    s.text(format!(
+    format!(
         "Power of hover: P = 4 T √(T/(2 ρ_air A)) / η, momentum theory for four 10-inch discs; {:.0} W ideal at {:.3} kg. \
          A battery of {:.0} mAh at {FLIGHT_VOLTAGE} V holds {:.1} Wh, so that hover without any loss lasts {ideal:.1} min. \
          Table V is met with η = {:.2} and a mass that grows by {:.0} g for each % of infill ({:.0} g of Table II are \
@@ -104,73 +181,89 @@ pub fn section(p: &Printed) -> Section {
         fudge.efficiency,
         1e3 * fudge.slope,
         1e3 * printed_mass
-    ));
-    let mut rows = vec![];
-    for row in &p.table_5 {
+    )
+}
+
+/// Table V by the model that is fitted to it.
+fn calibrated(flight: &Flight<'_>) -> Vec<Comparison> {
+    let Flight {
+        printed: p, fudge, ..
+    } = flight;
+    let row = |row: &Endurance| {
         let flown = row.infill_percent >= p.text.flyable_infill_percent;
-        rows.push(Comparison {
+        Comparison {
             what: format!("flight time at ρ {} %, fudged", row.infill_percent),
             unit: "min",
             printed: row.flight_min,
-            here: fitted(row.infill_percent),
-            class: if flown { Class::Calibrated } else { Class::Inconsistent },
+            here: flight.fitted(row.infill_percent),
+            class: if flown {
+                Class::Calibrated
+            } else {
+                Class::Inconsistent
+            },
             why: if flown {
-                format!("η {:.2} and {:.0} g/% by least squares over the rows from 6 % on", fudge.efficiency, 1e3 * fudge.slope)
+                format!(
+                    "η {:.2} and {:.0} g/% by least squares over the rows from 6 % on",
+                    fudge.efficiency,
+                    1e3 * fudge.slope
+                )
             } else {
                 "the paper says that large deflections cost thrust; level at half throttle, the arms lean by 2° in hover and \
                  cost nothing"
                     .to_owned()
             },
-        });
-    }
-    for row in &p.table_5 {
-        rows.push(Comparison {
-            what: format!("flight time at ρ {} %, honest", row.infill_percent),
-            unit: "min",
-            printed: row.flight_min,
-            here: honest(row.infill_percent, USABLE),
-            class: Class::Prediction,
-            why: "usual losses; the printed times need an efficiency of about one from battery to air"
-                .to_owned(),
-        });
-    }
-    s.compare("Table V: flight time", rows);
-    lean_at_four_percent(&mut s, p, &fitted);
-    let inspection = inspection(&mut s, p);
-    table_6(&mut s, p);
+        }
+    };
+    p.table_5.iter().map(row).collect()
+}
 
+/// Table V by usual losses.
+fn predicted(flight: &Flight<'_>) -> Vec<Comparison> {
+    let row = |row: &Endurance| Comparison {
+        what: format!("flight time at ρ {} %, honest", row.infill_percent),
+        unit: "min",
+        printed: row.flight_min,
+        here: flight.honest(row.infill_percent, USABLE),
+        class: Class::Prediction,
+        why: "usual losses; the printed times need an efficiency of about one from battery to air".to_owned(),
+    };
+    flight.printed.table_5.iter().map(row).collect()
+}
+
+fn flight_chart(flight: &Flight<'_>) -> Chart {
     let infills: Vec<f64> = (40..=100).map(|i| 0.1 * f64::from(i)).collect();
-    let line = |f: &dyn Fn(f64) -> f64| infills.iter().map(|i| (*i, f(*i))).collect::<Vec<_>>();
-    s.figure(
-        "Flight time over infill: printed, fudged, honest; inspection time by the current of an MG996R at 6 V and as printed.",
-        vec![
-            Chart {
-                title: "Flight time".to_owned(),
-                x: Axis::new("infill ρ (%)"),
-                y: Axis::new("hover time (min)").with(&[0.0]),
-                series: vec![
-                    Series::new(
-                        "Table V",
-                        0,
-                        Look::Printed,
-                        p.table_5.iter().map(|r| (r.infill_percent, r.flight_min)).collect(),
-                    ),
-                    Series::new("fudged (calibrated)", 2, Look::Line, line(&fitted)),
-                    Series::new("no loss at all", 7, Look::Dashed, line(&|i| energy / 60.0 / ideal_power(mass(i), 0.0))),
-                    Series::new("honest, to the last drop", 0, Look::Dashed, line(&|i| honest(i, 1.0))),
-                    Series::new("honest, landing with a fifth left", 0, Look::Line, line(&|i| honest(i, USABLE))),
-                ],
-                ..Chart::default()
-            },
-            inspection,
+    let line = |name: &str, colour: usize, look: Look, f: &dyn Fn(f64) -> f64| {
+        Series::new(name, colour, look, infills.iter().map(|i| (*i, f(*i))).collect())
+    };
+    let table_5 = flight.printed.table_5.iter();
+    let printed = table_5.map(|r| (r.infill_percent, r.flight_min)).collect();
+    Chart {
+        title: "Flight time".to_owned(),
+        x: Axis::new("infill ρ (%)"),
+        y: Axis::new("hover time (min)").with(&[0.0]),
+        series: vec![
+            Series::new("Table V", 0, Look::Printed, printed),
+            line("fudged (calibrated)", 2, Look::Line, &|i| flight.fitted(i)),
+            line("no loss at all", 7, Look::Dashed, &|i| flight.ideal(i)),
+            line("honest, to the last drop", 0, Look::Dashed, &|i| {
+                flight.honest(i, 1.0)
+            }),
+            line("honest, landing with a fifth left", 0, Look::Line, &|i| {
+                flight.honest(i, USABLE)
+            }),
         ],
-    );
-    s.finding = format!(
+        ..Chart::default()
+    }
+}
+
+fn finding(flight: &Flight<'_>) -> String {
+    let p = flight.printed;
+    format!(
         "The printed flight times need {:.0} % of the battery's energy to reach the air; with usual losses it is {:.1} min at \
          ρ {} % where Table V's neighbours print {:.1} and {:.1}. Inspection times follow the steady force, but those \
          printed draw up to {:.1} A a servo, where an MG996R stalls at {:.1} A.",
-        100.0 * fudge.efficiency,
-        honest(p.text.infill_percent, USABLE),
+        100.0 * flight.fudge.efficiency,
+        flight.honest(p.text.infill_percent, USABLE),
         p.text.infill_percent,
         p.table_5.get(1).map_or(f64::NAN, |r| r.flight_min),
         p.table_5.get(2).map_or(f64::NAN, |r| r.flight_min),
@@ -178,9 +271,8 @@ pub fn section(p: &Printed) -> Section {
             .iter()
             .map(|r| current(p, r.inspection_min))
             .fold(0.0, f64::max),
-        MG996R.1
-    );
-    s
+        MG996R.stall_current
+    )
 }
 
 /// Current of one of four servos that empties the servo battery in `minutes`, A.
@@ -189,9 +281,10 @@ fn current(p: &Printed, minutes: f64) -> f64 {
 }
 
 /// What tilt would explain the 10.7 min at 4 %.
-fn lean_at_four_percent(s: &mut Section, p: &Printed, fitted: &impl Fn(f64) -> f64) {
+fn lean_at_four_percent(s: &mut Section, flight: &Flight<'_>) {
+    let p = flight.printed;
     let Some(row) = p.table_5.first() else { return };
-    let share = row.flight_min / fitted(row.infill_percent);
+    let share = row.flight_min / flight.fitted(row.infill_percent);
     // Time goes with cos^1.5 of the lean.
     let lean = share.powf(2.0 / 3.0).acos().to_degrees();
     let k = f64::from(Params::default().gain_k);
@@ -216,85 +309,125 @@ fn lean_at_four_percent(s: &mut Section, p: &Printed, fitted: &impl Fn(f64) -> f
     ));
 }
 
-fn inspection(s: &mut Section, p: &Printed) -> Chart {
-    let (stall, at_stall, idle) = MG996R;
-    let capacity = p.text.servo_battery_mah * 1e-3;
-    let infills: Vec<f64> = p.table_5.iter().map(|r| r.infill_percent).collect();
-    let servo = ServoSpec::from(ServoProfile::Paper);
-    let forces = parallel::each(&infills, |i| {
-        let closed = mean_closing(*i, PIPE, servo, closing_thrust(p));
-        closed
-            .closure
-            .map_or(f64::NAN, |_| sophie_report::units::kgcm(closed.steady))
-    });
-    let minutes =
-        |force: f64, arms: f64| 60.0 * capacity / (arms * (idle + (at_stall - idle) * force / stall));
-    let mut t = Table::new(
-        "Inspection: servo current for the steady force on a 300 mm pipe, and what the printed times mean",
-        &[
-            "ρ %",
-            "U(∞) kgcm",
-            "current A a servo",
-            "four arms min",
-            "two arms min",
-            "printed min",
-            "current that means, A a servo",
-            "over stall current",
-        ],
-    );
-    let mut rows = vec![];
-    for (row, force) in p.table_5.iter().zip(&forces) {
-        let amps = idle + (at_stall - idle) * force / stall;
-        let meant = current(p, row.inspection_min);
-        t.row([
-            num(row.infill_percent, 0),
-            num(*force, 2),
-            num(amps, 2),
-            num(minutes(*force, 4.0), 1),
-            num(minutes(*force, 2.0), 1),
-            num(row.inspection_min, 1),
-            num(meant, 2),
-            num(meant / at_stall, 2),
-        ]);
-        rows.push(Comparison {
-            what: format!("inspection time, four arms, ρ {} %", row.infill_percent),
-            unit: "min",
-            printed: row.inspection_min,
-            here: minutes(*force, 4.0),
-            class: if meant > at_stall { Class::Inconsistent } else { Class::Prediction },
-            why: if meant > at_stall {
-                let beyond = if *force > stall { "; the steady force itself is beyond its stall torque" } else { "" };
-                format!("the printed time draws more than the stall current of the servo that the paper names{beyond}")
-            } else {
-                "a line from no-load to stall current over torque; the diameter behind the printed times is not given".to_owned()
-            },
+/// Inspection times from the steady force on a pipe, one for each row of Table V.
+struct Inspection<'a> {
+    printed: &'a Printed,
+    rows: Vec<Held<'a>>,
+}
+
+/// A row of Table V, and what holding takes at its infill.
+struct Held<'a> {
+    row: &'a Endurance,
+    /// Steady force, kgcm; NaN where the arms do not close.
+    force: f64,
+    /// Current of a servo that holds it, A.
+    amps: f64,
+    /// Current of a servo that the printed time means, A.
+    meant: f64,
+}
+
+impl<'a> Inspection<'a> {
+    fn new(printed: &'a Printed) -> Self {
+        let infills: Vec<f64> = printed.table_5.iter().map(|r| r.infill_percent).collect();
+        let servo = ServoSpec::from(ServoProfile::Paper);
+        let forces = parallel::each(&infills, |i| {
+            let closed = mean_closing(*i, PIPE, servo, closing_thrust(printed));
+            closed
+                .closure
+                .map_or(f64::NAN, |_| sophie_report::units::kgcm(closed.steady))
         });
+        let rows = printed.table_5.iter().zip(forces).map(|(row, force)| Held {
+            row,
+            force,
+            amps: MG996R.current(force),
+            meant: current(printed, row.inspection_min),
+        });
+        Self {
+            printed,
+            rows: rows.collect(),
+        }
     }
-    s.table(t);
-    s.compare("Table V: inspection time", rows);
-    let rows = |f: &dyn Fn(usize) -> f64| {
-        infills
-            .iter()
-            .enumerate()
-            .map(|(i, infill)| (*infill, f(i)))
-            .collect::<Vec<_>>()
-    };
-    let of = |arms: f64| rows(&|i| forces.get(i).map_or(f64::NAN, |f| minutes(*f, arms)));
-    Chart {
-        title: "Inspection time on a 300 mm pipe".to_owned(),
-        x: Axis::new("infill ρ (%)"),
-        y: Axis::new("time (min)").with(&[0.0]),
-        series: vec![
-            Series::new(
-                "Table V",
-                0,
-                Look::Printed,
-                rows(&|i| p.table_5.get(i).map_or(f64::NAN, |r| r.inspection_min)),
-            ),
-            Series::new("four arms", 0, Look::Line, of(4.0)),
-            Series::new("two arms", 1, Look::Line, of(2.0)),
-        ],
-        ..Chart::default()
+
+    /// Time in which this many servos empty their battery, min.
+    fn minutes(&self, held: &Held<'_>, arms: f64) -> f64 {
+        60.0 * (self.printed.text.servo_battery_mah * 1e-3) / (arms * held.amps)
+    }
+
+    fn table(&self) -> Table {
+        let mut t = Table::new(
+            "Inspection: servo current for the steady force on a 300 mm pipe, and what the printed times mean",
+            &[
+                "ρ %",
+                "U(∞) kgcm",
+                "current A a servo",
+                "four arms min",
+                "two arms min",
+                "printed min",
+                "current that means, A a servo",
+                "over stall current",
+            ],
+        );
+        for held in &self.rows {
+            t.row([
+                num(held.row.infill_percent, 0),
+                num(held.force, 2),
+                num(held.amps, 2),
+                num(self.minutes(held, 4.0), 1),
+                num(self.minutes(held, 2.0), 1),
+                num(held.row.inspection_min, 1),
+                num(held.meant, 2),
+                num(held.meant / MG996R.stall_current, 2),
+            ]);
+        }
+        t
+    }
+
+    fn comparisons(&self) -> Vec<Comparison> {
+        let row = |held: &Held<'_>| {
+            let impossible = held.meant > MG996R.stall_current;
+            Comparison {
+                what: format!("inspection time, four arms, ρ {} %", held.row.infill_percent),
+                unit: "min",
+                printed: held.row.inspection_min,
+                here: self.minutes(held, 4.0),
+                class: if impossible {
+                    Class::Inconsistent
+                } else {
+                    Class::Prediction
+                },
+                why: if impossible {
+                    let beyond = if held.force > MG996R.stall {
+                        "; the steady force itself is beyond its stall torque"
+                    } else {
+                        ""
+                    };
+                    format!(
+                        "the printed time draws more than the stall current of the servo that the paper names{beyond}"
+                    )
+                } else {
+                    "a line from no-load to stall current over torque; the diameter behind the printed times is not given".to_owned()
+                },
+            }
+        };
+        self.rows.iter().map(row).collect()
+    }
+
+    fn chart(&self) -> Chart {
+        let line = |name: &str, colour: usize, look: Look, f: &dyn Fn(&Held<'_>) -> f64| {
+            let points = self.rows.iter().map(|held| (held.row.infill_percent, f(held)));
+            Series::new(name, colour, look, points.collect())
+        };
+        Chart {
+            title: "Inspection time on a 300 mm pipe".to_owned(),
+            x: Axis::new("infill ρ (%)"),
+            y: Axis::new("time (min)").with(&[0.0]),
+            series: vec![
+                line("Table V", 0, Look::Printed, &|held| held.row.inspection_min),
+                line("four arms", 0, Look::Line, &|held| self.minutes(held, 4.0)),
+                line("two arms", 1, Look::Line, &|held| self.minutes(held, 2.0)),
+            ],
+            ..Chart::default()
+        }
     }
 }
 
@@ -336,7 +469,7 @@ fn table_6(s: &mut Section, p: &Printed) {
         return;
     };
     // Table V at the infill of the prototype, on the line between its neighbours.
-    let between = |f: &dyn Fn(&super::printed::Endurance) -> f64| {
+    let between = |f: &dyn Fn(&Endurance) -> f64| {
         let (Some(a), Some(b)) = (p.table_5.get(1), p.table_5.get(2)) else {
             return f64::NAN;
         };

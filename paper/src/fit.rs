@@ -11,6 +11,8 @@ use super::bench_data::Point;
 const POWER_SEEN: f64 = 0.95;
 /// Exponent where it cannot be seen: the middle of the paper's 1.6 to 1.8.
 const EXPONENT: f64 = 1.7;
+/// Most steps: a few are enough.
+const STEPS: u32 = 30;
 /// Difference of infill from which two count as two, %.
 const INFILL_STEP: f64 = 0.2;
 
@@ -66,125 +68,179 @@ impl Fit {
     }
 }
 
+/// What the data allow to be fitted.
+#[derive(Clone, Copy)]
+struct Unknowns {
+    /// More than one infill: A1 and A2, B1 and B2, in place of A and B.
+    several: bool,
+    /// The power ratio varies: C_P.
+    powered: bool,
+}
+
+impl Unknowns {
+    fn of(points: &[Point]) -> Self {
+        let (low, high) = range(points, |p| p.infill);
+        Self {
+            several: high - low >= INFILL_STEP,
+            powered: range(points, |p| p.power).0 < POWER_SEEN,
+        }
+    }
+
+    /// Number of those that enter linearly: α0, then A (and A2), B (and B2).
+    const fn linear(self) -> usize {
+        if self.several { 5 } else { 3 }
+    }
+
+    fn count(self) -> usize {
+        self.linear() + usize::from(self.powered)
+    }
+
+    /// Names and units, in the order of the columns.
+    fn names(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let linear: &[(&str, &str)] = if self.several {
+            &[
+                ("α0", "°"),
+                ("A1", "°/N"),
+                ("A2", "°/(N %)"),
+                ("B1", "°/N²"),
+                ("B2", "°/(N² %)"),
+            ]
+        } else {
+            &[("α0", "°"), ("A", "°/N"), ("B", "°/N²")]
+        };
+        linear.iter().copied().chain([("C_P", "")]).take(self.count())
+    }
+
+    /// What A (A1, A2) and B (B1, B2) are multiplied with at full power.
+    fn basis(self, p: &Point) -> Vec<f64> {
+        let (t, t2) = (p.thrust, p.thrust * p.thrust);
+        if self.several {
+            vec![t, p.infill * t, t2, p.infill * t2]
+        } else {
+            vec![t, t2]
+        }
+    }
+
+    /// A point's row of the design about the solution `x` with this exponent.
+    fn row(self, p: &Point, x: &[f64], exponent: f64) -> Vec<f64> {
+        let factor = p.power.powf(exponent);
+        let basis = self.basis(p);
+        let mut row = vec![1.0];
+        row.extend(basis.iter().map(|b| b * factor));
+        if self.powered {
+            // d α/d C_P about the last solution.
+            let elastic: f64 = basis.iter().zip(x.iter().skip(1)).map(|(b, c)| b * c).sum();
+            row.push(elastic * factor * p.power.ln());
+        }
+        row
+    }
+
+    /// # Errors
+    /// Too few points, or points over too small a range, in one line.
+    fn refuse_too_little(self, points: &[Point]) -> Result<(), String> {
+        let (least, most) = range(points, |p| p.thrust);
+        if points.is_empty() || most - least < 0.5 {
+            return Err(
+                "thrust_n spans less than 0.5 N: allowed are data over the thrusts of flight".to_owned(),
+            );
+        }
+        let (count, needed) = (self.count(), self.count() + 3);
+        if points.len() < needed {
+            return Err(format!(
+                "{} rows: allowed are at least {needed} for {count} unknowns",
+                points.len(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Where the steps end.
+struct Solution {
+    /// The linear unknowns.
+    x: Vec<f64>,
+    /// (XᵀX)⁻¹ of the last step.
+    covariance: Vec<Vec<f64>>,
+    exponent: f64,
+}
+
+impl Solution {
+    /// Gauss-Newton; `None` where the points do not tell the unknowns apart.
+    fn of(points: &[Point], unknowns: Unknowns) -> Option<Self> {
+        let linear = unknowns.linear();
+        let mut exponent = EXPONENT;
+        // Without C_P first: its derivative needs a solution.
+        let start: Vec<Vec<f64>> = points
+            .iter()
+            .map(|p| unknowns.row(p, &[], exponent)[..linear].to_vec())
+            .collect();
+        let (mut x, mut covariance) = solve(&start, points)?;
+        for _ in 0..STEPS {
+            let design: Vec<Vec<f64>> = points.iter().map(|p| unknowns.row(p, &x, exponent)).collect();
+            (x, covariance) = solve(&design, points)?;
+            let step = x.get(linear).map_or(0.0, |step| step.clamp(-0.5, 0.5));
+            exponent += step;
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        Some(Self {
+            x,
+            covariance,
+            exponent,
+        })
+    }
+
+    /// A1, A2, B1, B2; zeros for what a single infill does not show.
+    fn coefficients(&self) -> [f64; 4] {
+        match self.x[1..] {
+            [a1, a2, b1, b2, ..] => [a1, a2, b1, b2],
+            [a, b, ..] => [a, 0.0, b, 0.0],
+            _ => [f64::NAN; 4],
+        }
+    }
+}
+
 /// Fits `points` against Table I's coefficients `table_1`.
 ///
 /// # Errors
 /// One line that says what the data lack.
 pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
-    let (low, high) = range(points, |p| p.infill);
-    let several = high - low >= INFILL_STEP;
-    let powered = range(points, |p| p.power).0 < POWER_SEEN;
-    let (least, most) = range(points, |p| p.thrust);
-    if points.is_empty() || most - least < 0.5 {
-        return Err("thrust_n spans less than 0.5 N: allowed are data over the thrusts of flight".to_owned());
-    }
-    // Columns of the linear part: α0, then A (and A2), B (and B2).
-    let basis = |p: &Point| {
-        let (t, t2) = (p.thrust, p.thrust * p.thrust);
-        if several {
-            vec![t, p.infill * t, t2, p.infill * t2]
-        } else {
-            vec![t, t2]
-        }
-    };
-    let linear = if several { 5 } else { 3 };
-    let count = linear + usize::from(powered);
-    if points.len() < count + 3 {
-        return Err(format!(
-            "{} rows: allowed are at least {} for {count} unknowns",
-            points.len(),
-            count + 3
-        ));
-    }
+    let unknowns = Unknowns::of(points);
+    unknowns.refuse_too_little(points)?;
     let lacking = || {
         "the rows do not tell the coefficients apart: allowed are at least three thrusts at every infill, and two infills or \
          one"
             .to_owned()
     };
-    let mut exponent = EXPONENT;
-    let (mut x, mut covariance) = (vec![], vec![]);
-    for _ in 0..30 {
-        let rows = |p: &Point, x: &[f64]| {
-            let factor = p.power.powf(exponent);
-            let basis = basis(p);
-            let mut row = vec![1.0];
-            row.extend(basis.iter().map(|b| b * factor));
-            if powered {
-                // d α/d C_P about the last solution.
-                let elastic: f64 = basis.iter().zip(x.iter().skip(1)).map(|(b, c)| b * c).sum();
-                row.push(elastic * factor * p.power.ln());
-            }
-            row
-        };
-        if x.is_empty() {
-            // Without C_P first: its derivative needs a solution.
-            let start: Vec<Vec<f64>> = points.iter().map(|p| rows(p, &[])[..linear].to_vec()).collect();
-            x = solve(&start, points).ok_or_else(lacking)?.0;
-            if powered {
-                x.push(0.0);
-            }
-        }
-        let design: Vec<Vec<f64>> = points.iter().map(|p| rows(p, &x)).collect();
-        let (next, inverse) = solve(&design, points).ok_or_else(lacking)?;
-        let step = if powered {
-            next[linear].clamp(-0.5, 0.5)
-        } else {
-            0.0
-        };
-        (x, covariance) = (next, inverse);
-        exponent += step;
-        if step.abs() < 1e-9 {
-            break;
-        }
-    }
+    let solution = Solution::of(points, unknowns).ok_or_else(lacking)?;
     let mut fit = Fit {
         fitted: vec![],
-        coefficients: if several {
-            [x[1], x[2], x[3], x[4]]
-        } else {
-            [x[1], 0.0, x[2], 0.0]
-        },
-        offset: x[0],
-        exponent,
+        coefficients: solution.coefficients(),
+        offset: solution.x[0],
+        exponent: solution.exponent,
         residual: 0.0,
-        gain: (
-            Fitted {
-                name: "K",
-                unit: "",
-                value: f64::NAN,
-                half: f64::NAN,
-            },
-            f64::NAN,
-        ),
+        gain: gain(points, table_1, solution.exponent).ok_or_else(lacking)?,
     };
     let square: f64 = points
         .iter()
         .map(|p| (p.tilt - fit.tilt(p.infill, p.thrust, p.power)).powi(2))
         .sum();
-    let freedom = points.len() - count;
+    let freedom = points.len() - unknowns.count();
     fit.residual = (square / freedom as f64).sqrt();
     let t = quantile(freedom);
-    let names: &[(&str, &str)] = if several {
-        &[
-            ("α0", "°"),
-            ("A1", "°/N"),
-            ("A2", "°/(N %)"),
-            ("B1", "°/N²"),
-            ("B2", "°/(N² %)"),
-        ]
-    } else {
-        &[("α0", "°"), ("A", "°/N"), ("B", "°/N²")]
-    };
-    for (i, (name, unit)) in names.iter().chain(&[("C_P", "")]).take(count).enumerate() {
-        let value = if *name == "C_P" { exponent } else { x[i] };
+    for (i, (name, unit)) in unknowns.names().enumerate() {
         fit.fitted.push(Fitted {
             name,
             unit,
-            value,
-            half: t * fit.residual * covariance[i][i].sqrt(),
+            value: if i < unknowns.linear() {
+                solution.x[i]
+            } else {
+                solution.exponent
+            },
+            half: t * fit.residual * solution.covariance[i][i].sqrt(),
         });
     }
-    fit.gain = gain(points, table_1, exponent).ok_or_else(lacking)?;
     Ok(fit)
 }
 

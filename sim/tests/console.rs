@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use embassy_futures::yield_now;
 use embassy_time::{Instant, Timer};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
@@ -47,13 +47,19 @@ fn looks(level: u8) -> [Look; 2] {
         refuses,
     };
     [
-        look("flash wait states", "5".into(), "5", true, Some(Refusal::Silicon)),
+        look(
+            "flash wait states",
+            "5".into(),
+            "5",
+            true,
+            Some(ArmingInhibit::Silicon),
+        ),
         look(
             "brown-out level",
             level.to_string(),
             "3",
             level == 3,
-            Some(Refusal::BrownOutLevel),
+            Some(ArmingInhibit::BrownOutLevel),
         ),
     ]
 }
@@ -163,12 +169,12 @@ impl Bench {
         let links = self.links;
         self.time.spawn(async move {
             loop {
-                let refusals = links.hardware();
-                let storing = refusals.contains(Refusal::Storing);
+                let inhibits = links.hardware();
+                let storing = inhibits.contains(ArmingInhibit::Storing);
                 let status = Status {
                     mode: if storing { then } else { mode },
-                    reason: refusals.first().map(Reason::Check),
-                    refusals,
+                    reason: inhibits.first().map(Reason::Check),
+                    inhibits,
                     ..Status::default()
                 };
                 links.status.send(Instant::now(), status);
@@ -339,7 +345,7 @@ fn nothing_is_stored_or_restarted_while_rotors_may_turn() {
         assert_eq!(storage.saves.borrow().len(), usize::from(stopped), "{mode:?}");
         assert_eq!(bench.chip.restarts.get(), u32::from(stopped), "{mode:?}");
         assert_eq!(
-            bench.links.hardware().contains(Refusal::Storing),
+            bench.links.hardware().contains(ArmingInhibit::Storing),
             stopped,
             "{mode:?}"
         );
@@ -367,7 +373,7 @@ fn the_commander_refuses_arming_before_anything_is_stored() {
     let [(params, Some(status))] = saves.as_slice() else {
         panic!("{} saves", saves.len())
     };
-    assert!(status.refusals.contains(Refusal::Storing));
+    assert!(status.inhibits.contains(ArmingInhibit::Storing));
     assert!((params.infill, bench.links.params.infill) == (8.0, 6.9));
 }
 
@@ -397,23 +403,23 @@ fn without_a_commander_nothing_is_stored() {
 
 #[test]
 fn a_storage_that_fails_is_named_and_the_changes_stay() {
-    for (answer, hangs, refusal, words) in [
+    for (answer, hangs, inhibit, words) in [
         (
             StorageError::Full,
             false,
-            Refusal::StorageFull,
+            ArmingInhibit::StorageFull,
             "the storage is full",
         ),
         (
             StorageError::Broken,
             false,
-            Refusal::StorageUnreadable,
+            ArmingInhibit::StorageUnreadable,
             "the storage does not keep what is written",
         ),
         (
             StorageError::Broken,
             true,
-            Refusal::StorageUnreadable,
+            ArmingInhibit::StorageUnreadable,
             "the storage does not keep what is written",
         ),
     ] {
@@ -434,7 +440,7 @@ fn a_storage_that_fails_is_named_and_the_changes_stay() {
             format!("save\r\nnot saved: {words}; your changes are kept until a restart\r\n> ")
         );
         assert_eq!(bench.chip.restarts.get(), 0);
-        assert!(bench.links.hardware().iter().eq([refusal]));
+        assert!(bench.links.hardware().iter().eq([inhibit]));
         assert!(bench.types("changes\r").contains("infill 6.9 -> 8 %"));
     }
 }
@@ -452,10 +458,10 @@ fn a_flash_that_dies_is_told_apart_and_a_sound_one_frees_arming_again() {
         answer.contains("the storage does not keep what is written"),
         "{answer}"
     );
-    assert!(bench.links.hardware().contains(Refusal::StorageUnreadable));
+    assert!(bench.links.hardware().contains(ArmingInhibit::StorageUnreadable));
     flash.0.borrow_mut().dead = false;
     assert_eq!(bench.types("save\r"), "save\nsaved; restarting\n> ");
-    assert!(bench.links.hardware().iter().eq([Refusal::Storing]));
+    assert!(bench.links.hardware().iter().eq([ArmingInhibit::Storing]));
     assert_eq!(start(&flash).0.links.params.infill, 8.0);
 }
 
@@ -631,7 +637,7 @@ fn the_brown_out_level_is_set_on_purpose_after_what_it_does_was_said() {
     assert_eq!(bench.types("brownout set\r"), "brownout set\nset; restarting\n> ");
     assert_eq!((bench.chip.level.get(), bench.chip.restarts.get()), (3, 1));
     // Arming stays refused until the restart.
-    assert!(bench.links.hardware().iter().eq([Refusal::Storing]));
+    assert!(bench.links.hardware().iter().eq([ArmingInhibit::Storing]));
 }
 
 #[test]

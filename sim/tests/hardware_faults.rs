@@ -3,7 +3,7 @@
 
 mod vehicle;
 
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::rc::Sticks;
 use sophie_fakes::Answer;
@@ -13,10 +13,10 @@ use vehicle::Vehicle;
 /// Breaks a part.
 type Break = fn(&Vehicle);
 
-const ERRORS: [(PortError, Refusal); 3] = [
-    (PortError::Absent, Refusal::ImuAbsent),
-    (PortError::WrongPart, Refusal::ImuWrongPart),
-    (PortError::Corrupt, Refusal::ImuCorrupt),
+const ERRORS: [(PortError, ArmingInhibit); 3] = [
+    (PortError::Absent, ArmingInhibit::ImuAbsent),
+    (PortError::WrongPart, ArmingInhibit::ImuWrongPart),
+    (PortError::Corrupt, ArmingInhibit::ImuCorrupt),
 ];
 
 /// On the ground, calibrated.
@@ -42,7 +42,7 @@ fn tries_to_arm(v: &mut Vehicle) -> bool {
     armed
 }
 
-fn holds(v: &Vehicle, reason: Refusal) -> bool {
+fn holds(v: &Vehicle, reason: ArmingInhibit) -> bool {
     v.links.hardware().contains(reason)
 }
 
@@ -91,7 +91,10 @@ fn what_the_inertial_sensor_answers_instead_of_samples_is_named_while_calibratin
         // Another fault takes its place, it does not join it.
         v.imu.0.answer.set(Answer::Errs(PortError::Corrupt));
         v.run(100);
-        assert!(v.links.hardware().iter().eq([Refusal::ImuCorrupt]), "{error:?}");
+        assert!(
+            v.links.hardware().iter().eq([ArmingInhibit::ImuCorrupt]),
+            "{error:?}"
+        );
         // Healed, it calibrates and arms.
         v.imu.0.answer.set(Answer::Sound);
         v.run(4000);
@@ -156,10 +159,10 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
 #[test]
 fn each_arm_sensor_is_named_and_refuses_arming_until_it_answers() {
     let reasons = [
-        Refusal::ArmSensor1,
-        Refusal::ArmSensor2,
-        Refusal::ArmSensor3,
-        Refusal::ArmSensor4,
+        ArmingInhibit::ArmSensor1,
+        ArmingInhibit::ArmSensor2,
+        ArmingInhibit::ArmSensor3,
+        ArmingInhibit::ArmSensor4,
     ];
     for answer in [
         Answer::Fails,
@@ -201,7 +204,7 @@ fn an_arm_sensor_that_never_was_there_is_named_before_the_first_arming() {
     v.run(4000);
     assert_eq!(
         (v.mode(), v.reason()),
-        (Mode::Disarmed, Some(Reason::Check(Refusal::ArmSensor3)))
+        (Mode::Disarmed, Some(Reason::Check(ArmingInhibit::ArmSensor3)))
     );
     assert!(!tries_to_arm(&mut v));
 }
@@ -212,7 +215,7 @@ fn a_hung_bus_names_all_its_arms() {
     v.arms.0.answer.set(Answer::Hangs);
     v.run(2000);
     assert_eq!(v.links.hardware().iter().count(), 4);
-    assert_eq!(v.reason(), Some(Reason::Check(Refusal::ArmSensor1)));
+    assert_eq!(v.reason(), Some(Reason::Check(ArmingInhibit::ArmSensor1)));
     v.arms.0.answer.set(Answer::Sound);
     v.run(200);
     assert!(v.links.hardware().is_empty());
@@ -223,12 +226,12 @@ fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
     for answer in [Answer::Fails, Answer::Refuses, Answer::Hangs] {
         let mut v = ready();
         v.converter.part.answer.set(answer);
-        let took = v.until(300, |v| holds(v, Refusal::AnalogSilent));
+        let took = v.until(300, |v| holds(v, ArmingInhibit::AnalogSilent));
         assert!((95..=110).contains(&took), "{answer:?}: {took} ms");
         v.run(20);
         assert_eq!(
             (v.mode(), v.reason()),
-            (Mode::Disarmed, Some(Reason::Check(Refusal::AnalogSilent)))
+            (Mode::Disarmed, Some(Reason::Check(ArmingInhibit::AnalogSilent)))
         );
         assert!(!tries_to_arm(&mut v), "{answer:?}");
         if answer == Answer::Hangs {
@@ -237,7 +240,7 @@ fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
             continue;
         }
         v.converter.part.answer.set(Answer::Sound);
-        v.until(10, |v| !holds(v, Refusal::AnalogSilent));
+        v.until(10, |v| !holds(v, ArmingInhibit::AnalogSilent));
         v.run(1000);
         assert!(tries_to_arm(&mut v), "{answer:?}: {:?}", v.reason());
     }
@@ -262,23 +265,23 @@ fn gaps_shorter_than_the_limits_are_not_reported() {
 
 #[test]
 fn what_breaks_in_flight_does_not_end_it() {
-    let breaks: [(Break, &[Refusal]); 3] = [
+    let breaks: [(Break, &[ArmingInhibit]); 3] = [
         (
             |v| v.arms.1[1].answer.set(Answer::Refuses),
-            &[Refusal::ArmSensor2],
+            &[ArmingInhibit::ArmSensor2],
         ),
         (
             |v| v.arms.1.iter().for_each(|arm| arm.answer.set(Answer::Hangs)),
             &[
-                Refusal::ArmSensor1,
-                Refusal::ArmSensor2,
-                Refusal::ArmSensor3,
-                Refusal::ArmSensor4,
+                ArmingInhibit::ArmSensor1,
+                ArmingInhibit::ArmSensor2,
+                ArmingInhibit::ArmSensor3,
+                ArmingInhibit::ArmSensor4,
             ],
         ),
         (
             |v| v.converter.part.answer.set(Answer::Fails),
-            &[Refusal::AnalogSilent],
+            &[ArmingInhibit::AnalogSilent],
         ),
     ];
     for (breaks, reasons) in breaks {
@@ -322,12 +325,12 @@ fn what_breaks_in_flight_does_not_end_it() {
 #[test]
 fn whatever_start_up_and_storage_report_refuses_arming_while_it_holds() {
     for reason in [
-        Refusal::ImuSelfTest,
-        Refusal::ImuLineSilent,
-        Refusal::BrownOut,
-        Refusal::StorageUnreadable,
-        Refusal::StorageFull,
-        Refusal::Storing,
+        ArmingInhibit::ImuSelfTest,
+        ArmingInhibit::ImuLineSilent,
+        ArmingInhibit::BrownOut,
+        ArmingInhibit::StorageUnreadable,
+        ArmingInhibit::StorageFull,
+        ArmingInhibit::Storing,
     ] {
         let mut v = ready();
         v.links.report(reason, true);

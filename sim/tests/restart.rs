@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use embassy_time::Instant;
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::mixer::Flexible;
@@ -177,7 +177,7 @@ fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
         v.status(),
         (
             Mode::Disarmed,
-            Some(Reason::Check(Refusal::SwitchOnAtPowerUp)),
+            Some(Reason::Check(ArmingInhibit::SwitchOnAtPowerUp)),
             "restarted by the watchdog"
         )
     );
@@ -316,11 +316,11 @@ fn a_brown_out_forbids_arming_on_the_ground_and_says_so() {
         v.status(),
         (
             Mode::Disarmed,
-            Some(Reason::Check(Refusal::BrownOut)),
+            Some(Reason::Check(ArmingInhibit::BrownOut)),
             "restarted by a brown-out"
         )
     );
-    assert!(v.links.hardware().contains(Refusal::BrownOut));
+    assert!(v.links.hardware().contains(ArmingInhibit::BrownOut));
     for (cause, warning) in [
         (StartCause::Fault, "restarted after a fault"),
         (StartCause::Watchdog, "restarted by the watchdog"),

@@ -108,8 +108,8 @@ pub fn loaded(links: &Links, loaded: Loaded) {
 /// Refuses arming for what the start-up found in the chip and cannot be flown with.
 pub fn looked(links: &Links, looks: &[Look]) {
     for look in looks {
-        if let (Some(refusal), false) = (look.refuses, look.ok) {
-            links.report(refusal, true);
+        if let (Some(inhibit), false) = (look.inhibits, look.ok) {
+            links.report(inhibit, true);
         }
     }
 }

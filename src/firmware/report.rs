@@ -6,7 +6,7 @@
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
-use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_tasks::links::{Links, Status};
 use sophie_tasks::ports::Look;
 
@@ -27,7 +27,7 @@ pub async fn run(links: &Links, looks: &[Look]) -> ! {
     defmt::info!("started in {=u64} ms", Instant::now().as_millis());
     let mut ticker = Ticker::every(PERIOD);
     let mut shown: Option<Status> = None;
-    let mut blocking = Refusals::NONE;
+    let mut blocking = ArmingInhibits::NONE;
     let mut timing = TimingReport::default();
     let mut grip = GripReport::default();
     let mut round = 0u32;
@@ -94,9 +94,9 @@ fn silicon(look: &Look) {
 }
 
 /// All that speaks against arming, where the state's line has room for the first reason only.
-fn hardware(links: &Links, shown: &mut Refusals) {
+fn hardware(links: &Links, shown: &mut ArmingInhibits) {
     let now = links.hardware();
-    for reason in Refusal::ALL {
+    for reason in ArmingInhibit::ALL {
         match (shown.contains(reason), now.contains(reason)) {
             (false, true) => defmt::warn!("arming blocked: {=str}", reason.text()),
             (true, false) => defmt::info!("no longer blocked: {=str}", reason.text()),

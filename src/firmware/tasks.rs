@@ -1,27 +1,70 @@
-//! The tasks as the executors want them: static, not generic. What they do is in `sophie_tasks`,
-//! their levels are declared in [`sophie_tasks::schedule`].
+//! The tasks as the executors want them: static, not generic, and spawned on a board's ports. What they do is in
+//! `sophie_tasks`, their levels are declared in [`sophie_tasks::schedule`].
 
-use sophie_control::arming::Refusal;
+use embassy_executor::SpawnError;
+use sophie_boards::Board;
+use sophie_boards::retained::Memory;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::mixer::Flexible;
 use sophie_control::wrench::Configuration;
 use sophie_drivers::rc_decoder::Decoder;
 use sophie_tasks::links::Links;
 use sophie_tasks::ports::Look;
+use sophie_tasks::schedule::TaskId;
 
-use sophie_boards::retained::Memory;
+use super::Levels;
 
 /// Most self-tests of the inertial sensor at one start.
 const SELF_TESTS: u8 = 3;
+
+/// Spawns every task; `self_test`: the inertial sensor's, before anything else of it. Called once.
+///
+/// # Errors
+/// A task that was spawned before: each is static.
+pub fn spawn(
+    levels: &Levels,
+    links: &'static Links,
+    board: Board,
+    memory: Memory,
+    self_test: bool,
+) -> Result<(), SpawnError> {
+    // Motors first: their first frame is a stop.
+    levels.spawn(TaskId::Motors, motors(links, board.motors)?);
+    levels.spawn(TaskId::Mixer, mixer(links)?);
+    levels.spawn(TaskId::Control, control(links)?);
+    levels.spawn(TaskId::Estimator, estimator(links)?);
+    levels.spawn(TaskId::Imu, imu(links, board.imu, self_test)?);
+    levels.spawn(TaskId::Supervisor, supervisor(links, board.watchdog, memory)?);
+    levels.spawn(TaskId::Commander, commander(links)?);
+    levels.spawn(TaskId::Rc, rc(links, board.receiver)?);
+    levels.spawn(TaskId::Analog, analog(links, board.analog)?);
+    levels.spawn(TaskId::Clamp, clamp(links)?);
+    levels.spawn(TaskId::Servos, servos(links, board.servos)?);
+    levels.spawn(TaskId::Arms, arms(links, board.arms)?);
+    levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
+    // What has no deadline.
+    let looks = board.chip.looks;
+    let (input, output) = (board.console_input, board.console_output);
+    levels.spawn_unmeasured(
+        "console",
+        console(links, input, output, board.storage, board.chip)?,
+    );
+    levels.spawn_unmeasured("lights", lights(links, board.lights)?);
+    levels.spawn_unmeasured("report", report(links, looks)?);
+    #[cfg(feature = "trace")]
+    levels.spawn_unmeasured("trace", super::trace::trace()?);
+    Ok(())
+}
 
 /// Inertial sensor.
 ///
 /// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. One
 /// that fails is repeated, since a vehicle that is being carried fails it too; the last verdict stands.
 #[embassy_executor::task]
-pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
+async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
     for _ in 0..if self_test { SELF_TESTS } else { 0 } {
         let result = port.self_test().await;
-        links.report(Refusal::ImuSelfTest, result.is_err());
+        links.report(ArmingInhibit::ImuSelfTest, result.is_err());
         match result {
             Ok(_) => {
                 defmt::info!("imu: self-test passed");
@@ -35,79 +78,79 @@ pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_t
 
 /// Attitude.
 #[embassy_executor::task]
-pub async fn estimator(links: &'static Links) {
+async fn estimator(links: &'static Links) {
     sophie_tasks::estimator::run(links).await;
 }
 
 /// Attitude and rate control.
 #[embassy_executor::task]
-pub async fn control(links: &'static Links) {
+async fn control(links: &'static Links) {
     sophie_tasks::control::run(links).await;
 }
 
 /// Allocation.
 #[embassy_executor::task]
-pub async fn mixer(links: &'static Links) {
+async fn mixer(links: &'static Links) {
     sophie_tasks::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
 }
 
 /// Motors.
 #[embassy_executor::task]
-pub async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
+async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
     sophie_tasks::motors::run(links, port).await;
 }
 
 /// Pressure sensors and battery.
 #[embassy_executor::task]
-pub async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
+async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
     sophie_tasks::analog::run(links, port).await
 }
 
 /// Clamp loops.
 #[embassy_executor::task]
-pub async fn clamp(links: &'static Links) -> ! {
+async fn clamp(links: &'static Links) -> ! {
     sophie_tasks::clamp::run(links).await
 }
 
 /// Tendon servos.
 #[embassy_executor::task]
-pub async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
+async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
     sophie_tasks::servos::run(links, port).await
 }
 
 /// Receiver.
 #[embassy_executor::task]
-pub async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
+async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
     sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
 }
 
 /// Mode logic.
 #[embassy_executor::task]
-pub async fn commander(links: &'static Links) -> ! {
+async fn commander(links: &'static Links) -> ! {
     sophie_tasks::commander::run(links).await
 }
 
 /// Supervision, watchdog, and what outlives it.
 #[embassy_executor::task]
-pub async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
+async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
     sophie_tasks::supervisor::run(links, port, memory).await
 }
 
 /// Arm sensors.
 #[embassy_executor::task]
-pub async fn arms(links: &'static Links, port: sophie_boards::ArmsPort) -> ! {
+async fn arms(links: &'static Links, port: sophie_boards::ArmsPort) -> ! {
     sophie_tasks::arms::run(links, port).await
 }
 
 /// Telemetry to the pilot.
 #[embassy_executor::task]
-pub async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) -> ! {
+async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) -> ! {
     sophie_tasks::telemetry::run(links, port).await
 }
 
 /// The builder's console.
 #[embassy_executor::task]
-pub async fn console(
+async fn console(
     links: &'static Links,
     input: sophie_boards::ConsoleInput,
     output: sophie_boards::ConsoleOutput,
@@ -119,12 +162,12 @@ pub async fn console(
 
 /// Lights and buzzer.
 #[embassy_executor::task]
-pub async fn lights(links: &'static Links, lights: sophie_boards::LightsPort) -> ! {
+async fn lights(links: &'static Links, lights: sophie_boards::LightsPort) -> ! {
     super::lights::run(links, lights).await
 }
 
 /// The log.
 #[embassy_executor::task]
-pub async fn report(links: &'static Links, looks: &'static [Look]) -> ! {
+async fn report(links: &'static Links, looks: &'static [Look]) -> ! {
     super::report::run(links, looks).await
 }

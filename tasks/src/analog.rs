@@ -9,7 +9,7 @@ use core::pin::pin;
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::battery::Monitor;
 use sophie_control::fsr::{Fsr, FsrScale};
 
@@ -27,7 +27,7 @@ const BATTERY_EVERY: u8 = 5;
 pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Analog);
     let scales = FsrScale::all(&links.params);
-    for (scale, reason) in scales.iter().zip(Refusal::FSR_RANGE) {
+    for (scale, reason) in scales.iter().zip(ArmingInhibit::FSR_RANGE) {
         links.report(reason, !scale.reaches_grip(&links.params));
     }
     let mut sensors = scales.map(Sensor::new);
@@ -35,7 +35,7 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     let mut battery_dt = 0.0;
     let mut until_battery = BATTERY_EVERY;
     let mut sensor_dt = 0.0;
-    let mut watch = SilenceWatch::new(Refusal::AnalogSilent, SILENCE, Instant::now());
+    let mut watch = SilenceWatch::new(ArmingInhibit::AnalogSilent, SILENCE, Instant::now());
     loop {
         let tick = rate.next().await;
         sensor_dt += tick.dt;

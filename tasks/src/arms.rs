@@ -6,7 +6,7 @@
 //! sensor was asked: a slow sensor does not make the readings after it look older, nor those before it newer.
 
 use embassy_time::{Duration, Instant, with_timeout};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::math;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::{PerArm, SIDE};
@@ -24,11 +24,11 @@ pub const START: Duration = Duration::from_millis(2500);
 /// Longest time that one reading may take. The driver bounds each transfer to 3 ms itself, a few of them in a call.
 const READING: Duration = Duration::from_millis(20);
 /// What is reported of each arm.
-const REASONS: PerArm<Refusal> = [
-    Refusal::ArmSensor1,
-    Refusal::ArmSensor2,
-    Refusal::ArmSensor3,
-    Refusal::ArmSensor4,
+const REASONS: PerArm<ArmingInhibit> = [
+    ArmingInhibit::ArmSensor1,
+    ArmingInhibit::ArmSensor2,
+    ArmingInhibit::ArmSensor3,
+    ArmingInhibit::ArmSensor4,
 ];
 
 /// Serves the arm sensors; never returns. A sensor that fails leaves `None` for its arm.

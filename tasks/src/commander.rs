@@ -34,7 +34,7 @@ pub async fn run(links: &Links) -> ! {
             tendons,
             grip_memory,
             reason,
-            refusals,
+            inhibits,
             ..
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
@@ -47,7 +47,7 @@ pub async fn run(links: &Links) -> ! {
                 mode,
                 reason,
                 warning,
-                refusals,
+                inhibits,
             },
         );
     }
@@ -57,9 +57,7 @@ pub async fn run(links: &Links) -> ! {
 fn warning(links: &Links, mode: Mode) -> &'static str {
     if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
         "arm tilt beyond its model"
-    } else if matches!(mode, Mode::Calibrating | Mode::Disarmed | Mode::Perched)
-        && !links.start.cause.warning().is_empty()
-    {
+    } else if mode.rotors_stand() && !links.start.cause.warning().is_empty() {
         links.start.cause.warning()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
         "servo weaker than the force limit"

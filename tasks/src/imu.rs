@@ -4,7 +4,7 @@
 //! from the part counts as lateness, the filter as execution.
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::chain::{ImuSample, Sensing};
 
 use crate::deadline::{TaskId, record_run};
@@ -59,7 +59,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
 struct Faults {
     /// When the last error came, and how many have been counted.
     errors: Option<(Instant, u8)>,
-    reported: Option<Refusal>,
+    reported: Option<ArmingInhibit>,
     /// The data-ready line was reported as silent.
     line_silent: bool,
 }
@@ -67,9 +67,9 @@ struct Faults {
 impl Faults {
     fn failed(&mut self, links: &Links, error: PortError) {
         let fault = match error {
-            PortError::Absent => Refusal::ImuAbsent,
-            PortError::WrongPart => Refusal::ImuWrongPart,
-            PortError::Corrupt => Refusal::ImuCorrupt,
+            PortError::Absent => ArmingInhibit::ImuAbsent,
+            PortError::WrongPart => ArmingInhibit::ImuWrongPart,
+            PortError::Corrupt => ArmingInhibit::ImuCorrupt,
             // Silence shows as age.
             PortError::Timeout => return,
         };
@@ -87,7 +87,7 @@ impl Faults {
     fn good(&mut self, links: &Links, at: Instant, line_silent: bool) {
         if line_silent != self.line_silent {
             self.line_silent = line_silent;
-            links.report(Refusal::ImuLineSilent, line_silent);
+            links.report(ArmingInhibit::ImuLineSilent, line_silent);
         }
         if let Some((last, _)) = self.errors
             && at.saturating_duration_since(last) >= CLEAN

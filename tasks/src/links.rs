@@ -19,7 +19,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant};
-use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::Target;
 pub use sophie_control::battery::Battery;
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
@@ -244,7 +244,7 @@ pub struct Status {
     /// What does not stop the flight but must be known; empty when there is nothing.
     pub warning: &'static str,
     /// Everything that forbids arming now.
-    pub refusals: Refusals,
+    pub inhibits: ArmingInhibits,
 }
 
 /// What is declared of a link.
@@ -284,7 +284,7 @@ macro_rules! links {
             pub missed: Signal<Raw, ()>,
             timing: [Mutex<Raw, RefCell<Record>>; TaskId::COUNT],
             contact_chain: Mutex<Raw, RefCell<Record>>,
-            hardware: Mutex<Raw, Cell<Refusals>>,
+            hardware: Mutex<Raw, Cell<ArmingInhibits>>,
         }
 
         impl Links {
@@ -308,8 +308,8 @@ macro_rules! links {
                     timing: [const { Mutex::new(RefCell::new(Record::new())) }; TaskId::COUNT],
                     contact_chain: Mutex::new(RefCell::new(Record::new())),
                     hardware: Mutex::new(Cell::new(match start.cause {
-                        StartCause::BrownOut => Refusals::NONE.with(Refusal::BrownOut),
-                        _ => Refusals::NONE,
+                        StartCause::BrownOut => ArmingInhibits::NONE.with(ArmingInhibit::BrownOut),
+                        _ => ArmingInhibits::NONE,
                     })),
                 }
             }
@@ -361,12 +361,12 @@ impl Links {
     }
 
     /// What speaks against arming on the hardware's side. drivers' tasks, start-up, console -> commander.
-    pub fn hardware(&self) -> Refusals {
+    pub fn hardware(&self) -> ArmingInhibits {
         self.hardware.lock(Cell::get)
     }
 
     /// Reports that `reason` holds, or holds no longer.
-    pub fn report(&self, reason: Refusal, holds: bool) {
+    pub fn report(&self, reason: ArmingInhibit, holds: bool) {
         self.hardware.lock(|cell| {
             let all = cell.get();
             cell.set(if holds {

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::{ParamInfo, Params, Renamed};
 
 use crate::decimal::{self, Decimal};
@@ -19,8 +19,8 @@ pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
 /// Refuses arming when the storage could not be read. Values that were refused do not: their defaults are sound.
 pub fn report(links: &Links, loaded: Loaded) {
     let foreign = loaded.foreign.is_some();
-    links.report(Refusal::StorageUnreadable, loaded.unreadable && !foreign);
-    links.report(Refusal::StorageForeign, foreign);
+    links.report(ArmingInhibit::StorageUnreadable, loaded.unreadable && !foreign);
+    links.report(ArmingInhibit::StorageForeign, foreign);
 }
 
 /// What a parameter takes: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus".

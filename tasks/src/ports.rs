@@ -2,7 +2,7 @@
 
 use embassy_time::Instant;
 use heapless::{String, Vec};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 pub use sophie_control::chain::ImuReading;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
@@ -194,7 +194,7 @@ pub struct Look {
     /// They go together.
     pub ok: bool,
     /// What this refuses where they do not; `None` where it can be flown with.
-    pub refuses: Option<Refusal>,
+    pub inhibits: Option<ArmingInhibit>,
 }
 
 /// Most things that a start-up looks at.

@@ -1,13 +1,13 @@
 //! Sensors that give nothing: reported against arming when their silence begins, and cleared when it ends.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 
 use crate::links::Links;
 
 /// Watches for readings of one sensor.
 pub struct SilenceWatch {
-    reason: Refusal,
+    reason: ArmingInhibit,
     limit: Duration,
     /// When it last gave a reading.
     last: Instant,
@@ -16,7 +16,7 @@ pub struct SilenceWatch {
 
 impl SilenceWatch {
     /// Reports `reason` once the sensor has given nothing for `limit`, counted from `since` at the earliest.
-    pub const fn new(reason: Refusal, limit: Duration, since: Instant) -> Self {
+    pub const fn new(reason: ArmingInhibit, limit: Duration, since: Instant) -> Self {
         Self {
             reason,
             limit,

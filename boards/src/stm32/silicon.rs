@@ -6,7 +6,7 @@ use core::fmt::{self, Write};
 use embassy_stm32::pac;
 use embassy_stm32::rcc;
 use heapless::String;
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_tasks::ports::{Loaded, Look, Looks, READ};
 
 use super::clock::bus_hz;
@@ -28,7 +28,7 @@ pub fn look(stored: Loaded, sectors: u32) -> Looks {
     add(memory_protection());
     let level = options::brown_out_level();
     add(Look {
-        refuses: Some(Refusal::BrownOutLevel),
+        inhibits: Some(ArmingInhibit::BrownOutLevel),
         ..row("brown-out level", format_args!("{level}"), "3", level == 3)
     });
     let level = options::read_protection();
@@ -69,14 +69,14 @@ fn row(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok:
         read: text,
         expected,
         ok,
-        refuses: None,
+        inhibits: None,
     }
 }
 
 /// A thing that forbids arming where it is not as expected.
 fn needed(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok: bool) -> Look {
     Look {
-        refuses: Some(Refusal::Silicon),
+        inhibits: Some(ArmingInhibit::Silicon),
         ..row(name, read, expected, ok)
     }
 }

@@ -3,7 +3,7 @@
 use super::context::{Context, Step};
 use super::demand::HAND_OVER_TIME;
 use super::{ClampCommand, Inputs, Reason, Setpoint};
-use crate::arming::Refusals;
+use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 
 /// One state, with the fields that live in it.
@@ -32,7 +32,7 @@ pub trait Behaviour {
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint;
 
     /// What the pilot reads beside the mode.
-    fn reason(&self, context: &Context, inputs: &Inputs, _refusals: Refusals) -> Option<Reason> {
+    fn reason(&self, context: &Context, inputs: &Inputs, _inhibits: ArmingInhibits) -> Option<Reason> {
         context.reason(inputs, true)
     }
 

@@ -4,7 +4,7 @@ use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::disarmed::first;
 use super::{Inputs, Reason, Setpoint};
-use crate::arming::{Refusal, Refusals};
+use crate::arming::{ArmingInhibit, ArmingInhibits};
 use crate::grip_memory::GripMemory;
 
 /// See [`super::Mode::Calibrating`].
@@ -31,9 +31,9 @@ impl Behaviour for Calibrating {
         Setpoint::Stop
     }
 
-    fn reason(&self, _: &Context, i: &Inputs, _: Refusals) -> Option<Reason> {
+    fn reason(&self, _: &Context, i: &Inputs, _: ArmingInhibits) -> Option<Reason> {
         if i.motion.is_none() {
-            first(i.hardware.with(Refusal::ImuStale))
+            first(i.hardware.with(ArmingInhibit::ImuStale))
         } else if i.hardware.is_empty() {
             Some(Reason::KeepStill)
         } else {

@@ -7,7 +7,7 @@ use super::hold::held;
 use super::lean::Lean;
 use super::power_up_grip::PowerUpGripCheck;
 use super::{Inputs, Reason};
-use crate::arming::{Checks, Gesture, GestureWatch, Refusal, Refusals};
+use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::params::Params;
@@ -154,13 +154,18 @@ impl Context {
     }
 
     /// Everything against arming with this grip.
-    pub fn refusals(&self, i: &Inputs, grip_memory: GripMemory) -> Refusals {
+    pub fn inhibits(&self, i: &Inputs, grip_memory: GripMemory) -> ArmingInhibits {
         let chosen = grip_memory
             .arms()
             .unwrap_or(i.sticks.unwrap_or_default().arms)
             .mask();
-        let held = grip_memory.arms().is_some() && self.grasps(i, grip_memory);
-        let refusals = Checks {
+        // Arms that open still pull at the pipe, and so would rotors at them: free is what is proven free.
+        let arms_closed = match grip_memory {
+            GripMemory::Open => !i.grip.is_some_and(|grip| grip.released),
+            GripMemory::Controlled(_) | GripMemory::HeldByGears(_) => !self.grasps(i, grip_memory),
+            GripMemory::Unknown => true,
+        };
+        let inhibits = Checks {
             calibrated: i.motion.is_some_and(|m| m.calibrated),
             cos_tilt: i.motion.map(|m| m.q.down_in_body().z),
             sticks: i.sticks,
@@ -173,23 +178,23 @@ impl Context {
                 .any(|(&fault, chosen)| fault && chosen),
             late: i.late,
             hardware: i.hardware,
-            arms_closed: grip_memory != GripMemory::Open && !held,
+            arms_closed,
         }
-        .refusals(&self.params);
+        .inhibits(&self.params);
         // The range of a sensor of an unused arm.
-        let refusals = Refusal::FSR_RANGE
+        let inhibits = ArmingInhibit::FSR_RANGE
             .into_iter()
             .zip(chosen)
             .filter(|(_, chosen)| !chosen)
-            .fold(refusals, |all, (range, _)| all.without(range));
+            .fold(inhibits, |all, (range, _)| all.without(range));
         if grip_memory.arms().is_some() {
             // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms
             // are opened; and no one can reach the battery there to put a broken supply right.
-            refusals
-                .without(Refusal::PerchSwitchOn)
-                .without(Refusal::BrownOut)
+            inhibits
+                .without(ArmingInhibit::PerchSwitchOn)
+                .without(ArmingInhibit::BrownOut)
         } else {
-            refusals
+            inhibits
         }
     }
 

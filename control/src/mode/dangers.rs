@@ -10,7 +10,7 @@
 //! | data-ready line silent | stop | sink, the pilot still steers | reported; release refused |
 
 use super::{Inputs, Reason};
-use crate::arming::Refusal;
+use crate::arming::ArmingInhibit;
 use crate::math::deg;
 use crate::params::Params;
 use crate::support::Held;
@@ -45,7 +45,7 @@ impl Dangers {
         self.tipped.step(tipped, dt);
         self.battery
             .step(i.battery.is_some_and(|v| v < p.battery_critical), dt);
-        self.line_silent = i.hardware.contains(Refusal::ImuLineSilent);
+        self.line_silent = i.hardware.contains(ArmingInhibit::ImuLineSilent);
     }
 
     /// The inertial sensor has been silent for [`IMU_LOST_TIME`].

@@ -3,7 +3,7 @@
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::{Inputs, Reason, Setpoint};
-use crate::arming::Refusals;
+use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 
 /// See [`super::Mode::Disarmed`].
@@ -30,17 +30,17 @@ impl Behaviour for Disarmed {
         Setpoint::Stop
     }
 
-    fn reason(&self, context: &Context, i: &Inputs, refusals: Refusals) -> Option<Reason> {
+    fn reason(&self, context: &Context, i: &Inputs, inhibits: ArmingInhibits) -> Option<Reason> {
         // What just happened comes before what keeps from arming again.
         match context.noted() {
-            None if i.sticks.is_some_and(|s| s.arm_switch) => first(refusals),
+            None if i.sticks.is_some_and(|s| s.arm_switch) => first(inhibits),
             None if !i.hardware.is_empty() => first(i.hardware),
             _ => context.reason(i, false),
         }
     }
 }
 
-/// The most basic of `refusals`.
-pub fn first(refusals: Refusals) -> Option<Reason> {
-    refusals.first().map(Reason::Check)
+/// The most basic of `inhibits`.
+pub fn first(inhibits: ArmingInhibits) -> Option<Reason> {
+    inhibits.first().map(Reason::Check)
 }

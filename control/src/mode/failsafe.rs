@@ -4,7 +4,7 @@ use super::behaviour::Behaviour;
 use super::context::Context;
 use super::descent::descent;
 use super::{Inputs, Reason, Setpoint};
-use crate::arming::Refusals;
+use crate::arming::ArmingInhibits;
 
 /// Radio silence in the failsafe (beyond the link's own staleness) after which flight resumes by itself, s.
 pub const RESUME_TIME: f32 = 1.0;
@@ -27,7 +27,7 @@ impl Behaviour for Failsafe {
         )
     }
 
-    fn reason(&self, _: &Context, _: &Inputs, _: Refusals) -> Option<Reason> {
+    fn reason(&self, _: &Context, _: &Inputs, _: ArmingInhibits) -> Option<Reason> {
         Some(self.cause)
     }
 }

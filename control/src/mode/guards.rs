@@ -10,6 +10,7 @@ use super::perched::Perched;
 use super::releasing::{FREE_TIME, Releasing};
 use super::{Reason, State};
 use crate::arming::Gesture;
+use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
 
 /// A condition of a transition.
@@ -46,13 +47,8 @@ guards! {
     CALIBRATED = "calibrated", |_, s| s.inputs.motion.is_some_and(|m| m.calibrated);
     ARM_GESTURE = "arming gesture", |_, s| s.context.gesture == Some(Gesture::Arm);
     DISARM_GESTURE = "disarming gesture", |_, s| s.context.gesture == Some(Gesture::Disarm);
-    CHECKS_PASS = "every arming check passes", |state, s| {
-        s.context.refusals(s.inputs, state.behaviour().grip_memory()).is_empty()
-    };
-    ARMS_CLOSED = "arms closed", |state, s| {
-        let grip_memory = state.behaviour().grip_memory();
-        s.context.after_switch(s.inputs.sticks, grip_memory).arms().is_some()
-    };
+    CHECKS_PASS = "every arming check passes", |state, s| s.context.inhibits(s.inputs, at_rest(state, s)).is_empty();
+    ARMS_CLOSED = "arms closed", |state, s| at_rest(state, s).arms().is_some();
     THROTTLE_UP = "throttle not low", |_, s| sticks(s, |t| t.throttle > s.context.params.throttle_low);
     THROTTLE_LOW = "throttle low", |_, s| sticks(s, |t| t.throttle <= s.context.params.throttle_low);
     IDLED = "idle for too long", |_, s| s.context.since >= super::armed::IDLE_MAX;
@@ -110,6 +106,12 @@ guards! {
     RESUMES = "radio back at once, or roll or pitch stick moved", |_, s| sticks(s, |t| {
         t.roll.abs() > RESUME_STICK || t.pitch.abs() > RESUME_STICK || s.context.since <= RESUME_TIME
     });
+}
+
+/// The grip of a vehicle at rest as this step's perch switch leaves it.
+fn at_rest(state: &State, step: &Step<'_>) -> GripMemory {
+    let before = state.behaviour().grip_memory();
+    step.context.after_switch(step.inputs.sticks, before)
 }
 
 fn sticks(step: &Step<'_>, test: impl Fn(&Sticks) -> bool) -> bool {

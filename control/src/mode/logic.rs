@@ -4,7 +4,7 @@ use super::calibrating::Calibrating;
 use super::context::{Context, Step};
 use super::transitions::Transition;
 use super::{Inputs, Mode, Outputs, State};
-use crate::arming::Refusals;
+use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::params::Params;
@@ -66,18 +66,18 @@ impl ModeLogic {
         let wish = state.rotors(context, inputs);
         let rotors = context.collective.finish(wish, &context.params, dt);
         let grip_memory = state.grip_memory();
-        let refusals = if rotors_locked(mode) {
-            context.refusals(inputs, grip_memory)
+        let inhibits = if rotors_locked(mode) {
+            context.inhibits(inputs, grip_memory)
         } else {
-            Refusals::NONE
+            ArmingInhibits::NONE
         };
         Outputs {
             mode,
             rotors,
             tendons: state.tendons(),
             grip_memory,
-            reason: state.reason(context, inputs, refusals),
-            refusals,
+            reason: state.reason(context, inputs, inhibits),
+            inhibits,
         }
     }
 }

@@ -4,7 +4,7 @@ use super::behaviour::Behaviour;
 use super::context::{Context, Step};
 use super::releasing::RELEASE_THROTTLE_MIN;
 use super::{Inputs, Reason, Setpoint};
-use crate::arming::Refusals;
+use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 
 /// See [`super::Mode::Perched`].
@@ -64,7 +64,7 @@ impl Behaviour for Perched {
         Setpoint::Stop
     }
 
-    fn reason(&self, context: &Context, i: &Inputs, _: Refusals) -> Option<Reason> {
+    fn reason(&self, context: &Context, i: &Inputs, _: ArmingInhibits) -> Option<Reason> {
         self.trouble(context, i).or(context.noted())
     }
 }

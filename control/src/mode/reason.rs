@@ -1,6 +1,6 @@
 //! Why the vehicle is in its mode, stays in it, or has left the one before: each reason with its text, in one place.
 
-use crate::arming::Refusal;
+use crate::arming::ArmingInhibit;
 use crate::grip_fault::GripFault;
 
 /// Declares the reasons that carry nothing, with the text of each.
@@ -10,7 +10,7 @@ macro_rules! reasons {
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Reason {
             /// What also forbids arming.
-            Check(Refusal),
+            Check(ArmingInhibit),
             /// A chosen arm is faulty.
             ArmFault(Option<GripFault>),
             $($(#[$doc])+ $name,)+
@@ -76,9 +76,9 @@ reasons! {
 
 impl Reason {
     /// No frame from the receiver.
-    pub const RADIO_LOST: Self = Self::Check(Refusal::RcLost);
+    pub const RADIO_LOST: Self = Self::Check(ArmingInhibit::RcLost);
     /// No fresh attitude.
-    pub const IMU_SILENT: Self = Self::Check(Refusal::ImuStale);
+    pub const IMU_SILENT: Self = Self::Check(ArmingInhibit::ImuStale);
     /// The inertial sensor is read by the clock, its data-ready line being silent.
-    pub const LINE_SILENT: Self = Self::Check(Refusal::ImuLineSilent);
+    pub const LINE_SILENT: Self = Self::Check(ArmingInhibit::ImuLineSilent);
 }

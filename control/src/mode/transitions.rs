@@ -19,11 +19,29 @@ pub enum Notice {
     Lasting(Reason),
 }
 
+/// The modes in which a row applies.
+#[derive(Clone, Copy, Debug)]
+pub enum Origin {
+    /// These.
+    In(&'static [Mode]),
+    /// Every one in which rotors may turn: what stops a flight stops a new mode too.
+    RotorsTurning,
+}
+
+impl Origin {
+    fn contains(self, mode: Mode) -> bool {
+        match self {
+            Self::In(modes) => modes.contains(&mode),
+            Self::RotorsTurning => !mode.rotors_stand(),
+        }
+    }
+}
+
 /// One row.
 #[derive(Clone, Copy, Debug)]
 pub struct Transition {
     /// The modes in which it applies.
-    pub from: &'static [Mode],
+    pub from: Origin,
     /// What must hold, all of it.
     pub when: &'static [Guard],
     /// The state that begins.
@@ -34,7 +52,16 @@ pub struct Transition {
 
 const fn row(from: &'static [Mode], when: &'static [Guard], to: Entry, notice: Notice) -> Transition {
     Transition {
-        from,
+        from: Origin::In(from),
+        when,
+        to,
+        notice,
+    }
+}
+
+const fn rotors(when: &'static [Guard], to: Entry, notice: Notice) -> Transition {
+    Transition {
+        from: Origin::RotorsTurning,
         when,
         to,
         notice,
@@ -47,10 +74,6 @@ use Mode::{
 };
 use Notice::{Clear, Keep, Lasting, Show, ShowOf};
 
-/// The modes in which rotors turn.
-const ROTORS: &[Mode] = &[
-    Armed, Flight, Contact, Clamping, Releasing, Escaping, Landed, Failsafe,
-];
 /// The modes in which an arm may hold while rotors turn.
 const CLOSED: &[Mode] = &[Clamping, Releasing];
 const IDLE: &[Mode] = &[Armed, Landed];
@@ -71,11 +94,11 @@ const CAUSE: Notice = ShowOf(|state, _| match state {
 pub const TRANSITIONS: &[Transition] = &[
     // Everything is dropped.
     row(CLOSED, &[ARM_SWITCH_OFF, ARMS_STAY], To::Perched(entries::stopped_on_grip), Clear),
-    row(ROTORS, &[ARM_SWITCH_OFF], To::Disarmed(entries::stopped), Clear),
+    rotors(&[ARM_SWITCH_OFF], To::Disarmed(entries::stopped), Clear),
     row(CLOSED, &[IMU_SILENT, ARMS_STAY], To::Perched(entries::stopped_on_grip), Show(Reason::IMU_SILENT)),
-    row(ROTORS, &[IMU_SILENT], To::Disarmed(entries::stopped), Show(Reason::IMU_SILENT)),
+    rotors(&[IMU_SILENT], To::Disarmed(entries::stopped), Show(Reason::IMU_SILENT)),
     row(CLOSED, &[TIPPED_OVER, ARMS_STAY], To::Perched(entries::stopped_on_grip), Show(Reason::TippedOver)),
-    row(ROTORS, &[TIPPED_OVER], To::Disarmed(entries::stopped), Show(Reason::TippedOver)),
+    rotors(&[TIPPED_OVER], To::Disarmed(entries::stopped), Show(Reason::TippedOver)),
     // On the ground.
     row(&[Calibrating], &[CALIBRATED], To::Disarmed(entries::calibrated), Keep),
     row(&[Disarmed], &[ARM_GESTURE, CHECKS_PASS, ARMS_CLOSED], To::Perched(entries::armed_on_pipe), Keep),
@@ -124,8 +147,7 @@ pub const TRANSITIONS: &[Transition] = &[
     row(&[Escaping], &[CLEAR, TAKES_OVER], To::Flight(entries::flight), Keep),
     row(&[Escaping], &[CLEAR, NOT_TAKEN_OVER], To::Failsafe(entries::failsafe), Lasting(Reason::NotTakenOver)),
     // Not by its support alone: a vehicle lighter or stronger than its parameters would seem carried in free air. On
-    // real
-    // ground the probe takes thrust away until most of the weight is carried.
+    // real ground the probe takes thrust away until most of the weight is carried.
     row(&[Failsafe], &[GROUNDED], To::Disarmed(entries::stopped), CAUSE),
     row(&[Failsafe], &[LOST_RADIO, RADIO, BATTERY_CRITICAL],
         To::Failsafe(entries::failsafe), Lasting(Reason::BatteryCritical)),
@@ -144,7 +166,7 @@ impl Transition {
         let mode = state.mode();
         TRANSITIONS
             .iter()
-            .find(|row| row.from.contains(&mode) && row.when.iter().all(|guard| (guard.holds)(state, step)))
+            .find(|row| row.from.contains(mode) && row.when.iter().all(|guard| (guard.holds)(state, step)))
     }
 
     /// The state that begins, with what the pilot is to read noted.

@@ -1,6 +1,6 @@
 //! The chip itself: what the start-up looked at, and the one thing of it that is set here.
 
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
 use crate::decimal::Decimal;
@@ -27,7 +27,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     /// The level, as the start-up read it.
     fn brown_out_level(&self) -> Option<&Look> {
         let mut looks = self.chip.looks().iter();
-        looks.find(|look| look.refuses == Some(Refusal::BrownOutLevel))
+        looks.find(|look| look.inhibits == Some(ArmingInhibit::BrownOutLevel))
     }
 
     /// What the level is and what setting it does, before anyone sets it.
@@ -76,7 +76,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                 self.chip.restart();
             }
             Err(_) => {
-                self.links.report(Refusal::Storing, false);
+                self.links.report(ArmingInhibit::Storing, false);
                 self.out
                     .line(format_args!("not set: the chip's option bytes did not take it"))
                     .await;

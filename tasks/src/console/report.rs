@@ -19,12 +19,12 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                 if !status.warning.is_empty() {
                     self.out.line(format_args!("warning: {}", status.warning)).await;
                 }
-                if status.mode == Mode::Disarmed && status.refusals.is_empty() {
+                if status.mode == Mode::Disarmed && status.inhibits.is_empty() {
                     self.out.line(format_args!("nothing forbids arming")).await;
                 }
-                for refusal in status.refusals.iter() {
+                for inhibit in status.inhibits.iter() {
                     self.out
-                        .line(format_args!("arming refused: {}", refusal.text()))
+                        .line(format_args!("arming refused: {}", inhibit.text()))
                         .await;
                 }
             }

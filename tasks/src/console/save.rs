@@ -1,7 +1,7 @@
 //! From the working copy to storage, and into force.
 
 use embassy_time::{Duration, Instant, Timer, with_timeout};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
 use crate::links::Status;
@@ -25,23 +25,23 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
             .unwrap_or(Err(StorageError::Broken));
         match saved {
             Ok(()) => {
-                self.links.report(Refusal::StorageFull, false);
-                self.links.report(Refusal::StorageUnreadable, false);
-                self.links.report(Refusal::StorageForeign, false);
+                self.links.report(ArmingInhibit::StorageFull, false);
+                self.links.report(ArmingInhibit::StorageUnreadable, false);
+                self.links.report(ArmingInhibit::StorageForeign, false);
                 self.out.last(format_args!("saved; restarting")).await;
                 // Arming stays refused: the parameters in force are no longer those that are stored.
                 self.chip.restart();
             }
             Err(error) => {
                 let (reason, text) = match error {
-                    StorageError::Full => (Refusal::StorageFull, "the storage is full"),
+                    StorageError::Full => (ArmingInhibit::StorageFull, "the storage is full"),
                     StorageError::Broken => (
-                        Refusal::StorageUnreadable,
+                        ArmingInhibit::StorageUnreadable,
                         "the storage does not keep what is written",
                     ),
                 };
                 self.links.report(reason, true);
-                self.links.report(Refusal::Storing, false);
+                self.links.report(ArmingInhibit::Storing, false);
                 self.out
                     .line(format_args!(
                         "not saved: {text}; your changes are kept until a restart"
@@ -54,12 +54,12 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
     /// Refuses arming from here on, unless the motors may turn; what the commander says then.
     pub(super) async fn hold_arming(&self) -> Result<(), Option<Status>> {
         self.stopped()?;
-        self.links.report(Refusal::Storing, true);
+        self.links.report(ArmingInhibit::Storing, true);
         // The pilot may have armed just before: what counts is what the commander says after it has seen the report.
         let seen = with_timeout(COMMANDER, self.next_status()).await;
         let held = seen.map_err(|_| None).and_then(|()| self.stopped());
         if held.is_err() {
-            self.links.report(Refusal::Storing, false);
+            self.links.report(ArmingInhibit::Storing, false);
         }
         held
     }

@@ -1,6 +1,6 @@
 //! The converter's counts as pressures, volts and amperes, at their rates, and its silence.
 
-use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::fsr::FsrFault;
 use sophie_control::params::Params;
 use sophie_tasks::analog;
@@ -116,7 +116,7 @@ fn a_converter_silent_for_a_tenth_of_a_second_is_reported_until_it_converts() {
         rig.run(50);
         port.part.answer.set(answer);
         rig.run(99);
-        let silent = |rig: &Rig| rig.links.hardware().contains(Refusal::AnalogSilent);
+        let silent = |rig: &Rig| rig.links.hardware().contains(ArmingInhibit::AnalogSilent);
         assert!(!silent(&rig) && rig.links.contact.fresh().is_none(), "{answer:?}");
         rig.run(2);
         assert!(silent(&rig), "{answer:?}");
@@ -145,7 +145,10 @@ fn a_sensor_whose_range_ends_below_the_grip_is_reported_from_the_start() {
     });
     rig.time.spawn(analog::run(rig.links, port));
     rig.run(20);
-    assert_eq!(rig.links.hardware(), Refusals::NONE.with(Refusal::FsrRange3));
+    assert_eq!(
+        rig.links.hardware(),
+        ArmingInhibits::NONE.with(ArmingInhibit::FsrRange3)
+    );
     let contact = rig.links.contact.fresh().unwrap();
     for (arm, expected) in [223.8, 661.1, 96.3, 223.8].into_iter().enumerate() {
         assert!(near(contact, arm, expected), "{contact:?}");

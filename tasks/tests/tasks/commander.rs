@@ -1,7 +1,7 @@
 //! What the commander makes of the links: late deadlines, the rotors' lift, warnings.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::grip::GripState;
 use sophie_control::math::GRAVITY;
 use sophie_control::mode::Mode;
@@ -77,7 +77,7 @@ impl Bench {
         };
         let mut bench = Self { rig, world };
         bench.run(1500);
-        assert_eq!((bench.mode(), bench.refuses()), (Mode::Disarmed, vec![]));
+        assert_eq!((bench.mode(), bench.inhibits()), (Mode::Disarmed, vec![]));
         bench
     }
 
@@ -94,8 +94,8 @@ impl Bench {
         self.rig.links.status.fresh().unwrap().mode
     }
 
-    fn refuses(&self) -> Vec<Refusal> {
-        self.rig.links.status.fresh().unwrap().refusals.iter().collect()
+    fn inhibits(&self) -> Vec<ArmingInhibit> {
+        self.rig.links.status.fresh().unwrap().inhibits.iter().collect()
     }
 
     fn warning(&self) -> &'static str {
@@ -148,13 +148,13 @@ fn a_flight_level_that_misses_more_than_ten_deadlines_in_a_second_refuses_arming
         let mut bench = Bench::new();
         bench.late(task, 11);
         bench.run(20);
-        assert_eq!(bench.refuses(), [Refusal::Overruns], "{task:?}");
+        assert_eq!(bench.inhibits(), [ArmingInhibit::Overruns], "{task:?}");
         assert!(!bench.arms(), "{task:?}");
         assert_eq!(bench.mode(), Mode::Disarmed);
         // A window of 1 s without any, whatever the window's phase: it may be armed again.
         bench.world.sticks = Sticks::default();
         bench.run(1000);
-        assert_eq!(bench.refuses(), []);
+        assert_eq!(bench.inhibits(), []);
         assert!(bench.arms(), "{task:?}");
     }
 }
@@ -176,7 +176,7 @@ fn ten_misses_in_a_second_and_any_number_below_the_flight_level_refuse_nothing()
         }
         for _ in 0..100 {
             bench.run(10);
-            assert_eq!(bench.refuses(), []);
+            assert_eq!(bench.inhibits(), []);
         }
     }
     assert!(bench.arms());
@@ -190,7 +190,7 @@ fn a_flight_level_that_stays_late_stays_refused() {
         bench.late(TaskId::Control, 1);
         bench.run(50);
         if i > 40 {
-            assert_eq!(bench.refuses(), [Refusal::Overruns], "{} ms", 50 * i);
+            assert_eq!(bench.inhibits(), [ArmingInhibit::Overruns], "{} ms", 50 * i);
         }
     }
     // What was missed in flight is no matter there, and ends nothing.
@@ -288,13 +288,14 @@ fn a_link_that_falls_silent_counts_as_none() {
     let mut bench = Bench::new();
     bench.rig.run(1000);
     assert_eq!(
-        bench.refuses(),
+        bench.inhibits(),
         [
-            Refusal::RcLost,
-            Refusal::ImuStale,
-            Refusal::NotCalibrated,
-            Refusal::BatteryLow,
-            Refusal::FsrFault
+            ArmingInhibit::RcLost,
+            ArmingInhibit::ImuStale,
+            ArmingInhibit::NotCalibrated,
+            ArmingInhibit::ArmsClosed,
+            ArmingInhibit::BatteryLow,
+            ArmingInhibit::FsrFault
         ]
     );
 }
@@ -310,12 +311,12 @@ fn pressures_that_are_held_are_a_fault_of_every_sensor() {
         world.speak(links, at);
         links.contact.send(last.at, last.value);
     });
-    assert_eq!(bench.refuses(), []);
+    assert_eq!(bench.inhibits(), []);
     bench.rig.run_with(20, |links, at| {
         world.speak(links, at);
         links.contact.send(last.at, last.value);
     });
-    assert_eq!(bench.refuses(), [Refusal::FsrFault]);
+    assert_eq!(bench.inhibits(), [ArmingInhibit::FsrFault]);
     bench.run(20);
-    assert_eq!(bench.refuses(), []);
+    assert_eq!(bench.inhibits(), []);
 }

@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 use embassy_time::{Duration, Instant};
-use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_tasks::console;
@@ -153,7 +153,10 @@ fn nothing_is_restarted_or_stored_but_while_the_motors_stand() {
         assert_eq!(stored, allowed.then_some(8.0), "{mode:?}");
         assert_eq!(bench.board.restarts.get(), u32::from(allowed), "{mode:?}");
         // After a save arming stays refused until the restart.
-        assert_eq!(bench.rig.links.hardware().contains(Refusal::Storing), allowed);
+        assert_eq!(
+            bench.rig.links.hardware().contains(ArmingInhibit::Storing),
+            allowed
+        );
         if !allowed {
             assert_eq!(said, [format!("not saved {refused}")]);
         }
@@ -254,12 +257,14 @@ fn status_says_how_the_vehicle_is() {
     };
     let at = Instant::now() + Duration::from_millis(300);
     links.battery.send(at, battery);
-    let refusals = Refusals::NONE.with(Refusal::BatteryLow).with(Refusal::RcLost);
+    let inhibits = ArmingInhibits::NONE
+        .with(ArmingInhibit::BatteryLow)
+        .with(ArmingInhibit::RcLost);
     bench.status = Some(Status {
         mode: Mode::Disarmed,
         reason: Some(Reason::RADIO_LOST),
         warning: "infill below what was flown",
-        refusals,
+        inhibits,
     });
     bench.says("set infill 8");
     links

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use embassy_time::{Instant, Timer};
 use heapless::Vec as Few;
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::math::GRAVITY;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
@@ -171,10 +171,10 @@ fn the_time_since_the_sample_before_is_told_up_to_five_milliseconds() {
 
 #[test]
 fn the_third_error_is_reported_and_taken_back_after_a_tenth_of_a_second_without() {
-    for (error, refusal) in [
-        (PortError::Absent, Some(Refusal::ImuAbsent)),
-        (PortError::WrongPart, Some(Refusal::ImuWrongPart)),
-        (PortError::Corrupt, Some(Refusal::ImuCorrupt)),
+    for (error, inhibit) in [
+        (PortError::Absent, Some(ArmingInhibit::ImuAbsent)),
+        (PortError::WrongPart, Some(ArmingInhibit::ImuWrongPart)),
+        (PortError::Corrupt, Some(ArmingInhibit::ImuCorrupt)),
         (PortError::Timeout, None),
     ] {
         let part = Part::new(1000.0, 1);
@@ -186,9 +186,9 @@ fn the_third_error_is_reported_and_taken_back_after_a_tenth_of_a_second_without(
         // The third, less than 100 ms after the others.
         part.errors.set((1, Some(error)));
         rig.run(5);
-        assert!(rig.links.hardware().iter().eq(refusal), "{error:?}");
+        assert!(rig.links.hardware().iter().eq(inhibit), "{error:?}");
         rig.run(90);
-        assert!(rig.links.hardware().iter().eq(refusal), "{error:?}");
+        assert!(rig.links.hardware().iter().eq(inhibit), "{error:?}");
         rig.run(15);
         assert!(rig.links.hardware().is_empty(), "{error:?}");
         // Counted from zero: two do not count.

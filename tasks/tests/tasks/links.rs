@@ -1,7 +1,7 @@
 //! How old a message may be, which readers are notified, and what stands at the start.
 
 use embassy_time::{Duration, Instant};
-use sophie_control::arming::{Refusal, Refusals};
+use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::params::Params;
 use sophie_tasks::deadline::{Level, TaskId};
 use sophie_tasks::links::Setpoint;
@@ -58,17 +58,17 @@ fn every_link_goes_stale_when_the_safety_of_its_readers_wants_it() {
 #[test]
 fn reports_stand_side_by_side_until_they_are_taken_back() {
     let links = Rig::new().links;
-    links.report(Refusal::ArmSensor2, true);
-    links.report(Refusal::AnalogSilent, true);
-    links.report(Refusal::ArmSensor2, true);
-    let both = Refusals::NONE
-        .with(Refusal::ArmSensor2)
-        .with(Refusal::AnalogSilent);
+    links.report(ArmingInhibit::ArmSensor2, true);
+    links.report(ArmingInhibit::AnalogSilent, true);
+    links.report(ArmingInhibit::ArmSensor2, true);
+    let both = ArmingInhibits::NONE
+        .with(ArmingInhibit::ArmSensor2)
+        .with(ArmingInhibit::AnalogSilent);
     assert_eq!(links.hardware(), both);
-    links.report(Refusal::ArmSensor2, false);
-    assert!(links.hardware().iter().eq([Refusal::AnalogSilent]));
-    links.report(Refusal::Storing, false);
-    assert!(links.hardware().iter().eq([Refusal::AnalogSilent]));
+    links.report(ArmingInhibit::ArmSensor2, false);
+    assert!(links.hardware().iter().eq([ArmingInhibit::AnalogSilent]));
+    links.report(ArmingInhibit::Storing, false);
+    assert!(links.hardware().iter().eq([ArmingInhibit::AnalogSilent]));
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn only_a_brown_out_forbids_arming_from_the_start() {
         let start = Start { cause, ..Start::COLD };
         let hardware = Rig::starting(Params::default(), start).links.hardware();
         assert_eq!(
-            hardware.contains(Refusal::BrownOut),
+            hardware.contains(ArmingInhibit::BrownOut),
             cause == StartCause::BrownOut
         );
         assert_eq!(

@@ -1,7 +1,7 @@
 //! What a start makes of the parameters' storage.
 
 use sophie_clock::VirtualTime;
-use sophie_control::arming::Refusal;
+use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
 use sophie_tasks::parameters::{load, report};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
@@ -70,12 +70,12 @@ fn storage_that_cannot_be_read_refuses_arming_with_its_reason_and_refused_values
     ] {
         let rig = Rig::new();
         report(rig.links, loaded);
-        let refusals = rig.links.hardware();
-        let contains = |refusal| refusals.contains(refusal);
+        let inhibits = rig.links.hardware();
+        let contains = |inhibit| inhibits.contains(inhibit);
         assert_eq!(
             (
-                contains(Refusal::StorageUnreadable),
-                contains(Refusal::StorageForeign)
+                contains(ArmingInhibit::StorageUnreadable),
+                contains(ArmingInhibit::StorageForeign)
             ),
             (unreadable, other),
             "{loaded:?}"

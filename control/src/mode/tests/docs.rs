@@ -7,20 +7,18 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 use std::{fs, println};
 
-use crate::arming::Refusal;
-use crate::mode::transitions::{Notice, TRANSITIONS, Transition};
+use crate::arming::ArmingInhibit;
+use crate::mode::transitions::{Notice, Origin, TRANSITIONS, Transition};
 use crate::mode::*;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/modes.md");
 const COMMAND: &str = "WRITE_DOCS=1 cargo test --package sophie-control mode::tests::docs";
-/// A row that begins in more modes than this is left out of the diagram.
-const DRAWN: usize = 2;
 
-fn names(modes: &[Mode]) -> String {
-    if modes.len() > DRAWN {
-        return "any with rotors turning".to_string();
+fn names(from: Origin) -> String {
+    match from {
+        Origin::In(modes) => modes.iter().map(|m| m.name()).collect::<Vec<_>>().join(", "),
+        Origin::RotorsTurning => "any with rotors turning".to_string(),
     }
-    modes.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ")
 }
 
 fn notice(row: &Transition) -> String {
@@ -37,7 +35,8 @@ fn diagram() -> String {
     let mut edges = BTreeMap::<(usize, usize), Vec<String>>::new();
     let place = |mode| Mode::ALL.into_iter().position(|m| m == mode).unwrap();
     for (i, row) in TRANSITIONS.iter().enumerate() {
-        for &from in row.from.iter().filter(|_| row.from.len() <= DRAWN) {
+        let Origin::In(modes) = row.from else { continue };
+        for &from in modes {
             if from != row.to.mode() {
                 let rows = edges.entry((place(from), place(row.to.mode()))).or_default();
                 rows.push((i + 1).to_string());
@@ -71,7 +70,7 @@ fn transitions() -> String {
 
 fn checks() -> String {
     let mut text = String::from("| check | the pilot reads | cleared by |\n|---|---|---|\n");
-    for check in Refusal::ALL {
+    for check in ArmingInhibit::ALL {
         writeln!(
             text,
             "| `{check:?}` | {} | {} |",

@@ -112,7 +112,7 @@ fn idling_ends_by_gesture_by_time_or_in_flight() {
     r.expect(1.1, Mode::Disarmed);
     let mut r = Rig::armed();
     r.expect(IDLE_MAX + 0.1, Mode::Disarmed);
-    assert_eq!(r.out.refusals.first(), None, "free to arm again");
+    assert_eq!(r.out.inhibits.first(), None, "free to arm again");
     let mut r = Rig::armed();
     r.inputs.sticks = None;
     r.expect(0.02, Mode::Disarmed);

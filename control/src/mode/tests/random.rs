@@ -135,7 +135,7 @@ proptest! {
                 let (before, grip_memory) = (r.out.mode, r.out.grip_memory);
                 r.step();
                 let Outputs { mode, rotors, tendons, reason, .. } = r.out;
-                let still = [Mode::Calibrating, Mode::Disarmed, Mode::Perched].contains(&mode);
+                let still = mode.rotors_stand();
                 prop_assert!(!(still && rotors.spin()), "{mode:?} {rotors:?}");
                 prop_assert!(mode != Mode::Perched || tendons != ClampCommand::Release);
                 prop_assert!(mode != Mode::Clamping || tendons != ClampCommand::Release);
@@ -153,6 +153,8 @@ proptest! {
                 if [Mode::Disarmed, Mode::Perched].contains(&before) && rotors.spin() {
                     prop_assert!(sticks.is_some_and(|s| s.arm_switch));
                     prop_assert!([Mode::Armed, Mode::Releasing].contains(&mode), "{before:?} -> {mode:?}");
+                    let free = r.inputs.grip.is_some_and(|g| g.released);
+                    prop_assert!(mode == Mode::Releasing || free, "started while arms were not free");
                 }
             }
         }

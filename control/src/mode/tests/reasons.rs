@@ -1,23 +1,23 @@
 //! What the pilot reads beside the state, and which of two reasons comes first.
 
 use super::rig::Rig;
-use crate::arming::Refusal;
+use crate::arming::ArmingInhibit;
 use crate::mode::*;
 
 #[test]
 fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
-    let broken = Refusals::default().with(Refusal::ImuAbsent);
+    let broken = ArmingInhibits::default().with(ArmingInhibit::ImuAbsent);
     // Calibrating: the sensor that is silent, what is broken, or that it must be left alone.
     let mut r = Rig::new();
     r.expect(0.1, Mode::Calibrating);
     assert_eq!(r.out.reason, Some(Reason::KeepStill));
     r.inputs.hardware = broken;
     r.step();
-    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::ImuAbsent)));
-    r.inputs.hardware = Refusals::default();
+    assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::ImuAbsent)));
+    r.inputs.hardware = ArmingInhibits::default();
     r.inputs.motion = None;
     r.step();
-    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::ImuStale)));
+    assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::ImuStale)));
 
     // Disarmed: what is broken at once, everything else when the pilot tries.
     let mut r = Rig::armed();
@@ -30,11 +30,11 @@ fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
     assert_eq!(r.out.reason, None, "nobody tries to arm");
     r.inputs.hardware = broken;
     r.step();
-    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::ImuAbsent)));
-    r.inputs.hardware = Refusals::default();
+    assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::ImuAbsent)));
+    r.inputs.hardware = ArmingInhibits::default();
     r.sticks().arm_switch = true;
     r.step();
-    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::BatteryLow)));
+    assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::BatteryLow)));
     r.inputs.sticks = None;
     r.step();
     assert_eq!(
@@ -58,7 +58,7 @@ fn what_just_happened_comes_before_what_keeps_from_arming() {
     r.run(0.1);
     assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
     r.run(10.0);
-    assert_eq!(r.out.reason, r.out.refusals.first().map(Reason::Check));
+    assert_eq!(r.out.reason, r.out.inhibits.first().map(Reason::Check));
     assert!(r.out.reason.is_some());
 }
 
@@ -78,7 +78,7 @@ fn a_vehicle_on_the_pipe_says_what_is_lost() {
 
 #[test]
 fn every_reason_has_a_short_text_of_its_own() {
-    let checks = Refusal::ALL.into_iter().map(Reason::Check);
+    let checks = ArmingInhibit::ALL.into_iter().map(Reason::Check);
     let all = || Reason::PLAIN.iter().copied().chain(checks.clone());
     for (i, a) in all().enumerate() {
         let text = a.text();

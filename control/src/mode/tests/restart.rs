@@ -1,7 +1,7 @@
 //! Starts on the pipe and off it: nothing opens by itself, nothing turns before the pilot has armed.
 
 use super::rig::Rig;
-use crate::arming::Refusal;
+use crate::arming::ArmingInhibit;
 use crate::grip::ArmState;
 use crate::mode::power_up_grip::AVERAGING_TIME;
 use crate::mode::*;
@@ -71,7 +71,7 @@ fn a_restart_on_the_pipe_never_opens_and_flies_home_once_the_pilot_has_armed() {
         (Mode::Disarmed, GripMemory::Controlled(ArmChoice::All))
     );
     // The switch that was on all along does not count: arming takes a hand.
-    assert_eq!(r.out.refusals.first(), Some(Refusal::SwitchOnAtPowerUp));
+    assert_eq!(r.out.inhibits.first(), Some(ArmingInhibit::SwitchOnAtPowerUp));
     r.sticks().yaw = 1.0;
     r.stays(3.0, ALL);
     assert_eq!(r.out.mode, Mode::Disarmed);
@@ -180,19 +180,22 @@ fn a_grip_that_is_not_held_is_not_armed() {
         r.run(1.0);
         r.arm();
         assert_eq!(r.out.mode, Mode::Disarmed, "{grip_memory:?}");
-        assert!(r.out.refusals.contains(Refusal::ArmsClosed), "{grip_memory:?}");
+        assert!(
+            r.out.inhibits.contains(ArmingInhibit::ArmsClosed),
+            "{grip_memory:?}"
+        );
     }
 }
 
 #[test]
 fn every_other_check_still_counts_on_the_pipe() {
     type Edit = fn(&mut Rig);
-    let cases: [(Edit, Refusal); 6] = [
-        (|r| r.inputs.battery = Some(13.0), Refusal::BatteryLow),
-        (|r| r.inputs.late = true, Refusal::Overruns),
+    let cases: [(Edit, ArmingInhibit); 6] = [
+        (|r| r.inputs.battery = Some(13.0), ArmingInhibit::BatteryLow),
+        (|r| r.inputs.late = true, ArmingInhibit::Overruns),
         (
             |r| r.inputs.fsr_fault = [false, true, false, false],
-            Refusal::FsrFault,
+            ArmingInhibit::FsrFault,
         ),
         (
             |r| {
@@ -202,11 +205,11 @@ fn every_other_check_still_counts_on_the_pipe() {
                     ..Motion::default()
                 });
             },
-            Refusal::TiltTooLarge,
+            ArmingInhibit::TiltTooLarge,
         ),
         (
-            |r| r.inputs.hardware = Refusals::NONE.with(Refusal::ImuSelfTest),
-            Refusal::ImuSelfTest,
+            |r| r.inputs.hardware = ArmingInhibits::NONE.with(ArmingInhibit::ImuSelfTest),
+            ArmingInhibit::ImuSelfTest,
         ),
         (
             |r| {
@@ -215,7 +218,7 @@ fn every_other_check_still_counts_on_the_pipe() {
                     grip.arms[1].pressure = 300.0;
                 }
             },
-            Refusal::ArmsClosed,
+            ArmingInhibit::ArmsClosed,
         ),
     ];
     for (edit, why) in cases {
@@ -228,13 +231,13 @@ fn every_other_check_still_counts_on_the_pipe() {
         edit(&mut r);
         r.arm();
         assert_eq!(r.out.mode, Mode::Disarmed, "{why:?}");
-        assert!(r.out.refusals.contains(why), "{why:?}: {:?}", r.out.refusals);
+        assert!(r.out.inhibits.contains(why), "{why:?}: {:?}", r.out.inhibits);
     }
 }
 
 #[test]
 fn a_broken_supply_forbids_flight_from_the_ground_and_not_from_the_pipe() {
-    let hardware = Refusals::NONE.with(Refusal::BrownOut);
+    let hardware = ArmingInhibits::NONE.with(ArmingInhibit::BrownOut);
     for (pressure, mode) in [(0.0, Mode::Disarmed), (900.0, Mode::Perched)] {
         let mut r = Rig::found(pressure);
         r.inputs.hardware = hardware;
@@ -243,7 +246,7 @@ fn a_broken_supply_forbids_flight_from_the_ground_and_not_from_the_pipe() {
         r.run(1.0);
         r.arm();
         assert_eq!(r.out.mode, mode, "{pressure}");
-        assert_eq!(r.out.refusals.contains(Refusal::BrownOut), pressure <= 0.0);
+        assert_eq!(r.out.inhibits.contains(ArmingInhibit::BrownOut), pressure <= 0.0);
     }
 }
 
@@ -260,6 +263,7 @@ fn power_comes_on_with_open_arms_as_ever() {
             (ClampCommand::Release, GripMemory::Open)
         );
         r.calibrated();
+        r.grip(false, true, ArmState::Free, pressure);
         r.run(0.1);
         r.arm();
         assert_eq!(r.out.mode, Mode::Armed);
@@ -351,4 +355,48 @@ fn nothing_is_decided_while_nothing_is_felt() {
     r.inputs.fsr_fault = [true, true, true, false];
     r.stays(1.0, ClampCommand::Keep);
     assert_eq!(r.out.grip_memory, GripMemory::HeldByGears(ArmChoice::Rear));
+}
+
+#[test]
+fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
+    // The perch switch opens the arms some steps before the arming gesture is complete, in that very step, or after it.
+    for (grip_memory, steps) in [
+        GripMemory::Controlled(ArmChoice::All),
+        GripMemory::HeldByGears(ArmChoice::All),
+    ]
+    .into_iter()
+    .flat_map(|memory| (-20..=20).map(move |steps| (memory, steps)))
+    {
+        let mut r = Rig::restarted(grip_memory);
+        r.calibrated();
+        r.grip(true, false, ArmState::Holding, 950.0);
+        r.sticks().arm_switch = false;
+        r.run(0.3);
+        r.sticks().perch_switch = false;
+        r.run(0.3);
+        r.sticks().perch_switch = true;
+        r.sticks().arm_switch = true;
+        r.run(0.3);
+        r.sticks().yaw = 1.0;
+        for step in 0..150 {
+            // The hundredth step completes the gesture.
+            r.sticks().perch_switch = step - 99 < steps;
+            r.step();
+            assert!(!r.out.rotors.spin(), "{grip_memory:?}, {steps}: step {step}");
+        }
+        if r.out.mode == Mode::Perched {
+            // Armed on the pipe before the switch was turned: off asks for a release, which takes throttle.
+            assert!(steps > 0, "{grip_memory:?}, {steps}");
+            continue;
+        }
+        assert_eq!(
+            (r.out.mode, r.out.tendons),
+            (Mode::Disarmed, ClampCommand::Release)
+        );
+        assert_eq!(r.out.inhibits.first(), Some(ArmingInhibit::ArmsClosed));
+        // Proven free: the gesture, made again, arms.
+        r.grip(false, true, ArmState::Free, 0.0);
+        r.arm();
+        assert_eq!(r.out.mode, Mode::Armed);
+    }
 }

@@ -1,7 +1,7 @@
 //! Everything that may go wrong, in each state in which it can.
 
 use super::rig::Rig;
-use crate::arming::{Refusal, Refusals};
+use crate::arming::{ArmingInhibit, ArmingInhibits};
 use crate::grip::ArmState;
 use crate::math::{GRAVITY, deg};
 use crate::mode::clamping::HOPELESS_TIME;
@@ -43,28 +43,33 @@ fn arming_is_refused_with_a_reason_that_can_be_read() {
     });
     r.sticks().yaw = 1.0;
     r.expect(3.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::SwitchOnAtPowerUp)));
+    assert_eq!(
+        r.out.reason,
+        Some(Reason::Check(ArmingInhibit::SwitchOnAtPowerUp))
+    );
     r.sticks().arm_switch = false;
     r.run(0.1);
     r.sticks().arm_switch = true;
     r.inputs.battery = Some(13.0);
     r.expect(3.0, Mode::Disarmed);
-    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::BatteryLow)));
-    assert!(r.out.refusals.contains(Refusal::BatteryLow));
+    assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::BatteryLow)));
+    assert!(r.out.inhibits.contains(ArmingInhibit::BatteryLow));
     r.inputs.battery = Some(16.0);
     r.inputs.fsr_fault = [false, true, false, false];
     r.sticks().arms = ArmChoice::Front;
     r.run(0.1);
-    assert!(r.out.refusals.is_empty(), "a sensor that nobody needs");
+    assert!(r.out.inhibits.is_empty(), "a sensor that nobody needs");
     // The range of a rear sensor, then of a front one: arms 2 and 4 are the rear ones.
-    r.inputs.hardware = Refusals::NONE.with(Refusal::FsrRange2).with(Refusal::FsrRange4);
+    r.inputs.hardware = ArmingInhibits::NONE
+        .with(ArmingInhibit::FsrRange2)
+        .with(ArmingInhibit::FsrRange4);
     r.run(0.1);
-    assert!(r.out.refusals.is_empty(), "a range that nobody needs");
-    r.inputs.hardware = r.inputs.hardware.with(Refusal::FsrRange3);
+    assert!(r.out.inhibits.is_empty(), "a range that nobody needs");
+    r.inputs.hardware = r.inputs.hardware.with(ArmingInhibit::FsrRange3);
     r.run(0.1);
-    assert!(r.out.refusals.iter().eq([Refusal::FsrRange3]));
-    assert_eq!(r.out.reason, Some(Reason::Check(Refusal::FsrRange3)));
-    r.inputs.hardware = Refusals::NONE;
+    assert!(r.out.inhibits.iter().eq([ArmingInhibit::FsrRange3]));
+    assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::FsrRange3)));
+    r.inputs.hardware = ArmingInhibits::NONE;
     r.run(0.1);
     r.sticks().yaw = 0.0;
     r.run(0.1);
@@ -151,10 +156,10 @@ fn a_person_opens_the_arms_of_a_disarmed_vehicle_on_purpose() {
     r.expect(1.1, Mode::Disarmed);
     assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     // Only a grip that is lost forbids arming, which here only leads back to the perch.
-    assert!(!r.out.refusals.contains(Refusal::ArmsClosed));
+    assert!(!r.out.inhibits.contains(ArmingInhibit::ArmsClosed));
     r.grip(false, false, ArmState::Touching, 100.0);
     r.run(0.1);
-    assert!(r.out.refusals.contains(Refusal::ArmsClosed));
+    assert!(r.out.inhibits.contains(ArmingInhibit::ArmsClosed));
     r.sticks().perch_switch = false;
     r.run(0.1);
     assert_eq!(r.out.tendons, ClampCommand::Release);
@@ -265,7 +270,7 @@ fn a_silent_sensor_or_a_crash_stops_the_rotors() {
             r.run(after + 0.03);
             assert_eq!((r.out.mode, r.out.rotors), (Mode::Disarmed, Setpoint::Stop));
             let clamped = matches!(r.out.tendons, ClampCommand::Close { arms: _ });
-            assert_eq!(clamped, r.out.refusals.contains(Refusal::ArmsClosed));
+            assert_eq!(clamped, r.out.inhibits.contains(ArmingInhibit::ArmsClosed));
         }
     }
 }
@@ -288,7 +293,7 @@ fn an_empty_battery_lands_under_the_pilots_sticks() {
 impl Rig {
     /// The data-ready line of the inertial sensor falls silent, or comes back.
     fn line_silent(&mut self, silent: bool) {
-        let reason = Refusal::ImuLineSilent;
+        let reason = ArmingInhibit::ImuLineSilent;
         let hardware = self.inputs.hardware;
         self.inputs.hardware = if silent {
             hardware.with(reason)
@@ -311,7 +316,7 @@ fn a_silent_data_ready_line_refuses_arming_and_stops_rotors_that_idle() {
     r.sticks().yaw = 1.0;
     r.expect(12.0, Mode::Disarmed);
     assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
-    assert!(r.out.refusals.iter().eq([Refusal::ImuLineSilent]));
+    assert!(r.out.inhibits.iter().eq([ArmingInhibit::ImuLineSilent]));
     // Back again, it takes a new gesture.
     r.line_silent(false);
     r.expect(0.5, Mode::Disarmed);
