@@ -1,4 +1,4 @@
-//! What is kept of a flight: enough for the table, the report and the log file.
+//! Record of a flight for the table, the report and the log file.
 
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
@@ -8,25 +8,25 @@ use crate::scenario::Scenario;
 /// A flown flight.
 #[derive(Clone, Debug)]
 pub struct FlightRecord {
-    /// What was to be flown.
+    /// What was flown.
     pub scenario: Scenario,
-    /// Whether it was, and if not, why.
+    /// Whether it succeeded, and if not, why.
     pub outcome: Outcome,
     /// Samples at [`SAMPLE_HZ`].
     pub samples: Vec<Sample>,
-    /// One entry for each step that was begun.
+    /// One entry per step begun.
     pub phases: Vec<Phase>,
-    /// What happened, in order of time.
+    /// In order of time.
     pub events: Vec<Event>,
-    /// One entry for each chosen arm of each proven grip.
+    /// One entry per chosen arm of each proven grip.
     pub grip: Vec<Grip>,
     /// Simulated time, s.
     pub sim_seconds: f64,
     /// Wall time that the simulation took, s.
     pub wall_seconds: f64,
-    /// Missed deadlines of all tasks.
+    /// Missed deadlines, all tasks.
     pub overruns: u32,
-    /// Digest of every sample to the bit, for comparing two runs.
+    /// Digest of all samples, bit for bit.
     pub digest: u64,
 }
 
@@ -36,13 +36,13 @@ pub const SAMPLE_HZ: f64 = 100.0;
 /// How a flight ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// Every step was done.
+    /// All steps done.
     pub accomplished: bool,
-    /// One line: `mission accomplished`, or what went wrong, when.
+    /// One line: `mission accomplished`, or what failed and when.
     pub reason: String,
 }
 
-/// One sample of truth and of the stack's estimates.
+/// A sample of the truth and the stack's estimates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Simulated time, s.
@@ -57,15 +57,15 @@ pub struct Sample {
     pub attitude: [f64; 3],
     /// Estimated roll, pitch, yaw, rad.
     pub attitude_estimate: [f64; 3],
-    /// Roll, pitch and yaw that the controller aims at, rad; NaN where there is none.
+    /// Roll, pitch, yaw aimed at, rad; NaN if none.
     pub attitude_setpoint: [f64; 3],
     /// True angular rate, rad/s, body.
     pub rate: [f64; 3],
     /// True tilt of each arm, rad.
     pub tilt: PerArm<f64>,
-    /// Tilt by the arm's own sensor, rad; NaN where there is none.
+    /// Tilt by the arm's sensor, rad; NaN if none.
     pub tilt_measured: PerArm<f64>,
-    /// Tilt by the model in the mixer, rad.
+    /// Tilt by the mixer's model, rad.
     pub tilt_model: PerArm<f64>,
     /// True thrust of each rotor, N.
     pub thrust: PerArm<f64>,
@@ -77,17 +77,17 @@ pub struct Sample {
     pub tension_asked: PerArm<f64>,
     /// True contact pressure at each sensor, Pa.
     pub pressure: PerArm<f64>,
-    /// Measured contact pressure, Pa; NaN where none is fresh.
+    /// Measured contact pressure, Pa; NaN if none is fresh.
     pub pressure_measured: PerArm<f64>,
     /// Battery voltage under load, V.
     pub battery_voltage: f64,
     /// Throttle of the pilot, 0..1.
     pub throttle: f64,
-    /// The rotors could not give all that was asked.
+    /// The rotors saturated.
     pub saturated: bool,
 }
 
-/// One step of the mission as flown.
+/// A flown step of the mission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     /// Name of the step, such as `take-off`.
@@ -98,9 +98,9 @@ pub struct Phase {
     pub end: f64,
     /// The step was done.
     pub done: bool,
-    /// Largest angle between true and aimed-at attitude (roll, pitch), rad.
+    /// Largest angle between true and wanted attitude (roll, pitch), rad.
     pub worst_attitude_error: f64,
-    /// Tilt farthest from level of any arm, rad, with its sign.
+    /// Largest tilt of any arm, rad, signed.
     pub worst_tilt: f64,
     /// Share of the time with saturated rotors, 0..1.
     pub saturation: f64,
@@ -110,7 +110,7 @@ pub struct Phase {
     pub overruns: u32,
 }
 
-/// Something that happened.
+/// An event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// When, s.
@@ -124,17 +124,17 @@ pub struct Event {
 pub struct Grip {
     /// Arm, 1 to 4.
     pub arm: u8,
-    /// Measured pressure when the grip was proven, Pa.
+    /// Measured pressure at the proof, Pa.
     pub pressure: f64,
-    /// True pressure at the same time, Pa.
+    /// True pressure at the proof, Pa.
     pub pressure_true: f64,
-    /// Servo force when the grip was proven, as the torque in N·m.
+    /// Servo torque at the proof, N·m.
     pub torque: f64,
-    /// Time from the start of closing to the pressure within its tolerance for good, s.
+    /// From the start of closing until the pressure stays within tolerance, s.
     pub closure: f64,
 }
 
-/// What is shown during a flight.
+/// Shows a flight while it runs.
 pub trait Observer {
     /// A step began: `index` of `count`.
     fn step_began(&mut self, t: f64, index: usize, count: usize, name: &str);
@@ -146,7 +146,7 @@ pub trait Observer {
     fn event(&mut self, event: &Event);
 }
 
-/// An observer that shows nothing.
+/// Shows nothing.
 pub struct Silent;
 
 impl Observer for Silent {

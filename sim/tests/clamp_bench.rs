@@ -1,8 +1,8 @@
 //! One arm closes on a pipe, holds it while the rotor stops and the arm is disturbed, and lets go.
 //!
-//! The body is fixed on the pipe, as on the paper's test bench. Arm, tendon, servo, skin and pressure sensor
-//! are the plant's; fault watch, gripper and tendon drive are the flight stack's, each at its rate. The
-//! arm's tilt comes 20 ms late with noise and an offset, the thrust that the loop hears of is 5 % wrong.
+//! The body is fixed on the pipe, as on the paper's bench. Arm, tendon, servo, skin and pressure sensor are the
+//! plant's; fault watch, gripper and tendon drive the flight stack's, each at its rate. The tilt arrives 20 ms late
+//! with noise and offset; the thrust given to the loop is 5 % wrong.
 
 use std::collections::VecDeque;
 
@@ -23,10 +23,9 @@ use sophie_sim::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use sophie_sim::scenario::ServoProfile;
 use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
 
-/// kgcm in a N·m.
+/// kgcm per N·m.
 const KGCM: f64 = 10.197;
 
-/// Everything on the bench.
 struct Bench {
     rng: Pcg64Mcg,
     arm: Arm,
@@ -40,19 +39,17 @@ struct Bench {
     tilts: VecDeque<f64>,
     tilt_offset: f64,
     steps: u64,
-    /// Time between two frames of the servo and to the next, s.
+    /// Servo frame period and time to the next frame, s.
     frame: f64,
     to_frame: f64,
-    /// Thrust that the mixer asks for and that the rotor has, N.
+    /// Thrust asked by the mixer and thrust of the rotor, N.
     asked: f64,
     thrust: f64,
     thrust_error: f64,
-    /// Moment from outside on the tilt, N·m.
+    /// External moment on the tilt, N·m.
     push: f64,
     load: SkinLoad,
-    /// The arm's own sensor answers.
     tilt_alive: bool,
-    /// The converter's task runs.
     analog_alive: bool,
 
     config: Config,
@@ -76,7 +73,7 @@ impl Bench {
         Self::with(Params::default(), infill, diameter, seed, servo)
     }
 
-    /// With the servo's frames and pulses of `params`.
+    /// Servo frames and pulses are those of `params`.
     fn with(mut params: Params, infill: f64, diameter: f64, seed: u64, servo: ServoProfile) -> Self {
         params.infill = infill as f32;
         if servo == ServoProfile::Mg996r {
@@ -84,14 +81,14 @@ impl Bench {
         }
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut within = |x: f64| rng.random_range(-x..x);
-        // What the builder does not know of the arm.
+        // Unknown to the builder.
         let gain = 1.0 + within(0.05);
         let offset = within(0.02);
         let slack_error = within(0.001);
         let tilt_offset = within(0.02);
         let thrust_error = within(0.05);
         let radius = 0.5 * diameter;
-        // The belly pads 0.6 mm deep: a quarter of 10 N on each.
+        // Belly pads 0.6 mm deep: 2.5 N on each.
         let down = BELLY_Z + (radius * radius - 0.03 * 0.03).sqrt() - 0.6e-3;
         let sensor = FsrSensor::new(&mut rng);
         let reel = Reel::from_params(&params, 0);
@@ -152,7 +149,7 @@ impl Bench {
         }
     }
 
-    /// Advances by one step of the plant and whatever of the flight stack is due.
+    /// One step of the plant and the parts of the flight stack that are due.
     fn step(&mut self) {
         let (alpha, rate) = (self.arm.tilt, self.arm.rate);
         self.thrust += (self.asked * self.thrust_error - self.thrust) * STEP / 0.05;
@@ -185,7 +182,7 @@ impl Bench {
             self.tilts.push_back(alpha + self.tilt_offset + 0.004 * noise);
             if self.tilts.len() > 2 {
                 let late = self.tilts.pop_front().unwrap();
-                // A BNO055 counts in 1/100 m/s², about a milliradian.
+                // A BNO055 resolves 1/100 m/s², about 1 mrad.
                 self.measured_tilt = self.tilt_alive.then_some(((late * 1e3).round() * 1e-3) as f32);
             }
             let input = ArmInput {
@@ -199,7 +196,6 @@ impl Bench {
             assert!(self.grip.force >= 0.0 && self.grip.force <= self.config.limit());
         }
         self.to_frame -= STEP;
-        // To the nearest step of the plant.
         if self.to_frame <= 0.5 * STEP {
             self.to_frame += self.frame;
             self.driven = self
@@ -208,14 +204,13 @@ impl Bench {
         }
     }
 
-    /// Runs for `seconds`.
     fn run(&mut self, seconds: f64) {
         for _ in 0..(seconds / STEP) as u64 {
             self.step();
         }
     }
 
-    /// Runs until the grip's state is `state`, at most `seconds`; true if it came.
+    /// Runs until the grip's state is `state`, at most `seconds`; true if reached.
     fn run_until(&mut self, state: ArmState, seconds: f64) -> bool {
         for _ in 0..(seconds / STEP) as u64 {
             self.step();
@@ -226,7 +221,7 @@ impl Bench {
         false
     }
 
-    /// Changes the asked thrust evenly to `thrust` within `seconds`.
+    /// Ramps the asked thrust to `thrust` within `seconds`.
     fn ramp_thrust(&mut self, thrust: f64, seconds: f64) {
         let steps = (seconds / STEP) as u64;
         let change = (thrust - self.asked) / steps as f64;
@@ -236,26 +231,26 @@ impl Bench {
         }
     }
 
-    /// Forgets the extremes so far.
+    /// Resets the extremes.
     fn forget(&mut self) {
         (self.peak, self.trough) = (0.0, f64::INFINITY);
     }
 }
 
-/// What one whole run gave.
+/// Result of a whole run.
 #[derive(Debug)]
 struct Outcome {
     closure: f64,
     /// Servo torque that holds the grip with the rotor stopped, kgcm.
     torque: f64,
     closing_peak: f64,
-    /// Largest deviation of the true pressure while the rotor stops, Pa.
+    /// Largest deviation of the true pressure during spool-down, Pa.
     spool_down: f64,
     released_in: f64,
 }
 
-/// Closes, stops the rotor, holds, disturbs, spools up and releases; panics where a demand is not met.
-/// `None` when the arm reported that its force does not suffice.
+/// Closes, stops the rotor, holds, disturbs, spools up and releases, with assertions; `None` if the arm reports
+/// insufficient force.
 fn whole_run(infill: f64, diameter: f64, seed: u64) -> Option<Outcome> {
     whole_run_with(Params::default(), infill, diameter, seed)
 }
@@ -295,7 +290,7 @@ fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Opti
 
     b.run(3.0);
     let torque = b.tendon.servo_torque() * KGCM;
-    // A knock against the arm, towards the pipe and away: 0.3 N at its tip.
+    // Knocks on the arm, towards the pipe and away: 0.3 N at the tip.
     for push in [0.05, -0.05] {
         b.push = push;
         b.run(1.0);
@@ -307,7 +302,7 @@ fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Opti
             b.grip
         );
     }
-    // Noise of the tilt and the servo's deadband move the pressure; its mean must be back.
+    // Tilt noise and the deadband move the pressure; its mean must recover.
     let mean = (0..100).fold(0.0, |sum, _| {
         b.run(0.01);
         sum + 0.01 * f64::from(b.grip.pressure)
@@ -339,9 +334,9 @@ fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Opti
     })
 }
 
-/// Infill (%), pipe diameter (m), torque (kgcm) that holds it with the rotor stopped: 0.6 times the moment of
-/// the arm bent from its droop to the pipe's curvature, L (T_s(-L/R)), and of 950 Pa on its skin, 0.13 N·m.
-/// The two stiffest need what the servo just has, or has not: they may also report that.
+/// Infill (%), pipe diameter (m), torque (kgcm) that holds it with the rotor stopped: 0.6 times the moment of the arm
+/// bent from its droop to the pipe's curvature, L (T_s(-L/R)), and of 950 Pa on its skin, 0.13 N·m. The two stiffest
+/// are at the servo's limit and may report that.
 const CASES: [(f64, f64, f64); 15] = [
     (6.0, 0.20, 8.9),
     (6.0, 0.25, 6.6),
@@ -418,7 +413,7 @@ fn a_fast_or_mirrored_servo_closes_holds_and_lets_go_as_any_other() {
 #[test]
 fn an_arm_too_stiff_for_the_pipe_says_so() {
     for seed in 1..=3 {
-        // 29 kgcm would be needed.
+        // 29 kgcm needed.
         assert!(whole_run(10.0, 0.20, seed).is_none());
     }
 }
@@ -445,7 +440,7 @@ fn a_weak_servo_is_reported_and_never_asked_for_more_than_it_has() {
     assert!(b.grip.force <= limit.force && b.tendon.servo_torque() < 0.922);
 }
 
-/// A bench whose arm holds, with what it then pulls (N) and presses (Pa).
+/// A holding bench, with its tension (N) and pressure (Pa).
 fn holding(infill: f64, seed: u64) -> (Bench, f64, f64) {
     let mut b = Bench::new(infill, 0.30, seed, ServoProfile::Paper);
     b.close = true;
@@ -464,7 +459,7 @@ fn a_shorted_sensor_holds_the_force() {
     b.run(5.0);
     assert!(b.grip.state == ArmState::Faulty && b.gripper.fault() == Some(GripFault::Sensor));
     assert!((b.tendon.tension() - tension).abs() < 3.0 && (b.load.pressure - pressure).abs() < 200.0);
-    // It can still be released: by its servo's word.
+    // Release judged by the servo alone.
     b.close = false;
     assert!(b.run_until(ArmState::Free, 8.0));
     assert!(b.load.pressure == 0.0);
@@ -484,7 +479,6 @@ fn a_lead_that_breaks_while_holding_does_not_run_away() {
                 "{infill} {seed}: {}",
                 b.peak
             );
-            // It ends near where it was.
             assert!(
                 b.tendon.tension() < tension + 5.0,
                 "{infill} {seed}: {}",
@@ -498,7 +492,7 @@ fn a_lead_that_breaks_while_holding_does_not_run_away() {
 fn a_sensor_behind_a_divider_that_nobody_told_of_stops_the_closing() {
     for infill in [6.0, 6.9, 8.0] {
         for seed in 1..=4 {
-            // Behind 1:2 it reads 692 Pa at most; behind 1:11 69 Pa, which is no touch.
+            // Behind 1:2 it reads at most 692 Pa; behind 1:11 69 Pa, which is no touch.
             for (pad, fault) in [(2.0, GripFault::Ceiling), (11.0, GripFault::Unfelt)] {
                 let mut b = Bench::new(infill, 0.30, seed, ServoProfile::Paper);
                 b.pad = pad;
@@ -511,7 +505,6 @@ fn a_sensor_behind_a_divider_that_nobody_told_of_stops_the_closing() {
                     "{what}"
                 );
                 assert!(b.peak < 10_000.0, "{what}");
-                // It lets go as any other.
                 b.close = false;
                 assert!(b.run_until(ArmState::Free, 8.0), "{what}");
             }

@@ -1,4 +1,4 @@
-//! Judges by the truth what neither the stack nor the pilot can be trusted to say of themselves.
+//! Judges a flight by the plant's true state.
 
 use glam::DVec3;
 use sophie_control::mode::Mode;
@@ -13,45 +13,44 @@ use crate::plant::tendon::TendonSpec;
 use crate::scenario::{Scenario, Step};
 use crate::sensors::fsr::LARGEST_ERROR;
 
-/// Farthest that a gripped vehicle may slip while it is pushed, m.
+/// Largest slip of a gripped vehicle under a push, m.
 const SLIP: f64 = 0.03;
-/// Largest true pressure on an arm that closes or grips, Pa: the tendons' and the skin's sake.
+/// Largest true pressure on a closing or gripping arm, Pa: limit of tendons and skin.
 const PRESSURE_MAX: f64 = 1500.0;
-/// The same of a bump, Pa: an open arm that comes down on the pipe, which a soft arm is there to take, and a gripping one
-/// until the loops go on after a reset that stopped the rotors at once: what pulled against their thrust presses the pipe.
+/// The same for bumps, Pa: an open arm that comes down on the pipe; a gripping arm after a reset that stopped the
+/// rotors, until the loops run again (the tension against their thrust presses the pipe).
 const PRESSURE_BUMP: f64 = 3000.0;
-/// Tolerances that a pressure may be off while the rotors stop and while the vehicle is pushed: the body moves on its
-/// pads and the loop follows slowly.
+/// Allowed pressure error during spool-down and push, in tolerances: the body moves on its pads and the loop is slow.
 const DISTURBED: f64 = 2.0;
-/// Share of the roll angle that the manoeuvre must truly reach on either side.
+/// Share of the roll angle that the manoeuvre must truly reach on each side.
 const ROLL_SHARE: f64 = 0.9;
-/// Time in which the pressure may settle after the hold began or a push ended, s.
+/// Settling time of the pressure after the hold began or a push ended, s.
 const SETTLE: f64 = 3.0;
 /// Rotor thrust that counts as stopped, N.
 const STOPPED: f64 = 0.05;
-/// Time in which stopped rotors run out, s.
+/// Time for rotors to run down, s.
 const RUN_OUT: f64 = 1.0;
-/// Speed at which touching the ground is a crash, m/s.
+/// Crash speed at the ground, m/s.
 const CRASH_SPEED: f64 = 2.0;
 
-/// The judge's memory.
+/// State of the judge.
 pub struct Judge {
     chosen: PerArm<bool>,
     target: f64,
     tolerance: f64,
     /// Pressure below which an arm is free, Pa.
     released: f64,
-    /// Largest error of the pressure sensor at the target, Pa: what the stack cannot know, the truth is granted.
+    /// Largest sensor error at the target, Pa: the stack cannot correct it.
     sensor_error: f64,
     torque_max: f64,
     reel_radius: f64,
     proven: bool,
-    /// Where a gripped vehicle hung when its board was reset, until it is let go.
+    /// Position of a gripped vehicle at the reset of its board, until it is released.
     hanging: Option<DVec3>,
-    /// Angle of the roll manoeuvre under way and the farthest true roll to either side, rad.
+    /// Angle of the present roll manoeuvre and the largest true roll to each side, rad.
     roll: Option<(f64, [f64; 2])>,
     hold_start: Option<(f64, DVec3)>,
-    /// When the vehicle was last pushed, s.
+    /// Time of the last push, s.
     pushed: f64,
     last_step: Option<usize>,
 }
@@ -78,7 +77,7 @@ impl Judge {
         }
     }
 
-    /// Looks at the truth now; gives the reason when the mission failed.
+    /// Checks the truth; returns the reason if the mission failed.
     pub fn step(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
         if let Some(why) = self.harmed(now).or_else(|| self.badly_rolled(now)) {
             return Some(why);
@@ -95,7 +94,7 @@ impl Judge {
         self.let_go(now)
     }
 
-    /// A crash, or more pressure or tension than the vehicle bears.
+    /// A crash, or excess pressure or tension.
     fn harmed(&self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
         let (t, plant, stack) = (now.t(), now.plant, now.stack);
         let pose = plant.pose();
@@ -129,7 +128,7 @@ impl Judge {
         None
     }
 
-    /// A roll that ended short of what the step wants.
+    /// A roll that ended short.
     fn badly_rolled(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
         let index = now.step.map(|(i, _)| i);
         if index != self.last_step {
@@ -155,10 +154,10 @@ impl Judge {
         None
     }
 
-    /// A perch that does not last through a hold.
+    /// A perch that ends during a hold.
     fn let_go(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
         let (t, plant, stack) = (now.t(), now.plant, now.stack);
-        // Without the radio a perched vehicle must hold as well as with it.
+        // A perched vehicle holds without the radio too.
         let holds = match now.step {
             Some((_, Step::Hold { .. })) => true,
             Some((_, Step::RadioOff { .. })) => self.hold_start.is_some() || stack.mode() == Mode::Perched,
@@ -193,7 +192,7 @@ impl Judge {
         self.badly_held(plant, if quiet { 1.0 } else { DISTURBED })
     }
 
-    /// Over a reset no rotor turns before the pilot has armed, and a vehicle that was gripped stays so.
+    /// Across a reset no rotor turns before the pilot arms, and a gripped vehicle stays gripped.
     fn after_reset(
         &mut self,
         t: f64,
@@ -225,7 +224,7 @@ impl Judge {
             ));
         }
         let mut arms = plant.pressure().into_iter().zip(self.chosen).enumerate();
-        // Without a pulse a weak servo's gears give way to what their friction carries; no arm may come off.
+        // Without pulses a weak servo's gears slip down to their friction; no arm may come off.
         let (arm, (pressure, _)) = arms.find(|(_, (p, chosen))| *chosen && *p < self.released)?;
         Some(format!(
             "after the reset arm {} holds {pressure:.0} N/m2 only",
@@ -233,7 +232,7 @@ impl Judge {
         ))
     }
 
-    /// The chosen arm whose true pressure is off by more than `tolerances` tolerances and the sensor's error.
+    /// A chosen arm with a true pressure off by more than `tolerances` tolerances plus the sensor's error.
     fn badly_held(&self, plant: &Plant, tolerances: f64) -> Option<String> {
         let allowed = tolerances * self.tolerance + self.sensor_error;
         let mut arms = plant.pressure().into_iter().zip(self.chosen).enumerate();
@@ -247,7 +246,7 @@ impl Judge {
     }
 }
 
-/// Two different numbers with as many digits as it takes to tell them apart, at least three that count.
+/// Both numbers with enough digits to differ, at least three significant.
 fn told_apart(value: f64, allowed: f64) -> (String, String) {
     let least = if allowed < 100.0 { 2 } else { 0 };
     let written = |digits: usize| (format!("{value:.digits$}"), format!("{allowed:.digits$}"));
@@ -257,7 +256,7 @@ fn told_apart(value: f64, allowed: f64) -> (String, String) {
         .map_or_else(|| written(9), written)
 }
 
-/// The largest of four values with its arm, 1 to 4.
+/// Largest of four values and its arm, 1 to 4.
 fn worst(values: PerArm<f64>) -> Option<(usize, f64)> {
     values
         .into_iter()

@@ -1,4 +1,4 @@
-//! The pilot's course through the mission: what is remembered over its steps, and the moves that several of them share.
+//! State and manoeuvres that the steps of the mission share.
 
 use glam::DVec2;
 use sophie_control::mode::{Mode, Reason};
@@ -9,19 +9,19 @@ use super::limits;
 use super::stick_dynamics::StickTarget;
 use crate::scenario::{Scenario, Step};
 
-/// Heading flown throughout, rad: the nose to the north, along the pipe.
+/// Heading flown throughout, rad: north, along the pipe.
 pub const HEADING: f64 = 0.0;
 
-/// What the pilot goes by in one step.
+/// Inputs of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// Delayed, noisy state of the vehicle, as the pilot model sees it.
+    /// Delayed, noisy state.
     pub seen: Seen,
     /// Time now, s.
     pub now: f64,
-    /// The mode that he has read.
+    /// Mode read from the display.
     pub mode: Option<Mode>,
-    /// The text beside it: a reason, or a warning.
+    /// Text beside the mode: reason or warning.
     pub text: &'a str,
 }
 
@@ -36,7 +36,7 @@ impl View<'_> {
         self.text == reason.text()
     }
 
-    /// The mode as the display words it.
+    /// The mode as displayed.
     pub fn shown(&self) -> String {
         let name = self.mode.map_or("nothing", Mode::name);
         if self.text.is_empty() {
@@ -47,23 +47,23 @@ impl View<'_> {
     }
 }
 
-/// How far a step has come.
+/// Progress of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
-    /// Not done; the sticks wanted.
+    /// Under way, with stick targets.
     Going(StickTarget),
-    /// Done; the sticks wanted.
+    /// Done, with stick targets.
     Done(StickTarget),
-    /// Given up, with one line why.
+    /// Failed, with the reason in one line.
     Failed(String),
 }
 
-/// Where a step is; each step uses the phases that it needs.
+/// Phase of a step; a step uses those that it needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// The step has just begun.
     Start,
-    /// Sticks held over for the arming or disarming gesture.
+    /// Arming or disarming gesture.
     Gesture,
     /// Waiting for the display.
     Wait,
@@ -73,21 +73,21 @@ pub enum Phase {
     Right,
     /// See [`Phase::Right`].
     Left,
-    /// Going down: to the ground, or to the gate over the pipe.
+    /// Descending to the ground, or to the gate over the pipe.
     Descend,
-    /// Going on from the gate onto the pipe.
+    /// From the gate onto the pipe.
     Commit,
-    /// Sticks at their trim, the weight put onto the pipe.
+    /// Sticks at trim, weight onto the pipe.
     Plant,
-    /// Moving the throttle to where it must be.
+    /// Moving the throttle to its goal.
     Throttle,
-    /// Up again, for another try.
+    /// Climbing for another try.
     GoAround,
     /// The transmitter is off.
     Silent,
 }
 
-/// What the pilot remembers over a mission.
+/// The pilot's state over a mission.
 #[derive(Clone, Debug)]
 pub struct Mission {
     pub(super) guidance: Guidance,
@@ -98,24 +98,24 @@ pub struct Mission {
     pub(super) arm_switch: bool,
     pub(super) perch_switch: bool,
     pub(super) phase: Phase,
-    /// Time since the step and since the phase began, s.
+    /// Time since the step and the phase began, s.
     pub(super) step_time: f64,
     pub(super) phase_time: f64,
-    /// Time for which the condition waited for has held, s.
+    /// Time for which the awaited condition has held, s.
     pub(super) held: f64,
-    /// Where the step holds: north, east, m; and the height at its beginning.
+    /// Point to hold: north, east, m; height at the step's beginning.
     pub(super) spot: DVec2,
     pub(super) height: f64,
-    /// Throttle set by hand, outside of flight.
+    /// Throttle set by hand when not flying.
     pub(super) throttle: f64,
-    /// Tries of the landing on the pipe that failed.
+    /// Failed landings on the pipe.
     pub(super) missed: u32,
-    /// The reason that the display gave for the failsafe that the flight ran into.
+    /// The displayed reason of the failsafe that ended the flight.
     pub(super) trouble: Option<String>,
 }
 
 impl Mission {
-    /// A pilot who has read the scenario.
+    /// A pilot for `scenario`.
     pub fn new(scenario: &Scenario) -> Self {
         let [north, east] = scenario.world.pipe_position;
         Self {
@@ -143,7 +143,7 @@ impl Mission {
         self.phase != Phase::Silent
     }
 
-    /// A step begins with this to see.
+    /// Begins a step.
     pub fn begin(&mut self, seen: &Seen) {
         self.enter(Phase::Start);
         self.step_time = 0.0;
@@ -151,7 +151,7 @@ impl Mission {
         self.height = -seen.position.z;
     }
 
-    /// Flies `step` for `dt` s; `sticks` is where the sticks are (roll, pitch, yaw, throttle).
+    /// Flies `step` for `dt` s from stick positions `sticks` (roll, pitch, yaw, throttle).
     pub fn fly(&mut self, step: &Step, view: &View<'_>, sticks: [f64; 4], dt: f64) -> Progress {
         self.step_time += dt;
         self.phase_time += dt;
@@ -194,8 +194,8 @@ impl Mission {
         }
     }
 
-    /// Why a step that needs its rotors cannot go on: they stand still, after a failsafe or without one. Until then the
-    /// pilot flies on: a vehicle that sinks by itself is still steered.
+    /// Why a step that needs its rotors must end: they stand still. The pilot flies until then: a vehicle that sinks by
+    /// itself is still steered.
     fn stopped(&self, step: &Step, v: &View<'_>) -> Option<String> {
         let rotors = match step {
             Step::TakeOff { .. }
@@ -208,7 +208,7 @@ impl Mission {
             | Step::Perch { .. }
             | Step::Open
             | Step::Release => true,
-            // These end with stopped rotors, or wait for a vehicle that may have them.
+            // Steps that end with stopped rotors, or start with them.
             Step::Arm
             | Step::Hold { .. }
             | Step::Land
@@ -247,7 +247,7 @@ impl Mission {
         self.held = 0.0;
     }
 
-    /// True once `holds` has held for `seconds`.
+    /// True once `holds` has been true for `seconds`.
     pub(super) fn held_for(&mut self, holds: bool, seconds: f64, dt: f64) -> bool {
         self.held = if holds { self.held + dt } else { 0.0 };
         self.held >= seconds
@@ -265,7 +265,7 @@ impl Mission {
             .steer(&v.seen, &course(target, Vertical::Climb(rate)), dt)
     }
 
-    /// Sticks let go, throttle moved by hand towards `goal` at `rate` 1/s.
+    /// Sticks centred, throttle towards `goal` at `rate` 1/s.
     pub(super) fn throttle_to(&mut self, goal: f64, rate: f64, dt: f64) -> StickTarget {
         self.throttle += (goal - self.throttle).clamp(-rate * dt, rate * dt);
         self.guidance.stand(self.throttle);
@@ -275,7 +275,7 @@ impl Mission {
         }
     }
 
-    /// What the vehicle has not reached, for the reason of a failure.
+    /// What was not reached, as the reason of a failure.
     fn shortfall(&self, step: &Step, v: &View<'_>) -> String {
         let p = v.seen.position;
         let off = |target: DVec2| (p.truncate() - target).length();
@@ -307,7 +307,7 @@ impl Mission {
     }
 }
 
-/// To `target` (north, east, m) with the nose at [`HEADING`].
+/// To `target` (north, east, m), nose at [`HEADING`].
 fn course(target: DVec2, vertical: Vertical) -> Course {
     Course {
         target,

@@ -1,9 +1,8 @@
 //! One soft arm as a rigid link on a virtual hinge at the centre line, with Eq. 1 as its spring.
 //!
-//! On a level bench Eq. 1 gives the tilt at rest for a thrust, with the arm's own weight in it. Its inverse is
-//! therefore the spring: the moment that holds the tilt α is L (T_s(α) - m g cos α), T_s the thrust of which
-//! α is the static tilt. The mode's frequency follows from the tangent stiffness and the tip mass: 5 Hz in
-//! hover at ρ 6.9 %, K 7.75.
+//! Eq. 1 gives the tilt at rest on a level bench, the arm's own weight included. Its inverse is the spring: the moment
+//! that holds the tilt α is L (T_s(α) - m g cos α), T_s the thrust with the static tilt α. Tangent stiffness and tip
+//! mass give the mode's frequency: 5 Hz in hover at ρ 6.9 %, K 7.75.
 
 use glam::DVec3;
 use sophie_control::wrench::{FORE, SIDE};
@@ -11,15 +10,15 @@ use sophie_control::wrench::{FORE, SIDE};
 use super::GRAVITY;
 use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
 
-/// Mass at the arm's tip: motor, propeller and the arm's share, kg (assumed, sets the mode to 5 Hz in hover).
+/// Tip mass: motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
 /// A1, A2, B1, B2 of Eq. 1 (paper, Table I).
 pub const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
-/// Thrust at which an arm is level, N: half of the largest of the paper's rotors.
+/// Thrust of the level arm, N: half of the largest of the paper's rotors.
 const LEVEL_THRUST: f64 = 4.15;
-/// Thrust at which the damping ratio is meant, N: hover.
+/// Thrust of the damping ratio, N: hover.
 const HOVER_THRUST: f64 = 4.425;
-/// Least share of the compliance at rest that the spring keeps at large thrusts, where Eq. 1's parabola turns.
+/// Least share of the compliance at rest, kept at large thrusts, where Eq. 1's parabola turns.
 const LEAST_COMPLIANCE: f64 = 0.15;
 
 /// An arm as built.
@@ -57,8 +56,8 @@ pub struct ArmPrint {
 }
 
 impl ArmSpec {
-    /// An arm of infill `infill` (%) with the gain `gain_k` on Eq. 1's elastic term, itself softer by `gain`
-    /// and bent by `offset` (rad) against the nominal one, with the damping ratio `zeta` in hover.
+    /// Arm of infill `infill` (%), gain `gain_k` on Eq. 1's elastic term, compliance factor `gain` and tilt offset
+    /// `offset` (rad) against the nominal arm, damping ratio `zeta` in hover.
     #[must_use]
     pub fn new(infill: f64, gain_k: f64, gain: f64, offset: f64, zeta: f64) -> Self {
         Self::of(&ArmPrint {
@@ -85,7 +84,7 @@ impl ArmSpec {
         let nominal_linear = (gain_k * (a1 + a2 * infill)).to_radians();
         let nominal_quadratic = (gain_k * (b1 + b2 * infill)).to_radians();
         let (linear, quadratic) = (nominal_linear * gain, nominal_quadratic * gain);
-        // As the spring has it there: light vehicles may hover well below, where an arm that turns stiff is still soft.
+        // Limited as the spring is: the knee of a light vehicle's arm may lie below hover.
         let slope = (linear + 2.0 * quadratic * HOVER_THRUST).max(LEAST_COMPLIANCE * linear);
         let stiffness = ARM_LENGTH / slope;
         let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
@@ -103,7 +102,7 @@ impl ArmSpec {
         }
     }
 
-    /// The same arm, printed so that the nominal one is level at `thrust` N.
+    /// The same arm, with the nominal one level at `thrust` N.
     #[must_use]
     pub fn level_at(self, thrust: f64) -> Self {
         Self {
@@ -112,7 +111,7 @@ impl ArmSpec {
         }
     }
 
-    /// Static tilt (rad) on a level bench at the thrust `thrust` (N).
+    /// Static tilt (rad) on a level bench at `thrust` (N).
     #[must_use]
     pub fn static_tilt(&self, thrust: f64) -> f64 {
         let curved = thrust.clamp(0.0, self.knee);
@@ -120,8 +119,8 @@ impl ArmSpec {
         self.offset + (self.linear + self.quadratic * curved) * curved + slope * (thrust - curved)
     }
 
-    /// The inverse: the thrust (N) of which `tilt` (rad) is the static tilt. Straight below 0 N and beyond the
-    /// knee (Eq. 1 was measured between; assumed).
+    /// Inverse: the thrust (N) with the static tilt `tilt` (rad). Linear below 0 N and beyond the knee (outside Eq. 1's
+    /// measurements; assumed).
     #[must_use]
     pub fn static_load(&self, tilt: f64) -> f64 {
         let e = tilt - self.offset;
@@ -132,12 +131,12 @@ impl ArmSpec {
         if e >= e_knee {
             return self.knee + (e - e_knee) / (self.linear * LEAST_COMPLIANCE);
         }
-        // The root of q T² + l T = e that vanishes with e, in the form that also holds for q = 0.
+        // Root of q T² + l T = e that vanishes with e, in the form that also holds for q = 0.
         2.0 * e / (self.linear + (self.linear * self.linear + 4.0 * self.quadratic * e).sqrt())
     }
 }
 
-/// Tilt (rad) that Eq. 1 with these coefficients adds at `thrust` N.
+/// Elastic tilt (rad) of Eq. 1 at `thrust` N.
 fn rise((linear, quadratic): (f64, f64), thrust: f64) -> f64 {
     (linear + quadratic * thrust) * thrust
 }
@@ -148,20 +147,20 @@ pub struct Arm {
     spec: ArmSpec,
     side: f64,
     x: f64,
-    /// Tilt, rad, tip up positive.
+    /// Tilt, rad; positive with the tip up.
     pub tilt: f64,
     /// Rate of the tilt, rad/s.
     pub rate: f64,
     sin: f64,
     cos: f64,
-    /// Generalised force on the tilt, N·m, of the present step.
+    /// Generalised force on the tilt in this step, N·m.
     pub generalised: f64,
-    /// Thrust of the present step, N.
+    /// Thrust in this step, N.
     pub thrust: f64,
 }
 
 impl Arm {
-    /// Arm `index`, 0 to 3, drooping without thrust as far as the ground under the belly lets it.
+    /// Arm `index`, 0 to 3, at rest without thrust, limited by the ground under the belly.
     #[must_use]
     pub fn new(index: usize, spec: ArmSpec) -> Self {
         let on_ground = -((BELLY_Z - HINGE_Z) / ARM_LENGTH).asin();
@@ -189,7 +188,7 @@ impl Arm {
         )
     }
 
-    /// Direction in which the tip moves when the tilt grows, and of the thrust: unit vector, body.
+    /// Direction of thrust and of the tip's motion with growing tilt: unit vector, body.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         DVec3::new(0.0, self.side * self.sin, -self.cos)
@@ -201,15 +200,15 @@ impl Arm {
         DVec3::new(0.0, -self.side * self.cos, -self.sin)
     }
 
-    /// Acceleration (m/s²) of the tip that the present motion alone causes, on a body turning at `omega`.
+    /// Velocity-dependent acceleration of the tip (m/s²) on a body turning at `omega`.
     #[must_use]
     pub fn bias_acceleration(&self, omega: DVec3) -> DVec3 {
         omega.cross(omega.cross(self.tip())) + 2.0 * omega.cross(self.normal() * (ARM_LENGTH * self.rate))
             - self.outward() * (ARM_LENGTH * self.rate * self.rate)
     }
 
-    /// Sums the generalised force of the step: thrust (N), moments of tendon and contact (N·m), spring,
-    /// damping and, where the tip's mass is carried, its weight under `gravity` (m/s², body).
+    /// Sums the generalised force: thrust (N), moments of tendon and contact (N·m), spring, damping and, if the tip
+    /// mass is carried (`coupled`), its weight under `gravity` (m/s², body).
     pub fn load(&mut self, thrust: f64, moment: f64, gravity: DVec3, coupled: bool) {
         let load = self.spec.static_load(self.tilt);
         let weight = if coupled {
@@ -221,7 +220,7 @@ impl Arm {
         self.generalised = ARM_LENGTH * (thrust - load) + weight + moment - self.spec.damping * self.rate;
     }
 
-    /// Advances by `dt` s with the acceleration `acceleration` (rad/s²) of the tilt.
+    /// Advances by `dt` s at the acceleration `acceleration` (rad/s²) of the tilt.
     pub fn integrate(&mut self, dt: f64, acceleration: f64) {
         self.rate += acceleration * dt;
         self.tilt += self.rate * dt;
@@ -264,7 +263,7 @@ mod tests {
 
     #[test]
     fn the_mode_is_at_five_hertz_in_hover() {
-        // A held body in level rest: ring down about hover and count zero crossings.
+        // Free swing about hover on a fixed level body; counts zero crossings.
         let mut arm = Arm::new(
             0,
             ArmSpec {

@@ -1,8 +1,8 @@
 //! Equations of motion of the body with four hinged tip masses.
 //!
-//! A tip slides freely along its normal n and is held otherwise, so it adds m (1 - n nᵀ) to the body's mass
-//! and hands the generalised force on its hinge on to the body as -Q/L along n. What is left is a
-//! 6×6 system for the body, solved by its 3×3 blocks; the tilts' accelerations follow one by one.
+//! A tip slides freely along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
+//! generalised force on its hinge to the body as -Q/L along n. The remaining 6×6 system is solved by its 3×3 blocks;
+//! the tilts' accelerations follow one by one.
 
 use glam::{DMat3, DVec3};
 
@@ -12,9 +12,9 @@ use super::contact::{ARM_LENGTH, ARM_X, HINGE_Z, Pose};
 /// Mass and inertia as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySpec {
-    /// Mass of the whole vehicle, kg.
+    /// Mass of the vehicle, kg.
     pub mass: f64,
-    /// Moments of inertia of the whole vehicle with level arms about roll, pitch and yaw, kg·m².
+    /// Inertia of the vehicle with level arms: roll, pitch, yaw, kg·m².
     pub inertia: [f64; 3],
 }
 
@@ -56,15 +56,15 @@ impl Load {
 /// Accelerations of one step.
 #[derive(Clone, Copy, Debug)]
 pub struct Accelerations {
-    /// Of the body's origin, m/s², body axes.
+    /// Body origin, m/s², body.
     pub linear: DVec3,
     /// Angular, rad/s², body.
     pub angular: DVec3,
-    /// Of each arm's tilt, rad/s².
+    /// Tilt of each arm, rad/s².
     pub arms: [f64; 4],
 }
 
-/// The rigid part of the vehicle.
+/// Rigid part of the vehicle.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
     coupled: bool,
@@ -75,9 +75,9 @@ pub struct Body {
 }
 
 impl Body {
-    /// The body of `spec`; `coupled` gives the arms their tip masses, otherwise all mass is the body's.
+    /// Body of `spec`; `coupled` gives the arms their tip masses, otherwise all mass is the body's.
     ///
-    /// Its centre of mass lies where the whole vehicle's comes to the origin with level arms.
+    /// Its centre of mass is set so that the whole vehicle's, with level arms, is the origin.
     #[must_use]
     pub fn new(spec: &BodySpec, coupled: bool) -> Self {
         let whole = DVec3::from_array(spec.inertia);
@@ -103,8 +103,8 @@ impl Body {
         }
     }
 
-    /// Accelerations under a load from outside, without gravity and thrusts, which come from `gravity` (m/s², body)
-    /// and the loaded `arms`.
+    /// Accelerations under an external `load` that excludes gravity (`gravity`, m/s², body) and thrusts (from the
+    /// loaded `arms`).
     #[must_use]
     pub fn accelerate(&self, pose: &Pose, load: Load, gravity: DVec3, arms: [&Arm; 4]) -> Accelerations {
         let w = pose.omega;
@@ -126,13 +126,13 @@ impl Body {
 
         let mut m = MassMatrix::new(self.mass, self.centre, self.inertia);
         for arm in arms {
-            // The hinge holds the tip along x and along the arm: m (1 - n nᵀ) is the sum over these two
-            // directions u of m u uᵀ, felt at the origin through (u, r × u).
+            // The hinge holds the tip along x and along the arm: m (1 - n nᵀ) = Σ m u uᵀ over these two directions u,
+            // acting at the origin through (u, r × u).
             let (r, n, along) = (arm.tip(), arm.normal(), arm.outward());
             m.add_tip(r, along);
             let bias = arm.bias_acceleration(w);
             let held = (DVec3::X * bias.x + along * along.dot(bias)) * TIP_MASS;
-            // Thrust and weight of the tip, less what accelerates the tip along its free direction.
+            // Thrust and weight of the tip, less what accelerates it along its free direction.
             let free = arm.generalised / ARM_LENGTH;
             let f = n * (arm.thrust - free) + gravity * TIP_MASS - held;
             force += f;
@@ -151,9 +151,9 @@ impl Body {
     }
 }
 
-/// The 6×6 mass matrix by its blocks: linear `a`, coupling (rows linear, columns angular) `c`, angular `j`.
+/// 6×6 mass matrix by blocks: linear `a`, coupling (rows linear, columns angular) `c`, angular `j`.
 ///
-/// Written out by entries: every tip adds to a few only, and this is a third of the plant's time.
+/// Entries are written out: a tip adds to few, and this takes a third of the plant's time.
 struct MassMatrix {
     mass: f64,
     ayy: f64,
@@ -164,7 +164,7 @@ struct MassMatrix {
 }
 
 impl MassMatrix {
-    /// Of the rigid part alone, its centre of mass at `centre`.
+    /// The rigid part alone, centre of mass at `centre`.
     fn new(mass: f64, centre: DVec3, inertia: DMat3) -> Self {
         let DVec3 { x, y, z } = centre * mass;
         let c = [
@@ -182,7 +182,7 @@ impl MassMatrix {
         }
     }
 
-    /// Adds a tip at `r` that is held along x and along `along`, a unit vector in the y-z plane.
+    /// Adds a tip at `r` held along x and along the unit vector `along` in the y-z plane.
     fn add_tip(&mut self, r: DVec3, along: DVec3) {
         let (ey, ez) = (along.y, along.z);
         let lever_x = DVec3::new(0.0, r.z, -r.y);
@@ -232,7 +232,7 @@ mod tests {
     use super::super::{GRAVITY, STEP};
     use super::*;
 
-    /// The paper's.
+    /// Paper.
     const MASS: f64 = 1.805;
 
     fn arms() -> [Arm; 4] {
@@ -248,12 +248,12 @@ mod tests {
         }
     }
 
-    /// Steps a free vehicle from drooping arms; returns its end with the angular momentum about the world origin.
+    /// Steps a free vehicle from drooping arms; returns its end and the angular momentum about the world origin.
     fn fly(thrust: f64, moment: DVec3, seconds: f64, omega: DVec3) -> (Pose, [Arm; 4], DVec3) {
         run(arms(), thrust, |_| moment, seconds, omega)
     }
 
-    /// A vehicle hovering with its arms at rest feels `moment` for `on` s and is left alone until `seconds`.
+    /// A hovering vehicle with arms at rest: `moment` for `on` s, free until `seconds`.
     fn pulse(moment: DVec3, on: f64, seconds: f64) -> (Pose, [Arm; 4], DVec3) {
         let mut arms = arms();
         let rest = ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15).static_tilt(4.425);
@@ -319,19 +319,19 @@ mod tests {
         for arm in &arms {
             assert!((arm.tilt - expected).abs() < 1e-4, "{} {expected}", arm.tilt);
         }
-        // Falls while the arms come up from their droop, then keeps its speed.
+        // Falls while the arms rise, then keeps its speed.
         assert!(pose.velocity.x.abs() < 1e-9 && pose.velocity.y.abs() < 1e-9);
         assert!(pose.omega.length() < 1e-9);
     }
 
     #[test]
     fn free_fall_turns_no_arm_and_keeps_angular_momentum() {
-        // Spinning without thrust: gravity alone makes no angular momentum about the centre of mass.
+        // Without thrust gravity makes no angular momentum about the centre of mass.
         let (_, _, start) = fly(0.0, DVec3::ZERO, 0.0, DVec3::new(1.0, 0.5, -0.7));
         let body = Body::new(&BodySpec::default(), true);
         let omega = DVec3::new(1.0, 0.5, -0.7);
         let (pose, arms, end) = fly(0.0, DVec3::ZERO, 0.4, omega);
-        // About the centre of mass: take off the centre's own momentum.
+        // About the centre of mass: less the centre's own momentum.
         let centre = |pose: &Pose, arms: &[Arm; 4]| {
             let mut c = body.mass * body.centre;
             let mut p =
@@ -357,15 +357,14 @@ mod tests {
 
     #[test]
     fn a_slow_yaw_moment_meets_the_whole_inertia() {
-        // Steady acceleration M / I: 0.0063 N·m on 0.063 kg·m² for 3 s.
+        // M / I: 0.0063 N·m on 0.063 kg·m² for 3 s.
         let (pose, _, _) = fly(4.425, DVec3::new(0.0, 0.0, 0.0063), 3.0, DVec3::ZERO);
         assert!((pose.omega.z / 0.3 - 1.0).abs() < 0.02, "{}", pose.omega.z);
     }
 
     #[test]
     fn a_short_roll_or_pitch_moment_leaves_its_momentum_in_the_whole_inertia() {
-        // The moment is a pulse; the tips swing on their arms until their damping has them carried along, and
-        // what is left is one turn rate of everything: 0.1 s · M / I.
+        // After the pulse the tips swing until damped; what remains is one turn rate: 0.1 s · M / I.
         for (axis, inertia) in [(0, 0.021), (1, 0.044)] {
             let mut moment = DVec3::ZERO;
             moment[axis] = 0.01;

@@ -1,30 +1,29 @@
-//! What the vehicle feels where it touches the ground or the pipe.
+//! Contact with the ground and the pipe.
 //!
-//! Points in body axes (FRD, origin at the centre of mass) with a spring and damper along the surface's
-//! normal, which never pull, and a bristle along it that sticks until Coulomb's limit and slides beyond.
-//! Every load comes as generalised forces: on the body (force and moment about its centre of mass, body axes)
-//! and on the tilt α of the arm. Stiffnesses are those of soft printed parts (assumed); all are stable with
-//! semi-implicit steps of 0.5 ms.
+//! Points in body axes (FRD, origin at the centre of mass): spring and damper along the normal, push only; a bristle
+//! along the surface that sticks up to Coulomb's limit. Loads are generalised forces: force and moment on the body
+//! (about its centre of mass, body axes), moment on the arm's tilt α. Stiffnesses are those of soft printed parts
+//! (assumed), stable with semi-implicit steps of 0.5 ms.
 
 use glam::{DQuat, DVec2, DVec3};
 use sophie_control::wrench::{FORE, SIDE};
 
-/// Height of the belly pads under the centre of mass, m, body z (assumed).
+/// Belly pads below the centre of mass, m, body z (assumed).
 pub const BELLY_Z: f64 = 0.04;
-/// Height of the arms' underside at its root, m, body z: the belly pads stand 5 mm proud (assumed), about what
-/// they sink beside the crown of a pipe.
+/// Arms' underside at the root, m, body z: 5 mm above the belly pads (assumed), about what they sink beside a pipe's
+/// crown.
 pub const UNDERSIDE_Z: f64 = 0.035;
-/// Height of the arms' neutral line at the hinge, m, body z (assumed).
+/// Arms' neutral line at the hinge, m, body z (assumed).
 pub const HINGE_Z: f64 = 0.02;
-/// Length of an arm from the centre line to the rotor, m.
+/// Arm from the centre line to the rotor, m.
 pub const ARM_LENGTH: f64 = 0.178;
-/// Distance of the arms from the centre of mass along body x, m.
+/// Arms from the centre of mass along body x, m.
 pub const ARM_X: f64 = 0.178;
-/// Where the skin is felt, m along the arm from its root; the pressure sensor sits at the last.
+/// Contact points of the skin, m along the arm from its root; the pressure sensor is at the last.
 pub const STATIONS: [f64; 3] = [0.06, 0.11, 0.16];
-/// Width and length of the skin that a station stands for, m.
+/// Skin width and length of a station, m.
 const STATION_SIZE: (f64, f64) = (0.03, 0.05);
-/// Pressure per depth of the arms' skin, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
+/// Pressure per depth of the skin, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
 pub const SKIN_STIFFNESS: f64 = 5.0e5;
 
 /// Position, attitude and motion of the body.
@@ -46,7 +45,7 @@ impl Pose {
         self.position + self.attitude * r
     }
 
-    /// World velocity of the body point `r` that itself moves at `relative` in body axes.
+    /// World velocity of the body point `r` that moves at `relative` in body axes.
     pub fn point_velocity(&self, r: DVec3, relative: DVec3) -> DVec3 {
         self.velocity + self.attitude * (self.omega.cross(r) + relative)
     }
@@ -62,7 +61,7 @@ impl Pose {
 pub struct Pipe {
     /// Middle of the pipe, north, m.
     pub north: f64,
-    /// Half of its length, m; may be infinite.
+    /// Half length, m; may be infinite.
     pub half_length: f64,
     /// Axis, east, m.
     pub east: f64,
@@ -74,17 +73,17 @@ pub struct Pipe {
     pub friction: f64,
 }
 
-/// Something to touch.
+/// A contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// The plane z = 0 with this coefficient of friction.
+    /// The plane z = 0, with its coefficient of friction.
     Ground(f64),
     /// A pipe.
     Pipe(Pipe),
 }
 
 impl Surface {
-    /// Depth of `point` (m, NED) and the outward normal there; `None` outside.
+    /// Depth (m) and outward normal at `point` (m, NED); `None` outside.
     fn probe(&self, point: DVec3) -> Option<(f64, DVec3)> {
         match self {
             Self::Ground(_) => (point.z > 0.0).then_some((point.z, DVec3::NEG_Z)),
@@ -113,12 +112,12 @@ impl Surface {
     }
 }
 
-/// Springs and dampers of a point.
+/// Springs and dampers of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pad {
     /// Along the normal, N/m.
     pub stiffness: f64,
-    /// Along the normal, N·s/m, reached 1 mm deep so that a touch does not jerk.
+    /// Along the normal, N·s/m; full from a depth of 1 mm, so that a touch has no step.
     pub damping: f64,
     /// Of the bristle along the surface, N/m.
     pub bristle: f64,
@@ -140,7 +139,7 @@ const SKIN: Pad = Pad {
     bristle: 400.0,
     bristle_damping: 4.0,
 };
-/// An arm's tip of 77 g: 22 Hz, damping ratio 0.5; it glides.
+/// An arm's tip of 77 g: 22 Hz, damping ratio 0.5; without friction.
 const TIP: Pad = Pad {
     stiffness: 1.5e3,
     damping: 10.0,
@@ -148,12 +147,12 @@ const TIP: Pad = Pad {
     bristle_damping: 0.0,
 };
 
-/// What a point feels.
+/// Contact load of a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Touch {
     /// Force on the vehicle, N, NED.
     pub force: DVec3,
-    /// Its part along the normal, N.
+    /// Normal part, N.
     pub normal: f64,
     /// Depth, m.
     pub depth: f64,
@@ -168,7 +167,7 @@ pub struct PointMotion {
     pub velocity: DVec3,
 }
 
-/// The state of one point that can touch: the deflection of its bristle.
+/// State of a contact point: the deflection of its bristle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactPoint {
     bristle: DVec3,
@@ -193,7 +192,7 @@ impl ContactPoint {
         let mut tangential = -(deflection * pad.bristle + slip * pad.bristle_damping);
         if tangential.length() > limit {
             tangential *= limit / tangential.length();
-            // A sliding bristle stays bent by what the friction can hold.
+            // A sliding bristle keeps the deflection that friction can hold.
             if deflection.length() * pad.bristle > limit {
                 deflection *= limit / (deflection.length() * pad.bristle);
             }
@@ -223,9 +222,9 @@ pub struct BodyLoad {
 pub struct SkinLoad {
     /// Force on the vehicle, N, body.
     pub force_body: DVec3,
-    /// Its moment about the centre of mass, N·m, body.
+    /// Moment about the centre of mass, N·m, body.
     pub moment_body: DVec3,
-    /// Generalised moment on the arm's tilt, N·m: force times ∂r/∂α.
+    /// Moment on the arm's tilt, N·m: force · ∂r/∂α.
     pub moment_alpha: f64,
     /// Pressure at the sensor, Pa.
     pub pressure: f64,
@@ -269,7 +268,7 @@ impl Belly {
     }
 }
 
-/// The underside of one arm against the pipe.
+/// Underside of one arm on the pipe.
 #[derive(Clone, Debug)]
 pub struct ArmSkin {
     side: f64,
@@ -278,7 +277,7 @@ pub struct ArmSkin {
 }
 
 impl ArmSkin {
-    /// The skin of arm `arm`, 0 to 3.
+    /// Skin of arm `arm`, 0 to 3.
     ///
     /// # Panics
     /// Beyond 3.
@@ -290,14 +289,13 @@ impl ArmSkin {
         }
     }
 
-    /// Body position (m) of the point `s` m along the underside at tilt `alpha` rad, and its derivative by α
-    /// (m/rad).
+    /// Body position (m) of the point `s` m along the underside at tilt `alpha` rad, and its derivative by α (m/rad).
     ///
     /// The underside is an arc of constant curvature, level at its root, at α at its end.
     pub fn point(&self, alpha: f64, s: f64) -> (DVec3, DVec3) {
         let u = alpha * s / ARM_LENGTH;
         let (y, z, dy, dz) = if u.abs() < 1e-3 {
-            // Series of the expressions below, which lose their digits near a straight arm.
+            // Series of the expressions below, which lose digits near a straight arm.
             let q = s * s / ARM_LENGTH;
             (
                 s * (1.0 - u * u / 6.0),
@@ -341,7 +339,7 @@ impl ArmSkin {
             load.force_body += force;
             load.moment_body += r.cross(force);
             load.moment_alpha += force.dot(by_alpha);
-            // The last station's remains: there is the sensor.
+            // The last station's stays: the sensor is there.
             load.pressure = touch.normal / (STATION_SIZE.0 * STATION_SIZE.1);
         }
         self.stations = stations;
@@ -349,7 +347,7 @@ impl ArmSkin {
     }
 }
 
-/// The tip of one arm against the ground: pushes along the normal only.
+/// Tip of one arm on the ground, without friction.
 #[derive(Clone, Debug)]
 pub struct ArmTip {
     side: f64,
@@ -358,7 +356,7 @@ pub struct ArmTip {
 }
 
 impl ArmTip {
-    /// The tip of arm `arm`, 0 to 3.
+    /// Tip of arm `arm`, 0 to 3.
     ///
     /// # Panics
     /// Beyond 3.

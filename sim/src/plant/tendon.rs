@@ -1,8 +1,8 @@
 //! Servo, reel and tendon of one arm.
 //!
-//! A hobby servo winds a nylon thread that runs along the arm's underside. The thread only pulls: it is slack
-//! until the reel has taken up what the arm's tilt gives away. All numbers are of the vehicle as built; what
-//! the flight stack believes about it is in the parameters.
+//! A hobby servo winds a nylon thread along the arm's underside. The thread only pulls; it is slack until the reel has
+//! taken up what the arm's tilt gives. Numbers are those of the vehicle as built; the flight stack's are in the
+//! parameters.
 
 use std::f64::consts::PI;
 
@@ -11,33 +11,32 @@ use sophie_control::tendon::{REFERENCE_TILT, Reel};
 
 use crate::scenario::ServoProfile;
 
-/// Change of pulse width that a servo ignores, µs (digital servos state 2 to 5; MG996R datasheet 5).
+/// Deadband, µs (digital servos state 2 to 5; MG996R datasheet 5).
 const DEADBAND_US: f64 = 2.0;
-/// Shortest and longest pulse that a servo takes for a command, µs.
+/// Pulse widths taken for a command, µs.
 const PULSE_LIMITS_US: (f64, f64) = (450.0, 2550.0);
-/// Share of the stall torque that the gear's friction holds without a pulse (assumed).
+/// Share of the stall torque held by gear friction without a pulse (assumed).
 const GEAR_FRICTION: f64 = 0.35;
 
 /// A servo as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoSpec {
-    /// Torque at which it stops, N·m.
+    /// Stall torque, N·m.
     pub stall: f64,
-    /// Speed without load, rad/s.
+    /// No-load speed, rad/s.
     pub slew: f64,
     /// Travel from `release_us` to `full_us`, rad.
     pub range: f64,
-    /// Pulse at which it stands at its release position, µs.
+    /// Pulse of the release position, µs.
     pub release_us: f64,
-    /// Pulse at which it has travelled `range`, µs; less than `release_us` for a servo that turns the other way.
+    /// Pulse after the travel `range`, µs; below `release_us` for a servo that turns the other way.
     pub full_us: f64,
-    /// Time between two pulses that it obeys, s: 20 ms for an analog servo.
+    /// Period of the pulses obeyed, s: 20 ms for an analog servo.
     pub frame: f64,
 }
 
 impl ServoSpec {
-    /// This servo as a builder mounted and measured it on arm `arm` (0..=3): what the parameters say of its pulses
-    /// and frames is true.
+    /// This servo on arm `arm` (0..=3), with pulses and frames exactly as the parameters state.
     #[must_use]
     pub fn measured(self, params: &Params, arm: usize) -> Self {
         let reel = Reel::from_params(params, arm);
@@ -61,13 +60,13 @@ impl From<ServoProfile> for ServoSpec {
             frame: 0.02,
         };
         match profile {
-            // 35 kgcm (paper), the speed of the MG996R that it names, the 270 degree version of such servos.
+            // 35 kgcm (paper); speed of the MG996R it names; the 270° version of such servos.
             ServoProfile::Paper => Self {
                 stall: 3.432,
                 range: 4.71,
                 ..usual
             },
-            // 9.4 kgcm and 0.17 s for 60 degrees at 4.8 V (datasheet), 180 degrees.
+            // 9.4 kgcm, 0.17 s for 60° at 4.8 V (datasheet); 180°.
             ServoProfile::Mg996r => Self {
                 stall: 0.922,
                 range: PI,
@@ -82,15 +81,15 @@ impl From<ServoProfile> for ServoSpec {
 pub struct TendonSpec {
     /// Radius of the reel, m (assumed).
     pub reel_radius: f64,
-    /// Distance of the tendon from the arm's neutral line, m (assumed).
+    /// Tendon from the arm's neutral line, m (assumed).
     pub lever: f64,
-    /// Stiffness along the tendon, N/m: nylon of 1 mm and 0.25 m, E 2.5 GPa (derived, 30 %).
+    /// Stiffness along the tendon, N/m: 1 mm nylon, 0.25 m, E 2.5 GPa (derived, 30 %).
     pub stiffness: f64,
-    /// Damping along the tendon, N·s/m: a loss factor of 0.1 at 8 Hz (assumed).
+    /// Damping along the tendon, N·s/m: loss factor 0.1 at 8 Hz (assumed).
     pub damping: f64,
-    /// Tilt at which the tendon of a servo at release is just taut, rad.
+    /// Tilt at which the tendon is just taut with the servo at release, rad.
     pub reference_tilt: f64,
-    /// Thread that was knotted too long, m; negative is too short.
+    /// Excess length of the thread, m; negative: too short.
     pub slack_error: f64,
 }
 
@@ -107,7 +106,7 @@ impl Default for TendonSpec {
     }
 }
 
-/// Servo, reel and tendon of one arm, with their state.
+/// Servo, reel and tendon of one arm.
 #[derive(Clone, Debug)]
 pub struct Tendon {
     servo: ServoSpec,
@@ -120,7 +119,7 @@ pub struct Tendon {
 }
 
 impl Tendon {
-    /// A tendon whose servo stands at its release position.
+    /// A tendon with its servo at the release position.
     pub fn new(servo: ServoSpec, spec: TendonSpec) -> Self {
         Self {
             servo,
@@ -133,10 +132,10 @@ impl Tendon {
         }
     }
 
-    /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) with the arm at tilt `alpha` rad; returns
-    /// the tendon's moment on the tilt, N·m (never positive: it pulls the tip down).
+    /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) at tilt `alpha` rad; returns the moment on the tilt,
+    /// N·m (never positive: the tendon pulls the tip down).
     ///
-    /// Without pulses the servo's gear friction holds up to a third of the stall torque and gives way beyond.
+    /// Without pulses gear friction holds 35 % of the stall torque and slips beyond.
     pub fn step(&mut self, dt: f64, pulse_us: f64, alpha: f64) -> f64 {
         self.to_next_frame -= dt;
         if self.to_next_frame <= 0.0 {
@@ -175,12 +174,12 @@ impl Tendon {
         self.tension * self.spec.reel_radius
     }
 
-    /// Angle of the servo from its release position, rad, winding positive.
+    /// Servo angle from the release position, rad, winding positive.
     pub fn servo_angle(&self) -> f64 {
         self.position
     }
 
-    /// Angle that a pulse asks for, rad; the one before when the change is within the deadband.
+    /// Commanded angle, rad; the previous one for a change within the deadband.
     fn commanded(&self, pulse_us: f64) -> Option<f64> {
         if !(pulse_us >= PULSE_LIMITS_US.0 && pulse_us <= PULSE_LIMITS_US.1) {
             return None;
@@ -199,8 +198,8 @@ impl Tendon {
         }
     }
 
-    /// Speed of the servo, rad/s: the straight line of a DC motor from full speed without load to a stop at
-    /// stall, and beyond it backwards; not more than what reaches the target within `dt`.
+    /// Servo speed, rad/s: linear from no-load speed to zero at stall, backwards beyond (a DC motor); at most what
+    /// reaches the target within `dt`.
     fn speed(&self, dt: f64) -> f64 {
         let ServoSpec { stall, slew, .. } = self.servo;
         let load = self.servo_torque() / stall;
@@ -241,8 +240,8 @@ mod tests {
 
     #[test]
     fn the_tension_by_hand() {
-        // 1700 µs: 1150/1900 · 4.71 rad = 2.85079 rad on 15 mm are 42.762 mm; at -1 rad 25 mm · 1.4 = 35 mm
-        // are taken up: 7.762 mm of stretch, 62.09 N, 1.552 N·m on the arm, 0.931 N·m on the servo.
+        // 1700 µs: 1150/1900 · 4.71 rad = 2.85079 rad on 15 mm are 42.762 mm; at -1 rad 25 mm · 1.4 = 35 mm are taken
+        // up: 7.762 mm of stretch, 62.09 N, 1.552 N·m on the arm, 0.931 N·m on the servo.
         let mut t = paper();
         let moment = run(&mut t, 1700.0, -1.0, 3.0);
         assert!(
@@ -265,7 +264,7 @@ mod tests {
         let spec = ServoSpec::from(ServoProfile::Paper).measured(&params, 2);
         assert!((spec.release_us, spec.full_us) == (2330.0, 830.0) && (spec.frame - 3.003e-3).abs() < 1e-6);
         let mut t = Tendon::new(spec, TendonSpec::default());
-        // Half the way from 2330 to 830 µs is half the travel; the deadband works this way round as well.
+        // Half of 2330 to 830 µs is half the travel; the deadband holds in this sense of rotation too.
         for (pulse, angle) in [(2330.0, 0.0), (1580.0, 2.355), (1581.5, 2.355), (830.0, 4.71)] {
             run(&mut t, pulse, -2.5, 1.0);
             assert!(
@@ -279,7 +278,7 @@ mod tests {
     #[test]
     fn the_servo_takes_its_time() {
         let mut t = paper();
-        // 4.71 rad at 6.16 rad/s with the tendon slack: 0.765 s, and a frame.
+        // 4.71 rad at 6.16 rad/s, slack tendon: 0.765 s and a frame.
         run(&mut t, 2450.0, -2.5, 0.74);
         assert!(t.servo_angle() < 4.6);
         run(&mut t, 2450.0, -2.5, 0.1);
@@ -300,7 +299,7 @@ mod tests {
         let angle = t.servo_angle();
         run(&mut t, 0.0, -1.0, 3.0);
         assert!((t.servo_angle() - angle).abs() < 1e-12);
-        // The arm is forced up: beyond 0.35 · 3.432 N·m they give way.
+        // The arm is forced up: the gears slip beyond 0.35 · 3.432 N·m.
         run(&mut t, 0.0, -0.6, 3.0);
         assert!(t.servo_angle() < angle && (t.servo_torque() - 1.2012).abs() < 1e-2);
     }

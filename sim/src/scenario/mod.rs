@@ -1,7 +1,7 @@
-//! A mission with everything that it needs to be repeated: vehicle, world, pilot, steps, seed.
+//! A mission: vehicle, world, pilot, steps, seed.
 //!
-//! Scenarios are TOML files; `tests/scenarios/mission.toml` shows every key with its default. Units are in
-//! the names of the keys; in here everything is SI.
+//! Scenarios are TOML files; `tests/scenarios/mission.toml` has every key with its default. Keys name their units;
+//! values here are SI.
 
 mod arm;
 mod defaults;
@@ -33,15 +33,15 @@ use crate::plant::rotor::RotorSpec;
 pub struct Scenario {
     /// Name for titles.
     pub name: String,
-    /// Seed of every random number of the flight.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Longest simulated time, s; the flight fails beyond it.
     pub time_limit: f64,
     /// The vehicle as built.
     pub vehicle: Vehicle,
-    /// The parameters of the flight stack; what the builder believes about the vehicle.
+    /// Parameters of the flight stack: the builder's model of the vehicle.
     pub params: Params,
-    /// Allocation that the stack uses.
+    /// Allocation used by the stack.
     pub mixer: sophie_mixers::Variant,
     /// Arms that close on the pipe.
     pub arms: ArmChoice,
@@ -49,13 +49,13 @@ pub struct Scenario {
     pub world: World,
     /// The pilot's limits.
     pub pilot: Pilot,
-    /// What the pilot does, in order.
+    /// The pilot's steps, in order.
     pub steps: Vec<Step>,
     /// What a test expects of the flight.
     pub expect: Expect,
 }
 
-/// The vehicle as built: what the plant is made from.
+/// The vehicle as built, for the plant.
 #[derive(Clone, Debug)]
 pub struct Vehicle {
     /// Infill of the arms, %.
@@ -64,21 +64,21 @@ pub struct Vehicle {
     pub gain_k: f64,
     /// Sense of rotation of the rotors.
     pub configuration: Configuration,
-    /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): the paper's Table I or those of a fitted arm.
+    /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): Table I or a fitted arm.
     pub arm_coefficients: [f64; 4],
-    /// Thrust at which the nominal arm is level over the rotor's largest: sets α0.
+    /// Thrust at which the nominal arm is level over the rotor's largest; sets α0.
     pub arm_level_share: f64,
-    /// Factor on each arm's elastic tilt: 1 is the nominal arm.
+    /// Factor on each arm's elastic tilt; nominal 1.
     pub arm_gain: PerArm<f64>,
-    /// Offset of each arm's tilt, rad: 0 is the nominal arm.
+    /// Offset of each arm's tilt, rad; nominal 0.
     pub arm_offset: PerArm<f64>,
-    /// Arms carry their own tip mass (true) or follow the thrust alone, as the paper's statics (false).
+    /// Arms carry their tip mass (true) or follow the thrust alone, as in the paper's statics (false).
     pub coupled_arms: bool,
     /// Damping ratio of the arms' bending mode at hover.
     pub arm_damping: f64,
     /// Charge of the flight battery at power-up, 0..1.
     pub battery_charge: f64,
-    /// The servo fitted.
+    /// The tendon servo.
     pub servo: ServoProfile,
     /// Mass and inertia.
     pub body: BodySpec,
@@ -91,24 +91,24 @@ pub struct Vehicle {
 pub enum ServoProfile {
     /// 35 kgcm, the paper's claim.
     Paper,
-    /// An MG996R by its datasheet at 4.8 V: 9.4 kgcm.
+    /// MG996R, datasheet at 4.8 V: 9.4 kgcm.
     Mg996r,
 }
 
-/// Air and pipe. The take-off point is the origin, on the ground, nose to the north.
+/// Air and pipe. The origin is the take-off point, on the ground, nose north.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// RMS of the gust force on each axis, N.
+    /// RMS gust force per axis, N.
     pub gust_force: f64,
-    /// RMS of the gust moment on each axis, N·m.
+    /// RMS gust moment per axis, N·m.
     pub gust_moment: f64,
     /// Outer diameter of the pipe, m.
     pub pipe_diameter: f64,
-    /// North and east of the spot where the vehicle is to perch, m. The pipe runs north-south.
+    /// North and east of the perch spot, m. The pipe runs north-south.
     pub pipe_position: [f64; 2],
     /// Height of the pipe's top over the ground, m.
     pub pipe_top: f64,
-    /// Coefficient of friction between vehicle and pipe.
+    /// Coefficient of friction, vehicle on pipe.
     pub pipe_friction: f64,
 }
 
@@ -123,12 +123,12 @@ pub struct Pilot {
     pub eye_noise: f64,
 }
 
-/// One thing that the pilot does.
+/// A step of the mission.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// Wait until calibrated, then arm with switch and stick gesture.
+    /// Wait for the calibration, then arm with switch and stick gesture.
     Arm,
-    /// Climb to a height, m over the ground.
+    /// Climb to a height over the ground.
     TakeOff {
         /// Height, m.
         height: f64,
@@ -138,39 +138,39 @@ pub enum Step {
         /// Duration, s.
         seconds: f64,
     },
-    /// The paper's roll manoeuvre: to +angle, to -angle, level. Each side is left once it is reached.
+    /// The paper's roll manoeuvre: +angle, -angle, level; each side ends once reached.
     Roll {
         /// Roll angle, rad.
         angle: f64,
-        /// Longest time that a side may take to be reached, s.
+        /// Longest time per side, s.
         seconds: f64,
     },
-    /// Fly to a point 1 m over the pipe's top.
+    /// Fly to 1 m over the pipe's top.
     FlyToPipe,
-    /// Descend onto the pipe until it is felt.
+    /// Descend onto the pipe until contact.
     Touch,
-    /// Set about 30 % throttle and start the closing; done once the arms close.
+    /// Set the throttle and start closing; done once the arms close.
     Clamp {
         /// Throttle while closing, 0..1.
         throttle: f64,
     },
-    /// Set about 30 % throttle, start the closing, wait for the proven grip and stopped motors.
+    /// Set the throttle, start closing, wait for the proven grip and stopped motors.
     Perch {
         /// Throttle while closing, 0..1.
         throttle: f64,
     },
-    /// Stay clamped while the vehicle is pushed.
+    /// Stay clamped under a push.
     Hold {
         /// Duration, s.
         seconds: f64,
-        /// Sideways push at the centre of mass, N, on during the middle third.
+        /// Sideways push at the centre of mass, N, during the middle third.
         push: f64,
     },
-    /// Spool up and turn the perch switch off; done once the display shows it.
+    /// Spool up and turn the perch switch off; done once displayed.
     Open,
-    /// Spool up, release the tendons, wait until every arm is free, lift off by 1 m.
+    /// Spool up, release the tendons, wait for free arms, lift off by 1 m.
     Release,
-    /// Fly to a point north and east of the take-off point, m, at a height.
+    /// Fly to a point relative to the take-off point.
     FlyTo {
         /// North, m.
         north: f64,
@@ -183,18 +183,18 @@ pub enum Step {
     Land,
     /// Disarm and wait for stopped motors.
     Disarm,
-    /// The transmitter is off: no frame goes out and the display is dark. Done once it shows the mode again.
+    /// Transmitter off: no frames, display dark. Done once the display shows the mode again.
     RadioOff {
         /// Duration, s.
         seconds: f64,
     },
-    /// The board is reset; done once the display shows it disarmed.
+    /// Reset of the board; done once the display shows it disarmed.
     Reset {
-        /// Why: whether what was kept in memory is lost.
+        /// Cause: decides whether retained memory is lost.
         cause: StartCause,
-        /// Time from the start of the step, s.
+        /// From the start of the step, s.
         after: f64,
-        /// Time for which the board is dead, s.
+        /// Time without power, s.
         off: f64,
         /// Sideways push at the centre of mass, N, on during the step.
         push: f64,
