@@ -1,22 +1,22 @@
-//! Fits Eq. 1 to bench data by least squares, with confidence intervals.
+//! Least-squares fit of Eq. 1 to bench data, with confidence intervals.
 //!
-//! α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. Everything but C_P enters linearly; Gauss-Newton from a linear start
-//! takes a few steps. With one infill A1 and A2 (B1 and B2) cannot be separated: A and B are fitted. C_P is fitted only
-//! where the power ratio varies. K is not another unknown (it multiplies what is fitted) but the gain that Table I would
-//! need: fitted on its own, with the residual that its shape leaves.
+//! α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. All but C_P enter linearly; Gauss-Newton from a linear start takes
+//! a few steps. One infill cannot separate A1 and A2 (B1 and B2): A and B are fitted. C_P is fitted only where the
+//! power ratio varies. K multiplies what is fitted and is no further unknown: it is the gain that Table I would need,
+//! fitted on its own, with the residual of Table I's shape.
 
 use super::bench_data::Point;
 
-/// Power ratio below which, somewhere, C_P can be seen.
+/// C_P is fitted if some power ratio is below this.
 const POWER_SEEN: f64 = 0.95;
-/// Exponent where it cannot be seen: the middle of the paper's 1.6 to 1.8.
+/// Assumed exponent: the middle of the paper's 1.6 to 1.8.
 const EXPONENT: f64 = 1.7;
-/// Most steps: a few are enough.
+/// Limit of Gauss-Newton steps.
 const STEPS: u32 = 30;
-/// Difference of infill from which two count as two, %.
+/// Least difference between two infills, %.
 const INFILL_STEP: f64 = 0.2;
 
-/// A fitted number.
+/// A fitted value.
 #[derive(Clone, Copy, Debug)]
 pub struct Fitted {
     /// Name as in the paper.
@@ -32,17 +32,17 @@ pub struct Fitted {
 /// A fit of Eq. 1.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// The numbers.
+    /// All fitted values.
     pub fitted: Vec<Fitted>,
-    /// A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)); A and B with zeros for a single infill.
+    /// A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)); for one infill A, 0, B, 0.
     pub coefficients: [f64; 4],
     /// α0, degrees.
     pub offset: f64,
     /// C_P, fitted or assumed.
     pub exponent: f64,
-    /// RMS of the residuals, degrees, over the degrees of freedom.
+    /// RMS residual over the degrees of freedom, degrees.
     pub residual: f64,
-    /// The gain on Table I that meets the data best, with its residual RMS (°).
+    /// Best gain on Table I, with its residual RMS (°).
     pub gain: (Fitted, f64),
 }
 
@@ -60,7 +60,7 @@ impl Fit {
         (a1 + infill * a2, b1 + infill * b2)
     }
 
-    /// Thrust (N) at which the arm of an infill is level; none where it never is.
+    /// Thrust (N) at which an arm of this infill is level, if any.
     pub fn level_thrust(&self, infill: f64) -> Option<f64> {
         let (a, b) = self.at(infill);
         let root = a * a - 4.0 * b * self.offset;
@@ -68,10 +68,10 @@ impl Fit {
     }
 }
 
-/// What the data allow to be fitted.
+/// What the data can determine.
 #[derive(Clone, Copy)]
 struct Unknowns {
-    /// More than one infill: A1 and A2, B1 and B2, in place of A and B.
+    /// Several infills: A1, A2, B1, B2 instead of A, B.
     several: bool,
     /// The power ratio varies: C_P.
     powered: bool,
@@ -86,7 +86,7 @@ impl Unknowns {
         }
     }
 
-    /// Number of those that enter linearly: α0, then A (and A2), B (and B2).
+    /// Count of the linear unknowns: α0, A (A2), B (B2).
     const fn linear(self) -> usize {
         if self.several { 5 } else { 3 }
     }
@@ -95,7 +95,7 @@ impl Unknowns {
         self.linear() + usize::from(self.powered)
     }
 
-    /// Names and units, in the order of the columns.
+    /// Names and units, in column order.
     fn names(self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let linear: &[(&str, &str)] = if self.several {
             &[
@@ -111,7 +111,7 @@ impl Unknowns {
         linear.iter().copied().chain([("C_P", "")]).take(self.count())
     }
 
-    /// What A (A1, A2) and B (B1, B2) are multiplied with at full power.
+    /// Factors of A (A1, A2) and B (B1, B2) at full power.
     fn basis(self, p: &Point) -> Vec<f64> {
         let (t, t2) = (p.thrust, p.thrust * p.thrust);
         if self.several {
@@ -121,14 +121,14 @@ impl Unknowns {
         }
     }
 
-    /// A point's row of the design about the solution `x` with this exponent.
+    /// Design row of a point, linearised about `x` and this exponent.
     fn row(self, p: &Point, x: &[f64], exponent: f64) -> Vec<f64> {
         let factor = p.power.powf(exponent);
         let basis = self.basis(p);
         let mut row = vec![1.0];
         row.extend(basis.iter().map(|b| b * factor));
         if self.powered {
-            // d α/d C_P about the last solution.
+            // ∂α/∂C_P about the last solution.
             let elastic: f64 = basis.iter().zip(x.iter().skip(1)).map(|(b, c)| b * c).sum();
             row.push(elastic * factor * p.power.ln());
         }
@@ -136,7 +136,7 @@ impl Unknowns {
     }
 
     /// # Errors
-    /// Too few points, or points over too small a range, in one line.
+    /// Too few points or too small a range.
     fn refuse_too_little(self, points: &[Point]) -> Result<(), String> {
         let (least, most) = range(points, |p| p.thrust);
         if points.is_empty() || most - least < 0.5 {
@@ -155,9 +155,9 @@ impl Unknowns {
     }
 }
 
-/// Where the steps end.
+/// Result of the Gauss-Newton iteration.
 struct Solution {
-    /// The linear unknowns.
+    /// Linear unknowns.
     x: Vec<f64>,
     /// (XᵀX)⁻¹ of the last step.
     covariance: Vec<Vec<f64>>,
@@ -165,11 +165,11 @@ struct Solution {
 }
 
 impl Solution {
-    /// Gauss-Newton; `None` where the points do not tell the unknowns apart.
+    /// Gauss-Newton; `None` if the points cannot separate the unknowns.
     fn of(points: &[Point], unknowns: Unknowns) -> Option<Self> {
         let linear = unknowns.linear();
         let mut exponent = EXPONENT;
-        // Without C_P first: its derivative needs a solution.
+        // First without C_P: its derivative needs a solution.
         let start: Vec<Vec<f64>> = points
             .iter()
             .map(|p| unknowns.row(p, &[], exponent)[..linear].to_vec())
@@ -191,7 +191,7 @@ impl Solution {
         })
     }
 
-    /// A1, A2, B1, B2; zeros for what a single infill does not show.
+    /// A1, A2, B1, B2; A, 0, B, 0 for one infill.
     fn coefficients(&self) -> [f64; 4] {
         match self.x[1..] {
             [a1, a2, b1, b2, ..] => [a1, a2, b1, b2],
@@ -204,7 +204,7 @@ impl Solution {
 /// Fits `points` against Table I's coefficients `table_1`.
 ///
 /// # Errors
-/// One line that says what the data lack.
+/// One line on what the data lack.
 pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
     let unknowns = Unknowns::of(points);
     unknowns.refuse_too_little(points)?;
@@ -244,7 +244,7 @@ pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
     Ok(fit)
 }
 
-/// The gain on Table I and an offset of its own.
+/// Gain on Table I, with its own offset.
 fn gain(points: &[Point], [a1, a2, b1, b2]: [f64; 4], exponent: f64) -> Option<(Fitted, f64)> {
     let shape = |p: &Point| {
         ((a1 + p.infill * a2) + (b1 + p.infill * b2) * p.thrust) * p.thrust * p.power.powf(exponent)
@@ -278,7 +278,7 @@ fn range(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
         })
 }
 
-/// Least squares of `design` x = tilts by the normal equations with scaled columns; the solution and (XᵀX)⁻¹.
+/// Least squares of `design` x = tilts by normal equations with scaled columns; x and (XᵀX)⁻¹.
 fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let n = design.first()?.len();
     let scale: Vec<f64> = (0..n)
@@ -287,7 +287,7 @@ fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64
     if scale.iter().any(|s| !s.is_normal()) {
         return None;
     }
-    // [XᵀX | I | Xᵀy] of the scaled columns, brought to [I | inverse | solution].
+    // [XᵀX | I | Xᵀy] of the scaled columns, reduced to [I | inverse | solution].
     let mut m: Vec<Vec<f64>> = (0..n)
         .map(|i| {
             let dot = |j: usize| design.iter().map(|r| r[i] * r[j]).sum::<f64>() / (scale[i] * scale[j]);
@@ -320,7 +320,7 @@ fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64
     Some((solution, inverse))
 }
 
-/// Student's 97.5 % quantile by Cornish and Fisher's expansion about the normal one: 1 % at 4 degrees of freedom.
+/// Student's 97.5 % quantile, Cornish-Fisher expansion: within 1 % at 4 degrees of freedom.
 fn quantile(freedom: usize) -> f64 {
     let (z, n) = (1.959_964_f64, freedom as f64);
     let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
@@ -335,7 +335,7 @@ mod tests {
 
     const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 
-    /// Bench data of Table I with a gain, an offset and a fixed pattern of errors.
+    /// Bench data of Table I with gain, offset and a fixed error pattern.
     fn bench(infills: &[f64], powers: &[f64], gain: f64, noise: f64) -> Vec<Point> {
         let mut points = vec![];
         for infill in infills {
@@ -344,7 +344,7 @@ mod tests {
                     let thrust = 0.5 * f64::from(i);
                     let elastic =
                         (2.4387 - 0.1997 * infill) * thrust + (-0.162 + 0.0151 * infill) * thrust * thrust;
-                    // A pattern without trend: it leaves the estimates near the truth and sets the intervals.
+                    // Without trend: estimates stay near the truth, the intervals do not vanish.
                     let error = noise * (1.7 * (points.len() as f64 + 1.0).powi(2)).sin();
                     let tilt = -20.0 + gain * elastic * power.powf(1.7) + error;
                     points.push(Point {

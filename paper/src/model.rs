@@ -1,18 +1,18 @@
-//! What a section of the results is made of: text, tables, comparisons with the printed numbers, charts.
+//! Parts of a section of the results: text, tables, comparisons with the printed numbers, charts.
 
-/// What a number beside a printed one is worth.
+/// Standing of a number beside a printed one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Nothing in the model was set with this number in view.
+    /// No parameter was set with this number in view.
     Prediction,
-    /// A parameter of the model was set so that this number comes out.
+    /// A parameter was set to give this number.
     Calibrated,
-    /// The paper contradicts itself or physics here; the reason stands beside it.
+    /// The paper contradicts itself or physics; the reason is given.
     Inconsistent,
 }
 
 impl Class {
-    /// The word for it.
+    /// Its word.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Prediction => "prediction",
@@ -22,25 +22,25 @@ impl Class {
     }
 }
 
-/// A number of the paper and what comes out here.
+/// A printed number and the one computed here.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// What it is.
+    /// Quantity.
     pub what: String,
     /// Unit; empty for a pure number.
     pub unit: &'static str,
-    /// What the paper prints.
+    /// Printed value.
     pub printed: f64,
-    /// What the code gives.
+    /// Computed value.
     pub here: f64,
-    /// What that is worth.
+    /// Standing.
     pub class: Class,
-    /// Why, in a line.
+    /// Reason, one line.
     pub why: String,
 }
 
 impl Comparison {
-    /// Deviation from the printed number as a share of it.
+    /// Deviation over the printed number.
     pub fn deviation(&self) -> f64 {
         self.here / self.printed - 1.0
     }
@@ -51,19 +51,19 @@ impl Comparison {
 pub enum Cell {
     /// Words.
     Text(String),
-    /// A number with its decimals; not finite is shown as a dash.
+    /// A number and its decimals; a dash if not finite.
     Number(f64, usize),
 }
 
 impl Cell {
-    /// What is shown.
+    /// Text shown.
     pub fn shown(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
             Self::Number(v, _) if !v.is_finite() => "–".to_owned(),
             Self::Number(v, digits) => {
                 let text = format!("{v:.digits$}");
-                // No minus before nothing.
+                // No "-0".
                 let zero = text
                     .trim_start_matches('-')
                     .chars()
@@ -100,7 +100,7 @@ pub const fn num(value: f64, digits: usize) -> Cell {
 pub struct Table {
     /// What it shows.
     pub caption: String,
-    /// Titles of the columns, with units.
+    /// Column titles with units.
     pub columns: Vec<String>,
     /// Rows.
     pub rows: Vec<Vec<Cell>>,
@@ -122,7 +122,7 @@ impl Table {
     }
 }
 
-/// How a series is drawn.
+/// Line style of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
     /// A line.
@@ -131,20 +131,20 @@ pub enum Look {
     Dashed,
     /// Dots.
     Dots,
-    /// The paper's own values: open diamonds, the same in every figure.
+    /// The paper's values: open diamonds in every figure.
     Printed,
 }
 
 /// One series of a chart.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its name in the legend; empty for none.
+    /// Name in the legend; may be empty.
     pub name: String,
     /// Colour, 0 to 7.
     pub colour: usize,
-    /// How it is drawn.
+    /// Style.
     pub look: Look,
-    /// Its points; one that is not finite breaks a line.
+    /// Points; a non-finite one breaks the line.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -160,16 +160,16 @@ impl Series {
     }
 }
 
-/// A coloured cell of a map.
+/// A coloured cell.
 #[derive(Clone, Debug)]
 pub struct Tile {
-    /// Middle, in the axes' units.
+    /// Middle, axis units.
     pub at: (f64, f64),
-    /// Width and height, in the axes' units.
+    /// Width and height, axis units.
     pub size: (f64, f64),
-    /// From 0 (bad) to 1 (good); below 0 is lost.
+    /// 0 (bad) to 1 (good); below 0: lost.
     pub shade: f64,
-    /// What stands in it.
+    /// Text in the cell.
     pub text: String,
 }
 
@@ -178,16 +178,16 @@ pub struct Tile {
 pub struct Axis {
     /// Title with its unit.
     pub title: String,
-    /// Values that it must show at least.
+    /// Values to include.
     pub include: Vec<f64>,
-    /// Limits that hold whatever the data.
+    /// Fixed limits, whatever the data.
     pub limits: Option<(f64, f64)>,
-    /// Names at 0, 1, 2 and so on, in the place of numbers.
+    /// Names at 0, 1, 2, …, in place of numbers.
     pub names: Vec<String>,
 }
 
 impl Axis {
-    /// An axis that follows its data.
+    /// An axis scaled to its data.
     pub fn new(title: &str) -> Self {
         Self {
             title: title.to_owned(),
@@ -195,7 +195,7 @@ impl Axis {
         }
     }
 
-    /// An axis between two values.
+    /// An axis with fixed limits.
     pub fn between(title: &str, low: f64, high: f64) -> Self {
         Self {
             title: title.to_owned(),
@@ -204,7 +204,7 @@ impl Axis {
         }
     }
 
-    /// An axis of cells with a name each.
+    /// An axis of named cells.
     pub fn of_cells(title: &str, names: Vec<String>) -> Self {
         Self {
             names: names.clone(),
@@ -212,7 +212,7 @@ impl Axis {
         }
     }
 
-    /// The axis that also shows `values`.
+    /// Includes `values`.
     pub fn with(mut self, values: &[f64]) -> Self {
         self.include.extend(values);
         self
@@ -230,18 +230,18 @@ pub struct Chart {
     pub y: Axis,
     /// Curves and points.
     pub series: Vec<Series>,
-    /// Dashed levels across, with a word each.
+    /// Dashed horizontal lines with labels.
     pub levels: Vec<(f64, String)>,
-    /// Dashed lines upright, with a word each.
+    /// Dashed vertical lines with labels.
     pub uprights: Vec<(f64, String)>,
-    /// Cells of a map, under everything.
+    /// Cells of a map, drawn first.
     pub tiles: Vec<Tile>,
 }
 
 /// Charts side by side.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// What is shown and what of it is the paper's.
+    /// What is shown, and which part is the paper's.
     pub caption: String,
     /// The drawings.
     pub charts: Vec<Chart>,
@@ -252,9 +252,9 @@ pub struct Figure {
 pub enum Block {
     /// A paragraph.
     Text(String),
-    /// Printed numbers beside ours.
+    /// Printed numbers beside the computed.
     Comparisons(String, Vec<Comparison>),
-    /// A table of our own.
+    /// A table.
     Table(Table),
     /// A figure.
     Figure(Figure),
@@ -267,9 +267,9 @@ pub struct Section {
     pub id: &'static str,
     /// Heading.
     pub title: &'static str,
-    /// What it comes to, in a sentence or two.
+    /// Result in a sentence or two.
     pub finding: String,
-    /// Its parts.
+    /// Parts.
     pub blocks: Vec<Block>,
 }
 
@@ -289,7 +289,7 @@ impl Section {
         self.blocks.push(Block::Text(text.into()));
     }
 
-    /// Adds printed numbers beside ours.
+    /// Adds a comparison.
     pub fn compare(&mut self, caption: &str, rows: Vec<Comparison>) {
         self.blocks.push(Block::Comparisons(caption.to_owned(), rows));
     }

@@ -1,8 +1,8 @@
-//! Touches of the pipe as no pilot means them: beside the crown, leaning, drifting, called off at any time.
+//! Random touches of the pipe: beside the crown, leaning, drifting, cancelled at any time.
 //!
-//! The whole stack flies, with a receiver's bytes for its sticks. The vehicle hovers high up, is put over the pipe while
-//! it leans (no sensor of it knows where it is), and sinks onto it. What follows is the mode logic's, until a pilot who
-//! sees the vehicle leave the pipe climbs away after his reaction time.
+//! The whole stack flies on a receiver's bytes. The vehicle hovers high up, is moved over the pipe while it leans (no
+//! sensor measures where it is), and sinks onto it. The mode logic does the rest, until a pilot who sees the vehicle
+//! leave the pipe climbs away after his reaction time.
 
 use std::collections::VecDeque;
 
@@ -19,40 +19,40 @@ use sophie_sim::plant::Plant;
 use sophie_sim::plant::contact::{ArmSkin, BELLY_Z, STATIONS};
 use sophie_sim::scenario::Scenario;
 
-/// Longest wait for the calibration and the arming, s.
+/// Deadline of calibration and arming, s.
 const ARMED_BY: f64 = 12.0;
-/// Time in hover before the touch, s, and the time for which the vehicle leans at its end, s.
+/// Hover before the touch, and the lean at its end, s.
 const HOVER: f64 = 2.0;
 const LEANING: f64 = 0.8;
 /// Height of the hover, m.
 const HEIGHT: f64 = 12.0;
-/// Clearance over the pipe at which the vehicle is put, m.
+/// Clearance over the pipe at the start, m.
 const CLEARANCE: f64 = 0.01;
-/// Time from there to the end, s.
+/// From there to the end, s.
 const DURATION: f64 = 14.0;
 /// Reaction time of the pilot, s.
 const REACTION: f64 = 0.35;
-/// Throttle with which the vehicle is set down, and the speed of that stick, 1/s.
+/// Throttle of the set-down, and the rate of that stick, 1/s.
 const SET_DOWN: f64 = 0.40;
 const EASE: f64 = 0.5;
-/// Lean and depth below the height of the touch at which the pilot sees that it slides, rad and m.
+/// Lean (rad) and depth below the touch height (m) at which the pilot sees it slide.
 const SEEN_LEAN: f64 = 0.5;
 const SEEN_DEPTH: f64 = 0.06;
-/// Depth below the height of the touch at which the vehicle is lost, m: the ground under the lowest pipe.
+/// Depth below the touch height at which the vehicle is lost, m: the ground under the lowest pipe.
 const LOST_DEPTH: f64 = 0.95;
-/// Height over that of the touch at which the vehicle is away from the pipe, m.
+/// Height over that of the touch at which the vehicle is clear of the pipe, m.
 const CLEAR: f64 = 0.4;
-/// Time on the pipe after which the arms are opened, s.
+/// Time on the pipe before the arms open, s.
 const STAY: f64 = 2.0;
 /// Throttle of the release.
 const RELEASE: f64 = 0.25;
 
-/// A touch to be tried.
+/// A touch to try.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch {
-    /// Distance of the centre of mass beside the crown line when it touches, m.
+    /// Centre of mass beside the crown line at the touch, m.
     pub offset: f64,
-    /// Roll then, rad.
+    /// Roll at the touch, rad.
     pub lean: f64,
     /// Sink rate, m/s.
     pub sink: f64,
@@ -66,21 +66,21 @@ pub struct Touch {
     pub gust: f64,
     /// Throttle while the arms close.
     pub throttle: f64,
-    /// Time after the touch at which the perch switch is turned off, s; infinite when it is not.
+    /// Perch switch off this long after the touch, s; infinite: never.
     pub cancel: f64,
     /// Seed of the sensors' errors and the gusts.
     pub seed: u64,
 }
 
 impl Touch {
-    /// A touch within ±150 mm and ±25°, on pipes of 0.2 to 0.4 m and friction of 0.3 to 0.8, half of them called off.
+    /// Within ±150 mm, ±25°, pipes of 0.2 to 0.4 m, friction 0.3 to 0.8; half of them cancelled.
     #[must_use]
     pub fn random(seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut within = |from: f64, to: f64| from + (to - from) * rng.random::<f64>();
         let diameter = within(0.2, 0.4);
         Self {
-            // Beside a thinner pipe there is nothing to be touched.
+            // On a thinner pipe this range would miss.
             offset: within(-0.15, 0.15).clamp(-0.48 * diameter, 0.48 * diameter),
             lean: within(-25.0, 25.0).to_radians(),
             sink: within(0.05, 0.4),
@@ -101,24 +101,24 @@ impl Touch {
 /// How a touch ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// On the pipe, gripped; too far leaning to let go, if the switch was turned off.
+    /// Gripped on the pipe; with the switch off, leaning too far to let go.
     Perched,
-    /// In the air again after a perch.
+    /// In the air after a perch.
     Released,
-    /// In the air again without one.
+    /// In the air without a perch.
     Away,
-    /// On the ground, or on its way there.
+    /// On the ground, or falling.
     Lost,
 }
 
-/// What came of a touch.
+/// Result of a touch.
 #[derive(Clone, Copy, Debug)]
 pub struct Touched {
-    /// Its end.
+    /// How it ended.
     pub end: End,
-    /// Deepest that the vehicle came below the height of the touch, m.
+    /// Largest depth below the touch height, m.
     pub drop: f64,
-    /// Largest lean on the way, rad.
+    /// Largest lean, rad.
     pub lean: f64,
     /// Largest true pressure on an arm, Pa.
     pub pressure: f64,
@@ -130,14 +130,14 @@ pub struct Touched {
 
 struct Hand {
     sticks: Sticks,
-    /// Modes on the display over the last reaction time.
+    /// Modes displayed over the last reaction time.
     display: VecDeque<Mode>,
     perched: f64,
     releases: bool,
     climbs: bool,
 }
 
-/// A vehicle, its world and the hand on its sticks.
+/// Vehicle, world and sticks.
 struct Try {
     scenario: Scenario,
     plant: Plant,
@@ -166,7 +166,7 @@ impl Try {
         }
     }
 
-    /// A millisecond with these sticks.
+    /// One millisecond with these sticks.
     fn step(&mut self, sticks: &Sticks) {
         self.ms += 1;
         self.stack.step_world(&mut self.plant);
@@ -175,7 +175,7 @@ impl Try {
             self.elapsed -= 1.0 / FRAME_HZ;
             self.stack.receive(&rc_frame(sticks));
         }
-        // Tasks in virtual time never fail to run.
+        // Tasks in virtual time always run.
         let _ = self.stack.run_until(self.ms * 1000);
     }
 
@@ -183,14 +183,14 @@ impl Try {
         self.plant.euler()[0]
     }
 
-    /// Throttle that climbs at `rate` m/s.
+    /// Throttle to climb at `rate` m/s.
     fn climb(&self, rate: f64) -> f32 {
         let hover =
             f64::from(self.scenario.params.mass) * 9.81 / (4.0 * f64::from(self.scenario.params.thrust_max));
         (hover + 0.25 * (rate + self.plant.pose().velocity.z)).clamp(0.2, 0.9) as f32
     }
 
-    /// Armed and in hover, leaning as the touch wants at the end.
+    /// Arms and hovers, leaning at the end; false if it would not arm.
     fn take_off(&mut self, lean: f64) -> bool {
         let mut sticks = Sticks::default();
         while self.stack.mode() != Mode::Armed {
@@ -213,7 +213,7 @@ impl Try {
         true
     }
 
-    /// Puts the vehicle over the pipe; returns the height of its centre of mass when it will touch, m, NED.
+    /// Puts the vehicle over the pipe; returns the height of its centre of mass at the touch, m, NED.
     fn put_over(&mut self, touch: &Touch) -> f64 {
         let world = &self.scenario.world;
         let [north, east] = world.pipe_position;
@@ -233,7 +233,7 @@ impl Try {
     }
 }
 
-/// Height of the centre of mass over the pipe's axis, m, NED, at which the first point of belly or arms touches.
+/// Height of the centre of mass over the pipe's axis when the first point of belly or arms touches, m, NED.
 fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f64 {
     let belly = [-0.03, 0.03].map(|y| DVec3::new(0.0, y, BELLY_Z));
     let arms = (0..4).flat_map(|arm| STATIONS.map(|s| ArmSkin::new(arm).point(tilt[arm], s).0));
@@ -248,7 +248,7 @@ fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f6
         .fold(-BELLY_Z, f64::min)
 }
 
-/// Flies a touch. `None` when the vehicle would not arm.
+/// Flies a touch; `None` if the vehicle would not arm.
 #[must_use]
 pub fn fly(touch: &Touch) -> Option<Touched> {
     let mut flight = Try::new(touch);
