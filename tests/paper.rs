@@ -1,5 +1,5 @@
-//! `sophie paper` and `sophie fit-arm` as a researcher meets them: what is calibrated holds to 3 %, what is predicted
-//! has the paper's signs and orders, and wrong input is refused in one line.
+//! `sophie paper` and `sophie fit-arm`: calibrated numbers within 3 %, predicted ones with the paper's signs and
+//! orders, wrong input refused in one line.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// A directory of its own for one test, gone afterwards.
+/// A directory removed after its test.
 struct Temp(PathBuf);
 
 impl Temp {
@@ -38,7 +38,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// Refused: exit status 2, nothing on stdout, one line on stderr, nothing written.
+/// Exit status 2, empty stdout, one line on stderr, nothing written.
 fn refused(temp: &Temp, args: &[&str]) -> String {
     let output = sophie(&temp.0, args);
     let told = text(&output.stderr);
@@ -83,7 +83,7 @@ fn here(results: &Value, id: &str, what: &str) -> f64 {
         .2
 }
 
-/// Cells of a column of a section's table whose caption starts with `caption`, as they stand.
+/// A column of a section's table whose caption starts with `caption`.
 fn column(results: &Value, id: &str, caption: &str, column: usize) -> Vec<Value> {
     let tables = section(results, id)["tables"].as_array().unwrap();
     let table = tables
@@ -165,7 +165,7 @@ fn the_paper_is_reproduced_where_it_can_be() {
     signs(&results);
 }
 
-/// What the paper says in words, and what this repository says against it.
+/// The paper's statements in words, and where this repository differs.
 fn signs(r: &Value) {
     // Section IV-A: in hover B is stable, A is not; closed form and plant agree.
     let configuration = column(r, "stability", "Derivatives", 0);
@@ -213,12 +213,12 @@ fn signs(r: &Value) {
     // Eqs. 5 to 7: derived beats printed by far (heading 0, sideways).
     let (printed, derived) = (column(r, "eq5", "Error", 3), column(r, "eq5", "Error", 4));
     assert!(derived[0].as_f64().unwrap() < 0.1 * printed[0].as_f64().unwrap());
-    // Table V: softer flies longer and holds longer; the honest time is well below the printed one.
+    // Table V: softer arms fly and hold longer; the computed time is well below the printed one.
     let honest = |infill: u32| here(r, "table5", &format!("flight time at ρ {infill} %, honest"));
     assert!(honest(6) > honest(8) && honest(8) > honest(10) && honest(6) < 0.6 * 15.8);
     let held = |infill: u32| here(r, "table5", &format!("inspection time, four arms, ρ {infill} %"));
     assert!(held(4) > held(6) && held(6) > held(8) && held(8) > held(10));
-    // Section V-C: the learnt bias grows with the wear.
+    // Section V-C: the learnt bias grows with wear.
     let bias: Vec<f64> = column(r, "fatigue", "What the comparison", 2)
         .iter()
         .map(|v| v.as_f64().unwrap())
@@ -278,7 +278,7 @@ fn an_arm_from_the_bench_is_fitted_and_flies() {
     );
 }
 
-/// The example of docs/paper.md with every point changed: infill (%), thrust (N), tilt (°) and power ratio.
+/// The example of docs/paper.md with changed points: infill (%), thrust (N), tilt (°), power ratio.
 fn example(change: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> String {
     let mut lines = "infill_percent,thrust_n,tilt_deg,power_ratio\n".to_owned();
     for line in include_str!("../docs/arm-bench.csv").lines() {
@@ -320,7 +320,7 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
             "{line}"
         );
     }
-    // An arm as stiff as the literal Table I has coefficients in range, but far above its data it turns down.
+    // An arm as stiff as the literal Table I: coefficients in range, but it turns down far above its data.
     let stiff = |[rho, t, a, p]: [f64; 4]| (rho == 6.9).then(|| kgf([rho, t, a / 7.75, p]));
     write("stiff.csv", example(stiff));
     let line = refused(&temp, &["fit-arm", "stiff.csv"]);
@@ -350,14 +350,14 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
 #[test]
 fn a_coefficient_that_may_be_none_is_told() {
     let temp = Temp::new("interval");
-    // Without errors of their own the example's coefficients all differ from 0.
+    // Without errors the example's coefficients all differ from 0.
     fs::write(temp.0.join("good.csv"), example(Some)).unwrap();
     let output = sophie(&temp.0, &["fit-arm", "good.csv"]);
     assert_eq!(
         (output.status.code(), text(&output.stderr).as_str()),
         (Some(0), "")
     );
-    // A potentiometer that is 3 degrees out, up and down in turn, with a pattern that no thrust follows.
+    // A potentiometer off by 3°, up and down in turn, in a pattern independent of thrust.
     let at = std::cell::Cell::new(0);
     let rough = example(|[rho, t, a, p]| {
         at.set(at.get() + 1);
@@ -379,7 +379,7 @@ fn a_coefficient_that_may_be_none_is_told() {
         let name = name.as_str().unwrap();
         let warning = format!("the 95 % interval of {name} holds 0");
         let crosses = from[i].as_f64().unwrap() <= 0.0 && to[i].as_f64().unwrap() >= 0.0;
-        // A level arm at rest is an arm like any other; K is not written anywhere.
+        // An arm may be level at rest; K is not written.
         let told_of = crosses && !["α0", "K"].contains(&name);
         crossing += usize::from(told_of);
         let lines: Vec<&str> = told.lines().filter(|l| l.starts_with("sophie: ")).collect();

@@ -1,7 +1,7 @@
-//! The simulated board: the ports that the tasks see, wired to the plant through its sensors.
+//! The simulated board: the tasks' ports, wired to the plant through its sensors.
 //!
-//! The world steps the plant for a millisecond, then lets the tasks run; what they write takes effect in the
-//! next millisecond. Nothing but sensor readings crosses over to the tasks.
+//! The world steps the plant by a millisecond, then the tasks run; their outputs take effect in the next one. Only
+//! sensor readings reach the tasks.
 
 use std::cell::{Cell, RefCell};
 
@@ -24,11 +24,11 @@ use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::Imu;
 
-/// Bytes that a serial line holds until they are read: half a hardware ring of 512.
+/// Bytes buffered by a serial line: half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
-/// Time that one conversion of all analog inputs takes, µs.
+/// Time of one conversion of all analog inputs, µs.
 const CONVERSION_US: u64 = 30;
-/// Time that reading one arm's sensor over 400 kHz I2C takes, µs.
+/// Time to read one arm's sensor over I2C at 400 kHz, µs.
 const ARM_READ_US: u64 = 400;
 
 /// Plant steps in a millisecond.
@@ -43,15 +43,14 @@ pub struct Board {
     sensors: RefCell<Sensors>,
     truth: Cell<AnalogTruth>,
     arm_gravity: Cell<PerArm<Vec3>>,
-    /// Samples of the inertial sensor in a second.
+    /// Sample rate of the inertial sensor, Hz.
     imu_rate: f64,
     /// Memory that outlives a reset.
     pub memory: Cell<[Words; 2]>,
-    /// Accelerometer bias that the builder measured on a level bench, m/s²: a parameter of this board.
+    /// Accelerometer bias measured on a level bench, m/s²: a parameter of this board.
     pub accel_bias: [f32; 3],
 }
 
-/// What the analog inputs are connected to.
 #[derive(Clone, Copy, Default)]
 struct AnalogTruth {
     pressure: PerArm<f64>,
@@ -71,13 +70,13 @@ struct Sensors {
 }
 
 impl Board {
-    /// A board with the default parameters whose parts have errors drawn from `rng`.
+    /// A board with the default parameters and errors of its parts drawn from `rng`.
     #[must_use]
     pub fn new(rng: &mut Pcg64Mcg) -> Self {
         Self::configured(&Params::default(), rng)
     }
 
-    /// A board configured as `params` say, whose parts have errors drawn from `rng`.
+    /// A board with the parameters `params` and errors of its parts drawn from `rng`.
     #[must_use]
     pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
         let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
@@ -106,7 +105,7 @@ impl Board {
         }
     }
 
-    /// Steps the plant by a millisecond under what the tasks wrote last and takes the sensors' readings.
+    /// Steps the plant by 1 ms under the last outputs and samples the sensors.
     pub fn step_world(&self, plant: &mut Plant) {
         let actuators = self.actuators.get();
         let mut sensors = self.sensors.borrow_mut();
@@ -125,7 +124,7 @@ impl Board {
                     sensors
                         .imu
                         .sample(rate + rate_step * share, force + force_step * share, &rotors);
-                // The batch holds more than a millisecond's samples.
+                // The batch holds more than 1 ms of samples.
                 let _ = batch.push(reading);
             }
         }
@@ -148,7 +147,7 @@ impl Board {
         self.imu_ready.signal(batch);
     }
 
-    /// A reset: no motor frame, no servo pulse, nothing in the lines' buffers. Sensors and memory stay as they are.
+    /// Reset: no motor frame, no servo pulse, empty line buffers. Sensors and memory are unaffected.
     pub fn reset(&self) {
         self.actuators.set(Actuators::default());
         self.imu_ready.reset();
@@ -156,10 +155,9 @@ impl Board {
         self.telemetry.clear();
     }
 
-    /// Puts bytes on the receiver's line; what does not fit is lost, as on an unread line.
+    /// Puts bytes on the receiver's line; excess is lost, as on an unread line.
     pub fn receive(&self, bytes: &[u8]) {
         let mut rest = bytes;
-        // The ring takes bytes up to its end, then from its start.
         while !rest.is_empty()
             && let Ok(taken) = self.rc.try_write(rest)
         {
@@ -167,12 +165,12 @@ impl Board {
         }
     }
 
-    /// Takes the telemetry bytes sent since the last call.
+    /// Takes the telemetry sent since the last call.
     pub fn take_telemetry(&self, buffer: &mut [u8]) -> usize {
         self.telemetry.try_read(buffer).unwrap_or(0)
     }
 
-    /// The readings that the inertial sensor holds ready and no task has read yet.
+    /// Readings held by the inertial sensor that no task has read.
     #[must_use]
     pub fn imu_batch(&self) -> Vec<ImuReading, IMU_BATCH> {
         let batch = self.imu_ready.try_take();
@@ -189,7 +187,7 @@ impl Board {
     }
 }
 
-/// A port of the simulated board; one type serves them all.
+/// A port of the simulated board; one type for all ports.
 #[derive(Clone, Copy)]
 pub struct Port(pub &'static Board);
 
@@ -204,7 +202,7 @@ impl ports::Imu for Port {
         Ok(self.0.imu_ready.wait().await)
     }
 
-    // No bus lies between the simulated part and the processor.
+    // No bus: ready at once.
     fn ready_at(&self) -> Instant {
         Instant::now()
     }
@@ -261,7 +259,7 @@ impl ports::Motors for Port {
 }
 
 impl ports::Servos for Port {
-    /// The simulated servo follows the newest width at once: no frame is waited for.
+    /// The servo follows the newest width at once, without a frame.
     async fn write(&mut self, pulses_us: PerArm<f32>) -> Instant {
         let actuators = self.0.actuators.get();
         self.0.actuators.set(Actuators {
@@ -301,6 +299,6 @@ impl ports::Retain for Port {
 }
 
 impl ports::Watchdog for Port {
-    /// Nothing bites here: the supervisor's own tests cover withheld feeds.
+    /// No watchdog: tests of the supervisor cover withheld feeds.
     fn feed(&mut self) {}
 }

@@ -1,4 +1,4 @@
-//! A vehicle whose setpoints a test or a study gives: the flight level alone, without pilot and commander.
+//! The flight level alone, without pilot and commander, under given setpoints.
 
 use crate::aim;
 use crate::board::{Board, Port};
@@ -14,17 +14,17 @@ use sophie_control::params::Params;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::{Links, Setpoint};
 
-/// Seconds of a flight that are not judged: take-off.
+/// Take-off, not judged, s.
 const SETTLE: f64 = 5.0;
 /// Height of the hover, m.
 const HEIGHT: f64 = 3.0;
-/// Weight that [`Rig::fly`] holds, N, and the largest thrust that it asks for, N.
+/// Weight held by [`Rig::fly`] and largest thrust it asks for, N.
 const WEIGHT: f64 = 17.7;
 const THRUST_MAX: f64 = 30.0;
-/// Rest before take-off in which the gyroscope is calibrated, ms.
+/// Rest before take-off for the gyroscope's calibration, ms.
 const REST_MS: usize = 4000;
 
-/// What is asked of the vehicle at a time, s.
+/// Demand at a time, s.
 pub struct Maneuver {
     /// Roll, rad.
     pub roll: f32,
@@ -43,13 +43,13 @@ pub fn level(_: f64) -> Maneuver {
 /// Errors after take-off, degrees, and thrust, N.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Errors {
-    /// Largest difference to the roll that was asked for.
+    /// Largest roll error, rad.
     pub worst_roll: f64,
     /// Largest pitch.
     pub worst_pitch: f64,
     /// Largest yaw.
     pub worst_yaw: f64,
-    /// Root mean square of the difference to the roll that was asked for.
+    /// RMS roll error, rad.
     pub rms_roll: f64,
     /// Root mean square of the yaw.
     pub rms_yaw: f64,
@@ -68,7 +68,8 @@ pub struct Rig {
     ms: u64,
 }
 
-/// The default vehicle with another gain, infill, configuration and allocation; the stack knows the first two.
+/// The default vehicle with this configuration, gain, infill and allocation; the stack has gain and infill as
+/// parameters.
 pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Variant) -> Scenario {
     let mut s = Scenario::default_mission();
     s.vehicle.gain_k = gain_k;
@@ -92,7 +93,7 @@ impl Rig {
         })
     }
 
-    /// The same under `allocation`, with the accelerometer's bias measured on a bench and set in the parameters.
+    /// The same under `allocation`, with the accelerometer's bench-measured bias in the parameters.
     pub fn calibrated<A: Allocation + 'static>(
         scenario: &Scenario,
         allocation: impl FnOnce(&Params) -> A + 'static,
@@ -117,7 +118,7 @@ impl Rig {
         allocation: impl FnOnce(&Params) -> A + 'static,
     ) -> Self {
         let time = VirtualTime::new();
-        // Leaked, as a flight's are: tasks borrow them as `'static`.
+        // Leaked, as in a flight: tasks borrow them as `'static`.
         let board: &'static Board = Box::leak(Box::new(board));
         let links: &'static Links = Box::leak(Box::new(Links::new(params)));
         time.spawn(sophie_tasks::imu::run(links, Port(board)));
@@ -146,7 +147,7 @@ impl Rig {
         self.time.run_until(self.ms * 1000);
     }
 
-    /// Calibrates, climbs to 3 m under a simple height hold and does what `wish` says for `seconds`.
+    /// Calibrates, climbs to 3 m under a simple height hold and follows `wish` for `seconds`.
     ///
     /// # Panics
     /// If the gyroscope is not calibrated after 4 s of rest.
@@ -178,21 +179,21 @@ impl Rig {
     }
 }
 
-/// The errors of plant and board that the scenario's seed stands for.
+/// Errors of plant and board, by the scenario's seed.
 fn seeded(scenario: &Scenario) -> Pcg64Mcg {
     Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1)
 }
 
-/// Holds 3 m with a thrust that grows over the first second.
+/// Holds 3 m; the thrust ramps up over the first second.
 pub struct HeightHold {
     weight: f64,
     thrust_max: f64,
-    /// Integral of the height's error, m s.
+    /// Integral of the height error, m s.
     sum: f64,
 }
 
 impl HeightHold {
-    /// For a vehicle of `weight` (N) that is asked for `thrust_max` (N) at most.
+    /// For a vehicle of `weight` (N) with at most `thrust_max` (N).
     pub fn new(weight: f64, thrust_max: f64) -> Self {
         Self {
             weight,
@@ -210,7 +211,7 @@ impl HeightHold {
     }
 }
 
-/// What the errors of a flight are gathered from, rad and N.
+/// Accumulated errors, rad and N.
 struct Judged {
     worst: [f64; 3],
     square_roll: f64,

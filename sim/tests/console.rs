@@ -1,4 +1,4 @@
-//! The console, session by session: what is typed and what is answered.
+//! Console sessions: input and answers.
 
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
@@ -37,7 +37,7 @@ impl SerialOutput for Screen {
     }
 }
 
-/// What a start-up looked at, the brown-out level at `level` of 3.
+/// Brown-out looks of a start-up, with `level` of 3.
 fn looks(level: u8) -> [Look; 2] {
     let look = |name, read: String, expected, ok, refuses| Look {
         name,
@@ -64,7 +64,7 @@ fn looks(level: u8) -> [Look; 2] {
     ]
 }
 
-/// A chip whose restarts are counted and whose brown-out level can be set, unless it `refuses`.
+/// A chip with a restart counter and a brown-out level, which it may refuse to set.
 #[derive(Clone)]
 struct FakeChip {
     restarts: Rc<Cell<u32>>,
@@ -74,7 +74,7 @@ struct FakeChip {
 }
 
 impl FakeChip {
-    /// A chip that started with its level at `level`.
+    /// A chip started at brown-out level `level`.
     fn at(level: u8) -> Self {
         Self {
             restarts: Rc::default(),
@@ -107,10 +107,10 @@ impl Chip for FakeChip {
     }
 }
 
-/// What was to be stored, and what the commander said then.
+/// Saved parameters, with the commander's status at that time.
 type Saves = Rc<RefCell<Vec<(Params, Option<Status>)>>>;
 
-/// A scripted storage, with the commander's view at the moment of the save.
+/// A scripted storage that records the commander's status at each save.
 #[derive(Clone)]
 struct FakeStorage {
     answer: Result<(), StorageError>,
@@ -164,7 +164,7 @@ impl Bench {
         self
     }
 
-    /// With a commander that is in `mode`, and in `then` as soon as it hears of the saving.
+    /// With a commander in `mode`, and in `then` once it receives the save request.
     fn commander(self, mode: Mode, then: Mode) -> Self {
         let links = self.links;
         self.time.spawn(async move {
@@ -199,7 +199,7 @@ impl Bench {
         self.time.run_until(self.ms * 1000);
     }
 
-    /// Types `text`, waits until it is answered, and gives what has appeared on the screen since.
+    /// Types `text`, awaits the answer and returns the new text on the screen.
     fn types(&mut self, text: &str) -> String {
         self.line.put(text.as_bytes());
         self.run(1500);
@@ -215,7 +215,7 @@ fn store(flash: &Flash<32, 2048>) -> ParamStore<Flash<32, 2048>> {
     ParamStore::new(flash.clone(), flash.range())
 }
 
-/// Starts a vehicle on the bench, as the firmware does, with what `flash` holds.
+/// Starts a bench vehicle as the firmware does, with the contents of `flash`.
 fn start(flash: &Flash<32, 2048>) -> (Bench, Loaded) {
     let time = VirtualTime::new();
     let found = Rc::new(Cell::new(None));
@@ -270,7 +270,7 @@ fn status_says_all_that_forbids_arming() {
     let mut bench = Bench::new(Params::default());
     let links = bench.links;
     let analog = FakeAnalog::default();
-    // A battery of 15.2 V, pressure sensors without load.
+    // A battery of 15.2 V, unloaded pressure sensors.
     analog.frame.set(AnalogFrame {
         battery_voltage: 1520,
         ..AnalogFrame::default()
@@ -359,7 +359,7 @@ fn nothing_is_stored_or_restarted_while_rotors_may_turn() {
             assert_eq!(bench.chip.restarts.get(), 0, "{mode:?}");
         }
     }
-    // The pilot was faster: armed by the time the commander hears of it.
+    // The pilot armed before the commander received the request.
     let (answer, bench, storage) = saves_in(Mode::Disarmed, Mode::Armed);
     assert_eq!(answer, "save\nnot saved while ARMED: disarm first\n> ");
     assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
@@ -385,7 +385,7 @@ fn without_a_commander_nothing_is_stored() {
         bench.types("save\r"),
         "save\nnot saved: the commander is silent\n> "
     );
-    // One that falls silent between the question and its answer.
+    // A commander that falls silent between question and answer.
     bench.links.status.send(
         Instant::now(),
         Status {
@@ -489,13 +489,13 @@ fn storage_full_of_another_programs_data_boots_with_defaults_and_says_so() {
 fn a_line_of_noise_does_nothing_and_starves_nobody() {
     let (bench, storage) = Bench::new(Params::default()).fake_storage(Ok(()));
     let mut bench = bench.commander(Mode::Disarmed, Mode::Disarmed);
-    // A neighbour at the same level that only ever yields.
+    // A neighbour at the same level that only yields.
     let (turns, line) = (Rc::new(Cell::new(0u32)), bench.line.clone());
     let counter = turns.clone();
     bench.time.spawn(async move {
         let mut state = 1u32;
         for _ in 0..10_000 {
-            // 12 bytes a millisecond: 115,200 baud without a pause.
+            // 12 bytes/ms: 115,200 baud without a pause.
             Timer::after_millis(1).await;
             let mut bytes = [0; 12];
             for byte in &mut bytes {
@@ -510,7 +510,7 @@ fn a_line_of_noise_does_nothing_and_starves_nobody() {
     bench.run(12_000);
     assert_eq!(turns.get(), 10_000);
     assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
-    // The noise may have ended in the middle of a line.
+    // The noise may have ended within a line.
     let _ = bench.types("\r");
     assert_eq!(bench.types("changes\r"), "changes\nno changes\n> ");
 }
@@ -518,7 +518,7 @@ fn a_line_of_noise_does_nothing_and_starves_nobody() {
 #[test]
 fn bytes_that_are_all_there_at_once_leave_others_their_turn() {
     let (mut bench, _) = Bench::new(Params::default()).fake_storage(Ok(()));
-    // 3,200 characters without an end of line and without an echo to wait for: 100 reads that are ready at once.
+    // 3,200 characters without line end or echo: 100 reads that are ready at once.
     bench.line.put(&[0x80; 3200]);
     let left = Rc::new(Cell::new(None));
     let (slot, line) = (left.clone(), bench.line.clone());
@@ -557,7 +557,7 @@ fn a_terminal_that_takes_nothing_loses_its_text_and_holds_nothing_up() {
     let mut bench = bench.commander(Mode::Disarmed, Mode::Disarmed);
     bench.run(100);
     bench.screen.hangs.set(true);
-    // The whole list would take 90 lines of patience.
+    // The whole list has 90 lines.
     bench.line.put(b"list\r");
     bench.run(700);
     bench.line.put(b"set infill 8\rsave\r");

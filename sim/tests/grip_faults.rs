@@ -1,5 +1,5 @@
-//! The real analog, clamp and servos tasks on four simple arms: what each does when a part fails, and that no
-//! failure ever asks for more force than the limit.
+//! Tasks analog, clamp and servos on four simple arms with failing parts: the reaction to each fault, and no force
+//! beyond the limit.
 
 use embassy_time::Instant;
 use sophie_control::deflection::ArmModel;
@@ -14,30 +14,30 @@ use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::timing::Quantity;
 
-/// Tilt of an arm without tendon force, and where its skin meets the pipe, rad.
+/// Tilt without tendon force, and tilt at the touch, rad.
 const FREE_TILT: f32 = -0.2;
 const TOUCH_TILT: f32 = -0.8;
-/// Bending against the pipe over bending in the air.
+/// Compliance against the pipe over that in the air.
 const PRESSED: f32 = 0.2;
 /// Time constant of the arm, s.
 const ARM_TIME: f32 = 0.03;
-/// Counts of a converter whose pin is pulled to the supply.
+/// Counts of a converter pin shorted to the supply.
 const SHORTED: u16 = 4095;
-/// Pulse of a servo at release, µs.
+/// Servo pulse at release, µs.
 const RELEASE_US: f32 = 550.0;
 /// Close all arms.
 const CLOSE: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
-/// A quasi-static arm on its tendon: a spring in the air, a stiffer one on the pipe.
+/// Quasi-static arm on its tendon: a spring in the air, a stiffer one on the pipe.
 #[derive(Clone, Copy)]
 struct Arm {
     tilt: f32,
-    /// Pressure for tendon force beyond the touch, Pa/N.
+    /// Pressure per tendon force beyond the touch, Pa/N.
     stiffness: f32,
-    /// Pressure that this skin never exceeds, Pa.
+    /// Saturation of this skin, Pa.
     most: f32,
     pressure: f32,
-    /// What the sensor's pin shows instead of the pressure.
+    /// Pin counts in place of the pressure.
     pin: Option<u16>,
     /// The arm's own inertial sensor answers.
     tilt_alive: bool,
@@ -45,7 +45,7 @@ struct Arm {
 
 impl Arm {
     fn step(&mut self, pulse: f32, reel: &Reel, p: &Params, dt: f32) {
-        // No pulse, no pull.
+        // Without a pulse no pull.
         let angle = if pulse > 0.0 {
             reel.angle_of(pulse).max(0.0)
         } else {
@@ -56,7 +56,7 @@ impl Arm {
             let stretch = p.reel_radius * angle - p.tendon_lever * (REFERENCE_TILT - tilt);
             (p.tendon_stiffness * stretch).max(0.0)
         };
-        // The tilt at which spring and tendon agree, by bisection: the force grows with the tilt.
+        // Equilibrium tilt of spring and tendon, by bisection: the force grows with the tilt.
         let (mut low, mut high) = (-2.5f32, FREE_TILT);
         let at_touch = (FREE_TILT - TOUCH_TILT) / bend;
         for _ in 0..30 {
@@ -90,7 +90,7 @@ struct Bench {
     converter: FakeAnalog,
     servos: FakeServos,
     arms: [Arm; 4],
-    /// Command of the commander, and whether it is still heard.
+    /// Command of the commander; `None`: silent.
     command: Option<ClampCommand>,
     ms: u64,
     largest_force: f32,
@@ -199,7 +199,7 @@ fn four_sound_arms_close_hold_and_let_go() {
     assert_eq!((b.forces(), b.servos.now()), ([0.0; 4], [RELEASE_US; 4]));
 }
 
-/// The servo as it comes, mirrored, trimmed, with little travel, and slow.
+/// Servos: default, mirrored, trimmed, short of travel, slow.
 fn mixed_servos() -> Params {
     Params {
         servo_release_2: 2450.0,
@@ -249,7 +249,7 @@ fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_i
         "nothing is known of servos without a pulse"
     );
 
-    // The clamp loop without a commander is silent too: the arms may be closed on a pipe.
+    // Without a commander the clamp loop is silent too: the arms may be closed on a pipe.
     time.spawn(sophie_tasks::clamp::run(links));
     time.run_until(2_000_000);
     assert!(servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && links.tendons.latest().is_none());
@@ -277,7 +277,7 @@ fn an_open_sensor_is_found_out_by_the_arm_that_does_not_bend_on() {
     for arm in [0, 2, 3] {
         assert_eq!(b.state(arm), ArmState::Holding, "{arm}");
     }
-    // Touch at 30 N, grip at 54 N: it was noticed before the arm was pressed harder than its neighbours.
+    // Touch at 30 N, grip at 54 N: detected before the arm is pressed harder than its neighbours.
     assert!((30.0..60.0).contains(&b.forces()[1]), "{:?}", b.forces());
     b.command = Some(ClampCommand::Release);
     b.run(3.0);
@@ -298,7 +298,7 @@ fn a_shorted_sensor_freezes_its_arm_and_no_other() {
     b.run(3.0);
     assert!((b.forces()[2] - before).abs() < 1.0, "{before} {:?}", b.forces());
     assert!(!b.grip().proven && b.state(0) == ArmState::Holding);
-    // Sound again, but the fault is not forgotten before the arm was let go.
+    // Sound again, but the fault is latched until release.
     b.arms[2].pin = None;
     b.run(1.0);
     assert_eq!(b.state(2), ArmState::Faulty);
@@ -360,7 +360,7 @@ fn all_tilts_stale_stop_all_servos_within_a_tenth_of_a_second() {
     let mut b = Bench::new();
     b.command = Some(CLOSE);
     b.run(1.0);
-    // The whole task is silent: not even a message that says so.
+    // The whole task is silent, without a message.
     let frozen = b.ms;
     let (time, servos, links) = (&b.time, &b.servos, b.links);
     for ms in frozen..frozen + 2000 {
@@ -385,14 +385,14 @@ fn an_arm_whose_pressure_does_not_rise_any_more_stops_and_says_so() {
     let grip = b.grip();
     assert_eq!(b.state(0), ArmState::Faulty, "{grip:?}");
     assert_eq!(grip.arms[0].fault, Some(GripFault::Ceiling));
-    // Not much beyond what a sound arm takes: the others hold.
+    // Little more than a sound arm: the others hold.
     assert!(grip.arms[0].force < grip.arms[1].force + 30.0, "{grip:?}");
     assert!((1..4).all(|arm| b.state(arm) == ArmState::Holding) && !grip.proven);
 }
 
 #[test]
 fn an_arm_that_cannot_reach_the_pressure_stops_at_the_limit() {
-    // 46 N at 15 mm, where these arms take 54 N.
+    // 46 N at 15 mm; these arms take 54 N.
     let mut b = Bench::with(Params {
         servo_torque_max: 0.7,
         ..Params::default()
@@ -442,7 +442,7 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
     assert!(held[0] > RELEASE_US + 500.0);
     (300..800).for_each(|i| step(10 * i, None));
     assert_eq!(servos.now(), held);
-    // A force that is no number is no order to pull.
+    // A NaN force commands no pull.
     (800..1100).for_each(|i| step(10 * i, Some(f32::NAN)));
     assert_eq!(servos.now(), [RELEASE_US; 4]);
 }
@@ -458,12 +458,12 @@ fn a_slow_converter_shows_in_the_time_from_pressure_to_pulse() {
         let missed = if in_time { 0 } else { timing.runs };
         assert!(timing.runs >= 45 && timing.overruns == missed, "{timing:?}");
         let us = b.links.take_contact_histogram(Quantity::Response).min();
-        // Converted before it was judged, judged before it was written.
+        // Converted, judged, written, in this order.
         assert!(u64::from(us) >= delay_us, "{us}");
         us
     };
-    // The clamp steps 0.6 ms after a conversion, the servos 0.3 ms after the clamp. A conversion of 5 ms lets the next one
-    // begin after 6 ms: the clamp's are 5 to 11 ms old, later than the deadline.
+    // The clamp steps 0.6 ms after a conversion, the servos 0.3 ms after the clamp. A conversion of 5 ms delays the
+    // next to 6 ms: the clamp's are 5 to 11 ms old, beyond the deadline.
     let (quick, slow) = (quickest(0, true), quickest(5000, false));
     assert!((900..1000).contains(&quick), "{quick}");
     assert!((3000..12_000).contains(&(slow - quick)), "{quick} {slow}");

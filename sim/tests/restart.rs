@@ -1,4 +1,4 @@
-//! The board restarts: what resumes, what stays stopped, and what the pilot sees.
+//! Restarts of the board: what resumes, what stays stopped, what the pilot sees.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -26,13 +26,13 @@ use sophie_tasks::ports::AnalogFrame;
 use sophie_tasks::retained_state::{RetainedState, WORDS, Words};
 use sophie_tasks::start::{Start, StartCause};
 
-/// Counts of a pressure of some 950 Pa with the default sensor.
+/// Counts at about 950 Pa with the default sensor.
 const PRESSED: u16 = 2000;
 /// Servo angle and tendon force of a grip, rad and N.
 const ANGLE: f32 = 2.5;
 const FORCE: f32 = 45.0;
 
-/// Arms 1 and 3 closed, arms 2 and 4 at rest.
+/// Arms 1 and 3 closed, 2 and 4 at rest.
 fn held() -> RetainedState {
     RetainedState {
         grip_memory: GripMemory::Controlled(ArmChoice::Front),
@@ -43,7 +43,7 @@ fn held() -> RetainedState {
     }
 }
 
-/// A board with everything on it, started once.
+/// A board with its parts, started once.
 struct Vehicle {
     time: VirtualTime,
     links: &'static Links,
@@ -56,7 +56,7 @@ struct Vehicle {
 }
 
 impl Vehicle {
-    /// Started for `cause` with `copies` in its memory and `counts` at the pressure sensors.
+    /// Started for `cause` with retained `copies` and sensor counts `counts`.
     fn start(cause: StartCause, copies: [Words; 2], counts: [u16; 4]) -> Self {
         let time = VirtualTime::new();
         let start = Start::new(cause, &copies);
@@ -102,7 +102,7 @@ impl Vehicle {
         v
     }
 
-    /// Restarted by the watchdog with `retained` in its memory.
+    /// Restarted by the watchdog with `retained` in memory.
     fn retained(retained: RetainedState, counts: [u16; 4]) -> Self {
         let copy = retained.to_words(7).expect("a sane one");
         Self::start(StartCause::Watchdog, [[0; WORDS], copy], counts)
@@ -130,7 +130,7 @@ impl Vehicle {
         (status.mode, status.reason, status.warning)
     }
 
-    /// Every pulse so far of servo `arm`, µs.
+    /// All pulses of servo `arm`, µs.
     fn pulses(&self, arm: usize) -> Vec<f32> {
         self.servos.pulses.borrow().iter().map(|p| p[arm]).collect()
     }
@@ -157,7 +157,7 @@ fn pulse(angle: f32) -> f32 {
 fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
     let mut v = Vehicle::retained(held(), [PRESSED, 0, PRESSED, 0]);
     v.run(650);
-    // The attitude is there after 0.5 s, and 0.2 s later the loops take over.
+    // The attitude is valid after 0.5 s; 0.2 s later the loops take over.
     for arm in [0, 2] {
         let pulses = v.pulses(arm);
         let sent = pulses.iter().skip_while(|p| **p == 0.0);
@@ -183,7 +183,7 @@ fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
     );
     let (kept, sequence) = v.kept().unwrap();
     assert_eq!((kept.grip_memory, kept.angle), (held().grip_memory, held().angle));
-    // At 100 Hz, in both copies by turns, from where the run before ended.
+    // 100 Hz, both copies by turns, continuing the sequence of the run before.
     let writes = v.memory.0.get().1;
     assert_eq!(sequence, 7 + writes[0] + writes[1]);
     assert!(
@@ -210,7 +210,7 @@ fn a_start_off_the_pipe_is_as_ever_after_half_a_second_of_looking() {
         let (kept, _) = v.kept().unwrap();
         assert!(kept.grip_memory == GripMemory::Open && kept.gyro_bias.is_some());
     }
-    // The run before has said that they are open.
+    // The run before reported them open.
     let open = RetainedState {
         grip_memory: GripMemory::Open,
         ..held()
@@ -257,7 +257,7 @@ fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
             v.kept().unwrap().0.grip_memory,
             GripMemory::HeldByGears(ArmChoice::Front)
         );
-        // The next reset finds them kept, and leaves them so.
+        // The next reset retains them again.
         let mut again = Vehicle::start(StartCause::Watchdog, v.memory.copies(), [PRESSED, 0, PRESSED, 0]);
         again.run(1000);
         assert_eq!(again.status().0, Mode::Disarmed, "calibrated already");
@@ -339,7 +339,7 @@ fn flown(file: &str) -> FlightRecord {
     fly(&scenario, &mut Silent)
 }
 
-/// When `text` happened for the first time after `from` s.
+/// Time of the first event `text` after `from` s.
 fn when(record: &FlightRecord, text: &str, from: f64) -> f64 {
     let event = record.events.iter().find(|e| e.t >= from && e.text == text);
     event
@@ -351,7 +351,7 @@ fn when(record: &FlightRecord, text: &str, from: f64) -> f64 {
 fn a_reset_in_flight_stops_the_rotors_and_they_stay_stopped() {
     let record = flown("reset-in-flight");
     let reset = when(&record, "board reset", 0.0);
-    // The flight's judge looks at the motor commands every millisecond after it.
+    // The judge checks the motor commands every millisecond after it.
     assert!(
         record.outcome.reason.contains("crashed into the ground"),
         "{:?}",
@@ -360,7 +360,7 @@ fn a_reset_in_flight_stops_the_rotors_and_they_stay_stopped() {
     when(&record, "warning: restarted by the watchdog", reset);
     let after: Vec<_> = record.samples.iter().filter(|s| s.t >= reset + 0.01).collect();
     assert!(after.len() > 30 && after.iter().all(|s| s.thrust_asked == [0.0; 4]));
-    // What the propellers still give runs out with the motors' 50 ms.
+    // The propellers' rest runs out with the motors' 50 ms.
     let late = after.iter().filter(|s| s.t > reset + 0.4);
     assert!(late.clone().count() > 10 && late.clone().all(|s| s.thrust.iter().all(|t| *t < 0.05)));
 }
@@ -371,7 +371,7 @@ fn a_reset_on_the_ground_keeps_the_calibration() {
     assert!(record.outcome.accomplished, "{:?}", record.outcome);
     let reset = when(&record, "board reset", 0.0);
     let start = when(&record, "mode CALIBRATING", reset);
-    // Half a second for the attitude instead of two at rest.
+    // 0.5 s for the attitude, against 2 s at rest.
     let ready = when(&record, "mode DISARMED", start) - start;
     assert!((0.4..0.7).contains(&ready), "{ready}");
     let armed = when(&record, "mode ARMED", start);

@@ -1,7 +1,7 @@
-//! Virtual time: the embassy clock and executor of one flight, confined to the thread that flies it.
+//! Virtual time: embassy clock and executor of one flight, confined to its thread.
 //!
-//! The clock stands still while tasks run and jumps to the next alarm when none is left. It is thread-local
-//! behind the process-wide embassy-time driver, so flights in parallel threads know nothing of each other.
+//! The clock stands still while tasks run and jumps to the next alarm when all wait. It is thread-local behind the
+//! process-wide embassy-time driver: flights in parallel threads are independent.
 
 use std::cell::{Cell, RefCell};
 use std::future::Future;
@@ -45,20 +45,20 @@ struct OneThread;
 critical_section::set_impl!(OneThread);
 
 #[allow(unsafe_code, reason = "a critical section is an unsafe promise by nature")]
-// SAFETY: whatever a flight shares lives and dies in one thread (clock, executor and links are created there
-// and are not `Send` together with their tasks), so nothing can run between acquire and release.
+// SAFETY: everything a flight shares stays in one thread (clock, executor and links are created there and are not
+// `Send` together with their tasks), so nothing can run between acquire and release.
 unsafe impl critical_section::Impl for OneThread {
     unsafe fn acquire() {}
     unsafe fn release(_state: ()) {}
 }
 
-/// The clock and executor of one flight. One at a time in a thread.
+/// Clock and executor of a flight; one at a time per thread.
 pub struct VirtualTime {
     executor: &'static raw::Executor,
 }
 
 impl VirtualTime {
-    /// A clock at 0 and an executor without tasks; forgets what an earlier flight left in this thread.
+    /// A clock at 0 and an executor without tasks; clears this thread's state of an earlier flight.
     #[must_use]
     #[allow(
         clippy::new_without_default,
@@ -69,7 +69,7 @@ impl VirtualTime {
         NEXT.set(u64::MAX);
         QUEUE.set(Queue::new());
         PENDED.set(false);
-        // Leaked on purpose: wakers of the flight may point to it for as long as the process lives.
+        // Leaked: the flight's wakers may point to it for the life of the process.
         Self {
             executor: Box::leak(Box::new(raw::Executor::new(core::ptr::null_mut()))),
         }
@@ -83,7 +83,7 @@ impl VirtualTime {
         }
     }
 
-    /// Runs the tasks, jumping from alarm to alarm, until the clock shows `until_us`.
+    /// Runs the tasks, from alarm to alarm, until the clock shows `until_us`.
     pub fn run_until(&self, until_us: u64) {
         self.settle();
         loop {
@@ -91,7 +91,7 @@ impl VirtualTime {
             NOW.set(now);
             QUEUE.with_borrow_mut(|queue| NEXT.set(queue.next_expiration(now)));
             self.settle();
-            // An alarm set for this very moment is served before the clock moves on.
+            // Alarms due now are served before the clock advances.
             if now >= until_us && NEXT.get() > until_us {
                 break;
             }

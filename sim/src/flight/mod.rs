@@ -32,7 +32,7 @@ const TELEMETRY_BYTES: usize = 256;
 struct Snapshot<'a, A> {
     /// Time since power-up, ms.
     ms: u64,
-    /// The step that the pilot is at, and its index.
+    /// The pilot's step and its index.
     step: Option<(usize, &'a Step)>,
     plant: &'a Plant,
     stack: &'a A,
@@ -45,18 +45,17 @@ impl<A> Snapshot<'_, A> {
     }
 }
 
-/// Flies `scenario` with the tasks in virtual time, telling `observer` what happens.
+/// Flies `scenario` in virtual time with `observer` attached.
 ///
-/// The same scenario and seed give the same record to the bit, whatever other threads do; only
-/// [`FlightRecord::wall_seconds`] differs.
+/// Scenario and seed determine the record to the bit, whatever other threads do, except [`FlightRecord::wall_seconds`].
 pub fn fly(scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
     fly_with(scenario, |seeds| Stack::new(scenario, seeds), observer).0
 }
 
-/// Flies `scenario` with the aircraft that `make` gives; hands it back behind the record.
+/// Flies `scenario` with the aircraft made by `make`; returns record and aircraft.
 ///
-/// `make` gets the random numbers of the aircraft's parts: an aircraft that draws them as
-/// [`crate::board::Board::configured`] does has the same parts.
+/// `make` gets the random numbers of the aircraft's parts: drawn as [`crate::board::Board::configured`] does, they give
+/// the same parts.
 pub fn fly_with<A: Aircraft>(
     scenario: &Scenario,
     make: impl FnOnce(&mut Pcg64Mcg) -> A,
@@ -140,7 +139,7 @@ pub fn fly_with<A: Aircraft>(
     (record, stack)
 }
 
-/// The radio from the pilot to the receiver that the scenario's vehicle has.
+/// The radio uplink for the scenario's receiver.
 enum Uplink {
     Crsf,
     Sbus(Receiver),
@@ -154,12 +153,12 @@ impl Uplink {
         }
     }
 
-    /// There is a way back. Without one the pilot hears the vehicle's log instead of reading his display.
+    /// Whether telemetry exists; without it the pilot reads the vehicle's log instead of his display.
     fn answers(&self) -> bool {
         matches!(self, Self::Crsf)
     }
 
-    /// Hands the pilot's output of this millisecond to the receiver.
+    /// Sends the pilot's output of this millisecond.
     fn send(&mut self, output: &PilotOutput, stack: &mut impl Aircraft) {
         match self {
             Self::Crsf => {
@@ -176,7 +175,7 @@ impl Uplink {
     }
 }
 
-/// What the pilot can see of the vehicle.
+/// The pilot's view of the vehicle.
 fn seen(plant: &Plant, t: f64) -> Seen {
     let pose = plant.pose();
     let [roll, pitch, yaw] = plant.euler();
@@ -190,7 +189,7 @@ fn seen(plant: &Plant, t: f64) -> Seen {
     }
 }
 
-/// The disturbance of the inspection: a sideways push during the middle third of the hold, or over a reset.
+/// Sideways push: middle third of the hold, or during a reset.
 fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
     match step {
         Some((_, Step::Hold { seconds, push }))
@@ -203,7 +202,7 @@ fn push(step: Option<(usize, &Step)>, step_time: f64) -> DVec3 {
     }
 }
 
-/// The reset of a step that has one: the board goes dead once in it, and starts again.
+/// Performs the reset of a step that has one, once.
 fn reset(step: Option<(usize, &Step)>, (index, begun): (usize, f64), ms: u64, stack: &mut impl Aircraft) {
     let Some((
         _,

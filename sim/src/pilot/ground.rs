@@ -5,37 +5,37 @@ use sophie_control::mode::Mode;
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 
-/// Throttle at which the paper's vehicle is sure to leave the ground.
+/// Throttle at which the paper's vehicle surely leaves the ground.
 const TAKE_OFF: f64 = 0.85;
-/// Speed of the throttle while the weight is taken up, and given back, 1/s.
+/// Throttle rate while taking up or setting down the weight, 1/s.
 const TAKE_UP: f64 = 0.3;
 const GIVE_BACK: f64 = 0.6;
-/// Rise from the ground that is seen as flying, m, and its speed, m/s.
+/// Rise (m) and speed (m/s) that count as flying.
 const RISEN: f64 = 0.08;
 const RISING: f64 = 0.2;
-/// Error of a height that is reached, m, and speed at which it counts, m/s.
+/// Height error (m) and speed (m/s) that count as reached.
 const REACHED: f64 = 0.15;
 const REACHED_SPEED: f64 = 0.25;
-/// Rates of descent, m/s: from high above, and over the last bit.
+/// Rates of descent, m/s: high up, and below [`LAST_BIT`].
 const DESCENT: f64 = 0.4;
 const LAST_DESCENT: f64 = 0.2;
-/// Height over the ground at which the last bit begins, m.
+/// Height over the ground of the slow descent, m.
 const LAST_BIT: f64 = 0.8;
-/// Height below which a vehicle that does not sink any more stands, m.
+/// Height below which a vehicle without sink rate stands, m.
 const STANDS: f64 = 0.4;
-/// Sink rate of a vehicle that stands, m/s, and the time for which it must last, s.
+/// Sink rate of a standing vehicle, m/s, and how long it must last, s.
 const STOPPED: f64 = 0.06;
 const STOPPED_TIME: f64 = 0.5;
-/// Time for which the arm switch is turned off, s.
+/// Time with the arm switch off, s.
 const SWITCH_OFF: f64 = 0.5;
-/// Time for which the arming gesture is held, and after which it is tried again, s.
+/// Duration of the arming gesture, and its repeat period, s.
 const GESTURE: f64 = 2.0;
 const GESTURE_AGAIN: f64 = 3.0;
 
 impl Mission {
     pub(super) fn arm(&mut self, v: &View<'_>) -> Progress {
         match (self.phase, v.mode) {
-            // Left on over a restart: it must have been off.
+            // Still on after a restart: it must have been off.
             (Phase::Start, Some(Mode::Disarmed)) if self.arm_switch => {
                 self.arm_switch = false;
                 self.enter(Phase::Throttle);
@@ -53,7 +53,7 @@ impl Mission {
                 Progress::Going(StickTarget::default())
             }
             (Phase::Gesture, _) => Progress::Going(StickTarget {
-                // Refused for now: let go and try again.
+                // Refused: centre the stick and retry.
                 yaw: if self.phase_time % GESTURE_AGAIN < GESTURE {
                     1.0
                 } else {
@@ -111,7 +111,7 @@ impl Mission {
                 };
                 let wish = self.climb_over(v, self.spot, -rate, dt);
                 let stands = v.height() < STANDS && v.seen.velocity.z.abs() < STOPPED;
-                // A failsafe or the vehicle itself may have ended the flight already.
+                // A failsafe or the vehicle itself may have ended the flight.
                 let over = matches!(v.mode, Some(Mode::Landed | Mode::Disarmed));
                 if self.held_for(stands || over, STOPPED_TIME, dt) {
                     self.throttle = wish.throttle;
@@ -129,7 +129,7 @@ impl Mission {
             }
             (Phase::Wait, _) => Progress::Going(StickTarget::default()),
             (_, Some(Mode::Disarmed)) => {
-                // Switched off only now: the gesture is the way of a pilot who trusts his vehicle.
+                // The gesture disarms; the switch follows.
                 self.arm_switch = false;
                 self.enter(Phase::Wait);
                 Progress::Going(StickTarget::default())

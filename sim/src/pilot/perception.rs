@@ -1,4 +1,4 @@
-//! What the pilot sees: late, and not exactly.
+//! The pilot's delayed and noisy view.
 
 use std::collections::VecDeque;
 
@@ -8,9 +8,9 @@ use rand_pcg::Pcg64Mcg;
 
 use super::Seen;
 
-/// Time over which an error of the eyes changes, s (assumed).
+/// Correlation time of the visual error, s (assumed).
 const ERROR_TIME: f64 = 0.5;
-/// Error of the seen velocity over the error of the seen position, 1/s (assumed).
+/// Error of the seen velocity over that of the position, 1/s (assumed).
 const VELOCITY_ERROR: f64 = 2.0;
 /// RMS error of the seen heading, rad (assumed, 0.5°).
 const YAW_ERROR: f64 = 0.009;
@@ -41,7 +41,7 @@ impl Perception {
         }
     }
 
-    /// Looks at the vehicle as it is now, `dt` s after the last look; returns what the pilot sees.
+    /// Takes the true state `dt` s after the last one; returns what the pilot sees.
     pub fn look(&mut self, now: Seen, dt: f64) -> Seen {
         let keep = (1.0 - dt / ERROR_TIME).max(0.0);
         let push = (1.0 - keep * keep).sqrt();
@@ -64,22 +64,22 @@ impl Perception {
     }
 }
 
-/// What the pilot knows his own sticks to have done since what he sees happened: without it no one could
-/// hold a spot to a few centimetres with a quarter of a second of delay.
+/// Prediction over the view's delay from the pilot's own sticks; without it a spot cannot be held to a few centimetres
+/// with a delay of 0.25 s.
 #[derive(Clone, Debug)]
 pub struct Foresight {
     delay: f64,
     /// Accelerations over the last `delay`: (time, north-east, down), m/s².
     past: VecDeque<(f64, DVec2, f64)>,
-    /// Acceleration now: the vehicle follows the sticks with a lag.
+    /// Present acceleration, which follows the sticks with a lag.
     level: DVec2,
     down: f64,
 }
 
-/// Time that the vehicle takes to lean, s, and to change its thrust: what a pilot knows of his vehicle.
+/// Lag of the lean and of the thrust, s, as the pilot knows them.
 const LEAN_TIME: f64 = 0.35;
 const THRUST_TIME: f64 = 0.08;
-/// Time by which he steers ahead of the present, s: that of his sticks and half of the lean.
+/// Prediction ahead of the present, s: lag of the sticks and half of the lean.
 const AHEAD_LEVEL: f64 = 0.25;
 const AHEAD_DOWN: f64 = 0.12;
 
@@ -94,8 +94,7 @@ impl Foresight {
         }
     }
 
-    /// Notes what the sticks ask for now: accelerations, m/s², without the trims that only hold against the wind
-    /// and the weight.
+    /// Notes the accelerations asked for by the sticks, m/s², without the trims that only hold against wind and weight.
     pub fn note(&mut self, t: f64, level: DVec2, down: f64, dt: f64) {
         self.level += (level - self.level) * (dt / (dt + LEAN_TIME));
         self.down += (down - self.down) * (dt / (dt + THRUST_TIME));
@@ -105,19 +104,19 @@ impl Foresight {
         }
     }
 
-    /// Nothing that the sticks did moved the vehicle: it stood on something.
+    /// Clears the notes: the vehicle stood on something, and the sticks did not move it.
     pub fn forget(&mut self) {
         *self = Self::new(self.delay);
     }
 
-    /// Position and velocity, NED, that the vehicle will have when the sticks act, from what is seen.
+    /// Position and velocity, NED, predicted for when the sticks act.
     pub fn ahead(&self, seen: &Seen, dt: f64) -> (DVec3, DVec3) {
         let (mut position, mut velocity) = (seen.position, seen.velocity);
         for (_, level, down) in &self.past {
             velocity += level.extend(*down) * dt;
             position += velocity * dt;
         }
-        // Without a note for each moment of the delay the rest is flown straight on.
+        // For the part of the delay without notes: constant velocity.
         position += velocity * (self.delay - self.past.len() as f64 * dt).max(0.0);
         velocity += (self.level * AHEAD_LEVEL).extend(self.down * AHEAD_DOWN);
         (position, velocity)

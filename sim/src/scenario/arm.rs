@@ -1,7 +1,7 @@
-//! Whether the numbers of a scenario give an arm that can be built, and that the stack can believe in.
+//! Whether a scenario's numbers give arms for the plant and for the stack's model.
 //!
-//! Eq. 1 is a parabola in the thrust; the simulated arm's spring is its inverse. Coefficients that fall with thrust
-//! have none, and the allocation divides by what the tilt gains with thrust.
+//! Eq. 1 is a parabola in the thrust; the simulated arm's spring is its inverse, which needs a tilt that rises with
+//! thrust; the allocation divides by that slope.
 
 use toml::Spanned;
 use toml::de::DeTable;
@@ -11,14 +11,14 @@ use super::read::{Result, Source, Value};
 use super::{Scenario, Vehicle};
 use crate::plant::{GRAVITY, arm_spec};
 
-/// Least rise of the tilt without thrust, rad/N (0.1 deg/N): at 0.02 the bending mode of the lightest vehicle leaves
-/// what the plant's step of 0.5 ms can follow.
+/// Least slope of the tilt without thrust, rad/N (0.1 deg/N): at 0.02 the bending mode of the lightest vehicle is too
+/// fast for the plant's step of 0.5 ms.
 const LEAST_RISE: f64 = 0.1 * DEGREE;
-/// Largest tilt of a free arm without thrust and under all of it, rad: beyond it the rotor pushes inward more than up.
+/// Largest tilt of a free arm at zero or full thrust, rad: beyond it the rotor pushes inward more than up.
 const LARGEST_TILT: f64 = 90.0 * DEGREE;
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
-/// Keys that make the simulated arm, in the order in which they are blamed.
+/// Keys of the simulated arm, in the order of their blame.
 const BUILT: [&str; 8] = [
     "arm_coefficients",
     "arm_level_share",
@@ -29,16 +29,16 @@ const BUILT: [&str; 8] = [
     "thrust_max_n",
     "mass_kg",
 ];
-/// Parameters that make the arm that the stack believes in.
+/// Parameters of the stack's arm model.
 const BELIEVED: [&str; 7] = ["arm_a1", "arm_a2", "arm_b1", "arm_b2", "gain_k", "infill", "mass"];
 
-/// Eq. 1 of one arm, as far as its slope goes.
+/// Slope of Eq. 1 for one arm.
 struct Slope {
     infill: f64,
     gain_k: f64,
     /// dα/dT without thrust, rad/N.
     linear: f64,
-    /// Half of what it changes by with thrust, rad/N².
+    /// Half of its change with thrust, rad/N².
     quadratic: f64,
     /// Thrust of a rotor in hover, N.
     hover: f64,
@@ -55,7 +55,7 @@ impl Slope {
         }
     }
 
-    /// What is wrong with an arm whose elastic term is `gain` times the nominal one, and what is allowed.
+    /// Fault of an arm with `gain` times the nominal elastic term, and what is allowed.
     fn fault(&self, gain: f64) -> Option<String> {
         let at = |thrust: f64| gain * (self.linear + 2.0 * self.quadratic * thrust);
         let (still, hover) = (at(0.0), at(self.hover));
@@ -77,7 +77,7 @@ impl Slope {
     }
 }
 
-/// What is wrong with the arms of `vehicle`, and what is allowed; `None` for arms that can be built.
+/// Fault of the arms of `vehicle`, and what is allowed.
 fn unbuilt(vehicle: &Vehicle) -> Option<String> {
     let v = vehicle;
     let slope = Slope::new(v.arm_coefficients, v.infill, v.gain_k, v.body.mass);
@@ -100,10 +100,10 @@ fn unbuilt(vehicle: &Vehicle) -> Option<String> {
 }
 
 impl Source<'_> {
-    /// Refuses a vehicle, or a belief of the stack, whose numbers are each allowed but give no arm.
+    /// Refuses a vehicle or parameters whose numbers are each allowed but give no arm.
     pub(super) fn arms(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         if let Some(allowed) = unbuilt(&scenario.vehicle) {
-            // The defaults are an arm at every infill and gain of the command line: the file has one of these keys.
+            // The defaults are valid at every infill and gain of the command line: the file has one of these keys.
             let (key, value) = named(root, "vehicle", &BUILT).ok_or_else(|| self.no_key(&allowed))?;
             return Err(self.bad(&key, value, allowed));
         }
@@ -128,7 +128,7 @@ impl Source<'_> {
     }
 }
 
-/// The first of `keys` that the file has in `table`, by its full name.
+/// The first of `keys` that `table` of the file has, by its full name.
 fn named<'t, 'i>(
     root: &'t Spanned<DeTable<'i>>,
     table: &str,

@@ -1,4 +1,4 @@
-//! Why a scenario cannot be flown: always one line that names file, line, key, value and what is allowed.
+//! Scenario errors: one line with file, line, key, value and what is allowed.
 
 use core::fmt;
 
@@ -14,9 +14,9 @@ pub struct Place {
 /// Why a scenario was refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScenarioError {
-    /// The file is missing, a directory, too large or otherwise unreadable.
+    /// Missing, a directory, too large or otherwise unreadable.
     Unreadable {
-        /// The file as the user named it.
+        /// File as the user named it.
         file: String,
         /// The operating system's or our reason.
         why: String,
@@ -44,7 +44,7 @@ pub enum ScenarioError {
         /// The allowed keys that come nearest.
         nearest: Vec<String>,
     },
-    /// A key that must be given is not.
+    /// A required key is missing.
     MissingKey {
         /// Where it should be.
         at: Place,
@@ -53,7 +53,7 @@ pub enum ScenarioError {
         /// What it may be.
         allowed: String,
     },
-    /// The value has the wrong type, or is none of the choices, or is out of range.
+    /// Wrong type, unknown choice or out of range.
     BadValue {
         /// Where it is.
         at: Place,
@@ -64,15 +64,15 @@ pub enum ScenarioError {
         /// What it may be.
         allowed: String,
     },
-    /// A step that the vehicle cannot do in the state in which the steps before leave it.
+    /// A step that is impossible in the state after the steps before it.
     StepOrder {
         /// Where it is.
         at: Place,
-        /// The key of the step, such as `steps[3]`.
+        /// Key of the step, such as `steps[3]`.
         key: String,
         /// Name of the step.
         step: String,
-        /// When it may be done, and what state the vehicle is in.
+        /// When it is possible, and the vehicle's state.
         allowed: String,
     },
     /// There is nothing to fly.

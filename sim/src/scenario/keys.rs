@@ -1,5 +1,4 @@
-//! Every key of a scenario file in one table: name, kind, range. Units are in the names; the conversion to
-//! SI happens here and nowhere else.
+//! Every key of a scenario file: name, kind, range. Names carry the units; the conversion to SI is here alone.
 
 use core::f64::consts::PI;
 
@@ -23,7 +22,7 @@ pub enum Kind {
     Number(Range, fn(&mut Scenario) -> &mut f64),
     /// Four numbers, one for each arm.
     PerArm(Range, fn(&mut Scenario) -> &mut PerArm<f64>),
-    /// Three numbers about roll, pitch and yaw, each with its range.
+    /// Roll, pitch and yaw, each with its range.
     PerAxis([Range; 3], fn(&mut Scenario) -> &mut [f64; 3]),
     /// `true` or `false`.
     Flag(fn(&mut Scenario) -> &mut bool),
@@ -35,7 +34,7 @@ pub enum Kind {
     Text(fn(&mut Scenario, &str)),
 }
 
-/// Allowed range of a number, in the unit of the file.
+/// Allowed range of a number, in the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Smallest value.
@@ -64,12 +63,12 @@ impl Range {
         Self { si, ..self }
     }
 
-    /// The value in SI, if it is in the range.
+    /// The value in SI, if within the range.
     pub fn to_si(&self, value: f64) -> Option<f64> {
         (value >= self.min && value <= self.max).then_some(value * self.si)
     }
 
-    /// What is allowed, for messages: `4 to 10 %`.
+    /// The range for messages: `4 to 10 %`.
     pub fn allowed(&self) -> String {
         format!("{} to {} {}", self.min, self.max, self.unit)
             .trim_end()
@@ -91,12 +90,12 @@ pub const INFILL: Range = Range::new(4.0, 10.0, "%");
 /// Gain on the elastic term of Eq. 1: 1 is the literal equation, Table III needs 5.0 to 8.4.
 pub const GAIN_K: Range = Range::new(1.0, 10.0, "");
 
-/// Largest seed: a whole number that a TOML float or integer holds exactly.
+/// Largest seed: whole numbers up to it are exact as TOML floats.
 const SEED_MAX: f64 = 9e15;
 /// What a seed may be, for messages.
 pub const SEED_ALLOWED: &str = "a whole number from 0 to 9e15";
 
-/// The seed that a number stands for, in a file and on a command line.
+/// The seed of a number in a file or on a command line.
 pub fn seed(number: f64) -> Option<u64> {
     let whole = number.fract() == 0.0 && (0.0..=SEED_MAX).contains(&number);
     whole.then_some(number as u64)
@@ -183,7 +182,7 @@ macro_rules! number {
     };
 }
 
-/// The whole table. `steps` and `params` are read by their own tables.
+/// All keys but those of `steps` and `params`.
 pub const KEYS: &[Key] = &[
     Key {
         name: "name",
@@ -248,7 +247,7 @@ pub const KEYS: &[Key] = &[
     number!("vehicle.mass_kg", Range::new(1.0, 3.0, "kg"), vehicle.body.mass),
     Key {
         name: "vehicle.inertia_kgm2",
-        // The arms' tip masses alone are 0.010, 0.010 and 0.020.
+        // The arms' tip masses alone give 0.010, 0.010 and 0.020.
         kind: Kind::PerAxis(
             [
                 Range::new(0.012, 0.1, "kg m2"),
@@ -313,5 +312,5 @@ pub const KEYS: &[Key] = &[
     },
 ];
 
-/// Tables of a scenario file, besides the list `steps`.
+/// Tables of a scenario file; `steps` is a list.
 pub const TABLES: &[&str] = &["vehicle", "world", "pilot", "params", "expect"];

@@ -1,5 +1,4 @@
-//! The steps of a mission in a scenario file: their names, their numbers, and the order in which they make
-//! sense.
+//! The steps of a scenario file: names, numbers, and allowed order.
 
 use core::f64::consts::PI;
 
@@ -23,7 +22,7 @@ pub struct StepNumber {
     pub key: &'static str,
     /// What it may be.
     pub range: Range,
-    /// Value when the key is not given, in the unit of the file.
+    /// Default, in the unit of the file.
     pub default: f64,
 }
 
@@ -34,11 +33,11 @@ const fn number(key: &'static str, range: Range, default: f64) -> StepNumber {
 const HEIGHT: Range = Range::new(0.5, 30.0, "m");
 const PLACE: Range = Range::new(-50.0, 50.0, "m");
 const PERCH_THROTTLE: StepNumber = number("throttle_percent", Range::new(5.0, 60.0, "%").times(0.01), 30.0);
-/// Longest time without a transmitter after which the vehicle surely flies on by itself, s: the link turns stale
-/// after 0.5 s, and 1 s later only the sticks end the failsafe.
+/// Longest radio silence after which the vehicle surely flies on, s: the link turns stale after 0.5 s; 1 s later only
+/// the sticks end the failsafe.
 const FLIES_ON: f64 = 1.4;
 
-/// Numbers of the steps that reset the board.
+/// Numbers of the reset steps.
 const RESET: &[StepNumber] = &[
     number("after_s", Range::new(0.0, 60.0, "s"), 1.0),
     number("off_s", Range::new(0.02, 60.0, "s"), 0.3),
@@ -154,7 +153,7 @@ pub const STEPS: &[StepKind] = &[
 ];
 
 impl Step {
-    /// Name of the step, as in scenario files and in the record of a flight.
+    /// Name of the step in scenario files and flight records.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Arm => "arm",
@@ -191,12 +190,12 @@ pub(super) enum Whereabouts {
     Opening,
     /// Clamped, but the board has restarted.
     Hanging,
-    /// Out of the pilot's hands for so long that it sinks, or has landed.
+    /// Without a pilot so long that it sinks, or has landed.
     Sinking,
 }
 
 impl Whereabouts {
-    /// Where `step` leads from here, or the reason why it cannot be done: when it may be.
+    /// State after `step`, or the reason why it is impossible: when it may be done.
     pub(super) fn after(self, step: &Step) -> Result<Self, String> {
         use Whereabouts::*;
         let (from, to): (&[Self], Self) = match step {
@@ -218,7 +217,7 @@ impl Whereabouts {
                 InAir => (&[InAir], Sinking),
                 _ => (&[Closing, Clamped, Opening, Hanging], Hanging),
             },
-            // Over the pipe there is no ground below: it must be flown away from first.
+            // Over the pipe there is no ground below: the vehicle must fly away first.
             Step::Land => (&[InAir], OnGroundArmed),
             Step::Disarm => (&[OnGroundArmed, Sinking], OnGroundDisarmed),
             Step::RadioOff { seconds } if self == InAir && *seconds > FLIES_ON => (&[InAir], Sinking),

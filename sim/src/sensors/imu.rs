@@ -1,4 +1,4 @@
-//! The vehicle's inertial sensor, after the ICM-42688-P's datasheet.
+//! The inertial sensor, after the ICM-42688-P's datasheet.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
 
-/// Samples per second unless the parameters say otherwise.
+/// Default sample rate, Hz.
 const RATE_HZ: f64 = 4000.0;
 /// Gyro noise, rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
 const GYRO_NOISE: f64 = 2.8e-3 * (std::f64::consts::PI / 180.0) * 44.7;
@@ -20,9 +20,9 @@ const ACCEL_NOISE: f64 = 70e-6 * 9.806_65 * 44.7;
 const GYRO_BIAS: f64 = 0.5 * (std::f64::consts::PI / 180.0);
 /// Largest accelerometer bias, m/s²: ±20 mg (datasheet).
 const ACCEL_BIAS: f64 = 0.020 * 9.806_65;
-/// Largest error of the bench calibration, m/s²: a bench that is level to a quarter of a degree (assumed).
+/// Largest error of the bench calibration, m/s²: a bench level to 0.25° (assumed).
 const BENCH_ERROR: f64 = 0.04;
-/// Vibration at the rotor's speed for each rotor at 600 rad/s: rad/s and m/s² (assumed; soft arms isolate).
+/// Vibration at rotor speed per rotor at 600 rad/s: rad/s and m/s² (assumed; soft arms isolate).
 const VIBRATION: (f64, f64) = (0.01, 0.25);
 
 /// The sensor with its errors.
@@ -30,9 +30,9 @@ const VIBRATION: (f64, f64) = (0.01, 0.25);
 pub struct Imu {
     /// Samples per second.
     rate: f64,
-    /// Noise in a sample over that in one at 4 kHz: it grows with the band that half the rate leaves open.
+    /// Noise relative to 4 kHz: it grows with the band, half the rate.
     noise: f64,
-    /// One count of the gyro, rad/s, and of the accelerometer, m/s².
+    /// Resolution of gyro, rad/s, and accelerometer, m/s².
     lsb: (f64, f64),
     gyro_bias: DVec3,
     accel_bias: DVec3,
@@ -42,7 +42,7 @@ pub struct Imu {
 }
 
 impl Imu {
-    /// A part with biases of its own, configured as `params` say.
+    /// A part with random biases, configured by `params`.
     #[must_use]
     pub fn new(params: &Params, mut rng: Pcg64Mcg) -> Self {
         let rate = f64::from(params.imu_rate.number());
@@ -68,7 +68,7 @@ impl Imu {
         }
     }
 
-    /// Bias of the accelerometer as a builder measures it on a level bench, m/s²: to within the bench's own error.
+    /// Accelerometer bias measured on a level bench, m/s², with the bench's error.
     pub fn bench_bias(&mut self) -> DVec3 {
         self.accel_bias
             + DVec3::from_array(std::array::from_fn(|_| {
@@ -76,8 +76,8 @@ impl Imu {
             }))
     }
 
-    /// One sample of the body rate (rad/s) and specific force (m/s²) with the rotors at `rotors` rad/s. It comes
-    /// out one sample late, as from the part's own filter.
+    /// A sample of body rate (rad/s) and specific force (m/s²) with the rotors at `rotors` rad/s, one sample late, as
+    /// from the part's own filter.
     pub fn sample(&mut self, rate: DVec3, specific_force: DVec3, rotors: &[f64; 4]) -> ImuReading {
         let (mut shake_gyro, mut shake_accel) = (DVec3::ZERO, DVec3::ZERO);
         for (i, (phase, speed)) in self.phase.iter_mut().zip(rotors).enumerate() {
@@ -103,11 +103,11 @@ impl Imu {
         std::mem::replace(&mut self.pipeline, ImuReading { gyro, accel })
     }
 
-    /// Adds noise of `noise` rms, rounds to counts of `lsb` and stops at full scale.
+    /// Adds noise of `noise` rms, rounds to counts of `lsb`, saturates at full scale.
     fn measure(&mut self, truth: DVec3, noise: f64, lsb: f64) -> Vec3 {
         let mut axis = |x: f64| {
             let n: f64 = StandardNormal.sample(&mut self.rng);
-            // A cast rounds faster than `round`, which is a library call on the baseline processor.
+            // A cast is faster than `round`, a library call on the baseline processor.
             let counts = (x + n * noise) * (1.0 / lsb);
             let counts = (counts + 0.5f64.copysign(counts)) as i32;
             (f64::from(counts.clamp(-32768, 32767)) * lsb) as f32
@@ -151,7 +151,7 @@ mod tests {
             let mean = x.iter().sum::<f64>() / x.len() as f64;
             (x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64).sqrt()
         };
-        // Twice the band is √2 of the noise.
+        // Twice the band gives √2 of the noise.
         let (slow, fast) = (spread(ImuRate::Hz1000), spread(ImuRate::Hz8000));
         assert!((fast / slow / 8f64.sqrt() - 1.0).abs() < 0.1, "{slow} {fast}");
 
