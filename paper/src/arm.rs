@@ -1,4 +1,4 @@
-//! Eq. 1 and Table I: the arm's tilt over thrust, and the gain K that the paper's own Table III asks for.
+//! Eq. 1 and Table I: tilt over thrust, and the gain K that Table III implies.
 
 use sophie_control::deflection::ArmModel;
 use sophie_control::params::Params;
@@ -9,12 +9,12 @@ use super::printed::{Printed, Roll, Table1};
 /// Infills that are drawn, %.
 pub const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
 
-/// Eq. 1's linear (°/N) and quadratic (°/N²) coefficient at an infill (%), literally.
+/// Eq. 1's linear (°/N) and quadratic (°/N²) coefficient at an infill (%), literal.
 pub fn literal(t: &Table1, infill: f64) -> (f64, f64) {
     (t.a1 + infill * t.a2, t.b1 + infill * t.b2)
 }
 
-/// What Table III says of the two thrusts behind it: X = K (T1 - T3) and S = T1 + T3.
+/// The two thrusts behind Table III: X = K (T1 - T3) and S = T1 + T3.
 #[derive(Clone, Copy, Debug)]
 pub struct Identified {
     /// K (T1 - T3), N.
@@ -43,12 +43,12 @@ pub fn identify(p: &Printed) -> Identified {
     }
 }
 
-/// The arm as this stack flies it, and the gains that the paper leaves open.
+/// The arm as flown, and the gains that the paper leaves open.
 struct Flown<'a> {
     printed: &'a Printed,
     /// The gain that is flown.
     k: f64,
-    /// Largest thrust of a rotor, N; at half of it the arm is level.
+    /// Largest thrust of a rotor, N; the arm is level at half of it.
     top: f64,
     identified: Identified,
 }
@@ -64,19 +64,19 @@ impl<'a> Flown<'a> {
         }
     }
 
-    /// Least and largest gain that Table III allows: T3 = 0, and ΔT/(T1 + T3) as the text has it.
+    /// Least and largest gain that Table III allows: T3 = 0, and ΔT/(T1 + T3) as in the text.
     fn allowed(&self) -> (f64, f64) {
         let id = &self.identified;
         let share = self.printed.text.delta_thrust_share;
         (id.product / id.sum, id.product / (share * id.sum))
     }
 
-    /// The gain that "α < 40° for ρ > 5 %" means, read with α0 = 0 at the largest thrust.
+    /// Gain of "α < 40° for ρ > 5 %", with α0 = 0 at the largest thrust.
     fn gain_of_limit(&self) -> f64 {
         self.printed.eq_1.valid_tilt_deg / self.most_elastic(self.printed.eq_1.valid_infill_percent)
     }
 
-    /// Largest literal bending of an arm over the thrusts, degrees.
+    /// Largest literal bending over the thrusts, degrees.
     fn most_elastic(&self, infill: f64) -> f64 {
         let bent = self.thrusts().map(|t| elastic(self.printed, infill, t));
         bent.fold(0.0, f64::max)
@@ -93,7 +93,7 @@ impl<'a> Flown<'a> {
         ArmModel::new(infill as f32, k as f32, (0.5 * self.top) as f32)
     }
 
-    /// Tilt of an arm, degrees, at a thrust (N).
+    /// Tilt (degrees) at a thrust (N).
     fn tilt(&self, infill: f64, k: f64, thrust: f64) -> f64 {
         f64::from(self.model(infill, k).angle(thrust as f32)).to_degrees()
     }
@@ -179,14 +179,14 @@ fn what_the_gain_rests_on(flown: &Flown<'_>) -> String {
     )
 }
 
-/// The two thrusts behind Table III at the gain that is flown, N.
+/// The two thrusts behind Table III at the flown gain, N.
 fn thrusts_of_table_3(flown: &Flown<'_>) -> (f64, f64) {
     let id = &flown.identified;
     let difference = id.product / flown.k;
     (0.5 * (id.sum + difference), 0.5 * (id.sum - difference))
 }
 
-/// Table III at the gain that is flown.
+/// Table III at the flown gain.
 fn calibrated(flown: &Flown<'_>) -> Vec<Comparison> {
     let (t1, t3) = thrusts_of_table_3(flown);
     let k = flown.k;
@@ -201,7 +201,7 @@ fn calibrated(flown: &Flown<'_>) -> Vec<Comparison> {
     flown.printed.table_3.iter().map(row).collect()
 }
 
-/// Table III with Eq. 1 as it is printed.
+/// Table III by the printed Eq. 1.
 fn literal_rows(flown: &Flown<'_>) -> Vec<Comparison> {
     let (t1, t3) = thrusts_of_table_3(flown);
     let row = |row: &Roll| {

@@ -1,14 +1,14 @@
-//! Thrust-bench data of soft arms: a CSV file of thrusts and tilts, read line by line.
+//! Thrust-bench data of soft arms: a CSV file of thrusts and tilts.
 //!
-//! The first line names the columns, in any order: `infill_percent` (%), `thrust_n` (N) and `tilt_deg` (degrees, tip up
-//! positive) must be there; `power_ratio` (P/P0, 1 where it is missing) may. Blank lines and what follows a `#` are
-//! skipped. Commas part the columns.
+//! The first line names the columns, in any order: `infill_percent` (%), `thrust_n` (N), `tilt_deg` (degrees, tip up
+//! positive), and optionally `power_ratio` (P/P0, default 1). Blank lines and text after `#` are skipped. Commas
+//! separate columns.
 
 use std::path::Path;
 
 /// Largest file that is read, bytes.
 const MAX_BYTES: u64 = 16 << 20;
-/// Fewest rows that any fit takes: three more than the unknowns of a single infill.
+/// Fewest rows for a fit: three more than the unknowns of a single infill.
 pub const MIN_ROWS: usize = 6;
 
 /// A measured point.
@@ -55,10 +55,10 @@ pub fn load(path: &Path) -> Result<Vec<Point>, String> {
     parse(&text, &file.to_string())
 }
 
-/// Reads the text of a file called `file`.
+/// Parses the text of the file `file`.
 ///
 /// # Errors
-/// As [`load`].
+/// See [`load`].
 pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
     let content = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -104,7 +104,7 @@ struct BadLine {
     why: String,
 }
 
-/// The lines that are bad besides the first, in words.
+/// The other bad lines, in words.
 fn bad_as_well(others: &[BadLine]) -> String {
     if others.is_empty() {
         return String::new();
@@ -148,8 +148,7 @@ fn names() -> String {
     "infill_percent, thrust_n, tilt_deg and, if wanted, power_ratio".to_owned()
 }
 
-/// Refuses a line whose columns something else than a comma parts: what spreadsheets write where the comma is the
-/// decimal point.
+/// Refuses other separators than commas, as spreadsheets write where the comma is the decimal point.
 fn commas(line: &str) -> Result<(), String> {
     let other = [(';', "';'"), ('\t', "a tab")];
     other

@@ -1,4 +1,4 @@
-//! What a fit of an arm comes to: its page, and the file that simulator and stack take the arm from.
+//! The page of a fitted arm, and its parameter file for simulator and stack.
 
 use sophie_control::params::Params;
 use sophie_sim::scenario::Scenario;
@@ -7,12 +7,12 @@ use super::bench_data::Point;
 use super::fit::{Fit, Fitted};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// Largest span of tilts that is taken for one in radians: a quarter turn, with a hundredth for the rounding. The
-/// stiffest arm of Table I (10 %, K = 1) bends 2.8 degrees up to the largest thrust.
+/// Largest span of tilts taken for radians: a quarter turn and 0.01 of rounding. The stiffest arm of Table I (10 %, K =
+/// 1) bends by 2.8° up to the largest thrust.
 const RADIANS: f64 = 1.58;
-/// Share of a rotor's largest thrust that the data must reach, or the fit is a guess where the vehicle hovers.
+/// Share of a rotor's largest thrust that the data must reach; below it hover is extrapolated.
 const REACH: f64 = 0.5;
-/// Coefficients that may well be 0: an arm may be level at rest, and K is written nowhere.
+/// Coefficients that may be 0: an arm may be level at rest, and K is not written.
 const MAY_BE_NONE: [&str; 2] = ["α0", "K"];
 
 fn span(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
@@ -40,19 +40,19 @@ pub fn check_units(points: &[Point]) -> Result<(), String> {
     ))
 }
 
-/// Where the data end, N, with what may be wrong there.
+/// Largest thrust of the data, N, if it is too small, with the likely cause.
 fn reach(points: &[Point]) -> Option<(f64, f64)> {
     let (most, top) = (span(points, |p| p.thrust).1, thrust_max());
     (most < REACH * top).then_some((most, top))
 }
 
-/// Largest thrust of a rotor as the stack has it, N.
+/// The stack's largest thrust of a rotor, N.
 fn thrust_max() -> f64 {
-    // A float's 8.3 has seven digits.
+    // An `f32` 8.3 has seven digits.
     (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4
 }
 
-/// What a user must know before flying the fit, a line each.
+/// Warnings before flying the fit, a line each.
 pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
     let mut lines = vec![];
     if let Some((most, top)) = reach(points) {
@@ -80,9 +80,9 @@ pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
     lines
 }
 
-/// Infill that the vehicle is to have, %: the only one measured, or the stack's within those measured.
+/// Infill of the vehicle, %: the only one measured, or the stack's within those measured.
 pub fn infill(points: &[Point]) -> f64 {
-    // A float's 6.9 has seven digits.
+    // An `f32` 6.9 has seven digits.
     let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
     let (low, high) = span(points, |p| p.infill);
     default.clamp(low, high.max(low))
@@ -136,7 +136,7 @@ fn coefficients(fit: &Fit) -> Table {
     t
 }
 
-/// The fit among the points, and what it leaves of them.
+/// Fit, points and residuals.
 fn curves(s: &mut Section, points: &[Point], fit: &Fit) {
     let mut infills: Vec<f64> = points.iter().map(|p| p.infill).collect();
     infills.sort_by(f64::total_cmp);
@@ -182,7 +182,7 @@ fn curves(s: &mut Section, points: &[Point], fit: &Fit) {
     );
 }
 
-/// The lines that give a board's console the parameters of the file `text`.
+/// The console lines that set the parameters of the file `text`.
 pub fn console_lines(text: &str) -> String {
     let named = text.lines().skip_while(|l| *l != "[params]").skip(1);
     let mut lines: String = named
@@ -193,10 +193,10 @@ pub fn console_lines(text: &str) -> String {
     lines
 }
 
-/// The parameter file: a scenario whose `[vehicle]` is this arm, and `[params]` the same for the stack.
+/// The parameter file: a scenario with this arm as `[vehicle]` and the same for the stack as `[params]`.
 ///
 /// # Errors
-/// One line that says which number the stack cannot take, and what it can.
+/// One line: which number the stack cannot take, and what it can.
 pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, String> {
     let rho = infill(points);
     let (a, b) = fit.at(rho);
@@ -215,7 +215,7 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
         ));
     }
     in_range(points, fit)?;
-    // An arm of a single infill is the same whatever the infill says: it is put in the range that the stack knows.
+    // A single infill's arm does not depend on the infill, which is clamped to the stack's range.
     let [a1, a2, b1, b2] = fit.coefficients;
     let rho = rho.clamp(4.0, 10.0);
     let text = format!(
@@ -230,7 +230,7 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
         fit.residual,
         fit.exponent.clamp(1.0, 2.5)
     );
-    // Only what the reader takes is written.
+    // The file must be readable before it is written.
     Scenario::parse(&text, "arm.toml", &Default::default()).map_err(|e| {
         let hint = unit_hint(points);
         format!("the fitted arm is out of range{hint}; as arm.toml, which is not written: {e}")
@@ -238,14 +238,14 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
     Ok(text)
 }
 
-/// What may be wrong with thrusts that end early; empty when they do not.
+/// Hint for thrusts that end early; otherwise empty.
 fn unit_hint(points: &[Point]) -> String {
     reach(points).map_or_else(String::new, |(most, _)| {
         format!(": thrust_n ends at {most:.2} N, as thrusts in kgf do (1 kgf is 9.81 N)")
     })
 }
 
-/// Refuses coefficients that the stack cannot take, by their own names.
+/// Refuses coefficients outside the stack's range, named as in the file.
 fn in_range(points: &[Point], fit: &Fit) -> Result<(), String> {
     let one = fit.coefficients[1] == 0.0 && fit.coefficients[3] == 0.0;
     let names = if one {
@@ -301,7 +301,7 @@ mod tests {
             assert!((believed.angle(t).to_degrees() - truth).abs() < 0.01, "{t}");
         }
         assert!((s.vehicle.arm_coefficients[0] - 4.0).abs() < 1e-4);
-        // The same lines typed at a board's console give the same parameters.
+        // The same lines on a board's console give the same parameters.
         let lines = console_lines(&text);
         let mut board = Params::default();
         for line in lines.lines().filter(|l| *l != "save") {

@@ -14,7 +14,7 @@ use super::printed::Printed;
 use super::roll::sideways;
 use sophie_sim::parallel;
 
-/// Linear air drag of the plant, N·s/m; known here so that only the equations differ.
+/// Linear air drag of the plant, N·s/m; removed so that only the equations differ.
 const DRAG: f64 = 0.3;
 
 /// Thrust along the body's -z, N.
@@ -22,12 +22,12 @@ fn lift(m: &Moment) -> f64 {
     m.thrust.iter().zip(m.tilt).map(|(t, a)| t * a.cos()).sum()
 }
 
-/// The paper's f_x, its sign included: -α1T1 - α2T2 + α3T3 + α4T4, N.
+/// The printed f_x, sign included: -α1T1 - α2T2 + α3T3 + α4T4, N.
 fn printed_f_x(m: &Moment) -> f64 {
     -m.tilt[0] * m.thrust[0] - m.tilt[1] * m.thrust[1] + m.tilt[2] * m.thrust[2] + m.tilt[3] * m.thrust[3]
 }
 
-/// Eqs. 5 to 7 as printed: force along the paper's x (east), y (north), z (down), N; its T is the sum of the thrusts.
+/// Eqs. 5 to 7 as printed: force along x (east), y (north), z (down), N; T is the sum of the thrusts.
 fn printed(m: &Moment) -> DVec3 {
     let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
     let (t, f) = (m.thrust.iter().sum::<f64>(), printed_f_x(m));
@@ -38,7 +38,7 @@ fn printed(m: &Moment) -> DVec3 {
     )
 }
 
-/// As derived: the thrusts' sum along -z and their sideways part along the body's y axis, with gravity.
+/// As derived: sum of the thrusts along -z, their sideways part along body y, gravity.
 fn derived(m: &Moment, mass: f64) -> DVec3 {
     let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
     let (t, f) = (lift(m), sideways(m));
@@ -60,7 +60,7 @@ fn rigid(m: &Moment, mass: f64) -> DVec3 {
     )
 }
 
-/// Mass times acceleration less drag, N, over a centred window of 10 ms: what an equation has to give.
+/// Reference for the equations: mass times acceleration less drag, N, over a centred window of 10 ms.
 fn truth(flown: &Flown, mass: f64) -> Vec<(Moment, DVec3)> {
     let m = &flown.moments;
     (5..m.len().saturating_sub(5))
@@ -72,7 +72,7 @@ fn truth(flown: &Flown, mass: f64) -> Vec<(Moment, DVec3)> {
         .collect()
 }
 
-/// Turns to a heading (rad), then rolls to 25° to either side.
+/// Turns to a heading (rad), then rolls by 25° to either side.
 fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
     let mut s = vehicle(Configuration::B, 7.75, 6.9, Variant::Flexible);
     s.vehicle.coupled_arms = coupled;
@@ -92,13 +92,13 @@ fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
     flown
 }
 
-/// A roll to either side that was flown.
+/// A flown roll to either side.
 struct Rolled {
     /// The arms carry their tip mass.
     coupled: bool,
     /// Heading, rad.
     heading: f64,
-    /// Every moment with the force that an equation has to give.
+    /// Every moment with the reference force.
     truth: Vec<(Moment, DVec3)>,
 }
 
@@ -149,7 +149,7 @@ impl Rolled {
         (sum / self.truth.len().max(1) as f64).sqrt()
     }
 
-    /// A value over the time since the first moment, every 5 ms.
+    /// A value every 5 ms from the first moment on.
     fn curve(&self, value: impl Fn(&Moment, &DVec3) -> f64) -> Vec<(f64, f64)> {
         let start = self.truth.first().map_or(0.0, |(m, _)| m.t);
         let shown = self.truth.iter().step_by(5);
@@ -196,7 +196,6 @@ fn errors(flights: &[Rolled], mass: f64) -> Table {
     t
 }
 
-/// The force on an axis: flown and by each equation.
 fn forces(title: &str, flight: &Rolled, axis: usize, mass: f64) -> Chart {
     let by = |equation: &dyn Fn(&Moment) -> DVec3| flight.curve(|m, _| equation(m)[axis]);
     Chart {
@@ -218,7 +217,6 @@ fn forces(title: &str, flight: &Rolled, axis: usize, mass: f64) -> Chart {
     }
 }
 
-/// The sideways force of the leaning arms alone.
 fn flexible_term(flight: &Rolled) -> Chart {
     let of = |value: &dyn Fn(&Moment) -> f64| flight.curve(|m, _| value(m));
     Chart {

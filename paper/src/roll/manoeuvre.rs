@@ -1,4 +1,4 @@
-//! The manoeuvre: how it is flown, what Table III asks of it, and the searches for its two free numbers.
+//! The roll manoeuvre, what Table III asks of it, and the searches for its two free numbers.
 
 use std::f32::consts::TAU;
 
@@ -12,7 +12,7 @@ use super::super::printed::Printed;
 
 /// How long the roll is held, s.
 pub const HELD: f64 = 1.2;
-/// Time in which the vehicle is being turned, s: one that is lost later has shown its Δα.
+/// Time of the turn, s: a vehicle lost later has shown its Δα.
 const TURN: f64 = 0.5;
 /// The whole manoeuvre, s.
 pub const SECONDS: f64 = 3.0;
@@ -20,7 +20,7 @@ pub const SECONDS: f64 = 3.0;
 /// How the roll is commanded.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Command {
-    /// A step into loops with this rate gain (1/s), attitude gain 12 1/s, no prefilter: as hard as the paper's.
+    /// A step with this rate gain (1/s), attitude gain 12 1/s, no prefilter: as hard as the paper's.
     Hard(f64),
     /// The stack's own gains and prefilter.
     Soft,
@@ -29,11 +29,11 @@ pub enum Command {
 /// What the arms do besides following their thrust.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Arms {
-    /// Nothing: damping ratio 0.7, no mass of their own. The paper's statics.
+    /// Massless, damping ratio 0.7: the paper's statics.
     Static,
-    /// They swing, at the damping ratio that meets the printed Δα at ρ 8 %.
+    /// Massless, with the damping ratio that gives the printed Δα at ρ 8 %.
     Fitted(f64),
-    /// They carry their tip mass, as in every other flight.
+    /// With tip mass, as in every other flight.
     Heavy,
 }
 
@@ -117,13 +117,13 @@ pub fn found(flown: &Flown) -> Option<Found> {
     })
 }
 
-/// Sideways force of the leaning thrusts, N, to the right.
+/// Sideways force of the leaning thrusts, N, right positive.
 pub fn sideways(m: &Moment) -> f64 {
     let side = |i: usize| if i < 2 { 1.0 } else { -1.0 };
     (0..4).map(|i| side(i) * m.thrust[i] * m.tilt[i].sin()).sum()
 }
 
-/// The rate gain (1/s) at which a step with arms that follow thrust alone reaches ΔT/T = `share` at ρ 8 %.
+/// Rate gain (1/s) at which a step with massless arms reaches ΔT/T = `share` at ρ 8 %.
 pub fn hard_gain(angle: f64, share: f64) -> f64 {
     let reached = |gain: f64| {
         let job = Job {
@@ -146,7 +146,7 @@ pub fn hard_gain(angle: f64, share: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The damping ratio of massless arms at which the hard step gives the printed Δα_max at ρ 8 %.
+/// Damping ratio of massless arms at which the hard step gives the printed Δα_max at ρ 8 %.
 pub fn fitted_damping(p: &Printed, angle: f64, command: Command) -> f64 {
     let printed = p
         .table_3

@@ -1,13 +1,12 @@
-//! The largest attitude errors: while the setpoint rests, which is what the controller fails to hold, and while it
-//! moves, which is how far the vehicle is behind a command.
+//! Largest attitude errors: with the setpoint at rest (control error) and moving (lag behind a command).
 
 use sophie_sim::record::{FlightRecord, SAMPLE_HZ, Sample};
 
-/// Time that the vehicle has to come to a setpoint that rests, s: a roll of 25 degrees is over in half of it.
+/// Settling time after the setpoint comes to rest, s: twice that of a roll of 25°.
 const SETTLE: f64 = 1.0;
-/// Change of the setpoint within that time up to which it rests, rad: 2 degrees, more than a stick's noise.
+/// Largest change of a resting setpoint within that time, rad: 2°, more than stick noise.
 const REST: f64 = 0.035;
-/// Thrust asked of some rotor from which on the vehicle counts as flown, N: as in the steps' table.
+/// Thrust asked of some rotor from which the vehicle counts as flown, N; as in the steps' table.
 const FLOWN: f64 = 1.0;
 
 /// Names of the axes that count.
@@ -22,7 +21,7 @@ pub struct Worst<'a> {
     pub axis: &'static str,
     /// When, s.
     pub t: f64,
-    /// The step under way, from 1, and its name; none between steps.
+    /// Step under way, from 1, and its name; none between steps.
     pub step: Option<(usize, &'a str)>,
 }
 
@@ -31,7 +30,7 @@ pub struct Worst<'a> {
 pub struct AttitudeErrors<'a> {
     /// With the setpoint at rest.
     pub held: Option<Worst<'a>>,
-    /// With the setpoint moving, or just come to rest.
+    /// Setpoint moving or just at rest.
     pub following: Option<Worst<'a>>,
 }
 
@@ -40,7 +39,7 @@ pub fn attitude_errors(record: &FlightRecord) -> AttitudeErrors<'_> {
     let mut errors = AttitudeErrors::default();
     for (axis, name) in AXES.into_iter().enumerate() {
         let of = |s: &Sample| s.attitude_setpoint.get(axis).copied().unwrap_or(f64::NAN);
-        // Since when the setpoint has been near what it was then.
+        // Since when the setpoint has been near its value then.
         let mut rested: Option<(f64, f64)> = None;
         for s in &record.samples {
             let setpoint = of(s);
@@ -80,8 +79,8 @@ mod tests {
     use super::super::synthetic;
     use super::*;
 
-    /// A flight whose roll setpoint steps by 0.8 rad at 20 s, which the vehicle follows with 0.1 s of lag and then misses by
-    /// 0.05 rad; at 30 s a gust tilts it by 0.2 rad.
+    /// Roll setpoint steps by 0.8 rad at 20 s, followed with 0.1 s of lag and 0.05 rad of error; a gust tilts the
+    /// vehicle by 0.2 rad at 30 s.
     fn stepped() -> FlightRecord {
         let mut record = synthetic::record();
         for s in &mut record.samples {

@@ -1,4 +1,4 @@
-//! The vehicle and the pipe as seen from behind, along the pipe: east to the right, up to the top.
+//! Vehicle and pipe from behind, along the pipe: east right, up top.
 
 use sophie_sim::record::{FlightRecord, Sample};
 
@@ -8,14 +8,14 @@ use super::svg::{Rect, line, path, rect, short, text};
 /// Size of a drawing, px.
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 300.0;
-/// Where the centre of mass is drawn, px, when it sits where the view expects it.
+/// Centre of mass on the drawing, px, when at the view's centre.
 const ANCHOR: (f64, f64) = (160.0, 122.0);
 /// px for a metre.
 const SCALE: f64 = 380.0;
-/// Height of the strip that stands for the ground, px.
+/// Height of the ground strip, px.
 const GROUND: f64 = 16.0;
 
-/// Geometry of the vehicle, m: as the plant has it.
+/// Geometry of the vehicle, m, as in the plant.
 const ARM_LENGTH: f64 = 0.178;
 const ARM_X: f64 = 0.178;
 const UNDERSIDE_Z: f64 = 0.035;
@@ -23,7 +23,7 @@ const ARM_THICKNESS: f64 = 0.026;
 const BELLY_Z: f64 = 0.04;
 const ROTOR_RADIUS: f64 = 0.127;
 const MOTOR_HEIGHT: f64 = 0.035;
-/// Length of a thrust arrow, m for a newton.
+/// Scale of thrust arrows, m/N.
 const THRUST_SCALE: f64 = 0.018;
 
 /// Draws one moment.
@@ -60,7 +60,7 @@ pub fn draw(record: &FlightRecord, moment: &KeyMoment<'_>) -> String {
 /// Where things are on the drawing.
 struct View<'a> {
     sample: &'a Sample,
-    /// World point (east, height) that is drawn at the anchor.
+    /// World point (east, height) at the anchor.
     centre: (f64, f64),
     /// Body to world, rows east and down.
     rows: [[f64; 3]; 2],
@@ -184,7 +184,7 @@ impl<'a> View<'a> {
         arrow(self.body_point(a), self.body_point(b), class)
     }
 
-    /// The ground: in its place if it is in view, else below a break with the height written beside.
+    /// The ground: in place if in view, else below a break with the height beside it.
     fn ground(&self) -> String {
         let (_, level) = self.world(0.0, 0.0);
         let (below, _) = self.world(self.sample.position[1], 0.0);
@@ -231,7 +231,7 @@ impl<'a> View<'a> {
             return String::new();
         }
         let (x, y) = self.body_point([0.0; 3]);
-        // From the left, where it pushes to the right, above the arms.
+        // The push to the right comes from the left, above the arms.
         let y = y - 6.0;
         arrow((x - 84.0, y), (x - 24.0, y), "push")
             + &text(x - 88.0, y + 4.0, "small end halo", &format!("{newtons} N"))

@@ -1,6 +1,4 @@
-//! Whether every deadline would hold in the worst case: bounds from the longest executions that were measured.
-//!
-//! docs/timing.md has the method and what it assumes.
+//! Worst-case bounds of every deadline from the longest measured executions; method and assumptions in docs/timing.md.
 
 use std::fmt::Write;
 
@@ -10,21 +8,21 @@ use crate::capture::Capture;
 use crate::replay::{Replay, Task};
 use crate::rta::{Load, rate_monotonic_bound, response, utilisation};
 
-/// Execution of one interrupt that wakes a task, µs on the reference board: 400 instructions.
+/// Execution of an interrupt that wakes a task, µs on the reference board: 400 instructions.
 const INTERRUPT: f64 = 1.0;
-/// Longest stretch with interrupts masked, µs on the reference board: the encoding of the longest line of the log.
+/// Longest stretch with interrupts masked, µs on the reference board: encoding of the longest log line.
 const BLOCKING: f64 = 5.0;
-/// A clock of whole µs shortens an execution by less than this.
+/// A clock of whole µs shortens an execution by less than this, µs.
 const RESOLUTION: f64 = 1.0;
-/// A task that follows each sample has paused when it is woken after so many of its periods.
+/// A task that follows each sample counts as paused after so many of its periods without a wake.
 const PAUSE: f64 = 10.0;
-/// The task that logs the trace: there is none in the image that flies.
+/// The task that logs the trace; absent from the image that flies.
 const TRACER: &str = "trace";
-/// The task whose wait for the bus is the beginning of every run of the flight level.
+/// The task whose bus wait begins every run of the flight level.
 const FIRST: &str = "imu";
 
-/// A board and the time that it takes for what the reference board does in 1 µs: by its clock, and on an M4F by the
-/// instructions of the control path (docs/cost.md).
+/// A board and its time for 1 µs of the reference board: by clock and, on an M4F, by the instructions of the control
+/// path (docs/cost.md).
 const BOARDS: [(&str, f64); 3] = [
     ("matek-h743", 1.0),
     ("cuav-v5", 400.0 / 216.0),
@@ -34,11 +32,11 @@ const BOARDS: [(&str, f64); 3] = [
 /// The task set of a capture.
 struct Set {
     loads: Vec<Load>,
-    /// Tasks with a deadline: index in `loads`, deadline in µs.
+    /// Index in `loads` and deadline in µs.
     deadlines: Vec<(usize, f64)>,
 }
 
-/// The bounds of every task with a deadline, for each board.
+/// Bounds of every task with a deadline, for each board.
 #[must_use]
 pub fn analyse(capture: &Capture, replay: &Replay) -> String {
     let set = if replay.polls.is_empty() {
@@ -102,8 +100,7 @@ pub fn analyse(capture: &Capture, replay: &Replay) -> String {
     text
 }
 
-/// What ran since the flight level has worked without a pause: before that the sensor is tested, and nothing has its
-/// period.
+/// Runs since the flight level works without a pause: before, the sensor is tested and no task has its period.
 fn at_work(replay: &Replay) -> Replay {
     let flight = replay.tasks.iter().filter(|t| t.level == Some(Level::Flight));
     let start = flight.filter_map(after_the_last_pause).max().unwrap_or(0);
@@ -149,8 +146,8 @@ fn of_trace(capture: &Capture, replay: &Replay) -> Set {
             set.deadlines
                 .push((set.loads.len(), f64::from(seconds.deadline())));
         }
-        // A release may take several runs of the trace, with waits between them that its record holds. Not so the first
-        // task: each of its samples is a release of its own.
+        // A release may take several runs of the trace, with waits that its record includes. For the first task each
+        // sample is a release.
         let released = seconds
             .map(|s| 1e6 / s.rate().max(1e-3))
             .filter(|_| task.name != FIRST);
@@ -172,7 +169,7 @@ fn of_trace(capture: &Capture, replay: &Replay) -> Set {
     set
 }
 
-/// Interrupts that wake tasks, by their rates.
+/// Interrupts that wake tasks, with their rates.
 fn interrupts(replay: &Replay) -> Set {
     let vectors = replay.wakes.iter().filter(|(exception, _)| **exception >= 16);
     let loads = vectors.map(|(exception, &count)| Load {
@@ -189,7 +186,7 @@ fn interrupts(replay: &Replay) -> Set {
     }
 }
 
-/// Without a trace: whole runs, with what preempted them and what they waited for, as executions.
+/// Without a trace: whole runs, preemption and waits included, as executions.
 fn of_seconds(capture: &Capture) -> Set {
     let mut set = Set {
         loads: Vec::new(),
@@ -206,7 +203,7 @@ fn of_seconds(capture: &Capture) -> Set {
             execution: f64::from(task.over(|s| s.run).max) + RESOLUTION,
             period: 1e6 / task.rate().max(1e-3),
             jitter: 0.0,
-            // The bus is part of the first task's lateness.
+            // The bus wait is part of the first task's lateness.
             waited: match id.level() {
                 Level::Flight => first_wait(capture),
                 _ => 0.0,
@@ -229,7 +226,7 @@ fn scaled(loads: &[Load], factor: f64) -> Vec<Load> {
     loads.iter().map(scale).collect()
 }
 
-/// Pairs that a rate-monotonic order would turn round: the one above has the longer period.
+/// Pairs against the rate-monotonic order: the more urgent has the longer period.
 fn inversions(loads: &[Load]) -> String {
     let mut text = String::new();
     for above in loads.iter().filter(|l| l.level > 0) {
@@ -281,7 +278,7 @@ mod tests {
 
     #[test]
     fn the_test_of_the_sensor_at_the_start_is_no_part_of_the_work() {
-        // Everything is polled once at the start; then the sensor is tested, and after a second the samples come.
+        // All are polled once at the start; then the sensor is tested; samples come after 1 s.
         let samples = (0..100).map(|n| 1_000_000 + 1000 * n);
         let imu = [run(10, 5), run(20_000, 460), run(220_000, 400)];
         let task = |name: &str, runs: Vec<Run>| Task {

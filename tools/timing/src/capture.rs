@@ -1,4 +1,4 @@
-//! Everything that a file says of timing.
+//! All timing data of a file.
 
 use std::path::Path;
 
@@ -9,17 +9,17 @@ use crate::trace::Trace;
 /// A capture, read.
 #[derive(Debug, Default)]
 pub struct Capture {
-    /// The board that logged it, if its greeting is in it.
+    /// The logging board, if the file has its greeting.
     pub board: Option<String>,
-    /// Each task's seconds, tasks in the order in which they come.
+    /// Each task's seconds, in order of appearance.
     pub tasks: Vec<Task>,
     /// The chain's seconds.
     pub chain: Vec<Chain>,
-    /// The contact chain's seconds: none of a second without a pulse that answers a pressure.
+    /// Seconds of the contact chain; none without a pulse that answers a pressure.
     pub contact: Vec<Contact>,
     /// The executors' events, if the firmware logs them.
     pub trace: Trace,
-    /// What could not be read and what is left, in a sentence.
+    /// Unreadable and remaining parts, in a sentence.
     pub incomplete: Option<String>,
 }
 
@@ -33,7 +33,7 @@ pub struct Task {
 }
 
 impl Capture {
-    /// Reads a file; `elf` is the image that wrote it, needed for a log's own bytes only.
+    /// Reads a file; `elf` is the image that wrote it, needed only for the log's own bytes.
     ///
     /// # Errors
     /// One line: what is wrong with the files and what is wanted.
@@ -118,7 +118,7 @@ impl Task {
         self.seconds.iter().map(|s| u64::from(s.missed)).sum()
     }
 
-    /// Runs a second, of the seconds after the first, which is not whole.
+    /// Runs per second, without the incomplete first second.
     #[must_use]
     pub fn rate(&self) -> f64 {
         let whole = self
@@ -135,7 +135,7 @@ impl Task {
         self.seconds.last().map_or(0, |s| s.deadline)
     }
 
-    /// The seconds' quantiles as one: the median of their halves, the worst of the others.
+    /// [`worst`] of the seconds' quantiles.
     #[must_use]
     pub fn over(&self, of: impl Fn(&Record) -> Quantiles) -> Quantiles {
         let all: Vec<Quantiles> = self.seconds.iter().map(of).collect();
@@ -143,7 +143,7 @@ impl Task {
     }
 }
 
-/// Quantiles of several seconds as one: the median of the halves, the worst of the others.
+/// Quantiles over several seconds: median of the medians, worst of the others.
 #[must_use]
 pub fn worst(seconds: &[Quantiles]) -> Quantiles {
     let mut halves: Vec<u32> = seconds.iter().map(|q| q.p50).collect();

@@ -1,10 +1,10 @@
-//! The records that every firmware logs: one a second of each task, one of each chain, and missed deadlines.
+//! Timing records of every firmware: each task and chain once a second, and missed deadlines.
 
-/// A line that begins as one about timing and does not go on as one.
+/// A timing line that cannot be parsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Garbled;
 
-/// Half, 99 % and all of a second's runs took no longer than this, µs.
+/// Median, 99 % and maximum of a second's runs, µs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Quantiles {
     /// Half of them.
@@ -24,7 +24,7 @@ pub struct Record {
     pub runs: u32,
     /// From release to start.
     pub late: Quantiles,
-    /// From start to end, with what preempted it and what it waited for.
+    /// From start to end, preemption and waits included.
     pub run: Quantiles,
     /// From release to end.
     pub response: Quantiles,
@@ -45,7 +45,7 @@ pub struct Chain {
     pub times: Quantiles,
 }
 
-/// The second of the chain from the conversion of contact pressures to the servo pulse that answers them.
+/// One second of the chain from contact pressure conversion to the answering servo pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
     /// Conversions that became a pulse.
@@ -54,7 +54,7 @@ pub struct Contact {
     pub command: Quantiles,
     /// The quickest to its pulse, µs.
     pub min: u32,
-    /// From the conversion to the beginning of the pulse: with the wait for the servos' frame.
+    /// From the conversion to the start of the pulse, the servo frame's wait included.
     pub pulse: Quantiles,
     /// Deadline of the pulse, µs after the conversion.
     pub deadline: u32,
@@ -73,14 +73,14 @@ pub enum Line {
     Contact(Contact),
 }
 
-/// What `line` says of timing; `None` when it is about something else.
+/// Parses a timing line; `None` for any other line.
 ///
 /// # Errors
-/// A line that begins as one about timing and then does not go on as one.
+/// A garbled timing line.
 pub fn parse(line: &str) -> Option<Result<Line, Garbled>> {
     let (_, rest) = line.split_once("timing ")?;
     let (task, rest) = rest.split_once(": ")?;
-    // Prose may have the word, too.
+    // Prose may begin with the same word.
     if task.contains(' ') {
         return None;
     }

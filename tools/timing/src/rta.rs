@@ -1,12 +1,12 @@
 //! Response-time analysis: bounds for tasks under fixed priorities.
 //!
-//! The recurrence of Joseph and Pandya (1986) and Audsley et al. (1993) with release jitter (Tindell 1994):
+//! Recurrence of Joseph and Pandya (1986) and Audsley et al. (1993) with release jitter (Tindell 1994):
 //!
 //! w = C + S + B + Σ ceil((w + J_k) / T_k) C_k over every k that may go first
 //!
-//! Tasks of one level take turns without preemption and without order, so each of them may go first: they count as if
-//! they were more urgent, which also bounds how long one that has just begun is in the way. S is what the task waits
-//! for on a bus, B how long interrupts are kept waiting below.
+//! Tasks of one level do not preempt each other and have no order: each may go first and counts as more urgent, which
+//! also bounds the wait for one that has begun. S is the task's wait for a bus, B the time for which lower levels mask
+//! interrupts.
 
 /// A task or an interrupt; times in µs.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,17 +19,17 @@ pub struct Load {
     pub execution: f64,
     /// Mean time between releases.
     pub period: f64,
-    /// Most by which a release comes early or late.
+    /// Largest deviation of a release from its period.
     pub jitter: f64,
-    /// Longest wait for something that is not the processor.
+    /// Longest wait off the processor.
     pub waited: f64,
 }
 
-/// Iterations after which there is no bound.
+/// Iterations after which no bound exists.
 const ROUNDS: usize = 10_000;
 
-/// The largest response of `loads[index]`, µs after its release, when nothing below keeps it waiting for longer than
-/// `blocking`; `None` when there is none within its period, beyond which its next release would wait, too.
+/// Largest response of `loads[index]`, µs after its release, with `blocking` from below; `None` if it exceeds the
+/// period, beyond which the next release would wait too.
 #[must_use]
 pub fn response(loads: &[Load], index: usize, blocking: f64) -> Option<f64> {
     let own = loads.get(index)?;
@@ -54,14 +54,14 @@ pub fn response(loads: &[Load], index: usize, blocking: f64) -> Option<f64> {
     None
 }
 
-/// Share of the processor that all of them take.
+/// Utilisation of the processor.
 #[must_use]
 pub fn utilisation(loads: &[Load]) -> f64 {
     loads.iter().map(|l| l.execution / l.period).sum()
 }
 
-/// Share up to which any `count` independent tasks with rate-monotonic priorities keep deadlines equal to their periods
-/// (Liu and Layland 1973).
+/// Utilisation up to which any `count` independent tasks with rate-monotonic priorities meet deadlines equal to their
+/// periods (Liu and Layland 1973).
 #[must_use]
 pub fn rate_monotonic_bound(count: usize) -> f64 {
     let n = count.max(1) as f64;
@@ -83,7 +83,7 @@ mod tests {
         }
     }
 
-    /// Burns and Wellings, Real-Time Systems and Programming Languages, the task set of the worked recurrence.
+    /// Burns and Wellings, Real-Time Systems and Programming Languages, task set of the worked recurrence.
     fn burns_wellings() -> Vec<Load> {
         vec![load(0, 3.0, 7.0), load(1, 3.0, 12.0), load(2, 5.0, 20.0)]
     }
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn blocking_waiting_and_jitter_lengthen_it() {
         let mut loads = burns_wellings();
-        // By hand: w = 3 + 1 + ceil((w + 0) / 7) 3 = 7, and with 1 of jitter the second release falls into it: 10.
+        // By hand: w = 3 + 1 + ceil((w + 0) / 7) 3 = 7; a jitter of 1 brings in the second release: 10.
         assert_eq!(response(&loads, 1, 1.0), Some(7.0));
         loads[0].jitter = 1.0;
         assert_eq!(response(&loads, 1, 1.0), Some(10.0));

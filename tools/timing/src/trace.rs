@@ -1,13 +1,13 @@
-//! The executors' events as a firmware with the feature `trace` logs them.
+//! The executors' events, as a firmware with the feature `trace` logs them.
 //!
 //! `trace task ADDRESS LEVEL NAME` names a task, `trace NUMBER: [bytes]` holds events from the NUMBERth since the start
-//! on, eight bytes each (`boards/src/cortex_m/trace.rs` says how), `trace lost COUNT` counts what the board lost.
+//! on, eight bytes each (format: `boards/src/cortex_m/trace.rs`), `trace lost COUNT` counts those lost by the board.
 
 use sophie_tasks::deadline::Level;
 
 use crate::live::Garbled;
 
-/// Bits of an address that an event keeps.
+/// Bits of an address kept by an event.
 const ADDRESS: u32 = 0x000F_FFFC;
 
 /// What happened.
@@ -63,10 +63,10 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Takes a line of the log; whether it was one of the trace.
+    /// Takes a log line; true if it was of the trace.
     ///
     /// # Errors
-    /// A line of the trace that is garbled.
+    /// A garbled trace line.
     pub fn take(&mut self, line: &str) -> Result<bool, Garbled> {
         let Some((_, rest)) = line.split_once("trace ") else {
             return Ok(false);
@@ -85,7 +85,7 @@ impl Trace {
             Some((number, bytes)) if number.bytes().all(|b| b.is_ascii_digit()) => {
                 self.events(number, bytes).ok_or(Garbled).map(|()| true)
             }
-            // Prose may have the word, too.
+            // Prose may begin with the same word.
             _ => Ok(false),
         }
     }
@@ -143,7 +143,7 @@ impl Trace {
             3 => Kind::Idle,
             _ => return None,
         };
-        // The clock's half wraps every 71 minutes.
+        // The clock's lower half wraps every 71 minutes.
         let at = match self.events.last() {
             Some(last) => last.at + u64::from(time.wrapping_sub(last.at as u32)),
             None => u64::from(time),
@@ -182,7 +182,7 @@ mod tests {
             exception: 54,
         };
         assert_eq!(trace.events[0], expected);
-        // Across the end of the clock's half.
+        // Across the wrap.
         assert_eq!(trace.events[1].at, expected.at + 3);
     }
 
