@@ -1,6 +1,6 @@
-//! How fast a flight is flown: simulated seconds a wall second, whole stack and plant on one core.
+//! Simulated seconds per wall second, whole stack and plant on one core.
 //!
-//! `cargo bench -p sophie-sim` prints the median and the spread of several default missions.
+//! `cargo bench -p sophie-sim` prints median and spread of several default missions.
 
 #![allow(clippy::print_stdout, reason = "the figure is what it is for")]
 

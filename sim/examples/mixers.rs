@@ -1,5 +1,4 @@
-//! What each allocation costs in tracking: hover in gusts with arms matched and mismatched over the yaw gain, and
-//! whole missions.
+//! Tracking of each allocation: hover in gusts with arms matched and mismatched over the yaw gain, and whole missions.
 //!
 //! `cargo run --release -p sophie-sim --example mixers` prints the tables of docs/results.md.
 
@@ -15,7 +14,7 @@ use sophie_sim::record::{Sample, Silent};
 /// Seeds of the mission table.
 const SEEDS: u64 = 10;
 
-/// Hover of 40 s in gusts of 0.35 N and 0.015 N·m RMS, with the yaw gain `gain` (1/s).
+/// Hover of 40 s in gusts of 0.35 N and 0.015 N·m RMS, yaw gain `gain` (1/s).
 fn hover(configuration: Configuration, gain_k: f64, mixer: Variant, gain: f32, mismatched: bool) -> String {
     let mut s = vehicle(configuration, gain_k, 6.9, mixer);
     s.world.gust_force = 0.35;
@@ -45,7 +44,7 @@ fn rms(samples: &[&Sample], axis: usize) -> f64 {
         .to_degrees()
 }
 
-/// The default mission over the seeds: how many were accomplished, and the tracking in free flight.
+/// The default mission over the seeds: count accomplished, and tracking in free flight.
 fn missions(configuration: Configuration, gain_k: f64, mixer: Variant) {
     let mut s = vehicle(configuration, gain_k, 6.9, mixer);
     let (mut accomplished, mut tracking, mut reason) = (0, [0.0; 3], String::new());
@@ -65,7 +64,7 @@ fn missions(configuration: Configuration, gain_k: f64, mixer: Variant) {
             reason = record.outcome.reason;
         }
     }
-    // A lost vehicle has no tracking worth a number.
+    // A lost vehicle has no meaningful tracking.
     let [roll, pitch, yaw] = tracking.map(|rms| {
         if accomplished > 0 {
             format!("{rms:.2}°")

@@ -1,4 +1,4 @@
-//! The default mission over many seeds: how many are accomplished, and what ended the others.
+//! The default mission over many seeds: how many are accomplished, and why the others end.
 //!
 //! `cargo run --release -p sophie-sim --example seeds -- FIRST COUNT [RHO [GUST [ARMS]]]` gives the counts of
 //! docs/results.md: infill in %, gusts in N RMS, 4 arms or 2.

@@ -1,8 +1,8 @@
-//! What the attitude loop aims at, as angles.
+//! Setpoint of the attitude loop as angles.
 
 use sophie_control::attitude::Target;
 
-/// Roll (±π) and pitch (±π/2) that are aimed at, and how far the wanted heading is ahead of the present one, rad.
+/// Wanted roll (±π) and pitch (±π/2), and wanted heading less the present one, rad.
 #[must_use]
 pub fn angles(target: Target) -> [f64; 3] {
     let [x, y, z] = target.down.to_array().map(f64::from);

@@ -1,4 +1,4 @@
-//! The transmitter's side of the radio: channel frames out, telemetry in.
+//! The transmitter's side of CRSF: channel frames out, telemetry in.
 
 use sophie_control::mode::Mode;
 use sophie_control::rc::{CHANNELS, Sticks};
@@ -26,7 +26,7 @@ pub fn rc_frame(sticks: &Sticks) -> Frame {
     channel_frame(&sticks.to_channels())
 }
 
-/// The frame of these channel counts, 11 bit each.
+/// The frame of these 11-bit channel counts.
 ///
 /// # Panics
 /// Never: 26 bytes fit.
@@ -43,13 +43,13 @@ pub fn channel_frame(channels: &[u16; CHANNELS]) -> Frame {
 #[derive(Debug, Default)]
 pub struct Telemetry {
     parser: CrsfParser,
-    /// State of the vehicle; `None` until the first frame.
+    /// Mode; `None` until the first frame.
     pub mode: Option<Mode>,
-    /// The reason beside it; empty when there is none.
+    /// Reason beside the mode; may be empty.
     pub reason: String,
     /// Voltage of the flight battery, V.
     pub battery_voltage: Option<f64>,
-    /// Roll, pitch and yaw as the stack sees them, rad.
+    /// Estimated roll, pitch and yaw, rad.
     pub attitude: Option<[f64; 3]>,
     /// Frames understood.
     pub frames: u32,
@@ -58,7 +58,7 @@ pub struct Telemetry {
 }
 
 impl Telemetry {
-    /// The transmitter is switched off: the display shows nothing.
+    /// Transmitter off: clears the display.
     pub fn darken(&mut self) {
         self.mode = None;
         self.reason.clear();
@@ -66,7 +66,7 @@ impl Telemetry {
         self.attitude = None;
     }
 
-    /// The vehicle is in this state, for this reason.
+    /// Sets mode and reason.
     pub fn tell(&mut self, mode: Mode, reason: &str) {
         self.mode = Some(mode);
         if self.reason != reason {
@@ -74,7 +74,7 @@ impl Telemetry {
         }
     }
 
-    /// Takes bytes that the vehicle sent, however they are cut.
+    /// Takes telemetry bytes in any pieces.
     pub fn take(&mut self, mut bytes: &[u8]) {
         while let Some(packet) = self.parser.next_packet(&mut bytes) {
             match packet {
@@ -130,7 +130,7 @@ mod tests {
             for byte in &bytes[..n] {
                 t.take(&[*byte]);
             }
-            // A broken start may swallow the frame behind it; the next one is understood.
+            // A broken start may swallow the next frame; the one after is decoded.
             t.take(&bytes[..n]);
             t.take(&bytes[..n]);
             assert_eq!((t.mode, t.reason.as_str()), (Some(mode), reason));

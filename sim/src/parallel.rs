@@ -1,10 +1,10 @@
-//! Flights in as many threads as there are processors; the results come in the order of the jobs.
+//! Flights in as many threads as processors, results in the order of the jobs.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// Does `work` on every job. Each job's result depends on the job alone, so the threads change nothing.
+/// Does `work` on every job; each result depends on its job alone.
 pub fn each<J: Sync, R: Send>(jobs: &[J], work: impl Fn(&J) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let results: Vec<Mutex<Option<R>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
@@ -26,7 +26,7 @@ pub fn each<J: Sync, R: Send>(jobs: &[J], work: impl Fn(&J) -> R + Sync) -> Vec<
             });
         }
     });
-    // A job that panicked has ended the scope with its panic: every slot is filled here.
+    // A panic has ended the scope: here every slot is filled.
     results
         .into_iter()
         .filter_map(|slot| slot.into_inner().ok().flatten())

@@ -1,25 +1,25 @@
-//! A receiver that speaks SBUS: what comes over the air, as frames on its line.
+//! An SBUS receiver: channels from the air to frames on its line.
 
 use sophie_control::rc::CHANNELS;
 use sophie_drivers::sbus::{FRAME, Frame};
 
-/// Time between two frames, s: the slower of the two usual ones.
+/// Frame period, s: the slower of the two usual ones.
 const PERIOD: f64 = 14e-3;
-/// Time without its transmitter after which a receiver gives it up, s (FrSky: about a second).
+/// Silence after which a receiver reports failsafe, s (FrSky: about 1 s).
 const FAILSAFE_AFTER: f64 = 0.9;
 
-/// The receiver. It never falls silent once it has heard its transmitter: that this is lost stands in the flags.
+/// The receiver. After its first frame it always sends; a lost transmitter is in the flags.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     channels: Option<[u16; CHANNELS]>,
-    /// Time since the transmitter was heard, s.
+    /// Since the transmitter was heard, s.
     silence: f64,
-    /// Time since the last frame on the line, s.
+    /// Since the last frame on the line, s.
     elapsed: f64,
 }
 
 impl Receiver {
-    /// One step of `dt` s in which `heard` came over the air; gives a frame for the line when one is due.
+    /// One step of `dt` s with `heard` from the air; returns a frame when one is due.
     pub fn step(&mut self, dt: f64, heard: Option<[u16; CHANNELS]>) -> Option<[u8; FRAME]> {
         self.silence += dt;
         self.elapsed += dt;
@@ -46,7 +46,6 @@ impl Receiver {
 mod tests {
     use super::*;
 
-    /// Frames of `seconds` with or without transmitter.
     fn run(r: &mut Receiver, seconds: f64, heard: Option<[u16; CHANNELS]>) -> Vec<Frame> {
         (0..(seconds * 1e3) as u32)
             .filter_map(|_| r.step(1e-3, heard))

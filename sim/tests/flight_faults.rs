@@ -1,4 +1,4 @@
-//! The whole stack on parts that fail: what a silent sensor, a hung task or a dead radio does in flight.
+//! The whole stack with failing parts in flight: silent sensor, hung task, dead radio.
 
 mod vehicle;
 
@@ -12,11 +12,11 @@ use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::Setpoint;
 use vehicle::Vehicle;
 
-/// A silent inertial sensor stops the motors within the mix's own limit, for good, and the board is reset.
+/// A silent inertial sensor stops the motors within the mix's limit, permanently, and the board is reset.
 fn a_lost_sensor_stops_the_motors(answer: Answer) {
     let mut v = Vehicle::flying();
     v.imu.0.answer.set(answer);
-    // The sample under way still comes; 10 ms after it the motors stop by themselves.
+    // The present sample still arrives; 10 ms later the motors stop.
     let stopped = v.until(30, Vehicle::motors_stand);
     assert!((5..=12).contains(&stopped), "{answer:?}: {stopped} ms");
     assert!(v.links.attitude.fresh().is_none());
@@ -27,7 +27,7 @@ fn a_lost_sensor_stops_the_motors(answer: Answer) {
     v.run(400);
     assert_eq!(v.fed_over(200), 0, "the watchdog would have reset the board");
 
-    // Back again: alive, but nothing turns before a new arming.
+    // After recovery nothing turns before a new arming.
     v.imu.0.answer.set(Answer::Sound);
     v.run(500);
     assert!(v.motors_stand() && v.mode() == Mode::Disarmed);
@@ -64,7 +64,7 @@ fn a_gap_in_the_samples_shorter_than_the_limit_is_flown_through() {
 
 #[test]
 fn a_setpoint_that_is_not_renewed_stops_the_rotors() {
-    // Everything but the commander: it has died after its last word.
+    // All tasks but the commander, which sent one message.
     let (time, links, motors) = (VirtualTime::new(), links(), FakeMotors::default());
     time.spawn(sophie_tasks::imu::run(links, FakeImu::default()));
     time.spawn(sophie_tasks::estimator::run(links));
@@ -100,7 +100,7 @@ fn a_hung_port_of_any_watched_task_leaves_the_watchdog_unfed() {
         let mut v = Vehicle::flying();
         hang(&v);
         v.run(200);
-        // Two windows: the one that it hung in may have had enough runs already.
+        // Two windows: the one in which it hung may have had enough runs.
         v.run(1000);
         assert_eq!(v.fed_over(1000), 0, "{name}");
     }
@@ -121,7 +121,7 @@ fn a_hung_arm_sensor_or_a_lost_radio_does_not_reset_the_board() {
 
 #[test]
 fn a_board_whose_sensor_never_came_up_is_fed_but_never_arms() {
-    // A reset would not mend it, and the pilot can read why.
+    // A reset would not cure it, and the pilot can read the reason.
     let mut v = Vehicle::new();
     v.imu.0.answer.set(Answer::Hangs);
     v.sticks = Some(Sticks::default());

@@ -1,4 +1,4 @@
-//! The flight step is one: a mission flown by the tasks, its inputs recorded, gives the same bits in a [`FlightChain`].
+//! A mission flown by the tasks and replayed from its recorded inputs in a [`FlightChain`] gives the same bits.
 
 use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
@@ -17,7 +17,7 @@ use sophie_sim::scenario::Scenario;
 use sophie_tasks::links::{ArmAngles, GripState, Links};
 use sophie_tasks::start::StartCause;
 
-/// One step as the tasks flew it.
+/// A step as flown by the tasks.
 struct Step {
     at_us: u64,
     batch: Vec<ImuReading>,
@@ -36,11 +36,10 @@ struct Recorded {
     tape: Vec<Step>,
 }
 
-/// Every so often, ms, two arms' readings come too late.
+/// Period of late readings of two arms, ms.
 const LATE_EVERY: usize = 500;
 
-/// Puts readings on the link of which two were measured longer ago than it allows. They are far off: whoever takes them
-/// moves the tilt.
+/// Puts two readings older than the limit on the link; their values are far off, so their use would move the tilt.
 fn send_late_readings(links: &Links) {
     let Some(newest) = links.arms.latest() else {
         return;
@@ -54,7 +53,7 @@ fn send_late_readings(links: &Links) {
     links.arms.send(now, ArmAngles { tilt });
 }
 
-/// What control would find on its links now.
+/// What control would read from its links now.
 fn command(links: &Links) -> Command {
     let Some(message) = links.setpoint.latest() else {
         return Command::default();
@@ -84,7 +83,7 @@ impl Aircraft for Recorded {
         self.stack.step_world(plant);
     }
 
-    // The flight level answers a batch before the clock moves on, and before what else happens in this millisecond.
+    // The flight level answers a batch before the clock advances and before other events of this millisecond.
     fn run_until(&mut self, us: u64) -> Result<(), String> {
         let links = self.stack.links;
         let batch = self.stack.board.imu_batch();
@@ -158,7 +157,7 @@ impl Aircraft for Recorded {
     }
 }
 
-/// The bits of a step's estimate and mix, zeros of either sign apart.
+/// Bits of a step's estimate and mix, with -0 as 0.
 fn bits(attitude: &Attitude, mix: &MixOutput) -> Vec<u32> {
     let Attitude {
         q,

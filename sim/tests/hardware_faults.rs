@@ -1,5 +1,5 @@
-//! Sensors that are broken, missing or the wrong ones: named on the pilot's display, arming refused until they are
-//! healed, and a flight that continues where it can.
+//! Broken, missing or wrong sensors: named on the display, arming refused until they recover, flights continued where
+//! possible.
 
 mod vehicle;
 
@@ -27,7 +27,7 @@ fn ready() -> Vehicle {
     v
 }
 
-/// The arming gesture for 1.2 s; true if rotors may turn then.
+/// Holds the arming gesture for 1.2 s; true if rotors may turn then.
 fn tries_to_arm(v: &mut Vehicle) -> bool {
     v.sticks = Some(Sticks {
         arm_switch: true,
@@ -62,7 +62,7 @@ fn a_sound_vehicle_has_nothing_to_report_from_power_up_on() {
 
 #[test]
 fn arm_sensors_that_take_their_time_to_start_raise_no_alarm() {
-    // A BNO055 answers after 650 ms; its driver has found, reset and configured it after 2.1 s at the latest.
+    // A BNO055 answers after 650 ms; its driver has found, reset and configured it after at most 2.1 s.
     let mut v = Vehicle::new();
     v.arms.0.answer.set(Answer::Refuses);
     for _ in 0..2300 {
@@ -88,14 +88,14 @@ fn what_the_inertial_sensor_answers_instead_of_samples_is_named_while_calibratin
             (v.mode(), v.reason()),
             (Mode::Calibrating, Some(Reason::Check(reason)))
         );
-        // Another fault takes its place, it does not join it.
+        // The new fault replaces the old.
         v.imu.0.answer.set(Answer::Errs(PortError::Corrupt));
         v.run(100);
         assert!(
             v.links.hardware().iter().eq([ArmingInhibit::ImuCorrupt]),
             "{error:?}"
         );
-        // Healed, it calibrates and arms.
+        // After recovery it calibrates and arms.
         v.imu.0.answer.set(Answer::Sound);
         v.run(4000);
         assert!(v.links.hardware().is_empty());
@@ -121,7 +121,7 @@ fn a_silent_inertial_sensor_stays_silent_in_words_too() {
 fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
     for (error, reason) in ERRORS {
         let mut v = Vehicle::flying();
-        // One or two at a time, each quarter of a second: glitches.
+        // One or two at a time every 250 ms: glitches.
         for _ in 0..20 {
             v.imu.0.answer.set(Answer::Errs(error));
             v.until(4, |v| v.imu.0.failed.get() > 0);
@@ -133,7 +133,7 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
             }
         }
         assert_eq!((v.mode(), v.reason()), (Mode::Flight, None));
-        // One each 20 ms: the third is reported, and the report stays, without flapping.
+        // One every 20 ms: the third is reported and stays, without flapping.
         let mut changes = 0;
         let mut before = false;
         for _ in 0..50 {
@@ -148,7 +148,7 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
             }
         }
         assert_eq!((changes, before), (1, true), "{error:?}");
-        // It flies on: every gap was shorter than the limit.
+        // The flight continues: every gap was shorter than the limit.
         assert!(v.motors_run() && v.mode() == Mode::Flight && v.reason().is_none());
         let healed = v.until(300, |v| !holds(v, reason));
         assert!((70..=100).contains(&healed), "{error:?}: {healed} ms");
@@ -175,14 +175,14 @@ fn each_arm_sensor_is_named_and_refuses_arming_until_it_answers() {
             v.arms.1[arm].answer.set(answer);
             let took = v.until(1500, |v| !v.links.hardware().is_empty());
             assert!((950..=1150).contains(&took), "{answer:?}: {took} ms");
-            // The others go on, whatever this one does.
+            // The other sensors continue.
             v.run(2000);
             assert!(v.links.hardware().iter().eq([reason]), "{answer:?} on arm {arm}");
             let tilts = v.links.tilts().values();
             for (other, tilt) in tilts.into_iter().enumerate() {
                 assert_eq!(tilt.is_some(), other != arm, "{answer:?} on arm {arm}: {other}");
             }
-            // Without the arm switch, and with it.
+            // Without and with the arm switch.
             assert_eq!(
                 (v.mode(), v.reason()),
                 (Mode::Disarmed, Some(Reason::Check(reason)))
@@ -235,7 +235,7 @@ fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
         );
         assert!(!tries_to_arm(&mut v), "{answer:?}");
         if answer == Answer::Hangs {
-            // For good: the watchdog resets the board.
+            // Permanent: the watchdog resets the board.
             assert_eq!(v.fed_over(500), 0);
             continue;
         }
@@ -313,7 +313,7 @@ fn what_breaks_in_flight_does_not_end_it() {
         );
         assert_eq!(overruns(&v), before, "{reasons:?}");
         assert_eq!(v.reason(), None, "{reasons:?}");
-        // Once down, it is named and not armed again.
+        // After landing it is named and arming is refused.
         v.sticks = Some(Sticks::default());
         v.until(50, |v| v.mode() == Mode::Disarmed);
         v.run(11_000);

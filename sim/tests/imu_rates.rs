@@ -1,11 +1,11 @@
-//! The flight level with the inertial sensor at each of its rates and ranges, closed loop.
+//! The closed flight level at each rate and range of the inertial sensor.
 
 use sophie_control::wrench::Configuration;
 use sophie_sim::flight_level::{Maneuver, Rig, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_tasks::deadline::TaskId;
 
-/// Leans by 10° to the right for two seconds, and back.
+/// Leans by 10° to the right for 2 s, and back.
 fn lean(t: f64) -> Maneuver {
     Maneuver {
         roll: if (8.0..10.0).contains(&t) { 0.1745 } else { 0.0 },
@@ -32,7 +32,7 @@ fn every_rate_flies_alike_and_hands_on_at_1_khz() {
         let runs = rig.links.timing(TaskId::Imu).runs;
         assert!((19_990..=20_000).contains(&runs), "{rate} Hz: {runs} samples");
         assert!(e.worst_pitch < 1.0 && e.worst_yaw < 3.0, "{rate} Hz: {e:?}");
-        // The answer to the lean, delay and all: what differs is a sample of delay in the part itself.
+        // Response to the lean with its delay; the rates differ by one sample of delay in the part.
         assert!((e.rms_roll - 2.2).abs() < 0.1, "{rate} Hz: {e:?}");
     }
 }

@@ -1,5 +1,4 @@
-//! Missions without a radio, or with a battery at its end, looked into: how the vehicle sinks, how it touches the
-//! ground, what it does on the perch.
+//! Missions without radio or with an empty battery: descent, touchdown, behaviour on the perch.
 
 use std::path::Path;
 
@@ -8,13 +7,13 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{Overrides, Scenario};
 
-/// Height of the centre of mass of a vehicle that stands on the ground, m.
+/// Height of the centre of mass of a vehicle on the ground, m.
 const STANDS: f64 = 0.05;
 
-/// Sink rate at which a touchdown is a crash, m/s.
+/// Sink rate of a crash, m/s.
 const CRASH: f64 = 2.0;
 
-/// Flies a scenario file with the seeds 1 to 3 and hands each flight to `look`.
+/// Flies a scenario file with seeds 1 to 3; `look` checks each flight.
 fn flights(file: &str, look: impl Fn(&FlightRecord)) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../tests/scenarios")
@@ -41,7 +40,7 @@ fn times(record: &FlightRecord, name: &str) -> (f64, f64) {
     (phase.start, phase.end)
 }
 
-/// The modes passed from `from` s on, in order.
+/// Modes in order from `from` s on.
 fn modes(record: &FlightRecord, from: f64) -> Vec<Mode> {
     let mut modes: Vec<Mode> = after(record, from).map(|s| s.mode).collect();
     modes.dedup();
@@ -52,7 +51,7 @@ fn after(record: &FlightRecord, from: f64) -> impl Iterator<Item = &Sample> {
     record.samples.iter().filter(move |s| s.t >= from)
 }
 
-/// A failsafe's descent: level, no crash, and rotors that only stop on the ground.
+/// Failsafe descent: level, no crash, rotors stop on the ground only.
 fn sinks_and_stands(record: &FlightRecord) {
     let sinking: Vec<&Sample> = record
         .samples
@@ -124,7 +123,7 @@ fn a_sinking_vehicle_is_taken_back_with_the_roll_stick() {
     flights("radio-taken-back.toml", |record| {
         let (off, back) = times(record, "radio-off");
         let taken = after(record, back).find(|s| s.mode == Mode::Flight).unwrap();
-        // It had not resumed by itself in the half second in which frames came again before the step ended.
+        // It had not resumed in the 0.5 s with frames before the step ended.
         assert!((0.0..0.5).contains(&(taken.t - back)), "{} s", taken.t - back);
         assert!(taken.t - off > 2.5 && taken.position[2] < -1.5);
         assert!(after(record, off).all(|s| s.attitude[0].abs() < 25f64.to_radians()));
@@ -181,7 +180,7 @@ fn an_empty_battery_ends_on_the_ground_before_the_voltage_collapses() {
             "{} V",
             first.battery_voltage
         );
-        // The pilot steers on: it comes down where it hovered.
+        // The pilot steers: it lands where it hovered.
         let last = record.samples.last().unwrap();
         let drift = (last.position[0] - first.position[0]).hypot(last.position[1] - first.position[1]);
         assert!(drift < 0.5, "{drift} m");

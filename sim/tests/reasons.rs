@@ -1,4 +1,4 @@
-//! A flight that fails says by how much: the quantity that ended it, and what it would have had to be.
+//! The reason of a failed flight names the quantity that ended it and its required value.
 
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Silent};

@@ -1,4 +1,4 @@
-//! The receiver task on a real line: bytes as a UART hands them over, broken in every way that a radio breaks them.
+//! The receiver task on a real line, with every error a radio can make.
 
 use embassy_time::Instant;
 use rand::{Rng, SeedableRng};
@@ -30,7 +30,6 @@ impl Line {
         }
     }
 
-    /// Puts `bytes` on the line and lets `us` pass.
     fn send(&mut self, bytes: &[u8], us: u64) {
         self.line.put(bytes);
         self.us += us;
@@ -67,7 +66,7 @@ fn frames_split_anywhere_are_understood_and_stamped_when_they_are_whole() {
 
 #[test]
 fn a_flipped_bit_anywhere_is_never_obeyed() {
-    // Every single bit of the frame behind its address, which CRSF does not protect.
+    // Every bit behind the frame's address, which CRSF does not protect.
     for bit in 8..26 * 8 {
         let mut line = Line::new();
         line.send(&frame(0.0), 10_000);
@@ -75,7 +74,7 @@ fn a_flipped_bit_anywhere_is_never_obeyed() {
         broken[bit / 8] ^= 1 << (bit % 8);
         line.send(&broken, 10_000);
         assert!(line.state().sticks.throttle < 0.01, "bit {bit}");
-        // A broken length may swallow what follows; within three frames the pilot is heard again.
+        // A broken length may swallow what follows; within three frames reception resumes.
         for _ in 0..4 {
             line.send(&frame(0.9), 10_000);
         }
@@ -93,8 +92,7 @@ fn garbage_gives_no_frame_and_hides_none_for_long() {
         let noise: Vec<u8> = (0..32).map(|_| rng.random()).collect();
         line.send(&noise, 2000);
     }
-    // 8 bits of CRC over 64,000 random bytes: a frame of channels by chance would have to be 26 bytes of the right
-    // type as well.
+    // 8 bits of CRC over 64,000 random bytes: a frame by chance also needs 26 bytes of the right type.
     assert!(line.links.rc.latest().is_none(), "{:?}", line.state());
     for _ in 0..5 {
         line.send(&frame(0.7), 10_000);

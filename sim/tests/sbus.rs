@@ -1,5 +1,4 @@
-//! SBUS: the receiver task on its line, the radio lost by the receiver's own word, and a line that speaks the wrong
-//! protocol.
+//! SBUS: the receiver task, loss of radio by the receiver's flags, and a line with the wrong protocol.
 
 mod vehicle;
 
@@ -34,7 +33,7 @@ fn frame(sticks: &Sticks) -> Frame {
     }
 }
 
-/// A vehicle whose pilot is heard over `line` alone.
+/// A vehicle whose only radio is `line`.
 fn on_line(params: Params) -> (Vehicle, FakeLine) {
     let mut v = Vehicle::with(params);
     v.sticks = None;
@@ -45,7 +44,7 @@ fn on_line(params: Params) -> (Vehicle, FakeLine) {
     (v, line)
 }
 
-/// Puts `bytes` on the line again and again for `ms`.
+/// Repeats `bytes` on the line for `ms`.
 fn send(v: &mut Vehicle, line: &FakeLine, bytes: &[u8], ms: u64) {
     for _ in 0..ms / FRAME_MS {
         line.put(bytes);
@@ -53,7 +52,7 @@ fn send(v: &mut Vehicle, line: &FakeLine, bytes: &[u8], ms: u64) {
     }
 }
 
-/// Armed by switch and gesture over SBUS, throttle at hover; with the bytes that keep it there.
+/// Armed by switch and gesture over SBUS, throttle at hover; with the bytes that hold it.
 fn flying() -> (Vehicle, FakeLine, Frame) {
     let (mut v, line) = on_line(sbus());
     let low = Sticks::default();
@@ -78,7 +77,6 @@ fn sbus_flies_as_crsf_does() {
     assert_eq!(state.errors, 0);
     send(&mut v, &line, &hover.encode(), 5000);
     assert_eq!((v.mode(), v.reason()), (Mode::Flight, None));
-    // The arm switch stops the motors.
     send(&mut v, &line, &frame(&Sticks::default()).encode(), 300);
     assert!(v.motors_stand() && v.mode() == Mode::Disarmed);
 }
@@ -96,7 +94,6 @@ fn what_the_receiver_says_of_its_radio_starts_the_failsafe_although_frames_go_on
         assert_eq!(v.mode(), Mode::Flight, "a gap of half a second is flown over");
         send(&mut v, &line, &lost.encode(), 50);
         assert_eq!((v.mode(), v.reason()), (Mode::Failsafe, Some(Reason::RADIO_LOST)));
-        // And back.
         send(&mut v, &line, &hover.encode(), 300);
         assert!(v.links.rc.fresh().is_some() && v.reason() != Some(Reason::RADIO_LOST));
     }
@@ -115,7 +112,7 @@ fn a_line_that_turns_to_crsf_is_a_lost_radio() {
     assert!(v.links.rc.latest().unwrap().value.sticks.throttle < 0.51);
 }
 
-/// Sticks of all kinds, and switches in every position.
+/// Random sticks and switches.
 fn any_sticks(rng: &mut Pcg64Mcg) -> Sticks {
     Sticks {
         roll: rng.random_range(-1.0..1.0),
@@ -153,7 +150,7 @@ fn noise_gives_no_sticks_and_the_pilot_is_heard_behind_it() {
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let (mut v, line) = on_line(sbus());
     for _ in 0..100_000 {
-        // Bursts with and without silence between, each starting as a frame does: the worst that noise can do.
+        // Bursts with and without silence between, each with a frame's start: the worst case of noise.
         let mut noise: Vec<u8> = (0..25).map(|_| rng.random()).collect();
         noise[0] = 0x0F;
         line.put(&noise);
@@ -210,7 +207,7 @@ fn a_transmitter_switched_off_in_hover_ends_on_the_ground() {
             .unwrap()
             .start;
         let failsafe = record.samples.iter().find(|s| s.mode == Mode::Failsafe).unwrap();
-        // The last good frame is up to 14 ms old when the transmitter falls silent.
+        // The last good frame is up to 14 ms old when the transmitter goes off.
         let after = failsafe.t - off;
         assert!((0.48..0.53).contains(&after), "{after} s");
         let last = record.samples.last().unwrap();

@@ -1,4 +1,4 @@
-//! What happens when a link falls silent: motors stop by themselves.
+//! A link that falls silent stops the motors.
 
 use embassy_time::Instant;
 use sophie_control::params::Params;

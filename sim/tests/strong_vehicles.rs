@@ -1,10 +1,10 @@
-//! The pilot on vehicles of other strength than the paper's: he must not be what fails.
+//! The pilot on vehicles of other strength: the flight must not fail by him.
 
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::{Overrides, Scenario};
 
-/// The flight of a vehicle of the given mass (kg) and largest thrust of a rotor (N), and its thrust to weight.
+/// A flight with this mass (kg) and largest rotor thrust (N), and its thrust to weight.
 fn flown(mass: f64, thrust: f64, steps: &str) -> (FlightRecord, f64) {
     let text = format!("{steps}\n[vehicle]\nmass_kg = {mass}\nthrust_max_n = {thrust}\n");
     let scenario = Scenario::parse(&text, "strong.toml", &Overrides::default()).unwrap();

@@ -1,4 +1,4 @@
-//! NOR flash in memory: bits go from 1 to 0 only, pages are erased as a whole, and power can be cut in the middle.
+//! NOR flash in memory: bits change from 1 to 0 only, pages are erased whole, power can be cut within a step.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use embedded_storage_async::nor_flash::{
 pub struct Cells {
     /// Contents.
     pub bytes: Vec<u8>,
-    /// Words written since their erase: a word of 32 bytes carries a checksum and takes one write only.
+    /// Words written since their erase: a 32-byte word with its checksum takes one write only.
     written: Vec<bool>,
     /// Words written and pages erased so far.
     pub steps: usize,
@@ -20,7 +20,7 @@ pub struct Cells {
     pub erases: usize,
     /// Reads so far.
     pub reads: usize,
-    /// The step in the middle of which power goes.
+    /// The step within which power is cut.
     pub cut_at: Option<usize>,
     /// Power is off.
     pub dead: bool,
@@ -30,7 +30,7 @@ pub struct Cells {
     pub violations: Vec<String>,
 }
 
-/// Flash whose words have `WRITE` bytes and whose pages have `PAGE`.
+/// Flash with words of `WRITE` and pages of `PAGE` bytes.
 #[derive(Clone)]
 pub struct Flash<const WRITE: usize, const PAGE: usize>(pub Rc<RefCell<Cells>>);
 
@@ -69,7 +69,7 @@ impl<const WRITE: usize, const PAGE: usize> Flash<WRITE, PAGE> {
         })))
     }
 
-    /// Another flash with the same contents, power on again.
+    /// A powered copy with the same contents.
     pub fn copy(&self) -> Self {
         let cells = Cells {
             cut_at: None,
@@ -123,7 +123,7 @@ impl<const WRITE: usize, const PAGE: usize> NorFlash for Flash<WRITE, PAGE> {
             }
             cells.steps += 1;
             cells.erases += 1;
-            // An erase cut short has reached a part of the page.
+            // A cut erase has reached a part of the page.
             let end = if cut { page + PAGE / 2 } else { page + PAGE };
             cells.bytes[page..end].fill(0xFF);
             cells.written[page / WRITE..end / WRITE].fill(false);
@@ -144,7 +144,7 @@ impl<const WRITE: usize, const PAGE: usize> NorFlash for Flash<WRITE, PAGE> {
                 return Err(FlashError);
             }
             let at = start + i * WRITE;
-            // A word cut short has taken a part of its bits.
+            // A cut write has reached a part of the word.
             let cut = cells.cut_at == Some(cells.steps);
             cells.steps += 1;
             if WRITE > 8 && cells.written[at / WRITE] {

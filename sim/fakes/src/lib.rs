@@ -1,4 +1,4 @@
-//! What tests give to the tasks and drivers in place of hardware: scripted ports, and a flash whose power fails.
+//! Test doubles for hardware: scripted ports, and a flash whose power fails.
 
 mod flash;
 mod ports;

@@ -1,4 +1,4 @@
-//! The whole effectiveness inverted where the arms are at this very moment.
+//! The whole effectiveness inverted at the arms' present tilt.
 
 use sophie_control::desaturation::Patterns;
 use sophie_control::effectiveness::{Effectiveness, Geometry, Inverse, Load};
@@ -12,11 +12,11 @@ use crate::law::{Law, Situation};
 /// Damping ratio of the arm mode in [`DynamicTilt`] (assumed).
 const ARM_DAMPING: f32 = 0.15;
 
-/// Motor lag and the arm's bending mode: where one arm is now.
+/// Motor lag and bending mode of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct DynamicTilt {
     motor: LowPass,
-    /// Thrust whose static tilt the arm has now, N.
+    /// Thrust with the arm's present tilt as static tilt, N.
     load: f32,
     speed: f32,
     omega: f32,
@@ -40,7 +40,7 @@ impl DynamicTilt {
     }
 }
 
-/// T = M(α)⁻¹ w with the tilt α that a model of motor lag and arm mode gives.
+/// T = M(α)⁻¹ w, with α from a model of motor lag and arm mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frozen {
     geometry: Geometry,
@@ -49,7 +49,7 @@ pub struct Frozen {
 }
 
 impl Frozen {
-    /// The law for the vehicle that the parameters describe, with idle rotors.
+    /// The law for the vehicle of the parameters, idle rotors.
     pub fn new(configuration: Configuration, p: &Params) -> Self {
         Self {
             geometry: Geometry::from_params(p, configuration),

@@ -1,4 +1,4 @@
-//! What an allocation of its own must say, and what is put around it.
+//! The interface of an allocation law, and the limits around it.
 
 use sophie_control::mixer::{Allocation, Conditions, Limits, Mix, Split};
 use sophie_control::params::Params;
@@ -10,7 +10,7 @@ use sophie_control::wrench::{PerArm, Wrench};
 pub struct Situation<'a> {
     /// The arms' modelled tilt and the low-passed thrusts.
     pub tilt: &'a TiltModel,
-    /// Yaw is asked for, and the thrust is large enough for it.
+    /// Yaw is asked for, and the thrust suffices for it.
     pub yaw: bool,
     /// Battery voltage over nominal, 0.5..1.
     pub battery_ratio: f32,
@@ -18,14 +18,14 @@ pub struct Situation<'a> {
 
 /// Splits a wrench into patterns of thrust.
 pub trait Law {
-    /// The patterns for the wrench `w` (N, N·m, finite), and the share of yaw that has authority.
+    /// Patterns for the wrench `w` (N, N·m, finite), and the share of yaw with authority.
     fn split(&self, w: Wrench, s: &Situation<'_>) -> Split;
 
-    /// Takes the thrusts (N) that were sent and the step time `dt` (s).
+    /// Takes the sent thrusts (N) and the step time `dt` (s).
     fn follow(&mut self, _thrusts: &PerArm<f32>, _dt: f32) {}
 }
 
-/// A law as an allocation, with the limits and the tilt model of the one that flies.
+/// A law with the limits and tilt model of the allocation that flies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithLimits<L> {
     law: L,

@@ -1,7 +1,7 @@
-//! The allocations that `--mixer` and scenario files choose from: three that no board flies, and the one that flies.
+//! The allocations of `--mixer` and scenario files: three for study, and the one that flies.
 //!
-//! Each is a [`Law`] that splits a wrench into patterns of thrust; [`WithLimits`] puts the limits of rotors and yaw and the
-//! model of the arms' tilt around it, the same that the flexible allocation has.
+//! Each is a [`Law`] that splits a wrench into patterns of thrust; [`WithLimits`] adds the limits of rotors and yaw and
+//! the arms' tilt model of the flexible allocation.
 
 #![no_std]
 
@@ -25,11 +25,11 @@ use sophie_control::wrench::{Configuration, PerArm, Wrench};
 pub enum Variant {
     /// The arms are taken as stiff.
     Rigid,
-    /// Algorithm 1 in the printed matrix, its singular yaw row mended: tilt enters the thrust row only.
+    /// Algorithm 1 with the printed matrix, its singular yaw row corrected: tilt enters the thrust row only.
     Paper,
-    /// The whole effectiveness inverted at the frozen arm angle: for study, it limit-cycles.
+    /// The whole effectiveness inverted at the frozen arm angle; limit-cycles.
     Frozen,
-    /// The quasi-static Jacobian about the low-passed thrust: what flies.
+    /// The quasi-static Jacobian about the low-passed thrust: the one that flies.
     #[default]
     Flexible,
 }

@@ -14,7 +14,7 @@ pub struct Rigid {
 }
 
 impl Rigid {
-    /// The law for the vehicle that the parameters describe.
+    /// The law for the vehicle of the parameters.
     pub fn new(configuration: Configuration, p: &Params) -> Self {
         Self {
             geometry: Geometry::from_params(p, configuration),

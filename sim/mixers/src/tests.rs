@@ -1,4 +1,4 @@
-//! What each allocation gives and where it fails.
+//! Results and failures of each allocation.
 
 extern crate std;
 
@@ -55,7 +55,7 @@ fn the_rigid_mixer_yaws_too_much_by_one_plus_c() {
     let model = ArmModel::from_params(&p);
     let g = Geometry::from_params(&p, Configuration::B);
     let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
-    // C = 1 - (dM/dδ) / (dM₀/dδ), along the yaw pattern about hover, with the arms following and without.
+    // C = 1 - (dM/dδ) / (dM₀/dδ), along the yaw pattern about hover, with and without following arms.
     let yaw = |step: f32, tilt: &dyn Fn(f32) -> f32| {
         let thrusts = YAW.map(|sign| 4.425 + step * sign);
         g.wrench(&thrusts, &thrusts.map(tilt)).yaw
@@ -71,7 +71,7 @@ fn the_rigid_mixer_yaws_too_much_by_one_plus_c() {
 
 #[test]
 fn the_frozen_inverse_limit_cycles_where_c_is_large() {
-    // A loop of motor lag and static arm around the allocation alone, with a constant small yaw demand.
+    // Motor lag and static arm around the allocation, with a constant small yaw demand.
     let swing = |variant, gain_k| {
         let p = Params {
             gain_k,
@@ -129,7 +129,7 @@ fn yaw_beyond_its_limit_is_reported_as_not_given() {
 
 #[test]
 fn yaw_moves_no_rotor_by_more_than_its_limit() {
-    // The rotors have room for 2.56 N (flexible) and 3.1 N (stiff) of yaw each: only the limit holds it back.
+    // The rotors have room for 2.56 N (flexible) and 3.1 N (rigid) of yaw each: only the limit acts.
     let limit = Params::default().yaw_thrust_max;
     for (variant, yaw) in [
         (Variant::Flexible, 0.8),

@@ -1,4 +1,4 @@
-//! Keeps what the report needs: samples, phases, events, grips, and a digest of it all.
+//! Records samples, phases, events and grips, with a digest of them.
 
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
@@ -82,7 +82,7 @@ impl Recorder {
         }
     }
 
-    /// Looks at the flight now; the pilot's throttle stick stands at `throttle`, 0..1.
+    /// Records the present moment, the pilot's throttle at `throttle`, 0..1.
     pub fn step(&mut self, now: &Snapshot<'_, impl Aircraft>, throttle: f64, observer: &mut dyn Observer) {
         let (t, plant, stack) = (now.t(), now.plant, now.stack);
         if now.step.map(|(i, _)| i) != self.current.as_ref().map(|c| c.index) {
@@ -180,7 +180,7 @@ impl Recorder {
         self.phases.push(current.phase);
     }
 
-    /// Takes changes of mode, reasons and proofs of grip from the stack.
+    /// Records changes of mode, reasons and proofs of grip.
     fn watch_stack(&mut self, t: f64, plant: &Plant, stack: &impl Aircraft, observer: &mut dyn Observer) {
         if stack.resets() != self.resets
             && let Some(reset) = stack.reset()
@@ -246,7 +246,7 @@ impl Recorder {
         self.events.push(event);
     }
 
-    /// Adds a sample to the phase under way.
+    /// Adds a sample to the present phase.
     fn account(&mut self, s: &Sample) {
         let Some(current) = &mut self.current else { return };
         current.samples += 1;

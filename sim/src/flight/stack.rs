@@ -1,4 +1,4 @@
-//! The flight stack on the simulated board: every task spawned on the virtual executor, and thrown away by a reset.
+//! The flight stack on the simulated board: all tasks on the virtual executor, dropped at a reset.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -21,7 +21,7 @@ use crate::scenario::Scenario;
 
 /// The stack of one flight.
 pub struct Stack {
-    /// Nothing runs while it is `None`; with it the time of the start, µs after power-up.
+    /// Executor and start time (µs after power-up); `None` while nothing runs.
     running: Option<(VirtualTime, u64)>,
     /// The board that it runs on.
     pub board: &'static Board,
@@ -30,7 +30,7 @@ pub struct Stack {
     params: Params,
     mixer: Variant,
     configuration: Configuration,
-    /// The last reset and how many there were.
+    /// The last reset and the count of resets.
     reset: Option<Reset>,
     resets: u32,
     /// Missed deadlines of the runs before.
@@ -41,7 +41,7 @@ pub struct Stack {
 impl Stack {
     /// Powers the board up and spawns the tasks.
     ///
-    /// Board and links are leaked: tasks borrow them as `'static`, as they do statics on a real board.
+    /// Board and links are leaked: tasks borrow them as `'static`, like statics of a real board.
     pub fn new(scenario: &Scenario, rng: &mut Pcg64Mcg) -> Self {
         let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, rng)));
         let params = calibrated(scenario.params, board);
@@ -61,7 +61,7 @@ impl Stack {
         stack
     }
 
-    /// The tasks begin, `us` µs after power-up.
+    /// Spawns the tasks `us` µs after power-up.
     fn spawn(&mut self, us: u64) {
         let (links, board) = (self.links, self.board);
         let (variant, configuration) = (self.mixer, self.configuration);
@@ -135,13 +135,13 @@ impl Aircraft for Stack {
             .latest()
             .map(|a| a.value.q.to_euler())
             .unwrap_or_default();
-        // The wanted heading comes as what it is ahead of the present one.
+        // The wanted heading arrives relative to the present one.
         let target = links.target.latest().map(|v| {
             let [roll, pitch, ahead] = aim::angles(v.value);
             let heading = math::wrap_pi(estimate.2 + ahead as f32);
             [roll, pitch, f64::from(heading)]
         });
-        // A held pressure is none that is measured; held forces are what the servos still stand for.
+        // Held pressures do not count as measured; held forces are what the servos still hold.
         let pressure = match links.contact.newest() {
             Some(Newest::Fresh(contact)) => wide(contact.value.arms.map(|arm| arm.unwrap_or(0.0))),
             Some(Newest::Held(_)) | None => [f64::NAN; 4],
@@ -166,7 +166,7 @@ impl Aircraft for Stack {
         self.board.actuators().motors
     }
 
-    // What outlives it is what was kept, unless power went too.
+    // Retained memory survives, except a loss of power.
     fn cut(&mut self, cause: StartCause, step: usize, at: f64) {
         self.overruns = self.overruns();
         self.running = None;
@@ -207,7 +207,7 @@ impl Aircraft for Stack {
     }
 }
 
-/// The parameters of this very board: its accelerometer was calibrated on a bench.
+/// The board's parameters, with its bench-calibrated accelerometer.
 fn calibrated(params: Params, board: &Board) -> Params {
     let [accel_bias_x, accel_bias_y, accel_bias_z] = board.accel_bias;
     Params {
@@ -229,7 +229,7 @@ mod tests {
         assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
         stack.run_until(50_000).unwrap();
         assert!(stack.belief().pressure.iter().all(|p| p.is_finite()));
-        // The newest conversion is of 21 ms ago.
+        // The newest conversion is 21 ms old.
         let contact = stack.links.contact.latest().unwrap();
         let old = embassy_time::Instant::now() - embassy_time::Duration::from_millis(21);
         stack.links.contact.send(old, contact.value);

@@ -6,14 +6,14 @@ use super::guidance::Vertical;
 use super::mission::{HEADING, Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 
-/// Share of the roll angle at which a side counts as reached, and by which the stick goes beyond it: the last
-/// degree of the vehicle's lag would else never come.
+/// Share of the roll angle at which a side is reached, and by which the stick exceeds it: the vehicle's lag would never
+/// close the last degree.
 const ROLL_REACHED: f64 = 0.95;
 const ROLL_LEAD: f64 = 1.05;
-/// Distance from the spot, m, and speed, m/s, at which the roll manoeuvre has been recovered from.
+/// Distance from the spot (m) and speed (m/s) after which the roll manoeuvre is over.
 const RECOVERED: f64 = 0.3;
 const RECOVERED_SPEED: f64 = 0.3;
-/// Distance from a point, m, and speed, m/s, at which it has been reached.
+/// Distance from a point (m) and speed (m/s) at which it is reached.
 const REACHED: f64 = 0.25;
 const REACHED_SPEED: f64 = 0.25;
 
@@ -42,7 +42,7 @@ impl Mission {
             _ => (),
         }
         let side = if self.phase == Phase::Right { 1.0 } else { -1.0 };
-        // A failsafe rolls no more: what it comes to is waited for over the spot.
+        // No roll in a failsafe: its end is awaited over the spot.
         if self.phase == Phase::Fly || self.trouble.is_some() {
             let wish = self.go_to(v, self.spot, self.height, dt);
             let off = (v.seen.position.truncate() - self.spot).length();

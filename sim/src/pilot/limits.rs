@@ -1,17 +1,17 @@
-//! How long each step may take before the pilot gives the mission up.
+//! Time limits of the steps.
 
 use crate::scenario::Step;
 
 /// Longest time for `step`, s.
 pub fn of(step: &Step) -> f64 {
     match *step {
-        // Calibration at rest is part of it.
+        // Includes the calibration at rest.
         Step::Arm => 30.0,
         Step::TakeOff { height } => 12.0 + 4.0 * height,
         Step::Hover { seconds } => seconds + 1.0,
         Step::Roll { seconds, .. } => 2.0 * seconds + 30.0,
         Step::FlyToPipe => 90.0,
-        // With room for going around a few times.
+        // With room for several tries.
         Step::Touch => 180.0,
         Step::Clamp { .. } => 60.0,
         Step::Perch { .. } => 120.0,
@@ -21,9 +21,9 @@ pub fn of(step: &Step) -> f64 {
         Step::FlyTo { .. } => 120.0,
         Step::Land => 90.0,
         Step::Disarm => 10.0,
-        // The display must come back.
+        // The display must return.
         Step::RadioOff { seconds } => seconds + 5.0,
-        // Calibration at rest is part of it where power was lost.
+        // Includes the calibration at rest after a loss of power.
         Step::Reset { after, off, .. } => after + off + 20.0,
     }
 }

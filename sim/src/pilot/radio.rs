@@ -1,5 +1,4 @@
-//! Without a vehicle that answers: the transmitter off for a while, a vehicle taken back from its failsafe, a board that
-//! restarts.
+//! A vehicle that does not answer: transmitter off, recovery from its failsafe, restart of the board.
 
 use sophie_control::mode::{Mode, Reason};
 
@@ -7,14 +6,13 @@ use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 use crate::scenario::Step;
 
-/// Roll stick that says "I have you", share of its travel: beyond the 0.3 that ends the failsafe.
+/// Roll stick that takes the vehicle over, share of its travel: beyond the 0.3 that ends the failsafe.
 const TAKE_OVER: f64 = 0.45;
 /// Time for which the display must show a restarted vehicle, s.
 const SHOWN: f64 = 1.0;
 
 impl Mission {
-    /// Sticks let go, the throttle where it is: whatever comes back must find the vehicle as it was.
-    /// `throttle` is where that stick is.
+    /// Sticks centred, throttle held at its position `throttle`: the link returns to unchanged sticks.
     pub(super) fn radio_off(&mut self, v: &View<'_>, seconds: f64, throttle: f64) -> Progress {
         if self.phase == Phase::Start {
             self.throttle = throttle;
@@ -34,8 +32,8 @@ impl Mission {
         }
     }
 
-    /// Sticks let go, the throttle and the switches where they are, until the vehicle says that it is disarmed; nothing
-    /// before `over` s can be it.
+    /// Sticks centred, throttle and switches held, until the vehicle reports disarmed; reports before `over` s do not
+    /// count.
     pub(super) fn reset(&mut self, v: &View<'_>, over: f64, throttle: f64, dt: f64) -> Progress {
         if self.phase == Phase::Start {
             self.throttle = throttle;
@@ -53,7 +51,7 @@ impl Mission {
         }
     }
 
-    /// The sticks with which the pilot takes a vehicle back that sinks because it has not heard of him.
+    /// Sticks that take back a vehicle sinking without radio.
     pub(super) fn take_over(step: &Step, v: &View<'_>, wish: StickTarget) -> StickTarget {
         let flies = matches!(step, Step::Hover { .. } | Step::FlyTo { .. });
         if flies && v.mode == Some(Mode::Failsafe) && v.shows(Reason::RADIO_LOST) {

@@ -1,21 +1,21 @@
-//! When the vehicle is lost: judged on the truth, not on what the pilot sees.
+//! Detects a lost vehicle from the truth, not from the pilot's view.
 
 use core::f64::consts::PI;
 
 use super::{Seen, wrap};
 
-/// Tilt beyond which the vehicle is lost, rad.
+/// Tilt limit, rad.
 const TILT_MAX: f64 = 80.0 * PI / 180.0;
 /// Depth below the ground, m.
 const DEPTH_MAX: f64 = 0.5;
 /// Distance from the take-off point, m.
 const DISTANCE_MAX: f64 = 30.0;
-/// Heading error, rad, and turn rate, rad/s, beyond which yaw is lost.
+/// Limits of heading error, rad, and turn rate, rad/s.
 const HEADING_MAX: f64 = 60.0 * PI / 180.0;
 const TURN_MAX: f64 = 150.0 * PI / 180.0;
 /// Time for which they must last, s: a touch may twitch the nose.
 const YAW_TIME: f64 = 0.15;
-/// Time over which the turn rate is averaged, s.
+/// Averaging time of the turn rate, s.
 const TURN_TIME: f64 = 0.1;
 
 /// The referee.

@@ -1,4 +1,4 @@
-//! The pilot's sticks, which move with a limited bandwidth, and switches, which are flipped at once.
+//! Sticks with a limited bandwidth, switches without.
 
 use core::f64::consts::PI;
 
@@ -26,12 +26,12 @@ pub struct StickTarget {
 pub struct StickDynamics {
     bandwidth: f64,
     arms: ArmChoice,
-    /// Where the sticks are: roll, pitch, yaw, throttle.
+    /// Positions: roll, pitch, yaw, throttle.
     sticks: [f64; 4],
 }
 
 impl StickDynamics {
-    /// Sticks with a bandwidth of `bandwidth` Hz; the switch for the arms is set before the flight.
+    /// Sticks with a bandwidth of `bandwidth` Hz; the arms' switch is set before the flight.
     pub fn new(bandwidth: f64, arms: ArmChoice) -> Self {
         Self {
             bandwidth,
@@ -52,7 +52,7 @@ impl StickDynamics {
         let lows = [-1.0, -1.0, -1.0, 0.0];
         for ((stick, goal), low) in self.sticks.iter_mut().zip(goals).zip(lows) {
             *stick += k * (goal.clamp(low, 1.0) - *stick);
-            // A finger that is as good as there is there: the gesture and the throttle's stop are reached.
+            // Close enough is there: gesture and throttle stop are reached.
             if (goal - *stick).abs() < 1e-3 {
                 *stick = goal.clamp(low, 1.0);
             }

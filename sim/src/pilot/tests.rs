@@ -1,4 +1,4 @@
-//! The pilot alone, on a vehicle just good enough.
+//! The pilot alone, on a simple vehicle.
 
 use glam::{DVec2, DVec3};
 use sophie_control::mode::Mode;
@@ -40,7 +40,7 @@ fn a_hover_stays_within_15_cm_rms_in_light_gusts_and_steady_wind() {
             if out.events.contains(&StepEvent::Began(2)) {
                 (spot, began) = (toy.seen.position, toy.seen.t);
             }
-            // Once the wind has been trimmed out.
+            // After the wind has been trimmed out.
             if began > 0.0 && toy.seen.t > began + 15.0 {
                 let e = toy.seen.position - spot;
                 sum += e * e;
@@ -319,7 +319,7 @@ fn every_step_ends_on_a_failsafe_with_its_reason() {
         Step::Land,
         Step::Disarm,
     ]);
-    // Before the vehicle is armed nothing needs a failsafe.
+    // Before arming no failsafe occurs.
     for (index, step) in mission.iter().enumerate().skip(1) {
         for why in ["battery critical", "radio lost"] {
             let mut toy = Toy::new(&scenario(1, &mission));
@@ -332,7 +332,7 @@ fn every_step_ends_on_a_failsafe_with_its_reason() {
                     .contains(&StepEvent::Began(index))
                     .then_some(toy.seen.t);
                 since = since.or(began);
-                // On the ground the rotors just stop: the take-off's failsafe is one in the air.
+                // On the ground the rotors stop: the take-off's failsafe is one in the air.
                 let up = !matches!(step, Step::TakeOff { .. }) || toy.seen.position.z < -1.0;
                 let due = up && since.is_some_and(|since| toy.seen.t > since + 0.3)
                     || toy.deaf
@@ -351,7 +351,7 @@ fn every_step_ends_on_a_failsafe_with_its_reason() {
             let outcome = toy.pilot.outcome().cloned();
             let outcome = outcome.unwrap_or_else(|| panic!("{} goes on under {why}", step.name()));
             println!("{:12} {why:16} {took:5.1} s  {}", step.name(), outcome.reason);
-            // What ends on the ground anyway may end well; a perch is kept, and left for nothing but a sound vehicle.
+            // Steps that end on the ground may end well; a perch is kept and left only with a sound vehicle.
             let ends_well = matches!(step, Step::Land | Step::Disarm);
             assert!(
                 outcome.accomplished || outcome.reason.contains(why),

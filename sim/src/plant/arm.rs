@@ -84,7 +84,7 @@ impl ArmSpec {
         let nominal_linear = (gain_k * (a1 + a2 * infill)).to_radians();
         let nominal_quadratic = (gain_k * (b1 + b2 * infill)).to_radians();
         let (linear, quadratic) = (nominal_linear * gain, nominal_quadratic * gain);
-        // Limited as the spring is: the knee of a light vehicle's arm may lie below hover.
+        // Limited as the spring is: an arm stiff at 4.425 N may still be soft in the hover of a light vehicle.
         let slope = (linear + 2.0 * quadratic * HOVER_THRUST).max(LEAST_COMPLIANCE * linear);
         let stiffness = ARM_LENGTH / slope;
         let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;

@@ -8,7 +8,7 @@ const RESISTANCE: f64 = 0.035;
 const CELLS: f64 = 4.0;
 /// Current of the electronics, A (assumed).
 const ELECTRONICS: f64 = 0.6;
-/// Open voltage of a cell, V, at 0, 10, 20, ... 100 % of charge (typical LiPo).
+/// Open voltage per cell, V, at 0, 10, 20, ... 100 % of charge (typical LiPo).
 const OPEN_VOLTAGE: [f64; 11] = [3.27, 3.69, 3.73, 3.77, 3.80, 3.84, 3.87, 3.95, 4.02, 4.11, 4.20];
 
 /// The battery's state.

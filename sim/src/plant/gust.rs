@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 const FORCE_TIME: f64 = 1.0;
 /// Correlation time of the moment, s (assumed).
 const MOMENT_TIME: f64 = 0.3;
-/// Steps of the plant for one step of the gust: 125 Hz is fast against both times.
+/// Plant steps per gust step: 125 Hz is fast against both times.
 const DIVIDER: u32 = 16;
 
 /// A gust with its own random numbers.

@@ -1,4 +1,4 @@
-//! The paper's vehicle in light air before its pipe: what a scenario file starts from.
+//! Defaults of a scenario file: the paper's vehicle in light air before its pipe.
 
 use std::sync::OnceLock;
 
@@ -12,7 +12,7 @@ use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
 
-/// The default mission as a scenario file, with every key at its default.
+/// The default mission as a scenario file, every key at its default.
 pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");
 
 impl Default for Vehicle {
@@ -77,12 +77,12 @@ impl Scenario {
     pub fn default_mission_with(overrides: &Overrides) -> Self {
         match Self::parse(MISSION, "mission.toml", overrides) {
             Ok(scenario) => scenario,
-            // Not reachable: a test parses the embedded text, and overrides cannot fail.
+            // A test parses the embedded text, and overrides cannot fail.
             Err(error) => unreachable!("{error}"),
         }
     }
 
-    /// Every setting at its default and nothing to do.
+    /// All defaults, without steps.
     pub(super) fn empty() -> Self {
         Self {
             name: String::new(),
@@ -100,7 +100,7 @@ impl Scenario {
     }
 }
 
-/// The steps of the default mission, for files that name none.
+/// Steps of files that name none.
 pub(super) fn default_steps() -> Vec<Step> {
     static STEPS: OnceLock<Vec<Step>> = OnceLock::new();
     STEPS.get_or_init(|| read_steps::steps_of(MISSION)).clone()

@@ -1,4 +1,4 @@
-//! Scenarios from files, and what a command line changes in them.
+//! Scenarios from files, with overrides of the command line.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,13 +12,13 @@ use super::Scenario;
 use super::error::{Place, ScenarioError};
 use super::read::Source;
 
-/// No scenario is this long; a device or a wrong file may be.
+/// Larger than any scenario; refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Settings of the command line; they win over the file's.
+/// Settings of the command line, which override the file's.
 ///
-/// The values must be within the ranges of [`keys`](super::keys). The stack's parameters follow them as
-/// they follow the file's vehicle; the file's `[params]` wins over both.
+/// Values must be within the ranges of [`keys`](super::keys). The stack's parameters follow them like the file's
+/// vehicle; the file's `[params]` overrides both.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Infill, %.
@@ -52,10 +52,10 @@ impl Overrides {
 }
 
 impl Scenario {
-    /// Reads a scenario file; without a `name` it is called after the file.
+    /// Reads a scenario file; the default `name` is the file's.
     ///
     /// # Errors
-    /// One line that names file, line, key, value and what is allowed.
+    /// One line: file, line, key, value, what is allowed.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
         let unreadable = |why: String| ScenarioError::Unreadable {
@@ -97,7 +97,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Reads the text of a scenario; `file` is its name for messages.
+    /// Parses a scenario; `file` is its name for messages.
     ///
     /// # Errors
     /// As [`Scenario::load`].

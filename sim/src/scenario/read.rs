@@ -1,7 +1,7 @@
-//! From the text of a scenario file to a [`Scenario`].
+//! From a scenario's text to a [`Scenario`].
 //!
-//! The document is walked by hand against the tables in [`keys`](super::keys) and [`steps`](super::steps)
-//! rather than through derived structs: only so can every message name key, value and what is allowed.
+//! The document is read against the tables in [`keys`](super::keys) and [`steps`](super::steps), not through derived
+//! structs: every message must name key, value and what is allowed.
 
 use core::ops::Range as Span;
 
@@ -198,7 +198,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// A pipe must leave room below it, whichever of its two keys the file sets.
+    /// A pipe must leave room below it, whichever of its keys is set.
     fn pipe_clear_of_the_ground(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         let lowest = scenario.world.pipe_diameter + 0.2;
         if scenario.world.pipe_top >= lowest {
@@ -222,7 +222,7 @@ pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Optio
     content.get_ref().as_table()
 }
 
-/// Builders tell the stack what they built: the parameters follow the vehicle unless the file says otherwise.
+/// The stack's parameters follow the vehicle unless the file sets them.
 fn believe_the_vehicle(scenario: &mut Scenario) {
     let Scenario { params, vehicle, .. } = scenario;
     params.infill = vehicle.infill as f32;
@@ -244,7 +244,7 @@ fn believe_the_vehicle(scenario: &mut Scenario) {
     params.servo_range = servo.range as f32;
 }
 
-/// The entries as the file has them, so that the first mistake is the one reported.
+/// Entries in the file's order: the first mistake is reported.
 pub(super) fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usize>, &'t Value<'i>)> {
     let mut entries: Vec<_> = table
         .iter()

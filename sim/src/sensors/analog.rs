@@ -1,4 +1,4 @@
-//! The battery's voltage divider and current sensor in front of the converter.
+//! Battery voltage divider and current sensor.
 
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
@@ -7,15 +7,15 @@ use rand_distr::{Distribution, StandardNormal, Uniform};
 const REFERENCE: f64 = 3.3;
 /// Volts at a pin per count.
 pub const PIN_VOLTS_PER_COUNT: f64 = REFERENCE / 4095.0;
-/// Ratio of the voltage divider (reference board: 10 kΩ over 1 kΩ).
+/// Divider ratio (reference board: 10 kΩ over 1 kΩ).
 const DIVIDER: f64 = 11.0;
-/// Current for each volt of the sensor, A/V (reference board).
+/// Current sensor, A/V (reference board).
 const AMPS_PER_VOLT: f64 = 40.0;
-/// Largest error of the divider and of the current sensor's gain.
+/// Largest gain error of divider and current sensor.
 const GAIN_ERROR: (f64, f64) = (0.01, 0.03);
 /// Largest offset of the current sensor, A.
 const OFFSET: f64 = 0.3;
-/// RMS noise, counts: motors on the same supply are heard.
+/// RMS noise, counts: motors share the supply.
 const NOISE: f64 = 2.0;
 
 /// Volts of battery per count.
@@ -32,7 +32,7 @@ pub struct BatteryInputs {
 }
 
 impl BatteryInputs {
-    /// The inputs of a board out of the bag that `rng` holds.
+    /// The inputs of a board with errors drawn from `rng`.
     pub fn new(rng: &mut impl Rng) -> Self {
         let mut within = |size: f64| Uniform::new(-size, size).map_or(0.0, |u| u.sample(rng));
         Self {

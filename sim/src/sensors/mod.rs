@@ -1,4 +1,4 @@
-//! What the sensors make of the truth.
+//! Sensor models.
 
 pub mod analog;
 pub mod arm_imu;

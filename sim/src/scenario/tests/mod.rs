@@ -1,4 +1,4 @@
-//! Scenarios that are good are read right; what is refused is in `refusals`.
+//! Reading of good scenarios; refusals are in `refusals`.
 
 mod refusals;
 
@@ -49,7 +49,7 @@ fn the_default_mission_states_the_defaults() {
         "arm take-off hover roll fly-to-pipe touch perch hold release fly-to land disarm"
     );
     assert_eq!(mission.steps.get(6), Some(&Step::Perch { throttle: 0.3 }));
-    // A file without steps flies the same ones, and a step without numbers has the same numbers.
+    // Files without steps, and steps without numbers, have the defaults.
     assert_eq!(parse("").unwrap().steps, mission.steps);
     let bare: Vec<String> = names.iter().map(|n| format!("{{ do = \"{n}\" }}")).collect();
     assert_eq!(
@@ -190,7 +190,7 @@ fn a_vehicle_that_loads_can_be_stepped() {
         for key in KEYS.iter().filter(|key| key.name.starts_with("vehicle.")) {
             let mut any = |range: &keys::Range| rng.random_range(range.min..=range.max);
             let value = match &key.kind {
-                // Most arms near the paper's, or hardly any would rise.
+                // Most arms near the paper's: others rarely rise with thrust.
                 Kind::PerArm(..) if key.name.ends_with("coefficients") && draw % 8 != 0 => {
                     let mut near = |x: f64| x * rng.random_range(0.2..3.0);
                     format!("{:?}", crate::plant::arm::TABLE_1.map(&mut near))

@@ -1,4 +1,4 @@
-//! Every message that a bad scenario can give, word for word.
+//! Every message of a bad scenario, word for word.
 
 use std::path::Path;
 
@@ -245,7 +245,7 @@ fn long_and_odd_values_stay_on_one_line() {
 
 #[test]
 fn no_damage_to_a_file_makes_more_than_one_line() {
-    // A fixed generator: the same damage in every run.
+    // A fixed generator: repeatable damage.
     let mut state = 1_u64;
     let mut random = |below: usize| {
         state = state
@@ -287,7 +287,7 @@ fn coefficients_that_give_no_arm_are_refused_with_their_key() {
         "perch.toml:2: vehicle.arm_coefficients = [-10, -10, -10, -10]: allowed a tilt that rises without thrust by at \
          least 0.10 deg/N, here -612.250 at infill 6.9000 % and gain_k 7.7500"
     );
-    // The same slope whichever number spoils it: an infill beyond what the coefficients cover, a soft arm, hover.
+    // The same slope, whichever number spoils it: infill beyond the coefficients, soft arm, hover.
     let falls =
         "perch.toml:2: vehicle.arm_coefficients = [1, -0.14, 0, 0]: allowed a tilt that rises without thrust";
     let text = "[vehicle]\narm_coefficients = [1, -0.14, 0, 0]\n";
@@ -325,13 +325,13 @@ fn coefficients_that_give_no_arm_are_refused_with_their_key() {
         vehicle("arm_level_share = -0.5\nthrust_max_n = 20")
             .starts_with("perch.toml:2: vehicle.arm_level_share = -0.5")
     );
-    // What the stack believes is an arm too.
+    // The stack's arm model is checked too.
     let line = complaint("[params]\narm_a1 = -1\n");
     assert!(
         line.starts_with("perch.toml:2: params.arm_a1 = -1: allowed a tilt that rises without thrust"),
         "{line}"
     );
-    // The paper's arm is one at every infill and gain that the command line takes.
+    // The paper's arm is valid at every infill and gain of the command line.
     for infill in [4.0, 6.9, 10.0] {
         for gain_k in [1.0, 7.75, 10.0] {
             let overrides = Overrides {
