@@ -1,4 +1,4 @@
-//! A seed means one flight, to the bit, whatever other threads do.
+//! A seed determines the flight to the bit, whatever other threads do.
 
 use std::thread;
 
@@ -6,7 +6,7 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Scenario, Step};
 
-/// A short flight, so that several fit into a test.
+/// A short flight for repetition.
 fn hop(seed: u64) -> Scenario {
     let steps = vec![
         Step::Arm,
@@ -26,7 +26,7 @@ fn digest(seed: u64) -> u64 {
     flown(&hop(seed))
 }
 
-/// Digest of a flight with all that a perch needs: contact, tendons, pressure, proof.
+/// Digest of a flight with a perch: contact, tendons, pressure, proof.
 fn perch_digest(seed: u64) -> u64 {
     let steps = vec![
         Step::Arm,

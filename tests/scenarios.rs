@@ -1,4 +1,4 @@
-//! Every scenario file is a test: it is flown, and the flight must end as the file's `[expect]` says.
+//! Flies every scenario file; the flight must end as the file's `[expect]` says.
 
 mod common;
 
@@ -39,7 +39,7 @@ fn flown_as_expected(path: &Path) -> Result<(), Failed> {
     let scenario = Scenario::load(path, &Overrides::default())?;
     let record = fly(&scenario, &mut Silent);
     judge(&scenario.expect, &record)?;
-    // Whatever was expected: deadlines are never missed in virtual time.
+    // Deadlines are never missed in virtual time.
     if record.overruns > 0 {
         return Err(format!("{} deadlines missed", record.overruns).into());
     }

@@ -1,4 +1,4 @@
-//! Random touches of the pipe: how many end perched, away, or on the ground.
+//! Random touches of the pipe: counts that end perched, away, or on the ground.
 //!
 //! `cargo run --release -p sophie-paper --example touches -- [FIRST_SEED [COUNT]]` prints the table of docs/results.md.
 

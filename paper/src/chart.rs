@@ -9,10 +9,10 @@ const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 330.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
-/// Room above the field for the words of uprights.
+/// Room above the field for labels of uprights.
 const TOP: f64 = 20.0;
 const BOTTOM: f64 = 44.0;
-/// Most points of a curve that are drawn: about two to a pixel.
+/// Most points drawn of a curve: about two per pixel.
 const POINTS: usize = 900;
 
 /// Where values lie on the drawing.
@@ -73,7 +73,7 @@ fn limits(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64) -> (f64, 
     (low - margin * span, high + margin * span)
 }
 
-/// Where an axis has its ticks, and what stands there.
+/// Ticks of an axis and their labels.
 fn marks(axis: &Axis, (low, high): (f64, f64), count: usize, digits: usize) -> Vec<(f64, String)> {
     if axis.names.is_empty() {
         return ticks(low, high, count)
@@ -88,7 +88,7 @@ fn marks(axis: &Axis, (low, high): (f64, f64), count: usize, digits: usize) -> V
         .collect()
 }
 
-/// The chart as SVG with its legend as a list before it.
+/// The chart as SVG, with its legend as a list before it.
 pub fn draw(chart: &Chart) -> String {
     let f = Frame::of(chart);
     let mut svg = format!(
@@ -133,12 +133,12 @@ pub fn draw(chart: &Chart) -> String {
     for (at, word) in &chart.uprights {
         let x = f.px(*at);
         svg += &line(x, TOP, x, bottom, "level");
-        // Centred on the line unless the drawing ends before the words do.
+        // Centred on the line unless the label would leave the drawing.
         let half = 3.2 * word.chars().count() as f64;
         let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
         svg += &text(middle, TOP - 5.0, "small mid", word);
     }
-    // The paper's own on top.
+    // The paper's values on top.
     let printed = |s: &&Series| s.look == Look::Printed;
     for series in chart
         .series

@@ -1,4 +1,4 @@
-//! Section V-C: an arm that loses stiffness, in flight and as seen from on board.
+//! Section V-C: an arm that loses stiffness, in flight and as measured on board.
 
 use crate::study::rig::{Flown, Moment, Wish, fly};
 use sophie_control::params::Params;
@@ -10,9 +10,9 @@ use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 use super::printed::Printed;
 use sophie_sim::parallel;
 
-/// Compliance of arm 1 over the new arm's.
+/// Compliance of arm 1 over that of a new arm.
 const WORN: [f64; 6] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
-/// Time over which the on-board comparison averages, s.
+/// Averaging time of the on-board comparison, s.
 const WINDOW: f64 = 5.0;
 /// Hover of each flight, s.
 const SECONDS: f64 = 25.0;
@@ -44,7 +44,7 @@ fn heading(flown: &Flown) -> f64 {
     mean(&flown.moments, |m| m.attitude[2] - m.target[2]).to_degrees()
 }
 
-/// Learnt bias of arm 1 (°): its mean over the windows, and the spread of the windows' means.
+/// Learnt bias of arm 1 (°): mean over the windows, and spread of their means.
 fn seen(flown: &Flown) -> (f64, f64) {
     let settled: Vec<Moment> = flown.moments.iter().filter(|m| m.t > 5.0).copied().collect();
     let windows: Vec<f64> = settled
@@ -56,7 +56,7 @@ fn seen(flown: &Flown) -> (f64, f64) {
     (middle, spread.sqrt())
 }
 
-/// A mixer that flies the worn arm.
+/// A mixer on the worn arm.
 struct Kind {
     name: &'static str,
     mixer: Variant,
@@ -83,7 +83,7 @@ const KINDS: [Kind; 3] = [
 
 /// Every kind over the wear.
 struct Flights {
-    /// Place in [`KINDS`] and hover of each flight.
+    /// Index in [`KINDS`] and hover of each flight.
     jobs: Vec<(usize, Job)>,
     flown: Vec<Flown>,
 }
@@ -138,7 +138,7 @@ impl Flights {
     }
 }
 
-/// Largest less smallest mean thrust of the rotors, N.
+/// Range of the rotors' mean thrusts, N.
 fn apart(f: &Flown) -> f64 {
     let thrusts: Vec<f64> = (0..4).map(|i| mean(&f.moments, |m| m.thrust[i])).collect();
     thrusts.iter().copied().fold(f64::MIN, f64::max) - thrusts.iter().copied().fold(f64::MAX, f64::min)
@@ -150,11 +150,11 @@ struct OnBoard {
     /// True tilt less the model's.
     truth: f64,
     learnt: f64,
-    /// Spread of the means over the windows.
+    /// Spread of the windows' means.
     spread: f64,
 }
 
-/// What the arm's own sensor shows of its wear.
+/// Wear as seen by the arm's own sensor.
 fn on_board(flights: &Flights, infill: f64) -> Vec<OnBoard> {
     let model = sophie_control::deflection::ArmModel::from_params(&Params {
         infill: infill as f32,
@@ -196,7 +196,7 @@ fn on_board_table(seen: &[OnBoard]) -> Table {
     t
 }
 
-/// Yaw error of each kind, and the bias on board with the `level` (°) above which it is seen.
+/// Yaw error per kind, and the on-board bias with its detection `level` (°).
 fn figure(s: &mut Section, flights: &Flights, seen: &[OnBoard], level: f64) {
     let yaw = |kind: usize| {
         let flown = |worn: f64| {

@@ -40,7 +40,7 @@ pub fn check_units(points: &[Point]) -> Result<(), String> {
     ))
 }
 
-/// Largest thrust of the data, N, if it is too small, with the likely cause.
+/// Largest thrust of the data and of a rotor, N, if the data end too early.
 fn reach(points: &[Point]) -> Option<(f64, f64)> {
     let (most, top) = (span(points, |p| p.thrust).1, thrust_max());
     (most < REACH * top).then_some((most, top))

@@ -1,4 +1,4 @@
-//! What the flown sections share: the vehicle, its gusts, and numbers out of a flight.
+//! Shared by the flown sections: vehicle, gusts, figures of a flight.
 
 use crate::study::rig::{Flown, Moment, rms};
 use sophie_control::wrench::Configuration;
@@ -7,12 +7,12 @@ use sophie_sim::scenario::Scenario;
 
 use super::model::{Cell, num};
 
-/// Gusts of the comparisons: RMS force (N) and moment (N·m) on each axis.
+/// Gusts of the comparisons: RMS force (N) and moment (N·m) per axis.
 pub const GUSTS: (f64, f64) = (0.35, 0.015);
 /// The paper's two senses of rotation.
 pub const BOTH: [Configuration; 2] = [Configuration::A, Configuration::B];
 
-/// The vehicle with an infill (%) and gain K that the stack knows, in still air.
+/// The vehicle in still air; infill (%) and gain K are in the stack's parameters.
 pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Variant) -> Scenario {
     let mut s = Scenario::default_mission();
     (s.vehicle.gain_k, s.vehicle.infill, s.vehicle.configuration) = (gain_k, infill, configuration);
@@ -28,7 +28,7 @@ pub fn in_gusts(mut s: Scenario) -> Scenario {
     s
 }
 
-/// RMS of target less truth on an axis (0 roll, 1 pitch, 2 yaw), degrees; none when the vehicle was lost.
+/// RMS of target less truth on an axis (0 roll, 1 pitch, 2 yaw), degrees; `None` if lost.
 pub fn error(flown: &Flown, axis: usize) -> Option<f64> {
     let of = |m: &Moment| {
         let error = m.attitude[axis] - m.target[axis];
@@ -37,7 +37,7 @@ pub fn error(flown: &Flown, axis: usize) -> Option<f64> {
     flown.lost.is_none().then(|| rms(&flown.moments, of).to_degrees())
 }
 
-/// Largest less smallest thrust (N) asked of rotor 1.
+/// Range of the thrust (N) asked of rotor 1.
 pub fn swing(flown: &Flown) -> Option<f64> {
     let asked = flown.moments.iter().map(|m| m.asked[0]);
     let (low, high) = asked.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
@@ -51,7 +51,7 @@ pub fn or_lost(value: Option<f64>, digits: usize) -> Cell {
     value.map_or_else(|| Cell::from("lost"), |v| num(v, digits))
 }
 
-/// When the vehicle was lost, in words; a dash when it was not.
+/// Time of the loss in words, else a dash.
 pub fn lost_when(flown: &Flown) -> Cell {
     match flown.lost {
         None => Cell::from("–"),
@@ -60,7 +60,7 @@ pub fn lost_when(flown: &Flown) -> Cell {
     }
 }
 
-/// `name`, and that the vehicle was lost where it was.
+/// `name`, and the loss if there was one.
 pub fn named(name: &str, flown: &Flown) -> String {
     match flown.lost {
         None => name.to_owned(),

@@ -5,16 +5,16 @@ use serde_json::{Value, json};
 use super::model::{Axis, Block, Cell, Chart, Comparison, Section};
 use sophie_report::summary::tidy;
 
-/// Most points of a curve in the file.
+/// Most points of a curve.
 const POINTS: usize = 300;
 
-/// The sections as JSON text with a line end.
+/// The sections as JSON text, newline-terminated.
 pub fn json(sections: &[Section]) -> String {
     let value = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "sections": sections.iter().map(section).collect::<Vec<_>>(),
     });
-    // Numbers, text and string keys only: nothing in here can fail to be written.
+    // Numbers, text and string keys only: serialisation cannot fail.
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 

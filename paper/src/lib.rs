@@ -1,6 +1,6 @@
-//! The paper's results: every table and figure, computed and flown with this stack and set beside what is printed.
+//! The paper's results: every table and figure, computed and flown with this stack beside the printed numbers.
 //!
-//! A section a file. Numbers come from running code; the paper's own stand in `printed.toml`, with table and row.
+//! One file per section. Numbers come from running code; the paper's are in `printed.toml`, with table and row.
 
 mod arm;
 pub mod bench_data;

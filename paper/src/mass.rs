@@ -1,4 +1,4 @@
-//! Table II: the mass budget, and the rigid-body numbers that follow from it.
+//! Table II: the mass budget and the rigid-body numbers derived from it.
 
 use sophie_control::params::Params;
 use sophie_sim::plant::GRAVITY;
@@ -7,8 +7,8 @@ use sophie_sim::plant::arm::TIP_MASS;
 use super::model::{Class, Comparison, Section, Table, num};
 use super::printed::Printed;
 
-/// Where the masses sit, m: platform with battery and electronics as a box (length, width, height), and the sideways
-/// place of servos and reels (assumed from the layout; the paper gives no dimension).
+/// Positions of the masses, m: platform with battery and electronics as a box (length, width, height), sideways place
+/// of servos and reels (assumed from the layout; the paper gives no dimension).
 const BOX: [f64; 3] = [0.40, 0.12, 0.06];
 const BATTERY_LENGTH: f64 = 0.15;
 const SERVO_SIDE: f64 = 0.05;
@@ -72,19 +72,19 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// Thrust that Table II prints for a motor, N.
+/// Thrust per motor in Table II, N.
 fn nominal_thrust(p: &Printed) -> f64 {
     p.text.motor_thrust_g * 1e-3 * GRAVITY
 }
 
-/// Mass that an arm's tip carries by Table II: the propulsion and a third of the arm, kg.
+/// Tip mass by Table II, kg: the propulsion and a third of the arm.
 fn tip_mass(p: &Printed) -> f64 {
     let arm_rod = p.table_2.first().map_or(0.0, |r| r.mass_g * 1e-3) / 3.0;
     let propulsion = p.table_2.iter().find(|r| r.equipment == "Propulsion");
     propulsion.map_or(0.0, |r| r.mass_g * 1e-3) + arm_rod
 }
 
-/// What each row has of the mass.
+/// Share of each row in the mass.
 fn shares(p: &Printed) -> Table {
     let mut t = Table::new("Shares of the mass", &["equipment", "mass kg", "share %"]);
     for row in &p.table_2 {
@@ -98,7 +98,7 @@ fn shares(p: &Printed) -> Table {
     t
 }
 
-/// Inertia, thrust and tip mass: what follows from Table II and what flies.
+/// Inertia, thrust and tip mass: from Table II and as flown.
 fn rigid_body(p: &Printed) -> Table {
     let d = Params::default();
     let weight = p.mass() * GRAVITY;

@@ -1,10 +1,10 @@
-//! `paper.html`: one page without anything from outside.
+//! `paper.html`: a self-contained page.
 
 use super::chart;
 use super::model::{Block, Cell, Class, Comparison, Section, Table};
 use sophie_report::svg::escape;
 
-/// The look of all reports, and what this page has besides.
+/// The style of all reports, and this page's additions.
 const STYLE: [&str; 2] = [sophie_report::page::STYLE, include_str!("style.css")];
 
 /// What the three classes mean.
@@ -151,7 +151,7 @@ pub fn value(v: f64) -> String {
     format!("{v:.digits$}")
 }
 
-/// The deviation in percent, or a dash where there is none to speak of.
+/// Deviation in percent, or a dash.
 pub fn deviation(r: &Comparison) -> String {
     let d = 100.0 * r.deviation();
     if d.is_finite() {

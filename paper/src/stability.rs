@@ -1,4 +1,4 @@
-//! Section IV-A, Figs. 4 and 5: the rotational stability derivatives, and where yaw authority turns round.
+//! Section IV-A, Figs. 4 and 5: rotational stability derivatives, and where yaw authority reverses.
 
 use crate::study::allocation::Studied;
 use crate::study::perturbation::Trial;
@@ -17,10 +17,10 @@ use sophie_sim::parallel;
 
 /// Step of the perturbation, N.
 const STEP: f64 = 0.05;
-/// The perturbation of Fig. 5: moment (N·m) and its duration (s).
+/// Perturbation of Fig. 5: moment (N·m) and duration (s).
 const KICK: (f64, f64) = (0.02, 0.5);
 
-/// C_φ, C_θ, C_ψ of the plant itself: the moment per pattern with arms that follow, against stiff and level ones.
+/// C_φ, C_θ, C_ψ of the plant: moment per pattern with following arms against rigid level ones.
 pub fn of_the_plant(infill: f64, gain_k: f64, chi: f64, thrust: f64) -> [f64; 3] {
     let slope = |trial: Trial, pattern: [f32; 4], axis: usize| {
         let at = |step: f64| trial.wrench(pattern.map(|p| thrust + step * f64::from(p)))[axis];
@@ -71,7 +71,7 @@ struct Hovering {
     infill: f64,
 }
 
-/// The derivatives in hover; returns the largest difference of closed form and plant about yaw, as a share.
+/// Derivatives in hover; returns the largest relative difference of closed form and plant about yaw.
 fn in_hover(s: &mut Section, k: f64, hover: f64) -> f64 {
     let mut t = Table::new(
         "Derivatives in hover: closed form and plant perturbed by 0.05 N",
@@ -122,7 +122,7 @@ fn in_hover(s: &mut Section, k: f64, hover: f64) -> f64 {
     worst
 }
 
-/// What a derivative about yaw does to a command.
+/// Effect of a yaw derivative on a command.
 fn verdict(yaw_derivative: f64) -> &'static str {
     match yaw_derivative {
         c if c < 0.0 => "stable",
@@ -131,7 +131,7 @@ fn verdict(yaw_derivative: f64) -> &'static str {
     }
 }
 
-/// The table of the derivatives between what they are and what they say.
+/// The table of the derivatives, between definition and conclusion.
 fn explain(s: &mut Section, t: Table) {
     s.text(
         "The paper's Eqs. 2 to 4 let a commanded moment τ act as (1 - C) τ. For four tilted rotors on arms that follow \
@@ -148,7 +148,6 @@ fn explain(s: &mut Section, t: Table) {
     );
 }
 
-/// C_ψ over the thrust: closed form and plant.
 fn over_thrust(c: Configuration, k: f64, hover: f64) -> Chart {
     let thrusts: Vec<f64> = (4..=80).map(|i| 0.1 * f64::from(i)).collect();
     let probes: Vec<f64> = (1..=7).map(f64::from).collect();
@@ -192,7 +191,7 @@ fn reversal_map(s: &mut Section, hover: f64, k: f64) {
     );
 }
 
-/// Yaw authority of a configuration, with the thrusts at which it turns round.
+/// Yaw authority of a configuration, and the thrusts of its reversal.
 fn authority(c: Configuration, hover: f64, k: f64) -> Chart {
     let chi = f64::from(c.chi());
     let rhos: Vec<f64> = (0..=12).map(|i| 4.0 + 0.5 * f64::from(i)).collect();
@@ -246,7 +245,7 @@ struct Perturbed {
     studied: Option<Studied>,
 }
 
-/// B and A with the rigid mixer over the gain, and what flies at the stack's gain `k`.
+/// B and A with the rigid mixer over the gain, and the mixer flown at the stack's gain `k`.
 fn perturbed(k: f64) -> [Perturbed; 7] {
     let rigid = |name, configuration, gain_k| Perturbed {
         name,

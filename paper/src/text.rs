@@ -7,7 +7,7 @@ use sophie_report::terminal::table::{Align, Table};
 /// Width to which paragraphs are broken.
 const WIDTH: usize = 110;
 
-/// The lines of a section: finding, comparisons and tables. Figures are on the page.
+/// The lines of a section: finding, comparisons and tables; figures are on the page.
 pub fn lines(number: usize, s: &Section) -> Vec<String> {
     let mut out = vec![String::new(), format!("{number}. {}", s.title)];
     out.extend(wrapped(&s.finding));
@@ -21,7 +21,7 @@ pub fn lines(number: usize, s: &Section) -> Vec<String> {
     out
 }
 
-/// Printed numbers beside ours, and below them why some contradict themselves, each reason once.
+/// Printed numbers beside ours, then the reasons of contradictions, each once.
 fn comparisons(caption: &str, rows: &[Comparison]) -> Vec<String> {
     let mut t = Table::new(&[
         (caption, Align::Left),
@@ -55,7 +55,7 @@ fn comparisons(caption: &str, rows: &[Comparison]) -> Vec<String> {
     out
 }
 
-/// A table under its caption; columns of numbers stand to the right.
+/// A table under its caption; columns of numbers are right-aligned.
 fn table_lines(table: &model::Table) -> Vec<String> {
     let align = |i: usize| {
         let words = table.rows.iter().any(|r| matches!(r.get(i), Some(Cell::Text(_))));

@@ -1,5 +1,4 @@
-//! A thousand touches of the pipe that no pilot means, beside the crown, leaning, drifting, half of them called off:
-//! none ends on the ground.
+//! 1000 random touches of the pipe, half of them cancelled: none ends on the ground.
 
 use sophie_control::mode::Mode;
 use sophie_paper::study::touch::{End, Touch, Touched, fly};
@@ -7,7 +6,7 @@ use sophie_sim::parallel;
 
 /// Touches flown; docs/results.md has a longer run.
 const COUNT: u64 = 1000;
-/// Deepest that an escape may fall below the touch, m.
+/// Deepest fall of an escape below the touch, m.
 const DROP_MAX: f64 = 0.5;
 
 #[test]
@@ -22,12 +21,12 @@ fn no_touch_ends_on_the_ground() {
         assert!(touched.drop < DROP_MAX, "{touch:?}\n{touched:?}");
     }
     let of = |end| flown.iter().filter(|(_, t)| t.end == end).count();
-    // Both ways out are taken: by the escape, and after a perch.
+    // Both ways out occur: escape, and release after a perch.
     assert!(flown.iter().filter(|(_, t)| t.escaped).count() > 200);
     assert!(of(End::Released) > 20, "{} released", of(End::Released));
 }
 
-/// A touch on the crown, level: nothing to escape from.
+/// A level touch on the crown.
 fn central(seed: u64) -> Touch {
     Touch {
         offset: 0.01,

@@ -1,4 +1,4 @@
-//! `sophie paper` and `sophie fit-arm`: their results on the terminal and on disk.
+//! `sophie paper` and `sophie fit-arm`: results on terminal and disk.
 
 use std::time::Instant;
 

@@ -1,12 +1,12 @@
-//! What several tests of whole flights check.
+//! Checks shared by tests of whole flights.
 
 use sophie_sim::record::FlightRecord;
 
-/// A mission with a perch is only accomplished with a grip within its tolerance on every chosen arm.
+/// A mission with a perch needs a grip within tolerance on every chosen arm.
 pub fn proven(record: &FlightRecord) -> Result<(), String> {
     let perches = record.phases.iter().filter(|p| p.name == "perch").count();
     let arms = record.scenario.arms.mask().into_iter().filter(|m| *m).count();
-    // A grip that outlasts a reset is proven anew.
+    // A grip that outlasts a reset is proven again.
     let resets = record.phases.iter().any(|p| p.name == "reset");
     let (proofs, wanted) = (record.grip.len(), perches * arms);
     if proofs < wanted || proofs > wanted && !resets {
@@ -19,7 +19,6 @@ pub fn proven(record: &FlightRecord) -> Result<(), String> {
     let p = &record.scenario.params;
     for grip in &record.grip {
         let error = (grip.pressure - f64::from(p.grip_pressure)).abs();
-        // A NaN must not pass.
         if error.is_nan() || error > f64::from(p.grip_tolerance) {
             return Err(format!("arm {} proven at {:.0} N/m²", grip.arm, grip.pressure));
         }

@@ -1,4 +1,4 @@
-//! Why configuration A is lost, and how it can be flown.
+//! Why configuration A is lost, and how it can fly.
 
 use crate::study::allocation::Studied;
 use crate::study::rig::{Flown, fly};

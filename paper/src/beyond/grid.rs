@@ -33,17 +33,17 @@ const MIXERS: [Compared; 5] = [
 /// Places in [`MIXERS`].
 pub const RIGID: usize = 0;
 pub const PAPER: usize = 1;
-/// The rigid mixer with its yaw gain divided by 1 - C_ψ, so that the loop is as fast as the flexible mixer's.
+/// Rigid mixer with its yaw gain over 1 - C_ψ: its loop is as fast as the flexible mixer's.
 pub const FAIR: usize = 2;
 pub const FLEXIBLE: usize = 3;
 pub const SIGN_AWARE: usize = 4;
 
 const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
 const GAINS: [f64; 5] = [1.0, 2.0, 3.5, 5.03, 7.75];
-/// Yaw error (° RMS) that shades a map from good to bad.
+/// Yaw error (° RMS) at which a map's shade is bad.
 const POOR: f64 = 6.0;
 
-/// The mixers that are flown in a configuration.
+/// Mixers flown in a configuration.
 const fn flown_in(configuration: Configuration) -> &'static [usize] {
     match configuration {
         Configuration::A => &[RIGID, PAPER, FLEXIBLE, SIGN_AWARE],
@@ -59,7 +59,7 @@ pub struct Job {
     pub gain_k: f64,
     /// Place in [`MIXERS`].
     pub mixer: usize,
-    /// A real set of arms in the place of the modelled one.
+    /// Arms off the model, as of a real set.
     pub mismatched: bool,
 }
 
@@ -82,7 +82,7 @@ impl Job {
     }
 }
 
-/// RMS errors of a flight, degrees; none when the vehicle was lost.
+/// RMS errors of a flight, degrees; `None` if the vehicle was lost.
 pub struct Outcome {
     pub roll: Option<f64>,
     pub yaw: Option<f64>,
@@ -131,7 +131,7 @@ impl Grid {
         at.and_then(|i| self.outcomes.get(i))
     }
 
-    /// How many of the map's flights a mixer keeps, in words.
+    /// Flights of the map that a mixer survives, in words.
     pub fn kept(&self, configuration: Configuration, mixer: usize) -> String {
         let of = |j: &Job| j.configuration == configuration && j.mixer == mixer && j.mismatched;
         let flights = || self.jobs.iter().zip(&self.outcomes).filter(|(j, _)| of(j));

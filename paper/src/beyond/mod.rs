@@ -1,4 +1,4 @@
-//! Beyond the paper: every mixer over infill, gain and configuration; what arm sensors add; how soft it can be.
+//! Beyond the paper: every mixer over infill, gain and configuration; the arm sensors' gain; the softest airframe.
 
 mod configuration_a;
 mod grid;
@@ -15,12 +15,12 @@ use super::model::Section;
 use super::printed::Printed;
 use grid::{FAIR, FLEXIBLE, Grid, Job, PAPER, RIGID, SIGN_AWARE};
 
-/// Compliance of a real set's arms over the model's.
+/// Compliance of a real set of arms over the model's.
 const ARM_GAIN: [f64; 4] = [1.15, 0.85, 0.9, 1.1];
-/// Tilt of a real set's arms beside the model's, degrees.
+/// Tilt of a real set of arms less the model's, degrees.
 const ARM_OFFSET: [f64; 4] = [3.0, -3.0, 2.0, -2.0];
 
-/// Gives the vehicle a real set of arms: softer and bent against the model.
+/// Replaces the arms by a real set, softer and bent against the model.
 fn mismatch(s: &mut Scenario) {
     s.vehicle.arm_gain = ARM_GAIN;
     s.vehicle.arm_offset = ARM_OFFSET.map(f64::to_radians);
@@ -60,7 +60,7 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// How many cases of the map each mixer flies, and what mismatched arms cost.
+/// Cases of the map flown by each mixer, and the cost of mismatched arms.
 fn finding(grid: &Grid, infill: f64, k: f64) -> String {
     let kept = |configuration, mixer| grid.kept(configuration, mixer);
     let yaw = |mixer: usize, mismatched: bool| {

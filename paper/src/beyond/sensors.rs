@@ -1,4 +1,4 @@
-//! What the arms' own sensors add.
+//! Effect of the arms' own sensors.
 
 use crate::study::rig::fly;
 use sophie_control::wrench::Configuration;
@@ -20,7 +20,7 @@ struct Job {
     seed: u64,
 }
 
-/// RMS of the heading's error, degrees; none when the vehicle was lost.
+/// RMS heading error, degrees; `None` if the vehicle was lost.
 fn yaw_error(job: &Job, k: f64) -> Option<f64> {
     let mut v = in_gusts(vehicle(Configuration::B, k, job.infill, Variant::Flexible));
     mismatch(&mut v);

@@ -23,11 +23,11 @@ struct Soft {
     notch: bool,
     /// Yaw rate gain, 1/s.
     yaw_gain: f32,
-    /// Thrust at which the arms are level over the largest.
+    /// Thrust of level arms over the largest.
     level_share: f64,
 }
 
-/// Places in [`cases`] of the springy arms with a high yaw gain, with the notch and without it.
+/// Indices in [`cases`]: soft arms with a high yaw gain, with and without the notch.
 const FAST: usize = 6;
 const FAST_BARE: usize = 7;
 
@@ -87,7 +87,7 @@ impl Soft {
         v.params.arm_level_share = self.level_share as f32;
         v.params.rate_yaw_p = self.yaw_gain;
         if !self.notch {
-            // Zeros on the poles: the notch passes everything.
+            // Zeros on the poles: the notch passes all.
             v.params.notch_zeta_zero = v.params.notch_zeta_pole;
         }
         fly(&v, None, 20.0, programme)
@@ -96,7 +96,7 @@ impl Soft {
 
 /// What came of a flight.
 struct Outcome {
-    /// RMS errors, degrees; none when the vehicle was lost.
+    /// RMS errors, degrees; `None` if the vehicle was lost.
     roll: Option<f64>,
     yaw: Option<f64>,
     /// Largest tilt of an arm, degrees.
@@ -174,7 +174,7 @@ fn table(cases: &[Soft], outcomes: &[Outcome]) -> Table {
     t
 }
 
-/// Largest T cos α over the rotor's range, over the weight, with α0 = 0: what runs out then.
+/// Largest T cos α over the rotor's range, over the weight, with α0 = 0: the lift that runs out.
 fn largest_lift(p: &Printed, k: f64, infill: f64) -> f64 {
     let top = f64::from(Params::default().thrust_max);
     let (a, b) = literal(&p.table_1, infill);

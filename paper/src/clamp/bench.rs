@@ -31,7 +31,7 @@ impl OnBench {
         holds(&self.closed)
     }
 
-    /// Steady force, kgcm; none where the arm does not hold.
+    /// Steady force, kgcm; `None` if the arm does not hold.
     pub fn held_force(&self) -> f64 {
         if self.holds() {
             kgcm(self.closed.steady)
@@ -55,7 +55,7 @@ pub fn grid(p: &Printed) -> Vec<OnBench> {
     })
 }
 
-/// A closing with a servo: the first seed's, with the mean closure time of all seeds.
+/// The first seed's closing with a servo, with the mean closure time of all seeds.
 pub fn mean_closing(infill: f64, diameter: f64, servo: ServoSpec, thrust: f64) -> Closed {
     let mut first = once(infill, diameter, servo, thrust, 1);
     let others = (2..=SEEDS).map(|seed| once(infill, diameter, servo, thrust, seed).closure);
@@ -76,7 +76,7 @@ pub fn once(infill: f64, diameter: f64, servo: ServoSpec, thrust: f64, seed: u64
     })
 }
 
-/// Thrust of the arm's rotor while it closes, N: the paper's throttle.
+/// Rotor thrust while closing, N: the paper's throttle.
 pub fn closing_thrust(p: &Printed) -> f64 {
     0.01 * p.text.clamp_throttle_percent * f64::from(Params::default().thrust_max)
 }

@@ -65,7 +65,7 @@ fn closings(all: &[OnBench]) -> Table {
     t
 }
 
-/// Do times and forces rise together, as the text says? Returns their correlation over pipes.
+/// Correlation of times and forces over pipes, which the text says rise together.
 fn rising_together(s: &mut Section, p: &Printed, all: &[OnBench]) -> f64 {
     let held = || all.iter().filter(|c| c.holds());
     let over_pipes: Vec<(f64, f64)> = held()

@@ -1,4 +1,4 @@
-//! Which servo can do it.
+//! Which servo suffices.
 
 use sophie_sim::parallel;
 use sophie_sim::plant::tendon::ServoSpec;
@@ -19,7 +19,7 @@ struct Tried {
 
 /// The servos that are tried.
 fn servos() -> [Tried; 4] {
-    // A servo of its printed stall, with the speed that the stack assumes.
+    // A servo of its printed stall, with the stack's speed.
     let made = |stall: f64, range: f64| ServoSpec {
         stall: stall * KGCM,
         range,

@@ -7,7 +7,7 @@ use super::super::printed::Printed;
 use super::bench::{INFILLS, OnBench};
 use super::correlation;
 
-/// Closure time (s) and steady force (kgcm) with the second row in reverse.
+/// Closure time (s) and steady force (kgcm), second row reversed.
 pub fn paired(p: &Printed) -> Vec<(f64, f64)> {
     let forces = p.table_4.force_kgcm.into_iter().rev();
     p.table_4.closure_s.into_iter().zip(forces).collect()
@@ -22,7 +22,7 @@ pub fn as_printed(p: &Printed) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Compares each pair with the closing whose force is nearest.
+/// Compares each pair with the closing of nearest force.
 pub fn compare(s: &mut Section, p: &Printed, all: &[OnBench]) {
     let mut rows = vec![];
     for (i, (time, force)) in paired(p).into_iter().enumerate() {
@@ -54,7 +54,7 @@ pub fn compare(s: &mut Section, p: &Printed, all: &[OnBench]) {
     s.compare("Table IV", rows);
 }
 
-/// The correlation of the printed times and forces beside `over_pipes`, that of the bench.
+/// Correlation of the printed times and forces beside `over_pipes`, that of the bench.
 pub fn correlations(p: &Printed, over_pipes: f64) -> Comparison {
     Comparison {
         what: format!("correlation of t and U, here over pipes at ρ {} %", INFILLS[0]),

@@ -120,7 +120,7 @@ impl Hovers {
         t
     }
 
-    /// Heading and thrust over time; `hover` is the thrust of each rotor, N.
+    /// Heading and thrust over time; `hover` is the thrust per rotor, N.
     pub fn figure(&self, s: &mut Section, hover: f64) {
         s.figure(
             &format!(
@@ -156,7 +156,7 @@ impl Hovers {
         self.shown().map(trace).collect()
     }
 
-    /// What became of a mixer at the stack's gain, in words.
+    /// Result of a mixer at the stack's gain, in words.
     pub fn outcome(&self, mixer: usize) -> String {
         let hover = self.shown().find(|h| h.mixer == mixer);
         hover.map_or("not flown".to_owned(), |h| match error(&h.flown, 2) {

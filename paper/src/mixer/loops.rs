@@ -1,4 +1,4 @@
-//! What inverting at a frozen arm angle does: Algorithm 1's one-step loop and the limit cycle.
+//! Inversion at a frozen arm angle: Algorithm 1's one-step loop and the limit cycle.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use super::super::statics::{AtThrust, frozen_bound, root};
 
 /// Damping ratio of the arms' bending mode.
 const ZETA: f64 = 0.15;
-/// Yaw pattern with which a loop begins, N.
+/// Initial yaw pattern of a loop, N.
 const START: f32 = 0.02;
 
 /// Yaw patterns (N) of the one-step loop: T(k+1) = M(α(T(k)))⁻¹ w from hover with a pattern of `start` N.
@@ -46,8 +46,7 @@ fn one_step_loop(infill: f64, gain_k: f64, start: f32, steps: usize) -> Vec<f64>
     out
 }
 
-/// Largest less smallest thrust (N) of rotor 1 under a constant small yaw demand, the mixer alone with its own model of
-/// motor and arm.
+/// Range of rotor 1's thrust (N) under a constant small yaw demand: the mixer alone with its model of motor and arm.
 fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     let p = Params {
         gain_k: gain_k as f32,
@@ -86,12 +85,12 @@ struct Hover {
 }
 
 impl Hover {
-    /// What a step of Algorithm 1 multiplies a yaw pattern by.
+    /// Factor of one step of Algorithm 1 on a yaw pattern.
     fn multiplier(&self, infill: f64, gain_k: f64) -> f64 {
         AtThrust::new(infill, gain_k, self.thrust).one_step(1.0)
     }
 
-    /// Gain K from which the multiplier is larger than `bound`.
+    /// Gain K above which the multiplier exceeds `bound`.
     fn gain_of(&self, bound: f64) -> f64 {
         let over = |k: f64| self.multiplier(self.infill, k).abs() - bound;
         root(0.1, 9.0, over).unwrap_or(f64::NAN)
@@ -121,7 +120,7 @@ pub fn show(s: &mut Section, p: &Printed, thrust: f64) {
     ));
     let bound = frozen_bound(f64::from(d.motor_tau), TAU * f64::from(d.notch_hz), ZETA);
     let k_cycles = hover.gain_of(bound);
-    // The onset in the mixer itself, by halving.
+    // Onset in the mixer itself, by bisection.
     let k_found = root(1.0, 3.0, |k| mixer_swing(Variant::Frozen, k) - 0.1).unwrap_or(f64::NAN);
     s.text(format!(
         "Inverting at the angle that the arm really has (motor lag and bending mode known exactly) is no cure: a changed \
@@ -152,9 +151,9 @@ pub fn show(s: &mut Section, p: &Printed, thrust: f64) {
 
 /// Multiplier of the one-step loop over the gain.
 struct Multipliers {
-    /// Closed form and loop of each infill.
+    /// Closed form and loop per infill.
     series: Vec<Series>,
-    /// Largest difference of the two, as a share.
+    /// Largest relative difference of the two.
     worst: f64,
 }
 
@@ -181,7 +180,7 @@ impl Multipliers {
     }
 }
 
-/// The yaw pattern over the steps of the loop, for several gains.
+/// Yaw pattern over the loop's steps, for several gains.
 fn patterns(hover: &Hover) -> Chart {
     let of_gain = |(k, colour): (f64, usize)| {
         let run = one_step_loop(hover.infill, k, START, 30);
@@ -199,7 +198,7 @@ fn patterns(hover: &Hover) -> Chart {
     }
 }
 
-/// Swing of rotor 1 over the gain, with the closed form's onset at `k_cycles`.
+/// Range of rotor 1's thrust over the gain, with the closed form's onset at `k_cycles`.
 fn swings(gains: &[f64], infill: f64, k_cycles: f64) -> Chart {
     let swing = |name: &str, colour: usize, variant: Variant| {
         let points = parallel::each(gains, |k| (*k, mixer_swing(variant, *k)));

@@ -1,4 +1,4 @@
-//! The printed mixer matrix, what mends it, and their ranks.
+//! The printed mixer matrix, corrections of it, and their ranks.
 
 use sophie_control::params::Params;
 use sophie_control::wrench::{FORE, SIDE, YAW};
@@ -25,12 +25,11 @@ fn matrix(tilt: f64, yaw: [f64; 4]) -> Matrix {
 /// What an elimination finds.
 struct Rank {
     rank: usize,
-    /// Size of the determinant over that of the stiff, level frame.
+    /// |determinant| over that of the rigid, level frame.
     determinant: f64,
 }
 
-/// Rank and size of the determinant, the rows over those of the stiff, level frame's length, by elimination with row
-/// pivoting.
+/// Rank and |determinant| by elimination with row pivoting; rows over the lengths of the rigid, level frame's.
 fn rank(mut m: Matrix) -> Rank {
     let p = Params::default();
     for (row, unit) in m.iter_mut().zip([1.0, p.arm_d, p.arm_b, p.torque_ratio]) {
@@ -63,8 +62,8 @@ struct Named {
     matrix: Matrix,
 }
 
-/// The printed matrix, the ways to read its yaw row, and those with the sideways thrust: in hover, and at the thrust of
-/// each rotor (N) where what a frozen inverse divides by changes its sign.
+/// The printed matrix, the readings of its yaw row, and those with the sideways thrust: in hover, and at the thrust per
+/// rotor (N) where the divisor of a frozen inverse changes sign.
 fn all(p: &Printed, hover: &AtThrust, reversal: f64) -> [Named; 6] {
     let k_q = f64::from(Params::default().torque_ratio);
     let tilt = hover.sin.atan2(hover.cos);

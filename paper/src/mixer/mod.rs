@@ -1,4 +1,4 @@
-//! The printed mixer matrix and Algorithm 1: what they are, what mends them, and what flies.
+//! The printed mixer matrix and Algorithm 1: consistency, corrections, flights.
 
 mod flown;
 mod loops;

@@ -13,7 +13,7 @@ pub fn with_flights(s: &mut Section, p: &Printed, flights: &Flights) {
         let all = row.delta_alpha(share).into_iter().chain(row.kappa());
         all.chain(row.ratio())
     });
-    // A vehicle that was lost before the turn has nothing to compare.
+    // A vehicle lost before the turn has no numbers.
     s.compare(
         "Table III against the flights",
         rows.filter(|r| r.here.is_finite()).collect(),
@@ -39,7 +39,7 @@ impl Row<'_> {
         }
     }
 
-    /// Δα_max, with the hardness of the step from ΔT/T = `share`.
+    /// Δα_max, with the step's hardness from ΔT/T = `share`.
     fn delta_alpha(&self, share: f64) -> [Comparison; 3] {
         let fitted = self.flights.fitted;
         let command = format!("hardness of the step from ΔT/T = {share} at ρ 8 %, K from this column");

@@ -1,4 +1,4 @@
-//! Table III's columns over infill, and the manoeuvres of Fig. 8 over time.
+//! Table III's columns over infill, and Fig. 8's manoeuvres over time.
 
 use crate::study::rig::Moment;
 
@@ -33,7 +33,7 @@ pub fn columns(s: &mut Section, p: &Printed, flights: &Flights) {
     );
 }
 
-/// A flown number of an infill and a kind of arms.
+/// A flown number by infill and kind of arms.
 type Flown<'a> = dyn Fn(f64, Arms) -> Option<f64> + 'a;
 
 fn column_series(p: &Printed, fitted: Arms, printed: &dyn Fn(&Roll) -> f64, here: &Flown<'_>) -> Vec<Series> {
@@ -91,7 +91,7 @@ struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// Roll, tilts and effective angle, with what the paper prints.
+    /// Roll, tilts and effective angle, with the printed values.
     fn charts(&self, p: &Printed) -> [Chart; 3] {
         let roll = |m: &Moment| m.attitude[0].to_degrees();
         let effective = |m: &Moment| (m.attitude[0] + delta_alpha(m)).to_degrees();
@@ -121,7 +121,7 @@ impl Drawn<'_> {
         }
     }
 
-    /// A value over time, a curve a case.
+    /// A value over time, a curve per case.
     fn cases(&self, value: impl Fn(&Moment) -> f64) -> Vec<Series> {
         let cases = self.flights.cases.iter().enumerate();
         let curves = cases.filter_map(|(i, case)| {

@@ -15,7 +15,7 @@ use super::printed::Printed;
 pub use manoeuvre::sideways;
 use manoeuvre::{Arms, Command, Found, HELD, Job, fitted_damping, found, hard_gain, manoeuvre};
 
-/// A mixer and how the roll is commanded to it.
+/// A mixer and its roll command.
 #[derive(Clone, Copy)]
 struct Case {
     name: &'static str,
@@ -40,7 +40,7 @@ struct Flights {
 }
 
 impl Flights {
-    /// Flies the hard step with rate gain `gain` (1/s) and the stack's own command to Table III's roll.
+    /// Flies the hard step with rate gain `gain` (1/s), and the stack's own command to Table III's roll.
     fn fly(p: &Printed, gain: f64) -> Self {
         let angle = p.text.roll_deg.to_radians();
         let hard = Command::Hard(gain);
@@ -96,7 +96,7 @@ pub fn section(p: &Printed) -> Section {
     let angle = p.text.roll_deg.to_radians();
     let share = p.text.delta_thrust_share;
     printed::against_itself(&mut s, p);
-    // How hard the loops must be for the paper's ΔT/T at its middle infill, with the paper's statics.
+    // Hardness of the loops that gives the paper's ΔT/T at its middle infill, with its statics.
     let gain = hard_gain(angle, share);
     let flights = Flights::fly(p, gain);
     s.text(format!(
@@ -160,7 +160,7 @@ fn numbers(f: &Found, first: Option<Found>, angle: f64) -> [Cell; 7] {
     ]
 }
 
-/// What that says about K, and the finding.
+/// Conclusions on K, and the finding.
 fn conclude(s: &mut Section, p: &Printed, flights: &Flights) {
     let fitted = flights.fitted;
     let rest = flights.bent(RIGID_HARD, 8.0, Arms::Static);

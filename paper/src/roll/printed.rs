@@ -1,4 +1,4 @@
-//! Table III's columns against each other.
+//! Consistency of Table III's columns.
 
 use super::super::model::{Class, Comparison, Section};
 use super::super::printed::Printed;
@@ -9,7 +9,7 @@ pub fn against_itself(s: &mut Section, p: &Printed) {
     s.compare("Table III against itself", rows.collect());
 }
 
-/// The column of κ against the two equations for it.
+/// The column of κ against its two equations.
 fn kappa_rows(p: &Printed) -> Vec<Comparison> {
     let (angle, share) = (p.text.roll_deg.to_radians(), p.text.delta_thrust_share);
     let mut rows = vec![];
@@ -38,7 +38,7 @@ fn kappa_rows(p: &Printed) -> Vec<Comparison> {
     rows
 }
 
-/// The ratios against the largest that a roll to 25° can have.
+/// The ratios against the largest possible in a roll to 25°.
 fn ratio_rows(p: &Printed) -> Vec<Comparison> {
     let mut rows = vec![];
     for row in &p.table_3 {
@@ -62,7 +62,7 @@ pub fn eq_11(delta_alpha: f64, share: f64, roll: f64) -> f64 {
     delta_alpha * share / roll.sin()
 }
 
-/// The same exactly: the ratio of (T1 sin α1 - T3 sin α3) to (T1 cos α1 + T3 cos α3) sin φ, arms symmetric about level.
+/// Exact: (T1 sin α1 - T3 sin α3) over (T1 cos α1 + T3 cos α3) sin φ, arms symmetric about level.
 fn exact(delta_alpha: f64, share: f64, roll: f64) -> f64 {
     let (t1, t3) = (0.5 * (1.0 + share), 0.5 * (1.0 - share));
     let half = 0.5 * delta_alpha;

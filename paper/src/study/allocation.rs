@@ -1,4 +1,4 @@
-//! Allocations that are studied and that no scenario selects.
+//! Allocations for study that no scenario selects.
 
 use sophie_control::deflection::{Algorithm1, ArmModel};
 use sophie_control::desaturation::Patterns;
@@ -11,11 +11,11 @@ use sophie_sim::mixers::{Law, Situation, WithLimits};
 /// An allocation to be studied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Studied {
-    /// Algorithm 1 with the sideways thrust in its yaw row: α from the thrust of the step before, the whole
-    /// effectiveness at that α inverted.
+    /// Algorithm 1 with the sideways thrust in its yaw row: α from the last step's thrust, the whole effectiveness at
+    /// that α inverted.
     Verbatim,
-    /// The quasi-static Jacobian with whatever sign the model gives its yaw row, yaw given up only where that
-    /// authority is small: what configuration A would need.
+    /// The quasi-static Jacobian with either sign of its yaw row; yaw is given up only where that authority is small:
+    /// what configuration A needs.
     SignAware,
 }
 
@@ -26,8 +26,8 @@ impl Studied {
     }
 }
 
-/// Yaw authority over k_q below which [`Studied::SignAware`] gives yaw up, and over which it has all of it: in A it
-/// falls through zero while the rotors spool up.
+/// Yaw authority over k_q at which [`Studied::SignAware`] gives yaw up and has all of it: in A it crosses zero during
+/// spool-up.
 const FADE: (f32, f32) = (0.5, 1.2);
 
 /// The law of a [`Studied`] allocation.
@@ -49,7 +49,7 @@ impl StudiedLaw {
         }
     }
 
-    /// The inverse at the α that Algorithm 1 gives; the collective starts from nothing.
+    /// Inverse at Algorithm 1's α; the collective is memoryless.
     fn verbatim(&self, w: Wrench) -> Split {
         let tilt = self.last.map(|t| self.algorithm_1.angle(t, 1.0));
         let Some(inverse) = Inverse::new(&Effectiveness::frozen(&self.geometry, &tilt)) else {
@@ -66,7 +66,7 @@ impl StudiedLaw {
         Split { patterns, fade: 1.0 }
     }
 
-    /// The inverse of the Jacobian about the low-passed thrusts; the collective continues from them.
+    /// Inverse of the Jacobian about the low-passed thrusts; the collective continues from them.
     fn sign_aware(&self, w: Wrench, s: &Situation<'_>) -> Split {
         let (thrusts, tilt) = (s.tilt.thrusts(), s.tilt.tilt());
         let mut e = Effectiveness::quasi_static(&self.geometry, &tilt, &s.tilt.follow());
@@ -92,7 +92,7 @@ impl StudiedLaw {
         for (c, thrust) in collective.iter_mut().zip(&thrusts) {
             *c += thrust;
         }
-        // Where yaw is given up nothing else corrects what the last thrusts have of its pattern.
+        // Without yaw nothing else corrects the last thrusts' part of its pattern.
         let left = 0.25 * collective.iter().zip(&YAW).map(|(t, y)| t * y).sum::<f32>();
         for (c, y) in collective.iter_mut().zip(&YAW) {
             *c -= (1.0 - fade) * left * y;
@@ -105,7 +105,7 @@ impl StudiedLaw {
     }
 }
 
-/// Where the effectiveness has no inverse: the collective alone.
+/// Singular effectiveness: the collective alone.
 fn without_moments(w: Wrench) -> Split {
     let patterns = Patterns {
         collective: [0.25 * w.thrust; 4],

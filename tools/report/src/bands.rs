@@ -1,4 +1,4 @@
-//! The bands below a plot: what the stack was doing, and in which step.
+//! Bands below a plot: state of the stack, and step.
 
 use sophie_sim::record::FlightRecord;
 
@@ -8,7 +8,7 @@ use super::time_axis::{LEFT, Span};
 /// Height of one band, px.
 pub const BAND: f64 = 17.0;
 
-/// Two bands below the panels: the state of the stack, and the number of the step.
+/// Two bands below the panels: state of the stack, number of the step.
 pub fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
     let mut out = String::new();
     let mut start = 0;
@@ -52,13 +52,13 @@ pub fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
     out + &text(LEFT - 7.0, top + BAND + 12.5, "tick end", "step")
 }
 
-/// A mode or a step of the flight on its band.
+/// A mode or step on its band.
 struct Block<'a> {
     /// When it began and ended, s.
     from: f64,
     to: f64,
     class: &'a str,
-    /// Shown where there is room for it.
+    /// Shown if it fits.
     label: &'a str,
     tip: &'a str,
 }
@@ -83,7 +83,6 @@ impl Block<'_> {
     }
 }
 
-/// Whether a label fits between two times.
 fn wide(span: Span, from: f64, to: f64, label: &str) -> bool {
     let (from, to) = (from.max(span.from), to.min(span.to));
     span.x(to) - span.x(from) > 5.0 + 6.9 * label.chars().count() as f64

@@ -7,7 +7,7 @@ use super::plot::{Panel, Trace, figure};
 use super::time_axis::Span;
 use super::units::deg;
 
-/// CSS class and meaning of each kind of line.
+/// CSS class and meaning per kind of line.
 pub type Legend = Vec<(&'static str, String)>;
 
 /// One figure of the page.
@@ -16,7 +16,7 @@ pub struct Figure {
     pub title: &'static str,
     /// One sentence on what is shown.
     pub note: String,
-    /// CSS class and meaning of each kind of line.
+    /// CSS class and meaning per kind of line.
     pub legend: Legend,
     /// The drawing.
     pub svg: String,
@@ -48,7 +48,7 @@ fn series(record: &FlightRecord, f: impl Fn(&Sample) -> f64) -> Vec<f64> {
     record.samples.iter().map(f).collect()
 }
 
-/// One curve for each arm, in the unit that `unit` makes of SI.
+/// One curve per arm, converted from SI by `unit`.
 pub fn arm_series(
     record: &FlightRecord,
     f: impl Fn(&Sample) -> &[f64; 4],

@@ -1,4 +1,4 @@
-//! Tendon force and contact pressure, over the flight and while the arms close.
+//! Tendon force and contact pressure, over the flight and during closing.
 
 use sophie_control::tendon::ForceLimit;
 use sophie_sim::record::FlightRecord;
@@ -24,7 +24,7 @@ pub fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String
         .iter()
         .flat_map(|s| s.tension)
         .fold(0.0, |a: f64, v| a.max(force(v)));
-    // The limit is shown where it matters; far above the curves it would flatten them.
+    // The limit is shown only near the curves; otherwise it flattens them.
     let near = largest > 0.5 * limit;
     let tension = Panel {
         axis: "tendon force (kgcm)".into(),
@@ -64,7 +64,7 @@ pub fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String
     }
 }
 
-/// The first closing of the arms, a little more on both sides.
+/// The first closing, with a margin on both sides.
 pub fn closing(record: &FlightRecord) -> Option<(Span, String)> {
     let phase = record.phases.iter().find(|p| p.name == "perch")?;
     let times: Vec<String> = record

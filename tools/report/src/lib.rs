@@ -1,5 +1,4 @@
-//! What is kept of a flight on disk (a page to read, a log to plot, a summary for programs), and what is printed of it on
-//! a terminal.
+//! Output of a flight: on disk (page, log for plots, summary for programs) and on the terminal.
 
 mod attitude_error;
 mod bands;

@@ -1,7 +1,7 @@
 //! `flight.mcap`: every sample, for Foxglove and PlotJuggler.
 //!
-//! Times are simulated nanoseconds from power-up. The 3D frames are Foxglove's: `world` is north, west, up
-//! from the take-off point, `vehicle` is forward, left, up.
+//! Times are simulated nanoseconds from power-up. Frames are Foxglove's: `world` is north, west, up from the take-off
+//! point, `vehicle` forward, left, up.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -15,13 +15,13 @@ use super::summary::tidy;
 use super::units::deg;
 use super::{scene, schemas};
 
-/// Messages of the 3D scene a second; the samples come at their full rate.
+/// Rate of the 3D scene, Hz; samples have their full rate.
 const SCENE_HZ: f64 = 20.0;
 
 /// The file's content.
 ///
 /// # Errors
-/// One line, should the writer fail.
+/// One line, if the writer fails.
 pub fn mcap(record: &FlightRecord) -> Result<Vec<u8>, String> {
     write(record).map_err(|error| format!("flight.mcap: cannot be made: {error}"))
 }
@@ -42,7 +42,7 @@ fn write(record: &FlightRecord) -> mcap::McapResult<Vec<u8>> {
     file.message(drawing, 0.0, &scene::fixed(record))?;
     let (mut next_scene, mut next_event) = (0.0, 0);
     for sample in &record.samples {
-        // In order of time, as readers like it.
+        // In order of time, as readers prefer.
         while let Some(event) = record.events.get(next_event).filter(|e| e.t <= sample.t) {
             file.message(events, event.t, &log_message(event.t, &event.text))?;
             next_event += 1;

@@ -12,7 +12,7 @@ pub struct KeyMoment<'a> {
     pub sample: &'a Sample,
     /// Sideways push at that time, N.
     pub push: f64,
-    /// The view stays with the pipe rather than with the vehicle.
+    /// The view is centred on the pipe, not on the vehicle.
     pub at_pipe: bool,
 }
 
@@ -93,7 +93,7 @@ fn steepest(record: &FlightRecord, phase: &Phase) -> Option<usize> {
         .map(|(i, _)| i)
 }
 
-/// The last moment at which the vehicle is still close over the pipe.
+/// The last moment with the vehicle close over the pipe.
 fn lifted_off(record: &FlightRecord, phase: &Phase) -> Option<usize> {
     let close = record.scenario.world.pipe_top + 0.16;
     let near = during(record, phase)

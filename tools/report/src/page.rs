@@ -1,4 +1,4 @@
-//! `report.html`: one page without anything from outside.
+//! `report.html`: a self-contained page.
 
 use sophie_control::mode::Mode;
 use sophie_sim::record::FlightRecord;
@@ -109,7 +109,7 @@ fn key_figures(record: &FlightRecord) -> String {
     out + "</div>"
 }
 
-/// The step in which an error was.
+/// Step of an error.
 fn step(worst: Worst<'_>) -> String {
     worst
         .step
@@ -121,7 +121,7 @@ fn scenes(record: &FlightRecord) -> String {
     if moments.is_empty() {
         return String::new();
     }
-    // Four side by side rather than three and one.
+    // Four side by side, not three and one.
     let class = if moments.len() == 4 {
         "scenes four"
     } else {
@@ -209,7 +209,7 @@ pub(super) mod tests {
     use super::super::synthetic;
     use super::*;
 
-    /// Every element that is opened is closed, in order, and nothing stands outside of one.
+    /// All elements are closed, in order, with nothing outside of them.
     pub fn well_formed(text: &str) {
         let mut open: Vec<&str> = vec![];
         let mut rest = text;
@@ -273,7 +273,7 @@ pub(super) mod tests {
             let commanded = (start + 1.0..end - 0.5).contains(&s.t);
             s.thrust_asked = [4.0; 4];
             s.attitude_setpoint = [if commanded { 0.5 } else { 0.0 }, 0.0, 0.0];
-            // 0.2 s behind, and never more than 0.02 rad off once it is there.
+            // 0.2 s behind, then within 0.02 rad.
             let late = (start + 1.2..end - 0.3).contains(&s.t);
             s.attitude = [if late { 0.52 } else { 0.02 }, 0.0, 0.0];
         }

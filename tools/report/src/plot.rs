@@ -32,9 +32,9 @@ pub struct Panel<'a> {
     pub levels: Vec<f64>,
     /// Values that the axis must show at least.
     pub include: Vec<f64>,
-    /// Smallest span of the axis, so that noise does not fill a panel.
+    /// Smallest span of the axis: noise must not fill a panel.
     pub span: f64,
-    /// Times that are marked at the top of the panel.
+    /// Times marked at the top of the panel.
     pub marks: Vec<(f64, f64)>,
 }
 
@@ -158,7 +158,7 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
     out + &text(x, middle, "title mid", &panel.axis).replacen("<text", &format!("<text {turned}"), 1)
 }
 
-/// Bounds of the vertical axis, rounded out to whole ticks.
+/// Bounds of the vertical axis, rounded out to ticks.
 fn limits(record: &FlightRecord, span: Span, panel: &Panel<'_>) -> (f64, f64) {
     let shown = |values: &'_ [f64]| -> Vec<f64> {
         let pairs = record.samples.iter().zip(values);
@@ -179,7 +179,7 @@ fn limits(record: &FlightRecord, span: Span, panel: &Panel<'_>) -> (f64, f64) {
     let missing = (panel.span.max(1e-9) - (high - low)).max(0.0) / 2.0;
     let (low, high) = (low - missing, high + missing);
     let step = tick_step(low, high, 6);
-    // A curve that lies on the frame is hard to see: leave a little room, but not below a true zero.
+    // Margin for curves on the frame, but none below a true zero.
     let room = 0.04 * (high - low);
     let low = if low == 0.0 { 0.0 } else { low - room };
     let round = |v: f64, f: fn(f64) -> f64| f(v / step * 2.0) * step / 2.0;

@@ -1,13 +1,13 @@
-//! Round ticks, and curves thinned to what a drawing can show.
+//! Round ticks, and curves thinned to the drawing's resolution.
 
 use sophie_sim::record::FlightRecord;
 
 use super::time_axis::Span;
 
-/// Columns into which a curve is thinned: about two to a pixel of the drawing.
+/// Columns of a thinned curve: about two per pixel.
 const COLUMNS: usize = 460;
 
-/// The curve as its smallest and largest value in each column, in the order in which they come.
+/// Smallest and largest value per column, in their order.
 pub(crate) fn thin(record: &FlightRecord, span: Span, values: &[f64]) -> Vec<(f64, f64)> {
     let shown: Vec<(f64, f64)> = record
         .samples
@@ -34,7 +34,7 @@ pub(crate) fn thin(record: &FlightRecord, span: Span, values: &[f64]) -> Vec<(f6
     out
 }
 
-/// Round values between `low` and `high`, about `count` of them.
+/// About `count` round values between `low` and `high`.
 pub fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     let step = tick_step(low, high, count);
     let (first, last) = (
@@ -76,7 +76,7 @@ mod tests {
         assert!(thinned.len() <= 2 * COLUMNS);
         assert!(thinned.iter().any(|(_, v)| *v == 7.0) && thinned.iter().any(|(_, v)| *v == -5.0));
         assert!(thinned.windows(2).all(|w| w[0].0 < w[1].0));
-        // Where there is no value, the gap stays.
+        // Gaps stay.
         let gap = thin(&record, Span::all(&record), &vec![f64::NAN; record.samples.len()]);
         assert!(!gap.is_empty() && gap.iter().all(|(_, v)| v.is_nan()));
     }

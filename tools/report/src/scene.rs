@@ -1,4 +1,4 @@
-//! Vehicle, arms and pipe as Foxglove's 3D panel draws them.
+//! Vehicle, arms and pipe for Foxglove's 3D panel.
 
 use serde_json::{Value, json};
 use sophie_sim::record::{FlightRecord, Sample};
@@ -22,7 +22,7 @@ const COLOURS: [[f64; 3]; 4] = [
     [0.69, 0.33, 0.61],
 ];
 
-/// Where the vehicle is. NED and FRD become north-west-up and forward-left-up: y and z turn their signs.
+/// Vehicle frame. NED and FRD become north-west-up and forward-left-up: y and z change sign.
 pub fn transform(s: &Sample) -> Value {
     let [(sr, cr), (sp, cp), (sy, cy)] = s.attitude.map(|angle| (0.5 * angle).sin_cos());
     let (w, x) = (cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy);
@@ -33,12 +33,12 @@ pub fn transform(s: &Sample) -> Value {
         "parent_frame_id": "world",
         "child_frame_id": "vehicle",
         "translation": point(north, -east, -down),
-        // Full precision would only show rounding of the last digits.
+        // Rounded: further digits are noise.
         "rotation": { "x": tidy(x), "y": tidy(-y), "z": tidy(-z), "w": tidy(w) },
     })
 }
 
-/// The pipe, and the body that moves with its frame.
+/// The pipe, and the body in its frame.
 pub fn fixed(record: &FlightRecord) -> Value {
     let world = &record.scenario.world;
     let [north, east] = world.pipe_position;
@@ -83,7 +83,7 @@ pub fn fixed(record: &FlightRecord) -> Value {
     json!({ "deletions": [], "entities": entities })
 }
 
-/// The four arms, bent as they are, and their rotors.
+/// The four bent arms and their rotors.
 pub fn vehicle(s: &Sample) -> Value {
     let mut lines = vec![];
     let mut rotors = vec![];
@@ -182,7 +182,7 @@ mod tests {
             ..Sample::default()
         });
         assert!((roll["rotation"]["x"].as_f64().unwrap() - 0.2_f64.sin()).abs() < 1e-5);
-        // Clockwise from above is negative about an axis that points up.
+        // Clockwise from above is negative about an upward axis.
         let yaw = transform(&Sample {
             attitude: [0.0, 0.0, 0.4],
             position: [1.0, 2.0, -3.0],

@@ -1,7 +1,7 @@
 //! JSON schemas of the channels in `flight.mcap`.
 //!
-//! Ours list plain numbers and arrays, so that plotting tools can pick `/truth.tilt[0]`. The `foxglove.` ones
-//! are the parts that we use of Foxglove's own, under which its panels know them.
+//! Ours are plain numbers and arrays, so that plotting tools can pick `/truth.tilt[0]`; the `foxglove.` ones are the
+//! parts used of Foxglove's own, which its panels recognise.
 
 use serde_json::{Value, json};
 
@@ -12,7 +12,7 @@ pub enum Field {
     Number,
     /// North, east, down or roll, pitch, yaw.
     Three,
-    /// One number for each arm: 1 front left, 2 rear left, 3 front right, 4 rear right.
+    /// One number per arm: 1 front left, 2 rear left, 3 front right, 4 rear right.
     Arms,
     /// A word.
     Word,

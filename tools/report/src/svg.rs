@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// `text` for the inside of an element or an attribute.
+/// `text` escaped for an element or an attribute.
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -18,7 +18,7 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// A number with at most `digits` decimals and no needless zeros.
+/// A number with at most `digits` decimals, without trailing zeros.
 pub fn short(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = if text.contains('.') {
@@ -33,7 +33,7 @@ pub fn short(value: f64, digits: usize) -> String {
     }
 }
 
-/// Path data through `points` (px); a break wherever a point is not finite.
+/// Path data through `points` (px), broken at non-finite ones.
 pub fn path(points: impl IntoIterator<Item = (f64, f64)>) -> String {
     let mut data = String::new();
     let mut pen_down = false;

@@ -1,4 +1,4 @@
-//! A made-up flight with the shapes of a real one, so that the reports can be tested by themselves.
+//! A synthetic flight for tests of the reports.
 
 use std::f64::consts::TAU;
 

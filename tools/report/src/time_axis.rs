@@ -1,4 +1,4 @@
-//! The time axis that panels and bands share.
+//! The time axis of panels and bands.
 
 use sophie_sim::record::FlightRecord;
 

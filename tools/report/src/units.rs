@@ -1,4 +1,4 @@
-//! The units in which people read; everything else is SI.
+//! Units for people; all else is SI.
 
 use sophie_sim::record::FlightRecord;
 
@@ -15,7 +15,7 @@ pub fn kgcm(torque: f64) -> f64 {
     torque / KGCM
 }
 
-/// Tendon tension (N) to the servo's torque in kgcm.
+/// Tendon tension (N) to servo torque in kgcm.
 pub fn tension_kgcm(record: &FlightRecord, tension: f64) -> f64 {
     kgcm(tension * f64::from(record.scenario.params.reel_radius))
 }

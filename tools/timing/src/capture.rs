@@ -135,7 +135,7 @@ impl Task {
         self.seconds.last().map_or(0, |s| s.deadline)
     }
 
-    /// [`worst`] of the seconds' quantiles.
+    /// The seconds' quantiles as one, see [`worst`].
     #[must_use]
     pub fn over(&self, of: impl Fn(&Record) -> Quantiles) -> Quantiles {
         let all: Vec<Quantiles> = self.seconds.iter().map(of).collect();

@@ -1,4 +1,4 @@
-//! A capture for spreadsheets and scripts: a line for each run of a trace, else one for each task's second.
+//! A capture as CSV: a line per run of a trace, else one per task and second.
 
 use std::fmt::Write;
 

@@ -1,8 +1,8 @@
-//! What a board's log says of its timing.
+//! Timing from a board's log.
 //!
-//! [`source`] turns a file into messages, whatever wrote it; [`live`] reads the records that every firmware logs each
-//! second, [`trace`] the executor events of one built with the feature `trace`; [`capture::Capture`] is both.
-//! [`table`], [`csv`] and [`page`] show it, [`analyse`] asks whether every deadline would hold.
+//! [`source`] turns any file into messages; [`live`] reads the records that every firmware logs each second, [`trace`]
+//! the executor events of one built with the feature `trace`; [`capture::Capture`] is both. [`table`], [`csv`] and
+//! [`page`] show it, [`analyse`] bounds the deadlines.
 
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

@@ -1,11 +1,11 @@
-//! The capture as a page that needs nothing else: its tables, and a timeline that can be zoomed.
+//! The capture as a self-contained page: tables, and a zoomable timeline.
 
 use std::fmt::Write;
 
 use crate::capture::Capture;
 use crate::replay::Replay;
 
-/// Most polls in a timeline: more make a page that no browser likes.
+/// Most polls in a timeline: browsers cannot show more.
 const POLLS: usize = 300_000;
 
 const STYLE: &str = include_str!("timeline.css");

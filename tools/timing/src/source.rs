@@ -1,4 +1,4 @@
-//! The messages in a file: text as `probe-rs run` or the bench writes it, or the log's own bytes.
+//! Messages of a file: text of `probe-rs run` or the bench, or the log's own bytes.
 
 use std::path::Path;
 
@@ -7,13 +7,13 @@ use defmt_decoder::{DecodeError, Table};
 /// The messages of a capture.
 #[derive(Debug)]
 pub struct Messages {
-    /// Each with all that stands before it on its line.
+    /// Each with its prefix.
     pub lines: Vec<String>,
     /// What could not be read, in a sentence.
     pub broken: Option<String>,
 }
 
-/// Reads `capture`; `elf` is the image that wrote it, needed for the log's own bytes only.
+/// Reads `capture`; `elf` is the image that wrote it, needed only for the log's own bytes.
 ///
 /// # Errors
 /// One line: what is wrong with either file and what is wanted.
@@ -46,7 +46,7 @@ fn load(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))
 }
 
-/// Text has line ends and nothing that no terminal shows. A character may be cut in two at the end.
+/// Text has line ends and no unprintable characters; the last character may be cut.
 fn is_text(bytes: &[u8]) -> bool {
     let readable = match std::str::from_utf8(bytes) {
         Ok(_) => true,
@@ -58,7 +58,7 @@ fn is_text(bytes: &[u8]) -> bool {
 fn text(bytes: &[u8]) -> Messages {
     let text = String::from_utf8_lossy(bytes);
     let mut lines: Vec<String> = text.lines().map(plain).collect();
-    // What the last line says may be less than what was logged: half a number is a number.
+    // The last line may be cut within a number.
     let broken = (!text.ends_with('\n')).then(|| {
         lines.pop();
         "the last line is cut off".to_owned()
@@ -66,7 +66,7 @@ fn text(bytes: &[u8]) -> Messages {
     Messages { lines, broken }
 }
 
-/// `line` without the colours of a terminal.
+/// `line` without terminal colours.
 fn plain(line: &str) -> String {
     let mut plain = String::new();
     let mut rest = line;
@@ -102,7 +102,7 @@ fn raw(bytes: &[u8], table: &Table) -> Messages {
             lines.len()
         )
     });
-    // Frames of an encoding that can recover end with a zero.
+    // Frames of a recoverable encoding end with a zero.
     let cut = (table.encoding().can_recover() && bytes.last() != Some(&0))
         .then(|| "the last message is cut off".to_owned());
     let faults: Vec<String> = strange.into_iter().chain(cut).collect();

@@ -1,4 +1,4 @@
-//! What a terminal shows.
+//! Tables for the terminal.
 
 use std::fmt::Write;
 
@@ -26,7 +26,7 @@ pub fn tables(capture: &Capture, replay: &Replay) -> String {
     text
 }
 
-/// Of the records that are logged each second.
+/// Tables of the records logged each second.
 fn seconds(capture: &Capture) -> String {
     let mut text =
         String::from("\nEach second's records: half / 99 % / all runs, us from release (docs/timing.md)\n\n");
@@ -64,7 +64,7 @@ fn seconds(capture: &Capture) -> String {
     text + &contact(&capture.contact)
 }
 
-/// Of the chain from contact pressure to servo pulse; nothing in a log without any.
+/// The chain from contact pressure to servo pulse; empty without records.
 fn contact(seconds: &[Contact]) -> String {
     let (Some(min), Some(last)) = (seconds.iter().map(|c| c.min).min(), seconds.last()) else {
         return String::new();
@@ -149,7 +149,7 @@ fn preemptions(replay: &Replay) -> String {
     text
 }
 
-/// How the responses of each task are spread.
+/// Distribution of each task's responses.
 fn histograms(replay: &Replay) -> String {
     let mut text = String::from("\nResponses, us from the wake\n");
     for task in replay.tasks.iter().filter(|t| !t.runs.is_empty()) {

@@ -1,4 +1,4 @@
-//! What goes to the terminal: lines that survive a closed pipe, colour only where it is wanted.
+//! Terminal output: survives a closed pipe; colour only where wanted.
 
 use std::cell::{Cell, RefCell};
 use std::io::{self, ErrorKind, IsTerminal, Write};
@@ -7,7 +7,7 @@ use sophie_sim::record::{FlightRecord, Observer};
 
 use super::live::{Bar, Lines};
 
-/// Where the running text goes: stdout, or stderr when stdout is kept for JSON.
+/// Running text: stdout, or stderr when stdout is kept for JSON.
 pub struct Console {
     to_stderr: bool,
     terminal: bool,
@@ -17,7 +17,7 @@ pub struct Console {
 }
 
 impl Console {
-    /// A console on stdout, or on stderr if `json`.
+    /// On stdout, or on stderr if `json`.
     pub fn new(json: bool) -> Self {
         let terminal = if json {
             std::io::stderr().is_terminal()
@@ -32,7 +32,7 @@ impl Console {
         }
     }
 
-    /// Shows one line. Once it cannot be shown any more, the work continues; [`Console::end`] says why.
+    /// Shows one line. Failures do not stop the work; [`Console::end`] reports them.
     pub fn say(&self, line: &str) {
         if self.closed.get() {
             return;
@@ -44,21 +44,21 @@ impl Console {
             writeln!(out, "{line}").and_then(|()| out.flush())
         };
         self.closed.set(told.is_err());
-        // A broken stderr could not be reported anyway.
+        // A broken stderr cannot be reported.
         if !self.to_stderr {
             *self.failure.borrow_mut() = self::told(told).err();
         }
     }
 
-    /// Whether all could be shown that somebody wanted to read.
+    /// Reports a failed output.
     ///
     /// # Errors
-    /// One line with the reason why stdout could not be written.
+    /// One line: why stdout could not be written.
     pub fn end(&self) -> Result<(), String> {
         self.failure.borrow_mut().take().map_or(Ok(()), Err)
     }
 
-    /// Runs `flight` with the observer that fits: a progress bar on a terminal, plain lines elsewhere.
+    /// Runs `flight` with its observer: a progress bar on a terminal, plain lines elsewhere.
     pub fn watch<T>(&self, flight: impl FnOnce(&mut dyn Observer) -> T) -> T {
         if self.terminal {
             let mut bar = Bar::new(self.to_stderr);
@@ -112,10 +112,10 @@ pub fn print(line: &str) -> Result<(), String> {
     told(writeln!(out, "{line}").and_then(|()| out.flush()))
 }
 
-/// What became of text for stdout. A closed pipe is no failure: whoever reads has read enough.
+/// Result of writing to stdout; a closed pipe is no failure.
 ///
 /// # Errors
-/// One line with any other reason why it was not written.
+/// One line with any other reason.
 pub fn told(result: io::Result<()>) -> Result<(), String> {
     match result {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

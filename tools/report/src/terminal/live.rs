@@ -1,4 +1,4 @@
-//! What is shown during a flight.
+//! Output during a flight.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use sophie_control::mode::Mode;
@@ -6,7 +6,7 @@ use sophie_sim::record::{Event, Observer, Phase};
 
 use super::console::{Console, one_line};
 
-/// Plain lines, one for each step and event: for files and pipes.
+/// Plain lines per step and event, for files and pipes.
 pub struct Lines<'a> {
     console: &'a Console,
 }
@@ -37,7 +37,7 @@ fn event_line(event: &Event) -> String {
     format!("{:8.2} s        {}", event.t, one_line(&event.text))
 }
 
-/// A progress bar with a live line, and a line left behind for each step and event.
+/// A progress bar with a live line, and a permanent line per step and event.
 pub struct Bar {
     bar: ProgressBar,
     step: String,
@@ -88,7 +88,7 @@ impl Observer for Bar {
     }
 
     fn progress(&mut self, t: f64, mode: Mode, height: f64) {
-        // With the bar just within 80 columns.
+        // Fits 80 columns with the bar.
         self.bar.set_message(format!(
             "{:<11} {t:6.1} s  {:<11} {height:5.2} m",
             self.step,

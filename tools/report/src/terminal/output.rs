@@ -1,21 +1,20 @@
-//! The output directory: checked before the flight, made when there is something to write, and written so that no file
-//! is ever half there.
+//! The output directory: checked before the flight, made at the first write; files appear complete or not at all.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A directory that could be written to when it was looked at.
+/// A directory that was writable when checked.
 pub struct OutDir {
     path: PathBuf,
 }
 
 impl OutDir {
-    /// Tries whether files called `names` can be made in the directory, and leaves everything as it was: a run that is
-    /// interrupted leaves nothing behind.
+    /// Tries whether files `names` can be made in the directory and leaves it as it was: an interrupted run leaves
+    /// nothing behind.
     ///
     /// # Errors
-    /// One line that names the directory, the reason and what is allowed.
+    /// One line: directory, reason, what is allowed.
     pub fn prepare(path: &Path, names: &[&str]) -> Result<Self, String> {
         let out = Self {
             path: path.to_owned(),
@@ -30,7 +29,7 @@ impl OutDir {
             .and_then(|()| fs::write(&probe, b""))
             .and_then(|()| fs::remove_file(&probe));
         for directory in &made {
-            // From the innermost outwards; one that somebody else has put something into meanwhile stays.
+            // Innermost first; a directory filled by someone else meanwhile stays.
             let _ = fs::remove_dir(directory);
         }
         tried.map_err(|error| {
@@ -48,15 +47,14 @@ impl OutDir {
         }
     }
 
-    /// Makes the directory if needed, writes all files under temporary names, then gives them their names. Gives their paths.
+    /// Makes the directory, writes all files under temporary names, then renames them; returns their paths.
     ///
     /// # Errors
-    /// One line that names the file and the reason; the temporary files are gone then.
+    /// One line: file and reason; the temporary files are removed.
     pub fn write(&self, files: &[(impl AsRef<str>, Vec<u8>)]) -> Result<Vec<String>, String> {
         let result = self.try_write(files);
         if result.is_err() {
             for (name, _) in files {
-                // Whatever is not there needs no removing.
                 let _ = fs::remove_file(self.partial(name.as_ref()));
             }
         }
@@ -127,7 +125,7 @@ mod tests {
     fn a_failure_leaves_no_partial_file() {
         let path = temp("bad");
         fs::create_dir_all(path.join("b")).unwrap();
-        // A directory stands where the second file should go: reported at once, or when it came later.
+        // A directory in place of the second file: reported at once, or at the write.
         let line = OutDir::prepare(&path, &["a", "b"]).map(|_| ()).unwrap_err();
         assert!(
             line.contains("/b: cannot be written: it is a directory"),

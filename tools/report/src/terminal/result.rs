@@ -1,4 +1,4 @@
-//! What is printed before and after a flight.
+//! Output before and after a flight.
 
 use sophie_sim::record::FlightRecord;
 use sophie_sim::scenario::{Scenario, keys};
@@ -6,7 +6,7 @@ use sophie_sim::scenario::{Scenario, keys};
 use super::table::{Align, Table};
 use crate::units::{deg, kgcm};
 
-/// One line that says what is about to be flown.
+/// One line on the flight to come.
 pub fn intro(scenario: &Scenario) -> String {
     format!(
         "{}: configuration {}, infill {} %, K {}, {} mixer, arms {}, seed {}",

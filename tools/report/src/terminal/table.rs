@@ -32,7 +32,7 @@ impl Table {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// The lines: titles, a rule, the rows; two blanks between columns, none at the end.
+    /// Titles, a rule, the rows; two blanks between columns, none at the end.
     pub fn lines(&self) -> Vec<String> {
         let titles: Vec<String> = self.columns.iter().map(|(title, _)| title.clone()).collect();
         let widths: Vec<usize> = (0..self.columns.len())
@@ -72,7 +72,7 @@ impl Table {
     }
 }
 
-/// Width on a terminal; all that we print is one cell wide a character.
+/// Width on a terminal; every character printed is one cell wide.
 fn width(text: &str) -> usize {
     text.chars().count()
 }
