@@ -256,7 +256,7 @@ pub struct Declared {
     pub message: &'static str,
     /// The task that sends it; each run does, unless `meaning` says otherwise.
     pub from: TaskId,
-    /// Who reads it: tasks by their names, or the log.
+    /// Who reads it: tasks by their names, the console or the log.
     pub to: &'static str,
     /// Age beyond which a reader must not use it.
     pub stale_after: Duration,
@@ -333,7 +333,7 @@ links! {
     /// Contact pressures; without them closed arms keep their force and are faulty.
     contact: Contact, Analog to "clamp, commander", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
-    battery: Battery, Analog to "mixer, commander, telemetry", stale after 500 ms;
+    battery: Battery, Analog to "mixer, commander, telemetry, console", stale after 500 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
     arms: ArmAngles, Arms to "mixer, clamp, servos", stale after 100 ms;
     /// What the tendons are to do; without it the clamp makes no step and sends nothing.
@@ -349,9 +349,9 @@ links! {
     /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
     grip: GripState, Clamp to "commander, supervisor", stale after 100 ms;
     /// The pilot's wishes, as frames come; without them failsafe.
-    rc: RcState, Rc to "commander", stale after 500 ms;
+    rc: RcState, Rc to "commander, console", stale after 500 ms;
     /// The commander's view.
-    status: Status, Commander to "telemetry, log", stale after 200 ms;
+    status: Status, Commander to "telemetry, console, log", stale after 200 ms;
 }
 
 impl Links {
