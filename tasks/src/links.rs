@@ -16,7 +16,6 @@
 use core::cell::{Cell, RefCell};
 
 use embassy_sync::blocking_mutex::Mutex;
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
@@ -34,15 +33,10 @@ use sophie_control::wrench::PerArm;
 
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};
+pub use crate::last_value::{RECEIVERS, Raw};
 use crate::schedule::{Level, TaskId};
 use crate::start::{Start, StartCause};
 use crate::timing::{Quantity, Record, Run, Timing};
-
-/// The mutex of every link: tasks of different priority meet here on the board.
-pub type Raw = CriticalSectionRawMutex;
-
-/// Most receivers of one link.
-pub const RECEIVERS: usize = 8;
 
 /// A value and the time at which what it describes was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
