@@ -6,9 +6,14 @@ use core::future::poll_fn;
 use core::task::{Context, Poll};
 
 use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::waitqueue::MultiWakerRegistration;
 
-use crate::links::{RECEIVERS, Raw};
+/// The mutex of every link: tasks of different priority meet here on the board.
+pub type Raw = CriticalSectionRawMutex;
+
+/// Most receivers of one link.
+pub const RECEIVERS: usize = 8;
 
 /// A value, and who waits for the next one. What is called with the value in place must not use the same `LastValue`: it
 /// is locked meanwhile and would look empty.

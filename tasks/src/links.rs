@@ -16,7 +16,6 @@
 use core::cell::{Cell, RefCell};
 
 use embassy_sync::blocking_mutex::Mutex;
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
@@ -34,15 +33,10 @@ use sophie_control::wrench::PerArm;
 
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};
+pub use crate::last_value::{RECEIVERS, Raw};
 use crate::schedule::{Level, TaskId};
 use crate::start::{Start, StartCause};
 use crate::timing::{Quantity, Record, Run, Timing};
-
-/// The mutex of every link: tasks of different priority meet here on the board.
-pub type Raw = CriticalSectionRawMutex;
-
-/// Most receivers of one link.
-pub const RECEIVERS: usize = 8;
 
 /// A value and the time at which what it describes was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -256,7 +250,7 @@ pub struct Declared {
     pub message: &'static str,
     /// The task that sends it; each run does, unless `meaning` says otherwise.
     pub from: TaskId,
-    /// Who reads it: tasks by their names, or the log.
+    /// Who reads it: tasks by their names, the console or the log.
     pub to: &'static str,
     /// Age beyond which a reader must not use it.
     pub stale_after: Duration,
@@ -333,7 +327,7 @@ links! {
     /// Contact pressures; without them closed arms keep their force and are faulty.
     contact: Contact, Analog to "clamp, commander", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
-    battery: Battery, Analog to "mixer, commander, telemetry", stale after 500 ms;
+    battery: Battery, Analog to "mixer, commander, telemetry, console", stale after 500 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
     arms: ArmAngles, Arms to "mixer, clamp, servos", stale after 100 ms;
     /// What the tendons are to do; without it the clamp makes no step and sends nothing.
@@ -349,9 +343,9 @@ links! {
     /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
     grip: GripState, Clamp to "commander, supervisor", stale after 100 ms;
     /// The pilot's wishes, as frames come; without them failsafe.
-    rc: RcState, Rc to "commander", stale after 500 ms;
+    rc: RcState, Rc to "commander, console", stale after 500 ms;
     /// The commander's view.
-    status: Status, Commander to "telemetry, log", stale after 200 ms;
+    status: Status, Commander to "telemetry, console, log", stale after 200 ms;
 }
 
 impl Links {

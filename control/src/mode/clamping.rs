@@ -2,7 +2,7 @@
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
-use super::hold::{Hold, SPOOL_TIME, Spool, held, hopeless, perch_thrust};
+use super::hold::{Hold, SPOOL_TIME, Spool, held, hopeless};
 use super::{Inputs, Reason, Setpoint};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
@@ -138,7 +138,7 @@ impl Behaviour for Clamping {
         if self.spool.stopped() {
             Setpoint::Stop
         } else {
-            self.spool.rotors(self.hold, perch_thrust(context))
+            self.spool.rotors(self.hold, context.perch_thrust())
         }
     }
 }

@@ -1,9 +1,8 @@
 //! What is held on the pipe: an attitude, a share of the collective, a grip.
 
-use super::context::Context;
 use super::{GripState, Inputs, Reason, Setpoint};
 use crate::grip::{ArmGrip, ArmState};
-use crate::math::{clamp, clamp_abs};
+use crate::math::clamp_abs;
 use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::Wrench;
@@ -140,9 +139,4 @@ pub fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     } else {
         None
     }
-}
-
-/// The pilot's collective on the pipe, N: his throttle, no more than a perch takes.
-pub fn perch_thrust(context: &Context) -> f32 {
-    clamp(context.throttle, 0.0, context.params.perch_thr_max) * context.full_thrust()
 }
