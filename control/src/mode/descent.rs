@@ -1,4 +1,4 @@
-//! The failsafe's descent: level, sinking slowly, and probing for what carries.
+//! The failsafe's descent: level, sinking slowly, probing for support.
 
 use super::context::Context;
 use super::{Setpoint, demand};
@@ -6,20 +6,20 @@ use crate::math::clamp;
 use crate::rc::{StickMode, Sticks};
 use crate::support::{HINT_FORCE, Support};
 
-/// Sink rate aimed at, m/s.
+/// Target sink rate, m/s.
 const SINK_RATE: f32 = 0.8;
-/// Share of the weight taken off the collective to start sinking; given back as the sink rate is reached.
+/// Share of the weight taken off the collective to start sinking, returned as the sink rate is reached.
 const SINK_SHARE: f32 = 0.15;
-/// Fastest that the collective is taken away where something seems to carry the vehicle, share of the weight
-/// per second. In free air the seeming support shrinks with it, and it comes back.
+/// Fastest reduction of the collective by the probe, share of the weight per second. In free air the apparent support
+/// shrinks with it, and the thrust returns.
 const PROBE_RATE: f32 = 0.5;
 
-/// Share of the weight taken away to see whether something carries it, 0..1.
+/// Share of the weight taken away by the probe, 0..1.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Probe(f32);
 
 impl Probe {
-    /// Takes thrust away while something seems to carry a vehicle in the failsafe, gives it back where nothing does.
+    /// Reduces the thrust while something seems to carry a vehicle in the failsafe, and returns it otherwise.
     pub fn step(&mut self, failsafe: bool, support: &Support, dt: f32) {
         let hint = failsafe && support.force() > HINT_FORCE;
         let rate = match (hint, support.resting()) {
