@@ -57,7 +57,6 @@ impl Smooth {
         }
     }
 
-    /// Steps towards `wanted` by [`LowPass::gain`].
     #[inline(always)]
     fn blend(&mut self, wanted: Vec3, gain: f32) -> Vec3 {
         self.first = self.first + (wanted - self.first) * gain;

@@ -213,7 +213,6 @@ mod tests {
             let (t, g) = desaturate(&patterns(c, r, p, y), LOW, HIGH);
             prop_assert!(t.iter().all(|t| (LOW..=HIGH).contains(t)));
             prop_assert!((0.0..=1.0).contains(&g.roll_pitch) && (0.0..=1.0).contains(&g.yaw));
-            // The moments given have the reported share.
             let roll = 0.25 * (t[0] + t[1] - t[2] - t[3]);
             let pitch = 0.25 * (t[0] - t[1] + t[2] - t[3]);
             prop_assert!((roll - g.roll_pitch * r).abs() < 2e-3 && (pitch - g.roll_pitch * p).abs() < 2e-3);

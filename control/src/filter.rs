@@ -177,7 +177,6 @@ mod tests {
 
     use super::*;
 
-    /// Amplitude of the response to a sine of `hz`.
     fn gain(mut b: Biquad, hz: f32, rate: f32) -> f32 {
         let n = (rate * (20.0 / hz).max(2.0)) as usize;
         let mut peak = 0.0f32;

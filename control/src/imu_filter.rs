@@ -118,7 +118,6 @@ impl ImuFilter {
 mod tests {
     use super::*;
 
-    /// Output for one reading, if it is finite.
     fn one(f: &mut ImuFilter, gyro: Vec3, accel: Vec3) -> Option<ImuReading> {
         let mut newest = ImuReading::default();
         (f.batch(&[ImuReading { gyro, accel }], Vec3::ZERO, &mut newest) == 1).then_some(newest)

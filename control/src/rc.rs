@@ -17,7 +17,6 @@ use crate::math::clamp;
 
 /// Channels in a frame.
 pub const CHANNELS: usize = 16;
-/// Channels in use.
 const USED: usize = 8;
 /// Counts at the low end of a stick's travel.
 pub const RAW_LOW: u16 = 172;
@@ -33,7 +32,7 @@ const RAW_HALF: f32 = 819.5;
 const RAW_SPAN: f32 = 1639.0;
 /// Share of the travel about the centre (or the throttle's zero) that counts as zero, for a gimbal's slack.
 pub const DEADBAND: f32 = 0.01;
-/// Counts that separate a switch's positions.
+/// Thresholds of a switch, counts.
 const SWITCH_LOW: u16 = 582;
 const SWITCH_HIGH: u16 = 1402;
 

@@ -141,7 +141,7 @@ impl Support {
         self.force
     }
 
-    /// True from [`RESTING_TIME`] of more than [`RESTING_FORCE`] until as long of less than half of it.
+    /// True from [`RESTING_TIME`] above [`RESTING_FORCE`] until as long below [`LEAVING_FORCE`].
     pub fn resting(&self) -> bool {
         self.resting
     }

@@ -10,7 +10,7 @@ const UNITS_MAX: u64 = 1 << 24;
 const DIGITS_READ: u32 = 9;
 /// Most places shown: the smallest parameters are a few millionths.
 const PLACES_MAX: usize = 10;
-/// Powers of ten that an `f32` holds exactly.
+/// Exact in `f32`.
 const POWERS: [f32; PLACES_MAX + 1] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
 /// Largest exponent read; beyond it every number is 0 or too large.
 const EXPONENT_MAX: i32 = 60;

@@ -61,7 +61,6 @@ impl Histogram {
     }
 }
 
-/// The bucket of a time, µs.
 fn bucket(us: u32) -> usize {
     if us < 4 {
         return us as usize;

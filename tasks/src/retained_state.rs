@@ -18,7 +18,6 @@ pub type Words = [u32; WORDS];
 
 /// Marks a copy ("WARM") of this layout; each layout has its own number.
 const MAGIC: u32 = 0x5741_524D + 2;
-/// Bits of one arm's fault code.
 const FAULT_BITS: u32 = 4;
 /// Largest servo angle accepted, rad: beyond any servo's travel.
 const ANGLE_MAX: f32 = 6.5;

@@ -28,7 +28,6 @@ const BATTERY_SLOT: u8 = 9;
 /// Longest text of a flight-mode frame.
 const TEXT: usize = 59;
 
-/// A frame to send.
 type Frame = heapless::Vec<u8, 64>;
 
 /// Sends frames; never returns.

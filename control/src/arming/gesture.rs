@@ -16,7 +16,7 @@ pub enum Gesture {
     Disarm,
 }
 
-/// Recognises the gestures; reports each once, until the stick comes back.
+/// Reports each gesture once, until the stick comes back.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GestureWatch {
     shape: Option<Gesture>,

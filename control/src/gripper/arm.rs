@@ -17,7 +17,7 @@ const REGAIN_RATE_MAX: f32 = 30.0;
 const LAG_STUCK: f32 = 8.0;
 /// Time at the force limit after which the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
-/// Time for which pressure and tilt must be known after a restart, s: ten frames of the servos.
+/// Time for which pressure and tilt must be known after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
 /// Time without a tilt after which the arm is faulty, s; its servo is held from the first moment.
 const TILT_MISSING_MAX: f32 = 0.5;
@@ -135,7 +135,6 @@ impl ArmGripper {
         }
     }
 
-    /// Lowers the force and clears the fault.
     fn release(&mut self, cfg: &Config, dt: f32) {
         if self.phase != Phase::Free {
             self.phase = Phase::Release;

@@ -28,7 +28,6 @@ pub struct BendWatch {
     wait: f32,
 }
 
-/// One step of an arm without touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BendSample {
     /// Tilt, rad.
@@ -40,7 +39,6 @@ pub struct BendSample {
 }
 
 impl BendWatch {
-    /// Begins at this tilt (rad) and tension (N).
     pub fn new(tilt: f32, tension: f32) -> Self {
         Self {
             tilt: LowPass::at(tilt),

@@ -69,7 +69,6 @@ impl PressureLoop {
         self.integral + quick
     }
 
-    /// Notes the force `force` (N) of a touching arm.
     pub fn note_force(&mut self, force: f32, dt: f32) {
         self.mean_force.step(force, MEAN_FORCE_CUTOFF, dt);
     }

@@ -24,7 +24,6 @@ pub const TIPPED_TIME: f32 = 0.5;
 /// Time below the critical voltage, s: longer than a gust's current peak.
 pub const BATTERY_TIME: f32 = 1.0;
 
-/// Timers of the dangers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dangers {
     imu: Held,
@@ -47,22 +46,18 @@ impl Dangers {
         self.line_silent = i.hardware.contains(ArmingInhibit::ImuLineSilent);
     }
 
-    /// The inertial sensor has been silent for [`IMU_LOST_TIME`].
     pub fn imu_silent(&self) -> bool {
         self.imu.time() >= IMU_LOST_TIME
     }
 
-    /// The vehicle has lain over for [`TIPPED_TIME`].
     pub fn tipped_over(&self) -> bool {
         self.tipped.time() >= TIPPED_TIME
     }
 
-    /// The battery has been critical for [`BATTERY_TIME`].
     pub fn battery_critical(&self) -> bool {
         self.battery.time() >= BATTERY_TIME
     }
 
-    /// The inertial sensor's data-ready line is silent.
     pub fn line_silent(&self) -> bool {
         self.line_silent
     }

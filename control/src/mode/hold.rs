@@ -23,9 +23,9 @@ const HELD_SHARE: f32 = 0.6;
 /// Attitude held on the pipe, and the arms that close.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
-    /// Roll at contact, rad.
+    /// Held roll, rad.
     pub roll: f32,
-    /// Pitch at contact, rad.
+    /// Held pitch, rad.
     pub pitch: f32,
     /// Arms chosen at contact; the switch is ignored until they are free.
     pub arms: ArmChoice,
@@ -80,7 +80,6 @@ pub struct Spool {
 }
 
 impl Spool {
-    /// Closing at this share.
     pub fn at(share: f32) -> Self {
         Self {
             share,
@@ -106,13 +105,12 @@ impl Spool {
         }
     }
 
-    /// The rotors must stand still.
     pub fn stopped(self) -> bool {
         self.down && self.share <= 0.0
     }
 }
 
-/// Every chosen arm presses the pipe with a good part of the grip pressure.
+/// Every chosen arm presses with a good part of the grip pressure.
 pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
     let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
     grip.is_some_and(|g| {

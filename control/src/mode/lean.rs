@@ -22,7 +22,6 @@ const RELEASE_LEAN_MAX: f32 = deg(17.0);
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;
 
-/// The lean over the last steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lean {
     /// Roll of the last known attitude, rad.
@@ -69,7 +68,6 @@ impl Lean {
         self.leaning.time() >= SLIDE_TIME && support.force() > RESTING_FORCE
     }
 
-    /// Leans too far for the arms to let go.
     pub fn too_far_to_release(&self) -> bool {
         self.roll.abs() > RELEASE_LEAN_MAX
     }

@@ -26,7 +26,6 @@ impl Perched {
         })
     }
 
-    /// Reason for the pilot.
     fn trouble(&self, context: &Context, i: &Inputs) -> Option<Reason> {
         let asked = i
             .sticks

@@ -16,7 +16,6 @@ use crate::wrench::PerArm;
 /// Time over which the pressures are averaged, s.
 pub const AVERAGING_TIME: f32 = 0.5;
 
-/// Pressure of one arm since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Felt {
     /// Its integral, Pa s.
@@ -25,7 +24,6 @@ struct Felt {
     time: f32,
 }
 
-/// Pressures since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PowerUpGripCheck {
     time: f32,
@@ -50,7 +48,6 @@ impl PowerUpGripCheck {
     }
 }
 
-/// The pairs that press.
 fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Option<ArmChoice> {
     match (front_left || front_right, rear_left || rear_right) {
         (false, false) => None,

@@ -36,7 +36,6 @@ impl Releasing {
         held(step.inputs.grip, self.hold.arms, &step.context.params)
     }
 
-    /// The arms are open and free.
     pub fn released(&self, step: &Step<'_>) -> bool {
         self.opening && step.arms_free()
     }

@@ -39,7 +39,6 @@ enum Escape {
     Within,
 }
 
-/// Line being typed.
 #[derive(Default)]
 pub(super) struct Line {
     text: String<LENGTH>,
@@ -106,7 +105,6 @@ mod tests {
 
     use super::*;
 
-    /// Lines of `bytes`, and the echo.
     fn lines(bytes: &[u8]) -> (Many<Result<Text, LineError>>, Text) {
         let mut line = Line::default();
         let (mut lines, mut echoed) = (Many::new(), Text::new());

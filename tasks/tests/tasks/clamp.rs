@@ -42,7 +42,6 @@ impl World {
         }
     }
 
-    /// Sensor readings.
     fn pressed(&self) -> Contact {
         let mut contact = Contact {
             arms: self.pressure.map(Ok),
@@ -82,7 +81,6 @@ fn force(links: &Links) -> Option<PerArm<f32>> {
         .map(|m| m.value.forces().arms.map(|arm| arm.force))
 }
 
-/// Forces of a fresh order.
 fn fresh(links: &Links) -> Option<TendonForces> {
     links.tendons.fresh().map(|order| *order.forces())
 }

@@ -37,7 +37,6 @@ fn receivers_are_limited_and_given_back() {
     assert!(link.receiver().is_some());
 }
 
-/// Counts the wakes of a task.
 #[derive(Default)]
 struct Woken(AtomicUsize);
 

@@ -192,7 +192,7 @@ fn the_time_from_conversion_to_pulse_is_recorded_once_for_each_conversion_that_b
     let timing = rig.links.contact_timing();
     // Frames of 20 ms to 980 ms overtake the orders in between.
     assert_eq!((timing.runs, timing.overruns), (49, 0));
-    // To the frame after the clamp's step, and a conversion that it saw too late.
+    // Up to the frame after the clamp's step, of a conversion that the step just missed.
     assert_eq!(timing.deadline_us, 3500);
     let take = |quantity| rig.links.take_contact_histogram(quantity);
     let [late, frame, all] = [Quantity::Lateness, Quantity::Execution, Quantity::Response].map(take);

@@ -50,7 +50,6 @@ fn a_sensor_that_cannot_read_the_grip_pressure_stops_the_winding() {
     assert!(later.fault == Some(GripFault::Ceiling) && later.force == grip.force);
     arm.step(&cfg, &released(input(&cfg, &arm, 500.0)), DT);
     assert!(arm.fault().is_none());
-    // Any standstill.
     for ceiling in [150.0, 400.0, 800.0] {
         let (_, grip) = closing_on_a_skin(|pressure| math::clamp(pressure, 0.0, ceiling));
         assert!(grip.fault == Some(GripFault::Ceiling), "{ceiling}: {grip:?}");

@@ -32,7 +32,6 @@ fn input(cfg: &Config, arm: &ArmGripper, pressure: f32) -> ArmInput {
     }
 }
 
-/// The same for an arm that opens.
 fn released(input: ArmInput) -> ArmInput {
     ArmInput {
         close: false,
