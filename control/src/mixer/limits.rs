@@ -40,7 +40,7 @@ impl Limits {
         }
     }
 
-    /// Voltage ratio within the compensated range.
+    /// Voltage ratio for the rotors' limits: never above the nominal voltage, at least half of it.
     #[inline(always)]
     pub fn battery_ratio(ratio: f32) -> f32 {
         math::clamp(ratio, 0.5, 1.0)
