@@ -1,4 +1,4 @@
-//! Resting on the pipe with the rotors still helping; attitude held, yaw given up.
+//! Resting on the pipe with the rotors helping; attitude held, yaw given up.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};

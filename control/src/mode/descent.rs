@@ -5,9 +5,9 @@ use super::{Setpoint, demand};
 use crate::math::clamp;
 use crate::rc::{StickMode, Sticks};
 
-/// Sink rate aimed at, m/s.
+/// Target sink rate, m/s.
 const SINK_RATE: f32 = 0.8;
-/// Share of the weight taken off the collective to start sinking; given back as the sink rate is reached.
+/// Share of the weight taken off the collective to start sinking, returned as the sink rate is reached.
 const SINK_SHARE: f32 = 0.15;
 
 /// Level and sinking, at the roll, pitch and yaw rate of `steer`.
