@@ -59,8 +59,9 @@ impl<T> Stamped<T> {
         self.is_fresh(now, limit).then_some(self.value)
     }
 
+    /// True unless it is older than `limit` at `now`.
     #[inline]
-    fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
+    pub fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
         now.saturating_duration_since(self.at) <= limit
     }
 }
@@ -385,7 +386,7 @@ impl Links {
 
     /// Timing from the conversion of pressures to the servos' pulse, since power-up.
     pub fn contact_timing(&self) -> Timing {
-        with(&self.contact_chain, |record| record.totals).unwrap_or_default()
+        with(&self.contact_chain, |record| record.totals()).unwrap_or_default()
     }
 
     /// Histogram of the same since it was taken last.
@@ -395,7 +396,8 @@ impl Links {
 
     /// Timing of a task since power-up.
     pub fn timing(&self, task: TaskId) -> Timing {
-        self.with_record(task, |record| record.totals).unwrap_or_default()
+        self.with_record(task, |record| record.totals())
+            .unwrap_or_default()
     }
 
     /// Histogram of a task's times since it was taken last.
@@ -407,6 +409,29 @@ impl Links {
     /// Records one run of a task.
     pub fn record(&self, task: TaskId, run: &Run) {
         let missed = self.with_record(task, |record| record.add(run));
+        self.tell_missed(task, missed);
+    }
+
+    /// Records one run of a task on the way to the motor frame: noted here, added by [`Self::settle`].
+    #[inline]
+    pub fn note(&self, task: TaskId, run: &Run) {
+        let missed = self.with_record(task, |record| record.note(run));
+        self.tell_missed(task, missed);
+    }
+
+    /// Adds what the flight level has noted. Called when the motor frame is out; each task has its own lock, so that
+    /// interrupts are masked for no longer than one run takes.
+    pub fn settle(&self) {
+        for task in TaskId::ALL
+            .into_iter()
+            .filter(|task| task.level() == Level::Flight)
+        {
+            self.with_record(task, Record::settle);
+        }
+    }
+
+    #[inline]
+    fn tell_missed(&self, task: TaskId, missed: Option<bool>) {
         if missed == Some(true) && task.level() == Level::Flight {
             self.missed.signal(());
         }
