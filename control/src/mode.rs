@@ -25,6 +25,7 @@ mod lean;
 mod logic;
 mod perched;
 mod power_up_grip;
+mod probe;
 mod reason;
 mod releasing;
 #[cfg(test)]

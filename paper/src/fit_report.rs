@@ -48,7 +48,7 @@ fn reach(points: &[Point]) -> Option<(f64, f64)> {
 
 /// The stack's largest thrust of a rotor, N.
 fn thrust_max() -> f64 {
-    // An `f32` 8.3 has seven digits.
+    // 8.3 as an `f32` has seven digits.
     (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4
 }
 
@@ -82,7 +82,7 @@ pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
 
 /// Infill of the vehicle, %: the only one measured, or the stack's within those measured.
 pub fn infill(points: &[Point]) -> f64 {
-    // An `f32` 6.9 has seven digits.
+    // 6.9 as an `f32` has seven digits.
     let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
     let (low, high) = span(points, |p| p.infill);
     default.clamp(low, high.max(low))

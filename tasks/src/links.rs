@@ -16,7 +16,6 @@
 use core::cell::{Cell, RefCell};
 
 use embassy_sync::blocking_mutex::Mutex;
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
@@ -34,15 +33,10 @@ use sophie_control::wrench::PerArm;
 
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};
+pub use crate::last_value::{RECEIVERS, Raw};
 use crate::schedule::{Level, TaskId};
 use crate::start::{Start, StartCause};
 use crate::timing::{Quantity, Record, Run, Timing};
-
-/// The mutex of every link: tasks of different priority meet here on the board.
-pub type Raw = CriticalSectionRawMutex;
-
-/// Most receivers of one link.
-pub const RECEIVERS: usize = 8;
 
 /// A value and the time at which what it describes was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,8 +59,9 @@ impl<T> Stamped<T> {
         self.is_fresh(now, limit).then_some(self.value)
     }
 
+    /// True unless it is older than `limit` at `now`.
     #[inline]
-    fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
+    pub fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
         now.saturating_duration_since(self.at) <= limit
     }
 }
@@ -256,7 +251,7 @@ pub struct Declared {
     pub message: &'static str,
     /// The task that sends it; each run does, unless `meaning` says otherwise.
     pub from: TaskId,
-    /// Who reads it: tasks by their names, or the log.
+    /// Who reads it: tasks by their names, the console or the log.
     pub to: &'static str,
     /// Age beyond which a reader must not use it.
     pub stale_after: Duration,
@@ -333,7 +328,7 @@ links! {
     /// Contact pressures; without them closed arms keep their force and are faulty.
     contact: Contact, Analog to "clamp, commander", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
-    battery: Battery, Analog to "mixer, commander, telemetry", stale after 500 ms;
+    battery: Battery, Analog to "mixer, commander, telemetry, console", stale after 500 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
     arms: ArmAngles, Arms to "mixer, clamp, servos", stale after 100 ms;
     /// What the tendons are to do; without it the clamp makes no step and sends nothing.
@@ -349,9 +344,9 @@ links! {
     /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
     grip: GripState, Clamp to "commander, supervisor", stale after 100 ms;
     /// The pilot's wishes, as frames come; without them failsafe.
-    rc: RcState, Rc to "commander", stale after 500 ms;
+    rc: RcState, Rc to "commander, console", stale after 500 ms;
     /// The commander's view.
-    status: Status, Commander to "telemetry, log", stale after 200 ms;
+    status: Status, Commander to "telemetry, console, log", stale after 200 ms;
 }
 
 impl Links {
@@ -391,7 +386,7 @@ impl Links {
 
     /// Timing from the conversion of pressures to the servos' pulse, since power-up.
     pub fn contact_timing(&self) -> Timing {
-        with(&self.contact_chain, |record| record.totals).unwrap_or_default()
+        with(&self.contact_chain, |record| record.totals()).unwrap_or_default()
     }
 
     /// Histogram of the same since it was taken last.
@@ -401,7 +396,8 @@ impl Links {
 
     /// Timing of a task since power-up.
     pub fn timing(&self, task: TaskId) -> Timing {
-        self.with_record(task, |record| record.totals).unwrap_or_default()
+        self.with_record(task, |record| record.totals())
+            .unwrap_or_default()
     }
 
     /// Histogram of a task's times since it was taken last.
@@ -413,6 +409,29 @@ impl Links {
     /// Records one run of a task.
     pub fn record(&self, task: TaskId, run: &Run) {
         let missed = self.with_record(task, |record| record.add(run));
+        self.tell_missed(task, missed);
+    }
+
+    /// Records one run of a task on the way to the motor frame: noted here, added by [`Self::settle`].
+    #[inline]
+    pub fn note(&self, task: TaskId, run: &Run) {
+        let missed = self.with_record(task, |record| record.note(run));
+        self.tell_missed(task, missed);
+    }
+
+    /// Adds what the flight level has noted. Called when the motor frame is out; each task has its own lock, so that
+    /// interrupts are masked for no longer than one run takes.
+    pub fn settle(&self) {
+        for task in TaskId::ALL
+            .into_iter()
+            .filter(|task| task.level() == Level::Flight)
+        {
+            self.with_record(task, Record::settle);
+        }
+    }
+
+    #[inline]
+    fn tell_missed(&self, task: TaskId, missed: Option<bool>) {
         if missed == Some(true) && task.level() == Level::Flight {
             self.missed.signal(());
         }

@@ -2,10 +2,10 @@
 
 use super::dangers::Dangers;
 use super::demand::Collective;
-use super::descent::Probe;
 use super::hold::held;
 use super::lean::Lean;
 use super::power_up_grip::PowerUpGripCheck;
+use super::probe::Probe;
 use super::{Inputs, Reason};
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::grip_memory::GripMemory;
@@ -224,6 +224,11 @@ impl Context {
     /// Collective of four rotors at full throttle, N.
     pub fn full_thrust(&self) -> f32 {
         4.0 * self.params.thrust_max
+    }
+
+    /// The pilot's collective on the pipe, N: his throttle, no more than a perch takes.
+    pub fn perch_thrust(&self) -> f32 {
+        clamp(self.throttle, 0.0, self.params.perch_thr_max) * self.full_thrust()
     }
 }
 

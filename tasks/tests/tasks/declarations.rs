@@ -81,10 +81,11 @@ fn the_table_of_the_links_is_their_declaration() {
 }
 
 #[test]
-fn every_reader_is_a_task_or_the_log() {
+fn every_reader_is_a_task_the_console_or_the_log() {
     for link in Links::DECLARED {
         for reader in link.to.split(", ") {
-            let known = reader == "log" || TaskId::ALL.iter().any(|task| task.name() == reader);
+            let known =
+                ["console", "log"].contains(&reader) || TaskId::ALL.iter().any(|task| task.name() == reader);
             assert!(known, "{}: {reader}", link.name);
         }
     }

@@ -4,6 +4,7 @@
 mod docs;
 mod hand_over;
 mod leaving;
+mod letting_go;
 mod losses;
 mod mission;
 mod random;
