@@ -11,7 +11,6 @@ use sophie_sim::flight_level::{Rig, level, vehicle};
 use sophie_sim::mixers::Variant::{self, Flexible, Frozen, Paper, Rigid};
 use sophie_sim::record::{Sample, Silent};
 
-/// Seeds of the mission table.
 const SEEDS: u64 = 10;
 
 /// Hover of 40 s in gusts of 0.35 N and 0.015 N·m RMS, yaw gain `gain` (1/s).

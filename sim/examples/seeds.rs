@@ -12,7 +12,6 @@ use sophie_sim::parallel;
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::Scenario;
 
-/// What is kept of a flight.
 struct Flown {
     seed: u64,
     escapes: usize,

@@ -31,7 +31,6 @@ const CONVERSION_US: u64 = 30;
 /// Time to read one arm's sensor over I2C at 400 kHz, µs.
 const ARM_READ_US: u64 = 400;
 
-/// Plant steps in a millisecond.
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
 
 /// The board's state, shared by its ports and the world.

@@ -179,7 +179,6 @@ impl Rig {
     }
 }
 
-/// Errors of plant and board, by the scenario's seed.
 fn seeded(scenario: &Scenario) -> Pcg64Mcg {
     Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1)
 }
@@ -235,7 +234,6 @@ impl Default for Judged {
 }
 
 impl Judged {
-    /// Takes a millisecond.
     fn add(&mut self, rig: &Rig) {
         let [roll, pitch, yaw] = rig.plant.euler();
         let target = rig.links.target.latest();

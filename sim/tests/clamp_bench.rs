@@ -237,7 +237,6 @@ impl Bench {
     }
 }
 
-/// Result of a whole run.
 #[derive(Debug)]
 struct Outcome {
     closure: f64,

@@ -110,7 +110,6 @@ impl Chip for FakeChip {
 /// Saved parameters, with the commander's status at that time.
 type Saves = Rc<RefCell<Vec<(Params, Option<Status>)>>>;
 
-/// A scripted storage that records the commander's status at each save.
 #[derive(Clone)]
 struct FakeStorage {
     answer: Result<(), StorageError>,
@@ -134,7 +133,6 @@ impl Storage for FakeStorage {
     }
 }
 
-/// A vehicle on the bench with a console.
 struct Bench {
     time: VirtualTime,
     links: &'static Links,

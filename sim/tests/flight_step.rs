@@ -17,7 +17,6 @@ use sophie_sim::scenario::Scenario;
 use sophie_tasks::links::{ArmAngles, GripState, Links};
 use sophie_tasks::start::StartCause;
 
-/// A step as flown by the tasks.
 struct Step {
     at_us: u64,
     batch: Vec<ImuReading>,
@@ -66,7 +65,6 @@ fn command(links: &Links) -> Command {
     }
 }
 
-/// What the mixer would.
 fn surroundings(links: &Links) -> Surroundings {
     let arms = links.arms.latest().map(|message| ArmReading {
         at_us: message.at.as_micros(),

@@ -19,13 +19,11 @@ const FREE_TILT: f32 = -0.2;
 const TOUCH_TILT: f32 = -0.8;
 /// Compliance against the pipe over that in the air.
 const PRESSED: f32 = 0.2;
-/// Time constant of the arm, s.
 const ARM_TIME: f32 = 0.03;
 /// Counts of a converter pin shorted to the supply.
 const SHORTED: u16 = 4095;
 /// Servo pulse at release, µs.
 const RELEASE_US: f32 = 550.0;
-/// Close all arms.
 const CLOSE: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
 /// Quasi-static arm on its tendon: a spring in the air, a stiffer one on the pipe.
@@ -39,7 +37,6 @@ struct Arm {
     pressure: f32,
     /// Pin counts in place of the pressure.
     pin: Option<u16>,
-    /// The arm's own inertial sensor answers.
     tilt_alive: bool,
 }
 
@@ -127,7 +124,6 @@ impl Bench {
         }
     }
 
-    /// Closed and proven.
     fn holding() -> Self {
         Self::holding_with(Params::default())
     }

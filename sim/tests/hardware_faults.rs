@@ -10,7 +10,6 @@ use sophie_fakes::Answer;
 use sophie_tasks::ports::PortError;
 use vehicle::Vehicle;
 
-/// Breaks a part.
 type Break = fn(&Vehicle);
 
 const ERRORS: [(PortError, ArmingInhibit); 3] = [
@@ -19,7 +18,6 @@ const ERRORS: [(PortError, ArmingInhibit); 3] = [
     (PortError::Corrupt, ArmingInhibit::ImuCorrupt),
 ];
 
-/// On the ground, calibrated.
 fn ready() -> Vehicle {
     let mut v = Vehicle::new();
     v.run(4000);

@@ -43,7 +43,6 @@ fn held() -> RetainedState {
     }
 }
 
-/// A board with its parts, started once.
 struct Vehicle {
     time: VirtualTime,
     links: &'static Links,
@@ -130,7 +129,7 @@ impl Vehicle {
         (status.mode, status.reason, status.warning)
     }
 
-    /// All pulses of servo `arm`, µs.
+    /// Pulses of servo `arm`, µs.
     fn pulses(&self, arm: usize) -> Vec<f32> {
         self.servos.pulses.borrow().iter().map(|p| p[arm]).collect()
     }

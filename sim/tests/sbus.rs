@@ -112,7 +112,6 @@ fn a_line_that_turns_to_crsf_is_a_lost_radio() {
     assert!(v.links.rc.latest().unwrap().value.sticks.throttle < 0.51);
 }
 
-/// Random sticks and switches.
 fn any_sticks(rng: &mut Pcg64Mcg) -> Sticks {
     Sticks {
         roll: rng.random_range(-1.0..1.0),

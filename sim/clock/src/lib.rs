@@ -98,7 +98,6 @@ impl VirtualTime {
         }
     }
 
-    /// Polls until no task is ready.
     fn settle(&self) {
         while PENDED.replace(false) {
             #[allow(unsafe_code, reason = "raw::Executor::poll is unsafe")]

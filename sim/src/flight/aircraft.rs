@@ -1,4 +1,4 @@
-//! The seam between a flight and what is flown: the tasks in virtual time, or a board that runs the flashed image.
+//! Interface of a flight to what is flown: the tasks in virtual time, or a board with the flashed image.
 
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
@@ -7,45 +7,45 @@ use sophie_tasks::start::StartCause;
 
 use crate::plant::Plant;
 
-/// What is flown: electronics with a flight stack in it, wired to the plant.
+/// Electronics with a flight stack, wired to the plant.
 ///
-/// Each millisecond the flight steps the world, hands over what the radio sent, and lets the stack run.
+/// Each millisecond the flight steps the world, transfers the radio's bytes, and lets the stack run.
 pub trait Aircraft {
-    /// Steps the plant by a millisecond under the outputs as they are, and takes its sensors' readings.
+    /// Steps the plant by 1 ms under the present outputs and samples its sensors.
     fn step_world(&mut self, plant: &mut Plant);
 
-    /// Takes telemetry bytes sent since the last call; gives their number.
+    /// Takes the telemetry sent since the last call; returns the number of bytes.
     fn take_telemetry(&mut self, buffer: &mut [u8]) -> usize;
 
     /// Puts bytes on the receiver's line.
     fn receive(&mut self, bytes: &[u8]);
 
-    /// Lets the stack run until `us` µs after power-up.
+    /// Runs the stack until `us` µs after power-up.
     ///
     /// # Errors
-    /// One line: why it cannot run any further. It ends the flight.
+    /// One line: why it cannot run on. It ends the flight.
     fn run_until(&mut self, us: u64) -> Result<(), String>;
 
-    /// What the stack says of its state; `None` before it has said anything.
+    /// Reported state; `None` before the first report.
     fn status(&self) -> Option<Said<'_>>;
 
-    /// State of the grip, as far as it is known; `None` before there is any.
+    /// State of the grip, as far as known.
     fn grip(&self) -> Option<GripState>;
 
-    /// What the stack believes and asks for now.
+    /// Estimates and demands of the stack.
     fn belief(&self) -> Belief;
 
-    /// Command that each motor gets, 0..1.
+    /// Motor commands, 0..1.
     fn motors(&self) -> PerArm<f64>;
 
-    /// The board goes dead for `cause` in the mission's step `step`, `at` s after power-up: no task runs, no pin moves,
+    /// Resets the board for `cause` in the mission's step `step`, `at` s after power-up: no task runs, no pin moves,
     /// until [`Self::start`].
     fn cut(&mut self, cause: StartCause, step: usize, at: f64);
 
-    /// The board starts again, `us` µs after power-up.
+    /// Restarts the board `us` µs after power-up.
     fn start(&mut self, us: u64);
 
-    /// The board is not dead.
+    /// False between [`Self::cut`] and [`Self::start`].
     fn runs(&self) -> bool;
 
     /// The last reset.
@@ -54,7 +54,7 @@ pub trait Aircraft {
     /// Resets so far.
     fn resets(&self) -> u32;
 
-    /// Missed deadlines of all tasks since power-up.
+    /// Missed deadlines since power-up, all tasks.
     fn overruns(&self) -> u32;
 
     /// State of the vehicle.
@@ -66,42 +66,42 @@ pub trait Aircraft {
 /// A reset of the board.
 #[derive(Clone, Copy, Debug)]
 pub struct Reset {
-    /// Why.
+    /// Cause.
     pub cause: StartCause,
-    /// Step of the mission in which it happened.
+    /// Step of the mission.
     pub step: usize,
-    /// When the board went dead, s after power-up.
+    /// Time, s after power-up.
     pub at: f64,
 }
 
-/// What a stack says of its state.
+/// Reported state of a stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said<'a> {
     /// State of the vehicle.
     pub mode: Mode,
-    /// Why it is in it, or may not leave it; empty when there is nothing to say.
+    /// Reason of the mode, or for staying in it; may be empty.
     pub reason: &'a str,
-    /// What the pilot should know besides; empty when there is nothing to say.
+    /// Warning for the pilot; may be empty.
     pub warning: &'a str,
 }
 
-/// What a stack believes and asks for; NaN where it does not tell.
+/// Estimates and demands of a stack; NaN where unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Belief {
     /// Estimated roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Roll, pitch and yaw that the controller aims at, rad; NaN where there is none.
+    /// Roll, pitch, yaw aimed at, rad; NaN if none.
     pub setpoint: [f64; 3],
-    /// Tilt by the arm's own sensor, rad; NaN where there is none.
+    /// Tilt by the arm's sensor, rad; NaN if none.
     pub tilt_measured: PerArm<f64>,
-    /// Tilt by the model in the mixer, rad.
+    /// Tilt by the mixer's model, rad.
     pub tilt_model: PerArm<f64>,
     /// Thrust asked of each rotor, N.
     pub thrust_asked: PerArm<f64>,
     /// Tension asked of each tendon, N.
     pub tension_asked: PerArm<f64>,
-    /// Measured contact pressure, Pa; NaN while none is fresh.
+    /// Measured contact pressure, Pa; NaN if none is fresh.
     pub pressure: PerArm<f64>,
-    /// The rotors could not give all that was asked.
+    /// The rotors saturated.
     pub saturated: bool,
 }

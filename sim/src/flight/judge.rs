@@ -26,7 +26,7 @@ const DISTURBED: f64 = 2.0;
 const ROLL_SHARE: f64 = 0.9;
 /// Settling time of the pressure after the hold began or a push ended, s.
 const SETTLE: f64 = 3.0;
-/// Rotor thrust that counts as stopped, N.
+/// Thrust of a stopped rotor, N.
 const STOPPED: f64 = 0.05;
 /// Time for rotors to run down, s.
 const RUN_OUT: f64 = 1.0;
@@ -94,7 +94,6 @@ impl Judge {
         self.let_go(now)
     }
 
-    /// A crash, or excess pressure or tension.
     fn harmed(&self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
         let (t, plant, stack) = (now.t(), now.plant, now.stack);
         let pose = plant.pose();

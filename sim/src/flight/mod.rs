@@ -25,12 +25,10 @@ use crate::scenario::{Scenario, Step};
 
 /// Milliseconds between two calls of [`Observer::progress`].
 const PROGRESS_MS: u64 = 250;
-/// Bytes of telemetry taken at once.
 const TELEMETRY_BYTES: usize = 256;
 
-/// A flight at one millisecond.
 struct Snapshot<'a, A> {
-    /// Time since power-up, ms.
+    /// Since power-up, ms.
     ms: u64,
     /// The pilot's step and its index.
     step: Option<(usize, &'a Step)>,
@@ -139,7 +137,6 @@ pub fn fly_with<A: Aircraft>(
     (record, stack)
 }
 
-/// The radio uplink for the scenario's receiver.
 enum Uplink {
     Crsf,
     Sbus(Receiver),
@@ -158,7 +155,6 @@ impl Uplink {
         matches!(self, Self::Crsf)
     }
 
-    /// Sends the pilot's output of this millisecond.
     fn send(&mut self, output: &PilotOutput, stack: &mut impl Aircraft) {
         match self {
             Self::Crsf => {
@@ -175,7 +171,6 @@ impl Uplink {
     }
 }
 
-/// The pilot's view of the vehicle.
 fn seen(plant: &Plant, t: f64) -> Seen {
     let pose = plant.pose();
     let [roll, pitch, yaw] = plant.euler();

@@ -9,7 +9,6 @@ use crate::plant::Plant;
 use crate::record::{Event, FlightRecord, Grip, Observer, Outcome, Phase, SAMPLE_HZ, Sample};
 use crate::scenario::{Scenario, Step};
 
-/// Milliseconds between two samples.
 const SAMPLE_MS: u64 = (1000.0 / SAMPLE_HZ) as u64;
 
 /// The record under way.
@@ -30,7 +29,6 @@ pub struct Recorder {
     digest: Digest,
 }
 
-/// The phase under way.
 struct Current {
     index: usize,
     phase: Phase,
@@ -49,11 +47,9 @@ pub struct Ending {
     pub wall_seconds: f64,
 }
 
-/// What closes a phase.
 struct PhaseEnd {
-    /// Time since power-up, s.
+    /// Since power-up, s.
     t: f64,
-    /// Its step was done.
     done: bool,
     /// Battery, V.
     voltage: f64,
@@ -180,7 +176,6 @@ impl Recorder {
         self.phases.push(current.phase);
     }
 
-    /// Records changes of mode, reasons and proofs of grip.
     fn watch_stack(&mut self, t: f64, plant: &Plant, stack: &impl Aircraft, observer: &mut dyn Observer) {
         if stack.resets() != self.resets
             && let Some(reset) = stack.reset()
@@ -246,7 +241,6 @@ impl Recorder {
         self.events.push(event);
     }
 
-    /// Adds a sample to the present phase.
     fn account(&mut self, s: &Sample) {
         let Some(current) = &mut self.current else { return };
         current.samples += 1;
@@ -267,7 +261,6 @@ impl Recorder {
     }
 }
 
-/// Truth and belief now.
 fn sample(t: f64, plant: &Plant, stack: &impl Aircraft, throttle: f64) -> Sample {
     let pose = plant.pose();
     let belief = stack.belief();

@@ -30,10 +30,9 @@ pub struct Stack {
     params: Params,
     mixer: Variant,
     configuration: Configuration,
-    /// The last reset and the count of resets.
     reset: Option<Reset>,
     resets: u32,
-    /// Missed deadlines of the runs before.
+    /// Missed deadlines of earlier runs.
     overruns: u32,
     noise: Pcg64Mcg,
 }

@@ -253,7 +253,6 @@ impl Mission {
         self.held >= seconds
     }
 
-    /// Flies to `target` at `height`.
     pub(super) fn go_to(&mut self, v: &View<'_>, target: DVec2, height: f64, dt: f64) -> StickTarget {
         self.guidance
             .steer(&v.seen, &course(target, Vertical::Height(height)), dt)

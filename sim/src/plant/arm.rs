@@ -28,9 +28,7 @@ pub struct ArmSpec {
     offset: f64,
     /// Linear and quadratic coefficient of the nominal arm, rad/N and rad/N².
     nominal: (f64, f64),
-    /// Linear coefficient, rad/N.
     linear: f64,
-    /// Quadratic coefficient, rad/N².
     quadratic: f64,
     /// Thrust beyond which the spring is linear, N.
     knee: f64,

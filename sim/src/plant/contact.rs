@@ -21,7 +21,7 @@ pub const ARM_LENGTH: f64 = 0.178;
 pub const ARM_X: f64 = 0.178;
 /// Contact points of the skin, m along the arm from its root; the pressure sensor is at the last.
 pub const STATIONS: [f64; 3] = [0.06, 0.11, 0.16];
-/// Skin width and length of a station, m.
+/// Skin of a station, width and length, m.
 const STATION_SIZE: (f64, f64) = (0.03, 0.05);
 /// Pressure per depth of the skin, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
 pub const SKIN_STIFFNESS: f64 = 5.0e5;

@@ -32,7 +32,6 @@ const BUILT: [&str; 8] = [
 /// Parameters of the stack's arm model.
 const BELIEVED: [&str; 7] = ["arm_a1", "arm_a2", "arm_b1", "arm_b2", "gain_k", "infill", "mass"];
 
-/// Slope of Eq. 1 for one arm.
 struct Slope {
     infill: f64,
     gain_k: f64,

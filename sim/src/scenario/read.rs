@@ -60,7 +60,6 @@ impl Source<'_> {
         }
     }
 
-    /// The whole file.
     pub(super) fn scenario(&self, overrides: &Overrides) -> Result<Scenario> {
         let root = self.document()?;
         let mut scenario = Scenario::empty();
@@ -216,7 +215,6 @@ impl Source<'_> {
     }
 }
 
-/// The table `name` of a document.
 pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Option<&'t DeTable<'i>> {
     let (_, content) = root.get_ref().iter().find(|(key, _)| key.get_ref() == name)?;
     content.get_ref().as_table()

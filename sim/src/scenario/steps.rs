@@ -37,7 +37,6 @@ const PERCH_THROTTLE: StepNumber = number("throttle_percent", Range::new(5.0, 60
 /// the sticks end the failsafe.
 const FLIES_ON: f64 = 1.4;
 
-/// Numbers of the reset steps.
 const RESET: &[StepNumber] = &[
     number("after_s", Range::new(0.0, 60.0, "s"), 1.0),
     number("off_s", Range::new(0.02, 60.0, "s"), 0.3),

@@ -1,46 +1,44 @@
-//! A force-sensing resistor under an arm's skin, its divider and the converter behind it.
+//! A force-sensing resistor under an arm's skin, with divider and converter.
 //!
-//! Interlink FSR 406 as its datasheet and integration guide describe it: it conducts nothing below 0.1 N, then
-//! in proportion to about the force (10 kΩ at 1 N), differs from part to part, remembers where it came from
-//! and creeps. The sum is the paper's error of about 50 N/m² at 950 N/m².
+//! Interlink FSR 406 after datasheet and integration guide: no conductance below 0.1 N, then about proportional to the
+//! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep. The sum is the paper's error of about 50 N/m²
+//! at 950 N/m².
 
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
-/// Active area: 38 mm square (datasheet), m².
+/// Active area, m²: 38 mm square (datasheet).
 const AREA: f64 = 0.038 * 0.038;
-/// Force below which it does not conduct, N (datasheet, actuation force).
+/// Actuation force, N (datasheet).
 const THRESHOLD: f64 = 0.1;
 /// Conductance at 1 N, S (guide, about 10 kΩ).
 const GAIN: f64 = 1e-4;
-/// Largest part-to-part error of the gain once calibrated in the arm (assumed; 6 % from the reel, datasheet).
+/// Largest gain error once calibrated in the arm (assumed; 6 % from the reel, datasheet).
 const PART_ERROR: f64 = 0.04;
-/// Exponent of the force: from this to 1 (assumed; the guide's log-log plot is straight near 1).
+/// Least exponent of the force, up to 1 (assumed; the guide's log-log plot is straight near 1).
 const EXPONENT_MIN: f64 = 0.97;
-/// Half width of the hysteresis as a share of the force (assumed for slow changes; datasheet 10 % over the
-/// whole range).
+/// Half width of the hysteresis over the force (assumed for slow changes; datasheet 10 % over the whole range).
 const HYSTERESIS: f64 = 0.015;
-/// RMS of the creep and its time constant, s (assumed; datasheet below 5 % per decade of time).
+/// RMS and time constant of the creep, s (assumed; datasheet below 5 % per decade of time).
 const CREEP: (f64, f64) = (0.008, 20.0);
-/// RMS of the noise as a share of the conductance (assumed).
+/// RMS noise over the conductance (assumed).
 const NOISE: f64 = 0.004;
-/// Divider's resistor to ground, Ω, and the largest error of it.
+/// Divider's resistor to ground, Ω, and its largest error.
 const DIVIDER: (f64, f64) = (10_000.0, 0.01);
-/// RMS noise of the converter, counts.
+/// RMS converter noise, counts.
 const ADC_NOISE: f64 = 1.2;
 
-/// Largest error of the pressure read from a sensor in the vehicle, as a share of it: gain and divider at their
-/// limits, the play, three times the creep's RMS, and 1 % that the exponent makes at the grip pressure. Summed,
-/// not averaged: with the limits above 9.9 %, 94 Pa at 950 Pa, where the paper states about 50 Pa without saying
-/// whether that is typical or largest.
+/// Largest relative error of the pressure in the vehicle: limits of gain and divider, hysteresis, three times the
+/// creep's RMS, and 1 % by the exponent at the grip pressure. Summed, not averaged: 9.9 % with the limits above, 94 Pa
+/// at 950 Pa, where the paper states about 50 Pa without saying whether typical or largest.
 pub const LARGEST_ERROR: f64 = PART_ERROR + DIVIDER.1 + HYSTERESIS + 3.0 * CREEP.0 + 0.01;
 
-/// What has gone wrong with a sensor.
+/// A fault of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FsrBreak {
-    /// A lead broke: nothing conducts any more.
+    /// Open lead.
     Open,
-    /// The leads touch.
+    /// Shorted leads.
     Short,
 }
 
@@ -56,7 +54,7 @@ pub struct FsrSensor {
 }
 
 impl FsrSensor {
-    /// A sensor out of the bag that `rng` holds.
+    /// A sensor with errors drawn from `rng`.
     pub fn new(rng: &mut impl Rng) -> Self {
         let mut within = |low: f64, high: f64| Uniform::new(low, high).map_or(low, |u| u.sample(rng));
         Self {
@@ -69,12 +67,12 @@ impl FsrSensor {
         }
     }
 
-    /// Breaks the sensor, or mends it.
+    /// Sets or clears a fault.
     pub fn set_broken(&mut self, broken: Option<FsrBreak>) {
         self.broken = broken;
     }
 
-    /// Counts of the 12-bit converter under the true pressure `pressure` (Pa), `dt` s after the sample before.
+    /// 12-bit counts at the true pressure `pressure` (Pa), `dt` s after the last sample.
     pub fn sample(&mut self, pressure: f64, dt: f64, rng: &mut impl Rng) -> u16 {
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
@@ -94,7 +92,7 @@ impl FsrSensor {
                 load / (1.0 + load)
             }
         };
-        // A grounded or railed pin has no noise to speak of; a divider has.
+        // Noise is that of a divider; a grounded or railed pin has none.
         let noise = if x > 0.0 && x < 1.0 {
             ADC_NOISE * normal()
         } else {
