@@ -7,7 +7,6 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
 
-/// Seeds flown in each cell.
 const SEEDS: u64 = 20;
 
 /// Flies the default mission with `infill` (%) and `arms` over all seeds; fails with every reason.

@@ -6,7 +6,6 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Scenario, Step};
 
-/// A short flight for repetition.
 fn hop(seed: u64) -> Scenario {
     let steps = vec![
         Step::Arm,

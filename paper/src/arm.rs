@@ -46,7 +46,6 @@ pub fn identify(p: &Printed) -> Identified {
 /// The arm as flown, and the gains that the paper leaves open.
 struct Flown<'a> {
     printed: &'a Printed,
-    /// The gain that is flown.
     k: f64,
     /// Largest thrust of a rotor, N; the arm is level at half of it.
     top: f64,
@@ -82,28 +81,23 @@ impl<'a> Flown<'a> {
         bent.fold(0.0, f64::max)
     }
 
-    /// Thrusts that are drawn, N.
     fn thrusts(&self) -> impl Iterator<Item = f64> + use<> {
         let top = self.top;
         (0..=166).map(move |i| f64::from(i) * top / 166.0)
     }
 
-    /// An arm that is level at half throttle.
     fn model(&self, infill: f64, k: f64) -> ArmModel {
         ArmModel::new(infill as f32, k as f32, (0.5 * self.top) as f32)
     }
 
-    /// Tilt (degrees) at a thrust (N).
     fn tilt(&self, infill: f64, k: f64, thrust: f64) -> f64 {
         f64::from(self.model(infill, k).angle(thrust as f32)).to_degrees()
     }
 
-    /// `f` (degrees) over the thrusts.
     fn curve(&self, name: String, colour: usize, look: Look, f: impl Fn(f64) -> f64) -> Series {
         Series::new(name, colour, look, self.thrusts().map(|t| (t, f(t))).collect())
     }
 
-    /// A chart of tilt over thrust.
     fn chart(title: String, series: Vec<Series>) -> Chart {
         Chart {
             title,
@@ -179,14 +173,12 @@ fn what_the_gain_rests_on(flown: &Flown<'_>) -> String {
     )
 }
 
-/// The two thrusts behind Table III at the flown gain, N.
 fn thrusts_of_table_3(flown: &Flown<'_>) -> (f64, f64) {
     let id = &flown.identified;
     let difference = id.product / flown.k;
     (0.5 * (id.sum + difference), 0.5 * (id.sum - difference))
 }
 
-/// Table III at the flown gain.
 fn calibrated(flown: &Flown<'_>) -> Vec<Comparison> {
     let (t1, t3) = thrusts_of_table_3(flown);
     let k = flown.k;

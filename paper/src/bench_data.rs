@@ -98,7 +98,6 @@ pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
     Ok(points)
 }
 
-/// A line that was refused.
 struct BadLine {
     number: usize,
     why: String,
@@ -114,7 +113,6 @@ fn bad_as_well(others: &[BadLine]) -> String {
     format!(" (bad as well: lines {}{dots})", numbers.join(", "))
 }
 
-/// The places in [`COLUMNS`] of the header's names.
 fn columns(header: &str) -> Result<Vec<usize>, String> {
     commas(header)?;
     let header: Vec<&str> = header.split(',').map(str::trim).collect();

@@ -14,7 +14,6 @@ use sophie_sim::parallel;
 const WORN: [f64; 6] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
 /// Averaging time of the on-board comparison, s.
 const WINDOW: f64 = 5.0;
-/// Hover of each flight, s.
 const SECONDS: f64 = 25.0;
 
 #[derive(Clone, Copy)]
@@ -56,7 +55,6 @@ fn seen(flown: &Flown) -> (f64, f64) {
     (middle, spread.sqrt())
 }
 
-/// A mixer on the worn arm.
 struct Kind {
     name: &'static str,
     mixer: Variant,
@@ -81,7 +79,6 @@ const KINDS: [Kind; 3] = [
     },
 ];
 
-/// Every kind over the wear.
 struct Flights {
     /// Index in [`KINDS`] and hover of each flight.
     jobs: Vec<(usize, Job)>,
@@ -109,7 +106,6 @@ impl Flights {
         at.and_then(|i| self.flown.get(i))
     }
 
-    /// What each flight comes to.
     fn table(&self, infill: f64) -> Table {
         let mut t = Table::new(
             &format!("25 s of hover in gusts, ρ {infill} %, arm 1 softer"),
@@ -144,7 +140,6 @@ fn apart(f: &Flown) -> f64 {
     thrusts.iter().copied().fold(f64::MIN, f64::max) - thrusts.iter().copied().fold(f64::MAX, f64::min)
 }
 
-/// A bias of arm 1 over its wear, degrees.
 struct OnBoard {
     worn: f64,
     /// True tilt less the model's.
@@ -154,7 +149,6 @@ struct OnBoard {
     spread: f64,
 }
 
-/// Wear as seen by the arm's own sensor.
 fn on_board(flights: &Flights, infill: f64) -> Vec<OnBoard> {
     let model = sophie_control::deflection::ArmModel::from_params(&Params {
         infill: infill as f32,

@@ -156,9 +156,7 @@ impl Unknowns {
     }
 }
 
-/// Result of the Gauss-Newton iteration.
 struct Solution {
-    /// Linear unknowns.
     x: Vec<f64>,
     /// (XᵀX)⁻¹ of the last step.
     covariance: Vec<Vec<f64>>,

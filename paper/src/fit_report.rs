@@ -46,7 +46,6 @@ fn reach(points: &[Point]) -> Option<(f64, f64)> {
     (most < REACH * top).then_some((most, top))
 }
 
-/// The stack's largest thrust of a rotor, N.
 fn thrust_max() -> f64 {
     // 8.3 as an `f32` has seven digits.
     (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4
@@ -105,7 +104,6 @@ pub fn section(points: &[Point], fit: &Fit) -> Section {
     s
 }
 
-/// The coefficients with their intervals.
 fn coefficients(fit: &Fit) -> Table {
     let show = |f: &Fitted| {
         [
@@ -136,7 +134,6 @@ fn coefficients(fit: &Fit) -> Table {
     t
 }
 
-/// Fit, points and residuals.
 fn curves(s: &mut Section, points: &[Point], fit: &Fit) {
     let mut infills: Vec<f64> = points.iter().map(|p| p.infill).collect();
     infills.sort_by(f64::total_cmp);

@@ -28,7 +28,7 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// Current at a torque (kgcm), A: a line from no load to stall.
+    /// Current at a torque (kgcm), A: linear from no load to stall.
     fn current(&self, torque: f64) -> f64 {
         self.idle_current + (self.stall_current - self.idle_current) * torque / self.stall
     }

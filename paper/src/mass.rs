@@ -84,7 +84,6 @@ fn tip_mass(p: &Printed) -> f64 {
     propulsion.map_or(0.0, |r| r.mass_g * 1e-3) + arm_rod
 }
 
-/// Share of each row in the mass.
 fn shares(p: &Printed) -> Table {
     let mut t = Table::new("Shares of the mass", &["equipment", "mass kg", "share %"]);
     for row in &p.table_2 {
@@ -98,7 +97,6 @@ fn shares(p: &Printed) -> Table {
     t
 }
 
-/// Inertia, thrust and tip mass: from Table II and as flown.
 fn rigid_body(p: &Printed) -> Table {
     let d = Params::default();
     let weight = p.mass() * GRAVITY;

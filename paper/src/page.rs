@@ -7,7 +7,6 @@ use sophie_report::svg::escape;
 /// The style of all reports, and this page's additions.
 const STYLE: [&str; 2] = [sophie_report::page::STYLE, include_str!("style.css")];
 
-/// What the three classes mean.
 const CLASSES: [(Class, &str); 3] = [
     (
         Class::Prediction,

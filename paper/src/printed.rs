@@ -1,15 +1,15 @@
-//! What the paper prints, read from the one file that holds it.
+//! The paper's printed numbers, from their one file.
 
 use serde::Deserialize;
 
-/// The file, with the table and row of every number.
+/// With the table and row of every number.
 const FILE: &str = include_str!("printed.toml");
 
-/// All of it.
+/// All printed numbers.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Printed {
-    /// What is said about Eq. 1.
+    /// Statements on Eq. 1.
     pub eq_1: Eq1,
     /// Signs of the printed mixer matrix.
     pub mixer_matrix: MixerMatrix,
@@ -29,7 +29,7 @@ pub struct Printed {
     pub text: Text,
 }
 
-/// What is said about Eq. 1.
+/// Statements on Eq. 1.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Eq1 {
@@ -37,7 +37,7 @@ pub struct Eq1 {
     pub power_exponent: [f64; 2],
     /// Largest tilt of the static model, degrees.
     pub valid_tilt_deg: f64,
-    /// Infill from which it is said to hold, %.
+    /// Least infill of its validity, %.
     pub valid_infill_percent: f64,
 }
 
@@ -45,9 +45,9 @@ pub struct Eq1 {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MixerMatrix {
-    /// In the printed matrix, over C_Q.
+    /// Printed matrix, over C_Q.
     pub yaw_row: [f64; 4],
-    /// By Algorithm 1's senses of rotation.
+    /// Algorithm 1's senses of rotation.
     pub algorithm_1_row: [f64; 4],
 }
 
@@ -69,11 +69,11 @@ pub struct Table1 {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mass {
-    /// What it is.
+    /// Equipment.
     pub equipment: String,
     /// Mass of one, g.
     pub mass_g: f64,
-    /// How many.
+    /// Count.
     pub count: u32,
 }
 
@@ -119,7 +119,7 @@ pub struct Endurance {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
-    /// Its name.
+    /// Name.
     pub robot: String,
     /// Flight time, min.
     pub flight_min: f64,
@@ -145,7 +145,7 @@ pub struct Text {
     pub roll_deg: f64,
     /// Share ΔT/T of the manoeuvre (V-A).
     pub delta_thrust_share: f64,
-    /// Contact pressure that a grip aims at, Pa (IV-D).
+    /// Target contact pressure of a grip, Pa (IV-D).
     pub pressure_pa: f64,
     /// Error of a pressure sensor, Pa (IV-D).
     pub fsr_error_pa: f64,
@@ -155,7 +155,7 @@ pub struct Text {
     pub clamp_throttle_percent: f64,
     /// Lowest infill that flies, % (abstract, VI).
     pub flyable_infill_percent: f64,
-    /// Cycles between which the arms were compared (V-C).
+    /// Cycles between the comparisons of the arms (V-C).
     pub fatigue_cycles: [f64; 2],
     /// Flight battery, mAh (V-D, 4S).
     pub flight_battery_mah: f64,
@@ -170,11 +170,11 @@ pub struct Text {
 }
 
 impl Printed {
-    /// What the file holds.
+    /// Reads the file.
     pub fn read() -> Self {
         match toml::from_str(FILE) {
             Ok(printed) => printed,
-            // Not reachable: a test reads the embedded file.
+            // A test reads the embedded file.
             Err(error) => unreachable!("{error}"),
         }
     }

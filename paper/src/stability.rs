@@ -32,7 +32,6 @@ pub fn of_the_plant(infill: f64, gain_k: f64, chi: f64, thrust: f64) -> [f64; 3]
     [c(SIDE, 1), c(FORE, 2), c(YAW, 3)]
 }
 
-/// Infills that are tried, %.
 const INFILLS: [f64; 5] = [4.0, 6.0, 6.9, 8.0, 10.0];
 
 /// The stability derivatives.
@@ -64,7 +63,6 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// A vehicle whose derivatives are taken.
 struct Hovering {
     configuration: Configuration,
     gain_k: f64,
@@ -122,7 +120,6 @@ fn in_hover(s: &mut Section, k: f64, hover: f64) -> f64 {
     worst
 }
 
-/// Effect of a yaw derivative on a command.
 fn verdict(yaw_derivative: f64) -> &'static str {
     match yaw_derivative {
         c if c < 0.0 => "stable",
@@ -131,7 +128,6 @@ fn verdict(yaw_derivative: f64) -> &'static str {
     }
 }
 
-/// The table of the derivatives, between definition and conclusion.
 fn explain(s: &mut Section, t: Table) {
     s.text(
         "The paper's Eqs. 2 to 4 let a commanded moment τ act as (1 - C) τ. For four tilted rotors on arms that follow \
@@ -236,7 +232,6 @@ fn authority(c: Configuration, hover: f64, k: f64) -> Chart {
     }
 }
 
-/// A vehicle that is perturbed.
 struct Perturbed {
     name: &'static str,
     configuration: Configuration,
@@ -273,7 +268,6 @@ fn perturbed(k: f64) -> [Perturbed; 7] {
     ]
 }
 
-/// Time responses to a yaw perturbation.
 fn responses(s: &mut Section, k: f64, infill: f64) {
     let kick = |t: f64| Wish {
         moment: if t < KICK.1 {

@@ -4,7 +4,6 @@ use super::model::{self, Block, Cell, Class, Comparison, Section};
 use super::page::{deviation, value};
 use sophie_report::terminal::table::{Align, Table};
 
-/// Width to which paragraphs are broken.
 const WIDTH: usize = 110;
 
 /// The lines of a section: finding, comparisons and tables; figures are on the page.

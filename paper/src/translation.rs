@@ -92,9 +92,7 @@ fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
     flown
 }
 
-/// A flown roll to either side.
 struct Rolled {
-    /// The arms carry their tip mass.
     coupled: bool,
     /// Heading, rad.
     heading: f64,
@@ -157,7 +155,6 @@ impl Rolled {
     }
 }
 
-/// What each equation is wrong by.
 fn errors(flights: &[Rolled], mass: f64) -> Table {
     let mut t = Table::new(
         "Error of the force, RMS over a roll to 25° on either side, N",

@@ -11,10 +11,8 @@ use super::args::{FitArgs, PaperArgs};
 use sophie_paper::printed::Printed;
 use sophie_paper::{self as paper, bench_data, fit, fit_report, json, page, text};
 
-/// The files of the paper's results.
 const FILES: [&str; 2] = ["paper.html", "paper.json"];
 
-/// The files of a fit.
 const FIT_FILES: [&str; 4] = ["fit.html", "fit.json", "arm.toml", "arm.console"];
 
 /// Computes, flies, prints and writes every section.

@@ -10,7 +10,6 @@ use sophie_timing::{csv, page, table};
 use super::PROGRAM;
 use super::args::TimingArgs;
 
-/// The files that are written.
 const FILES: [&str; 2] = ["timing.html", "timing.csv"];
 
 /// Reads the log and shows it.

@@ -13,7 +13,6 @@ use super::super::printed::Printed;
 use super::super::statics::AtThrust;
 use super::programme;
 
-/// A flight in A.
 struct Job {
     name: &'static str,
     studied: Option<Studied>,

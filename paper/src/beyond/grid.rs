@@ -11,7 +11,6 @@ use super::super::model::{Axis, Chart, Section, Table, Tile, num};
 use super::super::statics::AtThrust;
 use super::{mismatch, programme};
 
-/// A mixer that is compared.
 struct Compared {
     name: &'static str,
     mixer: Variant,
@@ -22,7 +21,6 @@ const fn compared(name: &'static str, mixer: Variant, studied: Option<Studied>) 
     Compared { name, mixer, studied }
 }
 
-/// The mixers that are compared.
 const MIXERS: [Compared; 5] = [
     compared("rigid", Variant::Rigid, None),
     compared("paper", Variant::Paper, None),
@@ -43,7 +41,6 @@ const GAINS: [f64; 5] = [1.0, 2.0, 3.5, 5.03, 7.75];
 /// Yaw error (° RMS) at which a map's shade is bad.
 const POOR: f64 = 6.0;
 
-/// Mixers flown in a configuration.
 const fn flown_in(configuration: Configuration) -> &'static [usize] {
     match configuration {
         Configuration::A => &[RIGID, PAPER, FLEXIBLE, SIGN_AWARE],
@@ -196,7 +193,6 @@ impl Grid {
         );
     }
 
-    /// Yaw error of a mixer over infill and gain.
     fn map(&self, configuration: Configuration, mixer: usize) -> Chart {
         let mut tiles = vec![];
         for (column, infill) in INFILLS.into_iter().enumerate() {

@@ -13,14 +13,13 @@ const INFILLS: [f64; 3] = [5.0, 6.9, 10.0];
 /// Last of the seeds from 1 on.
 const SEEDS: u64 = 4;
 
-/// A flight with or without the arms' sensors.
 struct Job {
     infill: f64,
     sensors: bool,
     seed: u64,
 }
 
-/// RMS heading error, degrees; `None` if the vehicle was lost.
+/// RMS heading error, degrees; `None` if lost.
 fn yaw_error(job: &Job, k: f64) -> Option<f64> {
     let mut v = in_gusts(vehicle(Configuration::B, k, job.infill, Variant::Flexible));
     mismatch(&mut v);

@@ -31,7 +31,6 @@ struct Soft {
 const FAST: usize = 6;
 const FAST_BARE: usize = 7;
 
-/// The airframes that are tried.
 fn cases() -> [Soft; 12] {
     let default = Params::default();
     let usual = Soft {
@@ -94,9 +93,8 @@ impl Soft {
     }
 }
 
-/// What came of a flight.
 struct Outcome {
-    /// RMS errors, degrees; `None` if the vehicle was lost.
+    /// RMS errors, degrees; `None` if lost.
     roll: Option<f64>,
     yaw: Option<f64>,
     /// Largest tilt of an arm, degrees.

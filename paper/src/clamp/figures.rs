@@ -21,7 +21,6 @@ pub fn show(s: &mut Section, p: &Printed, all: &[OnBench]) {
     );
 }
 
-/// A value of the shown closings over time.
 fn curves(all: &[OnBench], value: impl Fn(&BenchSample) -> f64) -> Vec<Series> {
     let curve = |(i, (infill, diameter)): (usize, (f64, f64))| {
         let c = all
@@ -72,7 +71,6 @@ fn force(p: &Printed, all: &[OnBench]) -> Chart {
     }
 }
 
-/// A series an infill.
 fn by_infill(look: Look, points: impl Fn(f64) -> Vec<(f64, f64)>) -> Vec<Series> {
     let infills = INFILLS.into_iter().enumerate();
     infills

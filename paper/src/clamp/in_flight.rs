@@ -46,7 +46,6 @@ pub fn fly(s: &mut Section) {
     s.table(t);
 }
 
-/// From the smallest to the largest value over the arms.
 fn range(grips: &[Grip], digits: usize, value: impl Fn(&Grip) -> f64) -> String {
     let (low, high) = grips
         .iter()

@@ -41,7 +41,6 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// Every closing of the grid.
 fn closings(all: &[OnBench]) -> Table {
     let mut t = Table::new(
         "Closings on the bench, the paper's 35 kgcm servo, rotor stopped once the grip is proven",
@@ -92,7 +91,6 @@ fn rising_together(s: &mut Section, p: &Printed, all: &[OnBench]) -> f64 {
     over_pipes
 }
 
-/// Pearson's correlation.
 fn correlation(points: &[(f64, f64)]) -> f64 {
     let n = points.len().max(1) as f64;
     let (mx, my) = (

@@ -8,16 +8,14 @@ use super::super::model::{Section, Table, num};
 use super::super::printed::Printed;
 use super::bench::{OnBench, closing_thrust, holds, once};
 
-/// N·m in a kgcm.
+/// N·m per kgcm.
 const KGCM: f64 = 0.098_066_5;
 
-/// A servo that is tried.
 struct Tried {
     name: &'static str,
     servo: ServoSpec,
 }
 
-/// The servos that are tried.
 fn servos() -> [Tried; 4] {
     // A servo of its printed stall, with the stack's speed.
     let made = |stall: f64, range: f64| ServoSpec {

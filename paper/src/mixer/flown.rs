@@ -12,7 +12,6 @@ use super::super::model::{Axis, Chart, Look, Section, Series, Table, num};
 /// Time over which the rotors' swing is shown, s.
 const WINDOW: f64 = 3.0;
 
-/// A mixer to be flown.
 struct Flies {
     name: &'static str,
     mixer: Variant,
@@ -43,9 +42,8 @@ pub const VERBATIM: usize = 2;
 pub const FROZEN: usize = 3;
 pub const FLEXIBLE: usize = 4;
 
-/// A hover that was flown.
 struct Hover {
-    /// Place in [`FLOWN`].
+    /// Index in [`FLOWN`].
     mixer: usize,
     gain_k: f64,
     flown: Flown,
@@ -60,7 +58,6 @@ impl Hover {
 /// The mixers at K = 1 and at the stack's gain.
 pub struct Hovers {
     all: Vec<Hover>,
-    /// The stack's gain.
     gain_k: f64,
 }
 
@@ -87,7 +84,6 @@ impl Hovers {
         Self { all, gain_k }
     }
 
-    /// Those at the stack's gain.
     fn shown(&self) -> impl Iterator<Item = &Hover> {
         self.all.iter().filter(|h| h.gain_k == self.gain_k)
     }

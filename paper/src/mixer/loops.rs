@@ -15,7 +15,6 @@ use super::super::model::{Axis, Chart, Look, Section, Series};
 use super::super::printed::Printed;
 use super::super::statics::{AtThrust, frozen_bound, root};
 
-/// Damping ratio of the arms' bending mode.
 const ZETA: f64 = 0.15;
 /// Initial yaw pattern of a loop, N.
 const START: f32 = 0.02;
@@ -76,7 +75,6 @@ fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     f64::from(high - low)
 }
 
-/// Hover of the default vehicle.
 struct Hover {
     infill: f64,
     gain_k: f64,

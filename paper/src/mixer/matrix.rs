@@ -22,7 +22,6 @@ fn matrix(tilt: f64, yaw: [f64; 4]) -> Matrix {
     ]
 }
 
-/// What an elimination finds.
 struct Rank {
     rank: usize,
     /// |determinant| over that of the rigid, level frame.
@@ -56,7 +55,6 @@ fn rank(mut m: Matrix) -> Rank {
     Rank { rank, determinant }
 }
 
-/// A matrix with its name.
 struct Named {
     what: &'static str,
     matrix: Matrix,

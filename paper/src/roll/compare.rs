@@ -27,7 +27,6 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// A prediction.
     fn line(&self, what: &str, unit: &'static str, printed: f64, here: f64, why: &str) -> Comparison {
         Comparison {
             what: format!("{what}, ρ {} %", self.row.infill_percent),

@@ -82,7 +82,6 @@ pub fn manoeuvres(s: &mut Section, p: &Printed, flights: &Flights) {
     );
 }
 
-/// The flights of an infill and a kind of arms.
 struct Drawn<'a> {
     flights: &'a Flights,
     infill: f64,
@@ -91,7 +90,6 @@ struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// Roll, tilts and effective angle, with the printed values.
     fn charts(&self, p: &Printed) -> [Chart; 3] {
         let roll = |m: &Moment| m.attitude[0].to_degrees();
         let effective = |m: &Moment| (m.attitude[0] + delta_alpha(m)).to_degrees();
@@ -121,7 +119,6 @@ impl Drawn<'_> {
         }
     }
 
-    /// A value over time, a curve per case.
     fn cases(&self, value: impl Fn(&Moment) -> f64) -> Vec<Series> {
         let cases = self.flights.cases.iter().enumerate();
         let curves = cases.filter_map(|(i, case)| {
@@ -131,7 +128,7 @@ impl Drawn<'_> {
         curves.collect()
     }
 
-    /// Mean tilts of the left and the right arms under the flexible mixer.
+    /// Mean tilts of left and right arms under the flexible mixer.
     fn tilts(&self) -> Vec<Series> {
         let mut series = vec![];
         for (case, look, word) in [

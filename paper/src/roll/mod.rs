@@ -15,7 +15,6 @@ use super::printed::Printed;
 pub use manoeuvre::sideways;
 use manoeuvre::{Arms, Command, Found, HELD, Job, fitted_damping, found, hard_gain, manoeuvre};
 
-/// A mixer and its roll command.
 #[derive(Clone, Copy)]
 struct Case {
     name: &'static str,
@@ -23,12 +22,10 @@ struct Case {
     command: Command,
 }
 
-/// Places of the cases in [`Flights`].
 const RIGID_HARD: usize = 0;
 const FLEXIBLE_HARD: usize = 1;
 const FLEXIBLE_SOFT: usize = 2;
 
-/// All manoeuvres.
 struct Flights {
     cases: [Case; 3],
     infills: Vec<f64>,
@@ -113,7 +110,6 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// What each manoeuvre comes to.
 fn table(flights: &Flights, angle: f64) -> Table {
     let mut t = Table::new(
         "The manoeuvre flown, configuration B; ratio: largest φ+Δα of the first of three over that of this one",
@@ -160,7 +156,6 @@ fn numbers(f: &Found, first: Option<Found>, angle: f64) -> [Cell; 7] {
     ]
 }
 
-/// Conclusions on K, and the finding.
 fn conclude(s: &mut Section, p: &Printed, flights: &Flights) {
     let fitted = flights.fitted;
     let rest = flights.bent(RIGID_HARD, 8.0, Arms::Static);

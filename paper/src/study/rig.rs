@@ -1,4 +1,4 @@
-//! Experiments on the flight level alone: takes off, does what is asked, and records the truth every millisecond.
+//! Experiments on the flight level alone: take-off, `wish`, and the truth every millisecond.
 
 use glam::DVec3;
 use sophie_control::wrench::PerArm;
@@ -11,43 +11,43 @@ use sophie_tasks::links::Setpoint;
 
 use super::allocation::Studied;
 
-/// Time at rest before take-off, s: the gyroscope is calibrated.
+/// Rest before take-off, s: the gyroscope is calibrated.
 const REST: f64 = 4.0;
-/// Time from take-off until the experiment begins, s.
+/// From take-off to the experiment, s.
 pub const SETTLE: f64 = 6.0;
-/// Largest thrust that the height hold asks for, N.
+/// Largest thrust of the height hold, N.
 const THRUST_MAX: f64 = 40.0;
-/// Time from take-off in which the heading may slip: yaw is gated while the rotors spool up, s.
+/// Time from take-off in which the heading may slip, s: yaw is gated during spool-up.
 const SPOOL_UP: f64 = 2.0;
-/// Roll or pitch from which the vehicle counts as lost, rad.
+/// Roll or pitch of a lost vehicle, rad.
 const UPSET: f64 = 1.4;
-/// Heading error from which the vehicle counts as lost, rad.
+/// Heading error of a lost vehicle, rad.
 const SPUN: f64 = 1.05;
-/// Yaw rate from which it does, rad/s.
+/// Yaw rate of a lost vehicle, rad/s.
 const SPIN: f64 = 4.0;
 
-/// What is asked of the vehicle and done to it, at a time (s) of the experiment.
+/// Demand and disturbance at a time (s) of the experiment.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wish {
     /// Roll, rad.
     pub roll: f64,
     /// Yaw rate, rad/s.
     pub yaw_rate: f64,
-    /// Moment from outside, N·m, body.
+    /// External moment, N·m, body.
     pub moment: DVec3,
-    /// Force from outside, N, NED.
+    /// External force, N, NED.
     pub push: DVec3,
 }
 
 /// One millisecond of the experiment.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
-    /// Time since the experiment began, s.
+    /// Time of the experiment, s.
     pub t: f64,
     /// True roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Roll and pitch aimed at, and the heading that was asked for, rad: the one aimed at at the start and every turn since,
-    /// whatever the controller made of it.
+    /// Roll and pitch aimed at, and the heading asked for, rad: the initial one plus every turn asked for since,
+    /// regardless of the controller.
     pub target: [f64; 3],
     /// True velocity, m/s, NED.
     pub velocity: DVec3,
@@ -55,9 +55,9 @@ pub struct Moment {
     pub rate: DVec3,
     /// True tilt of each arm, rad.
     pub tilt: PerArm<f64>,
-    /// Tilt by the arm's own sensor, rad; NaN where there is none.
+    /// Tilt by the arm's sensor, rad; NaN if none.
     pub tilt_measured: PerArm<f64>,
-    /// Bias of each arm that the mixer has learnt, rad.
+    /// Bias of each arm learnt by the mixer, rad.
     pub bias: PerArm<f64>,
     /// True thrust, N.
     pub thrust: PerArm<f64>,
@@ -68,13 +68,13 @@ pub struct Moment {
 /// A flown experiment.
 #[derive(Clone, Debug)]
 pub struct Flown {
-    /// Every millisecond from the start of the experiment.
+    /// Every millisecond of the experiment.
     pub moments: Vec<Moment>,
-    /// When the vehicle was lost, s before or after the start of the experiment.
+    /// Time of the loss, s from the start of the experiment; negative before.
     pub lost: Option<f64>,
 }
 
-/// The vehicle of `scenario`, `studied` in its mixer's place.
+/// The vehicle of `scenario`, with `studied` as its mixer.
 fn rig(scenario: &Scenario, studied: Option<Studied>) -> Rig {
     let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
     match studied {
@@ -83,7 +83,7 @@ fn rig(scenario: &Scenario, studied: Option<Studied>) -> Rig {
     }
 }
 
-/// Upset, spinning, or, once the heading is to be kept, far off it.
+/// Upset, spinning, or, where a heading is kept, far off it.
 fn lost(rig: &Rig, heading: Option<f64>) -> bool {
     let [roll, pitch, yaw] = rig.plant.euler();
     let off = heading.map_or(0.0, |wanted| (yaw - wanted).sin().atan2((yaw - wanted).cos()));
@@ -92,7 +92,7 @@ fn lost(rig: &Rig, heading: Option<f64>) -> bool {
     upset || !omega.is_finite() || omega.z.abs() > SPIN
 }
 
-/// What is true and what is measured `t` s into the experiment, with `heading` (rad) asked for.
+/// Truth and measurements `t` s into the experiment, `heading` (rad) asked for.
 fn moment(rig: &Rig, t: f64, heading: f64) -> Moment {
     let wide = |v: PerArm<f32>| v.map(f64::from);
     let mix = rig.links.mix.latest().map(|m| m.value).unwrap_or_default();
@@ -118,10 +118,10 @@ fn aimed_heading(rig: &Rig) -> f64 {
     rig.plant.euler()[2] + target.map_or(0.0, |v| f64::from(v.value.ahead))
 }
 
-/// Takes `scenario`'s vehicle off to a hover at 3 m under a simple height hold, then does what `wish` says for
-/// `seconds`. The scenario's own steps are not flown; `studied` takes its mixer's place.
+/// Hovers `scenario`'s vehicle at 3 m under a simple height hold, then follows `wish` for `seconds`. The scenario's
+/// steps are not flown; `studied` replaces its mixer.
 ///
-/// Deterministic: the same scenario gives the same flight to the bit.
+/// Deterministic to the bit.
 pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: impl Fn(f64) -> Wish) -> Flown {
     let mut rig = rig(scenario, studied);
     for _ in 0..(REST * 1e3) as usize {
@@ -158,7 +158,7 @@ pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: im
     flown
 }
 
-/// Root of the mean square of `value` over the moments.
+/// RMS of `value` over the moments.
 pub fn rms(moments: &[Moment], value: impl Fn(&Moment) -> f64) -> f64 {
     let sum: f64 = moments.iter().map(|m| value(m).powi(2)).sum();
     (sum / moments.len().max(1) as f64).sqrt()

@@ -30,7 +30,6 @@ const HEIGHT: f64 = 12.0;
 const CLEARANCE: f64 = 0.01;
 /// From there to the end, s.
 const DURATION: f64 = 14.0;
-/// Reaction time of the pilot, s.
 const REACTION: f64 = 0.35;
 /// Throttle of the set-down, and the rate of that stick, 1/s.
 const SET_DOWN: f64 = 0.40;
@@ -44,7 +43,6 @@ const LOST_DEPTH: f64 = 0.95;
 const CLEAR: f64 = 0.4;
 /// Time on the pipe before the arms open, s.
 const STAY: f64 = 2.0;
-/// Throttle of the release.
 const RELEASE: f64 = 0.25;
 
 /// A touch to try.
@@ -137,7 +135,6 @@ struct Hand {
     climbs: bool,
 }
 
-/// Vehicle, world and sticks.
 struct Try {
     scenario: Scenario,
     plant: Plant,

@@ -9,7 +9,6 @@ const REST: f64 = 0.035;
 /// Thrust asked of some rotor from which the vehicle counts as flown, N; as in the steps' table.
 const FLOWN: f64 = 1.0;
 
-/// Names of the axes that count.
 const AXES: [&str; 2] = ["roll", "pitch"];
 
 /// The largest error of its kind.

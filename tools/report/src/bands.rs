@@ -52,7 +52,6 @@ pub fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
     out + &text(LEFT - 7.0, top + BAND + 12.5, "tick end", "step")
 }
 
-/// A mode or step on its band.
 struct Block<'a> {
     /// When it began and ended, s.
     from: f64,

@@ -57,7 +57,6 @@ pub fn draw(record: &FlightRecord, moment: &KeyMoment<'_>) -> String {
     svg + "</svg>"
 }
 
-/// Where things are on the drawing.
 struct View<'a> {
     sample: &'a Sample,
     /// World point (east, height) at the anchor.
@@ -84,7 +83,6 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Pixel of a point of the world.
     fn world(&self, east: f64, height: f64) -> (f64, f64) {
         (
             ANCHOR.0 + (east - self.centre.0) * SCALE,
@@ -92,7 +90,6 @@ impl<'a> View<'a> {
         )
     }
 
-    /// Pixel of a point of the body (FRD, m).
     fn body_point(&self, r: [f64; 3]) -> (f64, f64) {
         let along = |row: [f64; 3]| row.iter().zip(r).map(|(a, b)| a * b).sum::<f64>();
         let [east, down] = self.rows.map(along);

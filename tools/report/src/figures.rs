@@ -218,7 +218,6 @@ fn thrust(record: &FlightRecord, span: Span) -> Figure {
     }
 }
 
-/// Times with saturated rotors.
 fn saturated(record: &FlightRecord) -> Vec<(f64, f64)> {
     let mut spans: Vec<(f64, f64)> = vec![];
     for sample in record.samples.iter().filter(|s| s.saturated) {

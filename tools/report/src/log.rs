@@ -146,7 +146,6 @@ mod tests {
     use super::super::synthetic;
     use super::*;
 
-    /// Topic, schema, time and content of every message.
     fn messages(record: &FlightRecord) -> Vec<(String, String, u64, Value)> {
         let bytes = mcap(record).unwrap();
         mcap::MessageStream::new(&bytes)

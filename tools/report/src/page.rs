@@ -109,7 +109,6 @@ fn key_figures(record: &FlightRecord) -> String {
     out + "</div>"
 }
 
-/// Step of an error.
 fn step(worst: Worst<'_>) -> String {
     worst
         .step
@@ -154,7 +153,6 @@ fn caption(moment: &KeyMoment<'_>) -> String {
     )
 }
 
-/// Colours of the modes that occurred.
 fn modes(record: &FlightRecord) -> String {
     let mut out = String::from("<ul class=\"legend modes\">");
     for mode in Mode::ALL

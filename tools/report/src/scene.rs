@@ -132,7 +132,6 @@ fn arm_point(x: f64, side: f64, tilt: f64, u: f64, lift: f64) -> Value {
     point(x, side * (out - lift * sin), up + lift * cos - HINGE_Z)
 }
 
-/// The shapes of an entity.
 #[derive(Default)]
 struct Shapes {
     cubes: Vec<Value>,

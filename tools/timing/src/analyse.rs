@@ -29,7 +29,6 @@ const BOARDS: [(&str, f64); 3] = [
     ("f405", 400.0 / 168.0 * 2166.0 / 1773.0),
 ];
 
-/// The task set of a capture.
 struct Set {
     loads: Vec<Load>,
     /// Index in `loads` and deadline in µs.

@@ -1,4 +1,4 @@
-//! Events played back: polls, who preempted whom, and the runs that polls belong to.
+//! Events played back: polls, preemptions, and the runs of polls.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -7,62 +7,62 @@ use sophie_tasks::deadline::Level;
 use crate::stats::Sorted;
 use crate::trace::{Event, Kind, Trace};
 
-/// Gaps between the polls of one run are shorter than those between runs by at least this factor.
+/// Least ratio of the gaps between runs to those between polls of one run.
 const APART: f64 = 4.0;
 
-/// A task was polled.
+/// A poll of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Poll {
     /// Index of the task.
     pub task: usize,
-    /// When it was woken, µs.
+    /// Wake, µs.
     pub ready: u64,
-    /// Exception that woke it; 0 for another task of thread mode.
+    /// Exception of the wake; 0 for another task of thread mode.
     pub waker: u16,
-    /// When the poll began and ended, µs.
+    /// Start, µs.
     pub begin: u64,
-    /// When it ended, µs.
+    /// End, µs.
     pub end: u64,
-    /// How long levels above ran in between, µs.
+    /// Time of higher levels in between, µs.
     pub preempted: u64,
 }
 
-/// What a task did for one cause: one poll, or several with waits for a bus in between.
+/// Work for one cause: one poll, or several with bus waits in between.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// When it was woken, µs.
+    /// Wake, µs.
     pub ready: u64,
-    /// When its first poll began, µs.
+    /// Start of its first poll, µs.
     pub begin: u64,
-    /// When its last poll ended, µs.
+    /// End of its last poll, µs.
     pub end: u64,
-    /// Time that it had the processor, µs.
+    /// Processor time, µs.
     pub execution: u64,
-    /// How long levels above ran within its polls, µs.
+    /// Time of higher levels within its polls, µs.
     pub preempted: u64,
-    /// From the ends of its polls to the next wake, µs: what it waited for.
+    /// From the ends of its polls to the next wake, µs.
     pub waited: u64,
 }
 
 /// A task of the trace.
 #[derive(Clone, Debug)]
 pub struct Task {
-    /// Its name, or its address.
+    /// Name, or address.
     pub name: String,
-    /// Where it runs; `None` when it was never named.
+    /// Level; `None` if it was never named.
     pub level: Option<Level>,
     /// Its runs, in order.
     pub runs: Vec<Run>,
 }
 
-/// Times that one task kept another from the processor.
+/// Preemptions of one task by another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Preemption {
-    /// How often.
+    /// Count.
     pub count: u32,
-    /// In all, µs.
+    /// Total, µs.
     pub total: u64,
-    /// The longest, µs.
+    /// Longest, µs.
     pub longest: u64,
 }
 
@@ -73,30 +73,28 @@ pub struct Replay {
     pub tasks: Vec<Task>,
     /// Every poll, in the order of their ends.
     pub polls: Vec<Poll>,
-    /// Who was preempted, by whom.
+    /// By (preempted task, preempting task).
     pub preemptions: BTreeMap<(usize, usize), Preemption>,
-    /// Wakes by exception: how many.
+    /// Count of wakes by exception.
     pub wakes: BTreeMap<u16, u32>,
-    /// Time that the events cover, µs.
+    /// Time covered by the events, µs.
     pub covered: u64,
-    /// Time of it in which no executor ran, µs.
+    /// Part of it in which no executor ran, µs.
     pub idle: u64,
 }
 
-/// What is under way.
 enum Frame {
     Executor { exception: u16, start: u64 },
     Poll(Poll),
 }
 
-/// What is known between two events.
 struct Player {
     replay: Replay,
-    /// Task of an address.
+    /// Task by address.
     index: HashMap<u32, usize>,
-    /// What is under way, the outermost first.
+    /// Active frames, the outermost first.
     stack: Vec<Frame>,
-    /// When a task was made ready and by which exception.
+    /// Time and exception of each ready task's wake.
     ready: HashMap<usize, (u64, u16)>,
     quiet_since: Option<u64>,
     last: Option<u64>,
@@ -126,7 +124,7 @@ impl Player {
         }
     }
 
-    /// Events are missing here: whatever was under way may have ended unseen.
+    /// Events are missing here: active frames may have ended unseen.
     fn cut(&mut self) {
         self.stack.clear();
         self.ready.clear();
@@ -157,7 +155,7 @@ impl Player {
         }
     }
 
-    /// The task at this address, without a name when the trace has none.
+    /// The task at this address; unnamed if the trace has no name.
     fn task(&mut self, address: u32) -> usize {
         let tasks = &mut self.replay.tasks;
         *self.index.entry(address).or_insert_with(|| {
@@ -170,7 +168,6 @@ impl Player {
         })
     }
 
-    /// An executor polls a task.
     fn begin(&mut self, event: &Event) {
         let task = self.task(event.address);
         let same =
@@ -243,7 +240,7 @@ impl Replay {
         self.polls.push(poll);
     }
 
-    /// Makes runs of the polls.
+    /// Groups polls to runs.
     fn group(&mut self) {
         for (number, task) in self.tasks.iter_mut().enumerate() {
             let polls: Vec<&Poll> = self.polls.iter().filter(|p| p.task == number).collect();
@@ -278,22 +275,22 @@ impl Replay {
 }
 
 impl Task {
-    /// From the wake of a run to that of the next, µs.
+    /// From wake to wake of the runs, µs.
     #[must_use]
     pub fn periods(&self) -> Sorted {
         let pairs = self.runs.iter().zip(self.runs.iter().skip(1));
         Sorted::new(pairs.map(|(a, b)| (b.ready - a.ready) as f64).collect())
     }
 
-    /// What `of` says of each run, µs.
+    /// `of` each run, µs.
     #[must_use]
     pub fn times(&self, of: impl Fn(&Run) -> u64) -> Sorted {
         Sorted::new(self.runs.iter().map(|run| of(run) as f64).collect())
     }
 }
 
-/// The gap, µs, from which on a poll begins a run of its own: the middle of the widest step in a logarithmic scale, if a
-/// twentieth of the gaps lie on either side of it. Without such a step every poll is a run.
+/// Least gap, µs, before a new run: the middle of the widest step on a logarithmic scale with a twentieth of the gaps
+/// on either side; without such a step every poll is a run.
 fn threshold(gaps: Vec<u64>) -> f64 {
     let mut gaps: Vec<f64> = gaps.into_iter().map(|g| (g as f64).max(1.0)).collect();
     gaps.sort_by(f64::total_cmp);
@@ -355,7 +352,6 @@ mod tests {
             (31, Idle, LOW),
             (131, Begin, LOW),
         ]));
-        // The most urgent first.
         assert_eq!(replay.tasks[0].name, "high");
         let low = replay.tasks[1].runs[0];
         assert_eq!((low.execution, low.preempted, low.begin - low.ready), (18, 9, 3));

@@ -64,7 +64,7 @@ fn seconds(capture: &Capture) -> String {
     text + &contact(&capture.contact)
 }
 
-/// The chain from contact pressure to servo pulse; empty without records.
+/// Table of the chain from contact pressure to servo pulse; empty without records.
 fn contact(seconds: &[Contact]) -> String {
     let (Some(min), Some(last)) = (seconds.iter().map(|c| c.min).min(), seconds.last()) else {
         return String::new();
@@ -82,7 +82,7 @@ fn quantiles(q: Quantiles) -> String {
     format!("{} / {} / {}", q.p50, q.p99, q.max)
 }
 
-/// Of the runs of the trace.
+/// Table of the trace's runs.
 fn runs(capture: &Capture, replay: &Replay) -> String {
     let idle = 100.0 * replay.idle as f64 / replay.covered.max(1) as f64;
     let mut text = format!(
@@ -128,7 +128,7 @@ fn exact(times: &Sorted) -> String {
     format!("{:.0} / {:.0} / {:.0}", told(0.5), told(0.99), told(1.0))
 }
 
-/// Who keeps whom from the processor.
+/// Table of the preemptions.
 fn preemptions(replay: &Replay) -> String {
     let mut text = String::from("\nPreemptions: who, by whom, how often, longest and in all (us)\n\n");
     let name = |n: usize| replay.tasks.get(n).map_or("?", |t| t.name.as_str());
@@ -149,7 +149,7 @@ fn preemptions(replay: &Replay) -> String {
     text
 }
 
-/// Distribution of each task's responses.
+/// Histogram of each task's responses.
 fn histograms(replay: &Replay) -> String {
     let mut text = String::from("\nResponses, us from the wake\n");
     for task in replay.tasks.iter().filter(|t| !t.runs.is_empty()) {
