@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use sophie_control::params::Params;
 use sophie_sim::plant::GRAVITY;
+use sophie_sim::plant::servo_power::MG996R;
 use sophie_sim::plant::tendon::ServoSpec;
 use sophie_sim::scenario::ServoProfile;
 
@@ -24,8 +25,6 @@ const ELECTRONICS: f64 = 6.0;
 const USABLE: f64 = 0.8;
 /// Nominal voltages of the flight battery (4S) and the servo battery (2S), V.
 const FLIGHT_VOLTAGE: f64 = 14.8;
-/// MG996R at 6 V (datasheet): stall torque (kgcm), current at stall and without load (A).
-const MG996R: (f64, f64, f64) = (11.0, 2.5, 0.17);
 /// Pipe of the inspection times, m.
 const PIPE: f64 = 0.30;
 
@@ -178,7 +177,7 @@ pub fn section(p: &Printed) -> Section {
             .iter()
             .map(|r| current(p, r.inspection_min))
             .fold(0.0, f64::max),
-        MG996R.1
+        MG996R.at_stall
     );
     s
 }
@@ -217,7 +216,8 @@ fn lean_at_four_percent(s: &mut Section, p: &Printed, fitted: &impl Fn(f64) -> f
 }
 
 fn inspection(s: &mut Section, p: &Printed) -> Chart {
-    let (stall, at_stall, idle) = MG996R;
+    let (stall, at_stall) = (sophie_report::units::kgcm(MG996R.stall), MG996R.at_stall);
+    let drawn = |force: f64| MG996R.at(force / stall * MG996R.stall);
     let capacity = p.text.servo_battery_mah * 1e-3;
     let infills: Vec<f64> = p.table_5.iter().map(|r| r.infill_percent).collect();
     let servo = ServoSpec::from(ServoProfile::Paper);
@@ -227,8 +227,7 @@ fn inspection(s: &mut Section, p: &Printed) -> Chart {
             .closure
             .map_or(f64::NAN, |_| sophie_report::units::kgcm(closed.steady))
     });
-    let minutes =
-        |force: f64, arms: f64| 60.0 * capacity / (arms * (idle + (at_stall - idle) * force / stall));
+    let minutes = |force: f64, arms: f64| 60.0 * capacity / (arms * drawn(force));
     let mut t = Table::new(
         "Inspection: servo current for the steady force on a 300 mm pipe, and what the printed times mean",
         &[
@@ -244,7 +243,7 @@ fn inspection(s: &mut Section, p: &Printed) -> Chart {
     );
     let mut rows = vec![];
     for (row, force) in p.table_5.iter().zip(&forces) {
-        let amps = idle + (at_stall - idle) * force / stall;
+        let amps = drawn(*force);
         let meant = current(p, row.inspection_min);
         t.row([
             num(row.infill_percent, 0),
