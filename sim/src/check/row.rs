@@ -109,7 +109,7 @@ fn with_unit(value: f64, unit: &str) -> String {
         v if !v.is_finite() => "none".to_owned(),
         v if v >= 99.95 => format!("{value:.0}"),
         v if v >= 9.995 => format!("{value:.1}"),
-        v if v >= 0.1 || v < 5e-4 => format!("{value:.2}"),
+        v if !(5e-4..0.1).contains(&v) => format!("{value:.2}"),
         _ => format!("{value:.3}"),
     };
     format!("{number} {unit}").trim_end().to_owned()
