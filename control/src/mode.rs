@@ -34,8 +34,10 @@ mod transitions;
 
 use self::behaviour::Behaviour;
 use self::context::Step;
+pub use self::escaping::{AWAY_LEAN as ESCAPE_LEAN, LIFT_SHARE as ESCAPE_LIFT};
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
+pub use self::releasing::release_thrust;
 use crate::arming::ArmingInhibits;
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;

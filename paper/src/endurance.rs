@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use sophie_control::params::Params;
 use sophie_sim::plant::GRAVITY;
+use sophie_sim::plant::servo_power::MG996R;
 
-use super::inspection::{Inspection, MG996R, current};
+use super::inspection::{Inspection, current};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::printed::{Endurance, Printed};
 use super::statics::root;
@@ -243,7 +244,7 @@ fn finding(flight: &Flight<'_>) -> String {
             .iter()
             .map(|r| current(p, r.inspection_min))
             .fold(0.0, f64::max),
-        MG996R.stall_current
+        MG996R.at_stall
     )
 }
 

@@ -1,6 +1,8 @@
 //! Table V's inspection times: how long a servo's battery holds the steady force on a pipe.
 
+use sophie_report::units::kgcm;
 use sophie_sim::parallel;
+use sophie_sim::plant::servo_power::MG996R;
 use sophie_sim::plant::tendon::ServoSpec;
 use sophie_sim::scenario::ServoProfile;
 
@@ -8,30 +10,12 @@ use super::clamp::{closing_thrust, mean_closing};
 use super::model::{Axis, Chart, Class, Comparison, Look, Series, Table, num};
 use super::printed::{Endurance, Printed};
 
-/// MG996R at 6 V (datasheet).
-pub const MG996R: Servo = Servo {
-    stall: 11.0,
-    stall_current: 2.5,
-    idle_current: 0.17,
-};
 /// Pipe of the inspection times, m.
 const PIPE: f64 = 0.30;
 
-/// What a servo's datasheet says.
-pub struct Servo {
-    /// Stall torque, kgcm.
-    pub stall: f64,
-    /// Current at stall, A.
-    pub stall_current: f64,
-    /// Current without load, A.
-    pub idle_current: f64,
-}
-
-impl Servo {
-    /// Current at a torque (kgcm), A: linear from no load to stall.
-    fn current(&self, torque: f64) -> f64 {
-        self.idle_current + (self.stall_current - self.idle_current) * torque / self.stall
-    }
+/// Current of an MG996R at a torque (kgcm), A.
+fn drawn(torque: f64) -> f64 {
+    MG996R.at(torque / kgcm(1.0))
 }
 
 /// Current of one of four servos that empties the servo battery in `minutes`, A.
@@ -63,14 +47,12 @@ impl<'a> Inspection<'a> {
         let servo = ServoSpec::from(ServoProfile::Paper);
         let forces = parallel::each(&infills, |i| {
             let closed = mean_closing(*i, PIPE, servo, closing_thrust(printed));
-            closed
-                .closure
-                .map_or(f64::NAN, |_| sophie_report::units::kgcm(closed.steady))
+            closed.closure.map_or(f64::NAN, |_| kgcm(closed.steady))
         });
         let rows = printed.table_5.iter().zip(forces).map(|(row, force)| Held {
             row,
             force,
-            amps: MG996R.current(force),
+            amps: drawn(force),
             meant: current(printed, row.inspection_min),
         });
         Self {
@@ -108,7 +90,7 @@ impl<'a> Inspection<'a> {
                 num(self.minutes(held, 2.0), 1),
                 num(held.row.inspection_min, 1),
                 num(held.meant, 2),
-                num(held.meant / MG996R.stall_current, 2),
+                num(held.meant / MG996R.at_stall, 2),
             ]);
         }
         t
@@ -117,7 +99,7 @@ impl<'a> Inspection<'a> {
     /// Table V's times against a servo's current.
     pub fn comparisons(&self) -> Vec<Comparison> {
         let row = |held: &Held<'_>| {
-            let impossible = held.meant > MG996R.stall_current;
+            let impossible = held.meant > MG996R.at_stall;
             Comparison {
                 what: format!("inspection time, four arms, ρ {} %", held.row.infill_percent),
                 unit: "min",
@@ -129,7 +111,7 @@ impl<'a> Inspection<'a> {
                     Class::Prediction
                 },
                 why: if impossible {
-                    let beyond = if held.force > MG996R.stall {
+                    let beyond = if held.force > kgcm(MG996R.stall) {
                         "; the steady force itself is beyond its stall torque"
                     } else {
                         ""

@@ -7,10 +7,10 @@ use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
 use embassy_stm32::interrupt::typelevel::Binding;
-use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
+use embassy_stm32::timer::low_level::{self, OutputCompareMode};
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin, UpDma};
 use embassy_stm32::{Peri, rcc};
-use embassy_time::{Duration, Instant};
+use embassy_time::{Duration, Instant, Timer};
 use sophie_control::wrench::PerArm;
 use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
 use sophie_drivers::esc_protocol::EscProtocol;
@@ -25,9 +25,12 @@ use super::frame_stream::{FrameStream, Stream};
 /// In place of the motor of a channel that moves none.
 const NO_MOTOR: usize = usize::MAX;
 
-/// Rows of compare values that DMA writes into the timer: one for each bit of a frame, and two of zeros. The first of
-/// those is in force when the second has been moved, so the pins are low at the end of the transfer.
-const ROWS: usize = dshot::BITS + 2;
+/// Rows of compare values of a frame: one for each bit, and two of zeros. The first of those is in force when the second
+/// has been moved: the pins are low when the last row has been.
+const FRAME_ROWS: usize = dshot::BITS + 2;
+/// Rows that DMA would write: what follows the frame are zeros, in which the timer is stopped. They last as long as a
+/// frame of the fastest protocol: no task of the level keeps this one waiting for longer.
+const ROWS: usize = 2 * FRAME_ROWS;
 /// All rows.
 type EscBurst = Aligned<[u16; ROWS * dshot::MOTORS]>;
 
@@ -45,7 +48,7 @@ enum Timing {
 
 /// Speed controllers on channels of a 16-bit timer.
 pub struct EscTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
-    timer: Timer<'static, T>,
+    timer: low_level::Timer<'static, T>,
     /// The channel of each motor that is on this timer.
     channels: PerArm<Option<Channel>>,
     /// The motor of each channel, 0 to 3, or [`NO_MOTOR`].
@@ -111,7 +114,7 @@ where
         burst: &'static mut EscBurst,
     ) -> Self {
         let timing = timing(protocol, rcc::frequency::<T>().0);
-        let mut timer = Timer::new(timer);
+        let mut timer = low_level::Timer::new(timer);
         let (prescaler, period) = match timing {
             Timing::DShot(bit, _) => (0, u32::from(bit.period)),
             Timing::Pulse(_, t) => (t.prescaler, t.period),
@@ -195,15 +198,21 @@ where
         });
     }
 
+    /// Stops the counter first: a request that it makes is still served.
+    fn stop_frame(&mut self) {
+        self.timer.stop();
+        self.timer.enable_update_dma(false);
+        self.stream.stop();
+    }
+
     /// One frame to all motors, over when this returns; gives its beginning.
     ///
     /// The order matters: counter and stream stopped, rows written, stream armed, request enabled, counter started. With
     /// the request enabled first, an update that comes before the stream is armed is lost, and with it the frame's first
     /// bit.
     async fn send_frame(&mut self, bit: BitTiming, time: Duration, commands: PerArm<f32>) -> Instant {
-        self.timer.stop();
-        self.timer.enable_update_dma(false);
-        self.stream.stop();
+        // One that was given up half-way.
+        self.stop_frame();
         self.timer.reset();
         // In the order of the channels, as the timer takes them. A channel without a motor has no pin.
         let frame = |motor| {
@@ -212,14 +221,16 @@ where
                 .map_or(Frame::STOP, |c| Frame::from_command(*c))
         };
         let frames = self.motors.map(frame);
-        fill_burst(&mut self.burst.0, frames, bit);
+        if let Some(rows) = self.burst.0.first_chunk_mut::<{ FRAME_ROWS * dshot::MOTORS }>() {
+            fill_burst(rows, frames, bit);
+        }
         self.stream.arm();
         self.timer.enable_update_dma(true);
         self.timer.start();
         let began = Instant::now();
-        self.stream.end_of(began, time).await;
-        self.timer.enable_update_dma(false);
-        self.timer.stop();
+        // A stream that stands still is not waited for: the next frame sets out anew.
+        Timer::at(began + time).await;
+        self.stop_frame();
         began
     }
 }
@@ -275,7 +286,7 @@ impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
 fn timing(protocol: EscProtocol, clock_hz: u32) -> Timing {
     let found = match protocol {
         EscProtocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(|bit| {
-            let counts = ROWS as u64 * u64::from(bit.period);
+            let counts = FRAME_ROWS as u64 * u64::from(bit.period);
             // A microsecond for each end: the clock's resolution.
             let time = Duration::from_micros(counts * 1_000_000 / u64::from(clock_hz) + 2);
             Timing::DShot(bit, time)

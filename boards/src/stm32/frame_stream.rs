@@ -2,7 +2,9 @@
 //! takes three registers: flags, length, enable. All of it, as the HAL does it, is 150 instructions between the mix and
 //! the frame.
 //!
-//! A frame's end is waited for by the clock, not by the stream's interrupt: how long it takes is known.
+//! A frame's end is waited for by the clock, not by the stream's interrupt: how long it takes is known. The stream then
+//! still has rows of zeros to move, so that none of the timer's requests is left over: it would be served as the next
+//! frame is armed, and that frame would begin a bit early.
 
 use core::sync::atomic::{Ordering, fence};
 
@@ -10,12 +12,7 @@ use embassy_stm32::dma::Transfer;
 use embassy_stm32::pac::dma::regs::{Cr, Ixr, Ndtr};
 use embassy_stm32::pac::dma::{Dma, St};
 use embassy_stm32::{pac, peripherals};
-use embassy_time::{Duration, Instant, Timer};
 
-/// Pause until a stream that should have ended is looked at again.
-const AGAIN: Duration = Duration::from_micros(10);
-/// The slowest frame takes 120 µs; one that takes this long never ends.
-const LONGEST_FRAME: Duration = Duration::from_micros(500);
 /// Looks at a stream that was disabled until it stands still: it ends the beat that it is in, a few cycles of the bus.
 const LOOKS: u32 = 100;
 
@@ -73,7 +70,7 @@ impl Stream {
         }
     }
 
-    /// Ends a transfer that has not ended by itself; one that has takes a look.
+    /// Ends a transfer, wherever it is; one that has ended takes a look.
     #[inline]
     pub fn stop(&self) {
         let control = self.registers.cr();
@@ -99,18 +96,5 @@ impl Stream {
         let mut control = self.control;
         control.set_en(true);
         self.registers.cr().write_value(control);
-    }
-
-    /// Waits until the frame that `began` is over, which takes `time`. One that does not end is given up: the task must
-    /// go on, and the supervisor sees it late.
-    pub async fn end_of(&self, began: Instant, time: Duration) {
-        Timer::at(began + time).await;
-        while self.registers.cr().read().en() {
-            if began.elapsed() >= LONGEST_FRAME {
-                self.stop();
-                return;
-            }
-            Timer::after(AGAIN).await;
-        }
     }
 }
