@@ -33,7 +33,7 @@ const ARM_READ_US: u64 = 400;
 
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
 
-/// The board's state, shared by its ports and the world.
+/// The board's state, shared by ports and world.
 pub struct Board {
     imu_ready: Signal<Raw, Vec<ImuReading, IMU_BATCH>>,
     actuators: Cell<Actuators>,
@@ -55,7 +55,7 @@ struct AnalogTruth {
     pressure: PerArm<f64>,
     voltage: f64,
     current: f64,
-    /// Time since the last conversion, s.
+    /// Since the last conversion, s.
     elapsed: f64,
 }
 
@@ -179,7 +179,7 @@ impl Board {
         batch.unwrap_or_default()
     }
 
-    /// What the tasks wrote last.
+    /// Last outputs of the tasks.
     #[must_use]
     pub fn actuators(&self) -> Actuators {
         self.actuators.get()

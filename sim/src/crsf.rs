@@ -8,19 +8,19 @@ use uf_crsf::{CrsfParser, Packet, write_packet_to_buffer};
 
 /// Channel frames per second.
 pub const FRAME_HZ: f64 = 150.0;
-/// Rate of the serial line, baud; ten bits a byte.
+/// Line rate, baud; ten bits a byte.
 pub const BAUD: f64 = 420_000.0;
 
-/// A frame as it goes over the line.
+/// A frame on the line.
 pub type Frame = heapless::Vec<u8, 64>;
 
-/// Time that `bytes` take on the line, s.
+/// Time of `bytes` on the line, s.
 #[must_use]
 pub fn line_time(bytes: usize) -> f64 {
     10.0 * bytes as f64 / BAUD
 }
 
-/// The channel frame that says `sticks`.
+/// The channel frame of `sticks`.
 #[must_use]
 pub fn rc_frame(sticks: &Sticks) -> Frame {
     channel_frame(&sticks.to_channels())
@@ -39,7 +39,7 @@ pub fn channel_frame(channels: &[u16; CHANNELS]) -> Frame {
     Frame::from_slice(&bytes[..count]).expect("a channel frame is 26 bytes long")
 }
 
-/// What the transmitter's display shows.
+/// The transmitter's display.
 #[derive(Debug, Default)]
 pub struct Telemetry {
     parser: CrsfParser,
@@ -47,7 +47,7 @@ pub struct Telemetry {
     pub mode: Option<Mode>,
     /// Reason beside the mode; may be empty.
     pub reason: String,
-    /// Voltage of the flight battery, V.
+    /// Flight battery, V.
     pub battery_voltage: Option<f64>,
     /// Estimated roll, pitch and yaw, rad.
     pub attitude: Option<[f64; 3]>,

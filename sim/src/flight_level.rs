@@ -43,17 +43,17 @@ pub fn level(_: f64) -> Maneuver {
 /// Errors after take-off, degrees, and thrust, N.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct Errors {
-    /// Largest roll error, rad.
+    /// Largest roll error.
     pub worst_roll: f64,
     /// Largest pitch.
     pub worst_pitch: f64,
     /// Largest yaw.
     pub worst_yaw: f64,
-    /// RMS roll error, rad.
+    /// RMS roll error.
     pub rms_roll: f64,
-    /// Root mean square of the yaw.
+    /// RMS yaw.
     pub rms_yaw: f64,
-    /// Largest less smallest thrust asked of rotor 1.
+    /// Range of rotor 1's asked thrust, N.
     pub swing: f64,
 }
 

@@ -136,7 +136,7 @@ pub struct Grip {
 
 /// Shows a flight while it runs.
 pub trait Observer {
-    /// A step began: `index` of `count`.
+    /// Step `index` of `count` began.
     fn step_began(&mut self, t: f64, index: usize, count: usize, name: &str);
     /// A step ended.
     fn step_ended(&mut self, t: f64, phase: &Phase);

@@ -555,7 +555,7 @@ fn a_terminal_that_takes_nothing_loses_its_text_and_holds_nothing_up() {
     let mut bench = bench.commander(Mode::Disarmed, Mode::Disarmed);
     bench.run(100);
     bench.screen.hangs.set(true);
-    // The whole list has 90 lines.
+    // The whole list has 90 lines, each waiting for the terminal.
     bench.line.put(b"list\r");
     bench.run(700);
     bench.line.put(b"set infill 8\rsave\r");

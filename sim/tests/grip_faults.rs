@@ -19,6 +19,7 @@ const FREE_TILT: f32 = -0.2;
 const TOUCH_TILT: f32 = -0.8;
 /// Compliance against the pipe over that in the air.
 const PRESSED: f32 = 0.2;
+/// s.
 const ARM_TIME: f32 = 0.03;
 /// Counts of a converter pin shorted to the supply.
 const SHORTED: u16 = 4095;

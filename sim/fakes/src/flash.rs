@@ -14,7 +14,7 @@ pub struct Cells {
     pub bytes: Vec<u8>,
     /// Words written since their erase: a 32-byte word with its checksum takes one write only.
     written: Vec<bool>,
-    /// Words written and pages erased so far.
+    /// Words written plus pages erased.
     pub steps: usize,
     /// Pages erased.
     pub erases: usize,
@@ -24,9 +24,9 @@ pub struct Cells {
     pub cut_at: Option<usize>,
     /// Power is off.
     pub dead: bool,
-    /// Bits that do not take a 0.
+    /// Bits stuck at 1.
     pub stuck: Option<usize>,
-    /// What no sound program does.
+    /// Violations of the flash's rules.
     pub violations: Vec<String>,
 }
 
@@ -34,7 +34,7 @@ pub struct Cells {
 #[derive(Clone)]
 pub struct Flash<const WRITE: usize, const PAGE: usize>(pub Rc<RefCell<Cells>>);
 
-/// Power went, or the access is not allowed.
+/// Power cut or forbidden access.
 #[derive(Debug, PartialEq, Eq)]
 pub struct FlashError;
 
@@ -45,7 +45,7 @@ impl NorFlashError for FlashError {
 }
 
 impl<const WRITE: usize, const PAGE: usize> Flash<WRITE, PAGE> {
-    /// An erased flash of so many pages.
+    /// An erased flash of this many pages.
     pub fn blank(pages: usize) -> Self {
         Self::holding(vec![0xFF; pages * PAGE])
     }
@@ -79,7 +79,7 @@ impl<const WRITE: usize, const PAGE: usize> Flash<WRITE, PAGE> {
         Self(Rc::new(RefCell::new(cells)))
     }
 
-    /// All of it, as addresses.
+    /// The whole address range.
     pub fn range(&self) -> std::ops::Range<u32> {
         0..self.0.borrow().bytes.len() as u32
     }

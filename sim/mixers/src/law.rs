@@ -5,10 +5,10 @@ use sophie_control::params::Params;
 use sophie_control::tilt::TiltModel;
 use sophie_control::wrench::{PerArm, Wrench};
 
-/// What a law may know of the vehicle.
+/// Inputs of a law.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
-    /// The arms' modelled tilt and the low-passed thrusts.
+    /// Modelled arm tilt and low-passed thrusts.
     pub tilt: &'a TiltModel,
     /// Yaw is asked for, and the thrust suffices for it.
     pub yaw: bool,

@@ -23,7 +23,7 @@ use sophie_control::wrench::{Configuration, PerArm, Wrench};
 /// The allocation in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Variant {
-    /// The arms are taken as stiff.
+    /// Rigid arms.
     Rigid,
     /// Algorithm 1 with the printed matrix, its singular yaw row corrected: tilt enters the thrust row only.
     Paper,

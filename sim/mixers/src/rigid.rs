@@ -1,4 +1,4 @@
-//! The allocation of a stiff frame.
+//! The allocation of a rigid frame.
 
 use sophie_control::effectiveness::Geometry;
 use sophie_control::mixer::{Split, stiff};
@@ -7,7 +7,7 @@ use sophie_control::wrench::{Configuration, Wrench};
 
 use crate::law::{Law, Situation};
 
-/// The arms are taken as stiff and level.
+/// Rigid, level arms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rigid {
     geometry: Geometry,

@@ -39,11 +39,11 @@ struct Current {
 
 /// How a flight ended.
 pub struct Ending {
-    /// Whether the mission was accomplished, and why not.
+    /// Whether and why the mission was accomplished or not.
     pub outcome: Outcome,
     /// Time since power-up, s.
     pub t: f64,
-    /// Time that the simulation took, s.
+    /// Wall time of the simulation, s.
     pub wall_seconds: f64,
 }
 
@@ -288,7 +288,7 @@ fn sample(t: f64, plant: &Plant, stack: &impl Aircraft, throttle: f64) -> Sample
     }
 }
 
-/// FNV-1a over the bits of every sample.
+/// FNV-1a over all samples' bits.
 struct Digest(u64);
 
 impl Digest {

@@ -23,7 +23,6 @@ use crate::scenario::Scenario;
 pub struct Stack {
     /// Executor and start time (µs after power-up); `None` while nothing runs.
     running: Option<(VirtualTime, u64)>,
-    /// The board that it runs on.
     pub board: &'static Board,
     /// Its links.
     pub links: &'static Links,

@@ -31,7 +31,7 @@ impl View<'_> {
         -self.seen.position.z
     }
 
-    /// True when the display shows `reason`.
+    /// Whether the display shows `reason`.
     pub fn shows(&self, reason: Reason) -> bool {
         self.text == reason.text()
     }
@@ -61,7 +61,7 @@ pub enum Progress {
 /// Phase of a step; a step uses those that it needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// The step has just begun.
+    /// Just begun.
     Start,
     /// Arming or disarming gesture.
     Gesture,
@@ -69,7 +69,7 @@ pub enum Phase {
     Wait,
     /// Flying to the step's target.
     Fly,
-    /// Leaning to the right, then to the left.
+    /// Leaning right, then left.
     Right,
     /// See [`Phase::Right`].
     Left,
@@ -258,7 +258,7 @@ impl Mission {
             .steer(&v.seen, &course(target, Vertical::Height(height)), dt)
     }
 
-    /// Climbs (or sinks) at `rate` m/s over `target`.
+    /// Climbs at `rate` m/s over `target`; negative: sinks.
     pub(super) fn climb_over(&mut self, v: &View<'_>, target: DVec2, rate: f64, dt: f64) -> StickTarget {
         self.guidance
             .steer(&v.seen, &course(target, Vertical::Climb(rate)), dt)

@@ -8,7 +8,7 @@ use crate::scenario::Step;
 
 /// Roll stick that takes the vehicle over, share of its travel: beyond the 0.3 that ends the failsafe.
 const TAKE_OVER: f64 = 0.45;
-/// Time for which the display must show a restarted vehicle, s.
+/// Time that a restarted vehicle must be displayed, s.
 const SHOWN: f64 = 1.0;
 
 impl Mission {

@@ -13,7 +13,7 @@ const DISTANCE_MAX: f64 = 30.0;
 /// Limits of heading error, rad, and turn rate, rad/s.
 const HEADING_MAX: f64 = 60.0 * PI / 180.0;
 const TURN_MAX: f64 = 150.0 * PI / 180.0;
-/// Time for which they must last, s: a touch may twitch the nose.
+/// Minimum duration, s: a touch may twitch the nose.
 const YAW_TIME: f64 = 0.15;
 /// Averaging time of the turn rate, s.
 const TURN_TIME: f64 = 0.1;
@@ -27,7 +27,7 @@ pub struct Referee {
 }
 
 impl Referee {
-    /// Why the vehicle is lost, if it is.
+    /// Reason of the loss, if lost.
     pub fn judge(&mut self, truth: &Seen, heading: f64, dt: f64) -> Option<String> {
         let yaw = truth.yaw;
         if dt > 0.0 {

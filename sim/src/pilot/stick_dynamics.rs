@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 
-/// What the pilot wants the sticks to be.
+/// Wanted stick positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StickTarget {
     /// Right positive, -1..1.
@@ -15,9 +15,9 @@ pub struct StickTarget {
     pub yaw: f64,
     /// 0..1.
     pub throttle: f64,
-    /// The arm switch is on.
+    /// Arm switch on.
     pub arm_switch: bool,
-    /// The perch switch is on.
+    /// Perch switch on.
     pub perch_switch: bool,
 }
 
@@ -40,7 +40,7 @@ impl StickDynamics {
         }
     }
 
-    /// Where the sticks are: roll, pitch, yaw, throttle.
+    /// Positions: roll, pitch, yaw, throttle.
     pub fn at(&self) -> [f64; 4] {
         self.sticks
     }

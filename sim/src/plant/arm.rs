@@ -26,9 +26,11 @@ const LEAST_COMPLIANCE: f64 = 0.15;
 pub struct ArmSpec {
     /// Tilt without thrust, rad.
     offset: f64,
-    /// Linear and quadratic coefficient of the nominal arm, rad/N and rad/N².
+    /// Coefficients of the nominal arm, rad/N and rad/N².
     nominal: (f64, f64),
+    /// rad/N.
     linear: f64,
+    /// rad/N².
     quadratic: f64,
     /// Thrust beyond which the spring is linear, N.
     knee: f64,
@@ -36,7 +38,7 @@ pub struct ArmSpec {
     damping: f64,
 }
 
-/// How an arm was printed.
+/// An arm's print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmPrint {
     /// A1, A2, B1, B2 of Eq. 1: °/N, °/(N %), °/N², °/(N² %).
@@ -139,7 +141,7 @@ fn rise((linear, quadratic): (f64, f64), thrust: f64) -> f64 {
     (linear + quadratic * thrust) * thrust
 }
 
-/// One arm and its motion.
+/// An arm in motion.
 #[derive(Clone, Debug)]
 pub struct Arm {
     spec: ArmSpec,
@@ -192,7 +194,7 @@ impl Arm {
         DVec3::new(0.0, self.side * self.sin, -self.cos)
     }
 
-    /// Direction from the hinge to the tip: unit vector, body.
+    /// From hinge to tip: unit vector, body.
     #[must_use]
     pub fn outward(&self) -> DVec3 {
         DVec3::new(0.0, -self.side * self.cos, -self.sin)

@@ -232,7 +232,7 @@ mod tests {
     use super::super::{GRAVITY, STEP};
     use super::*;
 
-    /// Paper.
+    /// kg (paper).
     const MASS: f64 = 1.805;
 
     fn arms() -> [Arm; 4] {

@@ -26,7 +26,7 @@ const STATION_SIZE: (f64, f64) = (0.03, 0.05);
 /// Pressure per depth of the skin, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
 pub const SKIN_STIFFNESS: f64 = 5.0e5;
 
-/// Position, attitude and motion of the body.
+/// Pose and motion of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Centre of mass, NED, m.
@@ -56,7 +56,7 @@ impl Pose {
     }
 }
 
-/// A straight pipe that runs north-south.
+/// A straight north-south pipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pipe {
     /// Middle of the pipe, north, m.
@@ -119,20 +119,20 @@ pub struct Pad {
     pub stiffness: f64,
     /// Along the normal, N·s/m; full from a depth of 1 mm, so that a touch has no step.
     pub damping: f64,
-    /// Of the bristle along the surface, N/m.
+    /// Along the surface, N/m.
     pub bristle: f64,
-    /// Of the bristle, N·s/m.
+    /// Along the surface, N·s/m.
     pub bristle_damping: f64,
 }
 
-/// A quarter of the vehicle on each belly pad: 15 Hz, damping ratio 0.5.
+/// A quarter of the vehicle per belly pad: 15 Hz, damping ratio 0.5.
 const BELLY: Pad = Pad {
     stiffness: 4.0e3,
     damping: 42.0,
     bristle: 4.0e3,
     bristle_damping: 42.0,
 };
-/// One station of the skin.
+/// A station of the skin.
 const SKIN: Pad = Pad {
     stiffness: SKIN_STIFFNESS * STATION_SIZE.0 * STATION_SIZE.1,
     damping: 8.0,
@@ -150,7 +150,7 @@ const TIP: Pad = Pad {
 /// Contact load of a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Touch {
-    /// Force on the vehicle, N, NED.
+    /// On the vehicle, N, NED.
     pub force: DVec3,
     /// Normal part, N.
     pub normal: f64,
@@ -211,22 +211,22 @@ impl ContactPoint {
 pub struct BodyLoad {
     /// Force, N, body.
     pub force_body: DVec3,
-    /// Moment about the centre of mass, N·m, body.
+    /// About the centre of mass, N·m, body.
     pub moment_body: DVec3,
-    /// Sum of the normal forces, N.
+    /// Sum of normal forces, N.
     pub normal: f64,
 }
 
 /// Load of an arm's contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SkinLoad {
-    /// Force on the vehicle, N, body.
+    /// On the vehicle, N, body.
     pub force_body: DVec3,
-    /// Moment about the centre of mass, N·m, body.
+    /// About the centre of mass, N·m, body.
     pub moment_body: DVec3,
     /// Moment on the arm's tilt, N·m: force · ∂r/∂α.
     pub moment_alpha: f64,
-    /// Pressure at the sensor, Pa.
+    /// Sensor pressure, Pa.
     pub pressure: f64,
 }
 
@@ -237,7 +237,7 @@ pub struct Belly {
 }
 
 impl Belly {
-    /// Body positions of the pads, m.
+    /// Body positions, m.
     const PADS: [DVec3; 4] = [
         DVec3::new(0.10, -0.03, BELLY_Z),
         DVec3::new(-0.10, -0.03, BELLY_Z),
@@ -319,7 +319,7 @@ impl ArmSkin {
         )
     }
 
-    /// Advances by `dt` s with the arm at `alpha` rad turning at `alpha_rate` rad/s.
+    /// Advances by `dt` s at tilt `alpha` rad and rate `alpha_rate` rad/s.
     pub fn step(&mut self, dt: f64, alpha: f64, alpha_rate: f64, pose: &Pose, pipe: &Pipe) -> SkinLoad {
         let mut load = SkinLoad::default();
         let mut stations = self.stations;

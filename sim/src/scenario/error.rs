@@ -5,30 +5,30 @@ use core::fmt;
 /// A line of a scenario file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The file as the user named it.
+    /// As the user named it.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
 }
 
-/// Why a scenario was refused.
+/// Why a scenario is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScenarioError {
     /// Missing, a directory, too large or otherwise unreadable.
     Unreadable {
         /// File as the user named it.
         file: String,
-        /// The operating system's or our reason.
+        /// The operating system's reason, or ours.
         why: String,
     },
-    /// The file is not UTF-8 text.
+    /// Not UTF-8.
     NotText {
-        /// Where the first bad byte is.
+        /// The first bad byte.
         at: Place,
     },
-    /// The file is not TOML.
+    /// Not TOML.
     Syntax {
-        /// Where it stops being TOML.
+        /// The first error.
         at: Place,
         /// The parser's message.
         message: String,
@@ -41,7 +41,7 @@ pub enum ScenarioError {
         key: String,
         /// Value given.
         value: String,
-        /// The allowed keys that come nearest.
+        /// The nearest allowed keys.
         nearest: Vec<String>,
     },
     /// A required key is missing.
@@ -75,9 +75,9 @@ pub enum ScenarioError {
         /// When it is possible, and the vehicle's state.
         allowed: String,
     },
-    /// There is nothing to fly.
+    /// No steps.
     NoSteps {
-        /// Where the empty list is.
+        /// The empty list.
         at: Place,
     },
 }

@@ -16,11 +16,11 @@ pub struct Key {
     pub kind: Kind,
 }
 
-/// What a key takes and where it goes.
+/// Type of a key's value, and its place.
 pub enum Kind {
     /// A number.
     Number(Range, fn(&mut Scenario) -> &mut f64),
-    /// Four numbers, one for each arm.
+    /// One number per arm.
     PerArm(Range, fn(&mut Scenario) -> &mut PerArm<f64>),
     /// Roll, pitch and yaw, each with its range.
     PerAxis([Range; 3], fn(&mut Scenario) -> &mut [f64; 3]),
@@ -41,7 +41,7 @@ pub struct Range {
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// Unit for messages; empty for a pure number.
+    /// Unit for messages; may be empty.
     pub unit: &'static str,
     /// SI value of one unit.
     pub si: f64,
@@ -92,7 +92,7 @@ pub const GAIN_K: Range = Range::new(1.0, 10.0, "");
 
 /// Largest seed: whole numbers up to it are exact as TOML floats.
 const SEED_MAX: f64 = 9e15;
-/// What a seed may be, for messages.
+/// Allowed seeds, for messages.
 pub const SEED_ALLOWED: &str = "a whole number from 0 to 9e15";
 
 /// The seed of a number in a file or on a command line.

@@ -28,7 +28,7 @@ use sophie_tasks::start::StartCause;
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
 
-/// A flight to be flown.
+/// A flight to fly.
 #[derive(Clone, Debug)]
 pub struct Scenario {
     /// Name for titles.
@@ -51,18 +51,18 @@ pub struct Scenario {
     pub pilot: Pilot,
     /// The pilot's steps, in order.
     pub steps: Vec<Step>,
-    /// What a test expects of the flight.
+    /// Expected outcome, for tests.
     pub expect: Expect,
 }
 
 /// The vehicle as built, for the plant.
 #[derive(Clone, Debug)]
 pub struct Vehicle {
-    /// Infill of the arms, %.
+    /// Arm infill, %.
     pub infill: f64,
     /// Gain on the elastic term of Eq. 1.
     pub gain_k: f64,
-    /// Sense of rotation of the rotors.
+    /// Configuration of the rotors' senses.
     pub configuration: Configuration,
     /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): Table I or a fitted arm.
     pub arm_coefficients: [f64; 4],
@@ -74,15 +74,15 @@ pub struct Vehicle {
     pub arm_offset: PerArm<f64>,
     /// Arms carry their tip mass (true) or follow the thrust alone, as in the paper's statics (false).
     pub coupled_arms: bool,
-    /// Damping ratio of the arms' bending mode at hover.
+    /// Damping ratio of the bending mode in hover.
     pub arm_damping: f64,
-    /// Charge of the flight battery at power-up, 0..1.
+    /// Battery charge at power-up, 0..1.
     pub battery_charge: f64,
     /// The tendon servo.
     pub servo: ServoProfile,
     /// Mass and inertia.
     pub body: BodySpec,
-    /// Motors and propellers, all four alike.
+    /// Motors and propellers, all alike.
     pub rotor: RotorSpec,
 }
 
@@ -151,7 +151,7 @@ pub enum Step {
     Touch,
     /// Set the throttle and start closing; done once the arms close.
     Clamp {
-        /// Throttle while closing, 0..1.
+        /// Throttle while closing, 0..1; about 0.3 in the paper.
         throttle: f64,
     },
     /// Set the throttle, start closing, wait for the proven grip and stopped motors.
@@ -196,16 +196,16 @@ pub enum Step {
         after: f64,
         /// Time without power, s.
         off: f64,
-        /// Sideways push at the centre of mass, N, on during the step.
+        /// Sideways push at the centre of mass, N, during the step.
         push: f64,
     },
 }
 
-/// What a test expects of the flight.
+/// Expected outcome, for tests.
 #[derive(Clone, Debug)]
 pub struct Expect {
     /// The mission is accomplished.
     pub accomplished: bool,
-    /// Words that the reason must contain when it is not.
+    /// Words of the reason if not.
     pub reason: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! The allowed keys that come nearest to a mistyped one.
+//! The allowed keys nearest to a mistyped one.
 
 /// At most three of `candidates` nearest to `key` (both with their table, as in `vehicle.infill`), nearest first; at
 /// least one if there are candidates.

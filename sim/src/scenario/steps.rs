@@ -8,7 +8,7 @@ use sophie_tasks::start::StartCause;
 
 /// One kind of step.
 pub struct StepKind {
-    /// Name in the file and in the record.
+    /// Name in file and record.
     pub name: &'static str,
     /// Its numbers.
     pub numbers: &'static [StepNumber],
@@ -16,7 +16,7 @@ pub struct StepKind {
     pub build: fn([f64; 3]) -> Step,
 }
 
-/// One number of a step.
+/// A number of a step.
 pub struct StepNumber {
     /// Key in the file.
     pub key: &'static str,
@@ -176,7 +176,7 @@ impl Step {
     }
 }
 
-/// Where the vehicle is between two steps.
+/// State of the vehicle between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Whereabouts {
     OnGroundDisarmed,
@@ -187,7 +187,7 @@ pub(super) enum Whereabouts {
     Closing,
     Clamped,
     Opening,
-    /// Clamped, but the board has restarted.
+    /// Clamped, after a restart.
     Hanging,
     /// Without a pilot so long that it sinks, or has landed.
     Sinking,

@@ -1,4 +1,4 @@
-//! The whole stack on fakes, flown by a test.
+//! A test's vehicle: the whole stack on fakes.
 
 #![allow(dead_code, reason = "each test file uses what it needs")]
 
@@ -147,7 +147,7 @@ impl Vehicle {
         self.motors.commands.get() == [0.0; 4]
     }
 
-    /// Feeds of the watchdog over the last `ms`.
+    /// Watchdog feeds over the last `ms`.
     pub fn fed_over(&self, ms: u64) -> usize {
         self.watchdog.fed_since((self.ms - ms) * 1000 + 1)
     }

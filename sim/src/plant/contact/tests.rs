@@ -131,5 +131,6 @@ fn a_drooping_tip_pushes_its_arm_up() {
     let force = 1500.0 * (HINGE_Z + ARM_LENGTH * 0.46_f64.sin() - 0.09);
     assert!((load.force_body - DVec3::new(0.0, 0.0, -force)).length() < 1e-9);
     assert!((load.moment_alpha - force * ARM_LENGTH * 0.46_f64.cos()).abs() < 1e-9);
+    // A right arm's push up rolls to the left.
     assert!(load.moment_body.x < 0.0);
 }
