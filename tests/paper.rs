@@ -184,7 +184,7 @@ fn signs(r: &Value) {
     let ranks = column(r, "mixer", "Mixer matrices", 2);
     let ranks: Vec<f64> = ranks.iter().filter_map(Value::as_f64).collect();
     assert_eq!(ranks, [3.0, 3.0, 4.0, 4.0, 4.0, 3.0]);
-    // Verbatim with its whole yaw row: lost at K 7.75, flies at K 1. Flexible: flies both.
+    // Verbatim with its whole yaw row: lost at K 7.75, flies at K 1. Flexible flies both.
     let (name, lost) = (
         column(r, "mixer", "The mixers flown", 0),
         column(r, "mixer", "The mixers flown", 6),

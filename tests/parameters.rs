@@ -1,4 +1,4 @@
-//! docs/parameters.md is the table of parameters: `WRITE_DOCS=1 cargo test --test parameters` writes it.
+//! docs/parameters.md, written by `WRITE_DOCS=1 cargo test --test parameters`.
 
 use std::fmt::Write;
 

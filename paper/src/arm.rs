@@ -6,7 +6,7 @@ use sophie_control::params::Params;
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::printed::{Printed, Roll, Table1};
 
-/// Infills that are drawn, %.
+/// %.
 pub const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
 
 /// Eq. 1's linear (°/N) and quadratic (°/N²) coefficient at an infill (%), literal.
@@ -81,6 +81,7 @@ impl<'a> Flown<'a> {
         bent.fold(0.0, f64::max)
     }
 
+    /// N.
     fn thrusts(&self) -> impl Iterator<Item = f64> + use<> {
         let top = self.top;
         (0..=166).map(move |i| f64::from(i) * top / 166.0)
@@ -90,10 +91,12 @@ impl<'a> Flown<'a> {
         ArmModel::new(infill as f32, k as f32, (0.5 * self.top) as f32)
     }
 
+    /// Degrees; `thrust` in N.
     fn tilt(&self, infill: f64, k: f64, thrust: f64) -> f64 {
         f64::from(self.model(infill, k).angle(thrust as f32)).to_degrees()
     }
 
+    /// `f` (degrees) over the thrusts.
     fn curve(&self, name: String, colour: usize, look: Look, f: impl Fn(f64) -> f64) -> Series {
         Series::new(name, colour, look, self.thrusts().map(|t| (t, f(t))).collect())
     }
@@ -173,6 +176,7 @@ fn what_the_gain_rests_on(flown: &Flown<'_>) -> String {
     )
 }
 
+/// At the flown gain, N.
 fn thrusts_of_table_3(flown: &Flown<'_>) -> (f64, f64) {
     let id = &flown.identified;
     let difference = id.product / flown.k;
@@ -318,7 +322,7 @@ fn table(flown: &Flown<'_>) -> Table {
     t
 }
 
-/// Eq. 1's elastic part, literally, degrees.
+/// Eq. 1's literal elastic part, degrees.
 fn elastic(p: &Printed, infill: f64, thrust: f64) -> f64 {
     let (a, b) = literal(&p.table_1, infill);
     (a + b * thrust) * thrust

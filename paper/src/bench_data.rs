@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-/// Largest file that is read, bytes.
+/// Limit of the file's size, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 /// Fewest rows for a fit: three more than the unknowns of a single infill.
 pub const MIN_ROWS: usize = 6;

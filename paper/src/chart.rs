@@ -4,7 +4,7 @@ use super::model::{Axis, Chart, Look, Series};
 use sophie_report::scale::ticks;
 use sophie_report::svg::{Rect, escape, line, path, rect, short, text};
 
-/// Size of the drawing, px; it scales with the page.
+/// Drawing size, px; scales with the page.
 const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 330.0;
 const LEFT: f64 = 62.0;
@@ -15,7 +15,6 @@ const BOTTOM: f64 = 44.0;
 /// Most points drawn of a curve: about two per pixel.
 const POINTS: usize = 900;
 
-/// Where values lie on the drawing.
 struct Frame {
     x: (f64, f64),
     y: (f64, f64),

@@ -14,6 +14,7 @@ use sophie_sim::parallel;
 const WORN: [f64; 6] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
 /// Averaging time of the on-board comparison, s.
 const WINDOW: f64 = 5.0;
+/// Hover of each flight, s.
 const SECONDS: f64 = 25.0;
 
 #[derive(Clone, Copy)]
@@ -140,6 +141,7 @@ fn apart(f: &Flown) -> f64 {
     thrusts.iter().copied().fold(f64::MIN, f64::max) - thrusts.iter().copied().fold(f64::MAX, f64::min)
 }
 
+/// A bias of arm 1, degrees.
 struct OnBoard {
     worn: f64,
     /// True tilt less the model's.

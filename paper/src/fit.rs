@@ -55,7 +55,7 @@ impl Fit {
             + ((a1 + infill * a2) * thrust + (b1 + infill * b2) * thrust * thrust) * power.powf(self.exponent)
     }
 
-    /// Linear and quadratic coefficient at an infill, °/N and °/N².
+    /// Linear and quadratic coefficient at an infill, °/N, °/N².
     pub fn at(&self, infill: f64) -> (f64, f64) {
         let [a1, a2, b1, b2] = self.coefficients;
         (a1 + infill * a2, b1 + infill * b2)

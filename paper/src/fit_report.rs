@@ -46,6 +46,7 @@ fn reach(points: &[Point]) -> Option<(f64, f64)> {
     (most < REACH * top).then_some((most, top))
 }
 
+/// N.
 fn thrust_max() -> f64 {
     // 8.3 as an `f32` has seven digits.
     (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4

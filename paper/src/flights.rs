@@ -22,7 +22,7 @@ pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Va
     s
 }
 
-/// The same in the gusts of the comparisons.
+/// Adds the gusts of the comparisons.
 pub fn in_gusts(mut s: Scenario) -> Scenario {
     (s.world.gust_force, s.world.gust_moment) = GUSTS;
     s
@@ -79,12 +79,12 @@ pub fn curve(flown: &Flown, every: usize, value: impl Fn(&Moment) -> f64) -> Vec
         .collect()
 }
 
-/// Mean tilt of the left arms less that of the right ones, rad.
+/// Mean tilt of the left less the right arms, rad.
 pub fn delta_alpha(m: &Moment) -> f64 {
     0.5 * (m.tilt[0] + m.tilt[1] - m.tilt[2] - m.tilt[3])
 }
 
-/// Mean thrust of a left rotor less that of a right one, N.
+/// Mean thrust of a left less a right rotor, N.
 pub fn delta_thrust(m: &Moment) -> f64 {
     0.5 * (m.thrust[0] + m.thrust[1] - m.thrust[2] - m.thrust[3])
 }

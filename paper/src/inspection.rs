@@ -1,4 +1,4 @@
-//! Table V's inspection times: how long a servo's battery holds the steady force on a pipe.
+//! Table V's inspection times: how long a servo battery holds the steady force on a pipe.
 
 use sophie_report::units::kgcm;
 use sophie_sim::parallel;
@@ -18,30 +18,30 @@ fn drawn(torque: f64) -> f64 {
     MG996R.at(torque / kgcm(1.0))
 }
 
-/// Current of one of four servos that empties the servo battery in `minutes`, A.
+/// Current per servo of four that empties the servo battery in `minutes`, A.
 pub fn current(p: &Printed, minutes: f64) -> f64 {
     p.text.servo_battery_mah * 1e-3 / (minutes / 60.0) / 4.0
 }
 
-/// Inspection times from the steady force on a pipe, one for each row of Table V.
+/// Inspection times from the steady force on a pipe, per row of Table V.
 pub struct Inspection<'a> {
     printed: &'a Printed,
     rows: Vec<Held<'a>>,
 }
 
-/// A row of Table V, and what holding takes at its infill.
+/// A row of Table V, and the holding current at its infill.
 struct Held<'a> {
     row: &'a Endurance,
-    /// Steady force, kgcm; NaN where the arms do not close.
+    /// Steady force, kgcm; NaN if the arms do not close.
     force: f64,
-    /// Current of a servo that holds it, A.
+    /// Servo current that holds it, A.
     amps: f64,
-    /// Current of a servo that the printed time means, A.
+    /// Servo current implied by the printed time, A.
     meant: f64,
 }
 
 impl<'a> Inspection<'a> {
-    /// Closes the arms on the pipe at every infill.
+    /// Closes the arms at every infill.
     pub fn new(printed: &'a Printed) -> Self {
         let infills: Vec<f64> = printed.table_5.iter().map(|r| r.infill_percent).collect();
         let servo = ServoSpec::from(ServoProfile::Paper);
@@ -61,12 +61,12 @@ impl<'a> Inspection<'a> {
         }
     }
 
-    /// Time in which this many servos empty their battery, min.
+    /// Time until this many servos empty their battery, min.
     fn minutes(&self, held: &Held<'_>, arms: f64) -> f64 {
         60.0 * (self.printed.text.servo_battery_mah * 1e-3) / (arms * held.amps)
     }
 
-    /// Current and times, infill by infill.
+    /// Current and times per infill.
     pub fn table(&self) -> Table {
         let mut t = Table::new(
             "Inspection: servo current for the steady force on a 300 mm pipe, and what the printed times mean",
@@ -96,7 +96,7 @@ impl<'a> Inspection<'a> {
         t
     }
 
-    /// Table V's times against a servo's current.
+    /// Table V's times against servo current.
     pub fn comparisons(&self) -> Vec<Comparison> {
         let row = |held: &Held<'_>| {
             let impossible = held.meant > MG996R.at_stall;

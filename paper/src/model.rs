@@ -27,7 +27,7 @@ impl Class {
 pub struct Comparison {
     /// Quantity.
     pub what: String,
-    /// Unit; empty for a pure number.
+    /// Unit; may be empty.
     pub unit: &'static str,
     /// Printed value.
     pub printed: f64,

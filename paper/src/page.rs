@@ -137,7 +137,7 @@ fn table(t: &Table) -> String {
     out + "</tbody></table></div>"
 }
 
-/// A number with three to four digits.
+/// A number with three or four digits.
 pub fn value(v: f64) -> String {
     let digits = match v.abs() {
         a if !a.is_finite() => return "–".to_owned(),

@@ -133,37 +133,37 @@ pub struct Robot {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Text {
-    /// Mass of the vehicle, kg (III-B).
+    /// Vehicle mass, kg (III-B).
     pub total_mass_kg: f64,
     /// Nominal thrust of a rotor, g (III-A).
     pub motor_thrust_g: f64,
-    /// Stall torque of a tendon servo, kg·cm (III-A).
+    /// Stall torque of a servo, kg·cm (III-A).
     pub servo_stall_kgcm: f64,
-    /// Infill of the arms, % (Fig. 1, V-D).
+    /// Infill, % (Fig. 1, V-D).
     pub infill_percent: f64,
-    /// Roll angle of the manoeuvre, ° (V-A).
+    /// Roll angle, ° (V-A).
     pub roll_deg: f64,
-    /// Share ΔT/T of the manoeuvre (V-A).
+    /// ΔT/T of the manoeuvre (V-A).
     pub delta_thrust_share: f64,
     /// Target contact pressure of a grip, Pa (IV-D).
     pub pressure_pa: f64,
-    /// Error of a pressure sensor, Pa (IV-D).
+    /// Pressure sensor error, Pa (IV-D).
     pub fsr_error_pa: f64,
-    /// Largest torque of a servo, kg·cm (IV-D).
+    /// Largest servo torque, kg·cm (IV-D).
     pub force_max_kgcm: f64,
-    /// Throttle while the arms close, % (IV-D).
+    /// Throttle while closing, % (IV-D).
     pub clamp_throttle_percent: f64,
-    /// Lowest infill that flies, % (abstract, VI).
+    /// Lowest flyable infill, % (abstract, VI).
     pub flyable_infill_percent: f64,
     /// Cycles between the comparisons of the arms (V-C).
     pub fatigue_cycles: [f64; 2],
     /// Flight battery, mAh (V-D, 4S).
     pub flight_battery_mah: f64,
-    /// Battery of the servos, mAh (V-D, 2S).
+    /// Servo battery, mAh (V-D, 2S).
     pub servo_battery_mah: f64,
     /// Weight saved, from and to, % (V-D).
     pub weight_saving_percent: [f64; 2],
-    /// Inspection time gained against MHYRO, % (V-D).
+    /// Inspection time gained over MHYRO, % (V-D).
     pub inspection_gain_percent: f64,
     /// Efficiency lost against the semi-rigid vehicle, % (V-D).
     pub efficiency_loss_percent: f64,

@@ -32,6 +32,7 @@ pub fn of_the_plant(infill: f64, gain_k: f64, chi: f64, thrust: f64) -> [f64; 3]
     [c(SIDE, 1), c(FORE, 2), c(YAW, 3)]
 }
 
+/// %.
 const INFILLS: [f64; 5] = [4.0, 6.0, 6.9, 8.0, 10.0];
 
 /// The stability derivatives.

@@ -15,7 +15,7 @@ const FILES: [&str; 2] = ["paper.html", "paper.json"];
 
 const FIT_FILES: [&str; 4] = ["fit.html", "fit.json", "arm.toml", "arm.console"];
 
-/// Computes, flies, prints and writes every section.
+/// Computes and writes every section.
 pub fn paper(args: &PaperArgs) -> Result<bool, String> {
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
@@ -47,7 +47,7 @@ pub fn paper(args: &PaperArgs) -> Result<bool, String> {
     Ok(true)
 }
 
-/// Fits an arm to bench data, prints and writes it.
+/// Fits an arm to bench data.
 pub fn fit_arm(args: &FitArgs) -> Result<bool, String> {
     let file = args.bench.display().to_string();
     let points = bench_data::load(&args.bench)?;

@@ -1,4 +1,4 @@
-//! `sophie timing`: the timing in a board's log.
+//! `sophie timing`: timing of a board's log.
 
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{complain, console};

@@ -19,7 +19,7 @@ struct Job {
     infill: f64,
 }
 
-/// Flies A and explains what happens.
+/// Flies A and explains its loss.
 pub fn explain(s: &mut Section, p: &Printed, k: f64) {
     let infill = p.text.infill_percent;
     let job = |name, studied, infill| Job {
@@ -63,7 +63,7 @@ fn headings(s: &mut Section, jobs: &[Job], flights: &[Flown], k: f64) {
     );
 }
 
-/// The zero in the right half plane.
+/// The right-half-plane zero.
 fn mechanism(s: &mut Section, p: &Printed, k: f64) {
     let hover = p.mass() * sophie_sim::plant::GRAVITY / 4.0;
     let at = AtThrust::new(p.text.infill_percent, k, hover);

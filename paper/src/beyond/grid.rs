@@ -86,7 +86,7 @@ pub struct Outcome {
     lost: bool,
 }
 
-/// All flights: mismatched arms over all gains, modelled ones at the stack's.
+/// All flights: mismatched arms at all gains, modelled ones at the stack's.
 pub struct Grid {
     jobs: Vec<Job>,
     outcomes: Vec<Outcome>,
@@ -122,7 +122,7 @@ impl Grid {
         Self { jobs, outcomes }
     }
 
-    /// What came of a job.
+    /// Outcome of a job.
     pub fn of(&self, job: Job) -> Option<&Outcome> {
         let at = self.jobs.iter().position(|j| *j == job);
         at.and_then(|i| self.outcomes.get(i))
@@ -180,7 +180,7 @@ impl Grid {
         t
     }
 
-    /// The flyable regions, B before A.
+    /// Flyable regions, B before A.
     pub fn maps(&self, s: &mut Section) {
         let maps = BOTH.into_iter().rev().flat_map(|c| {
             let of_mixer = move |m: &usize| self.map(c, *m);

@@ -10,7 +10,7 @@ use super::super::model::{Section, Table, num};
 use super::{mismatch, programme};
 
 const INFILLS: [f64; 3] = [5.0, 6.9, 10.0];
-/// Last of the seeds from 1 on.
+/// Seeds 1 to this.
 const SEEDS: u64 = 4;
 
 struct Job {

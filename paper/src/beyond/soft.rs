@@ -13,7 +13,6 @@ use super::super::model::{Cell, Section, Table, num};
 use super::super::printed::Printed;
 use super::programme;
 
-/// An airframe at the soft end.
 #[derive(Clone, Copy)]
 struct Soft {
     name: &'static str,
@@ -97,7 +96,7 @@ struct Outcome {
     /// RMS errors, degrees; `None` if lost.
     roll: Option<f64>,
     yaw: Option<f64>,
-    /// Largest tilt of an arm, degrees.
+    /// Largest arm tilt, degrees.
     tilt: f64,
     /// Fastest sink, m/s.
     sink: f64,

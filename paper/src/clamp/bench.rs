@@ -10,17 +10,17 @@ use sophie_sim::scenario::ServoProfile;
 
 use super::super::printed::Printed;
 
-/// Infills (%) and diameters (m) that are tried.
+/// Infills (%) and diameters (m) tried.
 pub const INFILLS: [f64; 4] = [6.0, 6.9, 8.0, 10.0];
 pub const DIAMETERS: [f64; 5] = [0.20, 0.25, 0.30, 0.35, 0.40];
-/// Seeds of the bench's noise; closure times are their mean.
+/// Seeds of the noise; closure times are their mean.
 pub const SEEDS: u64 = 5;
 
 /// A closing of the grid.
 pub struct OnBench {
     /// Infill, %.
     pub infill: f64,
-    /// Diameter of the pipe, m.
+    /// Pipe diameter, m.
     pub diameter: f64,
     pub closed: Closed,
 }
@@ -41,7 +41,7 @@ impl OnBench {
     }
 }
 
-/// Every infill on every pipe, with the paper's servo.
+/// Every infill on every pipe, the paper's servo.
 pub fn grid(p: &Printed) -> Vec<OnBench> {
     let servo: ServoSpec = ServoProfile::Paper.into();
     let jobs: Vec<(f64, f64)> = INFILLS
@@ -81,7 +81,6 @@ pub fn closing_thrust(p: &Printed) -> f64 {
     0.01 * p.text.clamp_throttle_percent * f64::from(Params::default().thrust_max)
 }
 
-/// The arm proved its grip and holds.
 pub fn holds(c: &Closed) -> bool {
     c.state == ArmState::Holding && c.closure.is_some()
 }

@@ -38,7 +38,7 @@ fn servos() -> [Tried; 4] {
     ]
 }
 
-/// Closes the grid with each.
+/// Closes the grid with each servo.
 pub fn compare(s: &mut Section, p: &Printed, all: &[OnBench]) {
     let mut t = Table::new(
         "Which servo can do it: closings of the grid that hold",

@@ -13,7 +13,7 @@ pub fn paired(p: &Printed) -> Vec<(f64, f64)> {
     p.table_4.closure_s.into_iter().zip(forces).collect()
 }
 
-/// The same as they are printed.
+/// The same as printed.
 pub fn as_printed(p: &Printed) -> Vec<(f64, f64)> {
     p.table_4
         .closure_s

@@ -9,7 +9,7 @@ use sophie_sim::parallel;
 use super::super::flights::{curve, error, in_gusts, lost_when, named, or_lost, swing, vehicle};
 use super::super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// Time over which the rotors' swing is shown, s.
+/// Time shown of the rotors' swing, s.
 const WINDOW: f64 = 3.0;
 
 struct Flies {
@@ -62,7 +62,7 @@ pub struct Hovers {
 }
 
 impl Hovers {
-    /// Flies them with arms of `infill` %.
+    /// Flies them at an infill of `infill` %.
     pub fn fly(infill: f64, gain_k: f64) -> Self {
         let jobs: Vec<(usize, f64)> = [1.0, gain_k]
             .iter()

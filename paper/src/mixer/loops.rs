@@ -78,7 +78,7 @@ fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
 struct Hover {
     infill: f64,
     gain_k: f64,
-    /// Thrust of each rotor, N.
+    /// Thrust per rotor, N.
     thrust: f64,
 }
 
@@ -95,7 +95,7 @@ impl Hover {
     }
 }
 
-/// The loops, in closed form and run.
+/// The loops, closed form and run.
 pub fn show(s: &mut Section, p: &Printed, thrust: f64) {
     let d = Params::default();
     let hover = Hover {
@@ -147,7 +147,6 @@ pub fn show(s: &mut Section, p: &Printed, thrust: f64) {
     );
 }
 
-/// Multiplier of the one-step loop over the gain.
 struct Multipliers {
     /// Closed form and loop per infill.
     series: Vec<Series>,

@@ -7,10 +7,10 @@ use super::super::model::{Class, Comparison, Section, Table, num};
 use super::super::printed::Printed;
 use super::super::statics::{AtThrust, root};
 
-/// Rows f_z, τ_φ, τ_θ, τ_ψ of a mixer matrix over C_T.
+/// Rows f_z, τ_φ, τ_θ, τ_ψ over C_T.
 type Matrix = [[f64; 4]; 4];
 
-/// The matrix with the arms at `tilt` rad and a yaw row.
+/// The matrix at arm tilt `tilt` rad, with a yaw row.
 fn matrix(tilt: f64, yaw: [f64; 4]) -> Matrix {
     let p = Params::default();
     let (d, b) = (f64::from(p.arm_d), f64::from(p.arm_b));

@@ -8,7 +8,7 @@ use super::super::printed::{Printed, Roll};
 use super::manoeuvre::{Arms, SECONDS};
 use super::{FLEXIBLE_HARD, FLEXIBLE_SOFT, Flights, RIGID_HARD};
 
-/// Table III's columns over infill: printed and flown.
+/// Table III's columns over infill, printed and flown.
 pub fn columns(s: &mut Section, p: &Printed, flights: &Flights) {
     let hard = |infill, arms| flights.found(RIGID_HARD, infill, arms);
     let soft = |infill, arms| flights.found(FLEXIBLE_SOFT, infill, arms);

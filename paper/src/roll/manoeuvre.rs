@@ -10,14 +10,14 @@ use sophie_sim::scenario::Scenario;
 use super::super::flights::{delta_alpha, delta_thrust, vehicle};
 use super::super::printed::Printed;
 
-/// How long the roll is held, s.
+/// Time of each held roll, s.
 pub const HELD: f64 = 1.2;
 /// Time of the turn, s: a vehicle lost later has shown its Δα.
 const TURN: f64 = 0.5;
 /// The whole manoeuvre, s.
 pub const SECONDS: f64 = 3.0;
 
-/// How the roll is commanded.
+/// The roll command.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Command {
     /// A step with this rate gain (1/s), attitude gain 12 1/s, no prefilter: as hard as the paper's.
@@ -26,7 +26,7 @@ pub enum Command {
     Soft,
 }
 
-/// What the arms do besides following their thrust.
+/// Dynamics of the arms besides their thrust.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Arms {
     /// Massless, damping ratio 0.7: the paper's statics.
@@ -88,7 +88,7 @@ pub fn manoeuvre(job: Job, angle: f64) -> Flown {
     })
 }
 
-/// What Table III asks of a flight.
+/// Quantities of Table III in a flight.
 #[derive(Clone, Copy)]
 pub struct Found {
     /// Largest Δα, rad.
@@ -99,11 +99,11 @@ pub struct Found {
     pub effective: f64,
     /// Largest roll, rad.
     pub roll: f64,
-    /// Largest sideways force of the leaning arms over the largest of the rolled thrust.
+    /// Largest sideways force of the leaning arms over that of the rolled thrust.
     pub kappa: f64,
 }
 
-/// While the roll is commanded.
+/// Over the commanded roll.
 pub fn found(flown: &Flown) -> Option<Found> {
     let rolled: Vec<&Moment> = flown.moments.iter().filter(|m| m.t < HELD).collect();
     let most = |f: &dyn Fn(&Moment) -> f64| rolled.iter().map(|m| f(m)).fold(f64::NEG_INFINITY, f64::max);

@@ -31,7 +31,7 @@ struct Flights {
     infills: Vec<f64>,
     /// Massless arms with the damping ratio that meets Table III at ρ 8 %.
     fitted: Arms,
-    /// Case and manoeuvre of each flight.
+    /// Case and manoeuvre per flight.
     jobs: Vec<(usize, Job)>,
     flown: Vec<Flown>,
 }

@@ -8,7 +8,7 @@ use sophie_control::params::Params;
 use sophie_control::wrench::{Configuration, PerArm, Wrench, YAW};
 use sophie_sim::mixers::{Law, Situation, WithLimits};
 
-/// An allocation to be studied.
+/// An allocation for study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Studied {
     /// Algorithm 1 with the sideways thrust in its yaw row: α from the last step's thrust, the whole effectiveness at
@@ -20,7 +20,7 @@ pub enum Studied {
 }
 
 impl Studied {
-    /// The allocation with idle rotors, for the mixer task.
+    /// The allocation for the mixer task, rotors idle.
     pub fn allocation(self, configuration: Configuration, p: &Params) -> WithLimits<StudiedLaw> {
         WithLimits::new(StudiedLaw::new(self, configuration, p), p)
     }
@@ -30,7 +30,6 @@ impl Studied {
 /// spool-up.
 const FADE: (f32, f32) = (0.5, 1.2);
 
-/// The law of a [`Studied`] allocation.
 #[derive(Clone, Copy, Debug)]
 pub struct StudiedLaw {
     kind: Studied,

@@ -15,7 +15,7 @@ const REST: f64 = 2.0;
 /// Damping ratio meanwhile; the equilibrium does not depend on it.
 const DAMPING: f64 = 0.7;
 
-/// A vehicle on which thrusts are tried.
+/// A vehicle under trial thrusts.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
     /// Infill of the arms, %.

@@ -112,7 +112,7 @@ fn moment(rig: &Rig, t: f64, heading: f64) -> Moment {
     }
 }
 
-/// Heading that the controller aims at, rad.
+/// rad.
 fn aimed_heading(rig: &Rig) -> f64 {
     let target = rig.links.target.latest();
     rig.plant.euler()[2] + target.map_or(0.0, |v| f64::from(v.value.ahead))

@@ -30,6 +30,7 @@ const HEIGHT: f64 = 12.0;
 const CLEARANCE: f64 = 0.01;
 /// From there to the end, s.
 const DURATION: f64 = 14.0;
+/// Of the pilot, s.
 const REACTION: f64 = 0.35;
 /// Throttle of the set-down, and the rate of that stick, 1/s.
 const SET_DOWN: f64 = 0.40;
@@ -54,7 +55,7 @@ pub struct Touch {
     pub lean: f64,
     /// Sink rate, m/s.
     pub sink: f64,
-    /// Speed to the right, m/s.
+    /// Sideways speed, right positive, m/s.
     pub sideways: f64,
     /// Diameter of the pipe, m.
     pub diameter: f64,
@@ -66,7 +67,7 @@ pub struct Touch {
     pub throttle: f64,
     /// Perch switch off this long after the touch, s; infinite: never.
     pub cancel: f64,
-    /// Seed of the sensors' errors and the gusts.
+    /// Seed of sensor errors and gusts.
     pub seed: u64,
 }
 
@@ -122,7 +123,7 @@ pub struct Touched {
     pub pressure: f64,
     /// The vehicle left the pipe by itself.
     pub escaped: bool,
-    /// State of the stack at the end.
+    /// Mode at the end.
     pub mode: Mode,
 }
 

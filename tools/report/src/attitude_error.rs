@@ -11,10 +11,10 @@ const FLOWN: f64 = 1.0;
 
 const AXES: [&str; 2] = ["roll", "pitch"];
 
-/// The largest error of its kind.
+/// A largest error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst<'a> {
-    /// Angle between true and aimed-at attitude, rad.
+    /// Angle between true and wanted attitude, rad.
     pub angle: f64,
     /// `roll` or `pitch`.
     pub axis: &'static str,
@@ -24,16 +24,16 @@ pub struct Worst<'a> {
     pub step: Option<(usize, &'a str)>,
 }
 
-/// Both kinds; none where it never was.
+/// Both kinds, if they occurred.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AttitudeErrors<'a> {
-    /// With the setpoint at rest.
+    /// Setpoint at rest.
     pub held: Option<Worst<'a>>,
     /// Setpoint moving or just at rest.
     pub following: Option<Worst<'a>>,
 }
 
-/// The largest errors of a flight.
+/// Largest errors of a flight.
 pub fn attitude_errors(record: &FlightRecord) -> AttitudeErrors<'_> {
     let mut errors = AttitudeErrors::default();
     for (axis, name) in AXES.into_iter().enumerate() {

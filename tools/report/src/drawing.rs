@@ -44,7 +44,7 @@ pub fn draw(record: &FlightRecord, moment: &KeyMoment<'_>) -> String {
         "",
     );
     svg += &view.pipe(record);
-    // The front arms are the far ones.
+    // Front arms are far.
     for arm in [0, 2] {
         svg += &view.arm(arm, "far");
     }
@@ -83,6 +83,7 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Pixel of a world point, m.
     fn world(&self, east: f64, height: f64) -> (f64, f64) {
         (
             ANCHOR.0 + (east - self.centre.0) * SCALE,
@@ -90,6 +91,7 @@ impl<'a> View<'a> {
         )
     }
 
+    /// Pixel of a body point (FRD, m).
     fn body_point(&self, r: [f64; 3]) -> (f64, f64) {
         let along = |row: [f64; 3]| row.iter().zip(r).map(|(a, b)| a * b).sum::<f64>();
         let [east, down] = self.rows.map(along);

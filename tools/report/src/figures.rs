@@ -14,7 +14,7 @@ pub type Legend = Vec<(&'static str, String)>;
 pub struct Figure {
     /// Heading.
     pub title: &'static str,
-    /// One sentence on what is shown.
+    /// Note in one sentence.
     pub note: String,
     /// CSS class and meaning per kind of line.
     pub legend: Legend,
@@ -27,7 +27,7 @@ pub const ARM: [&str; 4] = ["a1", "a2", "a3", "a4"];
 /// Names of the four arms.
 pub const ARM_NAMES: [&str; 4] = ["1 front left", "2 rear left", "3 front right", "4 rear right"];
 
-/// All figures, in the order of the page.
+/// All figures, in page order.
 pub fn all(record: &FlightRecord) -> Vec<Figure> {
     let span = Span::all(record);
     let mut figures = vec![

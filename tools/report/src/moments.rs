@@ -1,4 +1,4 @@
-//! The moments of a flight that are drawn.
+//! The drawn moments of a flight.
 
 use sophie_sim::record::{FlightRecord, Phase, Sample};
 use sophie_sim::scenario::Step;
@@ -10,7 +10,7 @@ pub struct KeyMoment<'a> {
     pub title: String,
     /// The vehicle then.
     pub sample: &'a Sample,
-    /// Sideways push at that time, N.
+    /// Sideways push then, N.
     pub push: f64,
     /// The view is centred on the pipe, not on the vehicle.
     pub at_pipe: bool,
@@ -63,7 +63,7 @@ pub fn key_moments(record: &FlightRecord) -> Vec<KeyMoment<'_>> {
     moments
 }
 
-/// Index of the sample at `t`, or of the last.
+/// Index of the sample at `t`, or the last.
 fn at(record: &FlightRecord, t: f64) -> Option<usize> {
     let last = record.samples.len().checked_sub(1)?;
     Some(record.samples.partition_point(|s| s.t < t).min(last))

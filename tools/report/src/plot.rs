@@ -12,15 +12,15 @@ const GAP: f64 = 22.0;
 
 /// One curve.
 pub struct Trace<'a> {
-    /// CSS classes that give colour and dash.
+    /// CSS classes of colour and dash.
     pub class: &'a str,
-    /// One value for each sample.
+    /// One value per sample.
     pub values: Vec<f64>,
 }
 
 /// One panel.
 pub struct Panel<'a> {
-    /// Title of the vertical axis, with its unit.
+    /// Vertical axis title with unit.
     pub axis: String,
     /// Height, px.
     pub height: f64,
@@ -30,7 +30,7 @@ pub struct Panel<'a> {
     pub target: Option<(f64, f64)>,
     /// Dashed levels.
     pub levels: Vec<f64>,
-    /// Values that the axis must show at least.
+    /// Values to include.
     pub include: Vec<f64>,
     /// Smallest span of the axis: noise must not fill a panel.
     pub span: f64,
@@ -53,7 +53,7 @@ impl Default for Panel<'_> {
     }
 }
 
-/// A figure of panels, one below the other.
+/// Panels one below the other.
 pub fn figure(record: &FlightRecord, span: Span, title: &str, panels: &[Panel<'_>]) -> String {
     let panels_height: f64 = panels.iter().map(|p| p.height + GAP).sum();
     let height = panels_height + 2.0 * BAND + 36.0;

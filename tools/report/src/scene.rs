@@ -12,7 +12,7 @@ const ARM_X: f64 = 0.178;
 const HINGE_Z: f64 = 0.02;
 const ROTOR_RADIUS: f64 = 0.127;
 const ROTOR_LIFT: f64 = 0.05;
-/// Length of pipe that is drawn, m.
+/// Drawn pipe length, m.
 const PIPE_LENGTH: f64 = 2.0;
 /// Colours of the arms, as in the report.
 const COLOURS: [[f64; 3]; 4] = [

@@ -5,7 +5,7 @@
 
 use serde_json::{Value, json};
 
-/// What a field of our own channels holds.
+/// Type of a field in our channels.
 #[derive(Clone, Copy)]
 pub enum Field {
     /// One number.
@@ -20,7 +20,7 @@ pub enum Field {
     Flag,
 }
 
-/// Fields of `/truth`: what the simulated vehicle did.
+/// Fields of `/truth`: the simulated vehicle.
 pub const TRUTH: &[(&str, Field, &str)] = &[
     (
         "position",
@@ -37,7 +37,7 @@ pub const TRUTH: &[(&str, Field, &str)] = &[
     ("battery_voltage", Field::Number, "under load, V"),
 ];
 
-/// Fields of `/stack`: the flight stack's estimates and demands.
+/// Fields of `/stack`: estimates and demands.
 pub const STACK: &[(&str, Field, &str)] = &[
     ("mode", Field::Word, "state of the stack"),
     ("attitude_estimate_deg", Field::Three, "roll, pitch, yaw"),
@@ -63,7 +63,7 @@ pub const STACK: &[(&str, Field, &str)] = &[
     ),
 ];
 
-/// The schema of one of our channels.
+/// Schema of one of our channels.
 pub fn own(fields: &[(&str, Field, &str)]) -> Value {
     let number = json!({ "type": ["number", "null"] });
     let list = |n: u32| json!({ "type": "array", "items": number, "minItems": n, "maxItems": n });
@@ -156,7 +156,7 @@ pub fn frame_transform() -> Value {
     ])
 }
 
-/// `foxglove.SceneUpdate`, with the primitives that we draw.
+/// `foxglove.SceneUpdate`, with the primitives used.
 pub fn scene_update() -> Value {
     let text = json!({ "type": "string" });
     let list = |items: Value| json!({ "type": "array", "items": items });

@@ -1,4 +1,4 @@
-//! Small helpers for SVG text.
+//! Helpers for SVG text.
 
 use std::fmt::Write;
 

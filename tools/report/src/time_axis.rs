@@ -2,14 +2,14 @@
 
 use sophie_sim::record::FlightRecord;
 
-/// Width of the drawing, px; it scales with the page.
+/// Drawing width, px; scales with the page.
 pub const WIDTH: f64 = 1000.0;
 /// Room for the titles on the left, px.
 pub const LEFT: f64 = 74.0;
 /// Room on the right, px.
 pub const RIGHT: f64 = 14.0;
 
-/// The part of the flight that is shown.
+/// The shown part of the flight.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
     /// First time, s.
@@ -27,7 +27,7 @@ impl Span {
         }
     }
 
-    /// Horizontal place of a time, px.
+    /// Abscissa of a time, px.
     pub fn x(self, t: f64) -> f64 {
         LEFT + (t - self.from) / (self.to - self.from) * (WIDTH - LEFT - RIGHT)
     }

@@ -17,7 +17,7 @@ pub struct Capture {
     pub chain: Vec<Chain>,
     /// Seconds of the contact chain; none without a pulse that answers a pressure.
     pub contact: Vec<Contact>,
-    /// The executors' events, if the firmware logs them.
+    /// The executors' events, if logged.
     pub trace: Trace,
     /// Unreadable and remaining parts, in a sentence.
     pub incomplete: Option<String>,
@@ -67,7 +67,7 @@ impl Capture {
         Ok(capture)
     }
 
-    /// How much there is, for a sentence.
+    /// Extent, for a sentence.
     #[must_use]
     pub fn extent(&self) -> String {
         let seconds = self.tasks.iter().map(|t| t.seconds.len()).max().unwrap_or(0);
@@ -106,13 +106,13 @@ impl Capture {
 }
 
 impl Task {
-    /// Runs in all seconds together.
+    /// Runs of all seconds.
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.seconds.iter().map(|s| u64::from(s.runs)).sum()
     }
 
-    /// Deadlines missed in all seconds together.
+    /// Missed deadlines of all seconds.
     #[must_use]
     pub fn missed(&self) -> u64 {
         self.seconds.iter().map(|s| u64::from(s.missed)).sum()

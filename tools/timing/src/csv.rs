@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::capture::Capture;
 use crate::replay::Replay;
 
-/// The capture as comma-separated values; times in µs.
+/// The capture as CSV; times in µs.
 #[must_use]
 pub fn csv(capture: &Capture, replay: &Replay) -> String {
     if replay.polls.is_empty() {

@@ -34,7 +34,7 @@ pub struct Record {
     pub missed: u32,
 }
 
-/// The chain's second, from data-ready to motor frame.
+/// One second of the chain from data-ready to motor frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chain {
     /// Frames.
@@ -48,11 +48,11 @@ pub struct Chain {
 /// One second of the chain from contact pressure conversion to the answering servo pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
-    /// Conversions that became a pulse.
+    /// Conversions answered by a pulse.
     pub pulses: u32,
-    /// From the conversion until the pulse widths were written.
+    /// From conversion to written pulse widths.
     pub command: Quantiles,
-    /// The quickest to its pulse, µs.
+    /// Shortest time to the pulse, µs.
     pub min: u32,
     /// From the conversion to the start of the pulse, the servo frame's wait included.
     pub pulse: Quantiles,
@@ -62,7 +62,7 @@ pub struct Contact {
     pub missed: u32,
 }
 
-/// What a line of the log says.
+/// Content of a log line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Line {
     /// Of a task.

@@ -11,7 +11,7 @@ const POLLS: usize = 300_000;
 const STYLE: &str = include_str!("timeline.css");
 const SCRIPT: &str = include_str!("timeline.js");
 
-/// The page. `tables` is what the terminal shows.
+/// The page, with the terminal's `tables`.
 #[must_use]
 pub fn html(capture: &Capture, replay: &Replay, tables: &str) -> String {
     let board = escaped(capture.board.as_deref().unwrap_or("board"));

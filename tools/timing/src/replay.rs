@@ -71,7 +71,7 @@ pub struct Preemption {
 pub struct Replay {
     /// The tasks, most urgent level first.
     pub tasks: Vec<Task>,
-    /// Every poll, in the order of their ends.
+    /// Every poll, by end.
     pub polls: Vec<Poll>,
     /// By (preempted task, preempting task).
     pub preemptions: BTreeMap<(usize, usize), Preemption>,
@@ -193,7 +193,6 @@ impl Player {
         }));
     }
 
-    /// An executor has nothing left to poll.
     fn idle(&mut self, event: &Event) {
         let top = self.stack.pop_if(|f| matches!(f, Frame::Executor { .. }));
         if let Some(Frame::Executor { start, .. }) = top

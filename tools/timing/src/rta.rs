@@ -13,9 +13,9 @@
 pub struct Load {
     /// Name.
     pub name: String,
-    /// Its level: a smaller one preempts a larger.
+    /// Level; a smaller one preempts.
     pub level: u8,
-    /// Longest execution for one release.
+    /// Longest execution of a release.
     pub execution: f64,
     /// Mean time between releases.
     pub period: f64,

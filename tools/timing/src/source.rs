@@ -9,7 +9,7 @@ use defmt_decoder::{DecodeError, Table};
 pub struct Messages {
     /// Each with its prefix.
     pub lines: Vec<String>,
-    /// What could not be read, in a sentence.
+    /// What was unreadable, in a sentence.
     pub broken: Option<String>,
 }
 

@@ -19,27 +19,27 @@ pub enum Kind {
     Begin,
     /// It has been.
     End,
-    /// An executor has nothing left to poll.
+    /// Nothing left to poll.
     Idle,
 }
 
 /// An event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
-    /// When, µs since the start of the board.
+    /// Time, µs since start.
     pub at: u64,
     /// What happened.
     pub kind: Kind,
-    /// To whom: the lower bits of an address.
+    /// Target: lower bits of an address.
     pub address: u32,
-    /// Exception that was active; 0 in thread mode.
+    /// Active exception; 0 in thread mode.
     pub exception: u16,
 }
 
 /// A task's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name {
-    /// The lower bits of its address.
+    /// Lower bits of its address.
     pub address: u32,
     /// Where it runs.
     pub level: Level,
@@ -50,13 +50,13 @@ pub struct Name {
 /// The events of a capture.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// In the order in which they happened.
+    /// In order of time.
     pub events: Vec<Event>,
-    /// Events are missing before those with these indices.
+    /// Indices of events behind gaps.
     pub gaps: Vec<usize>,
     /// The tasks.
     pub names: Vec<Name>,
-    /// How many events are missing.
+    /// Count of missing events.
     pub lost: u64,
     pub(crate) next: Option<u32>,
     pub(crate) board_lost: u32,

@@ -70,7 +70,7 @@ impl Console {
         }
     }
 
-    /// The line that says how the flight ended.
+    /// Result of the flight in one line.
     pub fn verdict(&self, record: &FlightRecord) -> String {
         let word = if record.outcome.accomplished {
             "accomplished"

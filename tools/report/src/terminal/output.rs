@@ -83,7 +83,7 @@ impl OutDir {
         Ok(written)
     }
 
-    /// Hidden, and no other process's.
+    /// Hidden, unique to this process.
     fn partial(&self, name: &str) -> PathBuf {
         self.path.join(format!(".{name}.{}.partial", std::process::id()))
     }

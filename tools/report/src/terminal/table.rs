@@ -1,4 +1,4 @@
-//! Text tables whose columns line up.
+//! Aligned text tables.
 
 /// How a column is aligned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
