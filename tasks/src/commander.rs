@@ -9,6 +9,7 @@ use sophie_control::tendon::ForceLimit;
 
 use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::{Links, MixOutput, Status};
+use crate::warning::Warning;
 
 /// Infill below which the paper's authors did not fly, %.
 const INFILL_FLOWN: f32 = 6.0;
@@ -55,16 +56,16 @@ pub async fn run(links: &Links) -> ! {
 
 /// What the pilot must know without being stopped by it.
 fn warning(links: &Links, mode: Mode) -> &'static str {
+    let started = Warning::Restarted(links.start.cause);
+    let at_rest = matches!(mode, Mode::Calibrating | Mode::Disarmed | Mode::Perched);
     if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
-        "arm tilt beyond its model"
-    } else if matches!(mode, Mode::Calibrating | Mode::Disarmed | Mode::Perched)
-        && !links.start.cause.warning().is_empty()
-    {
-        links.start.cause.warning()
+        Warning::ArmTilt.text()
+    } else if at_rest && !started.text().is_empty() {
+        started.text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
-        "servo weaker than the force limit"
+        Warning::ServoWeak.text()
     } else if mode == Mode::Disarmed && links.params.infill < INFILL_FLOWN {
-        "infill below what was flown"
+        Warning::InfillLow.text()
     } else {
         ""
     }
