@@ -277,9 +277,9 @@ params! {
     /// Full scale of the FSR of arm 4.
     fsr_scale_4 = 1.0, "1", 0.05 ..= 20.0;
 
-    /// Battery voltage over the voltage at its pin; the default is the board's own (docs/boards.md).
+    /// Battery voltage over the voltage at its pin; the default is the board's own (docs/wiring.md).
     battery_divider = 11.0, "1", 1.0 ..= 60.0;
-    /// Battery current for each volt at the current sensor's pin; the default is the board's own (docs/boards.md).
+    /// Battery current for each volt at the current sensor's pin; the default is the board's own (docs/wiring.md).
     battery_a_per_v = 40.0, "A/V", 1.0 ..= 1000.0;
     /// Battery voltage of full thrust: the curve is normalised to it (4S nominal).
     battery_nominal = 14.8, "V", 6.0 ..= 52.0;

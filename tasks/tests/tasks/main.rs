@@ -13,6 +13,7 @@ mod last_value;
 mod links;
 mod mixer;
 mod parameters;
+mod pilot_page;
 mod retained_store;
 mod rig;
 mod servos;

@@ -6,6 +6,7 @@ mod hand_over;
 mod leaving;
 mod losses;
 mod mission;
+mod pilot_page;
 mod random;
 mod reasons;
 mod restart;
