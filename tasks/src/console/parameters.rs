@@ -6,9 +6,9 @@ use super::Console;
 use super::nearest::nearest;
 use crate::decimal::Decimal;
 use crate::parameters::{Allowed, Shown, Unit, parse_value};
-use crate::ports::{Chip, SerialOutput, Storage};
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 
-impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn list(&mut self, part: &str) {
         let mut count = 0;
         let old = |row: &ParamInfo| RENAMED.iter().any(|r| r.new == row.name && r.old.contains(part));

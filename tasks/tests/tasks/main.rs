@@ -2,6 +2,7 @@
 
 mod analog;
 mod arms;
+mod bench;
 mod clamp;
 mod commander;
 mod console;
