@@ -20,6 +20,7 @@ pub mod arming;
 pub mod attitude;
 pub mod battery;
 pub mod bench;
+pub mod calibration;
 pub mod chain;
 pub mod deflection;
 pub mod desaturation;

@@ -5,6 +5,7 @@
 //! carries noise is read as lines that mean nothing.
 
 mod bench;
+mod calibrate;
 mod chip;
 mod command;
 mod keys;
@@ -13,6 +14,7 @@ mod nearest;
 mod output;
 mod parameters;
 mod report;
+mod rotors;
 mod save;
 mod selftest;
 mod watch;
@@ -125,6 +127,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Command::PropellersOff => self.propellers_off().await,
             Command::Motor(number, percent) => self.motor(number, percent).await,
             Command::Servo { number, to, at } => self.servo(number, to, at).await,
+            Command::Rotors => self.rotors().await,
+            Command::Calibrate(what, argument) => self.calibrate(what, argument).await,
             Command::Watch(group) => self.watch(group).await,
             Command::SelfTest => self.selftest().await,
             Command::Changes => self.changes().await,

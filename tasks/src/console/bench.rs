@@ -108,7 +108,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     }
 
     /// The index of motor or servo `number`, 1 to 4, or a line that there is none.
-    async fn one_of_four(&mut self, what: &str, number: &str) -> Option<usize> {
+    pub(super) async fn one_of_four(&mut self, what: &str, number: &str) -> Option<usize> {
         let index = ["1", "2", "3", "4"].iter().position(|name| *name == number);
         if index.is_none() {
             self.out
@@ -120,7 +120,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         index
     }
 
-    async fn say_end(&mut self, what: fmt::Arguments<'_>, end: End) {
+    pub(super) async fn say_end(&mut self, what: fmt::Arguments<'_>, end: End) {
         match end {
             End::Done => self.out.line(what).await,
             End::Key => self.out.line(format_args!("{what} by a key")).await,
@@ -142,8 +142,29 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    /// Gives `order` and renews it until it has ended or a key is pressed; says `begun` as soon as it lasts.
+    /// Gives `order` and renews it until it has ended or a key ends it; says `begun` as soon as it lasts.
     pub(super) async fn order(&mut self, order: BenchOrder, begun: fmt::Arguments<'_>) -> End {
+        match self.order_until_key(order, begun).await {
+            Err(end) => end,
+            Ok(_) => {
+                let number = self.next_order();
+                let order = BenchOrder::End;
+                self.links
+                    .bench
+                    .send(Instant::now(), BenchRequest { number, order });
+                // What else the key has sent.
+                self.keys.pressed();
+                End::Key
+            }
+        }
+    }
+
+    /// The same until the next key, under which the order lasts until it is not renewed.
+    pub(super) async fn order_until_key(
+        &mut self,
+        order: BenchOrder,
+        begun: fmt::Arguments<'_>,
+    ) -> Result<u8, End> {
         let number = self.next_order();
         let mut rate = FixedRate::of(self.links, TaskId::Console);
         let mut said = false;
@@ -156,24 +177,19 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 .filter(|answer| answer.number == number)
                 .map(|answer| answer.state)
             {
-                Some(BenchState::Done) => return End::Done,
-                Some(BenchState::Refused(why)) => return End::Refused(why),
-                Some(BenchState::Ended(why)) => return End::Ended(why),
+                Some(BenchState::Done) => return Err(End::Done),
+                Some(BenchState::Refused(why)) => return Err(End::Refused(why)),
+                Some(BenchState::Ended(why)) => return Err(End::Ended(why)),
                 Some(BenchState::Running) if !said => {
                     said = true;
                     self.out.line(begun).await;
                 }
                 Some(BenchState::Running) => (),
-                None if asked.elapsed() > COMMANDER => return End::Silent,
+                None if asked.elapsed() > COMMANDER => return Err(End::Silent),
                 None => (),
             }
-            if self.keys.pressed() {
-                let number = self.next_order();
-                let order = BenchOrder::End;
-                self.links
-                    .bench
-                    .send(Instant::now(), BenchRequest { number, order });
-                return End::Key;
+            if let Some(key) = self.keys.poll() {
+                return Ok(key);
             }
         }
     }

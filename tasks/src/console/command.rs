@@ -21,6 +21,8 @@ pub(super) enum Command<'a> {
     Silicon,
     BrownOut,
     SetBrownOut,
+    Rotors,
+    Calibrate(&'a str, Option<&'a str>),
     Watch(&'a str),
     SelfTest,
     PropellersOff,
@@ -33,7 +35,7 @@ pub(super) enum Command<'a> {
 }
 
 /// Name and arguments, and what it does.
-pub(super) const HELP: [(&str, &str); 18] = [
+pub(super) const HELP: [(&str, &str); 20] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
     (
@@ -64,6 +66,11 @@ pub(super) const HELP: [(&str, &str); 18] = [
         "servo N TO [AT]",
         "TO is release, pulse (AT us) or angle (AT deg); a key ends it",
     ),
+    (
+        "rotors",
+        "asks what turns where, motor by motor, and says what to swap",
+    ),
+    ("calibrate WHAT", "step by step; alone it lists what there is"),
 ];
 
 /// A line not understood.
@@ -114,6 +121,8 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("silicon", [None, ..]) => Command::Silicon,
         ("brownout", [None, ..]) => Command::BrownOut,
         ("brownout", [Some("set"), None, ..]) => Command::SetBrownOut,
+        ("rotors", [None, ..]) => Command::Rotors,
+        ("calibrate", [what, argument, None, _]) => Command::Calibrate(what.unwrap_or_default(), argument),
         ("watch", [group, None, ..]) => Command::Watch(group.unwrap_or_default()),
         ("selftest", [None, ..]) => Command::SelfTest,
         ("propellers", [Some("off"), None, ..]) => Command::PropellersOff,

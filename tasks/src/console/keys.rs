@@ -3,7 +3,9 @@
 use core::task::Poll;
 
 use embassy_futures::poll_once;
+use embassy_time::{Duration, Instant, Timer, with_deadline};
 
+use super::PAUSE;
 use super::line::CHUNK;
 use crate::ports::{PortError, SerialInput};
 
@@ -78,5 +80,19 @@ impl<I: SerialInput> Keys<I> {
             }
         }
         pressed
+    }
+    /// The next key, of those that come within `time`; `None` where none does or the line breaks.
+    pub(super) async fn key(&mut self, time: Duration) -> Option<u8> {
+        let until = Instant::now() + time;
+        loop {
+            if let Some(byte) = self.next() {
+                return Some(byte);
+            }
+            match with_deadline(until, self.wait()).await {
+                Ok(Ok(true)) => (),
+                Ok(Ok(false)) => Timer::after(PAUSE).await,
+                Ok(Err(_)) | Err(_) => return None,
+            }
+        }
     }
 }

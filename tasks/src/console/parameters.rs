@@ -70,7 +70,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.put(row, self.default(row)).await;
     }
 
-    async fn put(&mut self, row: &ParamInfo, value: f32) {
+    pub(super) async fn put(&mut self, row: &ParamInfo, value: f32) {
         let old = self.value(row);
         let (name, unit) = (row.name, Unit(row.unit));
         let (old, shown) = (Shown(row, old), Shown(row, value));

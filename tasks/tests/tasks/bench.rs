@@ -6,6 +6,7 @@ use std::rc::Rc;
 use embassy_time::Instant;
 use sophie_control::bench::{BenchOrder, BenchRequest, PLACE_TIME, Spin};
 use sophie_control::mixer::Flexible;
+use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_fakes::{Answer, FakeAnalog, FakeArms, FakeImu, FakeLine, FakeMotors, FakeServos};
@@ -17,39 +18,44 @@ use crate::console::{Board, Screen};
 use crate::rig::Rig;
 
 /// A battery of 15.2 V, pressure sensors without load.
-const UNLOADED: AnalogFrame = AnalogFrame {
+pub const UNLOADED: AnalogFrame = AnalogFrame {
     fsr: [0; 4],
     battery_voltage: 1520,
     battery_current: 0,
 };
 
 /// A vehicle on the table, all its tasks on scripted ports.
-struct Table {
-    rig: Rig,
-    line: FakeLine,
+pub struct Table {
+    pub rig: Rig,
+    pub line: FakeLine,
     screen: Screen,
-    imu: FakeImu,
-    analog: FakeAnalog,
+    pub imu: FakeImu,
+    pub analog: FakeAnalog,
     arms: FakeArms,
     motors: FakeMotors,
-    servos: FakeServos,
+    pub servos: FakeServos,
     /// What the receiver gives at 50 Hz; `None`: nothing.
     sticks: Rc<Cell<Option<Sticks>>>,
     /// Milliseconds for which each motor has turned, and its largest command.
-    turned: PerArm<u32>,
+    pub turned: PerArm<u32>,
     largest: PerArm<f32>,
 }
 
 impl Table {
     /// Disarmed, the arms open.
-    fn set() -> Self {
+    pub fn set() -> Self {
         Self::starting(UNLOADED)
     }
 
     /// Disarmed, with what the converter has given since the power came on.
     fn starting(frame: AnalogFrame) -> Self {
+        Self::with(frame, Params::DEFAULT)
+    }
+
+    /// The same with these parameters in force.
+    pub fn with(frame: AnalogFrame, params: Params) -> Self {
         let mut table = Self {
-            rig: Rig::new(),
+            rig: Rig::with(params),
             line: FakeLine::default(),
             screen: Screen::default(),
             imu: FakeImu::default(),
@@ -80,7 +86,7 @@ impl Table {
         table
     }
 
-    fn run(&mut self, ms: u32) {
+    pub fn run(&mut self, ms: u32) {
         for i in 0..ms {
             let (sticks, at) = (self.sticks.get(), Instant::now());
             if let (Some(sticks), 0) = (sticks, i % 20) {
@@ -101,7 +107,7 @@ impl Table {
     }
 
     /// What appears on the screen in `ms` milliseconds after `text` was typed, without the echo; motors are watched.
-    fn says(&mut self, text: &str, ms: u32) -> Vec<String> {
+    pub fn says(&mut self, text: &str, ms: u32) -> Vec<String> {
         self.begins(text);
         self.run(ms);
         let said = self.screen.0.take();
@@ -109,14 +115,14 @@ impl Table {
         lines.filter(|line| *line != "> ").map(String::from).collect()
     }
 
-    fn begins(&mut self, text: &str) {
+    pub fn begins(&mut self, text: &str) {
         self.screen.0.take();
         self.line.put(format!("{text}\r").as_bytes());
         (self.turned, self.largest) = ([0; 4], [0.0; 4]);
     }
 
     /// What is said in `ms` milliseconds more.
-    fn goes_on(&mut self, ms: u32) -> Vec<String> {
+    pub fn goes_on(&mut self, ms: u32) -> Vec<String> {
         self.screen.0.take();
         self.run(ms);
         let said = self.screen.0.take();

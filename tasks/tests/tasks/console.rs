@@ -218,7 +218,7 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
     assert_eq!(listed.len(), 2);
     assert!(listed[0].starts_with("  estimator_kp ") && listed[1].starts_with("  estimator_ki "));
     assert_eq!(bench.says("list").len(), Params::TABLE.len());
-    assert_eq!(bench.says("help").len(), 18);
+    assert_eq!(bench.says("help").len(), 20);
 }
 
 #[test]

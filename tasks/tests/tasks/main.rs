@@ -3,6 +3,7 @@
 mod analog;
 mod arms;
 mod bench;
+mod calibrate;
 mod clamp;
 mod commander;
 mod console;
