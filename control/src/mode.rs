@@ -6,6 +6,7 @@
 
 mod armed;
 mod behaviour;
+mod bench;
 mod calibrating;
 mod clamping;
 mod contact;
@@ -36,6 +37,7 @@ use self::context::Step;
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
 use crate::arming::Refusals;
+use crate::bench::{BenchAnswer, BenchRequest};
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
@@ -162,6 +164,8 @@ pub struct Inputs {
     pub late: bool,
     /// What the drivers, the storage and the start report against arming.
     pub hardware: Refusals,
+    /// What a builder asks at the console.
+    pub bench: Option<BenchRequest>,
 }
 
 impl Inputs {
@@ -204,4 +208,6 @@ pub struct Outputs {
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub refusals: Refusals,
+    /// What has become of the newest order of the bench.
+    pub bench: BenchAnswer,
 }

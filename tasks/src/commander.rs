@@ -36,11 +36,12 @@ pub async fn run(links: &Links) -> ! {
             grip_memory,
             reason,
             refusals,
-            ..
+            bench,
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
         links.grip_memory.send(tick.started, grip_memory);
+        links.bench_answer.send(tick.started, bench);
         let warning = warning(links, mode);
         links.status.send(
             tick.started,
@@ -90,6 +91,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         battery: links.battery.fresh().map(|b| b.voltage),
         late,
         hardware: links.hardware(),
+        bench: links.bench.fresh(),
     }
 }
 

@@ -90,9 +90,10 @@ impl Part {
     }
 }
 
-/// An inertial sensor of 1 kHz at rest, level; its data-ready line may be silent.
+/// An inertial sensor of 1 kHz at rest, level; its data-ready line may be silent, and what it reads beyond level gravity
+/// is the test's.
 #[derive(Clone, Default)]
-pub struct FakeImu(pub Part, pub Rc<Cell<bool>>);
+pub struct FakeImu(pub Part, pub Rc<Cell<bool>>, pub Rc<Cell<ImuReading>>);
 
 impl Imu for FakeImu {
     type Batch = Few<ImuReading, IMU_BATCH>;
@@ -105,8 +106,8 @@ impl Imu for FakeImu {
         self.0.work(1000).await?;
         let mut batch = Few::new();
         let _ = batch.push(ImuReading {
-            gyro: Vec3::ZERO,
-            accel: Vec3::new(0.0, 0.0, -GRAVITY),
+            gyro: self.2.get().gyro,
+            accel: self.2.get().accel + Vec3::new(0.0, 0.0, -GRAVITY),
         });
         Ok(batch)
     }

@@ -2,6 +2,8 @@
 
 mod analog;
 mod arms;
+mod bench;
+mod calibrate;
 mod clamp;
 mod commander;
 mod console;

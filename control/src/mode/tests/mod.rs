@@ -1,6 +1,7 @@
 //! Tests of the mode logic: a vehicle in a world of two switches ([`rig`]), a flight in which nothing goes wrong
 //! ([`mission`]), and everything that does.
 
+mod bench;
 mod docs;
 mod hand_over;
 mod leaving;
