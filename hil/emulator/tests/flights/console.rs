@@ -36,7 +36,7 @@ fn volts(user: &mut TcpStream) -> f64 {
 }
 
 /// A free port with the board's listener.
-fn terminal(option: &'static str) -> (u16, Terminal) {
+pub(super) fn terminal(option: &'static str) -> (u16, Terminal) {
     let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let port = free.local_addr().unwrap().port();
     drop(free);
@@ -79,7 +79,7 @@ fn at_the_console<T: Send + 'static>(
 }
 
 /// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
-fn wake(user: &mut TcpStream) {
+pub(super) fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
     // Long enough for a restart, on a machine that is busy.
     user.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
