@@ -28,6 +28,21 @@ pub const METER: [f32; 2] = [3.0, 60.0];
 /// Range of the battery's divider, as of its parameter.
 pub const DIVIDER: [f32; 2] = [1.0, 60.0];
 
+/// Largest spread of a pressure at rest, Pa.
+pub const PRESSURE_SPREAD_MAX: f32 = 30.0;
+/// Pressures that a weight for the calibration makes, Pa: a fifth of a grip at least, and what the sensor bears.
+pub const WEIGHT_PRESSURE: [f32; 2] = [200.0, 5000.0];
+/// Range of a sensor's conductance over the common one, and of its zero (Pa), as of their parameters.
+pub const TRIM: [f32; 2] = [0.2, 5.0];
+/// The zero's.
+pub const ZERO: [f32; 2] = [0.0, 300.0];
+/// Largest spread of an arm's tilt at rest, rad.
+pub const TILT_SPREAD_MAX: f32 = 0.02;
+/// Turn of an arm that is bent up by hand, rad: enough for its sign, and not another thing.
+pub const TURN: [f32; 2] = [0.1, 1.5];
+/// Largest tilt that the sensor of a straight arm may show, rad, as of its parameter.
+pub const ARM_ZERO_MAX: f32 = 0.6;
+
 /// What is wrong with the samples: the number, and what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unfit {
@@ -242,6 +257,77 @@ pub fn divider(samples: &Samples, divider: f32, meter: f32) -> Result<f32, Unfit
     Ok(new)
 }
 
+/// What makes a pressure of a sensor's conductance beside what all have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FsrFit {
+    /// Its conductance over the common one.
+    pub trim: f32,
+    /// What it shows while nothing presses it, Pa.
+    pub zero: f32,
+}
+
+/// The fit with which the sensor shows nothing when `empty` and `pressure` (Pa) when `loaded`; pressures (Pa, along x)
+/// were read with the fit `now`.
+///
+/// # Errors
+/// Samples that are few or noisy, a weight that is too small or too large, or a fit out of its range.
+pub fn pressure_sensor(
+    empty: &Samples,
+    loaded: &Samples,
+    pressure: f32,
+    now: FsrFit,
+) -> Result<FsrFit, Unfit> {
+    within("pressure of the weight", pressure, WEIGHT_PRESSURE, "Pa")?;
+    let [empty, loaded] = [
+        empty.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x,
+        loaded.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x,
+    ];
+    let trim = now.trim * (loaded - empty) / pressure;
+    within("conductance over fsr_gain", trim, TRIM, "")?;
+    let zero = (empty + now.zero) * now.trim / trim;
+    within("pressure without the weight", zero, ZERO, "Pa")?;
+    Ok(FsrFit { trim, zero })
+}
+
+/// What makes a tilt of what an arm's sensor shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmFit {
+    /// 1, or -1 for a sensor that is mounted the other way round.
+    pub sign: f32,
+    /// Tilt that it shows while the arm is straight, rad, by this sign.
+    pub zero: f32,
+}
+
+impl ArmFit {
+    /// The tilt of an arm whose sensor shows `shown`, rad.
+    pub fn tilt(&self, shown: f32) -> f32 {
+        self.sign * shown - self.zero
+    }
+}
+
+/// The fit of a sensor on an arm that was held straight, and then bent up; tilts (rad, along x) were read with the fit
+/// `now`.
+///
+/// # Errors
+/// Samples that are few or noisy, an arm that was hardly bent, or a zero out of its range.
+pub fn arm_sensor(straight: &Samples, up: &Samples, now: ArmFit) -> Result<ArmFit, Unfit> {
+    let [straight, up] = [
+        straight.quiet_mean(TILT_SPREAD_MAX, "rad")?.x,
+        up.quiet_mean(TILT_SPREAD_MAX, "rad")?.x,
+    ];
+    within("turn of the arm", (up - straight).abs(), TURN, "rad")?;
+    let shown = (straight + now.zero) * now.sign;
+    let sign = if up > straight { now.sign } else { -now.sign };
+    let zero = shown * sign;
+    within(
+        "tilt of the straight arm",
+        zero,
+        [-ARM_ZERO_MAX, ARM_ZERO_MAX],
+        "rad",
+    )?;
+    Ok(ArmFit { sign, zero })
+}
+
 #[cfg(test)]
 mod tests {
     extern crate std;
@@ -308,6 +394,32 @@ mod tests {
             prop_assert!((found - 11.0 / wrong).abs() < 0.01 * found);
         }
 
+        /// Within 5 % and 10 Pa, under noise of 40 Pa.
+        #[test]
+        fn a_sensors_zero_and_conductance_are_found(
+            trim in 0.4f32..2.5, zero in 0.0f32..100.0, old_trim in 0.5f32..2.0, old_zero in 0.0f32..50.0, weight in 500.0f32..3000.0,
+        ) {
+            // What it shows with the old fit: the conductance is that of the true one.
+            let shown = |pressure: f32| Vec3::new((pressure + zero) * trim / old_trim - old_zero, 0.0, 0.0);
+            let now = FsrFit { trim: old_trim, zero: old_zero };
+            let found = pressure_sensor(&samples(shown(0.0), 40.0), &samples(shown(weight), 40.0), weight, now).unwrap();
+            prop_assert!((found.trim / trim - 1.0).abs() < 0.05, "{found:?}");
+            prop_assert!((found.zero - zero).abs() < 10.0 + 0.05 * zero, "{found:?}");
+        }
+
+        /// Within 0.01 rad, under noise of 0.03 rad.
+        #[test]
+        fn an_arms_zero_and_sign_are_found(
+            reversed in any::<bool>(), was_reversed in any::<bool>(), zero in -0.5f32..0.5, old_zero in -0.3f32..0.3, up in 0.15f32..0.8,
+        ) {
+            let sign = |reversed| if reversed { -1.0 } else { 1.0 };
+            let (truth, now) = (ArmFit { sign: sign(reversed), zero }, ArmFit { sign: sign(was_reversed), zero: old_zero });
+            // What the sensor shows of a tilt, and what is made of it with the old fit.
+            let read = |tilt: f32| Vec3::new(now.tilt((tilt + truth.zero) * truth.sign), 0.0, 0.0);
+            let found = arm_sensor(&samples(read(0.0), 0.03), &samples(read(up), 0.03), now).unwrap();
+            prop_assert!(found.sign == truth.sign && (found.zero - truth.zero).abs() < 0.01, "{found:?}");
+        }
+
         #[test]
         fn no_samples_make_a_result_that_is_no_number(values in prop::collection::vec(
             (prop::num::f32::ANY, prop::num::f32::ANY, prop::num::f32::ANY), 0..130))
@@ -369,6 +481,28 @@ mod tests {
         let mut means = Face::ALL.map(Face::force);
         means[5] = means[5] * 1.1;
         assert_eq!(six_faces(&means, Vec3::ZERO).unwrap_err().what, "scale of y");
+    }
+
+    #[test]
+    fn a_weight_that_is_not_felt_and_an_arm_that_is_not_bent_are_refused() {
+        let at = |value| samples(Vec3::new(value, 0.0, 0.0), 0.001);
+        let now = FsrFit { trim: 1.0, zero: 0.0 };
+        for (empty, loaded, pressure, what) in [
+            (0.0, 0.0, 1000.0, "conductance over fsr_gain"),
+            (0.0, 1000.0, 100.0, "pressure of the weight"),
+            (400.0, 1400.0, 1000.0, "pressure without the weight"),
+            (f32::NAN, 1000.0, 1000.0, "mean"),
+        ] {
+            let unfit = pressure_sensor(&at(empty), &at(loaded), pressure, now).unwrap_err();
+            assert_eq!(unfit.what, what);
+        }
+        let now = ArmFit { sign: 1.0, zero: 0.0 };
+        for (straight, up, what) in [
+            (0.0, 0.05, "turn of the arm"),
+            (0.7, 1.0, "tilt of the straight arm"),
+        ] {
+            assert_eq!(arm_sensor(&at(straight), &at(up), now).unwrap_err().what, what);
+        }
     }
 
     #[test]

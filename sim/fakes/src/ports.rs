@@ -121,15 +121,16 @@ impl Imu for FakeImu {
     }
 }
 
-/// Arm sensors that see level arms: their bus, and each of them.
+/// Arm sensors that see arms on a level body: their bus, each of them, and the tilt of the left arms' tips, rad.
 #[derive(Clone, Default)]
-pub struct FakeArms(pub Part, pub [Part; 4]);
+pub struct FakeArms(pub Part, pub [Part; 4], pub Rc<Cell<f32>>);
 
 impl ArmImus for FakeArms {
     async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
         self.0.work(400).await?;
         self.1[arm].work(10).await?;
-        Ok(Vec3::new(0.0, 0.0, GRAVITY))
+        let left = if arm < 2 { self.2.get() } else { 0.0 };
+        Ok(Vec3::new(0.0, GRAVITY * left.sin(), GRAVITY * left.cos()))
     }
 }
 

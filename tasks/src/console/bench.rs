@@ -113,7 +113,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         if index.is_none() {
             self.out
                 .line(format_args!(
-                    "no {what} '{number}'; 1 to 4, as docs/vehicle.md counts the arms"
+                    "no {what} '{number}'; 1 front-left, 2 rear-left, 3 front-right, 4 rear-right"
                 ))
                 .await;
         }

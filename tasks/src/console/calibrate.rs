@@ -4,7 +4,7 @@
 
 use embassy_time::{Duration, Timer};
 use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, Spin};
-use sophie_control::calibration::{self, Face, Samples, Unfit};
+use sophie_control::calibration::{self, Face, FsrFit, Samples, Unfit};
 use sophie_control::math::{clamp, to_deg};
 use sophie_control::params::Params;
 use sophie_control::tendon::{Reel, SPAN_MIN_US};
@@ -12,6 +12,7 @@ use sophie_control::vector::Vec3;
 
 use super::Console;
 use super::bench::End;
+use crate::arms::fits;
 use crate::decimal::{self, Decimal};
 use crate::links::Links;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
@@ -23,7 +24,7 @@ const SAMPLING: Duration = Duration::from_millis(10);
 const STEP_US: f32 = 10.0;
 
 /// What can be calibrated, and what that buys.
-const WHAT: [(&str, &str); 6] = [
+const WHAT: [(&str, &str); 8] = [
     (
         "gyro",
         "what it reads at rest; taken anew at each start, nothing to store",
@@ -38,6 +39,11 @@ const WHAT: [(&str, &str); 6] = [
     ),
     ("battery", "its voltage by a meter: calibrate battery VOLTS"),
     ("servo", "release and full mark of one servo: calibrate servo N"),
+    (
+        "fsr",
+        "zero and gain of one pressure sensor by a weight: calibrate fsr N NEWTON",
+    ),
+    ("arm", "zero and sign of one arm's tilt sensor: calibrate arm N"),
     ("esc", "whether the motor controllers understand the protocol"),
 ];
 
@@ -52,21 +58,37 @@ const RELEASE: [&str; 4] = [
 const TRIM: [&str; 4] = ["servo_trim_1", "servo_trim_2", "servo_trim_3", "servo_trim_4"];
 const FULL: [&str; 4] = ["servo_full_1", "servo_full_2", "servo_full_3", "servo_full_4"];
 
+/// Conductance and zero of each pressure sensor, sign and zero of each arm's.
+const FSR: [[&str; 2]; 4] = [
+    ["fsr_trim_1", "fsr_zero_1"],
+    ["fsr_trim_2", "fsr_zero_2"],
+    ["fsr_trim_3", "fsr_zero_3"],
+    ["fsr_trim_4", "fsr_zero_4"],
+];
+const ARM: [[&str; 2]; 4] = [
+    ["arm_sign_1", "arm_zero_1"],
+    ["arm_sign_2", "arm_zero_2"],
+    ["arm_sign_3", "arm_zero_3"],
+    ["arm_sign_4", "arm_zero_4"],
+];
+
 /// One sample of what is calibrated; `None` where it is not fresh.
-type Read = fn(&Links) -> Option<Vec3>;
+type Read<'a> = &'a dyn Fn(&Links) -> Option<Vec3>;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
-    pub(super) async fn calibrate(&mut self, what: &str, argument: Option<&str>) {
+    pub(super) async fn calibrate(&mut self, what: &str, arguments: [Option<&str>; 2]) {
         if let Err(status) = self.stopped() {
             return self.refuse("not calibrated", status).await;
         }
-        match (what, argument) {
-            ("gyro", None) => self.calibrate_gyro().await,
-            ("level", None) => self.calibrate_level().await,
-            ("accel", None) => self.calibrate_accel().await,
-            ("battery", Some(volts)) => self.calibrate_battery(volts).await,
-            ("servo", Some(number)) => self.calibrate_servo(number).await,
-            ("esc", None) => self.calibrate_esc().await,
+        match (what, arguments) {
+            ("gyro", [None, _]) => self.calibrate_gyro().await,
+            ("level", [None, _]) => self.calibrate_level().await,
+            ("accel", [None, _]) => self.calibrate_accel().await,
+            ("battery", [Some(volts), None]) => self.calibrate_battery(volts).await,
+            ("servo", [Some(number), None]) => self.calibrate_servo(number).await,
+            ("esc", [None, _]) => self.calibrate_esc().await,
+            ("fsr", [Some(number), Some(newton)]) => self.calibrate_fsr(number, newton).await,
+            ("arm", [Some(number), None]) => self.calibrate_arm(number).await,
             _ => {
                 for (name, text) in WHAT {
                     self.out.line(format_args!("calibrate {name:8} {text}")).await;
@@ -76,7 +98,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     }
 
     async fn calibrate_gyro(&mut self) {
-        let rate: Read = |links| links.attitude.fresh().map(|a| a.rate + a.gyro_bias);
+        let rate: Read<'_> = &|links| links.attitude.fresh().map(|a| a.rate + a.gyro_bias);
         let Some(samples) = self.rest("Leave the vehicle at rest.", rate).await else {
             return;
         };
@@ -96,7 +118,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     async fn calibrate_level(&mut self) {
         let text = "Put the vehicle on a level table, by a spirit level on its body.";
-        let Some(samples) = self.rest(text, force).await else {
+        let Some(samples) = self.rest(text, &force).await else {
             return;
         };
         match calibration::level(&samples, self.bias_in_force()) {
@@ -109,7 +131,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let mut means = [Vec3::ZERO; 6];
         for (mean, side) in means.iter_mut().zip(Face::ALL) {
             loop {
-                let Some(samples) = self.rest(side.text(), force).await else {
+                let Some(samples) = self.rest(side.text(), &force).await else {
                     return;
                 };
                 match calibration::face(&samples, side) {
@@ -138,7 +160,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 .line(format_args!("'{volts}' is not a number of volts"))
                 .await;
         };
-        let battery: Read = |links| links.battery.fresh().map(|b| Vec3::new(b.voltage, 0.0, 0.0));
+        let battery: Read<'_> = &|links| links.battery.fresh().map(|b| Vec3::new(b.voltage, 0.0, 0.0));
         let text = "Leave the battery connected as it was measured.";
         let Some(samples) = self.rest(text, battery).await else {
             return;
@@ -147,6 +169,75 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Ok(divider) => self.put_all(&["battery_divider"], [divider]).await,
             Err(unfit) => self.unfit(unfit).await,
         }
+    }
+
+    async fn calibrate_fsr(&mut self, number: &str, newton: &str) {
+        let Some(arm) = self.one_of_four("pressure sensor", number).await else {
+            return;
+        };
+        let Some(weight) = decimal::parse(newton) else {
+            return self
+                .out
+                .line(format_args!("'{newton}' is not a number of newtons"))
+                .await;
+        };
+        let Some([trim, zero]) = FSR.get(arm) else {
+            return;
+        };
+        let pressure: Read<'_> = &|links| {
+            let contact = links.contact.fresh()?;
+            let pressure = contact.arms.get(arm).copied()?.ok()?;
+            Some(Vec3::new(pressure, 0.0, 0.0))
+        };
+        let Some(empty) = self.rest("Nothing may touch the sensor.", pressure).await else {
+            return;
+        };
+        let Some(loaded) = self.rest("Put the weight on its pad, all of it.", pressure).await else {
+            return;
+        };
+        let now = FsrFit {
+            trim: self.in_force(trim),
+            zero: self.in_force(zero),
+        };
+        let area = self.links.params.fsr_area;
+        match calibration::pressure_sensor(&empty, &loaded, weight / area, now) {
+            Ok(fit) => self.put_all(&[*trim, *zero], [fit.trim, fit.zero]).await,
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    async fn calibrate_arm(&mut self, number: &str) {
+        let Some(arm) = self.one_of_four("arm", number).await else {
+            return;
+        };
+        let (Some([sign, zero]), Some(now)) = (ARM.get(arm), fits(&self.links.params).get(arm).copied())
+        else {
+            return;
+        };
+        let tilt: Read<'_> = &|links| {
+            let tilt = links.tilts().values().get(arm).copied()?;
+            tilt.map(|tilt| Vec3::new(tilt, 0.0, 0.0))
+        };
+        let Some(straight) = self
+            .rest("Hold the arm straight, by a ruler along it.", tilt)
+            .await
+        else {
+            return;
+        };
+        let Some(up) = self
+            .rest("Bend its tip up by a hand's breadth, and hold.", tilt)
+            .await
+        else {
+            return;
+        };
+        match calibration::arm_sensor(&straight, &up, now) {
+            Ok(fit) => self.put_all(&[*sign, *zero], [fit.sign, fit.zero]).await,
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    fn in_force(&self, name: &str) -> f32 {
+        self.links.params.get(name).unwrap_or_default()
     }
 
     async fn calibrate_servo(&mut self, number: &str) {
@@ -257,7 +348,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     }
 
     /// Says what to do, waits for a key, and samples a rest of two seconds; `None` when it was ended.
-    async fn rest(&mut self, text: &str, read: Read) -> Option<Samples> {
+    async fn rest(&mut self, text: &str, read: Read<'_>) -> Option<Samples> {
         self.out.line(format_args!("{text}")).await;
         if !matches!(
             self.ask("Enter when it is so, any other key ends: ").await,

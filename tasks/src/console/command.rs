@@ -22,7 +22,7 @@ pub(super) enum Command<'a> {
     BrownOut,
     SetBrownOut,
     Rotors,
-    Calibrate(&'a str, Option<&'a str>),
+    Calibrate(&'a str, [Option<&'a str>; 2]),
     Watch(&'a str),
     SelfTest,
     PropellersOff,
@@ -122,7 +122,9 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("brownout", [None, ..]) => Command::BrownOut,
         ("brownout", [Some("set"), None, ..]) => Command::SetBrownOut,
         ("rotors", [None, ..]) => Command::Rotors,
-        ("calibrate", [what, argument, None, _]) => Command::Calibrate(what.unwrap_or_default(), argument),
+        ("calibrate", [what, first, second, None]) => {
+            Command::Calibrate(what.unwrap_or_default(), [first, second])
+        }
         ("watch", [group, None, ..]) => Command::Watch(group.unwrap_or_default()),
         ("selftest", [None, ..]) => Command::SelfTest,
         ("propellers", [Some("off"), None, ..]) => Command::PropellersOff,

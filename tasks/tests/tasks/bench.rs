@@ -31,7 +31,7 @@ pub struct Table {
     screen: Screen,
     pub imu: FakeImu,
     pub analog: FakeAnalog,
-    arms: FakeArms,
+    pub arms: FakeArms,
     motors: FakeMotors,
     pub servos: FakeServos,
     /// What the receiver gives at 50 Hz; `None`: nothing.
@@ -164,7 +164,7 @@ fn one_motor_turns_low_for_two_seconds_and_the_others_stand() {
     for (typed, answer) in [
         (
             "motor 5",
-            "no motor '5'; 1 to 4, as docs/vehicle.md counts the arms",
+            "no motor '5'; 1 front-left, 2 rear-left, 3 front-right, 4 rear-right",
         ),
         ("motor 1 13", "a motor cannot be tried at '13'; 2 to 12 %"),
         ("motor 1 fast", "a motor cannot be tried at 'fast'; 2 to 12 %"),

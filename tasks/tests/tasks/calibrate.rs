@@ -165,8 +165,8 @@ fn the_gyro_is_shown_and_a_key_ends_any_of_it() {
         assert_eq!(table.presses("x", 100), [ended], "{command}");
     }
     assert_eq!(table.says("changes", 100), ["no changes"]);
-    assert_eq!(table.says("calibrate", 100).len(), 6);
-    assert_eq!(table.says("calibrate all", 100).len(), 6);
+    assert_eq!(table.says("calibrate", 100).len(), 8);
+    assert_eq!(table.says("calibrate all", 100).len(), 8);
 }
 
 #[test]
@@ -282,4 +282,71 @@ fn the_controllers_protocol_is_judged_by_what_the_builder_sees() {
     table.presses("yyy", 2500);
     let said = table.presses("y", 300);
     assert_eq!(said[1], "all four controllers take dshot300; nothing to store");
+}
+
+#[test]
+fn a_pressure_sensor_is_fitted_by_a_known_weight() {
+    let mut table = Table::set();
+    let mut frame = UNLOADED;
+    // 100 counts are 17.3 Pa, 2047 counts 692.5 Pa: 675.2 Pa for 1.3 N on 1444 mm2, 900.3 Pa.
+    frame.fsr[2] = 100;
+    table.analog.frame.set(frame);
+    let asked = table.says_trimmed("calibrate fsr 3 1.3", 100);
+    assert_eq!(asked, ["Nothing may touch the sensor.", ENTER]);
+    let said = table.presses("\r", 2500);
+    assert_eq!(said[1..], ["Put the weight on its pad, all of it.", ENTER]);
+    frame.fsr[2] = 2047;
+    table.analog.frame.set(frame);
+    let said = table.presses("\r", 2500);
+    assert!(
+        said[1].starts_with("fsr_trim_3 1 -> 0.75") && said[2].starts_with("fsr_zero_3 0 -> 23."),
+        "{said:?}"
+    );
+    // Without the weight.
+    table.says("calibrate fsr 1 1.3", 100);
+    table.presses("\r", 2500);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["not taken: conductance over fsr_gain is 0.00; 0.20 to 5.00 allowed"]
+    );
+    assert_eq!(
+        table.says("calibrate fsr 5 1", 100),
+        ["no pressure sensor '5'; 1 front-left, 2 rear-left, 3 front-right, 4 rear-right"]
+    );
+    assert_eq!(
+        table.says("calibrate fsr 1 much", 100),
+        ["'much' is not a number of newtons"]
+    );
+}
+
+#[test]
+fn an_arms_sensor_gets_its_zero_and_its_sign() {
+    let mut table = Table::set();
+    // A body that rolls by 0.1 rad to the right under arms that stay: the left arms' tips seem to go up.
+    let asked = table.says_trimmed("calibrate arm 1", 100);
+    assert_eq!(asked, ["Hold the arm straight, by a ruler along it.", ENTER]);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["Bend its tip up by a hand's breadth, and hold.", ENTER]
+    );
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["not taken: turn of the arm is 0.00; 0.10 to 1.50 rad allowed"]
+    );
+    table.says("calibrate arm 1", 100);
+    table.presses("\r", 2500);
+    // Mounted the other way round: bent up, it shows a tip that goes down by 0.3 rad.
+    table.arms.2.set(-0.3);
+    table.run(200);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        [
+            "arm_sign_1 1 along -> -1 reversed, in force after save",
+            "arm_zero_1 0 -> 0 rad, as in force"
+        ]
+    );
 }
