@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use pages::{Page, faults};
+use sophie_control::params::Params;
 
 /// Pages outside `docs/`.
 const OUTSIDE: [&str; 3] = ["README.md", "CONTRIBUTING.md", "hil/README.md"];
@@ -122,5 +123,43 @@ fn the_lights_of_the_pilots_page_are_those_of_the_firmware() {
             page.lines().any(|l| l == line),
             "docs/pilot.md has no line '{line}'"
         );
+    }
+}
+
+#[test]
+fn the_numbers_of_calibration_and_safety_follow_from_the_defaults() {
+    let p = Params::DEFAULT;
+    // Half a kilogram on a pressure sensor with its divider; 132 g on its area; four cells.
+    let conductance = p.fsr_gain * 4.9 * p.fsr_divider;
+    let (volts, pascals) = (3.3 * conductance / (1.0 + conductance), 1.3 / p.fsr_area);
+    let tendon = p.servo_torque_max / p.reel_radius;
+    let numbers = [
+        ("calibration.md", format!("make {volts:.2} V")),
+        ("calibration.md", format!("show {pascals:.0} Pa")),
+        (
+            "calibration.md",
+            format!(
+                "{} V and {} V a cell",
+                p.battery_warning / 4.0,
+                p.battery_critical / 4.0
+            ),
+        ),
+        (
+            "calibration.md",
+            format!("`tilt_bias_max` ({} rad)", p.tilt_bias_max),
+        ),
+        ("tuning.md", format!("`notch_hz`, {} Hz", p.notch_hz)),
+        ("tuning.md", format!("`rate_d_cutoff` {} Hz", p.rate_d_cutoff)),
+        ("safety.md", format!("up to {:.0} N each", p.thrust_max)),
+        (
+            "safety.md",
+            format!("pull with {:.0} N", (tendon / 10.0).floor() * 10.0),
+        ),
+        ("safety.md", format!("below {} V under load", p.battery_critical)),
+    ];
+    for (name, number) in numbers {
+        let page = std::fs::read_to_string(root().join("docs").join(name)).unwrap();
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(page.contains(&number), "docs/{name} does not say '{number}'");
     }
 }
