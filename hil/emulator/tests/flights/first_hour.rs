@@ -13,7 +13,7 @@ use super::*;
 
 const PAGE: &str = "docs/first-hour.md";
 /// The transmitter stays off for so long, s: until after the page's last `save`.
-const RADIO_OFF: f64 = 28.0;
+const RADIO_OFF: f64 = 34.0;
 /// What asks for the next command.
 const PROMPT: &str = "\r\n> ";
 /// Times that a command is typed anew while its answer is another: `status` until the battery is measured, or until the
