@@ -6,6 +6,7 @@
 
 mod armed;
 mod behaviour;
+mod bench;
 mod calibrating;
 mod clamping;
 mod contact;
@@ -39,6 +40,7 @@ pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
 pub use self::releasing::release_thrust;
 use crate::arming::ArmingInhibits;
+use crate::bench::{BenchAnswer, BenchRequest};
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
@@ -170,6 +172,8 @@ pub struct Inputs {
     pub late: bool,
     /// What the drivers, the storage and the start report against arming.
     pub hardware: ArmingInhibits,
+    /// What a builder asks at the console.
+    pub bench: Option<BenchRequest>,
 }
 
 impl Inputs {
@@ -212,4 +216,6 @@ pub struct Outputs {
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub inhibits: ArmingInhibits,
+    /// What has become of the newest order of the bench.
+    pub bench: BenchAnswer,
 }

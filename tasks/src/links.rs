@@ -21,6 +21,8 @@ use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::Target;
 pub use sophie_control::battery::Battery;
+use sophie_control::bench::Place;
+pub use sophie_control::bench::{BenchAnswer, BenchRequest};
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 use sophie_control::fsr::FsrFault;
 pub use sophie_control::grip::GripState;
@@ -34,6 +36,7 @@ use sophie_control::wrench::PerArm;
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};
 pub use crate::last_value::{RECEIVERS, Raw};
+use crate::ports::AnalogFrame;
 use crate::schedule::{Level, TaskId};
 use crate::start::{Start, StartCause};
 use crate::timing::{Quantity, Record, Run, Timing};
@@ -189,13 +192,23 @@ pub enum TendonOrder {
     Blind(TendonForces),
     /// From before a restart, sent once at the start: the servos stay where they are until a command comes.
     Resumed(TendonForces),
+    /// On the bench: one servo at a pulse, the others by their forces, which are none.
+    Placed {
+        /// Of each one.
+        forces: TendonForces,
+        /// The one servo.
+        place: Place,
+    },
 }
 
 impl TendonOrder {
     /// The forces, whatever they follow from.
     pub const fn forces(&self) -> &TendonForces {
         match self {
-            Self::Measured(forces) | Self::Blind(forces) | Self::Resumed(forces) => forces,
+            Self::Measured(forces)
+            | Self::Blind(forces)
+            | Self::Resumed(forces)
+            | Self::Placed { forces, .. } => forces,
         }
     }
 }
@@ -316,7 +329,7 @@ links! {
     /// Filtered inertial samples.
     imu: ImuSample, Imu to "estimator", stale after 5 ms;
     /// The estimate.
-    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor", stale after 5 ms;
+    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor, console", stale after 5 ms;
     /// What the rotors are to do; without it they stop.
     setpoint: Setpoint, Commander to "control", stale after 50 ms;
     /// What the controllers ask of the mixer.
@@ -326,19 +339,21 @@ links! {
     /// What the mixer gave, and to `control` what it could not give; without it the motors stop.
     mix: MixOutput, Mixer to "motors, control, clamp, commander, supervisor", stale after 10 ms;
     /// Contact pressures; without them closed arms keep their force and are faulty.
-    contact: Contact, Analog to "clamp, commander", stale after 20 ms;
+    contact: Contact, Analog to "clamp, commander, console", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
     battery: Battery, Analog to "mixer, commander, telemetry, console", stale after 500 ms;
+    /// What the converter gave, with each fifth conversion.
+    counts: AnalogFrame, Analog to "console", stale after 100 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
-    arms: ArmAngles, Arms to "mixer, clamp, servos", stale after 100 ms;
+    arms: ArmAngles, Arms to "mixer, clamp, servos, console", stale after 100 ms;
     /// What the tendons are to do; without it the clamp makes no step and sends nothing.
     clamp_command: ClampCommand, Commander to "clamp", stale after 200 ms;
     /// Forces, with the time of what they follow from; without them the servos stay, before the first there are no pulses.
     tendons: TendonOrder, Clamp to "servos, supervisor", stale after 200 ms;
     /// Tension that the servos can be giving, N, as old as the oldest tilt in it; without it nothing is proven free.
-    tension: PerArm<f32>, Servos to "clamp", stale after 200 ms;
+    tension: PerArm<f32>, Servos to "clamp, console", stale after 200 ms;
     /// Angle to which each servo is sent, rad from release.
-    reel_angle: PerArm<f32>, Servos to "supervisor", stale after 200 ms;
+    reel_angle: PerArm<f32>, Servos to "supervisor, console", stale after 200 ms;
     /// The grip that must outlive a reset.
     grip_memory: GripMemory, Commander to "supervisor", stale after 200 ms;
     /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
@@ -347,6 +362,10 @@ links! {
     rc: RcState, Rc to "commander, console", stale after 500 ms;
     /// The commander's view.
     status: Status, Commander to "telemetry, console, log", stale after 200 ms;
+    /// What a builder tries on the table, renewed while it lasts; without it motors stop and servos go to release.
+    bench: BenchRequest, Console to "commander", stale after 150 ms;
+    /// What has become of it.
+    bench_answer: BenchAnswer, Commander to "console", stale after 200 ms;
 }
 
 impl Links {

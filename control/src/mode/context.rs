@@ -1,5 +1,6 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
+use super::bench::Bench;
 use super::dangers::Dangers;
 use super::demand::Collective;
 use super::hold::held;
@@ -64,6 +65,7 @@ pub struct Context {
     pub sinking: f32,
     pub collective: Collective,
     pub probe: Probe,
+    pub bench: Bench,
     /// A reason and the time for which it is still shown, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
@@ -91,6 +93,7 @@ impl Context {
             sinking: 0.0,
             collective: Collective::default(),
             probe: Probe::default(),
+            bench: Bench::default(),
             note: (None, 0.0),
             gravity: crate::math::GRAVITY,
         }

@@ -13,7 +13,7 @@ use sophie_tasks::supervisor::least_runs;
 const REWRITE: &str = "WRITE_DOCS";
 
 /// The part of `page` between the marks of `name` is `table`, or becomes it.
-fn holds(page: &str, name: &str, table: &str) {
+pub fn holds(page: &str, name: &str, table: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(page);
     let text = std::fs::read_to_string(&path).unwrap();
     let (begin, end) = (
@@ -28,7 +28,7 @@ fn holds(page: &str, name: &str, table: &str) {
         assert_eq!(
             &text[from..to],
             table,
-            "{page}: {REWRITE}=1 cargo test --package sophie-tasks --test tasks declarations rewrites it"
+            "{page}: {REWRITE}=1 cargo test --package sophie-tasks --test tasks rewrites it"
         );
     }
 }
