@@ -1,4 +1,4 @@
-//! What only the target's core can show: its instructions and its exceptions.
+//! Instructions and exceptions, which only the target's core can show.
 
 #![allow(
     unsafe_code,
