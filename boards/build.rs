@@ -83,7 +83,6 @@ fn selection() -> Result<Selection, String> {
     })
 }
 
-/// Boards with a memory map.
 fn boards() -> io::Result<Vec<String>> {
     let mut boards = Vec::new();
     for entry in fs::read_dir(MAPS)? {

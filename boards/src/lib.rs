@@ -2,10 +2,9 @@
 //!
 //! A board is one file: clocks, pins, DMA streams and timers, claimed with `assign_resources`, and `Board`'s ports
 //! built from them. `stm32` is shared by several boards, `cortex_m` by all; both depend on the chip's family, never on
-//! the board. The build script picks the memory map in `memory/` of the board that a feature names. Nothing outside
-//! names a chip. `sophie-fault` ends a run.
+//! the board. The build script picks the board's memory map in `memory/`. `sophie-fault` ends a run.
 //!
-//! On the host there is only the check of a board's pins (`output_pins`) and its tests.
+//! On the host there is only the check of a board's pins (`output_pins`).
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg_attr(

@@ -235,7 +235,6 @@ impl Bno055 {
         Ok(())
     }
 
-    /// Writes the configuration and reads it back.
     async fn configure(&self, bus: &mut impl I2c) -> Result<(), Lost> {
         let [axes, signs] = AXES;
         let settings = [
@@ -418,7 +417,6 @@ impl Lost {
     }
 }
 
-/// Limits a transaction to [`TRANSACTION`].
 async fn bounded<T, E>(transaction: impl Future<Output = Result<T, E>>) -> Result<T, Lost> {
     match with_timeout(TRANSACTION, transaction).await {
         Ok(Ok(value)) => Ok(value),

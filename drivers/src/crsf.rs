@@ -2,8 +2,8 @@
 //!
 //! A receiver without its transmitter may repeat the last channels. At an uplink quality of 0 % in its link statistics
 //! no sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a
-//! quality above 0 %, or after 1 s without statistics: a receiver that reports none is judged by its frames alone. The
-//! receiver should be set to send nothing without a link ("no pulses").
+//! quality above 0 %, or after 1 s without statistics, as for a receiver that sends none. The receiver should be set to
+//! send nothing without a link ("no pulses").
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
@@ -15,8 +15,8 @@ use uf_crsf::{CrsfParser, Packet};
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
 /// Time of a byte on the line: ten bits at 420 kbaud.
 const BYTE: Duration = Duration::from_micros(24);
-/// Line pause that ends a frame: twice the time of the longest, 64 bytes. An unfinished frame would otherwise wait and
-/// be published as new with the bytes of a link that returns.
+/// Line pause that ends a frame: twice the time of the longest, 64 bytes. Otherwise an unfinished frame would be
+/// published as new with the bytes of a link that returns.
 const SILENCE: Duration = Duration::from_millis(3);
 
 /// Decodes frames from a stream of bytes in pieces of any length.

@@ -1,9 +1,8 @@
-//! FRAM on SPI with 32 KiB or more and two-byte addresses, up to 20 MHz, mode 0 or 3; it needs no erase and no wait.
-//! Parts: Cypress (Ramtron) FM25V02, FM25V02A, FM25V05 and Fujitsu MB85RS256B, MB85RS256TY, MB85RS512T, which differ
-//! only in identity. Sources: Cypress datasheet 001-90865, the tables of ArduPilot (`AP_RAMTRON`) and Betaflight's
-//! family.
+//! FRAM on SPI with 32 KiB or more and two-byte addresses, up to 20 MHz, mode 0 or 3; no erase, no wait. Parts: Cypress
+//! (Ramtron) FM25V02, FM25V02A, FM25V05 and Fujitsu MB85RS256B, MB85RS256TY, MB85RS512T, which differ only in identity.
+//! Sources: Cypress datasheet 001-90865, the tables of ArduPilot (`AP_RAMTRON`) and Betaflight's family.
 //!
-//! It emulates NOR flash (an erase fills a page with 0xFF), so every board has the same parameter store.
+//! It emulates NOR flash (an erase fills a page with 0xFF), as the parameter store requires.
 
 use core::fmt;
 
@@ -20,7 +19,6 @@ pub const CAPACITY: u32 = 32 * 1024;
 pub const PAGE: usize = 4096;
 /// Most data bytes of one transfer.
 const CHUNK: usize = 64;
-/// Opcode and address.
 const HEAD: usize = 3;
 
 /// Sets the write enable latch, which the end of each write clears.
@@ -213,7 +211,6 @@ impl<S: SpiDevice> NorFlash for Fram<S> {
     }
 }
 
-/// Checks that an identity is that of a supported part.
 fn identify(answer: [u8; 9]) -> Result<(), Fault> {
     let agree = |expected: &[u8], found: &[u8]| {
         let mut pairs = expected.iter().copied().zip(found.iter().copied());

@@ -1,8 +1,8 @@
-//! Decides whether a data-ready line is reliable, and when samples are polled by the clock instead.
+//! Decides whether a data-ready line is reliable, and when samples are polled instead.
 //!
 //! A silent line is used again once its pulses and the part's status have agreed for a time that doubles with each
-//! silence, so that a loose contact does not toggle the driver. A single short silence is not reported; a lasting or
-//! repeated one is.
+//! silence, so that a loose contact does not toggle the driver. A lasting or repeated silence is reported, a single
+//! short one is not.
 
 use embassy_time::{Duration, Instant};
 
@@ -28,7 +28,6 @@ pub struct LineWatch {
     back_at: Option<Instant>,
 }
 
-/// Polling state.
 #[derive(Clone, Copy, Debug)]
 struct Clock {
     since: Instant,

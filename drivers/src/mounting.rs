@@ -119,7 +119,6 @@ impl Mounting {
 }
 
 impl Default for Mounting {
-    /// Marked side up, x forward.
     fn default() -> Self {
         Self::top_up(Heading::Forward)
     }

@@ -1,14 +1,14 @@
 //! Parameters in flash or FRAM.
 //!
-//! One item of a `sequential_storage` map holds the whole set, so a save cut short by power loss leaves the old set or
-//! the new one, never a mixture. An item is a tag and, for each parameter that differs from the board's default, a
-//! record of eight bytes: FNV-1a hash of its name and the bits of its value. Firmware with other parameters reads those
-//! that it knows, also by a former name.
+//! One item of a `sequential_storage` map holds the whole set: a save cut short by power loss leaves the old set or the
+//! new one, never a mixture. An item is a tag and a record of eight bytes per parameter that differs from the board's
+//! default: FNV-1a hash of its name, bits of its value. Other firmware reads the parameters that it knows, also by
+//! former names.
 //!
 //! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
 //! start-up could outlast the watchdog.
 //!
-//! Memory: one buffer of [`BUFFER`] bytes in the future of a call, none between calls.
+//! Memory: one buffer of [`BUFFER`] bytes in the future of a call.
 
 mod foreign;
 mod guard;

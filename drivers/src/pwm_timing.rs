@@ -13,14 +13,13 @@ pub struct PwmTiming {
 }
 
 impl PwmTiming {
-    /// Counts of a 16-bit timer.
     const COUNTS: u32 = 1 << 16;
     /// Counts at the end of a frame that no pulse fills: it separates two pulses.
     const REST: u32 = 2;
 
     /// Finest values of a 16-bit timer at `clock_hz` that make frames of `frame_us` µs exactly; `None` if the timer
-    /// cannot make the frame. Exact frames keep their phase to the board's clock: an error of 1e-7 would shift them by
-    /// 0.4 ms an hour. Where exactness takes more than twice the finest count: the finest.
+    /// cannot. Exact frames keep their phase to the board's clock: an error of 1e-7 shifts them by 0.4 ms an hour.
+    /// Where exactness takes more than twice the finest count: the finest.
     pub fn new(clock_hz: u32, frame_us: u32) -> Option<Self> {
         // Unit: a millionth of a clock; a count has `MICRO` times the divider.
         const MICRO: u64 = 1_000_000;

@@ -2,13 +2,13 @@
 //! detects a part that is silent, garbled, stuck, or has lost its configuration.
 //!
 //! If the line falls silent while the part answers and its registers are right, samples are polled by the clock; the
-//! part's status register shows which are new, so none counts twice. The first comes 0.4 ms after the silence is
-//! detected (1.2 ms at 1 kHz), later ones up to a quarter of a period and one transfer after they are ready; each is
-//! stamped with the time of its request. [`line_watch`](crate::line_watch) decides when the line is used again.
+//! part's status shows which are new, so none counts twice. The first comes 0.4 ms after the silence is detected (1.2
+//! ms at 1 kHz), later ones up to a quarter of a period and one transfer after they are ready; each is stamped with the
+//! time of its request. [`line_watch`](crate::line_watch) decides when the line is used again.
 //!
-//! The caller bounds the wait for a sample by dropping the future of `read` (the imu task after 3 ms). Every step may
-//! be dropped: the next call resumes at a consistent step and examines a dropped wait as a silence. After failures the
-//! driver pauses (1 ms, doubling to 128 ms), so a dead part costs no processor time.
+//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms). Every step may be dropped:
+//! the next call resumes at a consistent step and examines a dropped wait as a silence. Failures are followed by a
+//! pause (1 ms, doubling to 128 ms), so a dead part costs no processor time.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
@@ -41,7 +41,6 @@ const ACCEL_PATIENCE: u16 = 4;
 const PAUSE: [Duration; 2] = [Duration::from_millis(1), Duration::from_millis(128)];
 /// Margin before power is switched on: no register may be written for 200 µs after it (DS-000347 §14.36).
 const POWER_QUIET: Duration = Duration::from_micros(500);
-/// Sample period of a self-test, 1 kHz.
 const SELF_TEST_PERIOD: Duration = Duration::from_millis(1);
 const SELF_TEST_ATTEMPTS: u16 = 2 * SAMPLES;
 const NO_SAMPLE: i16 = i16::MIN;
@@ -70,8 +69,8 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Checks every 100 ms; stuck after 16 equal samples, which noise rules out at every rate. (Two equal ones are not
-    /// rare at 1 kHz, where the noise is below one count.)
+    /// Checks every 100 ms; stuck after 16 equal samples, which noise rules out at every rate. (Two are not rare at 1
+    /// kHz, where the noise is below one count.)
     pub const fn at(rate_hz: f32) -> Self {
         Self {
             check_every: (rate_hz * 0.1) as u16,
@@ -241,18 +240,18 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Resets, identifies and configures the part, reads the configuration back and waits for valid samples: about 50
-    /// ms (ICM-42688-P) or 190 ms (ICM-20689).
+    /// Resets, identifies and configures the part, verifies the configuration and waits for valid samples: about 50 ms
+    /// (ICM-42688-P) or 190 ms (ICM-20689).
     ///
     /// # Errors
-    /// The fault of the part. After an error the driver still serves as a port, which retries.
+    /// The fault of the part. The driver still serves as a port, which retries.
     pub async fn init(&mut self) -> Result<(), Fault> {
         let result = self.bring_up().await;
         self.note(result)
     }
 
-    /// Actuates both sensors and compares their response with the factory codes; about 1.5 s, vehicle at rest. Resets
-    /// and configures the part afterwards in any case.
+    /// Actuates both sensors and compares their response with the factory codes; about 1.5 s, vehicle at rest. Then
+    /// resets and configures the part in any case.
     ///
     /// # Errors
     /// The first axis that fails, or a fault of the part.

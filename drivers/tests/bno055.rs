@@ -36,7 +36,6 @@ struct Call {
     took: Duration,
 }
 
-/// A round of the arms task.
 async fn round(arms: &mut ArmBuses<Bus, Bus>) -> [Call; 4] {
     let mut calls = Vec::new();
     for arm in 0..4 {
@@ -255,7 +254,6 @@ fn a_chip_that_resets_itself_is_noticed_at_once_and_set_up_again() {
         assert_eq!(arms.last_fault(3), Some(fault));
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls[3].result.is_ok());
-        // Silent while booting: reported within three rounds.
         chips[3].borrow_mut().reset();
         let calls = rounds(&mut arms, Duration::from_millis(40)).await;
         assert_eq!(calls[3].result, Err(PortError::Absent));
@@ -281,7 +279,6 @@ fn nonsense_is_refused() {
         chips[1].borrow_mut().failure = Failure::None;
         chips[2].borrow_mut().gravity = [0, 0, 981];
         chips[3].borrow_mut().calibration = 0x10;
-        // One bad reading causes no reset.
         let calls = round(&mut arms).await;
         assert!(calls.iter().all(|c| c.result.is_ok()));
     });

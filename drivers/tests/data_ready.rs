@@ -244,7 +244,6 @@ fn a_loose_contact_is_reported_and_samples_come_throughout() {
             matches!(reported[..], [1 | 2, ..]) && reported.len() >= 6,
             "{reported:?}"
         );
-        // Undisturbed, it stays in use.
         read_for(&mut driver, 5000).await;
         assert!(!driver.line_silent());
     });

@@ -12,7 +12,6 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use fake::run;
 use sophie_drivers::i2c_lines::{Lines, free};
 
-/// The two lines and the chip on them.
 #[derive(Default)]
 struct Wires {
     master_clock_low: bool,

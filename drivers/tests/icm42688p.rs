@@ -37,7 +37,6 @@ fn pair(config: Config) -> (Driver, Shared) {
     )
 }
 
-/// A read of the imu task.
 async fn read(driver: &mut Driver) -> Option<Result<ImuReading, PortError>> {
     let batch = with_timeout(Duration::from_millis(3), driver.read()).await.ok()?;
     Some(batch.map(|b| b[0]))

@@ -48,7 +48,6 @@ fn set(values: &[(&str, f32)]) -> Params {
     params
 }
 
-/// Every parameter changed from its default.
 fn all_changed() -> Params {
     let mut params = Params::default();
     for row in Params::TABLE {
@@ -435,7 +434,6 @@ fn a_range_that_does_not_suit_is_a_broken_storage() {
     }
 }
 
-/// Loads and saves on flash holding `bytes`; returns what was loaded.
 fn lives_with<const W: usize, const P: usize>(bytes: Vec<u8>) -> (Params, Loaded) {
     let flash = Flash::<W, P>::holding(bytes.clone());
     let (params, loaded) = load(&flash);

@@ -10,7 +10,6 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Starts the executors above `background`.
     pub fn new(background: Spawner) -> Self {
         let (flight, steady) = sophie_boards::start_levels();
         Self {

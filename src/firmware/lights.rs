@@ -27,7 +27,6 @@ const FLASH: [bool; 10] = [
 const DOUBLE: [bool; 10] = [true, false, true, false, false, false, false, false, false, false];
 const ON: [bool; 10] = [true; 10];
 
-/// Shows the state; never returns.
 pub async fn run(links: &Links, mut lights: LightsPort) -> ! {
     let mut ticker = Ticker::every(PERIOD);
     loop {

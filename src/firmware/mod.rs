@@ -28,7 +28,6 @@ static LINKS: StaticCell<Links> = StaticCell::new();
 
 /// State at start-up, before clocks and log run.
 pub struct Beginning {
-    /// Reset cause.
     pub cause: ResetCause,
     /// State that the tasks resume from.
     pub start: Start,

@@ -1,8 +1,8 @@
 //! The defmt log while the firmware runs. Background: logging never delays a flight.
 //!
-//! A line at each change of state, reason, warning or hardware arming inhibit, and for each arm of a proven grip; each
-//! second the timing of every task and missed deadlines ([`super::timing`]); at the start the chip's checks, after the
-//! duration of the start; every ten seconds the stack depth.
+//! At the start its duration and the chip's checks; a line at each change of state, reason, warning or hardware arming
+//! inhibit, and for each arm of a proven grip; each second the timing of every task and missed deadlines
+//! ([`super::timing`]); every ten seconds the stack depth.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
@@ -14,7 +14,6 @@ use super::grip::GripReport;
 use super::timing::TimingReport;
 use sophie_boards::stack;
 
-/// Polling period.
 const PERIOD: Duration = Duration::from_millis(50);
 /// Polls per second, one for each task's timing and the chains', to avoid a burst.
 const SECOND: u32 = 20;
@@ -72,7 +71,6 @@ fn state(now: Status, before: Option<Status>) {
     }
 }
 
-/// A check of the chip.
 fn silicon(look: &Look) {
     let read = look.read.as_str();
     let Look { name, expected, .. } = look;

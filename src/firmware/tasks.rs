@@ -42,7 +42,6 @@ pub fn spawn(
     levels.spawn(TaskId::Servos, servos(links, board.servos)?);
     levels.spawn(TaskId::Arms, arms(links, board.arms)?);
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
-    // Tasks without a deadline.
     let looks = board.chip.looks;
     let (input, output) = (board.console_input, board.console_output);
     levels.spawn_unmeasured(

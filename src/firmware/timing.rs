@@ -117,7 +117,6 @@ impl TimingReport {
     }
 }
 
-/// Logs new missed deadlines.
 fn tell(name: &str, t: &Timing, told: &mut u32) {
     if t.overruns != *told {
         *told = t.overruns;

@@ -20,7 +20,6 @@ use sophie_tasks::links::Raw;
 
 use sophie_boards::trace;
 
-/// Polling period.
 const PERIOD: Duration = Duration::from_millis(2);
 /// Polls between two names, so that any second of the log has all of them.
 const NAME_EVERY: u32 = 20;

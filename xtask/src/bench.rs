@@ -7,7 +7,6 @@ use crate::boards::{self, Board};
 use crate::build::Variant;
 use crate::{Error, build};
 
-/// Emulated boards.
 const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
 /// Printed before the emulator is built: its code generator takes long.

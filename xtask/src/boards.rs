@@ -28,7 +28,6 @@ pub struct Board {
     pub probe_rs_chip: &'static str,
     /// Core, for code specific to it. The plain target is built for an M4F.
     pub core: &'static str,
-    /// Interrupts of the chip.
     pub interrupts: usize,
     /// Vectors of the flight and steady level.
     pub levels: [&'static str; 2],
@@ -114,7 +113,6 @@ pub fn find(name: &str) -> Option<&'static Board> {
     BOARDS.iter().find(|b| b.name == name)
 }
 
-/// The boards' names, comma-separated.
 pub fn names() -> String {
     BOARDS.map(|b| b.name).join(", ")
 }

@@ -13,7 +13,6 @@ use crate::toolchain::{self, TARGET};
 /// Bytes of the log's buffer in a build with trace: 2 ms of events and their frames, for a slow probe.
 const TRACE_BUFFER: &str = "8192";
 
-/// Image variant of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variant {
     /// The image that flies.
@@ -79,7 +78,6 @@ pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
 /// Inputs of an image. Profile and flags are the same for all.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe<'a> {
-    /// Package with the binary.
     pub package: &'a str,
     pub arguments: &'a [&'a str],
     /// Environment variables: name and value.
@@ -163,13 +161,11 @@ pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     Ok(copy)
 }
 
-/// Workspace folder.
 pub fn root() -> &'static Path {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap_or(here)
 }
 
-/// Cargo's target folder.
 pub fn target_dir() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }

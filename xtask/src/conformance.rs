@@ -1,5 +1,5 @@
-//! The conformance image on QEMU and on the emulated core: the logs must be equal, line by line, or the emulator is not
-//! to be trusted. The control laws' lines must also equal the host's, so that its tests hold for the chip.
+//! The conformance image on QEMU and on the emulated core, whose logs must be equal. The control laws' lines must also
+//! equal the host's, so that its tests hold for the chip.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -109,7 +109,6 @@ fn cargo() -> Command {
     command
 }
 
-/// Output of a command.
 fn output(command: &mut Command) -> Result<String, Error> {
     eprintln!("{}", build::shown(command));
     let output = command

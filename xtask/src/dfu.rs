@@ -1,10 +1,9 @@
 //! Writes firmware through the chip maker's USB loader (ST's AN2606 and AN3156).
 //!
-//! The loader erases whole sectors; `dfu-util` erases each sector that a file touches, and keeps no state between
-//! calls. So the image is written in stretches that share no sector: a flat file would erase the gaps (on the f405 the
-//! stored parameters), and a file per segment would erase the end of the one before. The stretch with the vector table
-//! comes last: the loader starts stack and first instruction from the address of the last call, and an interrupted
-//! transfer leaves the old table or none.
+//! `dfu-util` erases each sector that a file touches, and keeps no state between calls. So the image is written in
+//! stretches that share no sector: a flat file would erase the gaps (on the f405 the stored parameters), a file per
+//! segment the end of the one before. The stretch with the vector table comes last: the loader starts the firmware at
+//! the address of the last call, and an interrupted transfer leaves the old table or none.
 
 use std::fs;
 use std::path::PathBuf;
@@ -24,7 +23,6 @@ const WORD: u64 = 32;
 /// Bytes to write in one call.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Stretch {
-    /// First address.
     pub start: u64,
     pub bytes: Vec<u8>,
 }
@@ -131,7 +129,6 @@ fn stretches(loads: &[Load], flash: &[Sectors]) -> Result<Vec<Stretch>, Error> {
 }
 
 impl Stretch {
-    /// End address.
     fn end(&self) -> u64 {
         self.start + self.bytes.len() as u64
     }

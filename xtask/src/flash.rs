@@ -18,7 +18,6 @@ enum By {
 enum Before<'a> {
     /// A backup at the default path.
     Usual,
-    /// A backup in this file.
     File(&'a str),
     /// None, by the user's choice.
     Nothing,

@@ -1,7 +1,7 @@
-//! The guard against damaged words in the flash of an H7.
+//! The guard against damaged words in the flash of an H7: `boards/src/stm32/flash_ecc.rs`.
 //!
-//! Power loss while a parameter is stored leaves a word that error correction cannot repair; reading it is a bus fault
-//! at every later start. `boards/src/stm32/flash_ecc.rs` prevents that; without it an image flies until then.
+//! Power loss while a parameter is stored leaves an uncorrectable word, whose reading is a bus fault at every later
+//! start. An image without the guard flies until then.
 
 use crate::Error;
 use crate::boards::Board;

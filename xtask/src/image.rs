@@ -8,7 +8,6 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
 
 use crate::Error;
 
-/// A section in the chip's memory.
 pub struct Section {
     pub name: String,
     /// Run-time address.
@@ -19,7 +18,6 @@ pub struct Section {
     pub writable: bool,
 }
 
-/// Bytes that flashing writes.
 pub struct Load {
     /// Load address.
     pub address: u64,
@@ -32,9 +30,7 @@ impl Load {
     }
 }
 
-/// A static, or a function.
 pub struct Static {
-    /// Mangled name.
     pub name: String,
     pub address: u64,
     pub size: u64,

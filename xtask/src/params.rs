@@ -59,7 +59,6 @@ mod tests {
                 inside,
                 "{address:#x} {size:#x}"
             );
-            // Parameters in the middle of a sector are erased with it.
             let found = first_in(&loads, flash, 0x0801_8000, 0x0802_0000).is_some();
             assert!(!found, "{address:#x} {size:#x}");
         }

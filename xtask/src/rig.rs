@@ -13,11 +13,8 @@ const EMULATED: &str = "matek-h743";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Where {
-    /// Only build.
     Built,
-    /// On the emulated board.
     Emulated,
-    /// On the board at the probe.
     Probe,
 }
 

@@ -25,7 +25,6 @@ pub struct Sizes {
     pub flash: u64,
     /// Statics, including the tasks' futures.
     pub ram: u64,
-    /// Memory for the stack.
     pub stack: u64,
 }
 
@@ -122,7 +121,6 @@ pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     }
 }
 
-/// `page` with the ceilings between its marks.
 fn with_table(
     page: &str,
     ceilings: &BTreeMap<String, Ceiling>,

@@ -11,12 +11,9 @@ use crate::Error;
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 
-/// A toolchain that compiles for [`TARGET`].
 pub struct Toolchain {
-    /// Description for the user.
     pub name: String,
     pub arguments: &'static [&'static str],
-    /// Environment variables for cargo.
     pub variables: Vec<(&'static str, OsString)>,
 }
 

@@ -34,10 +34,10 @@ impl Tool {
         command
     }
 
-    /// Shows the command and runs it in the user's terminal.
+    /// Writes a chip through its own USB loader.
     ///
-    /// # Errors
-    /// The program is not installed, or fails.
+    /// A program instead of a crate (`dfu-libusb`, `dfu-nusb`): every system has it, and it handles the quirks of ST's
+    /// loaders; a crate would add a USB library to every build of xtask.
     pub fn run(&self, command: &mut Command) -> Result<(), Error> {
         eprintln!("{}", build::shown(command));
         let status = command.status().map_err(|e| self.missing(&e))?;
@@ -57,7 +57,6 @@ impl Tool {
         output.map_err(|e| self.missing(&e).into())
     }
 
-    /// Why the program does not start.
     fn missing(&self, error: &std::io::Error) -> String {
         match error.kind() {
             ErrorKind::NotFound => format!("{} is not installed; {}", self.program, self.install),

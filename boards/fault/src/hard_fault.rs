@@ -1,7 +1,7 @@
-//! Hard fault handler: accesses to unmapped addresses, undefined instructions, stack overflow.
+//! Hard fault handler: unmapped addresses, undefined instructions, stack overflow.
 //!
-//! It does not rely on the old stack. One that overflowed has left its memory, where the handler would fault again at
-//! the highest priority: the processor would lock up without a message, with the motors unchanged.
+//! It does not use the old stack. An overflowed one has left its memory, where the handler would fault again at the
+//! highest priority: the processor would lock up without a message, with the motors unchanged.
 
 use core::arch::naked_asm;
 

@@ -1,11 +1,11 @@
 //! The end of a run on a Cortex-M: stops the motors, keeps the message, resets the chip.
 //!
-//! After a fault nothing can be trusted, and a reset is the fastest way to motors that are *commanded* to stop: the
-//! motor task first sends a frame of zeros. The next start logs the message.
+//! After a fault nothing can be trusted; a reset leads fastest to motors that are *commanded* to stop, since the motor
+//! task first sends a frame of zeros. The next start logs the message.
 //!
-//! A second fault on the way goes straight to the reset. Within a hard fault handler it locks the processor up: the
-//! motors' pins are low by then, and the watchdog resets the chip. In either case the next start finds the text kept
-//! before the message was made.
+//! A second fault goes straight to the reset. Within a hard fault handler it locks the processor up, with the motors'
+//! pins already low, and the watchdog resets the chip. The next start then finds the text kept before the message was
+//! made.
 //!
 //! The crate knows no chip or board, so an image for QEMU runs the same code. Empty on the host.
 

@@ -2,9 +2,9 @@
 
 use cortex_m::peripheral::{MPU, Peripherals, SCB};
 
-/// Protection regions with base, memory type and access (ARMv7-M B3.5.8, B3.5.9): the default map (B3.1), except that
-/// external memories have no access, not even by speculative reads, and data memories are never cached. The background
-/// map, for privileged code only, would serve for the rest, but the emulator checks it at each access.
+/// Protection regions with base, memory type and access (ARMv7-M B3.5.8, B3.5.9): the default map (B3.1), but no access
+/// to external memories, speculative reads included, and no caching of data memories. The background map (privileged
+/// code only) would serve for the rest, but the emulator checks it at each access.
 const MAP: [(u32, u32); 4] = [
     // All addresses but the eighths below 0x6000_0000 and from 0xE000_0000 on.
     (0, NEVER_EXECUTED | 0x87 << 8 | SIZE_4_GB | ENABLED),
@@ -28,8 +28,8 @@ const ENABLED: u32 = 1;
 /// Protection on; default map outside the regions, in the system's own space.
 const ON: u32 = 1 << 2 | 1;
 
-/// Enables the instruction cache, and with `data` the data cache, for reads from flash. Also blocks speculative reads
-/// of external memories, where a controller that was not set up may stall the core forever. Called once, at the start.
+/// Enables the instruction cache, and with `data` the data cache, for reads from flash; blocks speculative reads of
+/// external memories, where a controller that is not set up may stall the core forever. Called once, at the start.
 pub fn enable_caches(data: bool) {
     // SAFETY: nothing else uses the core's cache control and memory protection, and nothing else runs yet.
     let mut core = unsafe { Peripherals::steal() };
@@ -40,7 +40,6 @@ pub fn enable_caches(data: bool) {
     }
 }
 
-/// Sets the regions and enables protection.
 fn protect(mpu: &MPU) {
     cortex_m::asm::dmb();
     for (number, (base, attributes)) in (0..).zip(MAP) {

@@ -222,7 +222,6 @@ pub fn forget() {
     store(Block { length: 0, ..block });
 }
 
-/// Text packed into words.
 struct Ascii {
     words: [u32; WORDS],
     length: usize,

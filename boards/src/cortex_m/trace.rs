@@ -2,8 +2,8 @@
 //!
 //! An event is two words: the clock's low half (µs), and from the lowest bit the kind (3 bits), the address of task or
 //! executor without its two lowest bits (18 bits: enough within one memory) and the active exception (9 bits, 0 in
-//! thread mode). Interrupts fill the ring and [`drain`] empties it; events that do not fit are counted and lost.
-//! Nothing is logged here: a log line takes longer than most of what is traced.
+//! thread mode). Interrupts fill the ring, [`drain`] empties it; events that do not fit are counted. Nothing is logged
+//! here: a log line takes longer than most events.
 
 use core::sync::atomic::Ordering::Relaxed;
 use core::sync::atomic::{AtomicBool, AtomicU32};

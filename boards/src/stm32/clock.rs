@@ -10,7 +10,6 @@ use embassy_stm32::{Config, Peripherals, rcc};
 use super::watchdog;
 use crate::cortex_m::retained;
 
-/// Message of the start after one whose clocks hung.
 const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
 
 /// embassy-time's clock counts; before that its registers must not be read.

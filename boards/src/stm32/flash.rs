@@ -1,8 +1,8 @@
 //! The chip's own flash for parameters.
 //!
 //! The memory map places it (`_params_start`, `_params_end`); nothing outside is reachable. Erasing and writing block
-//! for up to a few seconds: the H7 runs on from its other bank, so only the background waits; the F4 stalls. A restart
-//! follows, so lost time does not matter.
+//! for up to a few seconds: on the H7, which runs on from its other bank, only the background, on the F4 everything. A
+//! restart follows.
 
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Error, FLASH_BASE, Flash, WRITE_SIZE};
@@ -35,7 +35,6 @@ impl<const SECTOR: usize> ParamFlash<SECTOR> {
         }
     }
 
-    /// Flash offset of `length` bytes at `offset` of the sectors.
     fn place(&self, offset: u32, length: usize) -> Result<u32, NorFlashErrorKind> {
         u32::try_from(length)
             .ok()

@@ -21,7 +21,6 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         registers.psc().write_value(timing.prescaler);
         // `PwmTiming` is for 16 bits: period - 1 fits.
         registers.arr().write(|w| w.set_arr((timing.period - 1) as u16));
-        // Loads prescaler and period.
         timer.generate_update_event();
         timer.enable_outputs();
         timer.start();

@@ -1,5 +1,5 @@
 //! Pins at fixed levels: from the first instructions on, those of the motors and of whatever a floating line would
-//! move, sound or switch; also those that switch supplies or keep other chips quiet.
+//! move, sound or switch; also switches of supplies and other chips.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Speed};
@@ -7,7 +7,6 @@ use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::vals::Moder;
 
-/// Ports A to H in the clock controller.
 const PORTS: u32 = 0xFF;
 
 /// Holds `pin` at `level` permanently: leaked, since a dropped pin floats.

@@ -6,7 +6,7 @@ use crate::cortex_m::retained::ResetCause;
 
 /// Reads and clears the reset cause.
 ///
-/// Every reset also sets the pin's flag, so the pin counts only alone; a power-on also sets the brown-out flag.
+/// Every reset sets the pin's flag, so it counts only alone; a power-on also sets the brown-out flag.
 #[cfg(family = "h7")]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.rsr().read();
@@ -22,7 +22,7 @@ pub fn take_reset_cause() -> ResetCause {
 
 /// Reads and clears the reset cause.
 ///
-/// Every reset also sets the pin's flag, so the pin counts only alone; a power-on also sets the brown-out flag.
+/// Every reset sets the pin's flag, so it counts only alone; a power-on also sets the brown-out flag.
 #[cfg(not(family = "h7"))]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.csr().read();

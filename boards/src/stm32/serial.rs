@@ -25,7 +25,6 @@ static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(
 static CONSOLE_IN: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; 128]);
 static CONSOLE_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
-/// Receiver port settings of a protocol.
 fn receiver_config(protocol: RcProtocol) -> Config {
     let mut config = Config::default();
     match protocol {
@@ -102,8 +101,7 @@ pub fn console_lines<T: Instance>(
     (ConsoleInput(rx), ConsoleOutput(tx))
 }
 
-/// Every rate above is within every port's range: a refusal is an error of the board's clocks, which shows on the
-/// bench.
+/// Every rate above is within every port's range: a refusal means wrong clocks of the board, which shows on the bench.
 fn accepted<U>(port: Result<U, ConfigError>) -> U {
     match port {
         Ok(port) => port,

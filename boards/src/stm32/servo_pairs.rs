@@ -13,7 +13,6 @@ use sophie_tasks::ports::Servos;
 use super::pulse_timer::PulseTimer;
 use super::servos::timer_with_frames;
 
-/// Two servos on a timer.
 struct Pair<T: GeneralInstance4Channel> {
     timer: PulseTimer<T>,
     timing: PwmTiming,

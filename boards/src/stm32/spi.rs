@@ -27,9 +27,9 @@ pub struct Selected<B> {
 impl<B> Selected<B> {
     /// The chip on `bus` that `select` addresses.
     ///
-    /// The select edges are slow, some tens of nanoseconds, shorter than the time before the first clock. The Matek's
-    /// select needs this: PC13 to PC15 are on the backup domain's supply and drive at most 2 MHz and 30 pF, one at a
-    /// time (STM32H743 datasheet, pin table).
+    /// The select edges are slow, some tens of nanoseconds, shorter than the time before the first clock: the Matek's
+    /// select (PC13 to PC15, on the backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743
+    /// datasheet, pin table).
     pub fn new(bus: B, select: Peri<'static, impl Pin>) -> Self {
         Self {
             bus,

@@ -11,7 +11,6 @@ const READS_MAX: u16 = 20_000;
 /// Zero bits from which a page's mark counts as set (the map's rule).
 const MARKED: u32 = 4;
 
-/// Why a read failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refused {
     /// Flash error.

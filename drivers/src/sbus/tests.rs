@@ -143,11 +143,9 @@ fn believing() -> Decoder {
 fn the_third_frame_in_a_row_is_believed() {
     let mut d = believing();
     assert_eq!((d.state.frames, d.state.errors), (3, 0));
-    // One frame in two reads.
     let frame = pilot().encode();
     assert_eq!(published(&mut d, &frame[..11], 27_000), None);
     assert_eq!(published(&mut d, &frame[11..], 28_680), Some(30));
-    // Two at once: the task was delayed.
     assert_eq!(published(&mut d, &[frame, frame].concat(), 42_000), Some(30));
     // After garbage: three more.
     assert_eq!(published(&mut d, &[0x55; 25], 49_000), None);

@@ -16,7 +16,6 @@ pub enum Answer {
     Sound,
     /// Always this byte: an undriven line.
     Only(u8),
-    /// Bus peripheral error.
     Bus,
     /// A part that ignores writes.
     Deaf,

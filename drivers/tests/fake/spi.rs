@@ -21,13 +21,11 @@ pub enum Failure {
     Zeros,
     /// MISO held high, or no part fitted.
     Ones,
-    /// Bus peripheral error.
     Bus,
     /// No sample, by line or status.
     Mute,
     /// Data-ready line cut; the part still samples.
     LineCut,
-    /// Frozen sample registers.
     Frozen,
 }
 
@@ -183,7 +181,6 @@ impl Part {
         nominal?.checked_add_signed(self.skew)
     }
 
-    /// Renews the sample registers.
     fn convert(&mut self) {
         if self.failure == Failure::Frozen || !self.on() {
             return;

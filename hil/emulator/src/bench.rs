@@ -68,7 +68,6 @@ pub struct Bench<'a> {
     pub resets: Vec<(f64, String)>,
 }
 
-/// Vehicle state from the log.
 struct Status {
     mode: Mode,
     reason: String,

@@ -1,15 +1,14 @@
 //! The same flight on host and chip, phase by phase.
 //!
 //! The attitude error is against the controller's target on the host, and against the sticks on the chip, which does
-//! not report its target. Other differences: the world feels the pins a millisecond later, and the self-test precedes
-//! calibration, so the pilot meets gusts at other places.
+//! not report its target. On the chip the world feels the pins a millisecond later, and the self-test before
+//! calibration makes the pilot meet gusts at other places.
 
 use serde_json::{Value, json};
 use sophie_report::terminal::table::{Align, Table};
 use sophie_report::units::{deg, kgcm};
 use sophie_sim::record::{FlightRecord, Grip, Phase};
 
-/// Result of a flight, for a table cell.
 fn outcome(record: &FlightRecord) -> &'static str {
     if record.outcome.accomplished {
         "accomplished"

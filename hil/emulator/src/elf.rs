@@ -78,7 +78,6 @@ impl Firmware {
     }
 }
 
-/// Checks that `file` is an image for `board`.
 fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
     if file.architecture() != Architecture::Arm || file.is_64() {
         let found = file.architecture();

@@ -25,7 +25,6 @@ use sophie_report::terminal::{Besides, FILES, complain, finish, result};
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario};
 
-/// Prefix of error messages.
 const PROGRAM: &str = "bench";
 /// The decoded log, and the log as written by the firmware.
 const LOG_FILES: [&str; 2] = ["log.txt", "log.bin"];
@@ -186,7 +185,6 @@ fn write(
     Ok(())
 }
 
-/// Prints why the flight did not pass.
 fn complain_of(flight: &Flight) {
     if !flight.record.outcome.accomplished {
         let reason = console::one_line(&flight.record.outcome.reason);

@@ -16,7 +16,6 @@ use crate::wires::Wires;
 /// Converter reference, V, and full scale, counts.
 const REFERENCE: f64 = 3.3;
 const FULL_SCALE: f64 = 4095.0;
-/// Plant steps per millisecond.
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
 
 /// The vehicle's sensors.

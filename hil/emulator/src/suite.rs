@@ -1,8 +1,7 @@
 //! The image of a board's tests (`hil/rig`): list of tests, and entry into one.
 //!
-//! A probe answers the image's request for a command line with the address of a test. The emulator cannot, so the first
-//! instructions of the requesting function are replaced by calls of the tests' setup and of the test. The rest of the
-//! image is unchanged.
+//! A probe answers the image's request for a command line with the address of a test. Here the first instructions of
+//! the requesting function are replaced by calls of the tests' setup and of the test.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +12,6 @@ use crate::elf::Firmware;
 
 /// Function that requests the command line.
 const ASKING: &str = "__embedded_test_start";
-/// Setup of the tests.
 const SETUP: &str = "_embedded_test_setup";
 /// Section of test descriptions: address of the function, and its module.
 const TESTS: &str = ".embedded_test";
@@ -33,7 +31,6 @@ pub struct Test {
     entry: u32,
 }
 
-/// Contents of a test's symbol name.
 #[derive(Deserialize)]
 struct Described {
     name: String,
@@ -136,7 +133,6 @@ fn parsed(bytes: &[u8]) -> Result<object::File<'_>, String> {
     object::File::parse(bytes).map_err(|e| e.to_string())
 }
 
-/// Section that holds `address`, with the offset in it.
 fn section_at<'a, 'b>(file: &'b object::File<'a>, address: u64) -> Option<(object::Section<'a, 'b>, usize)> {
     file.sections()
         .filter(|s| s.address() != 0)

@@ -1,7 +1,7 @@
 //! Shared code of the tests on a real board, run by a probe. `tests/rig/` has the tests, `hil/README.md` the wiring.
 //!
 //! The board crate is the firmware's, so the tests use the drivers, pins and timers that fly. Each test starts from a
-//! reset and takes the board as the firmware does.
+//! reset.
 //!
 //! A missing jumper or external part is logged in a line that begins with `ignored:`, and the test passes; with the
 //! feature `wired` it fails. Empty on the host.

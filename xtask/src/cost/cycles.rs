@@ -30,7 +30,6 @@ struct Sum {
     most: u64,
     /// Entries into another flash line.
     lines: u64,
-    /// Constants read from flash.
     constants: u64,
     /// Cache lines with executed code.
     code: HashSet<u64>,
@@ -78,7 +77,6 @@ pub fn cycles() -> Result<(), Error> {
     Ok(())
 }
 
-/// Sums the instructions of the counted steps.
 fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
     let image = Image::read(elf)?;
     let stages = stages(&image)?;
@@ -137,7 +135,6 @@ fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
     Ok(sum)
 }
 
-/// Addresses of the stages.
 fn stages(image: &Image) -> Result<Vec<u64>, Error> {
     let names = image.functions.iter().map(|f| {
         let name = format!("{:#}", rustc_demangle::demangle(&f.name));

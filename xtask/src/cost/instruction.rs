@@ -5,7 +5,6 @@
 /// Fewest and most cycles of a pipeline refill after a taken branch.
 const REFILL: [u32; 2] = [1, 3];
 
-/// Timing of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruction {
     /// Length, 2 or 4 bytes.

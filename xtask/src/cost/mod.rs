@@ -12,7 +12,6 @@ use serde::Serialize;
 use crate::build::Recipe;
 use crate::{Error, build};
 
-/// The boards' cores.
 pub const CORES: [Core; 2] = [
     Core {
         name: "M4F",
@@ -35,7 +34,6 @@ pub struct Core {
     pub machine: &'static str,
 }
 
-/// Use of the counts.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Then {
     /// Print a table and compare with the baseline.

@@ -8,7 +8,6 @@ pub const SPREAD: f64 = 1.05;
 pub struct Stage {
     /// Name in the image's output.
     pub name: &'static str,
-    /// Description.
     pub what: &'static str,
     /// Parts of a call; the figures are per part.
     pub parts: f64,
@@ -27,7 +26,6 @@ const fn stage(name: &'static str, what: &'static str, target: Option<f64>, peer
     }
 }
 
-/// In the table's order.
 pub const STAGES: [Stage; 13] = [
     Stage {
         parts: 3.0,

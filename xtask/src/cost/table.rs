@@ -13,7 +13,6 @@ use crate::{Error, build};
 const BEGIN: &str = "<!-- cargo xtask cost --tighten writes from here -->\n";
 const END: &str = "<!-- to here -->\n";
 
-/// A judged stage on a core.
 #[derive(Serialize)]
 pub struct Row {
     stage: &'static str,
@@ -26,7 +25,6 @@ pub struct Row {
     /// Most instructions on this core; `None`: no target.
     target: Option<f64>,
     best_peer: &'static str,
-    /// The mean is within the target.
     met: bool,
     /// The costliest call is close enough to the mean.
     constant: bool,

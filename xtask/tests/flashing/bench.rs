@@ -11,7 +11,6 @@ use crate::chips::Chip;
 use crate::fixture::{self, Fixture};
 use crate::stand_ins::{BOARD, CALLS, FOLDER, MEMORY, MOOD, STARTED};
 
-/// A test under its function's name.
 pub fn trial(name: &str, test: fn()) -> Trial {
     Trial::test(name, move || {
         test();
@@ -28,7 +27,6 @@ pub struct Bench {
 pub struct Ended {
     pub status: Option<i32>,
     pub stdout: String,
-    /// Last line of its error output.
     pub complaint: String,
 }
 
@@ -99,7 +97,6 @@ impl Bench {
         fs::read_to_string(self.file(STARTED)).ok()
     }
 
-    /// Files of the bench with this prefix.
     pub fn files(&self, name: &str) -> Vec<String> {
         let entries = fs::read_dir(&self.folder).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());

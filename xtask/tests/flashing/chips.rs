@@ -23,7 +23,6 @@ pub struct Chip {
     /// RAM for statics and the top of the stack.
     pub ram: u32,
     pub stack: u32,
-    /// Parameter flash.
     pub params: Option<Range<usize>>,
 }
 
@@ -74,7 +73,6 @@ pub fn find(name: &str) -> &'static Chip {
 }
 
 impl Chip {
-    /// Bytes of flash.
     pub fn size(&self) -> usize {
         self.sectors.iter().sum::<usize>() * 1024
     }

@@ -4,7 +4,6 @@ use crate::chips::{Chip, FLASH};
 
 /// Bytes of code: on the f405 it ends in the fifth sector.
 const CODE: usize = 0x4800;
-/// Bytes of constants and initial values.
 const CONSTANTS: usize = 0x130;
 const VALUES: usize = 0x24;
 /// Bytes of statics, and address of retained data, on every board.

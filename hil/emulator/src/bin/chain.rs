@@ -72,7 +72,6 @@ fn count(arguments: &[String]) -> Result<bool, String> {
     Ok(counted.steps.len() == steps && flight.gaps.is_empty())
 }
 
-/// Flies up and hovers until the steps are over.
 fn fly(firmware: &Firmware, steps: usize) -> Result<Flight, String> {
     let overrides = Overrides {
         seed: Some(SEED),

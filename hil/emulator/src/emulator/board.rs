@@ -56,7 +56,6 @@ impl<C: Chip> Wired<C> {
         (self.pads.imu_axes)(vector)
     }
 
-    /// Disconnects (true) or connects the inertial sensor.
     pub fn silence_imu(&mut self, silent: bool) {
         self.chip.silence_imu(self.pads.imu, silent);
     }
@@ -67,7 +66,6 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// Flips `mask` in the inertial sensor's next word.
     pub fn flip_imu_word(&mut self, mask: u64) {
         self.chip.flip_imu_word(self.pads.imu, mask);
     }
@@ -78,7 +76,6 @@ impl<C: Chip> Wired<C> {
         self.chip.arm(bus, arm % 2)
     }
 
-    /// Disconnects (true) or connects the sensor of arm `arm`.
     pub fn silence_arm(&mut self, arm: usize, silent: bool) {
         if let Some((bus, _)) = self.pads.arms.get(arm) {
             self.chip.silence_arm(*bus, arm % 2, silent);
@@ -90,7 +87,6 @@ impl<C: Chip> Wired<C> {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
 
-    /// Makes the next reset a brown-out.
     pub fn brown_out(&mut self) {
         self.chip.brown_out();
     }
@@ -148,7 +144,6 @@ impl<C: Chip> Wired<C> {
         self.chip.line(self.pads.console)
     }
 
-    /// Takes the edges at the motor timer's outputs, oldest first.
     pub fn motor_edges(&mut self) -> Vec<Edge> {
         self.chip.motor_edges()
     }
@@ -170,7 +165,6 @@ impl<C: Chip> Wired<C> {
         })
     }
 
-    /// Levels of state light, fault light and buzzer.
     pub fn signals(&mut self, now: VirtualNanos) -> [bool; 3] {
         self.pads.signals.map(|pin| self.chip.is_high(now, pin))
     }

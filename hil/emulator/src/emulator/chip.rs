@@ -18,13 +18,11 @@ use super::serial::Setup;
 /// Contents of the option bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Options {
-    /// As delivered by the maker.
     Factory,
     /// With the firmware's brown-out level.
     BrownOut,
 }
 
-/// A clock that fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     Crystal,
@@ -51,15 +49,12 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     /// Disconnects (true) or connects it.
     fn silence_arm(&mut self, bus: usize, nth: usize, silent: bool);
     fn set_input(&mut self, channel: u8, millivolts: u32);
-    /// Far end of a serial port.
     fn line(&mut self, port: usize) -> Option<&mut Line>;
     /// A pin's alternate function; `None` without one.
     fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8>;
-    /// Drives a pin from outside.
     fn drive(&mut self, now: VirtualNanos, pin: At, level: Level);
     /// The firmware drives the pin: it is an output, or a peripheral's other than the debug port's.
     fn drives(&mut self, now: VirtualNanos, pin: At) -> bool;
-    /// The pin's own pull-up is on.
     fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool;
     fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool;
     /// Takes the edges at the motor timer's outputs, oldest first.

@@ -14,7 +14,6 @@ pub struct ClockStretch<D> {
 }
 
 impl<D> ClockStretch<D> {
-    /// `inner`, without clock stretching.
     pub fn new(inner: D) -> Self {
         Self {
             inner,

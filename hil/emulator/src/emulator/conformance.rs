@@ -85,7 +85,6 @@ impl Board for Machine {
     }
 }
 
-/// Keeps the image's output.
 #[derive(Default)]
 struct Console(Vec<u8>);
 

@@ -2,7 +2,7 @@
 //! transfer, and from there to the start of the motor frame.
 //!
 //! Every instruction is watched while steps are counted, so each is known by its address, independent of the emulator's
-//! code generator; the run itself does not change.
+//! code generator.
 
 use rigless::emulator::{Access, AccessKind, Hit, Host, Watch};
 
@@ -12,7 +12,6 @@ use crate::elf::Firmware;
 /// Enable bit in the timer's first control register.
 const ENABLE: u64 = 1;
 
-/// Start and end of a board's control path.
 #[derive(Clone, Copy, Debug)]
 pub struct Marks {
     /// Handler of the data-ready line.
@@ -94,7 +93,6 @@ impl Counter {
         }
     }
 
-    /// The core is about to execute an instruction.
     pub fn on_hit(&mut self, hit: Hit) {
         if hit.address == self.ready {
             self.step = Step::default();
@@ -111,7 +109,6 @@ impl Counter {
         *counts.entry(self.functions.at(hit.address)).or_default() += 1;
     }
 
-    /// The core has accessed a peripheral.
     pub fn on_access(&mut self, access: &Access) {
         let starts =
             access.kind == AccessKind::Write && access.address == self.motors && access.value & ENABLE != 0;

@@ -5,7 +5,6 @@ use rigless::soc::RegisterSpec;
 use rigless::soc::stm32h743::peripherals::tim::{Channel, Family, Tim};
 use rigless::time::{EventId, VirtualNanos};
 
-/// Level change at one of a timer's four outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     /// Emulated time, ns.
@@ -16,13 +15,11 @@ pub struct Edge {
     pub high: bool,
 }
 
-/// A timer and its edges not yet taken.
 #[derive(Debug)]
 pub struct EdgeProbe<F: Family> {
     tim: Tim<F>,
     make: fn() -> Tim<F>,
     high: [bool; 4],
-    /// Edges, oldest first.
     pub edges: Vec<Edge>,
 }
 

@@ -1,7 +1,7 @@
 //! The emulated board, stepped by the millisecond. Nothing outside this module knows which emulator it is.
 //!
-//! The emulator owns its core on a thread and calls back at each stop, where the call waits for the next millisecond's
-//! [`Wires`]. The threads take turns, so a run is as deterministic as one thread.
+//! The emulator's core has its own thread and calls back at each stop, where the call waits for the next millisecond's
+//! [`Wires`]. The threads take turns, so a run is deterministic.
 
 mod board;
 mod chip;
@@ -188,7 +188,6 @@ impl Emulator {
     }
 }
 
-/// Start and end of a board's control path.
 const fn marks(kind: Kind) -> Marks {
     match kind {
         Kind::MatekH743 => h743::MARKS,
@@ -426,7 +425,6 @@ impl World {
         self.high = [false; 4];
     }
 
-    /// Applies or mends a fault; false where the emulator cannot.
     fn inflict<C: Chip>(
         &mut self,
         fault: BoardFault,
@@ -555,7 +553,6 @@ impl World {
     }
 }
 
-/// Takes the bytes that the chip sent on a line.
 fn heard(line: Option<&mut Line>) -> Vec<u8> {
     let words = line.map_or(Vec::new(), |line| std::mem::take(&mut line.incoming));
     words.into_iter().map(|word| word as u8).collect()

@@ -19,7 +19,6 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Checks what the firmware drives at `now`.
     pub fn look<C: Chip>(&mut self, session: &mut Session<Wired<C>>, now: VirtualNanos) {
         let starts = session.resets().len() + 1;
         if starts != self.starts {

@@ -24,7 +24,6 @@ use crate::wires::Gap;
 
 /// Virtual time limit of a test.
 const LONGEST: u64 = 30_000 * MS;
-/// Instructions per core cycle.
 const SPEED: f64 = 1.0;
 /// Registers of all ports: first address and end.
 const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
@@ -142,7 +141,6 @@ struct Rig {
 }
 
 impl Rig {
-    /// The rig at power-up.
     fn set_up(&self, board: &mut Wired<H743>, now: VirtualNanos) {
         board.power_up(now);
         let half = if self.defect == Defect::Divider {

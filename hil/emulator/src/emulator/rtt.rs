@@ -19,7 +19,6 @@ pub struct Rtt {
 }
 
 impl Rtt {
-    /// A reader of the control block at `address`.
     pub fn new(address: u64) -> Self {
         Self { up: address + UP }
     }
@@ -29,7 +28,6 @@ impl Rtt {
         self.up + WRITTEN
     }
 
-    /// Takes what was written since the last call.
     pub fn drain(&mut self, host: &mut dyn Host) -> Vec<u8> {
         let mut field = |offset| host.read(self.up + offset, Width::W32).unwrap_or(0);
         let (buffer, size, written, mut read) = (field(BUFFER), field(SIZE), field(WRITTEN), field(READ));

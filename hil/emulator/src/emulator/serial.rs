@@ -14,7 +14,6 @@ const RATE_ERROR: f64 = 0.02;
 pub struct Setup {
     /// Rate, baud.
     pub rate: f64,
-    /// Even parity.
     pub parity: bool,
     pub two_stops: bool,
     /// Idle is low.

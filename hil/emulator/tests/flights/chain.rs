@@ -8,7 +8,6 @@ use super::*;
 const MOST: u64 = 6000;
 /// The same on the small board, whose core lacks instructions for the minimum and the selection of floats.
 const MOST_SMALL: u64 = 6420;
-/// Counted steps, in a hover.
 const STEPS: usize = 40;
 
 /// From the end of the sensor's transfer to the start of the motor frame no step executes more than `most`, and every

@@ -75,7 +75,6 @@ fn ended_by_the_watchdog(flight: &Flight, within: f64, stopped_by: f64) {
 
 const CUT: Trouble = Trouble::Board(BoardFault::DataReadyCut(true));
 const JOINED: Trouble = Trouble::Board(BoardFault::DataReadyCut(false));
-/// The mode's reason.
 const LINE: &str = "inertial sensor: data-ready line silent";
 
 /// The line was cut in hover at [`AIRBORNE`]: the vehicle lands normally and gives the reason.

@@ -34,7 +34,6 @@ fn looks(flight: &Flight) -> Vec<Look> {
     lines.filter_map(|line| silicon::told(&line.text)).collect()
 }
 
-/// The logged check `name`.
 fn look(flight: &Flight, name: &str) -> Look {
     let all = looks(flight);
     let found = all.iter().find(|look| look.name == name);

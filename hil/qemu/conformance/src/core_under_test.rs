@@ -11,7 +11,6 @@ mod float;
 
 use core::fmt::Arguments;
 
-/// Prints a line for each group.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     float::run(print);
     exceptions::run(print);

@@ -16,7 +16,6 @@ const INPUTS: u32 = 4096;
 /// Control steps per mixer: 3 s of flight, after calibration at rest.
 const STEPS: u32 = 3000;
 const REST: u32 = 3000;
-/// Inertial readings per control step.
 const READINGS: usize = 4;
 const RATE_HZ: f32 = 4000.0;
 /// Steps per kind of setpoint.
@@ -24,7 +23,6 @@ const STRETCH: u32 = 250;
 
 type Function = fn(f32) -> f32;
 
-/// Prints a line per group.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     functions(print);
     for (name, variant) in [

@@ -14,7 +14,6 @@ static LEFT: Mutex<RefCell<Left>> = Mutex::new(RefCell::new(Left::new()));
 struct Bare;
 
 impl Machine for Bare {
-    /// Records the call.
     fn stop_motors() {
         faults::STOPPED.store(true, Relaxed);
     }
@@ -31,7 +30,6 @@ impl Machine for Bare {
     }
 }
 
-/// Shows the last message kept.
 pub fn with_kept<R>(show: impl FnOnce(&Left) -> R) -> R {
     interrupt::free(|cs| show(&LEFT.borrow(cs).borrow()))
 }

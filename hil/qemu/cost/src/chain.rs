@@ -24,7 +24,6 @@ pub fn at_rest() -> FlightChain {
     FlightChain::new(&p, black_box(4000.0), allocation)
 }
 
-/// Only the call.
 #[inline(never)]
 pub fn nothing(_: &mut (), _: &u32) {}
 
@@ -93,7 +92,6 @@ impl Laws {
         }
     }
 
-    /// Copies the state of `chain`.
     pub fn take(&mut self, chain: &FlightChain) {
         self.flow = chain.flow;
         self.attitude = chain.control.attitude;
@@ -126,7 +124,6 @@ pub fn attitude(l: &mut Laws, _: &Inputs) {
     l.target = l.attitude.target();
 }
 
-/// Moments from the rates.
 #[inline(never)]
 pub fn rate(l: &mut Laws, i: &Inputs) {
     let (a, feedback) = (&l.flow.attitude, l.flow.mix.feedback());
@@ -152,7 +149,6 @@ pub fn tilt(l: &mut Laws, _: &Inputs) {
     l.allocation.follow(&l.mix.thrusts, l.flow.attitude.dt);
 }
 
-/// Motor commands from thrusts and battery.
 #[inline(never)]
 pub fn commands(l: &mut Laws, i: &Inputs) {
     l.commands = l.curve.commands(&l.mix.thrusts, i.battery_ratio);

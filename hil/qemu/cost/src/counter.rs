@@ -2,7 +2,6 @@
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// Counts of a stage.
 #[derive(Clone, Copy)]
 pub struct Tally {
     pub calls: u32,
@@ -21,7 +20,6 @@ impl Tally {
         }
     }
 
-    /// Adds a call of `count` instructions.
     pub fn add(&mut self, count: u32) {
         self.calls += 1;
         self.total += u64::from(count);

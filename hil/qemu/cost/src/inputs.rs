@@ -14,7 +14,6 @@ use sophie_control::vector::Vec3;
 pub const READINGS: usize = 4;
 /// Steps at rest, in which the estimator calibrates.
 pub const REST: u32 = 2500;
-/// Steps of flight.
 pub const FLIGHT: u32 = 12_000;
 /// Steps per stretch.
 const STRETCH: u32 = 500;
@@ -25,7 +24,6 @@ const STICKS: usize = 5;
 /// One reading in this many is NaN.
 const BAD: u32 = 4001;
 
-/// Inputs of a control step.
 #[derive(Clone, Copy)]
 pub struct Inputs {
     /// Time of the newest reading, µs.
@@ -46,7 +44,6 @@ pub struct Inputs {
     pub arm: Option<(usize, f32)>,
 }
 
-/// Setpoint kind of a stretch.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Angle,

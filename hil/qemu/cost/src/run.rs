@@ -10,7 +10,6 @@ use crate::chain::{self, Laws};
 use crate::counter::{self, Tally, gross};
 use crate::inputs::{FLIGHT, Inputs, REST, Sequence};
 
-/// Name and function of a stage or law.
 type Part<S> = (&'static str, fn(&mut S, &Inputs));
 
 /// Stages in the order of the data, each after its laws.
@@ -18,7 +17,6 @@ const FILTER: Part<FlightChain> = ("filter", chain::filter);
 const ESTIMATOR: Part<FlightChain> = ("estimator", chain::estimator);
 const CONTROL: Part<FlightChain> = ("control", chain::control);
 const MIXING: Part<FlightChain> = ("mixing", chain::mixing);
-/// Laws before and in control.
 const BEFORE_CONTROL: [Part<Laws>; 4] = [
     ("biquads", chain::axes),
     ("aim", chain::aim),

@@ -17,7 +17,6 @@ mod tests {
     /// Time limit; a frame takes 0.6 ms.
     const LONGEST: Duration = Duration::from_millis(10);
 
-    /// Bytes that differ by frame and place.
     fn frame(number: u8) -> [u8; LENGTH] {
         core::array::from_fn(|place| (place as u8).wrapping_mul(37) ^ number)
     }

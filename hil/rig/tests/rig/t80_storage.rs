@@ -15,7 +15,6 @@ async fn stored(storage: &mut impl Storage) -> Params {
     params
 }
 
-/// Stores `params` and reads them back.
 async fn store(storage: &mut impl Storage, params: &Params) {
     if let Err(error) = storage.save(params).await {
         panic!("{error:?}");

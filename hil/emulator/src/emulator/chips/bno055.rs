@@ -43,7 +43,6 @@ const FUSION: u64 = 10 * MS;
 const CALIBRATION: u64 = 1000 * MS;
 /// Registers 0 to 6: chip, accelerometer, magnetometer, gyroscope, software revision, boot loader.
 const IDENTITY: [u8; 7] = [0xA0, 0xFB, 0x32, 0x0F, 0x11, 0x03, 0x15];
-/// Nonzero reset values.
 const RESET_VALUES: [(u8, u8); 6] = [
     (0x36, 0x0F),
     (reg::TEMP, 24),
@@ -140,7 +139,6 @@ impl Bno055 {
         }
     }
 
-    /// Writes one fusion result.
     fn fuse(&mut self) {
         let map = self.registers[usize::from(reg::AXIS_MAP_CONFIG)];
         let signs = self.registers[usize::from(reg::AXIS_MAP_SIGN)];

@@ -36,7 +36,6 @@ const TEST_COUNTS: [f64; 2] = [32_768.0 / 250.0, 32_768.0 / 2.0];
 /// Samples kept: far more than a millisecond's.
 const QUEUE: usize = 64;
 
-/// A sample in chip axes.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Sample {
     /// Start of validity, ns of emulated time.
@@ -109,7 +108,6 @@ impl Imu {
         self.samples.push_back(sample);
     }
 
-    /// Sets the converters' input at `now`.
     fn measure(&mut self, now: u64) {
         while let Some(sample) = self.samples.front().copied()
             && sample.at <= now
@@ -177,7 +175,6 @@ impl Imu {
         }
     }
 
-    /// Factory code in a register.
     fn code(&self, register: u8) -> Option<u8> {
         let (codes, first) = match self.bank {
             1 => (&CODES[0], reg::B1_XG_ST_DATA),

@@ -10,9 +10,7 @@ use serde::{Deserialize, Serialize};
 /// Both directions of a line; the port times the bytes by its rate.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Line {
-    /// Words to send to the chip.
     pub outgoing: VecDeque<u16>,
-    /// Words from the chip.
     pub incoming: Vec<u16>,
 }
 

@@ -40,7 +40,6 @@ pub struct Exti {
 }
 
 impl Exti {
-    /// The pin routed to `line` changes to `level`.
     pub fn edge(&mut self, line: u8, level: Level, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         let selected = file.get(match level {
             Level::High => exti::Register::Rtsr,

@@ -19,7 +19,6 @@ pub struct DmaI2c {
 }
 
 impl DmaI2c {
-    /// `inner`, read by the DMA stream whose count is at `remaining`.
     pub fn new(inner: I2c, remaining: u64) -> Self {
         Self {
             inner,

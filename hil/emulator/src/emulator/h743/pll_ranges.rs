@@ -2,9 +2,7 @@
 
 /// Clock registers: `CR`, `PLLCKSELR`, `PLLCFGR` and each PLL's `DIVR`.
 pub struct Settings {
-    /// Enabled PLLs.
     pub control: u64,
-    /// Source dividers.
     pub dividers: u64,
     pub ranges: u64,
     pub multipliers: [u64; 3],

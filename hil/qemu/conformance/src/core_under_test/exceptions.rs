@@ -14,7 +14,6 @@ use cortex_m::peripheral::{NVIC, SCB};
 use cortex_m::register::{basepri, basepri_max, control};
 use cortex_m_rt::exception;
 
-/// Events kept per scenario.
 const EVENTS: usize = 128;
 /// Interrupts and priorities. The upper bits count: four on one machine, three on the other.
 const PRIORITIES: [(u16, u8); 7] = [
@@ -59,7 +58,6 @@ fn pend(line: u16) {
     isb();
 }
 
-/// The log of a scenario.
 struct Events;
 
 impl fmt::Display for Events {
@@ -188,7 +186,6 @@ extern "C" fn conformance_usage_fault() {
     event(930);
 }
 
-/// Prints a line per scenario.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     // SAFETY: the only place that takes them, and nothing runs beside it.
     let mut core = unsafe { cortex_m::Peripherals::steal() };

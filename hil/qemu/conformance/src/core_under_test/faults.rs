@@ -24,7 +24,6 @@ const STATUS: usize = 7;
 const THUMB: u32 = 1 << 24;
 
 pub static STOPPED: AtomicBool = AtomicBool::new(false);
-/// Stack pointer to continue with.
 #[unsafe(no_mangle)]
 static CONFORMANCE_STACK: AtomicU32 = AtomicU32::new(0);
 
@@ -55,7 +54,6 @@ unsafe extern "C" {
     fn conformance_go_on();
 }
 
-/// Message of a run for the next.
 pub struct Left {
     text: [u8; 240],
     length: usize,
@@ -194,7 +192,6 @@ extern "C" fn float_overflow() {
     black_box(deeper_with_floats(1.0));
 }
 
-/// Reads unmapped memory.
 fn read_nowhere() -> u32 {
     // SAFETY: the read gives no value; the processor faults.
     unsafe { (NOWHERE as *const u32).read_volatile() }

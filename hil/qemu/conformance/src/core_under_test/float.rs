@@ -42,7 +42,6 @@ const AWKWARD: [u32; 32] = [
     0x7F80_5678, // signalling NaN
     0xFFA0_0001,
 ];
-/// Additional random operands.
 const RANDOM: usize = 16;
 const OPERANDS: usize = AWKWARD.len() + RANDOM;
 
@@ -170,7 +169,6 @@ mod fpv5 {
     pub const ALL: &[(&str, Operation)] = LIST;
 }
 
-/// Prints a line per instruction and rounding.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     let mut noise = Noise::new(4);
     let mut operands = [0; OPERANDS];
