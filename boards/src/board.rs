@@ -1,6 +1,6 @@
 //! The selected board, and its ports for the tasks.
 
-// One line a board. Exactly one holds: the build script has seen to it.
+// One line per board; the build script ensures that exactly one applies.
 #[cfg_attr(feature = "matek-h743", path = "matek_h743.rs")]
 #[cfg_attr(feature = "cuav-v5", path = "cuav_v5.rs")]
 #[cfg_attr(feature = "f405", path = "f405.rs")]
@@ -43,7 +43,7 @@ pub struct Board {
     pub lights: LightsPort,
     /// Parameter storage.
     pub storage: StoragePort,
-    /// Parameters with which the ports were built: stored ones, or the defaults.
+    /// Parameters of the ports: stored ones, or the defaults.
     pub params: Params,
     /// Result of reading them.
     pub loaded: Loaded,

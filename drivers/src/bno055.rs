@@ -59,7 +59,7 @@ const FUSION_RUNS: u8 = 5;
 const SYSTEM_ERROR: u8 = 1;
 /// OPR_MODE: the configuration mode.
 const CONFIG_MODE: u8 = 0x00;
-/// Identity axis map (§3.4); [`Mounting`] rotates instead, without the datasheet's sign rule.
+/// Identity axis map (§3.4); [`Mounting`] rotates instead.
 const AXES: [u8; 2] = [0x24, 0x00];
 
 /// I2C address, chosen by the pin COM3 (§4.6).
@@ -95,7 +95,7 @@ pub struct Config {
 }
 
 impl Default for Config {
-    /// Accelerometer and gyroscope, marking up and x forward, gyroscope calibration at least begun.
+    /// Accelerometer and gyroscope, marking up, x forward, gyroscope calibration begun.
     fn default() -> Self {
         Self {
             fusion: Fusion::default(),
@@ -211,7 +211,7 @@ impl Bno055 {
         self.state = match self.state {
             State::Absent(_) => {
                 self.identify(bus).await?;
-                // Configured from the reset state, whatever the chip did before the processor's reset.
+                // Configured from the reset state, whatever the chip's former mode.
                 self.write(bus, reg::PAGE_ID, 0).await?;
                 self.write(bus, reg::SYS_TRIGGER, RST_SYS).await?;
                 State::Resetting(Instant::now() + RESET_TIME)
@@ -262,10 +262,10 @@ impl Bno055 {
         Ok(())
     }
 
-    /// Finds the chip on either page, without writing to one that shows no page of a BNO055.
+    /// Finds the chip on either page; writes only to one that shows a BNO055's page.
     async fn identify(&self, bus: &mut impl I2c) -> Result<(), Lost> {
         let [mut found] = self.read(bus, reg::CHIP_ID).await?;
-        // A processor-only reset or a bus glitch leaves the page without identity selected.
+        // A processor-only reset or a bus glitch can leave the other page selected.
         if found != CHIP_ID && self.read(bus, reg::PAGE_ID).await? == [OTHER_PAGE] {
             self.write(bus, reg::PAGE_ID, 0).await?;
             [found] = self.read(bus, reg::CHIP_ID).await?;

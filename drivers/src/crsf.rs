@@ -19,7 +19,7 @@ const BYTE: Duration = Duration::from_micros(24);
 /// published as new with the bytes of a link that returns.
 const SILENCE: Duration = Duration::from_millis(3);
 
-/// Decodes frames from a stream of bytes in pieces of any length.
+/// Decodes frames from a stream in pieces of any length.
 pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
@@ -59,7 +59,7 @@ impl Decoder {
 
 impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        // A read ends with its last byte, so these bytes began their own length earlier.
+        // A read ends with its last byte: these bytes began their length earlier.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let before = self.last.replace(at);
         let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
@@ -169,7 +169,7 @@ mod tests {
         );
         assert_eq!(published(&mut d, &throttle(0.5), 20), Some(50));
         assert_eq!(published(&mut d, &statistics(0), 30), None);
-        // The last frame repeated, the loss reported at 5 Hz, for longer than any silence.
+        // The last frame repeated, the loss reported at 5 Hz, longer than any silence.
         for ms in (40..3000).step_by(20) {
             if ms % 200 == 0 {
                 assert_eq!(published(&mut d, &statistics(0), ms), None, "{ms}");
@@ -204,7 +204,7 @@ mod tests {
     fn what_came_before_a_silence_is_never_published_after_it() {
         for later in [4, 20, 1000, 60_000] {
             for length in 2..=62 {
-                // A frame start announcing `length` bytes whose rest is lost, then a pilot's frame.
+                // A frame start announcing `length` bytes, the rest lost, then a pilot's frame.
                 let (mut d, mut missing) = (Decoder::new(), usize::from(length) + 2);
                 let read = [std::vec![0xC8, length], throttle(0.9)].concat();
                 let seen = published(&mut d, &read, 1000);
@@ -232,7 +232,7 @@ mod tests {
         let _ = published(&mut d, first, 1000);
         assert_eq!(published(&mut d, rest, 1002), Some(30));
         assert_eq!(d.state.errors, 0);
-        // Silence after a whole frame is no error, and a read counts from its first byte.
+        // Silence after a whole frame is no error; a read counts from its first byte.
         assert_eq!(published(&mut d, &bytes.repeat(4), 1006), Some(30));
         let _ = published(&mut d, first, 2000);
         assert_eq!((d.state.frames, d.state.errors), (5, 0));

@@ -1,4 +1,4 @@
-//! Data-ready line of a part.
+//! Data-ready line.
 
 use embassy_time::Instant;
 

@@ -17,7 +17,7 @@ pub const THROTTLE_MAX: u16 = 2047;
 pub const BITS: usize = 16;
 /// Motors per burst.
 pub const MOTORS: usize = 4;
-/// Compare values of a burst, with one row of zeros after the bits.
+/// Compare values of a burst, including one row of zeros.
 pub const BURST: usize = (BITS + 1) * MOTORS;
 
 /// A frame.

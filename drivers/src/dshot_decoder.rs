@@ -96,7 +96,7 @@ mod tests {
     use super::*;
     use crate::dshot::{BURST, BitTiming, MOTORS, Speed, fill_burst};
 
-    /// Plays one motor's burst from time `start`; returns what the decoder made of it.
+    /// Plays one motor's burst from `start`; returns the decoder's results.
     fn play(
         decoder: &mut Decoder,
         buffer: &[u16],
@@ -143,7 +143,7 @@ mod tests {
         fill_burst(&mut good, [frame; 4], t);
         let mut decoder = Decoder::new(u32::from(t.period));
 
-        // Cut after ten bits: detected at the next frame's first pulse, without losing that frame.
+        // Cut after ten bits: detected at the next frame's first pulse; that frame is kept.
         assert!(play(&mut decoder, &good[..40], 0, t, 0).is_empty());
         let next = play(&mut decoder, &good, 0, t, 168_000);
         assert_eq!(next, [Err(LineError::Short(10)), Ok(frame)]);

@@ -24,7 +24,7 @@ pub enum Fault {
         /// Value read.
         found: u8,
     },
-    /// A register that was not written or lost its value later: a brown-out of the part.
+    /// A register not written, or lost later by a brown-out of the part.
     Configuration {
         /// Bank.
         bank: u8,
@@ -47,7 +47,7 @@ pub enum Fault {
         sensor: Sensor,
         /// Axis of the part: 0 x, 1 y, 2 z.
         axis: u8,
-        /// Response, % of the expected one (of the least allowed if the part has no factory value).
+        /// Response, % of the expected one (of the least allowed without a factory value).
         percent: u16,
     },
     /// Gyroscope offset at rest too large: a bad part, or one in motion.
@@ -152,7 +152,7 @@ const fn axis_name(axis: u8) -> char {
     }
 }
 
-/// Logs the loss of a chip; without the `defmt` feature, nothing.
+/// Logs the loss of a chip, only with the feature `defmt`.
 pub(crate) fn report(chip: &'static str, fault: &Fault) {
     #[cfg(feature = "defmt")]
     defmt::warn!("{=str}: {=str} ({})", chip, fault.what(), fault);

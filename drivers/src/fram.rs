@@ -235,7 +235,7 @@ fn identify(answer: [u8; 9]) -> Result<(), Fault> {
     agree(&RAMTRON_PARTS, &[product])
 }
 
-/// Slice of `buffer` for `length` data bytes, starting with opcode and address.
+/// Slice of `buffer` for `length` data bytes after opcode and address.
 fn head(buffer: &mut [u8; HEAD + CHUNK], opcode: u8, at: u32, length: usize) -> Option<&mut [u8]> {
     let [high, low] = u16::try_from(at).ok()?.to_be_bytes();
     let transfer = buffer.get_mut(..HEAD + length)?;

@@ -4,7 +4,7 @@
 //! embassy-stm32 0.6 computes fields too large for the register at 100 MHz and loses their upper bits: data would
 //! change 20 ns before the clock's edge instead of the required 100 ns, from the slowest data edge.
 
-/// Slowest edge of a line, ns: largest pull-up and capacitance of the bus.
+/// Slowest edge, ns: largest pull-up and capacitance of the bus.
 const EDGE_NS: u64 = 300;
 /// Data valid before the clock rises, ns.
 const SET_UP_NS: u64 = 100;

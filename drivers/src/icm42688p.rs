@@ -191,7 +191,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// Rate and ranges of the parameters, all of which the part has; the rest as by default.
+    /// Rate and ranges of the parameters; the rest as by default.
     pub fn from_params(p: &Params) -> Self {
         let rate = match p.imu_rate {
             ImuRate::Hz1000 => Rate::Khz1,

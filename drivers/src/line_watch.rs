@@ -16,7 +16,7 @@ const FORGOTTEN_AFTER: Duration = Duration::from_secs(10);
 /// Poll period times rate, µs·Hz: 1.5 % shorter than the part's, whose clock, locked to the gyroscope, is off by about
 /// 1 %. Practically no sample is missed, and the filters' rate is met within 2 %.
 const PERIOD_BY_RATE: f32 = 0.985e6;
-/// Fraction of the period after which a missing sample is requested again; bounds its lateness.
+/// Fraction of the period until a missing sample is requested again; bounds its lateness.
 const AGAIN: u32 = 4;
 
 /// Line state.
@@ -131,7 +131,7 @@ mod tests {
         Instant::from_micros(us)
     }
 
-    /// Feeds samples at 4 kHz from `from` until the line is used again or `to`; returns that time.
+    /// Feeds samples at 4 kHz from `from` until the line is back in use or `to`; returns that time.
     fn run(line: &mut LineWatch, from: u64, to: u64, announced: impl Fn(u64) -> bool) -> u64 {
         let mut now = from;
         while now < to && line.due().is_some() {

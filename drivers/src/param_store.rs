@@ -125,7 +125,7 @@ impl<F: NorFlash> ParamStore<F> {
 
     async fn append(&mut self, params: &Params, buffer: &mut [u8; BUFFER]) -> Result<(), StorageError> {
         let config = self.config().ok_or(StorageError::Broken)?;
-        // Caches the place of the one key; otherwise moving a page's items searches it once per item.
+        // Caches the place of the one key; otherwise moving a page searches it for each item.
         let cache = Cache::new(Uncached, Uncached, ArrayKeyPointers::<(), 1>::new());
         let mut map = MapStorage::<(), _, _>::new(&mut self.flash, config, cache);
         map.store_item(buffer, &(), &Set::of(*params, self.defaults))
@@ -169,7 +169,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
         if found.holds(params, self.defaults) {
             return Ok(());
         }
-        // Appending keeps the old set until the new one is complete; an unreadable one needs no keeping.
+        // Appending keeps the old set, if readable, until the new one is complete.
         if found.set.is_some() || !found.damaged {
             match self.append(params, &mut buffer).await {
                 Ok(()) if self.find(&mut buffer).await.holds(params, self.defaults) => return Ok(()),

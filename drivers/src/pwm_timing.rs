@@ -14,7 +14,7 @@ pub struct PwmTiming {
 
 impl PwmTiming {
     const COUNTS: u32 = 1 << 16;
-    /// Counts at the end of a frame that no pulse fills: it separates two pulses.
+    /// Counts at the end of a frame that separate two pulses.
     const REST: u32 = 2;
 
     /// Finest values of a 16-bit timer at `clock_hz` that make frames of `frame_us` µs exactly; `None` if the timer

@@ -77,7 +77,7 @@ impl<S: SpiDevice> Registers<S> {
         }
     }
 
-    /// Reads `N` registers of the selected bank from `first` on, in one transaction.
+    /// Reads `N` registers of the selected bank from `first` on.
     ///
     /// # Errors
     /// [`Fault::Bus`].

@@ -265,7 +265,7 @@ impl Decoder {
 
 impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        // A read ends with its last byte, so these bytes began their own length earlier.
+        // A read ends with its last byte: these bytes began their length earlier.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let before = self.last.replace(at);
         let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));

@@ -92,7 +92,7 @@ pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
     })
 }
 
-/// Judges one sensor; `absolute`: its limits, counts, for a part without factory codes.
+/// Judges one sensor; `absolute`: limits, counts, without factory codes.
 fn sensor(
     sensor: Sensor,
     measured: &Response,

@@ -285,7 +285,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         self.bring_up().await?;
         loop {
             self.next_raw().await?;
-            // A part that hung may still hang after its reset: samples are discarded until they change.
+            // A hung part may hang after its reset too: samples are discarded until they change.
             if self.gyro.alive || self.chip.watch().stuck_after == 0 {
                 return Ok(());
             }
@@ -304,7 +304,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Waits for data-ready, reads and checks the sample, and periodically checks the part.
+    /// Waits for, reads and checks the sample; periodically checks the part.
     async fn next_raw(&mut self) -> Result<(), Fault> {
         if self.waiting {
             self.look_into_silence().await?;
@@ -335,7 +335,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
-    /// Polls the status until a sample is new, while watching the line.
+    /// Polls the status until a sample is new, and watches the line.
     async fn next_by_clock(&mut self) -> Result<(), Fault> {
         let give_up = Instant::now() + NOT_READY_MAX;
         let mut announced = false;
@@ -415,7 +415,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// The caller dropped the last wait: checks the part and, if it is well, starts polling.
+    /// After a dropped wait: checks the part and, if it is well, starts polling.
     async fn look_into_silence(&mut self) -> Result<(), Fault> {
         self.silences = self.silences.saturating_add(1);
         self.check().await?;
@@ -448,7 +448,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Compares identity and the registers of scale and rate with the configuration.
+    /// Compares identity, scale and rate registers with the configuration.
     async fn check(&mut self) -> Result<(), Fault> {
         self.identify().await?;
         let read: [u8; WATCHED] = self.registers.read(C::WATCH_FROM).await?;

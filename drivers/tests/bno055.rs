@@ -334,7 +334,7 @@ fn an_arm_that_does_not_exist_is_absent() {
 
 #[test]
 fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
-    // The chips' power-up before, with and after the processor's, so they miss more and more attempts.
+    // The chips' power-up before, with and after the processor's.
     for late_ms in [0, 100, 300, 600] {
         run(async move {
             let (port, chips) = arms([Config::default(); 4]);
@@ -350,7 +350,6 @@ fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
                     Instant::now().as_millis()
                 );
             }
-            // A broken wire, a hung bus: one chip, then both on the other side.
             chips[1].borrow_mut().failure = Failure::Missing;
             let _ = with_timeout(Duration::from_millis(1100), task.as_mut()).await;
             assert!(links.hardware().iter().eq([ArmingInhibit::ArmSensor2]));

@@ -88,7 +88,7 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
         "{case}: {} us",
         timed.gap
     );
-    // As many as the part makes, within 2 %, none of them twice.
+    // As many as the part makes, within 2 %, all different.
     let samples = part.borrow().samples.clone();
     let share = samples.len() as f64 / f64::from(rate);
     assert!((0.98..1.02).contains(&share), "{case}: {share}");
@@ -105,7 +105,6 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
     }
     assert_eq!(part.borrow().writes.len(), writes, "{case}: the part is well");
 
-    // Once joined it is used again after a while, without polls.
     part.borrow_mut().failure = Failure::None;
     let joined = Instant::now();
     while driver.line_silent() {

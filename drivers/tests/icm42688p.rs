@@ -246,7 +246,7 @@ fn a_part_that_appears_late_is_taken_up_by_the_task() {
             errors.iter().all(|&e| e == PortError::Absent) && !errors.is_empty(),
             "{errors:?}"
         );
-        // A missing part causes a few transactions, not a busy loop.
+        // A missing part causes no busy loop.
         assert!(
             part.borrow().transactions.len() < 100,
             "{}",
@@ -447,7 +447,7 @@ fn nothing_is_believed_before_the_part_has_settled() {
 
 #[test]
 fn the_parameters_set_rate_and_ranges_and_the_scales_follow() {
-    // Parameter, register bits, and the fake part's behaviour: a data-ready each period.
+    // Parameter, register bits, and a data-ready each period.
     for (rate, odr) in [(1000.0, 6), (2000.0, 5), (4000.0, 4), (8000.0, 3)] {
         for (dps, gyro) in [(250.0, 3), (500.0, 2), (1000.0, 1), (2000.0, 0)] {
             for (g, accel) in [(2.0, 3), (4.0, 2), (8.0, 1), (16.0, 0)] {

@@ -130,7 +130,6 @@ fn survives_cuts<const W: usize, const P: usize>(pages: usize, before: &[Params]
         assert!(found == old || found == new, "cut {cut}: neither old nor new");
         assert_eq!(loaded.refused, 0, "cut {cut}");
         assert_eq!(contents, flash.0.borrow().bytes, "loading wrote");
-        // Power is lost again at the same step of the next save.
         let again = flash.copy();
         let steps = again.0.borrow().steps;
         again.0.borrow_mut().cut_at = Some(steps + cut - first);
@@ -204,7 +203,7 @@ fn what_firmware_with_other_parameters_stored_is_read_as_far_as_it_is_known() {
     assert_eq!(load(&flash), (known, sound(2)));
 }
 
-/// Two sectors as firmware with the old names left them after two saves; erased behind these bytes.
+/// Two sectors after two saves by firmware with the old names; erased behind these bytes.
 fn of_old<const W: usize, const P: usize>(stored: &[u8]) -> Flash<W, P> {
     let mut bytes = stored.to_vec();
     bytes.resize(2 * P, 0xFF);
@@ -261,7 +260,6 @@ fn of_an_old_and_a_new_name_in_one_set_the_new_one_counts() {
         let flash = with_item::<4, SMALL>(item.leak());
         assert_eq!(load(&flash), (set(&[("setpoint_lpf_hz", 2.5)]), sound(1)));
     }
-    // An old value out of range is skipped, as under a new name.
     let item = [b"SPH1".to_vec(), record("setpoint_cutoff", 500.0)].concat();
     let (params, loaded) = load(&with_item::<4, SMALL>(item.leak()));
     assert_eq!((params, loaded.taken, loaded.refused), (Params::default(), 0, 1));
@@ -269,7 +267,7 @@ fn of_an_old_and_a_new_name_in_one_set_the_new_one_counts() {
 
 const FULL: usize = 256;
 
-/// [`FULL`] records as firmware with more parameters stores them: all known ones, and others.
+/// [`FULL`] records of firmware with more parameters: all known ones, and others.
 fn full_set(params: &Params) -> Vec<u8> {
     let known = Params::TABLE
         .iter()

@@ -56,7 +56,7 @@ fn protect(mpu: &MPU) {
     cortex_m::asm::isb();
 }
 
-/// Drops cached data of `length` bytes at `address`, which were changed behind the cache.
+/// Drops cached data of `length` bytes at `address`, changed behind the cache.
 pub fn forget_cached(address: usize, length: usize) {
     if SCB::dcache_enabled() {
         // SAFETY: cache control is the core's own, and dropping cached flash loses no write: flash is never written

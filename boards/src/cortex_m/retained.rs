@@ -197,7 +197,7 @@ pub fn start(cause: ResetCause) -> (Kept, Memory) {
     (kept, memory)
 }
 
-/// Keeps `message` for the next start. Called with interrupts off, last before a reset.
+/// Keeps `message` for the next start. Called with interrupts off, just before a reset.
 pub fn leave(message: fmt::Arguments<'_>) {
     let mut block = load();
     if !block.is_whole() {

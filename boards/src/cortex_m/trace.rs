@@ -91,7 +91,7 @@ pub fn lost() -> u32 {
     LOST.load(Relaxed)
 }
 
-/// The thread mode executor has polled since it was idle. Every interrupt wakes it, mostly without work.
+/// The thread mode executor polled since it was idle; every interrupt wakes it, mostly without work.
 static POLLED: AtomicBool = AtomicBool::new(false);
 
 // SAFETY (all seven): symbols declared by embassy-executor, each defined once with its signature.

@@ -45,13 +45,13 @@ impl<const SECTOR: usize> ParamFlash<SECTOR> {
     }
 }
 
-/// Runs `change`, which writes or erases `length` bytes at `place`, and leaves no old data in a cache.
+/// Runs `change`, which writes or erases `length` bytes at `place`; no cache keeps old data.
 #[cfg(family = "f4")]
 fn uncached<T>(_place: u32, _length: usize, change: impl FnOnce() -> T) -> T {
     super::accelerator::uncached(change)
 }
 
-/// Runs `change`, which writes or erases `length` bytes at `place`, and leaves no old data in a cache.
+/// Runs `change`, which writes or erases `length` bytes at `place`; no cache keeps old data.
 #[cfg(not(family = "f4"))]
 fn uncached<T>(place: u32, length: usize, change: impl FnOnce() -> T) -> T {
     let result = change();

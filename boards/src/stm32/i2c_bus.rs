@@ -1,4 +1,4 @@
-//! The arm sensors' I2C buses, freed from chips that hold them low, at start-up and after failures.
+//! The arm sensors' I2C buses, freed at start-up and after failures from chips that hold them.
 
 use embassy_stm32::gpio::OutputOpenDrain;
 use embassy_stm32::i2c::mode::Master;
@@ -129,7 +129,7 @@ pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
     registers.cr1().modify(|w| w.set_pe(true));
 }
 
-/// No effect: embassy-stm32 sets the right times in the older I2C's registers.
+/// No effect: embassy-stm32 sets the older I2C's times right.
 #[cfg(family = "f4")]
 pub fn set_fast_mode<T: embassy_stm32::PeripheralType>(_bus: &embassy_stm32::Peri<'static, T>) {}
 
@@ -180,7 +180,7 @@ impl<P> ErrorType for ArmBus<P> {
 
 impl<P: BusParts> embedded_hal_async::i2c::I2c for ArmBus<P> {
     async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
-        // Taken out: a dropped transfer leaves no bus, and the next one rebuilds it.
+        // Taken out: the transfer after a dropped one rebuilds the bus.
         let mut bus = match self.bus.take() {
             Some(bus) => bus,
             None => self.rebuilt().await.ok_or(Error::Bus)?,

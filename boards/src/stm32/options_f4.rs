@@ -8,7 +8,7 @@ use embassy_time::{Duration, Instant};
 const HIGHEST: u8 = 0b00;
 /// Option byte keys (RM0090 §3.9.4, RM0410 §3.7.3).
 const KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
-/// Time-out of a write. Datasheets: the option bytes are a sector of 16 KiB, 0.5 s at most.
+/// Time-out of a write; the option bytes are a sector of 16 KiB, 0.5 s at most (datasheets).
 const LONGEST: Duration = Duration::from_secs(2);
 /// Read-out protection: off, and irreversible.
 const OPEN: u8 = 0xAA;

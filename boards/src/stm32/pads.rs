@@ -13,7 +13,7 @@ pub struct Pad {
     pin: usize,
 }
 
-/// What a board's tests need besides its drivers; all are pads of flight, which every board has.
+/// What a board's tests need besides its drivers; every board has these pads.
 pub struct Wiring {
     /// Core clock, Hz.
     pub core_hz: u32,

@@ -29,7 +29,7 @@ impl<F: NorFlash> Storage for BoardStorage<F> {
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
-        // Erasing may stall the processor for longer than the watchdog's normal time-out. Only while disarmed.
+        // May stall the processor beyond the watchdog's normal time-out. Only while disarmed.
         watchdog::be_patient(true).await;
         let saved = self.0.save(params).await;
         watchdog::be_patient(false).await;

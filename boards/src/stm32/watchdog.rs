@@ -58,10 +58,10 @@ impl<T: Instance + 'static> Watchdog for Dog<T> {
     }
 }
 
-/// Sets the time-out to some twenty seconds or back to normal, and feeds.
+/// Sets the time-out to some 20 s or back to normal, and feeds.
 pub async fn be_patient(patient: bool) {
     let (prescaler, reload) = if patient { LONG } else { SHORT };
-    // Atomic: the supervisor's feed would lock the registers between key and values.
+    // Atomic: the supervisor's feed would lock the registers after the key.
     critical_section::with(|_| {
         IWDG.kr().write(|w| w.set_key(Key::ENABLE));
         IWDG.pr().write(|w| w.set_pr(prescaler));

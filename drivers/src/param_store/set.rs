@@ -7,7 +7,7 @@ use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 const TAG: [u8; 4] = *b"SPH1";
 /// Bytes of a record: hash of the name, bits of the value, both little-endian.
 const RECORD: usize = 8;
-/// Most records of a set: more than the table has, so that sets of other firmware are readable.
+/// Most records: more than the table has, so that other firmware's sets are readable.
 pub(super) const RECORDS: usize = 256;
 pub(super) const LONGEST: usize = TAG.len() + RECORDS * RECORD;
 
@@ -134,7 +134,7 @@ impl<'a> Value<'a> for Set {
             return Err(SerializationError::InvalidFormat);
         };
         let mut set = Self::of(Params::DEFAULT, &Params::DEFAULT);
-        // Rows with a record under the table's name, which precedes one under the old name.
+        // Rows recorded under the table's name, which precedes an old name.
         let mut under_new = Rows::NONE;
         for &[h0, h1, h2, h3, v0, v1, v2, v3] in records {
             let (name, value) = (

@@ -129,7 +129,7 @@ fn published(decoder: &mut Decoder, bytes: &[u8], us: u64) -> Option<u32> {
         .map(|state| (state.sticks.throttle * 100.0 + 0.5) as u32)
 }
 
-/// A decoder after three frames 7 ms apart, the last at 21 ms.
+/// A decoder after three frames, 7 ms apart, the last at 21 ms.
 fn believing() -> Decoder {
     let mut d = Decoder::new();
     assert_eq!(published(&mut d, &[0x00], 0), None);
@@ -156,12 +156,12 @@ fn the_third_frame_in_a_row_is_believed() {
 
 #[test]
 fn only_a_pause_beyond_the_bytes_own_time_is_silence() {
-    // Half a frame, then a frame's length of bytes over 3 ms: the line was never idle.
+    // Half a frame, then a frame's length of bytes over 3 ms without idle time.
     let frame = pilot().encode();
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 31_500), None, "still the same stream");
-    // With an idle time of 4 ms: the half is dropped; the frame found is not accepted alone.
+    // After 4 ms of idle time: the half is dropped, and the next frame not accepted alone.
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 35_000), None);

@@ -51,7 +51,7 @@ pub struct Bench<'a> {
     grip: PerArm<ArmGrip>,
     proven: bool,
     setpoint: [f64; 3],
-    /// The last reset of the mission, the number of resets, and whether the board is still down.
+    /// The mission's last reset, the number of resets, and whether the board is down.
     reset: Option<Reset>,
     cuts: u32,
     dead: bool,
@@ -344,7 +344,7 @@ impl Aircraft for Bench<'_> {
         self.pins.motors
     }
 
-    // The processor stands still until its watchdog resets it. Scenarios with another cause are refused beforehand.
+    // The processor stands still until its watchdog's reset; other causes are refused beforehand.
     fn cut(&mut self, cause: StartCause, step: usize, at: f64) {
         self.wires.faults.push(BoardFault::Hang(true));
         self.reset = Some(Reset { cause, step, at });

@@ -108,7 +108,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
             board.chip
         ));
     }
-    // The name in the image's first log line: boards of other chips also start at this flash address.
+    // The name in the first log line: other boards' images also start at this address.
     let named = |name: &[u8]| {
         let mut data = file
             .sections()

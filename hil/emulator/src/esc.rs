@@ -74,7 +74,7 @@ impl Esc {
         }
     }
 
-    /// Level change to `high` at `at` ns; returns the first edge's time of a completed frame.
+    /// Level change to `high` at `at` ns; returns the first edge's time of a complete frame.
     pub fn edge(&mut self, at: u64, high: bool) -> Option<u64> {
         if high {
             self.rose = Some(at);
@@ -138,7 +138,7 @@ mod tests {
 
     use super::*;
 
-    /// Sends `bits` at `at`, 3333 ns each; returns the result of the completed frame.
+    /// Sends `bits` at `at`, 3333 ns each; returns the complete frame's result.
     fn send(esc: &mut Esc, at: u64, bits: u16, count: u32) -> Option<u64> {
         let mut done = None;
         for n in 0..count {

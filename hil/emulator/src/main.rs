@@ -155,7 +155,7 @@ fn run(args: &Args) -> Result<bool, String> {
     Ok(flight.passed())
 }
 
-/// Writes the flight's files, and prints the result beside the same flight on the host.
+/// Writes the flight's files, and prints the result beside the host's flight.
 fn write(
     args: &Args,
     scenario: &Scenario,

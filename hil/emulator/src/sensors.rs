@@ -1,4 +1,4 @@
-//! Sensor signals on the board's wires, with the errors of the simulated board's sensors, as voltages and samples.
+//! Voltages and samples on the board's wires, with the errors of the simulated board's sensors.
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;

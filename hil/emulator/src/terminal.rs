@@ -11,7 +11,7 @@ const AT_ONCE: usize = 64;
 pub struct Sockets {
     /// Console, both ways.
     pub console: Option<Terminal>,
-    /// Board's output to its receiver; input is dropped, since the receiver's line is the pilot's.
+    /// Board's output to its receiver; input is dropped, as the line is the pilot's.
     pub telemetry: Option<Terminal>,
 }
 

@@ -1,4 +1,4 @@
-//! Measured arm tilt against the mixer's static model under the commands at the motors' pins.
+//! Measured arm tilt against the mixer's static model, from the motors' pins.
 
 use sophie_control::params::Params;
 use sophie_control::tilt::TiltModel;

@@ -1,4 +1,4 @@
-//! Jumpers between pads. The listener is a servo's pad, taken from its timer during the test.
+//! Jumpers between pads. The listener is a servo's pad, taken from its timer.
 
 use sophie_boards::{Pad, Pupdr, WIRING};
 

@@ -15,7 +15,7 @@ pub fn absent(what: fmt::Arguments<'_>) {
     defmt::warn!("ignored: not found: {}", Display2Format(&what));
 }
 
-/// Passes a test that a reset interrupted: the probe no longer waits for its return.
+/// Passes a test after its reset, when the probe no longer waits for its return.
 pub fn passed() -> ! {
     semihosting::process::exit(0)
 }

@@ -174,7 +174,7 @@ impl<C: Chip> Wired<C> {
         self.pads.foreign
     }
 
-    /// Pins with a wrong function, with that function, and a receiver's port that differs from `receiver`.
+    /// Pins with a wrong function, and a receiver's port that differs from `receiver`.
     pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let port = self.chip.serial_setup(self.pads.receiver);

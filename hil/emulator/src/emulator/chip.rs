@@ -30,7 +30,7 @@ pub enum Clock {
     Pll,
 }
 
-/// Crystal ready bit of the clock control register on every part here (RM0090 §7.3.1, RM0433 §8.7.2).
+/// Crystal ready bit of the clock control register (RM0090 §7.3.1, RM0433 §8.7.2).
 pub const CRYSTAL_READY: u64 = 1 << 17;
 /// Core PLL locked bit, in the same register.
 pub const PLL_LOCKED: u64 = 1 << 25;
@@ -53,7 +53,7 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     /// A pin's alternate function; `None` without one.
     fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8>;
     fn drive(&mut self, now: VirtualNanos, pin: At, level: Level);
-    /// The firmware drives the pin: it is an output, or a peripheral's other than the debug port's.
+    /// The pin is an output, or a peripheral's other than the debug port's.
     fn drives(&mut self, now: VirtualNanos, pin: At) -> bool;
     fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool;
     fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool;
@@ -65,7 +65,7 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn pll_ranges(&self) -> Option<String> {
         None
     }
-    /// Times of an arm bus that breach its specification; `None` where no register holds them.
+    /// Times of an arm bus that breach its specification; `None` without such registers.
     fn bus_times(&self, bus: usize) -> Option<String> {
         let _ = bus;
         None
@@ -81,7 +81,7 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn age(&mut self);
     /// Stops a clock from the next reset of the clocks on.
     fn stop_clock(&mut self, clock: Clock);
-    /// The write changes flash while its data cache is on: old data would be read back.
+    /// The write changes flash while its data cache is on: reads would return old data.
     fn changes_cached_flash(&self, address: u64, value: u64) -> bool;
     /// First address of the flash sector that the write begins to erase.
     fn erased(&self, address: u64, value: u64) -> Option<u64>;

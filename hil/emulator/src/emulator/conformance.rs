@@ -1,4 +1,4 @@
-//! The emulator's core with the memory of QEMU's mps2 machines: runs the conformance image and keeps its log.
+//! Runs the conformance image on the emulator's core with the memory of QEMU's mps2 machines.
 
 use std::num::{NonZeroU32, NonZeroU64};
 use std::path::Path;

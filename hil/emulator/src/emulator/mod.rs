@@ -480,7 +480,7 @@ impl World {
         true
     }
 
-    /// Marks a task as queued while it is not in its executor's queue, so it never runs again.
+    /// Marks a task as queued outside its executor's queue, so it never runs again.
     fn hang(&self, name: &str, host: &mut dyn Host) -> bool {
         let mut word = |at: u64| host.read(at, Width::W32).unwrap_or(0);
         // The executor's header has no fixed layout: the state word is "spawned" in every task.
@@ -539,7 +539,7 @@ impl World {
         }
         for (arm, [x, y, z]) in wires.arms.into_iter().enumerate() {
             if let Some(sensor) = board.arm(arm) {
-                // Marking up, x forward: the chip's y points left, its z up, and it measures specific force.
+                // Marking up, x forward: the chip's y points left, its z up.
                 sensor.up = [-x, y, z];
             }
         }

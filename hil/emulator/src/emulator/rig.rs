@@ -1,4 +1,4 @@
-//! The emulated board on a test rig: at rest, with every jumper and part of `hil/README.md`.
+//! The emulated board on a test rig, at rest, wired as in `hil/README.md`.
 
 use std::path::Path;
 
@@ -27,7 +27,7 @@ const LONGEST: u64 = 30_000 * MS;
 const SPEED: f64 = 1.0;
 /// Registers of all ports: first address and end.
 const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
-/// Duration and period of a stalling processor's stalls, ns: not in step with a 1 kHz task.
+/// Duration and period of a stalling processor's stalls, ns: not in step with 1 kHz.
 const STALL: u64 = 600_000;
 const STALL_EVERY: u64 = 1_700_000;
 /// Wrong crystal, Hz, at which the chip still starts.
@@ -163,7 +163,7 @@ impl Rig {
         }
     }
 
-    /// Gives the inertial sensor a millisecond of samples at rest, never two equal.
+    /// Feeds a millisecond of inertial samples at rest, never two equal.
     fn shake(&mut self, board: &mut Wired<H743>, now: u64) {
         let Some(imu) = board.imu() else { return };
         for nth in 0..SAMPLES {

@@ -1,4 +1,4 @@
-//! The probe's side of the log: reads the firmware's buffer and updates its read position.
+//! The probe's side of the log: reads the firmware's buffer.
 
 use rigless::emulator::Host;
 use rigless::soc::Width;
@@ -42,7 +42,7 @@ impl Rtt {
             bytes.push(byte as u8);
             read = (read + 1) % size;
         }
-        // Refused only where there is no memory, and then nothing was read either.
+        // Refused only without memory there, and then nothing was read.
         let _ = host.write(self.up + READ, Width::W32, read);
         bytes
     }

@@ -5,7 +5,7 @@ use sophie_sim::sensors::fsr::FsrBreak;
 
 use super::*;
 
-/// A hover of at most `seconds` s with a trouble in the air, on the reference board.
+/// A hover of at most `seconds` s with an airborne trouble, on the reference board.
 fn with(trouble: Trouble, seconds: f64) -> Flight {
     sound_before(fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]))
 }
@@ -77,7 +77,7 @@ const CUT: Trouble = Trouble::Board(BoardFault::DataReadyCut(true));
 const JOINED: Trouble = Trouble::Board(BoardFault::DataReadyCut(false));
 const LINE: &str = "inertial sensor: data-ready line silent";
 
-/// The line was cut in hover at [`AIRBORNE`]: the vehicle lands normally and gives the reason.
+/// Requires a normal landing with its reason after a cut line in hover at [`AIRBORNE`].
 fn lands_without_data_ready(flight: &Flight) {
     let t = told(flight, AIRBORNE, &format!("FAILSAFE: {LINE}"));
     assert!(t.is_some_and(|t| t < AIRBORNE + 0.4), "{}", log(flight));

@@ -24,7 +24,7 @@ fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
     flight
 }
 
-/// The longest time from a start until the firmware drives the outputs with this prefix, ms.
+/// Longest time until the firmware drives the outputs with this prefix, ms.
 fn longest_ms(outputs: &[Output], what: &str) -> f64 {
     let these = outputs.iter().filter(|output| output.what.starts_with(what));
     let times = these.flat_map(|output| output.after_us.iter().flatten());

@@ -11,7 +11,7 @@ const OLD_PADS: [(f64, Trouble); 2] = [
     (0.0, Trouble::Board(BoardFault::PadDivider(2, 11))),
 ];
 
-/// The short perch in still air, over in a minute: the pilot touches at the first try.
+/// The short perch in still air, over in a minute.
 fn perch(seconds: f64) -> Scenario {
     let mut scenario = Scenario {
         time_limit: seconds,

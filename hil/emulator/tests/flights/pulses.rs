@@ -5,7 +5,7 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Standstill of the processor, off the ground; end of the flight, before the watchdog's reset.
+/// Standstill of the processor in the air; end of the flight, before the watchdog's reset.
 const STILL: f64 = AIRBORNE - 0.5;
 const END: f64 = STILL + 0.18;
 

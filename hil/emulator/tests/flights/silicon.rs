@@ -5,7 +5,7 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Both boards, each with the log's name and the required state of its caches.
+/// Both boards, each with the required state of its caches as logged.
 const BOARDS: [(&str, [&str; 2]); 2] = [
     ("matek-h743", ["caches", "I+ D-"]),
     ("f405", ["flash acceleration", "prefetch+ I+ D+"]),

@@ -60,7 +60,7 @@ fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
     print(format_args!("math atan2: {fold}"));
 }
 
-/// Sensor to motor command, open loop: noise around a swaying attitude, with every kind of setpoint.
+/// Sensor to motor command, open loop: noise around a swaying attitude.
 fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     let params = Params::default();
     let mut noise = Noise::new(3);
@@ -111,7 +111,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     print(format_args!("{name} mixer: {mixed}"));
 }
 
-/// Setpoint of a step of the `stretch`: mostly attitudes; also rates, the pipe and off it, a wrench.
+/// Setpoint of a step: mostly attitudes; also rates, the pipe and off it, a wrench.
 fn setpoint(stretch: u32, noise: &mut Noise) -> Setpoint {
     let [roll, pitch, yaw_rate] = [0.5 * noise.unit(), 0.5 * noise.unit(), 0.5 * noise.unit()];
     let thrust = 18.0 + 16.0 * noise.unit();

@@ -38,7 +38,7 @@ pub struct Inputs {
     pub resting: bool,
     /// Battery voltage over nominal.
     pub battery_ratio: f32,
-    /// The battery ratio and the arms' sensors, which are read in turn, each in one step of ten.
+    /// Battery ratio and the arms' sensors, each read in one step of ten.
     pub surroundings: Surroundings,
     /// The arm read in this step, and its tilt, rad.
     pub arm: Option<(usize, f32)>,

@@ -293,7 +293,7 @@ fn floats(_: &mut cortex_m::Peripherals) {
             let v = core::hint::black_box(1.5f32) * f32::from(k);
             if interrupted {
                 NVIC::pend(Line(if k % 2 == 0 { 1 } else { 7 }));
-                // Pended directly before the next operation, so that the frame holds half a calculation.
+                // Pended directly before the next operation, so that the frame holds half a sum.
             }
             s += v / (s + 0.75);
             isb();
@@ -302,7 +302,7 @@ fn floats(_: &mut cortex_m::Peripherals) {
     };
     let alone = sum(false);
     let interrupted = sum(true);
-    // Of a hundred handlers' events only the number is logged, with the sums.
+    // Only the number of a hundred handlers' events is logged.
     let events = LENGTH.swap(0, Relaxed);
     event(events as i32);
     event(alone.to_bits() as i32);

@@ -1,4 +1,4 @@
-//! Every floating-point instruction of the core on critical operands, in every mode, with the resulting flags.
+//! Every floating-point instruction on critical operands, in every mode, with its flags.
 
 use core::fmt::Arguments;
 
@@ -195,7 +195,7 @@ fn modes(print: &mut dyn FnMut(Arguments<'_>), name: &str, operation: Operation,
             let mode = bits << ROUNDING_AT | special;
             for (i, &a) in operands.iter().enumerate() {
                 for (j, &b) in operands.iter().enumerate() {
-                    // For the fused instructions every third operand once with every pair suffices.
+                    // For fused instructions every third operand once with every pair suffices.
                     let c = operands.get((7 * i + 3 * j) % OPERANDS).copied().unwrap_or(0);
                     let (result, left) = at(mode, operation, [a, b, c]);
                     results.add(result);
