@@ -11,7 +11,7 @@
 //!
 //! There is no checksum. A frame must begin after silence or at the end of another frame; after garbage on an unbroken
 //! stream, the first frame found only locates the second. Sticks are accepted from the third consecutive frame on:
-//! random bytes form one frame now and then (one in 70,000 after silence), hardly ever three.
+//! random bytes after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
 //!
 //! Frames whose flags report a lost transmitter, and repeated ones, publish no sticks: the link turns stale and the
 //! failsafe acts.

@@ -58,7 +58,7 @@ impl<T: Instance + 'static> Watchdog for Dog<T> {
     }
 }
 
-/// Sets the time-out to some 20 s or back to normal, and feeds.
+/// Sets the time-out to 22 s or more, or back to normal, and feeds.
 pub async fn be_patient(patient: bool) {
     let (prescaler, reload) = if patient { LONG } else { SHORT };
     // Atomic: the supervisor's feed would lock the registers after the key.
