@@ -1,6 +1,7 @@
-//! `sophie-emulator`: flies a scenario with the image of a board, emulated. `cargo xtask bench` builds both and calls it.
+//! `sophie-emulator`: flies a scenario with the image of an emulated board. `cargo xtask bench` builds both and calls
+//! it.
 //!
-//! Exit status: 0 when the mission was accomplished and the emulator vouches for it, 1 when not, 2 for bad input.
+//! Exit status: 0 when the mission was accomplished without gaps of the emulation, 1 when not, 2 for bad input.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
