@@ -3,67 +3,21 @@
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-/// A directory of its own for one test, gone afterwards.
-struct Temp(PathBuf);
+#[path = "common/command.rs"]
+mod command;
 
-impl Temp {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("sophie-cli-{}-{name}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
+use self::command::{Temp, command, refused, sophie, text};
 
-    fn file(&self, name: &str, content: &[u8]) -> String {
-        let path = self.0.join(name);
-        fs::write(&path, content).unwrap();
-        path.display().to_string()
-    }
-
-    fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(&self.0)
-            .unwrap()
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Temp {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-fn command(directory: &Path, args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sophie"));
-    command.current_dir(directory).args(args).stdin(Stdio::null());
-    command
-}
-
-fn sophie(temp: &Temp, args: &[&str]) -> Output {
-    command(&temp.0, args).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
-
-/// Refused: exit status 2, nothing on stdout, one line on stderr (given back), no output directory.
-fn refused(temp: &Temp, args: &[&str]) -> String {
-    let output = sophie(temp, args);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
-    assert!(output.stdout.is_empty(), "{args:?}: {}", text(&output.stdout));
-    assert!(
-        told.ends_with('\n') && told.lines().count() == 1 && told.len() < 500,
-        "{args:?}: {told}"
-    );
-    assert!(!temp.0.join("out").exists(), "{args:?} left an output directory");
-    told.trim_end().to_owned()
+/// Names of what is in the directory.
+fn names(temp: &Temp) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(&temp.0)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
 }
 
 /// A short flight, so that tests of the command do not fly whole missions.
@@ -147,7 +101,7 @@ fn an_unwritable_directory_is_told_before_the_flight() {
             "{line}"
         );
     }
-    assert_eq!(temp.names(), ["taken"]);
+    assert_eq!(names(&temp), ["taken"]);
 }
 
 #[test]
@@ -225,6 +179,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     assert_eq!(shown(&temp, &["help"]), whole);
     for (verb, part) in [
         ("fly", "--infill"),
+        ("check", "--infill"),
         ("paper", "paper.html"),
         ("fit-arm", "tilt_deg"),
         ("timing", "--analyse"),
@@ -251,7 +206,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     }
     assert_eq!(
         refused(&temp, &["help", "perch"]),
-        "sophie: no help on 'perch': allowed are fly, paper, fit-arm, timing"
+        "sophie: no help on 'perch': allowed are fly, check, paper, fit-arm, timing"
     );
 }
 

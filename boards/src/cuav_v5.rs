@@ -21,7 +21,7 @@ use assign_resources::assign_resources;
 use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::exti::ExtiInput;
-use embassy_stm32::gpio::{Level, Pull};
+use embassy_stm32::gpio::{Level, Pin, Pull};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
 use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
@@ -293,7 +293,8 @@ fn imu(p: ImuParts, params: &Params) -> ImuPort {
     let bus = Spi::new(
         p.spi, p.clock, p.data_out, p.data_in, p.tx_dma, p.rx_dma, Irqs, config,
     );
-    let ready = ReadyLine(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs));
+    let number = p.ready.pin();
+    let ready = ReadyLine::new(ExtiInput::new(p.ready, p.ready_line, Pull::Down, Irqs), number);
     // Marking up, x to the right (ArduPilot: ROTATION_NONE after its driver's swap of x and y).
     let mounting = Mounting::top_up(Heading::Right);
     Icm20689::new(

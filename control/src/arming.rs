@@ -258,106 +258,33 @@ mod tests {
     fn each_check_refuses_for_its_own_reason_alone() {
         let p = Params::default();
         assert!(good().inhibits(&p).is_empty());
-        let stick = |s| {
-            Some(Sticks {
-                arm_switch: true,
-                ..s
-            })
-        };
-        let cases = [
+        type Edit = fn(&mut Checks, &mut Sticks);
+        let cases: [(Edit, ArmingInhibit); 12] = [
+            (|c, _| c.calibrated = false, ArmingInhibit::NotCalibrated),
+            (|c, _| c.cos_tilt = None, ArmingInhibit::ImuStale),
+            (|_, s| s.throttle = 0.06, ArmingInhibit::ThrottleNotLow),
             (
-                Checks {
-                    calibrated: false,
-                    ..good()
-                },
-                ArmingInhibit::NotCalibrated,
-            ),
-            (
-                Checks {
-                    cos_tilt: None,
-                    ..good()
-                },
-                ArmingInhibit::ImuStale,
-            ),
-            (
-                Checks {
-                    sticks: None,
-                    ..good()
-                },
-                ArmingInhibit::RcLost,
-            ),
-            (
-                Checks {
-                    sticks: stick(Sticks {
-                        throttle: 0.06,
-                        ..Default::default()
-                    }),
-                    ..good()
-                },
-                ArmingInhibit::ThrottleNotLow,
-            ),
-            (
-                Checks {
-                    cos_tilt: Some(f32::cos(deg(26.0))),
-                    ..good()
-                },
+                |c, _| c.cos_tilt = Some(f32::cos(deg(26.0))),
                 ArmingInhibit::TiltTooLarge,
             ),
-            (
-                Checks {
-                    cos_tilt: Some(f32::NAN),
-                    ..good()
-                },
-                ArmingInhibit::TiltTooLarge,
-            ),
-            (
-                Checks {
-                    battery: Some(13.5),
-                    ..good()
-                },
-                ArmingInhibit::BatteryLow,
-            ),
-            (
-                Checks {
-                    battery: None,
-                    ..good()
-                },
-                ArmingInhibit::BatteryLow,
-            ),
-            (
-                Checks {
-                    sticks: stick(Sticks {
-                        perch_switch: true,
-                        ..Default::default()
-                    }),
-                    ..good()
-                },
-                ArmingInhibit::PerchSwitchOn,
-            ),
-            (
-                Checks {
-                    fsr_fault: true,
-                    ..good()
-                },
-                ArmingInhibit::FsrFault,
-            ),
-            (
-                Checks {
-                    switch_seen_off: false,
-                    ..good()
-                },
-                ArmingInhibit::SwitchOnAtPowerUp,
-            ),
-            (Checks { late: true, ..good() }, ArmingInhibit::Overruns),
-            (
-                Checks {
-                    arms_closed: true,
-                    ..good()
-                },
-                ArmingInhibit::ArmsClosed,
-            ),
+            (|c, _| c.cos_tilt = Some(f32::NAN), ArmingInhibit::TiltTooLarge),
+            (|c, _| c.battery = Some(13.5), ArmingInhibit::BatteryLow),
+            (|c, _| c.battery = None, ArmingInhibit::BatteryLow),
+            (|_, s| s.perch_switch = true, ArmingInhibit::PerchSwitchOn),
+            (|c, _| c.fsr_fault = true, ArmingInhibit::FsrFault),
+            (|c, _| c.switch_seen_off = false, ArmingInhibit::SwitchOnAtPowerUp),
+            (|c, _| c.late = true, ArmingInhibit::Overruns),
+            (|c, _| c.arms_closed = true, ArmingInhibit::ArmsClosed),
         ];
-        for (checks, reason) in cases {
+        let edited = cases.map(|(edit, reason)| {
+            let (mut checks, mut sticks) = (good(), good().sticks.unwrap_or_default());
+            edit(&mut checks, &mut sticks);
+            checks.sticks = Some(sticks);
+            (checks, reason)
+        });
+        let mut silent = good();
+        silent.sticks = None;
+        for (checks, reason) in edited.into_iter().chain([(silent, ArmingInhibit::RcLost)]) {
             let inhibits = checks.inhibits(&p);
             assert!(inhibits.iter().eq([reason]), "{checks:?}");
             assert!(!reason.text().is_empty() && reason.text().len() <= 30);

@@ -1,11 +1,10 @@
 //! Attitude control: a P loop on the shortest turn to the wanted tilt, a leashed heading for yaw.
 //!
-//! The tilt is aimed at by where down is in body axes, which the heading has no part in: a yaw error cannot leak roll
-//! into pitch. The heading itself is never computed; its change from step to step moves the leash.
+//! The tilt target is the direction of down in body axes, in which the heading has no part: a yaw error cannot turn
+//! roll into pitch. The heading is never computed; its change per step moves the leash.
 //!
-//! Roll and pitch become that direction when they are given, at the rate of the sticks; each step filters the direction,
-//! without a sine. Setpoints are limited before, so that no number can stay in the filters: one that is not finite leaves
-//! roll and pitch where they were aimed and stops the turn in yaw.
+//! A setpoint becomes a direction when it is given, at the sticks' rate, so that a step needs no sine. One that is not
+//! finite leaves the tilt target and stops the turn in yaw.
 
 use core::f32::consts::TAU;
 
@@ -16,14 +15,14 @@ use crate::vector::{Quat, Vec3};
 
 /// Farthest that the heading setpoint may run ahead of the heading, rad.
 const HEADING_LEASH: f32 = 0.5;
-/// Largest roll or pitch aimed at, rad: a quarter turn, beyond what this vehicle flies.
+/// Largest roll or pitch setpoint, rad.
 const ANGLE_MAX: f32 = 0.5 * math::PI;
-/// Time constant of the yaw stick's rate, s: torsion wants smooth commands.
+/// Time constant of the yaw rate setpoint, s: the arms' torsion needs smooth commands.
 const YAW_RATE_TAU: f32 = 0.3;
 /// Down in the axes of a level body.
 const LEVEL: Vec3 = Vec3::new(0.0, 0.0, 1.0);
 
-/// Wanted attitude.
+/// Attitude setpoint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AttitudeSetpoint {
     /// Roll, rad, right side down positive; limited to ±π/2.
@@ -34,16 +33,16 @@ pub struct AttitudeSetpoint {
     pub yaw_rate: f32,
 }
 
-/// What the attitude loop aims at after the prefilter.
+/// Prefiltered target of the attitude loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Target {
-    /// Down as it is aimed at, in body axes; shorter than 1 while it changes.
+    /// Wanted down in body axes; shorter than 1 while it changes.
     pub down: Vec3,
-    /// How far the wanted heading is ahead of the present one, rad, ±0.5.
+    /// Wanted less present heading, rad, ±0.5.
     pub ahead: f32,
 }
 
-/// A direction through a low pass of second order.
+/// Second-order low pass of a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Smooth {
     first: Vec3,
@@ -58,7 +57,6 @@ impl Smooth {
         }
     }
 
-    /// One step towards `wanted`, by [`LowPass::gain`].
     #[inline(always)]
     fn blend(&mut self, wanted: Vec3, gain: f32) -> Vec3 {
         self.first = self.first + (wanted - self.first) * gain;
@@ -67,7 +65,7 @@ impl Smooth {
     }
 }
 
-/// The attitude loop's state.
+/// The attitude loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttitudeLoop {
     p: f32,
@@ -76,7 +74,7 @@ pub struct AttitudeLoop {
     cutoff: f32,
     rate_max: f32,
     yaw_rate_max: f32,
-    /// Where down is wanted, in body axes, and the yaw rate that is.
+    /// Wanted down in body axes, before the prefilter.
     wanted: Vec3,
     wanted_yaw_rate: f32,
     down: Smooth,
@@ -103,8 +101,7 @@ impl AttitudeLoop {
         }
     }
 
-    /// Restarts from the attitude `q` (unit, body to world): wanted is where the vehicle is until something else is,
-    /// and the first step does not jump.
+    /// Restarts without a jump: until the next setpoint the target is the attitude `q` (unit, body to world).
     pub fn reset(&mut self, q: Quat) {
         let down = q.down_in_body();
         self.wanted = down;
@@ -113,7 +110,7 @@ impl AttitudeLoop {
         self.capture_heading(q);
     }
 
-    /// Takes what is wanted from now on.
+    /// Sets the target.
     pub fn aim(&mut self, setpoint: AttitudeSetpoint) {
         let AttitudeSetpoint {
             roll,
@@ -138,11 +135,11 @@ impl AttitudeLoop {
         self.yaw_rate = LowPass::at(0.0);
     }
 
-    /// Body rates (rad/s, roll and pitch within ± the parameter `rate_max`, yaw within twice `yaw_slew`) that
-    /// lead from `q` (unit, body to world) to what is aimed at; step time `dt` s, > 0.
+    /// Body rates (rad/s; roll and pitch within ±`rate_max`, yaw within twice `yaw_slew`) that lead from the attitude
+    /// `q` (unit, body to world) to the target, in a step of `dt` s, > 0.
     #[inline(always)]
     pub fn step(&mut self, q: Quat, dt: f32) -> Vec3 {
-        // The shortest turn from here to the wanted tilt, in body axes: twice the sine of half its angle about its axis.
+        // Shortest turn to the wanted tilt, in body axes: twice the sine of half its angle, about its axis.
         let aim = self.down.blend(self.wanted, LowPass::gain(self.cutoff, dt));
         let down = q.down_in_body();
         let gain = self.p * per_sine(aim.dot(down));
@@ -170,7 +167,7 @@ impl AttitudeLoop {
         )
     }
 
-    /// What is aimed at after the prefilter.
+    /// Prefiltered target.
     #[inline]
     pub const fn target(&self) -> Target {
         Target {
@@ -180,16 +177,15 @@ impl AttitudeLoop {
     }
 }
 
-/// 2 sin(θ/2) / sin θ for the cosine of θ: makes the sine of a turn twice the sine of its half. Within 0.6 % up to 90°,
-/// where the rate limit has long cut in; beyond, the turn is asked for less steeply, and not at all at exactly 180°,
-/// which has no shortest way.
+/// 2 sin(θ/2) / sin θ from cos θ, within 0.6 % up to 90°, where the rate limit already acts, and too small beyond. A
+/// turn of exactly 180° has no shortest way: its rate is 0.
 #[inline(always)]
 fn per_sine(cosine: f32) -> f32 {
     let e = 1.0 - cosine;
     1.0 + e * (0.22 + 0.186 * e)
 }
 
-/// Where the nose points, as cosine and sine of the heading times the cosine of the pitch.
+/// Nose direction: cosine and sine of the heading times the cosine of the pitch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Heading {
     north: f32,
@@ -205,8 +201,8 @@ impl Heading {
         }
     }
 
-    /// Angle turned since `last`, one step ago, rad: its tangent, which is 1e-6 rad off at the fastest turn. 0 where the
-    /// nose points straight up or down and has no heading.
+    /// Angle turned since the step `last`, rad, by its tangent (1e-6 rad off at the fastest turn); 0 with a vertical
+    /// nose, which has no heading.
     #[inline]
     fn turned_since(self, last: Self) -> f32 {
         let along = last.north * self.north + last.east * self.east;
@@ -262,7 +258,7 @@ mod tests {
             let exact = 1.0 / f64::cos(0.5 * angle);
             let error = f64::from(per_sine(f64::cos(angle) as f32)) / exact - 1.0;
             assert!(tenth > 900 || error.abs() < 6e-3, "{tenth}: {error}");
-            // Beyond it asks for less, but always enough for the rate limit up to 150°.
+            // Beyond 90°: enough for the rate limit up to 150°.
             let rate = f64::from(per_sine(f64::cos(angle) as f32)) * angle.sin() * 4.5;
             assert!(!(480..1500).contains(&tenth) || rate > 3.5, "{tenth}: {rate}");
         }
@@ -270,7 +266,7 @@ mod tests {
 
     #[test]
     fn the_change_of_heading_adds_up_to_the_heading() {
-        // A flat spin of ten turns at 6 rad/s in steps of a millisecond.
+        // A flat spin: ten turns at 6 rad/s in steps of 1 ms.
         let turned = |i: i32| Quat::from_euler(0.2, -0.3, 0.0) * spin(0.006 * i as f32);
         let mut sum = 0.0f64;
         for i in 0..10_472 {
@@ -280,12 +276,11 @@ mod tests {
         let start = Heading::of(turned(0));
         let end = Heading::of(turned(10_472));
         let between = f64::from(end.turned_since(start));
-        // Whole turns and what is left over.
         let whole = (sum / core::f64::consts::TAU).round() * core::f64::consts::TAU;
         assert!((sum - whole - between.atan()).abs() < 2e-3, "{sum} {between}");
     }
 
-    /// A turn about body z by `angle` rad, exact to the rounding.
+    /// A turn about body z by `angle` rad, exact to rounding.
     fn spin(angle: f32) -> Quat {
         let half = 0.5 * f64::from(angle);
         Quat {
@@ -303,7 +298,7 @@ mod tests {
         let turned = Quat::from_euler(0.0, 0.0, 0.6);
         let r = a.step(turned, 1e-3);
         assert!(r.x.abs() < 0.01 && r.y.abs() < 0.01);
-        // Leashed: 0.5 rad at 1.2 1/s, back towards the old heading.
+        // 0.5 rad of leash at 1.2 1/s, back towards the old heading.
         assert!((r.z + 0.6).abs() < 0.02, "{r:?}");
     }
 
@@ -353,7 +348,7 @@ mod tests {
                 yaw_rate: 0.4,
             };
             let r = settled(q, setpoint);
-            // Seen from the world it is a turn about down, 0.4 rad/s and the leash's 1.2 1/s · 0.5 rad.
+            // In world axes a turn about down: 0.4 rad/s plus the leash's 1.2 1/s · 0.5 rad.
             let turn = q.rotate(r);
             assert!(
                 turn.x.abs() < 0.03 && turn.y.abs() < 0.03 && (turn.z - 1.0).abs() < 0.03,
@@ -412,7 +407,7 @@ mod tests {
                 prop_assert!(r.x.abs() <= p.rate_max && r.y.abs() <= p.rate_max, "{r:?}");
                 prop_assert!(r.z.abs() <= 2.01 * p.yaw_slew, "{r:?}");
             }
-            // A vehicle that follows its commands comes back to level and to rest, from wherever it was left.
+            // A vehicle that follows its commands returns to level and to rest.
             const DT: f32 = 4e-3;
             let mut r = Vec3::ZERO;
             a.aim(AttitudeSetpoint::default());

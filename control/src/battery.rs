@@ -1,23 +1,22 @@
 //! State of the flight battery from its voltage and current.
 //!
-//! [`Monitor::step`] is called at 100 Hz by the task `analog` (V, A, s). After a missed
-//! reading thrusts are compensated for the last voltage; it is stale after 500 ms.
+//! [`Monitor::step`] is called at 100 Hz by the task `analog` (V, A, s). After a missed reading thrusts are compensated
+//! for the last voltage; it is stale after 500 ms.
 
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
 
-/// Cut-off of the voltage's low pass, rad/s: 2 Hz, slower than the sag of a manoeuvre is worth following,
-/// faster than the charge falls.
+/// Cut-off of the voltage, rad/s (2 Hz): slower than a manoeuvre's sag, faster than the discharge.
 const VOLTAGE_CUTOFF: f32 = 12.6;
-/// Cut-off of the current's low pass, rad/s (2 Hz).
+/// Cut-off of the current, rad/s (2 Hz).
 const CURRENT_CUTOFF: f32 = 12.6;
-/// Bounds of the voltage ratio that the thrust curve may be compensated by: 4S from 10.4 to 18.5 V.
+/// Bounds of the thrust curve's voltage ratio: 4S from 10.4 to 18.5 V.
 const RATIO_BOUNDS: (f32, f32) = (0.7, 1.25);
-/// Readings beyond these are the converter's, not the battery's: V, A.
+/// Largest plausible readings: V, A.
 const SANE: (f32, f32) = (60.0, 300.0);
 
-/// The flight battery as it is measured.
+/// Measured state of the flight battery.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Battery {
     /// Voltage under load, V, low-passed.
@@ -26,7 +25,7 @@ pub struct Battery {
     pub current: f32,
     /// Charge drawn since power-up, A·s.
     pub used: f32,
-    /// Voltage over nominal, limited to a sane range: what the thrust curve is compensated by.
+    /// Voltage over nominal, bounded: compensates the thrust curve.
     pub ratio: f32,
 }
 
@@ -35,14 +34,13 @@ pub struct Battery {
 pub struct Monitor {
     filters: Option<(LowPass, LowPass)>,
     used: f32,
-    /// What of the charge is too small to add to `used` yet, A·s.
+    /// Charge not added to `used` yet, A·s.
     fraction: f32,
 }
 
 impl Monitor {
-    /// Adds a measurement of `voltage` V and `current` A, `dt` s after the one before.
-    ///
-    /// A value that no battery has changes nothing; `None` until there was a sound one.
+    /// Adds `voltage` V and `current` A, `dt` s after the last. Implausible values change nothing; `None` before the
+    /// first plausible ones.
     pub fn step(&mut self, p: &Params, voltage: f32, current: f32, dt: f32) -> Option<Battery> {
         let dt = math::clamp(dt, 0.0, 1.0);
         let sane = (0.0..SANE.0).contains(&voltage) && (-SANE.1..SANE.1).contains(&current);
@@ -62,7 +60,7 @@ impl Monitor {
         })
     }
 
-    /// Adds to the charge in portions of 1 A·s: 10 ms of 1 A on top of 6000 A·s would drown in an `f32`.
+    /// Adds charge in portions of 1 A·s: 10 ms of 1 A on top of 6000 A·s would vanish in an `f32`.
     fn add_charge(&mut self, charge: f32) {
         self.fraction += charge;
         if self.fraction.abs() > 1.0 {

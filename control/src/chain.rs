@@ -1,9 +1,9 @@
-//! The flight step: from a batch of inertial samples to four motor commands, once a millisecond.
+//! Flight step: from a batch of inertial samples to four motor commands, once a millisecond.
 //!
-//! Four stages, each a type with its own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] turns a
-//! setpoint into a demand, [`Mixing`] turns the demand into commands. On the vehicle each belongs to a task, and what
-//! passes between them to a link; everything else (instruction counts, QEMU, replays) runs the same stages in the same
-//! order as one [`FlightChain`]. A recorded mission gives the same bits through both.
+//! Four stages, each with its own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] turns a
+//! setpoint into a demand, [`Mixing`] the demand into commands. On the vehicle each belongs to a task, and links join
+//! them; instruction counts, QEMU and replays run them in the same order as one [`FlightChain`], with the same bits for
+//! a recorded mission.
 
 mod control;
 mod messages;
@@ -26,10 +26,10 @@ use crate::rate::Feedback;
 /// Rate of the step, Hz.
 pub const CONTROL_RATE_HZ: f32 = 1000.0;
 
-/// What the stages handed on in the last step.
+/// Messages of the last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flow {
-    /// When the newest sample was ready, µs.
+    /// Data-ready time of the newest sample, µs.
     pub at_us: u64,
     /// From sensing to the estimator.
     pub sample: ImuSample,
@@ -43,7 +43,7 @@ pub struct Flow {
     pub mix: MixOutput,
 }
 
-/// The stages of the flight step, one after the other.
+/// The four stages in series.
 #[derive(Clone, Debug)]
 pub struct FlightChain<A = Flexible> {
     /// First stage.
@@ -54,14 +54,14 @@ pub struct FlightChain<A = Flexible> {
     pub control: Control,
     /// Fourth stage.
     pub mixing: Mixing<A>,
-    /// What they handed on.
+    /// Messages between them.
     pub flow: Flow,
-    /// What the last mix gave; nothing before the first.
+    /// Feedback of the last mix; nothing before the first.
     feedback: Feedback,
 }
 
 impl<A: Allocation> FlightChain<A> {
-    /// A chain at rest for samples at `rate_hz` that allocates by `allocation`.
+    /// A chain at rest for samples at `rate_hz`, with the allocation `allocation`.
     pub fn new(p: &Params, rate_hz: f32, allocation: A) -> Self {
         Self {
             sensing: Sensing::new(p, rate_hz),
@@ -73,7 +73,7 @@ impl<A: Allocation> FlightChain<A> {
         }
     }
 
-    /// First stage: takes a batch of readings, oldest first, the newest ready at `at_us` µs. True when a step is due.
+    /// First stage: takes readings, oldest first, the newest ready at `at_us` µs; true if a step is due.
     #[inline(always)]
     pub fn sense(&mut self, at_us: u64, readings: &[ImuReading]) -> bool {
         let due = self.sensing.take(at_us, readings, &mut self.flow.sample);
@@ -107,7 +107,7 @@ impl<A: Allocation> FlightChain<A> {
         self.feedback = self.flow.mix.feedback();
     }
 
-    /// All of it. True when a step was due.
+    /// All stages; true if a step was due.
     #[inline(always)]
     pub fn step(
         &mut self,

@@ -1,13 +1,12 @@
-//! Static deflection of a soft arm under its rotor's thrust: Eq. 1 of the paper and what flies of it.
+//! Static deflection of a soft arm under its rotor's thrust: Eq. 1 of the paper.
 //!
-//! A function without state: the tilt model evaluates it at 1 kHz, the gripper its compliance once at start-up.
+//! Stateless: the tilt model evaluates it at 1 kHz, the gripper its compliance once at start-up.
 //!
 //! α = α0 + K ((A1 + ρ A2) T + (B1 + ρ B2) T²) (P/P0)^C_P, in degrees, ρ in %, T in N.
 //!
-//! K is ours: the literal equation (K = 1) gives a fifth of the tilts that the paper's Table III shows.
-//! α0 is set so that the arm is level at half throttle, as the paper's text demands. The battery's factor
-//! stays 1 in flight: thrusts here are true thrusts, already compensated for the battery, and the factor
-//! would count the loss a second time. Only the printed [`Algorithm1`] uses it.
+//! K is not the paper's: the literal equation (K = 1) gives a fifth of the tilts of the paper's Table III. α0 makes the
+//! arm level at half throttle, as the paper's text demands. The battery's factor stays 1 in flight: thrusts here are
+//! true thrusts, already compensated for the battery. Only the printed [`Algorithm1`] uses it.
 
 use crate::math;
 use crate::params::Params;
@@ -24,7 +23,7 @@ pub const B2: f32 = 0.0151;
 /// Tilt beyond which the paper's static model does not hold, rad.
 pub const VALID_TILT: f32 = math::deg(40.0);
 
-/// Eq. 1 of one arm with its numbers filled in.
+/// Eq. 1 of one arm with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmModel {
     /// Tilt without thrust, rad.
@@ -36,13 +35,12 @@ pub struct ArmModel {
 }
 
 impl ArmModel {
-    /// The arm of infill `infill` (%) with the gain `gain_k` on the elastic term, level at the thrust
-    /// `level_thrust` (N).
+    /// Arm of infill `infill` (%) with the gain `gain_k` on the elastic term, level at the thrust `level_thrust` (N).
     pub fn new(infill: f32, gain_k: f32, level_thrust: f32) -> Self {
         Self::with([A1, A2, B1, B2], infill, gain_k, level_thrust)
     }
 
-    /// The same with coefficients A1, A2, B1, B2 of its own (°/N, °/(N %), °/N², °/(N² %)).
+    /// The same with own coefficients A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)).
     pub fn with([a1, a2, b1, b2]: [f32; 4], infill: f32, gain_k: f32, level_thrust: f32) -> Self {
         let linear = math::deg(gain_k * (a1 + infill * a2));
         let quadratic = math::deg(gain_k * (b1 + infill * b2));
@@ -57,29 +55,29 @@ impl ArmModel {
         }
     }
 
-    /// The arm that the parameters describe.
+    /// Arm by the parameters.
     pub fn from_params(p: &Params) -> Self {
         let coefficients = [p.arm_a1, p.arm_a2, p.arm_b1, p.arm_b2];
         Self::with(coefficients, p.infill, p.gain_k, p.arm_level_share * p.thrust_max)
     }
 
-    /// Elastic part of the tilt at the thrust `thrust` (N), rad.
+    /// Elastic part of the tilt at `thrust` (N), rad.
     pub fn elastic(&self, thrust: f32) -> f32 {
         (self.linear + self.quadratic * thrust) * thrust
     }
 
-    /// Tilt at the thrust `thrust` (N), rad.
+    /// Tilt at `thrust` (N), rad.
     pub fn angle(&self, thrust: f32) -> f32 {
         self.offset + self.elastic(thrust)
     }
 
-    /// Compliance dα/dT at the thrust `thrust` (N), rad/N.
+    /// Compliance dα/dT at `thrust` (N), rad/N.
     pub fn slope(&self, thrust: f32) -> f32 {
         self.linear + 2.0 * self.quadratic * thrust
     }
 }
 
-/// The paper's Algorithm 1, verbatim: tilt from the thrust of the step before, and 0 where it passes 40°.
+/// The paper's Algorithm 1, verbatim: tilt by the last step's thrust, 0 beyond 40°.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Algorithm1 {
     model: ArmModel,
@@ -87,7 +85,7 @@ pub struct Algorithm1 {
 }
 
 impl Algorithm1 {
-    /// The algorithm for the arm `model` with the battery exponent C_P.
+    /// The algorithm for `model` with the battery exponent C_P.
     pub const fn new(model: ArmModel, power_exponent: f32) -> Self {
         Self {
             model,
@@ -95,8 +93,8 @@ impl Algorithm1 {
         }
     }
 
-    /// Tilt (rad) from the last step's thrust (N) and power ratio P/P0. It jumps by 40° where the printed
-    /// guard acts, and only on one side.
+    /// Tilt (rad) by the last step's thrust (N) and power ratio P/P0. The printed guard makes it jump by 40°, on one
+    /// side.
     pub fn angle(&self, last_thrust: f32, power_ratio: f32) -> f32 {
         let factor = math::pow_near_one(power_ratio, self.power_exponent);
         let tilt = self.model.offset + self.model.elastic(last_thrust) * factor;
@@ -119,7 +117,7 @@ mod tests {
         // ρ 6.9 %, K 1, 4 N: (2.4387 - 1.37793)·4 + (-0.162 + 0.10419)·16 = 4.24308 - 0.92496 = 3.31812°.
         let m = ArmModel::new(6.9, 1.0, 0.0);
         assert!((degrees(m.angle(4.0)) - 3.318_12).abs() < 1e-4);
-        // Its slope there: 1.06077 - 0.11562·4 = 0.59829 °/N.
+        // Slope: 1.06077 - 0.11562·4 = 0.59829 °/N.
         assert!((degrees(m.slope(4.0)) - 0.598_29).abs() < 1e-4);
     }
 
@@ -148,7 +146,7 @@ mod tests {
             gain_k: 1.0,
             ..p
         };
-        // 3·5 - 0.1·25 = 12.5° more than without thrust, at any infill.
+        // 3·5 - 0.1·25 = 12.5° at any infill.
         let m = ArmModel::from_params(&own);
         assert!((degrees(m.angle(5.0) - m.angle(0.0)) - 12.5).abs() < 1e-4);
     }
@@ -173,7 +171,7 @@ mod tests {
         );
         assert!((degrees(a.angle(3.9, 1.0)) - 39.0).abs() < 1e-3);
         assert!(a.angle(4.1, 1.0).abs() < 1e-9);
-        // One-sided: the other direction stays open.
+        // The guard is one-sided.
         assert!((degrees(a.angle(-4.1, 1.0)) + 41.0).abs() < 1e-3);
         // A weak battery bends less: 0.8^1.7 = 0.68432.
         assert!((degrees(a.angle(3.0, 0.8)) - 30.0 * 0.684_32).abs() < 1e-2);

@@ -1,11 +1,11 @@
-//! What to give up when the rotors cannot do it all: yaw first, then thrust, roll and pitch last.
+//! What is given up when the rotors saturate: yaw first, then thrust, roll and pitch last.
 //!
-//! It runs once in each step of the mixer, 1 kHz, on thrusts in N.
+//! Runs once in each mixer step, 1 kHz, on thrusts in N.
 
 use crate::math;
 use crate::wrench::PerArm;
 
-/// What the rotors could give of a demand.
+/// Part of a demand that the rotors can give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
     /// Share of the roll and pitch moments, 0..1.
@@ -17,14 +17,14 @@ pub struct Given {
 }
 
 impl Given {
-    /// All that was asked.
+    /// The whole demand.
     pub const ALL: Self = Self {
         roll_pitch: 1.0,
         thrust_shift: 0.0,
         yaw: 1.0,
     };
 
-    /// True when something was given up.
+    /// True if something was given up.
     pub fn saturated(&self) -> bool {
         self.roll_pitch < 1.0 || self.yaw < 1.0 || self.thrust_shift > 0.01 || self.thrust_shift < -0.01
     }
@@ -36,12 +36,12 @@ impl Default for Given {
     }
 }
 
-/// A demand split into the patterns that may be given up one after the other, N for each rotor.
+/// A demand split into patterns that may be given up in turn, N per rotor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Patterns {
-    /// Thrusts of the collective alone.
+    /// Collective alone.
     pub collective: PerArm<f32>,
-    /// Change of the thrusts for one newton more of collective.
+    /// Change per newton of collective.
     pub shift: PerArm<f32>,
     /// Roll and pitch.
     pub roll_pitch: PerArm<f32>,
@@ -49,11 +49,11 @@ pub struct Patterns {
     pub yaw: PerArm<f32>,
 }
 
-/// Least newtons that a rotor gives of one more of collective: one that thrust does not reach cannot bound the shift, and
-/// divisions stay finite.
+/// Least thrust of a rotor per newton of collective: a rotor that the collective does not reach cannot bound the shift,
+/// and divisions stay finite.
 const LEAST_SHIFT: f32 = 0.02;
 
-/// A share that shrinks to what has room, as a fraction: one division at the end serves all bounds.
+/// A share as a fraction of room and need: one division at the end serves all bounds.
 #[derive(Clone, Copy)]
 struct Share {
     room: f32,
@@ -79,8 +79,8 @@ impl Share {
     }
 }
 
-/// Bounds of one rotor on the collective shift: between `lower` and `upper` for no roll and pitch, and each
-/// `slope` lower with all of them.
+/// Bounds of one rotor on the collective shift: `lower` to `upper` without roll and pitch, `slope` lower with all of
+/// them.
 #[derive(Clone, Copy)]
 struct Bounds {
     lower: f32,
@@ -89,7 +89,7 @@ struct Bounds {
 }
 
 impl Share {
-    /// Keeps either rotor's lower bound under the other's upper one.
+    /// Keeps each rotor's lower bound under the other's upper one.
     #[inline(always)]
     fn agreed(self, i: &Bounds, j: &Bounds) -> Self {
         let need = j.slope - i.slope;
@@ -98,9 +98,8 @@ impl Share {
     }
 }
 
-/// Thrusts within [`low`, `high`] N that come nearest to the demand, and what was given up for it.
-///
-/// Without a branch that depends on the demand: it takes the same time for every one.
+/// Thrusts within [`low`, `high`] N nearest to the demand, and what was given up. Constant time: no branch depends on
+/// the demand.
 #[inline(always)]
 pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let bounds = |collective: f32, shift: f32, roll_pitch: f32| {
@@ -116,8 +115,8 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let (b1, b2) = (bounds(c1, s1, r1), bounds(c2, s2, r2));
     let (b3, b4) = (bounds(c3, s3, r3), bounds(c4, s4, r4));
 
-    // Roll and pitch: the largest share for which some collective fits all four rotors, that is, for which
-    // every rotor's lower bound on the collective shift stays under every other's upper bound.
+    // Roll and pitch: the largest share for which some collective fits all four rotors: every lower bound on the
+    // collective shift stays under every other rotor's upper bound.
     let share = Share::ALL
         .agreed(&b1, &b2)
         .agreed(&b1, &b3)
@@ -127,7 +126,7 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
         .agreed(&b3, &b4)
         .value();
 
-    // Thrust: the smallest shift that makes them fit.
+    // Thrust: the smallest shift that fits.
     let larger = |a: f32, b: f32| if a > b { a } else { b };
     let smaller = |a: f32, b: f32| if a < b { a } else { b };
     let lower = |b: Bounds| b.lower - share * b.slope;
@@ -136,7 +135,7 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let most = smaller(smaller(upper(b1), upper(b2)), smaller(upper(b3), upper(b4)));
     let shift = larger(least, smaller(most, 0.0));
 
-    // Yaw: whatever room is left.
+    // Yaw: the room that is left.
     let (t1, t2) = (c1 + share * r1 + shift * s1, c2 + share * r2 + shift * s2);
     let (t3, t4) = (c3 + share * r3 + shift * s3, c4 + share * r4 + shift * s4);
     let room = |t: f32, y: f32| if y > 0.0 { high - t } else { t - low };
@@ -214,7 +213,6 @@ mod tests {
             let (t, g) = desaturate(&patterns(c, r, p, y), LOW, HIGH);
             prop_assert!(t.iter().all(|t| (LOW..=HIGH).contains(t)));
             prop_assert!((0.0..=1.0).contains(&g.roll_pitch) && (0.0..=1.0).contains(&g.yaw));
-            // Roll and pitch actually given have the share that is reported.
             let roll = 0.25 * (t[0] + t[1] - t[2] - t[3]);
             let pitch = 0.25 * (t[0] - t[1] + t[2] - t[3]);
             prop_assert!((roll - g.roll_pitch * r).abs() < 2e-3 && (pitch - g.roll_pitch * p).abs() < 2e-3);

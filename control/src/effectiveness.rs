@@ -1,16 +1,16 @@
-//! What four tilted rotors do to the body, and how that changes with their thrusts.
+//! Effect of four tilted rotors on the body, and its change with their thrusts.
 //!
-//! Evaluated once in each step of the mixer, 1 kHz; body axes FRD, thrusts in N, tilts in rad with the tip up.
+//! Evaluated in each mixer step, 1 kHz; body axes FRD, thrusts in N, tilts in rad with the tip up.
 //!
-//! A rotor at (±b, ∓d) whose arm is tilted by α leans its thrust inward by α. Hinged at the centre line,
-//! the thrust stays perpendicular to the arm, so its roll lever is d whatever the tilt; its pitch lever
-//! acts on T cos α; its yaw moment is the sideways part T sin α at ±b and the rotor's drag ±k_q T.
+//! A rotor at (±b, ∓d) tilted by α leans its thrust inward by α. With the arm hinged at the centre line the thrust
+//! stays perpendicular to the arm: its roll lever is d at any tilt, its pitch lever acts on T cos α, its yaw moment is
+//! the sideways part T sin α at ±b plus the rotor's drag ±k_q T.
 
 use crate::math;
 use crate::params::Params;
 use crate::wrench::{Configuration, FORE, PerArm, SIDE, Wrench, YAW};
 
-/// Where the rotors are and how they turn.
+/// Rotor positions and senses of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
     /// Sideways lever d, m.
@@ -24,7 +24,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// The geometry of the levers `d` and `b` (m, > 0) and the signed drag ratio `drag` (m).
+    /// Geometry of the levers `d` and `b` (m, > 0) and the signed drag ratio `drag` (m).
     pub fn new(d: f32, b: f32, drag: f32) -> Self {
         Self {
             d,
@@ -34,12 +34,12 @@ impl Geometry {
         }
     }
 
-    /// The geometry that the parameters describe; the rotor drag's sign is the configuration's.
+    /// Geometry by the parameters; the configuration gives the drag's sign.
     pub fn from_params(p: &Params, configuration: Configuration) -> Self {
         Self::new(p.arm_d, p.arm_b, configuration.chi() * p.torque_ratio)
     }
 
-    /// The same with the drag's sign of configuration B: its yaw moments are those of this geometry times the sign of its
+    /// The same with configuration B's drag sign: its yaw moments are those of this geometry times the sign of its
     /// drag.
     pub fn as_b(&self) -> Self {
         if self.drag < 0.0 {
@@ -53,7 +53,7 @@ impl Geometry {
         }
     }
 
-    /// The wrench of the thrusts (N) of rotors tilted by `tilt` (rad).
+    /// Wrench of the thrusts (N) of rotors tilted by `tilt` (rad).
     pub fn wrench(&self, thrusts: &PerArm<f32>, tilt: &PerArm<f32>) -> Wrench {
         let mut w = Wrench::default();
         for ((t, a), (side, (fore, yaw))) in thrusts
@@ -71,17 +71,17 @@ impl Geometry {
     }
 }
 
-/// Rows of the effectiveness that depend on the tilt; roll is ±d always.
+/// Tilt-dependent rows of the effectiveness; the roll row is always ±d.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effectiveness {
     /// d(lift)/dT of each rotor, 1; times ±b it is the pitch entry.
     pub lift: PerArm<f32>,
-    /// |d(yaw)/dT| with the sign of the authority, m; the entry is this times the rotor's yaw sign.
+    /// |d(yaw)/dT| with the authority's sign, m; times the rotor's yaw sign it is the entry.
     pub yaw: PerArm<f32>,
 }
 
 impl Effectiveness {
-    /// At the frozen tilt: what a change of thrust does before the arm has moved.
+    /// At frozen tilt: a change of thrust before the arm has moved.
     pub fn frozen(geometry: &Geometry, tilt: &PerArm<f32>) -> Self {
         Self {
             lift: tilt.map(math::cos),
@@ -89,13 +89,12 @@ impl Effectiveness {
         }
     }
 
-    /// Quasi-static: what a change of thrust does once the arm has followed. `tilt` and `follow` (T dα/dT) in rad,
-    /// |tilt| <= 0.7.
+    /// Quasi-static: a change of thrust once the arm has followed; `tilt` and `follow` (T dα/dT) in rad, |tilt| <= 0.7.
     #[inline(always)]
     pub fn quasi_static(geometry: &Geometry, tilt: &PerArm<f32>, follow: &PerArm<f32>) -> Self {
         let rows = |tilt: f32, follow: f32| {
             let (s, c) = math::sin_cos_small(tilt);
-            // The frozen authority first: the rotors' present moment shares it.
+            // First, because the rotors' present moment shares it.
             let frozen = geometry.b * s + geometry.drag;
             (c - s * follow, frozen + geometry.b * c * follow)
         };
@@ -111,14 +110,14 @@ impl Effectiveness {
     }
 }
 
-/// A wrench as the pairs and sides of rotors see it.
+/// A wrench as lifts of the pairs and difference of the sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
     /// Lift of the front pair, N.
     pub front: f32,
     /// Lift of the rear pair, N.
     pub rear: f32,
-    /// Thrust of the left side minus that of the right one, N.
+    /// Left less right thrust, N.
     pub roll: f32,
     /// Yaw moment, N·m.
     pub yaw: f32,
@@ -138,7 +137,7 @@ impl Load {
         }
     }
 
-    /// What the thrusts (N) of rotors tilted by `tilt` (rad, within ±0.7) give now.
+    /// Effect of the thrusts (N) of rotors tilted by `tilt` (rad, within ±0.7).
     #[inline(always)]
     pub fn given(geometry: &Geometry, thrusts: &PerArm<f32>, tilt: &PerArm<f32>) -> Self {
         let rotor = |thrust: f32, tilt: f32| {
@@ -159,10 +158,9 @@ impl Load {
     }
 }
 
-/// The inverse of an effectiveness in closed form.
+/// Closed-form inverse of an effectiveness.
 ///
-/// The lift row and the pitch row share their entries, so the front pair's and the rear pair's lift are
-/// known at once; what is left is a 2×2 system for how each pair splits it.
+/// Lift and pitch rows share their entries, which gives each pair's lift; a 2×2 system then splits the pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inverse {
     inv_lift_3: f32,
@@ -171,17 +169,17 @@ pub struct Inverse {
     ratio_rear: f32,
     yaw_3: f32,
     yaw_4: f32,
-    /// Rotor 1 for roll (N/N) and for yaw (N/(N·m)).
+    /// Rotor 1 for roll (N/N) and yaw (N/(N·m)).
     first: (f32, f32),
     /// Rotor 2 for roll and against yaw.
     second: (f32, f32),
 }
 
 impl Inverse {
-    /// The inverse, or `None` where the effectiveness has none.
+    /// The inverse; `None` if the effectiveness is singular.
     #[inline(always)]
     pub fn new(e: &Effectiveness) -> Option<Self> {
-        /// Least determinant, m: a hundredth of the stiff frame's yaw authority.
+        /// Least determinant, m: 1 % of the stiff frame's yaw authority.
         const LEAST: f32 = 1.6e-4;
         let [l1, l2, l3, l4] = e.lift;
         let [y1, y2, y3, y4] = e.yaw;
@@ -191,7 +189,7 @@ impl Inverse {
         let (both_front, both_rear) = (1.0 + ratio_front, 1.0 + ratio_rear);
         let determinant = both_front * yaw_rear + both_rear * yaw_front;
         let per = 1.0 / determinant;
-        // A lift of zero makes the determinant infinite or no number.
+        // A lift of 0 makes the determinant infinite or NaN.
         (determinant.abs() > LEAST && determinant.abs() < f32::MAX).then_some(Self {
             inv_lift_3,
             inv_lift_4,
@@ -204,12 +202,12 @@ impl Inverse {
         })
     }
 
-    /// The thrusts (N) whose effect is `load`.
+    /// Thrusts (N) that give `load`.
     #[inline(always)]
     pub fn solve(&self, load: Load) -> PerArm<f32> {
-        // Lift of the front pair and of the rear pair, carried by rotors 3 and 4 to begin with.
+        // Lifts of the pairs, put on rotors 3 and 4 at first.
         let (f3, r4) = (load.front * self.inv_lift_3, load.rear * self.inv_lift_4);
-        // Roll and yaw that rotors 1 and 2 must add by taking over from 3 and 4.
+        // Roll and yaw that rotors 1 and 2 add by taking over from 3 and 4.
         let roll = load.roll + f3 + r4;
         let yaw = load.yaw + self.yaw_3 * f3 - self.yaw_4 * r4;
         let t1 = roll * self.first.0 + yaw * self.first.1;
@@ -217,7 +215,7 @@ impl Inverse {
         [t1, t2, f3 - self.ratio_front * t1, r4 - self.ratio_rear * t2]
     }
 
-    /// The thrusts (N) whose effect is the yaw moment `yaw` (N·m) alone.
+    /// Thrusts (N) that give the yaw moment `yaw` (N·m) alone.
     #[inline(always)]
     pub fn solve_yaw(&self, yaw: f32) -> PerArm<f32> {
         let (t1, t2) = (yaw * self.first.1, yaw * self.second.1);
@@ -259,7 +257,7 @@ mod tests {
             let r = crate::vector::Vec3::new(fore * g.b, -left * g.d * a.cos(), -g.d * a.sin());
             let f = crate::vector::Vec3::new(0.0, left * t * a.sin(), -t * a.cos());
             let m = r.cross(f);
-            // Rotors 1 and 4 turn counter-clockwise from above, so their drag turns the body clockwise.
+            // Rotors 1 and 4 turn counter-clockwise from above: their drag turns the body clockwise.
             let spin = if i == 0 || i == 3 { 1.0 } else { -1.0 };
             for (sum, x) in force.iter_mut().zip(f.to_array()) {
                 *sum += x;

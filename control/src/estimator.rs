@@ -226,6 +226,22 @@ mod tests {
     }
 
     #[test]
+    fn a_level_bench_shows_the_accelerometers_bias_as_docs_calibration_says() {
+        // docs/calibration.md: a degree is 0.171 m/s²; x by the pitch, y by the roll turned round.
+        const PER_DEGREE: f32 = 0.171;
+        let bias = Vec3::new(0.2, -0.3, 0.1);
+        let felt = bias + Vec3::new(0.0, 0.0, -GRAVITY);
+        let mut e = calibrated(Vec3::ZERO, felt);
+        // A minute of rest.
+        for _ in 0..60_000 {
+            e.step(Vec3::ZERO, felt, 1e-3);
+        }
+        let (roll, pitch, _) = e.attitude().to_euler();
+        let [x, y] = [pitch, -roll].map(|lean| PER_DEGREE * lean.to_degrees());
+        assert!((x - bias.x).abs() < 0.01 && (y - bias.y).abs() < 0.01, "{x} {y}");
+    }
+
+    #[test]
     fn a_known_bias_needs_no_rest_but_gravity() {
         let bias = Vec3::new(0.02, -0.05, 0.01);
         let mut e = Estimator::resume(&Params::default(), bias);

@@ -1,7 +1,7 @@
-//! First-order low pass and biquads, all with an explicit step time.
+//! First-order low pass and biquads with an explicit step time.
 //!
-//! Each is stepped at its owner's rate, 50 Hz to 4 kHz. The biquads are made for one sampling rate: a sample that is
-//! missed shifts their cut-off for as long. The low passes take the time since the step before (s).
+//! Each is stepped at its owner's rate, 50 Hz to 4 kHz. Low passes take the measured step (s). Biquads are made for one
+//! sampling rate: a missed sample shifts their cut-off for as long.
 
 use crate::math;
 
@@ -12,13 +12,13 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// A filter that has settled at `value`.
+    /// A filter settled at `value`.
     pub const fn at(value: f32) -> Self {
         Self { value }
     }
 
-    /// One step of `dt` s with the cut-off `rate` (rad/s, 2π times Hz). Stable for any positive product.
-    /// An input that is not finite changes nothing.
+    /// One step of `dt` s with the cut-off `rate` (rad/s); stable for any positive product. An input that is not finite
+    /// changes nothing.
     #[inline]
     pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
         if input.is_finite() {
@@ -27,28 +27,28 @@ impl LowPass {
         self.value
     }
 
-    /// Share of the way to the input that a step of `dt` s goes with the cut-off `rate` (rad/s), 0..1. It takes a
-    /// division, so filters of the same cut-off share it.
+    /// Share of the way to the input in a step of `dt` s with the cut-off `rate` (rad/s), 0..1. It takes a division,
+    /// which filters of the same cut-off share.
     #[inline(always)]
     pub fn gain(rate: f32, dt: f32) -> f32 {
         let k = rate * dt;
         k / (1.0 + k)
     }
 
-    /// One step with the [gain](Self::gain) `gain` towards an `input` that is known to be finite.
+    /// One step with the [gain](Self::gain) `gain` towards a finite `input`.
     #[inline(always)]
     pub fn blend(&mut self, input: f32, gain: f32) -> f32 {
         self.value += (input - self.value) * gain;
         self.value
     }
 
-    /// The present output.
+    /// Output.
     pub const fn value(&self) -> f32 {
         self.value
     }
 }
 
-/// Two first-order low passes in a row, of the same cut-off.
+/// Two first-order low passes of the same cut-off in series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CascadedLowPass {
     first: LowPass,
@@ -56,7 +56,7 @@ pub struct CascadedLowPass {
 }
 
 impl CascadedLowPass {
-    /// A filter that has settled at `value`.
+    /// A filter settled at `value`.
     pub const fn at(value: f32) -> Self {
         Self {
             first: LowPass::at(value),
@@ -64,18 +64,18 @@ impl CascadedLowPass {
         }
     }
 
-    /// One step of `dt` s; both with the cut-off `rate` (rad/s). See [`LowPass::step`].
+    /// One step of `dt` s with the cut-off `rate` (rad/s). See [`LowPass::step`].
     pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
         let once = self.first.step(input, rate, dt);
         self.second.step(once, rate, dt)
     }
 
-    /// The present output.
+    /// Output.
     pub const fn value(&self) -> f32 {
         self.second.value()
     }
 
-    /// Change of an evenly moving input within one time constant: what the first is ahead of the second.
+    /// First less second output: change of an evenly moving input within one time constant.
     pub fn lead(&self) -> f32 {
         self.first.value() - self.second.value()
     }
@@ -129,7 +129,7 @@ impl Coefficients {
         }
     }
 
-    /// Gain, a1 and a2 of a low pass, whose numerator is the gain times 1, 2, 1.
+    /// Gain, a1 and a2 of a low pass; its numerator is the gain times 1, 2, 1.
     pub(crate) const fn as_low_pass(self) -> (f32, f32, f32) {
         (self.b0, self.a1, self.a2)
     }
@@ -163,7 +163,7 @@ impl Biquad {
         y
     }
 
-    /// Forgets everything and takes `value` as the constant input and output so far (unit gain at 0 Hz).
+    /// Settles at the constant input `value` (unit gain at 0 Hz).
     pub fn reset(&mut self, value: f32) {
         self.s1 = value * (1.0 - self.c.b0);
         self.s2 = value * (self.c.b2 - self.c.a2);
@@ -177,7 +177,6 @@ mod tests {
 
     use super::*;
 
-    /// Amplitude of the response to a sine of `hz`.
     fn gain(mut b: Biquad, hz: f32, rate: f32) -> f32 {
         let n = (rate * (20.0 / hz).max(2.0)) as usize;
         let mut peak = 0.0f32;
@@ -228,7 +227,6 @@ mod tests {
             f.step(1.0, 10.0, 1e-4);
         }
         assert!((f.value() - 0.632).abs() < 0.001);
-        // Never unstable, however long the step.
         assert!(f.step(1.0, 1e6, 1.0) <= 1.0);
     }
 }

@@ -38,6 +38,8 @@ pub enum FsrFault {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FsrScale {
     pascal_per_siemens: f32,
+    /// Pressure that it shows while nothing presses it, Pa.
+    zero: f32,
     divider: f32,
     /// Counts at which the pad would have the whole supply.
     full: f32,
@@ -48,14 +50,15 @@ pub struct FsrScale {
 impl FsrScale {
     /// The sensor of the arm `arm` (0 to 3) that the parameters describe.
     pub fn from_params(p: &Params, arm: usize) -> Self {
-        let scale = match arm {
-            0 => p.fsr_scale_1,
-            1 => p.fsr_scale_2,
-            2 => p.fsr_scale_3,
-            _ => p.fsr_scale_4,
+        let [scale, trim, zero] = match arm {
+            0 => [p.fsr_scale_1, p.fsr_trim_1, p.fsr_zero_1],
+            1 => [p.fsr_scale_2, p.fsr_trim_2, p.fsr_zero_2],
+            2 => [p.fsr_scale_3, p.fsr_trim_3, p.fsr_zero_3],
+            _ => [p.fsr_scale_4, p.fsr_trim_4, p.fsr_zero_4],
         };
         Self {
-            pascal_per_siemens: 1.0 / (p.fsr_gain * p.fsr_area),
+            pascal_per_siemens: 1.0 / (p.fsr_gain * trim * p.fsr_area),
+            zero,
             divider: p.fsr_divider,
             full: FULL_SCALE / scale,
             // A pin that sees a part of the range only is at its own end first.
@@ -90,7 +93,7 @@ impl FsrScale {
     fn pressure_of(&self, counts: f32) -> f32 {
         let counts = if counts > self.most { self.most } else { counts };
         let x = counts / self.full;
-        x / ((1.0 - x) * self.divider) * self.pascal_per_siemens
+        x / ((1.0 - x) * self.divider) * self.pascal_per_siemens - self.zero
     }
 }
 
@@ -162,6 +165,20 @@ mod tests {
     }
 
     const DT: f32 = 0.002;
+
+    #[test]
+    fn each_sensor_has_its_own_zero_and_conductance() {
+        let p = Params {
+            fsr_trim_2: 2.0,
+            fsr_zero_2: 40.0,
+            fsr_trim_4: 0.5,
+            ..params()
+        };
+        let [first, second, third, fourth] = FsrScale::all(&p).map(|scale| scale.pressure(2047));
+        assert!(first == third && (first - 692.5).abs() < 1.0);
+        assert!((second - (692.5 / 2.0 - 40.0)).abs() < 1.0, "{second}");
+        assert!((fourth - 2.0 * 692.5).abs() < 1.0, "{fourth}");
+    }
 
     #[test]
     fn the_divider_by_hand() {

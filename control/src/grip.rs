@@ -1,25 +1,25 @@
-//! The grip and release detector: whether an arm holds the pipe, and whether it is free of it.
+//! Grip and release detector: whether an arm holds the pipe, and whether it is free of it.
 //!
-//! Stepped by the [gripper](crate::gripper) at 100 Hz with the time of its step (s), pressures in Pa, forces along the
-//! tendon in N. A late step delays a proof by as much, and the rotors' stop with it.
+//! Stepped by the [gripper](crate::gripper) at 100 Hz, pressures in Pa, forces along the tendon in N. A late step
+//! delays a proof, and the rotors' stop, by as much.
 
 use crate::grip_fault::GripFault;
 use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
-/// What the gripper knows of the grip.
+/// State of the grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GripState {
     /// Every chosen arm, all at once, held the pressure for the dwell time with a force below the limit.
     pub proven: bool,
     /// Every arm is free: no pressure, tendon slack, servo back at release.
     pub released: bool,
-    /// Arm by arm.
+    /// Per arm.
     pub arms: PerArm<ArmGrip>,
 }
 
-/// What is known of one arm's grip.
+/// Grip of one arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmGrip {
     /// State of the arm.
@@ -28,9 +28,9 @@ pub struct ArmGrip {
     pub pressure: f32,
     /// Tendon force, N.
     pub force: f32,
-    /// Time from the start of closing until the pressure was within its tolerance for good, s.
+    /// Time from the start of closing until the pressure stayed within its tolerance, s.
     pub closure: Option<f32>,
-    /// Why the arm is [`ArmState::Faulty`].
+    /// Cause of [`ArmState::Faulty`].
     pub fault: Option<GripFault>,
 }
 
@@ -44,24 +44,24 @@ pub enum ArmState {
     Closing,
     /// Pressure rising.
     Touching,
-    /// Pressure held within its tolerance for the dwell time, force below the limit.
+    /// Pressure within its tolerance for the dwell time, force below the limit.
     Holding,
-    /// The force limit was reached before the pressure.
+    /// Force limit reached before the pressure.
     ForceLimited,
-    /// The sensor or the arm's own IMU failed: force is held.
+    /// The sensor or the arm's own IMU failed: the force is held.
     Faulty,
     /// Tendon paying out.
     Releasing,
 }
 
-/// Factor on the tolerance beyond which a proven grip is doubted: stopping the rotors and pushing the vehicle
-/// disturb the pressure without loosening the grip.
+/// Tolerance factor beyond which a proven grip is doubted: the rotors' stop and pushes disturb the pressure without
+/// loosening the grip.
 const DOUBT_FACTOR: f32 = 4.0;
-/// Share of the force limit that a proven grip must stay below.
+/// Largest share of the force limit for a proof.
 const FORCE_SHARE_MAX: f32 = 0.98;
-/// Time for which an arm must look free before it counts as free, s.
+/// Time for which an arm must look free, s.
 const FREE_DWELL: f32 = 0.1;
-/// The same for an arm whose sensor failed, s: its servo alone testifies, so the arm gets time to spring back.
+/// The same with a failed sensor, s: only the servo shows it, and the arm needs time to spring back.
 const FREE_DWELL_BLIND: f32 = 1.0;
 
 /// What a proof demands.
@@ -80,7 +80,7 @@ pub struct GripDemand {
 }
 
 impl GripDemand {
-    /// What the parameters demand, below the force limit `limit` (N).
+    /// The demand by the parameters, below the force limit `limit` (N).
     pub fn from_params(p: &Params, limit: f32) -> Self {
         Self {
             pressure: p.grip_pressure,
@@ -92,7 +92,7 @@ impl GripDemand {
     }
 }
 
-/// The proof that one arm holds.
+/// Proof that one arm holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HoldProof {
     elapsed: f32,
@@ -103,10 +103,8 @@ pub struct HoldProof {
 }
 
 impl HoldProof {
-    /// Adds `dt` s of closing or holding at the pressure `pressure` (Pa; `None`: unknown) and the force
-    /// `force` (N); returns whether the grip is proven.
-    ///
-    /// A pressure that is unknown or beyond four tolerances for the dwell time takes the proof away.
+    /// Adds `dt` s at the pressure `pressure` (Pa; `None`: unknown) and the force `force` (N); returns whether the grip
+    /// is proven. A pressure unknown or beyond four tolerances for the dwell time revokes the proof.
     pub fn step(&mut self, demand: &GripDemand, pressure: Option<f32>, force: f32, dt: f32) -> bool {
         self.elapsed = math::clamp(self.elapsed + dt, 0.0, 1e6);
         let error = pressure.map_or(f32::INFINITY, |p| (p - demand.pressure).abs());
@@ -135,22 +133,21 @@ impl HoldProof {
         self.proven
     }
 
-    /// Time from the start of closing until the pressure was within its tolerance for good, s; `None` while
-    /// the grip is not proven.
+    /// Time from the start of closing until the pressure stayed within its tolerance, s; `None` without proof.
     pub fn closure(&self) -> Option<f32> {
         self.proven.then_some(self.entered)
     }
 }
 
-/// The proof that one arm is free.
+/// Proof that one arm is free.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FreeProof {
     free_for: f32,
 }
 
 impl FreeProof {
-    /// Adds `dt` s with the pressure `pressure` (Pa; `None`: unknown) and the tension that the servo can be
-    /// giving, `tension` (N; `None`: unknown; 0 only at the release position); returns whether the arm is free.
+    /// Adds `dt` s at the pressure `pressure` (Pa) and the servo's tension `tension` (N; 0 only at the release
+    /// position), `None` where unknown; returns whether the arm is free.
     pub fn step(
         &mut self,
         demand: &GripDemand,
@@ -200,7 +197,7 @@ mod tests {
         let mut proof = HoldProof::default();
         assert!(!run(&mut proof, Some(500.0), 60.0, 2.0));
         assert!(!run(&mut proof, Some(980.0), 60.0, 0.3));
-        // Out again: the first visit does not count.
+        // The first visit does not count.
         assert!(!run(&mut proof, Some(1010.0), 60.0, 0.2));
         assert!(!run(&mut proof, Some(960.0), 60.0, 0.45));
         assert!(proof.closure().is_none());
@@ -238,7 +235,6 @@ mod tests {
         assert!(!free(Some(0.0), Some(0.5), 5.0));
         assert!(!free(Some(0.0), None, 5.0));
         assert!(!free(Some(f32::NAN), Some(0.0), 5.0));
-        // Without a sensor it takes longer.
         assert!(!free(None, Some(0.0), 0.9) && free(None, Some(0.0), 1.1));
     }
 }

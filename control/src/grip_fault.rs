@@ -1,25 +1,25 @@
-//! What can be wrong with a closing arm; below both the loop that finds it and the grip state that carries it.
+//! Faults of a closing arm; below both the loop that finds them and the grip state that carries them.
 
 /// Why an arm is faulty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GripFault {
-    /// No fresh pressure; over as soon as there is one.
+    /// No fresh pressure; ends with the next one.
     Stale,
     /// The pressure sensor failed; stays until release.
     Sensor,
     /// The arm met something that its sensor does not feel; stays until release.
     Unfelt,
-    /// The force rose and the pressure, below that of a grip, did not follow: the sensor cannot read it; stays until
-    /// release.
+    /// The force rose and the pressure, still below that of a grip, did not follow: the sensor cannot read it; stays
+    /// until release.
     Ceiling,
-    /// The arm's tilt is missing; over when it is back.
+    /// Tilt missing; ends when it is back.
     Tilt,
-    /// A number is not finite; over when it is.
+    /// A value is not finite; ends when it is.
     NotFinite,
 }
 
 impl GripFault {
-    /// It stays until the arm is released.
+    /// Stays until release.
     pub const fn is_latched(self) -> bool {
         matches!(self, Self::Sensor | Self::Unfelt | Self::Ceiling)
     }

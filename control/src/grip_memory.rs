@@ -3,6 +3,7 @@
 //! The mode logic decides it at 100 Hz, and the supervisor copies it into memory that a reset leaves alone.
 
 use crate::rc::ArmChoice;
+use crate::setpoint::ClampCommand;
 
 /// What the tendons do to the pipe, as far as it must outlive the rotors and a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,6 +20,15 @@ pub enum GripMemory {
 }
 
 impl GripMemory {
+    /// What the tendons do that keeps it.
+    pub const fn tendons(self) -> ClampCommand {
+        match self {
+            Self::Open => ClampCommand::Release,
+            Self::Controlled(arms) => ClampCommand::Close { arms },
+            Self::HeldByGears(_) | Self::Unknown => ClampCommand::Keep,
+        }
+    }
+
     /// The arms that hold something.
     pub const fn arms(self) -> Option<ArmChoice> {
         match self {

@@ -1,13 +1,13 @@
 //! Low-passes the inertial sensor at its own rate and decimates it to the control rate.
 //!
-//! [`ImuFilter::batch`] is called at 1 kHz by the task `imu` with the sensor's samples of the last millisecond (4 kHz, or
-//! the part's nearest; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
+//! [`ImuFilter::batch`] is called at 1 kHz by the task `imu` with the samples of the last millisecond (4 kHz, or the
+//! part's nearest; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
 
 use crate::chain::ImuReading;
 use crate::filter::Coefficients;
 use crate::vector::Vec3;
 
-/// Three axes through the same second-order low pass, transposed direct form II.
+/// Second-order low pass on three axes, transposed direct form II.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisFilter {
     gain: f32,
@@ -18,7 +18,7 @@ pub struct AxisFilter {
 }
 
 impl AxisFilter {
-    /// Butterworth low pass with cut-off `hz` at the sampling rate `rate_hz` on each axis, at rest.
+    /// Butterworth low pass with cut-off `hz` at the sampling rate `rate_hz`, at rest.
     pub fn low_pass(hz: f32, rate_hz: f32) -> Self {
         let (gain, a1, a2) = Coefficients::low_pass(hz, rate_hz).as_low_pass();
         Self {
@@ -41,7 +41,7 @@ impl AxisFilter {
         y
     }
 
-    /// Takes `v` as the constant input so far.
+    /// Settles at the constant input `v`.
     pub fn reset(&mut self, v: Vec3) {
         self.s1 = v * (1.0 - self.gain);
         self.s2 = v * (self.gain - self.a2);
@@ -60,7 +60,7 @@ impl ImuFilter {
     /// Cut-off of the accelerometer, Hz: it only corrects slowly and proves support.
     pub const ACCEL_CUTOFF: f32 = 30.0;
 
-    /// A filter for samples at `rate_hz` with the gyro's cut-off `gyro_hz`.
+    /// Filter for samples at `rate_hz` with the gyro's cut-off `gyro_hz`.
     pub fn new(gyro_hz: f32, rate_hz: f32) -> Self {
         Self {
             gyro: AxisFilter::low_pass(gyro_hz, rate_hz),
@@ -69,14 +69,14 @@ impl ImuFilter {
         }
     }
 
-    /// Takes the readings of a batch, oldest first, with `accel_bias` (m/s²) off the specific force; such as are not
-    /// finite are left out. The newest that comes out goes to `newest`; gives how many were finite.
+    /// Filters the readings of a batch, oldest first, less `accel_bias` (m/s²) of specific force, leaving out those
+    /// that are not finite. Puts the newest output into `newest`; returns the count of finite readings.
     #[inline(always)]
     pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u32 {
         if !self.started {
             self.start_at_first(readings, accel_bias);
         }
-        // Copies of their own stay in registers from reading to reading.
+        // Local copies stay in registers between readings.
         let (mut filter, mut last) = (*self, *newest);
         let mut finite = 0;
         for ImuReading { gyro, accel } in readings {
@@ -93,7 +93,7 @@ impl ImuFilter {
         finite
     }
 
-    /// Takes the first reading that is finite as the constant input so far.
+    /// Settles at the first finite reading.
     #[cold]
     #[inline(never)]
     fn start_at_first(&mut self, readings: &[ImuReading], accel_bias: Vec3) {
@@ -105,7 +105,6 @@ impl ImuFilter {
         }
     }
 
-    /// A finite reading filtered.
     #[inline(always)]
     fn smooth(&mut self, reading: ImuReading) -> ImuReading {
         ImuReading {
@@ -119,7 +118,6 @@ impl ImuFilter {
 mod tests {
     use super::*;
 
-    /// What one reading gives, if it is finite.
     fn one(f: &mut ImuFilter, gyro: Vec3, accel: Vec3) -> Option<ImuReading> {
         let mut newest = ImuReading::default();
         (f.batch(&[ImuReading { gyro, accel }], Vec3::ZERO, &mut newest) == 1).then_some(newest)
@@ -158,14 +156,13 @@ mod tests {
         assert!((newest.accel - (good.accel - bias)).norm() < 1e-3, "{newest:?}");
     }
 
-    /// Gain and delay (s) of the gyro's filter for a sine of `hz`, as seen at its output of 1 kHz, with samples at
-    /// `rate_hz`.
+    /// Gain and delay (s) of the gyro's filter at `hz`, seen at its 1 kHz output, with samples at `rate_hz`.
     fn response(hz: f64, rate_hz: f64) -> (f64, f64) {
         let mut f = ImuFilter::new(90.0, rate_hz as f32);
         let per_output = (rate_hz / 1000.0) as usize;
         let turn = core::f64::consts::TAU * hz;
         let (mut in_phase, mut quadrature, mut n) = (0.0, 0.0, 0);
-        // Two seconds, of which the second is measured: a whole number of turns.
+        // Two seconds; the second, a whole number of turns, is measured.
         for i in 1..=(2.0 * rate_hz) as usize {
             let t = i as f64 / rate_hz;
             let x = f64::sin(turn * t) as f32;
@@ -197,7 +194,7 @@ mod tests {
                     "{hz} Hz at {rate} Hz: delay {d} s, {delay} s"
                 );
             }
-            // Beyond half of the output's rate nothing is left to fold back.
+            // Beyond half of the output's rate nothing is left to alias.
             if rate > 1000.0 {
                 assert!(response(900.0, rate).0 < 0.02, "{rate} Hz");
             }

@@ -19,6 +19,8 @@
 pub mod arming;
 pub mod attitude;
 pub mod battery;
+pub mod bench;
+pub mod calibration;
 pub mod chain;
 pub mod deflection;
 pub mod desaturation;

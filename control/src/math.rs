@@ -1,9 +1,9 @@
-//! The only place where transcendental functions come from.
+//! Source of all transcendental functions.
 //!
-//! With `std` in scope `x.sin()` silently is another function on the host than on the board, so the laws
-//! call these by path. `sin`, `cos` and `atan2` are micromath's (absolute errors 1.1e-3, 1.1e-3 and
-//! 2.8e-3 rad) and serve what runs now and then; what runs in every step has sines of its own, for the range that it
-//! needs, without a branch. The roots are our own because micromath's are off by up to 6 %.
+//! With `std` in scope `x.sin()` is another function on the host than on the board, so the laws call these by path.
+//! `sin`, `cos` and `atan2` are micromath's (absolute errors 1.1e-3, 1.1e-3 and 2.8e-3 rad), for occasional use; every
+//! step uses branch-free sines for a limited range. The roots are written here because micromath's are off by up to 6
+//! %.
 
 use micromath::F32Ext;
 
@@ -37,17 +37,16 @@ pub fn asin(x: f32) -> f32 {
     atan2(x, sqrt(1.0 - x * x))
 }
 
-/// Tangent of `x` rad for |x| <= 1.2, by a continued fraction (relative error below 2e-6).
-///
-/// Filter design needs it: 1 - cos of a small angle would drown in micromath's error.
+/// Tangent of `x` rad for |x| <= 1.2, by a continued fraction (relative error below 2e-6), for filter design: 1 - cos
+/// of a small angle would drown in micromath's error.
 #[inline]
 pub fn tan(x: f32) -> f32 {
     let x2 = x * x;
     x / (1.0 - x2 / (3.0 - x2 / (5.0 - x2 / (7.0 - x2 / (9.0 - x2 / 11.0)))))
 }
 
-/// Sine and cosine of `x` rad for |x| <= 0.7, the tilts for which the arm's model holds: absolute errors below 5e-7 and
-/// 7e-6. Minimax polynomials; the sine's slope at 0 is exact.
+/// Sine and cosine of `x` rad for |x| <= 0.7, the range of the arm's model: absolute errors below 5e-7 and 7e-6.
+/// Minimax polynomials; the sine's slope at 0 is exact.
 #[inline(always)]
 pub fn sin_cos_small(x: f32) -> (f32, f32) {
     let x2 = x * x;
@@ -57,8 +56,7 @@ pub fn sin_cos_small(x: f32) -> (f32, f32) {
     )
 }
 
-/// Sine and cosine of `x` rad for |x| <= π/2: absolute errors below 1.2e-4 and 9e-6, where a tenth of a degree is what a
-/// sensor can tell.
+/// Sine and cosine of `x` rad for |x| <= π/2: absolute errors below 1.2e-4 and 9e-6; a sensor resolves 0.1°.
 #[inline(always)]
 pub fn sin_cos_quarter(x: f32) -> (f32, f32) {
     let x2 = x * x;
@@ -68,9 +66,7 @@ pub fn sin_cos_quarter(x: f32) -> (f32, f32) {
     )
 }
 
-/// 1/√x for positive finite `x`; 0 for everything else, so that a division by a vanishing norm gives 0.
-///
-/// Relative error below 8e-7.
+/// 1/√x for positive finite `x`, relative error below 8e-7; 0 otherwise, so that dividing by a vanishing norm gives 0.
 #[inline]
 pub fn inv_sqrt(x: f32) -> f32 {
     let y = inv_sqrt_normal(x);
@@ -81,10 +77,9 @@ pub fn inv_sqrt(x: f32) -> f32 {
     }
 }
 
-/// 1/√x for positive normal `x`, some number or none for everything else. Relative error below 8e-7.
+/// 1/√x for positive normal `x`, relative error below 8e-7; any value or NaN otherwise.
 ///
-/// Bit-level first guess, a Newton step with constants that were fitted to that guess (Moroz et al., error 6.5e-4) and
-/// one plain Newton step.
+/// Bit-level guess, a Newton step with constants fitted to it (Moroz et al., error 6.5e-4), and a plain Newton step.
 #[inline(always)]
 pub fn inv_sqrt_normal(x: f32) -> f32 {
     let y = f32::from_bits(0x5f1f_fff9u32.wrapping_sub(x.to_bits() >> 1));
@@ -98,8 +93,8 @@ pub fn sqrt(x: f32) -> f32 {
     if x < f32::MAX { x * inv_sqrt(x) } else { 0.0 }
 }
 
-/// `x` limited to [`low`, `high`]; `low` for a NaN. Two selects, which an M7 does in an instruction each where the limits
-/// are constants; `f32::clamp` and its kin call a library on a core without VMINNM.
+/// `x` limited to [`low`, `high`]; `low` for a NaN. With constant limits each select is one instruction on an M7;
+/// `f32::clamp` calls a library on a core without VMINNM.
 #[inline(always)]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
     let x = if x > low { x } else { low };
@@ -118,8 +113,8 @@ pub fn slew(from: f32, to: f32, step: f32) -> f32 {
     from + clamp_abs(to - from, step)
 }
 
-/// `base` to the power `exponent`, for `base` in [0.3, 3] (limited) and |exponent| <= 2.5: relative error
-/// below 5e-5. The paper's (P/P0)^C_P needs it; micromath's `powf` is too coarse.
+/// `base` (limited to [0.3, 3]) to the power `exponent` (|exponent| <= 2.5), relative error below 5e-5, for the paper's
+/// (P/P0)^C_P; micromath's `powf` is too coarse.
 pub fn pow_near_one(base: f32, exponent: f32) -> f32 {
     let base = clamp(base, 0.3, 3.0);
     // ln x = 2 artanh((x - 1) / (x + 1)).
@@ -139,19 +134,19 @@ pub fn pow_near_one(base: f32, exponent: f32) -> f32 {
 #[inline]
 pub fn wrap_pi(x: f32) -> f32 {
     let turns = (x + PI) * (0.5 / PI);
-    // Truncation towards zero, mended for negative values: `floor` is not in core.
+    // Truncates towards zero, then corrects negative values: `floor` is not in core.
     let whole = turns as i32 as f32;
     let floor = if whole > turns { whole - 1.0 } else { whole };
     x - floor * (2.0 * PI)
 }
 
-/// Degrees to radians, for constants that sources print in degrees.
+/// Degrees to radians.
 #[inline]
 pub const fn deg(x: f32) -> f32 {
     x * (PI / 180.0)
 }
 
-/// Radians to degrees, for the edges where people read.
+/// Radians to degrees.
 #[inline]
 pub const fn to_deg(x: f32) -> f32 {
     x * (180.0 / PI)
@@ -179,7 +174,7 @@ mod tests {
 
     #[test]
     fn the_inverse_root_keeps_its_error_over_a_whole_period_of_its_guess() {
-        // The guess repeats with every factor of 4: each float of 1..4, 2^24 of them, a seventh looked at.
+        // The guess repeats with every factor of 4: every seventh of the 2^24 floats of 1..4.
         for bits in (1.0f32.to_bits()..4.0f32.to_bits()).step_by(7) {
             let x = f32::from_bits(bits);
             let exact = 1.0 / f64::sqrt(f64::from(x));
@@ -207,7 +202,7 @@ mod tests {
         assert!(s < 5e-7 && c < 7e-6, "{s} {c}");
         let (s, c) = worst(sin_cos_quarter, PI / 2.0);
         assert!(s < 1.2e-4 && c < 9e-6, "{s} {c}");
-        // What they replace.
+        // The functions that they replace.
         let (s, c) = worst(|x| (sin(x), cos(x)), PI / 2.0);
         assert!(s > 9e-4 && c > 9e-4, "{s} {c}");
     }

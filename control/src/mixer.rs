@@ -7,7 +7,7 @@ mod flexible;
 mod limits;
 mod split;
 
-pub use flexible::Flexible;
+pub use flexible::{Flexible, YAW_FLOOR};
 pub use limits::Limits;
 pub use split::{Split, moment_patterns, stiff};
 

@@ -6,6 +6,7 @@
 
 mod armed;
 mod behaviour;
+mod bench;
 mod calibrating;
 mod clamping;
 mod contact;
@@ -25,6 +26,7 @@ mod lean;
 mod logic;
 mod perched;
 mod power_up_grip;
+mod probe;
 mod reason;
 mod releasing;
 #[cfg(test)]
@@ -33,9 +35,12 @@ mod transitions;
 
 use self::behaviour::Behaviour;
 use self::context::Step;
+pub use self::escaping::{AWAY_LEAN as ESCAPE_LEAN, LIFT_SHARE as ESCAPE_LIFT};
 pub use self::logic::ModeLogic;
 pub use self::reason::Reason;
+pub use self::releasing::release_thrust;
 use crate::arming::ArmingInhibits;
+use crate::bench::{BenchAnswer, BenchRequest};
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
@@ -167,6 +172,8 @@ pub struct Inputs {
     pub late: bool,
     /// What the drivers, the storage and the start report against arming.
     pub hardware: ArmingInhibits,
+    /// What a builder asks at the console.
+    pub bench: Option<BenchRequest>,
 }
 
 impl Inputs {
@@ -209,4 +216,6 @@ pub struct Outputs {
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub inhibits: ArmingInhibits,
+    /// What has become of the newest order of the bench.
+    pub bench: BenchAnswer,
 }

@@ -6,7 +6,7 @@ mod table;
 
 use core::cmp::Ordering;
 
-pub use self::choices::{ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol};
+pub use self::choices::{ArmSign, ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol};
 pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;
 use self::table::ROWS;

@@ -1,7 +1,7 @@
-//! Rate control: PID on the body rates, in true units (1/s), so that gains do not depend on the inertia.
+//! Rate control: PID on the body rates, with gains in true units (1/s) that do not depend on the inertia.
 //!
-//! The derivative acts on the measured rate and is filtered. The integrators stop where the mixer could not
-//! give what was asked, unless they would unwind. Yaw passes a notch at the arms' bending mode.
+//! The derivative acts on the filtered measured rate. Integrators stop where the mixer could not give the demand,
+//! unless they unwind. Yaw passes a notch at the arms' bending mode.
 
 use core::f32::consts::TAU;
 
@@ -27,7 +27,7 @@ pub struct Feedback {
 }
 
 impl Feedback {
-    /// No mix is known of: nothing may wind up.
+    /// No mix is known: nothing may wind up.
     pub const NOTHING: Self = Self {
         roll_pitch: 0.0,
         yaw: 0.0,
@@ -35,13 +35,13 @@ impl Feedback {
     };
 }
 
-/// The rate loop's state.
+/// The rate loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateLoop {
     p: Vec3,
     i: Vec3,
     d: Vec3,
-    /// Rate of the step before; without one there is no slope yet.
+    /// Rate of the last step; without one there is no slope.
     last: Vec3,
     started: bool,
     d_rate: f32,
@@ -73,7 +73,7 @@ impl RateLoop {
         }
     }
 
-    /// Forgets integrals, derivatives and the notch's memory.
+    /// Clears integrals, derivatives and the notch.
     pub fn reset(&mut self) {
         self.integral = Vec3::ZERO;
         self.derivative = [LowPass::default(); 3];
@@ -82,8 +82,8 @@ impl RateLoop {
         self.notch.reset(0.0);
     }
 
-    /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s), step time `dt` s, > 0. `integrate` false
-    /// freezes the integrators, as while resting on something.
+    /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s) in a step of `dt` s, > 0; `integrate` is false while
+    /// resting on something.
     #[inline(always)]
     pub fn step(&mut self, setpoint: Vec3, rate: Vec3, feedback: Feedback, integrate: bool, dt: f32) -> Vec3 {
         let error = setpoint - rate;
@@ -91,7 +91,7 @@ impl RateLoop {
         let slope = (rate - self.last) * per_second;
         self.last = rate;
         self.started = true;
-        // A slope that is no number comes with a moment that is none, and that forgets everything.
+        // A slope that is not finite comes with a moment that is not, which resets everything.
         let gain = LowPass::gain(self.d_rate, dt);
         let [dx, dy, dz] = &mut self.derivative;
         let slope = Vec3::new(
@@ -103,7 +103,7 @@ impl RateLoop {
         let (tilt_given, yaw_given) = (feedback.roll_pitch > GIVEN, feedback.yaw > GIVEN && free);
         let step = error.scale_by(self.i) * if integrate { dt } else { 0.0 };
         let add = |sum: f32, step: f32, limit: f32, given: bool| {
-            // What was not given must not wind up; what unwinds always may.
+            // What was not given must not wind up, but may unwind.
             let step = if given | (sum * step < 0.0) { step } else { 0.0 };
             math::clamp_abs(sum + step, limit)
         };
@@ -308,7 +308,7 @@ mod tests {
             for _ in 0..200 {
                 rate[axis] += 0.01;
                 let rate = Vec3::from(rate);
-                // No error: what is left is the derivative.
+                // No error: only the derivative is left.
                 let m = l.step(rate, rate, FREE, false, 1e-3).to_array();
                 for (other, m) in m.into_iter().enumerate() {
                     assert!(other == axis || m == 0.0, "{axis} -> {other}: {m}");
@@ -348,7 +348,7 @@ mod tests {
                 let m = l.step(Vec3::new(f(0), f(1), f(2)), Vec3::new(f(3), f(4), f(5)), FREE, true, 1e-3);
                 prop_assert!(m.to_array().iter().all(|x| x.is_finite()));
             }
-            // One step may still see the last bad rate as a slope.
+            // One step may still have the last bad rate in its slope.
             l.step(Vec3::ZERO, Vec3::ZERO, FREE, true, 1e-3);
             for _ in 0..2000 {
                 let m = l.step(Vec3::ZERO, Vec3::ZERO, FREE, true, 1e-3).to_array();

@@ -1,6 +1,6 @@
-//! What the sticks and switches of the transmitter mean.
+//! Meaning of the transmitter's sticks and switches.
 //!
-//! Channels come as CRSF counts, 11 bit: 172 and 1811 are the ends of a stick's travel, 992 is its centre.
+//! Channels are CRSF counts, 11 bit: 172 and 1811 at the ends of a stick's travel, 992 at its centre.
 //!
 //! | channel | what | low .. high |
 //! |---|---|---|
@@ -17,7 +17,6 @@ use crate::math::clamp;
 
 /// Channels in a frame.
 pub const CHANNELS: usize = 16;
-/// Channels that mean something here.
 const USED: usize = 8;
 /// Counts at the low end of a stick's travel.
 pub const RAW_LOW: u16 = 172;
@@ -25,31 +24,31 @@ pub const RAW_LOW: u16 = 172;
 pub const RAW_CENTRE: u16 = 992;
 /// Counts at the high end.
 pub const RAW_HIGH: u16 = 1811;
-/// Lowest and highest count accepted: 885 and 2115 µs. A receiver that has lost its transmitter sends less.
+/// Counts accepted: 885 to 2115 µs. A receiver that has lost its transmitter sends less.
 const RAW_VALID: core::ops::RangeInclusive<u16> = 8..=1976;
 /// Half the travel of a centred stick, counts.
 const RAW_HALF: f32 = 819.5;
 /// The whole travel, counts.
 const RAW_SPAN: f32 = 1639.0;
-/// Share of the travel about the centre (or about the throttle's zero) that counts as zero: a gimbal's slack.
+/// Share of the travel about the centre (or the throttle's zero) that counts as zero, for a gimbal's slack.
 pub const DEADBAND: f32 = 0.01;
-/// Counts that part the positions of a switch.
+/// Thresholds of a switch, counts.
 const SWITCH_LOW: u16 = 582;
 const SWITCH_HIGH: u16 = 1402;
 
-/// How the sticks are read in flight.
+/// Reading of the sticks in flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StickMode {
-    /// Sticks give roll and pitch angle and yaw rate.
+    /// Roll and pitch angle, yaw rate.
     #[default]
     Angle,
-    /// Sticks give the three body rates.
+    /// The three body rates.
     Rate,
-    /// Sticks give thrust and the three torques, as in the paper.
+    /// Thrust and the three torques, as in the paper.
     Direct,
 }
 
-/// Which arms the tendons close.
+/// Arms that the tendons close.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ArmChoice {
     /// All four.
@@ -72,24 +71,24 @@ impl ArmChoice {
     }
 }
 
-/// The pilot's wishes, scaled and finite.
+/// Pilot's input, scaled and finite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sticks {
     /// Right positive, -1..1.
     pub roll: f32,
-    /// Nose up positive, -1..1: the stick pulled towards the pilot.
+    /// Nose up positive, -1..1: stick pulled.
     pub pitch: f32,
     /// Clockwise from above positive, -1..1.
     pub yaw: f32,
     /// Share of the largest collective thrust, 0..1.
     pub throttle: f32,
-    /// The arming switch permits running motors; off stops them at once.
+    /// Arming switch: on permits running motors, off stops them at once.
     pub arm_switch: bool,
-    /// The perch switch asks to close the arms (on) or to release them (off).
+    /// Perch switch: on closes the arms, off releases them.
     pub perch_switch: bool,
-    /// How the sticks are read.
+    /// Reading of the sticks.
     pub stick_mode: StickMode,
-    /// Which arms are to close.
+    /// Arms to close.
     pub arms: ArmChoice,
 }
 
@@ -103,10 +102,10 @@ pub struct ChannelError {
 }
 
 impl Sticks {
-    /// The meaning of one frame of channels.
+    /// Decodes a frame of channels.
     ///
     /// # Errors
-    /// A used channel outside the accepted range: the frame must be dropped as if it had not come.
+    /// A used channel outside the accepted range; the frame must be dropped.
     pub fn from_channels(channels: &[u16; CHANNELS]) -> Result<Self, ChannelError> {
         for (channel, &raw) in (1..).zip(channels.iter().take(USED)) {
             if !RAW_VALID.contains(&raw) {
@@ -134,7 +133,7 @@ impl Sticks {
         })
     }
 
-    /// The frame that means this, to the count: what a transmitter sends. Channels 9 to 16 are centred.
+    /// The frame that a transmitter sends for this, exact to the count; channels 9 to 16 are centred.
     pub fn to_channels(&self) -> [u16; CHANNELS] {
         let c = RAW_CENTRE;
         let two = |on| if on { RAW_HIGH } else { RAW_LOW };
@@ -159,7 +158,6 @@ impl Sticks {
     }
 }
 
-/// Position of a switch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Position {
     Low,
@@ -175,7 +173,7 @@ fn position(raw: u16) -> Position {
     }
 }
 
-/// A centred stick, -1..1. The deadband is taken out, not cut out: the value grows from zero at its edge.
+/// A centred stick, -1..1, continuous at the edge of the deadband.
 fn centred(raw: u16) -> f32 {
     let x = clamp((f32::from(raw) - f32::from(RAW_CENTRE)) / RAW_HALF, -1.0, 1.0);
     let beyond = clamp(x.abs() - DEADBAND, 0.0, 1.0) / (1.0 - DEADBAND);
@@ -190,7 +188,7 @@ fn from_zero(raw: u16) -> f32 {
 
 fn to_centred(value: f32) -> u16 {
     let size = clamp(value.abs(), 0.0, 1.0);
-    // Less than half a count: the stick is let go, and its spring centres it.
+    // Less than half a count: the stick is released and its spring centres it.
     if size < 0.5 / RAW_HALF {
         return RAW_CENTRE;
     }

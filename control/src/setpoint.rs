@@ -1,5 +1,6 @@
 //! What the mode logic wants of rotors and tendons.
 
+use crate::bench::{Place, Spin};
 use crate::rc::ArmChoice;
 use crate::vector::Vec3;
 use crate::wrench::Wrench;
@@ -12,6 +13,8 @@ pub enum Setpoint {
     Stop,
     /// Idle, controllers reset.
     Idle,
+    /// On the bench: one motor turns, the others are stopped, controllers reset.
+    Spin(Spin),
     /// Hold roll and pitch (rad), turn at a yaw rate (rad/s), with a collective thrust (N).
     Angle {
         /// Roll, rad.
@@ -63,10 +66,10 @@ impl Setpoint {
         self != Self::Stop
     }
 
-    /// Collective thrust, N; 0 when stopped or idle.
+    /// Collective thrust, N; 0 when stopped, idle or on the bench.
     pub fn thrust(self) -> f32 {
         match self {
-            Self::Stop | Self::Idle => 0.0,
+            Self::Stop | Self::Idle | Self::Spin(_) => 0.0,
             Self::Angle { thrust, .. }
             | Self::Escape { thrust, .. }
             | Self::Rate { thrust, .. }
@@ -79,6 +82,7 @@ impl Setpoint {
     pub fn is_finite(self) -> bool {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,
+            Self::Spin(spin) => spin.drive,
             Self::Angle {
                 roll,
                 pitch,
@@ -100,7 +104,7 @@ impl Setpoint {
 }
 
 /// What the tendons are to do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ClampCommand {
     /// Slack, servos at their release position.
     #[default]
@@ -112,6 +116,8 @@ pub enum ClampCommand {
     },
     /// Nothing yet: no pulse to the servos, whose gears hold what they held when the power came on.
     Keep,
+    /// On the bench: one servo at a pulse, the others as with [`Self::Release`].
+    Place(Place),
 }
 
 #[cfg(test)]
@@ -120,6 +126,7 @@ impl Setpoint {
     pub(crate) fn numbers(self) -> [f32; 4] {
         match self {
             Self::Stop | Self::Idle => [0.0; 4],
+            Self::Spin(spin) => [spin.drive, 0.0, 0.0, 0.0],
             Self::Angle {
                 roll,
                 pitch,

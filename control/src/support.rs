@@ -1,14 +1,14 @@
-//! Evidence that something carries the vehicle, from what it can feel itself.
+//! Evidence from the inertial sensor that something carries the vehicle.
 //!
 //! [`Support::step`] is called by the mode logic at 100 Hz with its measured step (s). Forces are along the body's
 //! thrust axis (N). A missed step delays the evidence by as much; 50 ms without an inertial sample end it.
 //!
-//! In free air the specific force along the thrust axis, times the mass, is the thrust. On the ground or on
-//! the pipe it is about the weight, whatever the thrust. The difference is the support:
+//! In free air, mass times specific force along the thrust axis is the thrust; on the ground or the pipe it is about
+//! the weight, whatever the thrust. The difference is the support:
 //!
 //!   support = -m f_z - Σ T_i cos α_i
 //!
-//! An error of 5 % in mass or thrust makes less than 1 N of it in hover.
+//! In hover, an error of 5 % in mass or thrust makes less than 1 N of it.
 
 use crate::math::{GRAVITY, PI, clamp};
 use crate::params::Params;
@@ -17,26 +17,26 @@ use crate::params::Params;
 pub const RESTING_FORCE: f32 = 3.0;
 /// Support below which the vehicle no longer rests, N.
 pub const LEAVING_FORCE: f32 = 1.5;
-/// Support that is worth looking into by taking thrust away, N.
+/// Support that is worth a trial by taking thrust away, N.
 pub const HINT_FORCE: f32 = 1.8;
 /// Time for which the support must last, s.
 pub const RESTING_TIME: f32 = 0.3;
-/// Share of the weight that counts as all of it: the rotors are stopped or idle.
+/// Share of the weight that counts as all of it, rotors stopped or idle.
 const GROUNDED_SHARE: f32 = 0.7;
 /// Time for which it must last, s.
 pub const GROUNDED_TIME: f32 = 0.5;
-/// Largest body rate at which the evidence counts, rad/s: tumbling is no rest.
+/// Largest body rate at which the evidence counts, rad/s.
 const RATE_MAX: f32 = 0.7;
 /// Cut-off of the support's low-pass filter, Hz.
 const CUTOFF: f32 = 5.0;
-/// Silence of the inertial sensor after which the evidence starts over, s.
+/// Silence of the inertial sensor that resets the evidence, s.
 const SILENCE_MAX: f32 = 0.05;
-/// Time over which the sink rate forgets, s: what an accelerometer's bias may add up to.
+/// Decay time of the sink rate, s: bounds what an accelerometer's bias adds up to.
 const SINK_MEMORY: f32 = 20.0;
 /// Largest sink rate accepted, m/s.
 const SINK_MAX: f32 = 10.0;
 
-/// Time for which a condition has held without a break.
+/// Unbroken time of a condition, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Held(f32);
 
@@ -47,13 +47,12 @@ impl Held {
         self.0
     }
 
-    /// The time, s.
     pub(crate) fn time(self) -> f32 {
         self.0
     }
 }
 
-/// What is felt in one step.
+/// Measurements of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Felt {
     /// Specific force along body z, m/s²; -9.81 at rest.
@@ -98,7 +97,7 @@ impl Support {
         }
     }
 
-    /// One step of `dt` s; `None` without a fresh inertial sample: after 50 ms the evidence starts over.
+    /// One step of `dt` s; `None` without a fresh inertial sample.
     pub fn step(&mut self, felt: Option<Felt>, dt: f32) {
         let felt = felt.filter(|f| {
             f.specific_force_z.is_finite() && f.down.is_finite() && f.rate.is_finite() && f.lift.is_finite()
@@ -132,28 +131,28 @@ impl Support {
         }
     }
 
-    /// Weight of the vehicle, N.
+    /// Weight, N.
     pub fn weight(&self) -> f32 {
         self.mass * GRAVITY
     }
 
-    /// Force that something other than the rotors carries, N, low-passed; negative when something pulls down.
+    /// Force that something other than the rotors carries, N, low-passed; negative if something pulls down.
     pub fn force(&self) -> f32 {
         self.force
     }
 
-    /// True from [`RESTING_TIME`] of more than [`RESTING_FORCE`] until as long of less than half of it.
+    /// True from [`RESTING_TIME`] above [`RESTING_FORCE`] until as long below [`LEAVING_FORCE`].
     pub fn resting(&self) -> bool {
         self.resting
     }
 
-    /// True when nearly all of the weight has been carried for [`GROUNDED_TIME`] without tumbling.
+    /// True once nearly all of the weight has been carried for [`GROUNDED_TIME`] without tumbling.
     pub fn grounded(&self) -> bool {
         self.full.time() >= GROUNDED_TIME
     }
 
-    /// Sink rate, m/s, downwards positive, within ±10 m/s: the sum of what the accelerometer felt over the last seconds. Good
-    /// for damping a descent, not for knowing its speed.
+    /// Sink rate, m/s, downwards positive, within ±10 m/s: the decaying sum of the accelerometer's readings. It damps a
+    /// descent but does not measure its speed.
     pub fn sink(&self) -> f32 {
         self.sink
     }
@@ -268,8 +267,8 @@ mod tests {
         // 17.701 N of weight less 15.7 N: 2.0 N, too little to begin resting and too much to end it.
         run(&mut s, -GRAVITY, 15.7, 5.0);
         assert!((s.force() - 2.0).abs() < 0.01 && s.resting(), "{}", s.force());
-        // 0.2 N and back, before 0.3 s below 1.5 N are over: a bounce of the soft arms. Coming back takes the lags of
-        // motor and filter, 0.08 s.
+        // 0.2 N and back within the 0.3 s below 1.5 N: a bounce of the soft arms. The way back takes motor and filter
+        // 0.08 s.
         let bounce = |s: &mut Support, steps: i32| {
             let mut below = 0;
             while below < steps {
@@ -281,11 +280,10 @@ mod tests {
         bounce(&mut s, 15);
         run(&mut s, -GRAVITY, 15.7, 1.0);
         assert!(s.resting());
-        // The time starts over, and when it is full nothing rests any more.
+        // The time starts over; once it is full, the rest ends.
         bounce(&mut s, 28);
         run(&mut s, -GRAVITY, 17.5, 0.041);
         assert!(!s.resting());
-        // Nor does it rest again at 2 N.
         run(&mut s, -GRAVITY, 15.7, 5.0);
         assert!(!s.resting());
     }

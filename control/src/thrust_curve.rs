@@ -1,6 +1,6 @@
-//! Motor command for a thrust, with the battery's voltage taken into account.
+//! Motor command for a thrust at the battery's voltage.
 //!
-//! Applied to each rotor's thrust (N) in each step of the mixer's task, 1 kHz; the voltage comes at 100 Hz.
+//! Applied to each rotor's thrust (N) in each mixer step, 1 kHz; the voltage comes at 100 Hz.
 
 use crate::math;
 use crate::params::Params;
@@ -16,13 +16,13 @@ pub struct ThrustCurve {
     half_linear_squared: f32,
 }
 
-/// Least voltage ratio that is compensated for.
+/// Least voltage ratio compensated.
 const LEAST_RATIO: f32 = 0.5;
-/// Keeps the root of a purely quadratic curve from 0, where its division would have none: 1e-6 of the command.
+/// Keeps the root of a purely quadratic curve from 0, by which it is divided: 1e-6 of the command.
 const LEAST_SQUARE: f32 = 1e-12;
 
 impl ThrustCurve {
-    /// The curve that the parameters describe.
+    /// Curve by the parameters.
     pub fn from_params(p: &Params) -> Self {
         let quadratic = math::clamp(p.thrust_curve, 0.0, 1.0);
         let half_linear = 0.5 * (1.0 - quadratic);
@@ -35,13 +35,13 @@ impl ThrustCurve {
         }
     }
 
-    /// Command 0..1 for the thrust `thrust` (N) at the voltage ratio `ratio` (V/V0). 0 for no thrust.
+    /// Command 0..1 for `thrust` (N) at the voltage ratio `ratio` (V/V0); 0 for no thrust.
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
         let [command, ..] = self.commands(&[thrust; 4], ratio);
         command
     }
 
-    /// Commands 0..1 for the thrusts (N) of the four rotors at the voltage ratio `ratio` (V/V0).
+    /// Commands 0..1 for the rotors' thrusts (N) at the voltage ratio `ratio` (V/V0).
     #[inline(always)]
     pub fn commands(&self, thrusts: &PerArm<f32>, ratio: f32) -> PerArm<f32> {
         let ratio = math::clamp(ratio, LEAST_RATIO, 1.5);
@@ -55,7 +55,7 @@ impl ThrustCurve {
         ]
     }
 
-    /// The root of q u² + (1 - q) u = share in the form that also holds for q = 0.
+    /// Root of q u² + (1 - q) u = share, in the form that also holds for q = 0.
     #[inline(always)]
     fn share_to_command(&self, share: f32) -> f32 {
         let share = if share > 0.0 { share } else { 0.0 };
@@ -65,7 +65,7 @@ impl ThrustCurve {
         if command < 1.0 { command } else { 1.0 }
     }
 
-    /// Thrust (N) of the command `command` at the voltage ratio `ratio`.
+    /// Thrust (N) of `command` at the voltage ratio `ratio`.
     pub fn thrust(&self, command: f32, ratio: f32) -> f32 {
         let u = math::clamp(command, 0.0, 1.0);
         self.max * ratio * ratio * (self.quadratic * u + self.linear) * u
@@ -82,7 +82,7 @@ mod tests {
     fn full_command_is_full_thrust_and_none_is_none() {
         let c = ThrustCurve::from_params(&Params::default());
         assert!((c.command(8.3, 1.0) - 1.0).abs() < 1e-6 && c.command(0.0, 1.0) == 0.0);
-        // By hand: q 0.75, share 0.5: 0.75 u² + 0.25 u = 0.5 gives u = 0.66667.
+        // q 0.75, share 0.5: 0.75 u² + 0.25 u = 0.5 gives u = 0.66667.
         assert!((c.command(4.15, 1.0) - 2.0 / 3.0).abs() < 1e-5);
         assert!(c.command(f32::NAN, 1.0) == 0.0 && c.command(4.0, f32::NAN).is_finite());
     }

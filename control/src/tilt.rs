@@ -1,10 +1,10 @@
-//! Where each arm is: Eq. 1 about the low-passed thrust, plus a slow bias that the arm's own sensor finds.
+//! Tilt of each arm: Eq. 1 at the low-passed thrust, plus a slow bias from the arm's own sensor.
 //!
-//! [`TiltModel::step`] is called in each step of the mixer, 1 kHz (N, s); the sensors' tilts come at 100 Hz (rad, tip up
-//! positive). A sensor that is missed leaves the bias where it is.
+//! [`TiltModel::step`] runs in each mixer step, 1 kHz (N, s); the sensors' tilts come at 100 Hz (rad, tip up positive).
+//! A missed reading leaves the bias where it is.
 //!
-//! The sensor does not give the angle itself: its noise and latency in the allocation cost more than they
-//! bring. It only moves the bias, which takes up what the model does not know of this very arm.
+//! The sensor only moves the bias, which takes up the model's error for this arm: in the allocation its noise and
+//! latency cost more than its angle brings.
 
 use core::f32::consts::TAU;
 
@@ -13,19 +13,18 @@ use crate::filter::LowPass;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
-/// Time by which arm and sensor lag behind the thrust, on top of the motor's lag, s (assumed).
+/// Lag of arm and sensor behind the thrust beyond the motor's, s (assumed).
 const ARM_LAG: f32 = 0.05;
-/// Thrust below which the bias does not learn, N: on the ground the tips may be resting on something.
+/// Thrust below which the bias is frozen, N: on the ground the tips may rest on something.
 const LEARN_THRUST: f32 = 2.2;
 
-/// Tilt of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Arm {
     thrust: LowPass,
     lagged: LowPass,
     bias: f32,
     tilt: f32,
-    /// T dα/dT: what a relative change of thrust tilts the arm by once it has followed, rad.
+    /// T dα/dT: tilt by a relative change of thrust once the arm has followed, rad.
     follow: f32,
 }
 
@@ -42,7 +41,7 @@ pub struct TiltModel {
 }
 
 impl TiltModel {
-    /// Arms at rest with idle rotors and no known bias.
+    /// Arms at rest with idle rotors and no bias.
     pub fn new(p: &Params) -> Self {
         let model = ArmModel::from_params(p);
         let thrust = p.thrust_idle;
@@ -64,7 +63,7 @@ impl TiltModel {
         }
     }
 
-    /// One step of `dt` s with the thrusts (N) commanded last; such as are no numbers change nothing.
+    /// One step of `dt` s with the thrusts (N) commanded last; one that is not finite changes nothing.
     #[inline(always)]
     pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
         if !commanded.iter().sum::<f32>().is_finite() {
@@ -77,7 +76,7 @@ impl TiltModel {
             let thrust = arm.thrust.blend(*thrust, gain);
             arm.lagged.blend(thrust, lag_gain);
             let tilt = model.angle(thrust) + arm.bias;
-            // Outside the static model's range the last valid value is held: no jump, and a fault says so.
+            // Outside the model's range the last valid tilt is held, and a fault reported.
             let valid = tilt.abs() <= VALID_TILT;
             arm.tilt = if valid { tilt } else { arm.tilt };
             arm.follow = thrust * model.slope(thrust);
@@ -87,7 +86,7 @@ impl TiltModel {
         self.fault = doubtful > LEARN_THRUST;
     }
 
-    /// Takes the tilt (rad) that the sensor of `arm` (0 to 3) measured, at 100 Hz, while the arm hangs free in the air.
+    /// Takes the tilt (rad) by the sensor of `arm` (0 to 3), at 100 Hz, while the arm hangs free.
     #[inline(always)]
     pub fn correct(&mut self, arm: usize, measured: f32) {
         let Some(arm) = self.arms.get_mut(arm) else {
@@ -96,7 +95,7 @@ impl TiltModel {
         let felt = arm.lagged.value();
         let gain = if felt > LEARN_THRUST { self.bias_gain } else { 0.0 };
         let bias = arm.bias + gain * (measured - self.model.angle(felt) - arm.bias);
-        // Neither a number beyond the limit nor none: a glitch moves nothing.
+        // A glitch, beyond the limit or NaN, moves nothing.
         arm.bias = if bias.abs() <= self.bias_max {
             bias
         } else {
@@ -121,7 +120,7 @@ impl TiltModel {
         self.each(|arm| arm.tilt)
     }
 
-    /// T dα/dT of each arm, rad: how far a relative change of its thrust tilts it.
+    /// T dα/dT of each arm, rad: tilt by a relative change of thrust.
     #[inline]
     pub fn follow(&self) -> PerArm<f32> {
         self.each(|arm| arm.follow)
@@ -140,7 +139,7 @@ impl TiltModel {
         [what(first), what(second), what(third), what(fourth)]
     }
 
-    /// A flying arm is outside the model's range of validity, and its last valid tilt is held.
+    /// A flying arm is outside the model's range, and its last valid tilt is held.
     pub const fn fault(&self) -> bool {
         self.fault
     }
@@ -215,7 +214,7 @@ mod tests {
 
     #[test]
     fn whether_it_learns_is_up_to_the_thrust_that_the_arm_has_felt() {
-        // Spooling up: the command is a flying one, the arm still hangs.
+        // Spooling up: a flying command, the arm still hangs.
         let mut t = settled(0.25);
         while t.thrusts()[0] < LEARN_THRUST + 0.2 {
             t.step(&[6.0; 4], 1e-3);
@@ -223,7 +222,7 @@ mod tests {
         assert!(t.arms[0].lagged.value() < LEARN_THRUST);
         correct(&mut t, [0.1; 4]);
         assert!(t.bias() == [0.0; 4], "{:?}", t.bias());
-        // Spooling down: the command is idle, the arm is still bent by a flying thrust.
+        // Spooling down: an idle command, the arm still bent.
         let mut t = settled(6.0);
         while t.thrusts()[0] > LEARN_THRUST - 0.2 {
             t.step(&[0.25; 4], 1e-3);

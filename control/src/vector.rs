@@ -4,7 +4,7 @@ use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 use crate::math;
 
-/// A vector in three dimensions; the frame and unit are the owner's.
+/// A vector; the frame and unit are the owner's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3 {
     /// Forward or north component.
@@ -24,7 +24,7 @@ impl Vec3 {
         Self { x, y, z }
     }
 
-    /// The three components in order.
+    /// The components in order.
     pub const fn to_array(self) -> [f32; 3] {
         [self.x, self.y, self.z]
     }
@@ -53,17 +53,17 @@ impl Vec3 {
         math::sqrt(self.norm_squared())
     }
 
-    /// Component by component product.
+    /// Product by component.
     pub fn scale_by(self, o: Self) -> Self {
         Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
     }
 
-    /// The same function on each component.
+    /// `f` of each component.
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// True when every component is finite. Tests their sum: false as well where that overflows.
+    /// True if every component is finite, by their sum: false also where that overflows.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.x + self.y + self.z).is_finite()
@@ -171,7 +171,7 @@ impl Quat {
         }
     }
 
-    /// The same rotation with length one; identity when the length vanished or is not finite.
+    /// The same rotation with length one; identity if the length vanishes or is not finite.
     pub fn normalised(self) -> Self {
         let n2 = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
         let k = math::inv_sqrt(n2);
@@ -199,7 +199,7 @@ impl Quat {
         self.conjugate().rotate(v)
     }
 
-    /// The world's down direction in body axes: the third row of the rotation matrix.
+    /// World down in body axes: the third row of the rotation matrix.
     pub fn down_in_body(self) -> Vec3 {
         let Self { w, x, y, z } = self;
         Vec3::new(
@@ -209,7 +209,7 @@ impl Quat {
         )
     }
 
-    /// True when every component is finite. Tests their sum: false as well where that overflows.
+    /// True if every component is finite, by their sum: false also where that overflows.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.w + self.x + self.y + self.z).is_finite()
@@ -258,13 +258,13 @@ mod tests {
             }
             assert!(!vector([bad, -bad, 0.0, 0.0]) && !quaternion([0.0, 0.0, bad, -bad]));
         }
-        // Any two that overflow together: no rate, force or rotation of this vehicle.
+        // Two that overflow together: no rate, force or rotation of this vehicle.
         for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
             let mut parts = [0.0; 4];
             (parts[a], parts[b]) = (3e38, 3e38);
             assert!(!quaternion(parts) && vector(parts) == (b == 3), "{parts:?}");
         }
-        // Large ones are numbers; a sum of three or four of these still is.
+        // Large, but a sum of three or four is finite.
         for parts in [[0.0; 4], [5e37; 4], [5e37, -5e37, 5e37, -5e37], [-1e-38; 4]] {
             assert!(vector(parts) && quaternion(parts), "{parts:?}");
         }

@@ -1,12 +1,11 @@
-//! The wrench that the control laws ask of the rotors, and values that come once per arm.
+//! Wrench asked of the rotors, and values per arm.
 
-/// One value for each arm or rotor: 1 front-left, 2 rear-left, 3 front-right, 4 rear-right.
+/// One value per arm or rotor: 1 front-left, 2 rear-left, 3 front-right, 4 rear-right.
 pub type PerArm<T> = [T; 4];
 
-/// +1 for the left arms, -1 for the right ones: the sign of a thrust's roll moment and of the
-/// sideways force of a thrust that leans inward.
+/// +1 for left arms, -1 for right ones: sign of a thrust's roll moment and of an inward lean's sideways force.
 pub const SIDE: PerArm<f32> = [1.0, 1.0, -1.0, -1.0];
-/// +1 for the front arms, -1 for the rear ones: the sign of a thrust's pitch moment.
+/// +1 for front arms, -1 for rear ones: sign of a thrust's pitch moment.
 pub const FORE: PerArm<f32> = [1.0, -1.0, 1.0, -1.0];
 /// Sign of the yaw moment of an inward lean; configuration B's rotor drag has the same.
 pub const YAW: PerArm<f32> = [1.0, -1.0, -1.0, 1.0];
@@ -25,7 +24,7 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// True when every component is finite. Tests their sum: false as well where that overflows.
+    /// True if every component is finite, by their sum: false also where that overflows.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.thrust + self.roll + self.pitch + self.yaw).is_finite()
@@ -35,7 +34,7 @@ impl Wrench {
 /// Sense of rotation of the rotors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Configuration {
-    /// Rotors 1 and 4 clockwise seen from above: yaw is mechanically unstable once the arms are soft.
+    /// Rotors 1 and 4 clockwise seen from above: yaw is mechanically unstable with soft arms.
     A,
     /// Rotors 1 and 4 counter-clockwise seen from above: the paper's choice.
     #[default]
@@ -43,7 +42,7 @@ pub enum Configuration {
 }
 
 impl Configuration {
-    /// χ: the sign of the rotor drag's yaw moment against that of an inward lean; +1 for B, -1 for A.
+    /// χ: sign of the rotor drag's yaw moment against an inward lean's; +1 for B, -1 for A.
     pub const fn chi(self) -> f32 {
         match self {
             Self::A => -1.0,

@@ -4,14 +4,12 @@ use std::f64::consts::PI;
 
 use sophie_control::params::Params;
 use sophie_sim::plant::GRAVITY;
-use sophie_sim::plant::tendon::ServoSpec;
-use sophie_sim::scenario::ServoProfile;
+use sophie_sim::plant::servo_power::MG996R;
 
-use super::clamp::{closing_thrust, mean_closing};
+use super::inspection::{Inspection, current};
 use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table, num};
 use super::printed::{Endurance, Printed};
 use super::statics::root;
-use sophie_sim::parallel;
 
 /// Density of air, kg/m³, and radius of a 10-inch propeller, m.
 const AIR: f64 = 1.225;
@@ -24,31 +22,6 @@ const ELECTRONICS: f64 = 6.0;
 const USABLE: f64 = 0.8;
 /// Nominal voltages of the flight battery (4S) and the servo battery (2S), V.
 const FLIGHT_VOLTAGE: f64 = 14.8;
-/// MG996R at 6 V (datasheet).
-const MG996R: Servo = Servo {
-    stall: 11.0,
-    stall_current: 2.5,
-    idle_current: 0.17,
-};
-/// Pipe of the inspection times, m.
-const PIPE: f64 = 0.30;
-
-/// What a servo's datasheet says.
-struct Servo {
-    /// Stall torque, kgcm.
-    stall: f64,
-    /// Current at stall and without load, A.
-    stall_current: f64,
-    idle_current: f64,
-}
-
-impl Servo {
-    /// Current at a torque (kgcm), A: a line from no load to stall.
-    fn current(&self, torque: f64) -> f64 {
-        self.idle_current + (self.stall_current - self.idle_current) * torque / self.stall
-    }
-}
-
 /// Ideal power of hover, W: four discs, momentum theory, thrusts leaning by `tilt` rad.
 fn ideal_power(mass: f64, tilt: f64) -> f64 {
     let thrust = mass * GRAVITY / 4.0 / tilt.cos();
@@ -271,13 +244,8 @@ fn finding(flight: &Flight<'_>) -> String {
             .iter()
             .map(|r| current(p, r.inspection_min))
             .fold(0.0, f64::max),
-        MG996R.stall_current
+        MG996R.at_stall
     )
-}
-
-/// Current of one of four servos that empties the servo battery in `minutes`, A.
-fn current(p: &Printed, minutes: f64) -> f64 {
-    p.text.servo_battery_mah * 1e-3 / (minutes / 60.0) / 4.0
 }
 
 /// What tilt would explain the 10.7 min at 4 %.
@@ -307,128 +275,6 @@ fn lean_at_four_percent(s: &mut Section, flight: &Flight<'_>) {
         100.0 * (1.0 - droopless(6.0).to_radians().cos().powf(1.5)),
         100.0 * (1.0 - droopless(8.0).to_radians().cos().powf(1.5)),
     ));
-}
-
-/// Inspection times from the steady force on a pipe, one for each row of Table V.
-struct Inspection<'a> {
-    printed: &'a Printed,
-    rows: Vec<Held<'a>>,
-}
-
-/// A row of Table V, and what holding takes at its infill.
-struct Held<'a> {
-    row: &'a Endurance,
-    /// Steady force, kgcm; NaN where the arms do not close.
-    force: f64,
-    /// Current of a servo that holds it, A.
-    amps: f64,
-    /// Current of a servo that the printed time means, A.
-    meant: f64,
-}
-
-impl<'a> Inspection<'a> {
-    fn new(printed: &'a Printed) -> Self {
-        let infills: Vec<f64> = printed.table_5.iter().map(|r| r.infill_percent).collect();
-        let servo = ServoSpec::from(ServoProfile::Paper);
-        let forces = parallel::each(&infills, |i| {
-            let closed = mean_closing(*i, PIPE, servo, closing_thrust(printed));
-            closed
-                .closure
-                .map_or(f64::NAN, |_| sophie_report::units::kgcm(closed.steady))
-        });
-        let rows = printed.table_5.iter().zip(forces).map(|(row, force)| Held {
-            row,
-            force,
-            amps: MG996R.current(force),
-            meant: current(printed, row.inspection_min),
-        });
-        Self {
-            printed,
-            rows: rows.collect(),
-        }
-    }
-
-    /// Time in which this many servos empty their battery, min.
-    fn minutes(&self, held: &Held<'_>, arms: f64) -> f64 {
-        60.0 * (self.printed.text.servo_battery_mah * 1e-3) / (arms * held.amps)
-    }
-
-    fn table(&self) -> Table {
-        let mut t = Table::new(
-            "Inspection: servo current for the steady force on a 300 mm pipe, and what the printed times mean",
-            &[
-                "ρ %",
-                "U(∞) kgcm",
-                "current A a servo",
-                "four arms min",
-                "two arms min",
-                "printed min",
-                "current that means, A a servo",
-                "over stall current",
-            ],
-        );
-        for held in &self.rows {
-            t.row([
-                num(held.row.infill_percent, 0),
-                num(held.force, 2),
-                num(held.amps, 2),
-                num(self.minutes(held, 4.0), 1),
-                num(self.minutes(held, 2.0), 1),
-                num(held.row.inspection_min, 1),
-                num(held.meant, 2),
-                num(held.meant / MG996R.stall_current, 2),
-            ]);
-        }
-        t
-    }
-
-    fn comparisons(&self) -> Vec<Comparison> {
-        let row = |held: &Held<'_>| {
-            let impossible = held.meant > MG996R.stall_current;
-            Comparison {
-                what: format!("inspection time, four arms, ρ {} %", held.row.infill_percent),
-                unit: "min",
-                printed: held.row.inspection_min,
-                here: self.minutes(held, 4.0),
-                class: if impossible {
-                    Class::Inconsistent
-                } else {
-                    Class::Prediction
-                },
-                why: if impossible {
-                    let beyond = if held.force > MG996R.stall {
-                        "; the steady force itself is beyond its stall torque"
-                    } else {
-                        ""
-                    };
-                    format!(
-                        "the printed time draws more than the stall current of the servo that the paper names{beyond}"
-                    )
-                } else {
-                    "a line from no-load to stall current over torque; the diameter behind the printed times is not given".to_owned()
-                },
-            }
-        };
-        self.rows.iter().map(row).collect()
-    }
-
-    fn chart(&self) -> Chart {
-        let line = |name: &str, colour: usize, look: Look, f: &dyn Fn(&Held<'_>) -> f64| {
-            let points = self.rows.iter().map(|held| (held.row.infill_percent, f(held)));
-            Series::new(name, colour, look, points.collect())
-        };
-        Chart {
-            title: "Inspection time on a 300 mm pipe".to_owned(),
-            x: Axis::new("infill ρ (%)"),
-            y: Axis::new("time (min)").with(&[0.0]),
-            series: vec![
-                line("Table V", 0, Look::Printed, &|held| held.row.inspection_min),
-                line("four arms", 0, Look::Line, &|held| self.minutes(held, 4.0)),
-                line("two arms", 1, Look::Line, &|held| self.minutes(held, 2.0)),
-            ],
-            ..Chart::default()
-        }
-    }
 }
 
 /// Table VI as printed, with Table V below it.

@@ -25,14 +25,18 @@ const REST: f64 = 1.0;
 const PADS: (f64, f64) = (0.03, 0.6e-3);
 /// RMS of the arm sensor's noise, rad.
 const TILT_NOISE: f64 = 0.004;
-/// Time constant of the rotor, s.
+/// Time constant of the rotor of a [`Closing`], s, and the friction of its pipe.
 const ROTOR_TAU: f64 = 0.05;
+const FRICTION: f64 = 0.6;
+/// Time over which the rotor of an arm that holds is stopped, s, as on a perch.
+const SPOOL_TIME: f64 = 1.5;
+/// Time for which an arm that was tried holds with its rotor stopped, s, and runs of the gripper in half a second.
+const AFTER: f64 = 0.5;
+const STEADY_SAMPLES: usize = 50;
 /// Steps of the plant between two samples of the pressure sensor, 500 Hz.
 const FSR_STEPS: u64 = 4;
 /// Steps of the plant between two runs of the gripper, 100 Hz.
 const GRIPPER_STEPS: u64 = 20;
-/// Steps of the plant between two orders to the servo, 50 Hz.
-const DRIVE_STEPS: u64 = 40;
 /// The body, fixed.
 const BODY: Pose = Pose {
     position: DVec3::ZERO,
@@ -56,6 +60,110 @@ pub struct Closing {
     pub seconds: f64,
     /// Seed of the sensors' noise.
     pub seed: u64,
+}
+
+/// An arm before a pipe, with its rotor, servo and the parameters that the stack has of it.
+#[derive(Clone, Debug)]
+pub struct BenchArm {
+    /// Which arm, 0 to 3.
+    pub arm: usize,
+    /// The arm as built.
+    pub spec: ArmSpec,
+    /// The servo fitted.
+    pub servo: ServoSpec,
+    /// Time constant of the rotor, s.
+    pub rotor_tau: f64,
+    /// What the stack believes.
+    pub params: Params,
+    /// Outer diameter of the pipe, m.
+    pub diameter: f64,
+    /// Friction of the pipe.
+    pub friction: f64,
+    /// Thrust of the arm's rotor while it closes, N.
+    pub thrust: f64,
+}
+
+impl BenchArm {
+    /// The other arm closes as this one does: their prints, servos and sensors are alike.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        let reel = |arm: &Self| Reel::from_params(&arm.params, arm.arm);
+        let scale = |arm: &Self| FsrScale::from_params(&arm.params, arm.arm);
+        self.spec == other.spec
+            && self.servo == other.servo
+            && reel(self) == reel(other)
+            && scale(self) == scale(other)
+    }
+}
+
+impl From<&Closing> for BenchArm {
+    fn from(what: &Closing) -> Self {
+        let params = Params {
+            infill: what.infill as f32,
+            servo_stall: what.servo.stall as f32,
+            servo_slew_1: what.servo.slew as f32,
+            servo_range: what.servo.range as f32,
+            ..Params::default()
+        };
+        Self {
+            arm: 0,
+            spec: ArmSpec::new(what.infill, f64::from(params.gain_k), 1.0, 0.0, 0.15),
+            servo: what.servo,
+            rotor_tau: ROTOR_TAU,
+            params,
+            diameter: what.diameter,
+            friction: FRICTION,
+            thrust: what.thrust,
+        }
+    }
+}
+
+/// What the gripper made of an arm before a pipe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tried {
+    /// State and fault in the end.
+    pub grip: ArmGrip,
+    /// Largest force that it asked of the tendon while the arm held, N; of one that never did, in all.
+    pub asked: f64,
+    /// Mean torque of the servo over the last half second, N·m.
+    pub steady: f64,
+}
+
+/// Closes `arm` for at most `longest` s: until it has held with its rotor stopped for [`AFTER`], or the gripper has given
+/// it up.
+#[must_use]
+pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
+    let mut bench = ArmBench::new(arm, 1);
+    let (mut asked, mut last) = (0.0_f64, VecDeque::new());
+    let (mut stopped, mut held) = (0.0, false);
+    for step in 1..=((REST + longest) / STEP) as u64 {
+        bench.step(step, arm.thrust);
+        if !step.is_multiple_of(GRIPPER_STEPS) {
+            continue;
+        }
+        let holding = bench.grip.state == ArmState::Holding;
+        // What the proof stood on, once there is one: on the way there the force may be more for a moment.
+        asked = if holding && !held { 0.0 } else { asked };
+        held |= holding;
+        asked = asked.max(f64::from(bench.grip.force));
+        last.push_back(bench.tendon.servo_torque());
+        if last.len() > STEADY_SAMPLES {
+            last.pop_front();
+        }
+        stopped = if holding && bench.thrust_asked <= 0.0 {
+            stopped + GRIPPER_STEPS as f64 * STEP
+        } else {
+            0.0
+        };
+        if stopped >= AFTER || matches!(bench.grip.state, ArmState::ForceLimited | ArmState::Faulty) {
+            break;
+        }
+    }
+    Tried {
+        grip: bench.grip,
+        asked,
+        steady: last.iter().sum::<f64>() / last.len().max(1) as f64,
+    }
 }
 
 /// A sample of the closing.
@@ -89,7 +197,7 @@ pub struct Closed {
 /// Closes one arm. Once it holds, its rotor is stopped within 1.5 s, as on a perch.
 #[must_use]
 pub fn close(what: &Closing) -> Closed {
-    let mut bench = ArmBench::new(what);
+    let mut bench = ArmBench::new(&what.into(), what.seed);
     let mut out = Closed {
         samples: vec![],
         closure: None,
@@ -100,12 +208,10 @@ pub fn close(what: &Closing) -> Closed {
     for step in 1..=((REST + what.seconds) / STEP) as u64 {
         let t = step as f64 * STEP - REST;
         let tilt = bench.arm.tilt;
-        let pressure = bench.move_arm();
         if bench.grip.state == ArmState::Holding {
             out.closure = out.closure.or(bench.grip.closure.map(f64::from));
-            bench.thrust_asked = (bench.thrust_asked - what.thrust * STEP / 1.5).max(0.0);
         }
-        bench.run_stack(step, t >= 0.0, pressure, tilt);
+        let pressure = bench.step(step, what.thrust);
         if step.is_multiple_of(GRIPPER_STEPS) && t >= 0.0 {
             let torque = bench.tendon.servo_torque();
             out.samples.push(BenchSample {
@@ -115,9 +221,6 @@ pub fn close(what: &Closing) -> Closed {
                 tilt,
             });
             out.peak = out.peak.max(torque);
-        }
-        if step.is_multiple_of(DRIVE_STEPS) {
-            bench.drive_servo();
         }
     }
     let last: Vec<f64> = out.samples.iter().rev().take(100).map(|s| s.torque).collect();
@@ -146,6 +249,10 @@ struct ArmBench {
     fsr: Fsr,
     gripper: ArmGripper,
     drive: TendonDrive,
+    /// Time constant of the rotor, s.
+    rotor_tau: f64,
+    /// Steps of the plant between two orders to the servo.
+    drive_steps: u64,
     /// What the stack has last measured, decided and ordered.
     pressure: Pressure,
     tilt: Option<f32>,
@@ -154,36 +261,33 @@ struct ArmBench {
 }
 
 impl ArmBench {
-    fn new(what: &Closing) -> Self {
-        let params = Params {
-            infill: what.infill as f32,
-            servo_stall: what.servo.stall as f32,
-            servo_slew_1: what.servo.slew as f32,
-            servo_range: what.servo.range as f32,
-            ..Params::default()
-        };
-        let mut rng = Pcg64Mcg::seed_from_u64(what.seed);
+    fn new(what: &BenchArm, seed: u64) -> Self {
+        let params = &what.params;
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let sensor = FsrSensor::new(&mut rng);
-        let spec = ArmSpec::new(what.infill, f64::from(params.gain_k), 1.0, 0.0, 0.15);
-        let reel = Reel::from_params(&params, 0);
+        let reel = Reel::from_params(params, what.arm);
         let drive = TendonDrive::new();
         let order = drive.hold(&reel);
         Self {
             rng,
-            pipe: pipe(0.5 * what.diameter),
-            arm: Arm::new(0, spec),
+            pipe: pipe(0.5 * what.diameter, what.friction),
+            arm: Arm::new(what.arm, what.spec),
             tendon: Tendon::new(what.servo, TendonSpec::default()),
-            skin: ArmSkin::new(0),
+            skin: ArmSkin::new(what.arm),
             sensor,
             thrust: what.thrust,
             thrust_asked: what.thrust,
             tilts: VecDeque::new(),
-            config: Config::from_params(&params),
-            scale: FsrScale::from_params(&params, 0),
+            config: Config::from_params(params),
+            scale: FsrScale::from_params(params, what.arm),
             reel,
             fsr: Fsr::default(),
             gripper: ArmGripper::default(),
             drive,
+            rotor_tau: what.rotor_tau,
+            drive_steps: (1.0 / (f64::from(params.servo_frame_rate) * STEP))
+                .round()
+                .max(1.0) as u64,
             pressure: Pressure::Stale,
             tilt: None,
             grip: ArmGrip::default(),
@@ -191,10 +295,23 @@ impl ArmBench {
         }
     }
 
+    /// A step of the plant, the `step`th, and of what is due of the stack; gives the true pressure at the sensor, Pa. The
+    /// arm closes once it has rested; once it holds, its rotor of `thrust` N is stopped.
+    fn step(&mut self, step: u64, thrust: f64) -> f64 {
+        let tilt = self.arm.tilt;
+        let pressure = self.move_arm();
+        if self.grip.state == ArmState::Holding {
+            self.thrust_asked = (self.thrust_asked - thrust * STEP / SPOOL_TIME).max(0.0);
+        }
+        self.run_stack(step, step as f64 * STEP - REST >= 0.0, pressure, tilt);
+        self.drive_servo(step);
+        pressure
+    }
+
     /// Moves rotor, tendon and arm by a step of the plant; gives the true pressure at the sensor, Pa.
     fn move_arm(&mut self) -> f64 {
         let (alpha, rate) = (self.arm.tilt, self.arm.rate);
-        self.thrust += (self.thrust_asked - self.thrust) * STEP / ROTOR_TAU;
+        self.thrust += (self.thrust_asked - self.thrust) * STEP / self.rotor_tau;
         let load = self.skin.step(STEP, alpha, rate, &BODY, &self.pipe);
         let pulled = self.tendon.step(STEP, f64::from(self.order.pulse_us), alpha);
         let moment = pulled + load.moment_alpha;
@@ -231,20 +348,23 @@ impl ArmBench {
         }
     }
 
-    fn drive_servo(&mut self) {
-        self.order = self.drive.step(&self.reel, self.grip.force, self.tilt, 0.02);
+    fn drive_servo(&mut self, step: u64) {
+        if step.is_multiple_of(self.drive_steps) {
+            let dt = (self.drive_steps as f64 * STEP) as f32;
+            self.order = self.drive.step(&self.reel, self.grip.force, self.tilt, dt);
+        }
     }
 }
 
 /// The pipe of `radius` m that the body sits on.
-fn pipe(radius: f64) -> Pipe {
+fn pipe(radius: f64, friction: f64) -> Pipe {
     Pipe {
         north: 0.0,
         half_length: 1.0,
         east: 0.0,
         down: BELLY_Z + (radius * radius - PADS.0 * PADS.0).sqrt() - PADS.1,
         radius,
-        friction: 0.6,
+        friction,
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod aim;
 pub mod arm_bench;
 pub mod board;
+pub mod check;
 pub mod crsf;
 pub mod flight;
 pub mod flight_level;

@@ -44,7 +44,7 @@ fn looks(level: u8) -> [Look; 2] {
         read: read.as_str().try_into().unwrap(),
         expected,
         ok,
-        refuses,
+        inhibits: refuses,
     };
     [
         look(

@@ -9,8 +9,8 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_report::terminal::console;
 use sophie_sim::mixers::Variant;
-use sophie_sim::scenario::Overrides;
 use sophie_sim::scenario::keys::{self, Range};
+use sophie_sim::scenario::{Overrides, Scenario};
 
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
@@ -23,7 +23,7 @@ struct Cli {
 }
 
 /// The subcommands, as messages name them.
-const VERBS: [&str; 4] = ["fly", "paper", "fit-arm", "timing"];
+const VERBS: [&str; 5] = ["fly", "check", "paper", "fit-arm", "timing"];
 
 #[derive(Subcommand)]
 enum Command {
@@ -31,6 +31,11 @@ enum Command {
     ///
     /// Exit status: 0 mission accomplished, 1 not accomplished, 2 bad input or unwritable output.
     Fly(FlyArgs),
+    /// Check whether a vehicle can fly its mission, in a moment and without flying it.
+    ///
+    /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit, verdict,
+    /// and what to do where it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
+    Check(CheckArgs),
     /// Compute and fly every table and figure of the paper, and set them beside the printed numbers.
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
@@ -51,6 +56,8 @@ enum Command {
 pub enum Task {
     /// Fly a mission.
     Fly(FlyArgs),
+    /// Check a vehicle.
+    Check(CheckArgs),
     /// Reproduce the paper.
     Paper(PaperArgs),
     /// Fit an arm.
@@ -100,10 +107,33 @@ pub struct PaperArgs {
     pub json: bool,
 }
 
-/// What to fly and where to report it. Options win over the file.
+/// What to fly and where to report it.
 #[derive(Args, Debug)]
 pub struct FlyArgs {
-    /// Scenario file; without one the default mission is flown.
+    #[command(flatten)]
+    pub mission: MissionArgs,
+    /// Directory for report.html, flight.mcap and summary.json.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the summary as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What to check.
+#[derive(Args, Debug)]
+pub struct CheckArgs {
+    #[command(flatten)]
+    pub mission: MissionArgs,
+    /// Print the rows as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Which vehicle and mission. Options win over the file.
+#[derive(Args, Debug)]
+pub struct MissionArgs {
+    /// Scenario file; without one it is the default mission.
     pub scenario: Option<PathBuf>,
     /// Infill of the arms, 4 to 10 %.
     #[arg(long, visible_alias = "infill", value_name = "PERCENT", value_parser = infill, allow_negative_numbers = true)]
@@ -123,17 +153,22 @@ pub struct FlyArgs {
     /// Seed of every random number: a whole number from 0 to 9e15.
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
-    /// Directory for report.html, flight.mcap and summary.json.
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
-    /// Print the summary as JSON on stdout, everything else on stderr.
-    #[arg(long)]
-    pub json: bool,
 }
 
-impl FlyArgs {
+impl MissionArgs {
+    /// The scenario that they choose.
+    ///
+    /// # Errors
+    /// One line that names file, line, key, value and what is allowed.
+    pub fn scenario(&self) -> Result<Scenario, String> {
+        match &self.scenario {
+            Some(path) => Scenario::load(path, &self.overrides()).map_err(|e| e.to_string()),
+            None => Ok(Scenario::default_mission_with(&self.overrides())),
+        }
+    }
+
     /// What they change in a scenario.
-    pub fn overrides(&self) -> Overrides {
+    fn overrides(&self) -> Overrides {
         Overrides {
             infill: self.rho,
             gain_k: self.gain_k,
@@ -204,6 +239,7 @@ fn parse_from(
     let cli = Cli::try_parse_from(args).map_err(Message)?;
     Ok(match cli.command {
         Some(Command::Fly(fly)) => Task::Fly(fly),
+        Some(Command::Check(check)) => Task::Check(check),
         Some(Command::Paper(paper)) => Task::Paper(paper),
         Some(Command::FitArm(fit)) => Task::FitArm(fit),
         Some(Command::Timing(timing)) => Task::Timing(timing),
@@ -280,8 +316,8 @@ mod tests {
             "fly --arms 2 --infill=8 x.toml",
         ] {
             let fly = args(line).unwrap();
-            assert_eq!(fly.scenario, Some(PathBuf::from("x.toml")), "{line}");
-            let o = fly.overrides();
+            assert_eq!(fly.mission.scenario, Some(PathBuf::from("x.toml")), "{line}");
+            let o = fly.mission.overrides();
             assert_eq!(
                 (o.infill, o.arms, o.seed),
                 (Some(8.0), Some(ArmChoice::Front), None),
@@ -289,9 +325,10 @@ mod tests {
             );
         }
         let fly = args("").unwrap();
-        assert!(fly.scenario.is_none() && !fly.json && fly.out.as_os_str() == "out");
+        assert!(fly.mission.scenario.is_none() && !fly.json && fly.out.as_os_str() == "out");
         let o = args("--config a --mixer paper --gain-k 1 --seed 9 --json")
             .unwrap()
+            .mission
             .overrides();
         assert_eq!(
             (o.configuration, o.mixer),

@@ -1,9 +1,10 @@
 //! The `sophie` command line.
 //!
-//! Exit status: 0 when the mission was accomplished or the log read, 1 when the mission was not accomplished, 2 when it
-//! could not be flown, read or reported.
+//! Exit status: 0 when the mission was accomplished, the vehicle can fly or the log was read, 1 when the mission was not
+//! accomplished or the vehicle cannot fly, 2 when it could not be flown, read or reported.
 
 mod args;
+mod check;
 mod study;
 mod timing;
 
@@ -12,8 +13,8 @@ use std::process::ExitCode;
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain, finish, result};
+use sophie_sim::check::Check;
 use sophie_sim::flight::fly;
-use sophie_sim::scenario::Scenario;
 
 use self::args::{FlyArgs, Task};
 
@@ -32,6 +33,7 @@ pub fn main() -> ExitCode {
     };
     let done = match task {
         Task::Fly(args) => run(&args),
+        Task::Check(args) => check::run(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),
@@ -44,14 +46,15 @@ pub fn main() -> ExitCode {
 }
 
 fn run(args: &FlyArgs) -> Result<bool, String> {
-    let scenario = match &args.scenario {
-        Some(path) => Scenario::load(path, &args.overrides()).map_err(|e| e.to_string())?,
-        None => Scenario::default_mission_with(&args.overrides()),
-    };
+    let scenario = args.mission.scenario()?;
     // Before the flight, so that a bad directory is reported at once.
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
     console.say(&result::intro(&scenario));
+    // Flown all the same: a study may want to see how it fails.
+    for row in Check::of(&scenario).failing() {
+        complain(PROGRAM, &format!("check: {}: {}", row.shortfall(), row.advice));
+    }
     let record = console.watch(|observer| fly(&scenario, observer));
     finish(&record, None, &out, &console, args.json)?;
     if !record.outcome.accomplished {

@@ -70,6 +70,7 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
             continue;
         }
         until_battery = BATTERY_EVERY;
+        links.counts.send(at, frame);
         let (params, volts) = (&links.params, port.volts_per_count());
         let voltage = f32::from(frame.battery_voltage) * (volts * params.battery_divider);
         let current = f32::from(frame.battery_current) * (volts * params.battery_a_per_v);

@@ -7,7 +7,9 @@
 
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::calibration::ArmFit;
 use sophie_control::math;
+use sophie_control::params::Params;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_control::wrench::{PerArm, SIDE};
 
@@ -35,6 +37,7 @@ const REASONS: PerArm<ArmingInhibit> = [
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Arms);
     let start = Instant::now() + START - SILENCE;
+    let fits = fits(&links.params);
     let mut watches = REASONS.map(|reason| SilenceWatch::new(reason, SILENCE, start));
     loop {
         let round = rate.next().await;
@@ -54,14 +57,30 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
             continue;
         };
         let mut tilt = [None; 4];
-        for ((tilt, gravity), side) in tilt.iter_mut().zip(&gravity).zip(&SIDE) {
+        for (((tilt, gravity), side), fit) in tilt.iter_mut().zip(&gravity).zip(&SIDE).zip(&fits) {
             *tilt = gravity.and_then(|Stamped { at, value }| {
-                arm_tilt(body.q, value, *side).map(|value| Stamped { at, value })
+                let shown = arm_tilt(body.q, value, *side)?;
+                let value = fit.tilt(shown);
+                Some(Stamped { at, value })
             });
         }
         let angles = ArmAngles { tilt };
         links.arms.send(angles.oldest().unwrap_or(round.started), angles);
     }
+}
+
+/// What makes a tilt of what each arm's sensor shows.
+pub fn fits(p: &Params) -> PerArm<ArmFit> {
+    [
+        (p.arm_sign_1, p.arm_zero_1),
+        (p.arm_sign_2, p.arm_zero_2),
+        (p.arm_sign_3, p.arm_zero_3),
+        (p.arm_sign_4, p.arm_zero_4),
+    ]
+    .map(|(sign, zero)| ArmFit {
+        sign: sign.number(),
+        zero,
+    })
 }
 
 /// True for a vector that can be gravity, m/s².

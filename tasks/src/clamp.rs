@@ -36,7 +36,7 @@ pub async fn run(links: &Links) -> ! {
             continue;
         };
         let close = match command.value {
-            ClampCommand::Release | ClampCommand::Keep => [false; 4],
+            ClampCommand::Release | ClampCommand::Keep | ClampCommand::Place(_) => [false; 4],
             ClampCommand::Close { arms } => arms.mask(),
         };
         let contact = match links.contact.newest() {
@@ -63,10 +63,10 @@ pub async fn run(links: &Links) -> ! {
                 }),
                 found,
             };
-            let order = if contact.is_some() {
-                TendonOrder::Measured(forces)
-            } else {
-                TendonOrder::Blind(forces)
+            let order = match command.value {
+                ClampCommand::Place(place) => TendonOrder::Placed { forces, place },
+                _ if contact.is_some() => TendonOrder::Measured(forces),
+                _ => TendonOrder::Blind(forces),
             };
             links.tendons.send(at, order);
         }

@@ -9,6 +9,7 @@ use sophie_control::tendon::ForceLimit;
 
 use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::{Links, MixOutput, Status};
+use crate::warning::Warning;
 
 /// Infill below which the paper's authors did not fly, %.
 const INFILL_FLOWN: f32 = 6.0;
@@ -35,11 +36,12 @@ pub async fn run(links: &Links) -> ! {
             grip_memory,
             reason,
             inhibits,
-            ..
+            bench,
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
         links.grip_memory.send(tick.started, grip_memory);
+        links.bench_answer.send(tick.started, bench);
         let warning = warning(links, mode);
         links.status.send(
             tick.started,
@@ -55,14 +57,15 @@ pub async fn run(links: &Links) -> ! {
 
 /// What the pilot must know without being stopped by it.
 fn warning(links: &Links, mode: Mode) -> &'static str {
+    let started = Warning::Restarted(links.start.cause);
     if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
-        "arm tilt beyond its model"
-    } else if mode.rotors_stand() && !links.start.cause.warning().is_empty() {
-        links.start.cause.warning()
+        Warning::ArmTilt.text()
+    } else if mode.rotors_stand() && !started.text().is_empty() {
+        started.text()
     } else if mode == Mode::Disarmed && ForceLimit::from_params(&links.params).capped_by_servo {
-        "servo weaker than the force limit"
+        Warning::ServoWeak.text()
     } else if mode == Mode::Disarmed && links.params.infill < INFILL_FLOWN {
-        "infill below what was flown"
+        Warning::InfillLow.text()
     } else {
         ""
     }
@@ -87,6 +90,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         battery: links.battery.fresh().map(|b| b.voltage),
         late,
         hardware: links.hardware(),
+        bench: links.bench.fresh(),
     }
 }
 

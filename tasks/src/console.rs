@@ -4,14 +4,20 @@
 //! stores and a restart puts in force. A terminal that takes nothing loses its text and delays no other task; a line that
 //! carries noise is read as lines that mean nothing.
 
+mod bench;
+mod calibrate;
 mod chip;
 mod command;
+mod keys;
 mod line;
 mod nearest;
 mod output;
 mod parameters;
 mod report;
+mod rotors;
 mod save;
+mod selftest;
+mod watch;
 
 use embassy_futures::yield_now;
 use embassy_time::{Duration, Timer};
@@ -19,7 +25,8 @@ use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
 use self::command::{Command, HELP, parse};
-use self::line::{CHUNK, Echo, Line, LineError};
+use self::keys::Keys;
+use self::line::{Echo, Line, LineError};
 pub use self::nearest::edits;
 use self::output::Output;
 use crate::links::{Links, Status};
@@ -33,26 +40,27 @@ const PROMPT: &[u8] = b"> ";
 /// Serves the console; never returns.
 pub async fn run(
     links: &Links,
-    mut input: impl SerialInput,
+    input: impl SerialInput,
     output: impl SerialOutput,
     storage: impl Storage,
     chip: impl Chip,
 ) -> ! {
     let mut console = Console {
         links,
+        keys: Keys::new(input),
         out: Output::new(output),
         storage,
         chip,
         params: links.params,
+        orders: 0,
     };
     let mut line = Line::default();
-    let mut chunk = [0; CHUNK];
     loop {
-        match input.read(&mut chunk).await {
-            Ok(count) if count > 0 => {
+        match console.keys.wait().await {
+            Ok(true) => {
                 let mut echo = Echo::new();
-                for byte in chunk.iter().take(count) {
-                    if line.push(*byte, &mut echo) {
+                while let Some(byte) = console.keys.next() {
+                    if line.push(byte, &mut echo) {
                         console.out.resume();
                         console.out.bytes(&echo).await;
                         echo.clear();
@@ -63,7 +71,7 @@ pub async fn run(
                 // A line that is never silent must not starve the others of this level.
                 yield_now().await;
             }
-            Ok(_) => Timer::after(PAUSE).await,
+            Ok(false) => Timer::after(PAUSE).await,
             Err(_) => {
                 line.spoil(LineError::Damaged);
                 Timer::after(PAUSE).await;
@@ -72,16 +80,19 @@ pub async fn run(
     }
 }
 
-struct Console<'a, O, S, C> {
+struct Console<'a, I, O, S, C> {
     links: &'a Links,
+    keys: Keys<I>,
     out: Output<O>,
     storage: S,
     chip: C,
     /// The working copy.
     params: Params,
+    /// Orders of the bench so far.
+    orders: u32,
 }
 
-impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     async fn obey(&mut self, line: Result<&str, &LineError>) {
         self.out.line(format_args!("")).await;
         match line.map(parse) {
@@ -113,6 +124,13 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
                 self.params = *self.storage.defaults();
                 self.changes().await;
             }
+            Command::PropellersOff => self.propellers_off().await,
+            Command::Motor(number, percent) => self.motor(number, percent).await,
+            Command::Servo { number, to, at } => self.servo(number, to, at).await,
+            Command::Rotors => self.rotors().await,
+            Command::Calibrate(what, arguments) => self.calibrate(what, arguments).await,
+            Command::Watch(group) => self.watch(group).await,
+            Command::SelfTest => self.selftest().await,
             Command::Changes => self.changes().await,
             Command::Save => self.save().await,
             Command::Restart => match self.stopped() {

@@ -6,7 +6,7 @@ use embassy_time::{Duration, Instant};
 use sophie_control::chain::{Command, Control};
 use sophie_control::rate::Feedback;
 
-use crate::deadline::{TaskId, record_run};
+use crate::deadline::{TaskId, note_run};
 use crate::links::{Links, MixOutput, Setpoint};
 
 /// Time from data-ready to the demand.
@@ -21,20 +21,20 @@ pub async fn run(links: &Links) {
     loop {
         let estimate = attitude.changed().await;
         let started = Instant::now();
-        let command = links
-            .setpoint
-            .latest()
-            .map_or(Command::default(), |message| Command {
-                at_us: message.at.as_micros(),
-                setpoint: message
-                    .fresh_at(started, links.setpoint.stale_after)
-                    .unwrap_or(Setpoint::Stop),
-            });
+        let command = links.setpoint.look(|message| Command {
+            at_us: message.at.as_micros(),
+            setpoint: if message.is_fresh(started, links.setpoint.stale_after) {
+                message.value
+            } else {
+                Setpoint::Stop
+            },
+        });
+        let command = command.unwrap_or_default();
         let feedback = links.mix.fresh_to(started, MixOutput::feedback);
         let feedback = feedback.unwrap_or(Feedback::NOTHING);
         let demand = control.step(&estimate.value, &command, &feedback);
         links.demand.send(estimate.at, demand);
         links.target.send(estimate.at, control.target());
-        record_run(links, TaskId::Control, estimate.at, started, DEADLINE);
+        note_run(links, TaskId::Control, estimate.at, started, DEADLINE);
     }
 }

@@ -12,6 +12,21 @@ pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Insta
     record_run_until(links, task, released, started, Instant::now(), deadline);
 }
 
+/// The same on the way to the motor frame, after which [`Links::settle`] adds it.
+#[inline]
+pub fn note_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
+    links.note(
+        task,
+        &Run {
+            released,
+            started,
+            ended: Instant::now(),
+            deadline,
+            skipped: 0,
+        },
+    );
+}
+
 /// Records one run whose deadline is for what it did at `ended`, not for what it waits for afterwards.
 pub fn record_run_until(
     links: &Links,

@@ -1,29 +1,28 @@
-//! Numbers as people write them, both ways. The library's own conversions are exact to the last bit and take 20 KB of
-//! a board's flash; parameters have at most seven digits, for which one rounded division is exact as well.
+//! Decimal numbers, read and shown. The library's own conversions are exact to the last bit and take 20 KB of flash;
+//! parameters have at most seven digits, for which one rounded division is exact as well.
 
 use core::fmt;
 
-/// Digits are shown as long as they make a whole number that the 24 bits of an `f32` hold exactly: seven, and eight of
-/// those that begin with 1 (below 1.6777216).
+/// Largest whole number shown, exact in the 24 bits of an `f32`: seven digits, eight of those that begin with 1 (below
+/// 1.6777216).
 const UNITS_MAX: u64 = 1 << 24;
-/// Digits that are read; 32 bits hold so many.
+/// Digits read; 32 bits hold them.
 const DIGITS_READ: u32 = 9;
-/// Digits behind the point that are shown at most: the smallest parameters are a few millionths.
+/// Most places shown: the smallest parameters are a few millionths.
 const PLACES_MAX: usize = 10;
-/// Powers of ten that an `f32` holds exactly.
+/// Exact in `f32`.
 const POWERS: [f32; PLACES_MAX + 1] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
-/// Longest exponent that is read; beyond it every number is nothing or too large.
+/// Largest exponent read; beyond it every number is 0 or too large.
 const EXPONENT_MAX: i32 = 60;
 /// Size from which numbers are shown with a power of ten.
 const LARGE: f32 = 1e9;
 /// Longest text: sign, nine digits, point and places.
 const TEXT: usize = 24;
 
-/// Reads a number: digits with at most one point, a sign before them and an exponent (`e-3`) behind. Correctly rounded
-/// for up to seven digits and exponents within ±10, to a last bit for more; digits beyond the ninth only count by their
-/// place.
+/// Reads digits with at most one point, a sign before them and an exponent (`e-3`) behind. Correctly rounded for up to
+/// seven digits and exponents within ±10, else to a last bit; digits beyond the ninth only count by their place.
 ///
-/// `None` for anything else, `inf` and `nan` among it, and for numbers that are too large.
+/// `None` for anything else, including `inf` and `nan`, and for numbers that are too large.
 pub fn parse(text: &str) -> Option<f32> {
     let (sign, digits) = match text.as_bytes() {
         [b'-', rest @ ..] => (-1.0, rest),
@@ -95,8 +94,8 @@ fn scaled(mut value: f32, exponent: i32) -> f32 {
     value
 }
 
-/// A number to be shown: with as few digits as read back to it, at most seven or eight; with a precision (`{:.2}`), with so
-/// many places.
+/// A number to show: with the fewest digits that read back to it, at most seven or eight, or with the places of a
+/// precision (`{:.2}`).
 #[derive(Clone, Copy, Debug)]
 pub struct Decimal(pub f32);
 
@@ -133,7 +132,7 @@ impl fmt::Display for Decimal {
         if negative {
             text.push(b'-');
         }
-        // A precision has done its work: `pad` would cut the text by it.
+        // `pad` would cut the text by the precision.
         match f.width() {
             Some(width) if f.align() != Some(fmt::Alignment::Right) => write!(f, "{:<width$}", text.as_str()),
             Some(width) => write!(f, "{:>width$}", text.as_str()),
@@ -142,7 +141,7 @@ impl fmt::Display for Decimal {
     }
 }
 
-/// A number that no parameter comes near: its seven digits and the power of ten.
+/// A number beyond any parameter's: seven digits and the power of ten.
 fn large(value: f32, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let (mut digits, mut exponent) = (value, 0);
     while digits.abs() >= 10.0 {
@@ -158,7 +157,7 @@ fn fixed(magnitude: f32, places: usize) -> (u64, usize) {
     ((magnitude * power + 0.5) as u64, places)
 }
 
-/// The same with the fewest places with which it reads back, within seven digits.
+/// The same with the fewest places that read back, within seven digits.
 fn shortest(magnitude: f32) -> (u64, usize) {
     let mut best = fixed(magnitude, 0);
     for (places, &power) in POWERS.iter().enumerate() {
@@ -166,7 +165,7 @@ fn shortest(magnitude: f32) -> (u64, usize) {
         if near > UNITS_MAX {
             break;
         }
-        // The product is rounded too: with seven digits its neighbour may be the one.
+        // The product is rounded too: with seven digits its neighbour may be right.
         for units in [near, near + 1, near.saturating_sub(1)] {
             if (units as f32 / power).to_bits() == magnitude.to_bits() {
                 return (units, places);
@@ -177,7 +176,7 @@ fn shortest(magnitude: f32) -> (u64, usize) {
     best
 }
 
-/// Text that is written from its end.
+/// Text written from its end.
 struct Text {
     bytes: [u8; TEXT],
     start: usize,

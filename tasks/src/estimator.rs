@@ -6,7 +6,7 @@ use embassy_time::{Duration, Instant};
 use sophie_control::chain::Attitude;
 use sophie_control::estimator::Estimator;
 
-use crate::deadline::{TaskId, record_run};
+use crate::deadline::{TaskId, note_run};
 use crate::links::Links;
 
 /// Time from data-ready to the estimate.
@@ -28,6 +28,6 @@ pub async fn run(links: &Links) {
         let started = Instant::now();
         estimator.estimate(&sample.value, &mut attitude);
         links.attitude.send(sample.at, attitude);
-        record_run(links, TaskId::Estimator, sample.at, started, DEADLINE);
+        note_run(links, TaskId::Estimator, sample.at, started, DEADLINE);
     }
 }

@@ -1,8 +1,8 @@
 //! Times on a logarithmic scale, in a fixed number of buckets.
 //!
-//! Below 8 µs each microsecond has a bucket of its own, above it every octave has four: a quantile is never given too
-//! small, and too large by less than a quarter. Smallest and largest are exact. Adding takes the same few instructions
-//! whatever the time, and no division.
+//! Below 8 µs each microsecond has a bucket, above it every octave has four: a quantile is never too small, and less
+//! than a quarter too large. Smallest and largest are exact. Adding takes the same few instructions for any time,
+//! without a division.
 
 /// Buckets: up to 65.5 ms, and all beyond in the last.
 pub const BUCKETS: usize = 60;
@@ -23,7 +23,7 @@ impl Histogram {
         max: 0,
     };
 
-    /// Adds a time, µs. A bucket that is full stays so.
+    /// Adds a time, µs; a full bucket stays full.
     pub fn add(&mut self, us: u32) {
         if let Some(count) = self.counts.get_mut(bucket(us)) {
             *count = count.saturating_add(1);
@@ -32,22 +32,22 @@ impl Histogram {
         self.max = self.max.max(us);
     }
 
-    /// How many were added.
+    /// Number of times.
     pub fn count(&self) -> u32 {
         self.counts.iter().map(|&count| u32::from(count)).sum()
     }
 
-    /// The smallest, µs; 0 without any.
+    /// Smallest, µs; 0 without any.
     pub fn min(&self) -> u32 {
         self.min.min(self.max)
     }
 
-    /// The largest, µs; 0 without any.
+    /// Largest, µs; 0 without any.
     pub const fn max(&self) -> u32 {
         self.max
     }
 
-    /// The time, µs, that `permille` of a thousand do not exceed; too large by less than a quarter. 0 without any.
+    /// Time, µs, that `permille` of a thousand do not exceed, less than a quarter too large; 0 without any.
     pub fn quantile(&self, permille: u32) -> u32 {
         let rank = (self.count() * permille.min(1000)).div_ceil(1000).max(1);
         let mut below = 0;
@@ -61,18 +61,17 @@ impl Histogram {
     }
 }
 
-/// The bucket of a time, µs.
 fn bucket(us: u32) -> usize {
     if us < 4 {
         return us as usize;
     }
-    // The leading one says which octave, the two digits behind it which quarter.
+    // The leading one gives the octave, the next two digits the quarter.
     let octave = 31 - us.leading_zeros();
     let index = (octave - 1) * 4 + ((us >> (octave - 2)) & 3);
     (index as usize).min(BUCKETS - 1)
 }
 
-/// The largest time of a bucket, µs; the last one has none.
+/// Largest time of a bucket, µs; the last one has none.
 fn upper(bucket: usize) -> u32 {
     if bucket < 4 {
         return bucket as u32;

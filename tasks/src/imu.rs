@@ -7,7 +7,7 @@ use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::chain::{ImuSample, Sensing};
 
-use crate::deadline::{TaskId, record_run};
+use crate::deadline::{TaskId, note_run};
 use crate::links::Links;
 use crate::ports::{Imu, PortError};
 
@@ -50,7 +50,7 @@ pub async fn run(links: &Links, mut port: impl Imu) -> ! {
             continue;
         }
         links.imu.send(released, sample);
-        record_run(links, TaskId::Imu, released, started, DEADLINE);
+        note_run(links, TaskId::Imu, released, started, DEADLINE);
     }
 }
 

@@ -1,24 +1,29 @@
-//! Keeps the newest value for readers at every level, who look at it in place: what a reader needs is copied out of the
-//! lock, not the whole message, and interrupts are masked for no longer than that.
+//! Newest value for readers at every level, who look at it in place: only what they need is copied under the lock,
+//! which masks interrupts.
 
 use core::cell::RefCell;
 use core::future::poll_fn;
 use core::task::{Context, Poll};
 
 use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::waitqueue::MultiWakerRegistration;
 
-use crate::links::{RECEIVERS, Raw};
+/// The mutex of every link: tasks of different priority meet here on the board.
+pub type Raw = CriticalSectionRawMutex;
 
-/// A value, and who waits for the next one. What is called with the value in place must not use the same `LastValue`: it
-/// is locked meanwhile and would look empty.
+/// Most receivers of one link.
+pub const RECEIVERS: usize = 8;
+
+/// A value and the wakers of its receivers. A function called with the value in place must not use the same
+/// `LastValue`, which is locked and looks empty.
 pub struct LastValue<T> {
     state: Mutex<Raw, RefCell<State<T>>>,
 }
 
 struct State<T> {
     value: Option<T>,
-    /// How many were sent, modulo 2^32.
+    /// Values sent, modulo 2^32.
     sent: u32,
     receivers: usize,
     wakers: MultiWakerRegistration<RECEIVERS>,
@@ -43,7 +48,7 @@ impl<T> LastValue<T> {
         }
     }
 
-    /// Replaces the value and wakes who waits.
+    /// Replaces the value and wakes waiting receivers.
     #[inline]
     pub fn send(&self, value: T) {
         self.with(|state| {
@@ -53,7 +58,7 @@ impl<T> LastValue<T> {
         });
     }
 
-    /// What `f` makes of the value; `None` before the first.
+    /// `f` of the value; `None` before the first.
     #[inline]
     pub fn look<R>(&self, f: impl FnOnce(&T) -> R) -> Option<R> {
         self.with(|state| state.value.as_ref().map(f)).flatten()
@@ -66,7 +71,7 @@ impl<T> LastValue<T> {
             state.receivers += usize::from(free);
             free.then_some(Receiver {
                 newest: self,
-                // Whatever is there is new to it.
+                // A value that is there is new to it.
                 seen: state.sent.wrapping_sub(1),
             })
         })
@@ -75,21 +80,21 @@ impl<T> LastValue<T> {
 
     #[inline]
     fn with<R>(&self, f: impl FnOnce(&mut State<T>) -> R) -> Option<R> {
-        // Borrowed nowhere else: the lock is held for as long.
+        // Borrowed nowhere else while the lock is held.
         self.state
             .lock(|state| state.try_borrow_mut().ok().map(|mut state| f(&mut state)))
     }
 }
 
-/// Waits for values that it has not seen.
+/// Waits for unseen values.
 pub struct Receiver<'a, T> {
     newest: &'a LastValue<T>,
-    /// Value of `sent` at the value seen last.
+    /// `sent` at the last value seen.
     seen: u32,
 }
 
 impl<T> Receiver<'_, T> {
-    /// The next value that was not seen yet; of several, the newest.
+    /// Next unseen value; of several, the newest.
     pub async fn changed(&mut self) -> T
     where
         T: Clone,
@@ -97,7 +102,7 @@ impl<T> Receiver<'_, T> {
         self.changed_to(T::clone).await
     }
 
-    /// What `f` makes of the next value that was not seen yet.
+    /// `f` of the next unseen value.
     #[inline]
     pub async fn changed_to<R>(&mut self, mut f: impl FnMut(&T) -> R) -> R {
         poll_fn(|cx| self.poll(cx, &mut f)).await
@@ -130,12 +135,12 @@ impl<T> Drop for Receiver<'_, T> {
 #[cfg(test)]
 mod tests {
     use embassy_futures::poll_once;
-    // Brings the critical section that tests on a host run in.
+    // Provides the critical section of host tests.
     use sophie_clock as _;
 
     use super::*;
 
-    /// As after 2^32 - 1 messages: 49 days at 1 kHz.
+    /// After 2^32 - 1 messages: 49 days at 1 kHz.
     fn about_to_wrap() -> LastValue<u32> {
         let link = LastValue::new();
         link.with(|state: &mut State<u32>| state.sent = u32::MAX);

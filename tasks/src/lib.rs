@@ -45,3 +45,4 @@ pub mod start;
 pub mod supervisor;
 pub mod telemetry;
 pub mod timing;
+pub mod warning;

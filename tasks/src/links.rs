@@ -16,12 +16,13 @@
 use core::cell::{Cell, RefCell};
 
 use embassy_sync::blocking_mutex::Mutex;
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::Target;
 pub use sophie_control::battery::Battery;
+use sophie_control::bench::Place;
+pub use sophie_control::bench::{BenchAnswer, BenchRequest};
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 use sophie_control::fsr::FsrFault;
 pub use sophie_control::grip::GripState;
@@ -34,15 +35,11 @@ use sophie_control::wrench::PerArm;
 
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};
+pub use crate::last_value::{RECEIVERS, Raw};
+use crate::ports::AnalogFrame;
 use crate::schedule::{Level, TaskId};
 use crate::start::{Start, StartCause};
 use crate::timing::{Quantity, Record, Run, Timing};
-
-/// The mutex of every link: tasks of different priority meet here on the board.
-pub type Raw = CriticalSectionRawMutex;
-
-/// Most receivers of one link.
-pub const RECEIVERS: usize = 8;
 
 /// A value and the time at which what it describes was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,8 +62,9 @@ impl<T> Stamped<T> {
         self.is_fresh(now, limit).then_some(self.value)
     }
 
+    /// True unless it is older than `limit` at `now`.
     #[inline]
-    fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
+    pub fn is_fresh(&self, now: Instant, limit: Duration) -> bool {
         now.saturating_duration_since(self.at) <= limit
     }
 }
@@ -194,13 +192,23 @@ pub enum TendonOrder {
     Blind(TendonForces),
     /// From before a restart, sent once at the start: the servos stay where they are until a command comes.
     Resumed(TendonForces),
+    /// On the bench: one servo at a pulse, the others by their forces, which are none.
+    Placed {
+        /// Of each one.
+        forces: TendonForces,
+        /// The one servo.
+        place: Place,
+    },
 }
 
 impl TendonOrder {
     /// The forces, whatever they follow from.
     pub const fn forces(&self) -> &TendonForces {
         match self {
-            Self::Measured(forces) | Self::Blind(forces) | Self::Resumed(forces) => forces,
+            Self::Measured(forces)
+            | Self::Blind(forces)
+            | Self::Resumed(forces)
+            | Self::Placed { forces, .. } => forces,
         }
     }
 }
@@ -256,7 +264,7 @@ pub struct Declared {
     pub message: &'static str,
     /// The task that sends it; each run does, unless `meaning` says otherwise.
     pub from: TaskId,
-    /// Who reads it: tasks by their names, or the log.
+    /// Who reads it: tasks by their names, the console or the log.
     pub to: &'static str,
     /// Age beyond which a reader must not use it.
     pub stale_after: Duration,
@@ -321,7 +329,7 @@ links! {
     /// Filtered inertial samples.
     imu: ImuSample, Imu to "estimator", stale after 5 ms;
     /// The estimate.
-    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor", stale after 5 ms;
+    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor, console", stale after 5 ms;
     /// What the rotors are to do; without it they stop.
     setpoint: Setpoint, Commander to "control", stale after 50 ms;
     /// What the controllers ask of the mixer.
@@ -331,27 +339,33 @@ links! {
     /// What the mixer gave, and to `control` what it could not give; without it the motors stop.
     mix: MixOutput, Mixer to "motors, control, clamp, commander, supervisor", stale after 10 ms;
     /// Contact pressures; without them closed arms keep their force and are faulty.
-    contact: Contact, Analog to "clamp, commander", stale after 20 ms;
+    contact: Contact, Analog to "clamp, commander, console", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
-    battery: Battery, Analog to "mixer, commander, telemetry", stale after 500 ms;
+    battery: Battery, Analog to "mixer, commander, telemetry, console", stale after 500 ms;
+    /// What the converter gave, with each fifth conversion.
+    counts: AnalogFrame, Analog to "console", stale after 100 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
-    arms: ArmAngles, Arms to "mixer, clamp, servos", stale after 100 ms;
+    arms: ArmAngles, Arms to "mixer, clamp, servos, console", stale after 100 ms;
     /// What the tendons are to do; without it the clamp makes no step and sends nothing.
     clamp_command: ClampCommand, Commander to "clamp", stale after 200 ms;
     /// Forces, with the time of what they follow from; without them the servos stay, before the first there are no pulses.
     tendons: TendonOrder, Clamp to "servos, supervisor", stale after 200 ms;
     /// Tension that the servos can be giving, N, as old as the oldest tilt in it; without it nothing is proven free.
-    tension: PerArm<f32>, Servos to "clamp", stale after 200 ms;
+    tension: PerArm<f32>, Servos to "clamp, console", stale after 200 ms;
     /// Angle to which each servo is sent, rad from release.
-    reel_angle: PerArm<f32>, Servos to "supervisor", stale after 200 ms;
+    reel_angle: PerArm<f32>, Servos to "supervisor, console", stale after 200 ms;
     /// The grip that must outlive a reset.
     grip_memory: GripMemory, Commander to "supervisor", stale after 200 ms;
     /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
     grip: GripState, Clamp to "commander, supervisor", stale after 100 ms;
     /// The pilot's wishes, as frames come; without them failsafe.
-    rc: RcState, Rc to "commander", stale after 500 ms;
+    rc: RcState, Rc to "commander, console", stale after 500 ms;
     /// The commander's view.
-    status: Status, Commander to "telemetry, log", stale after 200 ms;
+    status: Status, Commander to "telemetry, console, log", stale after 200 ms;
+    /// What a builder tries on the table, renewed while it lasts; without it motors stop and servos go to release.
+    bench: BenchRequest, Console to "commander", stale after 150 ms;
+    /// What has become of it.
+    bench_answer: BenchAnswer, Commander to "console", stale after 200 ms;
 }
 
 impl Links {
@@ -391,7 +405,7 @@ impl Links {
 
     /// Timing from the conversion of pressures to the servos' pulse, since power-up.
     pub fn contact_timing(&self) -> Timing {
-        with(&self.contact_chain, |record| record.totals).unwrap_or_default()
+        with(&self.contact_chain, |record| record.totals()).unwrap_or_default()
     }
 
     /// Histogram of the same since it was taken last.
@@ -401,7 +415,8 @@ impl Links {
 
     /// Timing of a task since power-up.
     pub fn timing(&self, task: TaskId) -> Timing {
-        self.with_record(task, |record| record.totals).unwrap_or_default()
+        self.with_record(task, |record| record.totals())
+            .unwrap_or_default()
     }
 
     /// Histogram of a task's times since it was taken last.
@@ -413,6 +428,29 @@ impl Links {
     /// Records one run of a task.
     pub fn record(&self, task: TaskId, run: &Run) {
         let missed = self.with_record(task, |record| record.add(run));
+        self.tell_missed(task, missed);
+    }
+
+    /// Records one run of a task on the way to the motor frame: noted here, added by [`Self::settle`].
+    #[inline]
+    pub fn note(&self, task: TaskId, run: &Run) {
+        let missed = self.with_record(task, |record| record.note(run));
+        self.tell_missed(task, missed);
+    }
+
+    /// Adds what the flight level has noted. Called when the motor frame is out; each task has its own lock, so that
+    /// interrupts are masked for no longer than one run takes.
+    pub fn settle(&self) {
+        for task in TaskId::ALL
+            .into_iter()
+            .filter(|task| task.level() == Level::Flight)
+        {
+            self.with_record(task, Record::settle);
+        }
+    }
+
+    #[inline]
+    fn tell_missed(&self, task: TaskId, missed: Option<bool>) {
         if missed == Some(true) && task.level() == Level::Flight {
             self.missed.signal(());
         }

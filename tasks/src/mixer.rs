@@ -7,7 +7,7 @@ use sophie_control::chain::{ArmReading, MixOutput, Mixing, Surroundings};
 use sophie_control::mixer::Allocation;
 use sophie_control::params::Params;
 
-use crate::deadline::{TaskId, record_run};
+use crate::deadline::{TaskId, note_run};
 use crate::links::Links;
 
 /// Time from data-ready to the motor commands.
@@ -36,6 +36,6 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
         };
         mixing.step(message.at.as_micros(), &message.value, &surroundings, &mut mix);
         links.mix.send(message.at, mix);
-        record_run(links, TaskId::Mixer, message.at, started, DEADLINE);
+        note_run(links, TaskId::Mixer, message.at, started, DEADLINE);
     }
 }

@@ -3,7 +3,7 @@
 //! The [`DEADLINE`] of the frame counts from data-ready. This task's response is therefore that of the
 //! whole chain.
 
-use embassy_time::{Duration, Instant, with_timeout};
+use embassy_time::{Duration, Instant, with_deadline, with_timeout};
 
 use crate::deadline::{TaskId, record_run_until};
 use crate::links::{Links, Stamped};
@@ -17,7 +17,7 @@ pub const FRAME_LIMIT: Duration = Duration::from_millis(3);
 
 /// Serves the motors; returns, motors stopped, only if the link has no receiver left.
 pub async fn run(links: &Links, mut port: impl Motors) {
-    write(&mut port, [0.0; 4]).await;
+    write(&mut port, [0.0; 4], Instant::now()).await;
     let Some(mut mix) = links.mix.receiver() else {
         return;
     };
@@ -34,19 +34,22 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                 let commands = message
                     .fresh_at(started, links.mix.stale_after)
                     .unwrap_or([0.0; 4]);
-                let began = write(&mut port, commands.map(|c| if c.is_finite() { c } else { 0.0 })).await;
+                let commands = commands.map(|c| if c.is_finite() { c } else { 0.0 });
+                let began = write(&mut port, commands, started).await;
                 // A frame that never began is late by all the time that was waited for it.
                 let began = began.unwrap_or_else(Instant::now);
                 record_run_until(links, TaskId::Motors, message.at, started, began, DEADLINE);
+                // The frame is out: now there is time for what the stages before it have noted.
+                links.settle();
             }
             Err(_) => {
-                write(&mut port, [0.0; 4]).await;
+                write(&mut port, [0.0; 4], Instant::now()).await;
             }
         }
     }
 }
 
 /// Sends one frame and gives its beginning; one that hangs is given up (`None`): the next follows within a millisecond.
-async fn write(port: &mut impl Motors, commands: PerArm<f32>) -> Option<Instant> {
-    with_timeout(FRAME_LIMIT, port.write(commands)).await.ok()
+async fn write(port: &mut impl Motors, commands: PerArm<f32>, now: Instant) -> Option<Instant> {
+    with_deadline(now + FRAME_LIMIT, port.write(commands)).await.ok()
 }

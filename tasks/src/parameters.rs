@@ -1,4 +1,4 @@
-//! The parameters at start-up (the defaults, and over them what is stored), and the ranges shown to people.
+//! Parameters at start-up (defaults, overlaid with what is stored), and ranges shown to people.
 
 use core::fmt;
 
@@ -9,14 +9,14 @@ use crate::decimal::{self, Decimal};
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
 
-/// The parameters to fly with, and what reading them gave. Called once, before [`Links::new`].
+/// Parameters to fly with, and the result of reading them. Called once, before [`Links::new`].
 pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
     let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
     (params, loaded)
 }
 
-/// Refuses arming when the storage could not be read. Values that were refused do not: their defaults are sound.
+/// Refuses arming if the storage could not be read. Refused values do not: their defaults are sound.
 pub fn report(links: &Links, loaded: Loaded) {
     let foreign = loaded.foreign.is_some();
     links.report(ArmingInhibit::StorageUnreadable, loaded.unreadable && !foreign);
@@ -47,8 +47,8 @@ impl fmt::Display for Allowed<'_> {
     }
 }
 
-/// The value of parameter `row` that `text` is: a number, or the name of a choice. `None` for anything else; whether it
-/// is allowed is not looked at. A number under an old name is in its old unit.
+/// The value of `text` for `row`: a number (under an old name in its old unit), or a choice's name; `None` for anything
+/// else. The range is not checked.
 pub(crate) fn parse_value(row: &ParamInfo, renamed: Option<&Renamed>, text: &str) -> Option<f32> {
     if let Some(choice) = row.choice_named(text) {
         return Some(choice.value);
@@ -57,7 +57,7 @@ pub(crate) fn parse_value(row: &ParamInfo, renamed: Option<&Renamed>, text: &str
     Some(renamed.map_or(number, |renamed| renamed.convert(number)))
 }
 
-/// A value of a parameter: the number, with its name where it has one.
+/// A value: the number, with its name where it has one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown<'a>(pub &'a ParamInfo, pub f32);
 

@@ -101,7 +101,8 @@ pub trait Servos {
 
 /// A serial line towards the vehicle: the receiver's or the console's.
 pub trait SerialInput {
-    /// Waits for bytes and puts them at the start of `buffer`; returns how many.
+    /// Waits for bytes and puts them at the start of `buffer`; returns how many. The future may be dropped before it is
+    /// ready, and loses nothing then.
     ///
     /// # Errors
     /// A line error; the next call starts a new frame.

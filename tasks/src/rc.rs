@@ -1,9 +1,8 @@
-//! The receiver: bytes in, the pilot's wishes out.
+//! Receiver: bytes in, the pilot's input out.
 //!
-//! CRSF or SBUS, as the parameter `rc_protocol` says; 50 to 500 frames a second. A frame that is broken, or
-//! whose channels no transmitter sends on purpose, is counted and otherwise as if it had not come: the link then
-//! turns stale by itself. So it does when the receiver says that it has lost its transmitter, and when the line
-//! speaks the other protocol.
+//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. A frame that is broken or has invalid
+//! channels is counted and dropped, so that the link turns stale; likewise when the receiver reports a lost transmitter
+//! or the line has the other protocol.
 
 use embassy_time::{Duration, Instant, Timer};
 
@@ -13,7 +12,7 @@ use crate::ports::{RcDecoder, SerialInput};
 
 /// Bytes taken at once: two of the longest frames.
 const BUFFER: usize = 128;
-/// Time from the bytes' arrival by which they must have been decoded.
+/// Deadline of decoding, from the bytes' arrival.
 const DEADLINE: Duration = TaskId::Rc.deadline();
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);

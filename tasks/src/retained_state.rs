@@ -1,8 +1,8 @@
-//! What outlives a reset: the grip on the pipe, and what would else have to be calibrated at rest.
+//! State that outlives a reset: the grip on the pipe, and what must otherwise be calibrated at rest.
 //!
-//! A reset (watchdog, fault, command, pin) leaves the memory that start-up code does not touch as it was. Two copies
-//! of this lie there, written by turns, each with a sequence number and a checksum: a reset in the midst of a write
-//! leaves the other one whole. After power-on the memory is noise, which the checksum does not let pass.
+//! A reset (watchdog, fault, command, pin) keeps memory that start-up code does not touch. Two copies lie there,
+//! written by turns, each with a sequence number and a checksum: a reset during a write leaves the other one whole.
+//! After power-on the memory is noise, which fails the checksum.
 
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
@@ -16,34 +16,33 @@ pub const WORDS: usize = 16;
 /// One copy as it lies in memory.
 pub type Words = [u32; WORDS];
 
-/// Marks a copy ("WARM") of this layout; another layout takes another number.
+/// Marks a copy ("WARM") of this layout; each layout has its own number.
 const MAGIC: u32 = 0x5741_524D + 2;
-/// Bits of the code of one arm's fault.
 const FAULT_BITS: u32 = 4;
 /// Largest servo angle accepted, rad: beyond any servo's travel.
 const ANGLE_MAX: f32 = 6.5;
-/// Largest tendon force accepted, N: beyond what any parameters allow.
+/// Largest tendon force accepted, N: beyond any parameters' limit.
 const FORCE_MAX: f32 = 2000.0;
 /// Largest gyro bias accepted, rad/s: the estimator's own bound.
 const BIAS_MAX: f32 = 0.1;
 
-/// What a run leaves to the next one.
+/// State left to the next run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RetainedState {
     /// The grip; never [`GripMemory::Unknown`] in memory.
     pub grip_memory: GripMemory,
     /// Angle to which each tendon's servo was sent, rad from release, 0 to 6.5.
     pub angle: PerArm<f32>,
-    /// Force asked of each tendon, less what met the thrust of its rotor, N, 0 to 2000.
+    /// Force asked of each tendon, less its share against the rotor's thrust, N, 0 to 2000.
     pub force: PerArm<f32>,
-    /// What is wrong with an arm for as long as it is closed.
+    /// Latched fault of each closed arm.
     pub fault: PerArm<Option<GripFault>>,
     /// Gyro bias, rad/s, at most 0.1 on each axis; `None` before the first calibration at rest.
     pub gyro_bias: Option<Vec3>,
 }
 
 impl RetainedState {
-    /// The words of one copy. `None` when there is nothing to be kept: a grip not looked at, or what is no number.
+    /// Words of one copy; `None` with a grip not yet checked or an invalid value.
     pub fn to_words(&self, sequence: u32) -> Option<Words> {
         let (grip_memory, arms) = match self.grip_memory {
             GripMemory::Unknown => return None,
@@ -85,7 +84,7 @@ impl RetainedState {
         Self::from_words(&words).map(|_| words)
     }
 
-    /// The copy and its sequence number; `None` when a bit or a value is not as it was written.
+    /// A copy and its sequence number; `None` if a bit or a value is wrong.
     pub fn from_words(words: &Words) -> Option<(Self, u32)> {
         let [
             magic,
@@ -130,7 +129,7 @@ impl RetainedState {
         retained.is_sane().then_some((retained, sequence))
     }
 
-    /// The later of two copies and its sequence number; the other one when it is broken.
+    /// Later valid copy and its sequence number.
     pub fn newest(copies: &[Words; 2]) -> Option<(Self, u32)> {
         let [a, b] = copies.each_ref().map(Self::from_words);
         match (a, b) {
@@ -140,7 +139,6 @@ impl RetainedState {
         }
     }
 
-    /// Every number is one, and within its range.
     fn is_sane(&self) -> bool {
         let within = |values: &[f32], low: f32, high: f32| values.iter().all(|v| (low..=high).contains(v));
         let bias = self.gyro_bias.unwrap_or_default().to_array();
@@ -177,7 +175,7 @@ fn arm_choice(code: u32) -> Option<ArmChoice> {
         .find(|&arms| arm_code(arms) == code)
 }
 
-/// Only the faults that stay until release: the others show themselves again.
+/// Only latched faults: others show themselves again.
 fn fault_code(fault: Option<GripFault>) -> u32 {
     match fault {
         Some(GripFault::Sensor) => 1,
@@ -187,7 +185,7 @@ fn fault_code(fault: Option<GripFault>) -> u32 {
     }
 }
 
-/// The outer `None` for a code that stands for nothing.
+/// The outer `None` is an unknown code.
 fn fault_of(code: u32) -> Option<Option<GripFault>> {
     match code {
         0 => Some(None),
@@ -198,7 +196,7 @@ fn fault_of(code: u32) -> Option<Option<GripFault>> {
     }
 }
 
-/// CRC-32 (IEEE 802.3, bit by bit: a few thousand cycles) of all words but the last: every single wrong bit shows.
+/// CRC-32 (IEEE 802.3, bit by bit: a few thousand cycles) of all words but the last; it finds every single wrong bit.
 fn checksum(words: &Words) -> u32 {
     let (_, head) = words.split_last().unwrap_or((&0, &[]));
     let mut crc = u32::MAX;

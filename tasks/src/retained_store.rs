@@ -1,7 +1,7 @@
-//! Keeps what must outlive a reset. The supervisor runs it.
+//! Writes the retained state; run by the supervisor.
 //!
-//! What it keeps is at most 30 ms old (a servo's frame and a run of its own), over which a winding servo turns 0.2 rad
-//! and one that holds not at all. A message that is stale or silent leaves what was kept as it is.
+//! It is at most 30 ms old (a servo's frame and a run of its own), in which a winding servo turns 0.2 rad and a holding
+//! one not at all. A stale or missing message changes nothing.
 
 use crate::retained_state::RetainedState;
 use sophie_control::wrench::PerArm;
@@ -9,7 +9,7 @@ use sophie_control::wrench::PerArm;
 use crate::links::{Links, TendonOrder};
 use crate::ports::Retain;
 
-/// What was kept last.
+/// Writer of the retained state.
 pub struct RetainedStore<R> {
     port: R,
     retained: RetainedState,
@@ -17,7 +17,7 @@ pub struct RetainedStore<R> {
 }
 
 impl<R: Retain> RetainedStore<R> {
-    /// A store that continues from the state of the run before.
+    /// Continues from the state of the run before.
     pub fn new(links: &Links, port: R) -> Self {
         Self {
             port,
@@ -26,7 +26,7 @@ impl<R: Retain> RetainedStore<R> {
         }
     }
 
-    /// Keeps what the links say now. Nothing is kept before the commander knows whether the arms are closed.
+    /// Keeps the present state, once the commander knows whether the arms are closed.
     pub fn keep(&mut self, links: &Links) {
         if let Some(grip_memory) = links.grip_memory.fresh() {
             self.retained.grip_memory = grip_memory;
@@ -35,8 +35,8 @@ impl<R: Retain> RetainedStore<R> {
             self.retained.angle = angle;
         }
         if let Some(TendonOrder::Measured(tendons) | TendonOrder::Blind(tendons)) = links.tendons.fresh() {
-            // A rotor's thrust bends its arm away from the pipe. The reset stops it, and what the tendon pulled against
-            // it would press the pipe.
+            // A rotor's thrust bends its arm off the pipe. The reset stops it, and the tendon's share against it would
+            // press the pipe.
             let thrusts = links
                 .mix
                 .fresh()
@@ -61,7 +61,7 @@ impl<R: Retain> RetainedStore<R> {
         let sequence = self.sequence.wrapping_add(1);
         if let Some(words) = self.retained.to_words(sequence) {
             self.sequence = sequence;
-            // By turns: a reset in the midst of the write leaves the copy before whole.
+            // By turns: a reset during the write leaves the copy before whole.
             self.port.keep(sequence & 1 == 1, &words);
         }
     }

@@ -120,17 +120,30 @@ impl Tendons {
     /// One step of `dt` s by the newest order, with the fresh tilts (rad).
     fn step(&mut self, newest: &Newest<TendonOrder>, tilts: PerArm<Option<f32>>, dt: f32) -> PerArm<Drive> {
         let mut output = [Drive::default(); 4];
+        let placed = match newest {
+            Newest::Fresh(Stamped {
+                value: TendonOrder::Placed { place, .. },
+                ..
+            }) => Some(place),
+            _ => None,
+        };
         let arms = self.arms.iter_mut().zip(tilts).zip(&mut output);
         match newest {
             Newest::Fresh(Stamped {
-                value: TendonOrder::Measured(forces) | TendonOrder::Blind(forces),
+                value:
+                    TendonOrder::Measured(forces)
+                    | TendonOrder::Blind(forces)
+                    | TendonOrder::Placed { forces, .. },
                 ..
             }) => {
-                for (((tendon, tilt), out), asked) in arms.zip(forces.arms) {
+                for (arm, (((tendon, tilt), out), asked)) in arms.zip(forces.arms).enumerate() {
                     if forces.found && !self.begun {
                         tendon.drive.seed_from_tilt(&tendon.reel, tilt);
                     }
-                    *out = tendon.step(asked, tilt, dt);
+                    *out = match placed.filter(|place| place.servo == arm) {
+                        Some(place) => tendon.drive.place(&tendon.reel, place.pulse_us, tilt, dt),
+                        None => tendon.step(asked, tilt, dt),
+                    };
                 }
             }
             // Held forces are no order to wind, whatever the arm does.

@@ -1,21 +1,21 @@
-//! Sensors that give nothing: reported against arming when their silence begins, and cleared when it ends.
+//! Silent sensors: refuse arming from the start of the silence to its end.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::ArmingInhibit;
 
 use crate::links::Links;
 
-/// Watches for readings of one sensor.
+/// Watches one sensor's readings.
 pub struct SilenceWatch {
     reason: ArmingInhibit,
     limit: Duration,
-    /// When it last gave a reading.
+    /// Last reading.
     last: Instant,
     silent: bool,
 }
 
 impl SilenceWatch {
-    /// Reports `reason` once the sensor has given nothing for `limit`, counted from `since` at the earliest.
+    /// Reports `reason` after `limit` without a reading, counted from `since` at the earliest.
     pub const fn new(reason: ArmingInhibit, limit: Duration, since: Instant) -> Self {
         Self {
             reason,
@@ -25,14 +25,14 @@ impl SilenceWatch {
         }
     }
 
-    /// When the sensor counts as silent, unless a reading comes before.
+    /// When the sensor counts as silent without a further reading.
     pub fn due(&self) -> Instant {
         self.last + self.limit
     }
 
-    /// A reading came at `now`, or was asked for then.
+    /// Notes a reading, or a request for one, at `now`.
     pub fn heard(&mut self, links: &Links, now: Instant) {
-        // One that came before the start was over must not bring its end forward.
+        // A reading before the start is over must not bring its end forward.
         self.last = self.last.max(now);
         self.look(links, now);
     }

@@ -1,30 +1,30 @@
-//! Why the board started, and what the run before left.
+//! Cause of a start, and the state left by the run before.
 
 use crate::retained_state::{RetainedState, Words};
 
-/// Why the board started.
+/// Cause of a start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StartCause {
     /// Power was switched on.
     #[default]
     PowerOn,
-    /// The supply broke down for a moment: what was in memory is gone, as after power-on.
+    /// The supply dipped: memory is lost, as after power-on.
     BrownOut,
     /// The watchdog was not fed.
     Watchdog,
-    /// The firmware gave up: a panic or a fault of the processor.
+    /// A panic or a fault of the processor.
     Fault,
-    /// On request: a command, the reset button, the debug probe.
+    /// A command, the reset button, the debug probe.
     Software,
 }
 
 impl StartCause {
-    /// What is left in memory is noise.
+    /// Memory is noise.
     pub const fn loses_memory(self) -> bool {
         matches!(self, Self::PowerOn | Self::BrownOut)
     }
 
-    /// What the pilot must know of it; empty when there is nothing.
+    /// Warning for the pilot; empty if none.
     pub const fn warning(self) -> &'static str {
         match self {
             Self::PowerOn | Self::Software => "",
@@ -38,16 +38,16 @@ impl StartCause {
 /// A start of the board.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
-    /// Why it started.
+    /// Its cause.
     pub cause: StartCause,
-    /// Retained state of the run before, when it is valid.
+    /// Valid retained state of the run before.
     pub retained: Option<RetainedState>,
-    /// Number of the last copy that was kept; the next one takes the next.
+    /// Number of the last copy; the next one takes the next.
     pub sequence: u32,
 }
 
 impl Start {
-    /// Power-on, with nothing left.
+    /// Power-on, nothing retained.
     pub const COLD: Self = Self {
         cause: StartCause::PowerOn,
         retained: None,

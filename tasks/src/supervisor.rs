@@ -1,12 +1,10 @@
-//! The supervisor: the watchdog is fed only while everything runs that flying needs, and what must outlive its bite
-//! is kept.
+//! Supervisor: feeds the watchdog only while everything runs that flying needs, and keeps what must outlive a reset.
 //!
-//! Below the flight level, so that one that never yields starves it too. A window of 100 ms in which
-//! a task has made less than half of its runs, or a flight level that has gone stale after calibration, leaves
-//! the watchdog unfed: with a period of 200 to 500 ms it then resets the board, which starts
-//! disarmed, with the grip as it was.
+//! Its level is below the flight level, which starves it by never yielding. A window of 100 ms in which a task has made
+//! less than half of its runs, or a stale flight level after calibration, leaves the watchdog unfed. With a period of
+//! 200 to 500 ms it then resets the board, which starts disarmed with the grip as it was.
 //!
-//! Which tasks are watched is declared with them ([`crate::schedule`]).
+//! The watched tasks are declared in [`crate::schedule`].
 
 use embassy_time::{Duration, Instant};
 
@@ -16,13 +14,13 @@ use crate::ports::{Retain, Watchdog};
 use crate::retained_store::RetainedStore;
 use crate::schedule::Watch;
 
-/// Looks in a window.
+/// Looks per window.
 const WINDOW: u8 = 10;
-/// Time from power-up during which drivers may still be starting.
+/// Time from power-up for drivers to start.
 pub const BOOT_TIME: Duration = Duration::from_secs(3);
 
-/// Least number of a watched task's runs in a window: half of what its period gives. `None` of a task that is not
-/// watched. Tasks of the flight level only count once the sensors are calibrated.
+/// Least runs of a watched task in a window, half of what its period gives; `None` if it is not watched. Tasks of the
+/// flight level only count after calibration.
 pub const fn least_runs(task: TaskId) -> Option<u32> {
     let window = TaskId::Supervisor.period().as_ticks() * WINDOW as u64;
     match task.task().watch {
@@ -45,7 +43,6 @@ pub async fn run(links: &Links, mut watchdog: impl Watchdog, memory: impl Retain
     }
 }
 
-/// What the supervisor knows.
 struct Health {
     power_up: Instant,
     looks: u8,
@@ -65,9 +62,9 @@ impl Health {
         }
     }
 
-    /// One look; true while the watchdog may be fed.
+    /// One look; true if the watchdog may be fed.
     fn look(&mut self, links: &Links, now: Instant) -> bool {
-        // Once calibrated always calibrated: a flight level that falls silent must not excuse itself.
+        // Calibrated stays calibrated: a silent flight level must not excuse itself.
         let newly = !self.calibrated && links.attitude.fresh().is_some_and(|a| a.calibrated);
         if newly {
             self.calibrated = true;

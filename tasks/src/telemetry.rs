@@ -1,7 +1,6 @@
-//! Telemetry to the pilot's transmitter, over the receiver's serial line.
+//! Telemetry to the pilot's transmitter over the receiver's serial line.
 //!
-//! One frame a run, so that the thin downlink never queues. SBUS has no way back: with it nothing
-//! is sent.
+//! One frame a run, so that the thin downlink never queues. SBUS has no downlink: nothing is sent.
 //!
 //! | frame | type | rate |
 //! |---|---|---|
@@ -22,14 +21,13 @@ use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Battery, Links, Status};
 use crate::ports::SerialOutput;
 
-/// Runs after which the order of the frames repeats.
+/// Runs in a cycle of frames.
 const CYCLE: u8 = 10;
-/// The run of each cycle that carries the battery.
+/// Run of a cycle that carries the battery.
 const BATTERY_SLOT: u8 = 9;
 /// Longest text of a flight-mode frame.
 const TEXT: usize = 59;
 
-/// A frame ready to be sent.
 type Frame = heapless::Vec<u8, 64>;
 
 /// Sends frames; never returns.
@@ -42,7 +40,7 @@ pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
     let mut shown = None;
     loop {
         rate.next().await;
-        // A commander that has fallen silent shows as a display that no longer changes.
+        // A silent commander shows as a display that no longer changes.
         let Some(status) = links.status.fresh() else {
             continue;
         };
@@ -55,7 +53,7 @@ pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
             encode(packets::FlightMode::new(&mode_text(status)).ok())
         };
         if let Some(frame) = frame {
-            // A line that does not take the frame loses it; the next one says more anyway.
+            // A frame that the line does not take is lost; the next one follows.
             let _ = port.write(&frame).await;
         }
     }
@@ -78,7 +76,7 @@ fn scheduled(links: &Links, status: Status, slot: u8) -> Option<Frame> {
     }
 }
 
-/// The mode's name, with the reason behind a colon when there is one.
+/// The mode's name, with any reason behind a colon.
 fn mode_text(status: Status) -> String<TEXT> {
     let Status {
         mode,
@@ -94,21 +92,21 @@ fn mode_text(status: Status) -> String<TEXT> {
         write!(text, "{}: {reason}", mode.name())
     };
     if written.is_err() {
-        // The name always fits; a reason that does not is left out.
+        // The name always fits; a longer reason is left out.
         text.clear();
         let _ = text.write_str(mode.name());
     }
     text
 }
 
-/// The mode and the reason in the text of a flight-mode frame: what a display does with it.
+/// Splits the text of a flight-mode frame into mode and reason, as a display does.
 pub fn parse_mode_text(text: &str) -> Option<(Mode, &str)> {
     let (name, reason) = text.split_once(": ").unwrap_or((text, ""));
     Some((Mode::from_name(name)?, reason))
 }
 
 fn tenths_of_mrad(angle: f32) -> i16 {
-    // Float to integer conversion saturates and takes NaN as 0.
+    // The conversion saturates and takes NaN as 0.
     (angle * 1e4) as i16
 }
 

@@ -73,7 +73,7 @@ usage: cargo xtask VERB
                      count the instructions of every control stage under QEMU, print them beside targets and peers,
                      compare with hil/qemu/cost/baseline.toml; --tighten takes what is counted now as the baseline and
                      writes the table of docs/cost.md; --cycles bounds the cycles on an M4F instead
-  own-board          build a copy of the reference board as docs/boards.md says for a board of one's own, and check its
+  own-board          build a copy of the reference board as docs/porting.md says for a board of one's own, and check its
                      image
   conformance        run one image of exceptions, floats and control laws on QEMU and on the emulated core of the bench;
                      their logs must be equal

@@ -1,4 +1,4 @@
-//! A board of one's own, as docs/boards.md says: a copy of the reference board in a scratch folder, built and checked.
+//! A board of one's own, as docs/porting.md says: a copy of the reference board in a scratch folder, built and checked.
 //!
 //! It shows that such a board touches the files named there and no other, that what the boards share goes by the chip,
 //! and what the named boards do not need: motors on two timers in an order of their own, a pin that switches the
@@ -111,7 +111,7 @@ pub fn own_board() -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes the files of docs/boards.md, `A board of one's own`, into the copy of the workspace.
+/// Writes the files of docs/porting.md into the copy of the workspace.
 fn write(scratch: &Path) -> Result<(), Error> {
     let folder = scratch.join("boards");
     let mut file = fs::read_to_string(folder.join("src/matek_h743.rs"))?;

@@ -2,6 +2,7 @@
 
 #[cfg(not(family = "f4"))]
 mod cache;
+mod copy;
 pub mod end;
 mod fault;
 mod levels;

@@ -1,31 +1,81 @@
 //! The inertial sensor's data-ready line, stamped in its interrupt: a task that runs late does not move the sample.
+//!
+//! The line stays enabled from one sample to the next. The HAL sets it up anew for each wait, 80 instructions that stand
+//! between a sample and the motor frame that follows from it.
 
+use core::future::{Future, poll_fn};
+use core::pin::pin;
 use core::sync::atomic::{AtomicU32, Ordering};
+use core::task::{Context, Poll, Waker};
 
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::interrupt::typelevel::{Handler, Interrupt};
 use embassy_stm32::mode::Async;
+use embassy_stm32::pac::EXTI;
+use embassy_stm32::pac::exti::regs::Lines;
+use embassy_sync::waitqueue::AtomicWaker;
 use embassy_time::{Duration, Instant};
 use sophie_drivers::data_ready::DataReady;
 
 /// The lowest 32 bits of the clock at the last interrupt, µs.
 static RISEN: AtomicU32 = AtomicU32::new(0);
+/// Interrupts, modulo 2^32.
+static EDGES: AtomicU32 = AtomicU32::new(0);
+/// The line's bit in the registers of external interrupts.
+static LINE: AtomicU32 = AtomicU32::new(0);
+/// Who waits for the line.
+static WAITING: AtomicWaker = AtomicWaker::new();
 
-/// Stamps the interrupt. To be bound before the driver's own handler.
+/// Stamps the interrupt and acknowledges it. To be bound before the HAL's handler, which then finds nothing to do: it
+/// would disable the line.
 pub struct ReadyStamp;
 
 impl<I: Interrupt> Handler<I> for ReadyStamp {
     unsafe fn on_interrupt() {
         RISEN.store(Instant::now().as_ticks() as u32, Ordering::Relaxed);
+        EXTI.pr(0).write_value(Lines(LINE.load(Ordering::Relaxed)));
+        EDGES.fetch_add(1, Ordering::Relaxed);
+        WAITING.wake();
     }
 }
 
-/// The line.
-pub struct ReadyLine(pub ExtiInput<'static, Async>);
+/// The line. One exists.
+pub struct ReadyLine {
+    /// Kept, so that pin and line are no one else's.
+    _input: ExtiInput<'static, Async>,
+}
+
+impl ReadyLine {
+    /// The line on pin `number` of its port, which `input` reads.
+    pub fn new(mut input: ExtiInput<'static, Async>, number: u8) -> Self {
+        // A wait that is given up leaves edge and port configured, and the line disabled.
+        let _ = pin!(input.wait_for_rising_edge()).poll(&mut Context::from_waker(Waker::noop()));
+        LINE.store(1 << number, Ordering::Relaxed);
+        Self { _input: input }
+    }
+
+    /// Enables the line where it is not: at first, and after an edge between the two handlers.
+    fn enable() {
+        let line = LINE.load(Ordering::Relaxed);
+        if EXTI.imr(0).read().0 & line == 0 {
+            critical_section::with(|_| EXTI.imr(0).modify(|enabled| enabled.0 |= line));
+        }
+    }
+}
 
 impl DataReady for ReadyLine {
     async fn next(&mut self) -> Instant {
-        self.0.wait_for_rising_edge().await;
+        let seen = EDGES.load(Ordering::Relaxed);
+        Self::enable();
+        poll_fn(|cx| {
+            WAITING.register(cx.waker());
+            if EDGES.load(Ordering::Relaxed) == seen {
+                Poll::Pending
+            } else {
+                Poll::Ready(())
+            }
+        })
+        .await;
         let now = Instant::now();
         let age = (now.as_ticks() as u32).wrapping_sub(RISEN.load(Ordering::Relaxed));
         now.checked_sub(Duration::from_ticks(age.into())).unwrap_or(now)

@@ -7,10 +7,10 @@ use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
 use embassy_stm32::interrupt::typelevel::Binding;
-use embassy_stm32::timer::low_level::{OutputCompareMode, Timer};
+use embassy_stm32::timer::low_level::{self, OutputCompareMode};
 use embassy_stm32::timer::{Channel, GeneralInstance4Channel, TimerChannel, TimerPin, UpDma};
 use embassy_stm32::{Peri, rcc};
-use embassy_time::{Duration, Instant, with_timeout};
+use embassy_time::{Duration, Instant, Timer};
 use sophie_control::wrench::PerArm;
 use sophie_drivers::dshot::{self, BitTiming, Frame, fill_burst};
 use sophie_drivers::esc_protocol::EscProtocol;
@@ -20,42 +20,52 @@ use sophie_tasks::ports::Motors;
 use static_cell::ConstStaticCell;
 
 use super::Aligned;
+use super::frame_stream::{FrameStream, Stream};
 
-/// The slowest frame takes 120 µs; one that takes this long never ends.
-const LONGEST_FRAME: Duration = Duration::from_micros(500);
+/// In place of the motor of a channel that moves none.
+const NO_MOTOR: usize = usize::MAX;
 
-/// Rows of compare values that DMA writes into the timer: one for each bit of a frame, and two of zeros. The first of
-/// those is in force when the second has been moved, so the pins are low at the end of the transfer.
-type EscBurst = Aligned<[u16; dshot::BURST + dshot::MOTORS]>;
+/// Rows of compare values of a frame: one for each bit, and two of zeros. The first of those is in force when the second
+/// has been moved: the pins are low when the last row has been.
+const FRAME_ROWS: usize = dshot::BITS + 2;
+/// Rows that DMA would write: what follows the frame are zeros, in which the timer is stopped. They last as long as a
+/// frame of the fastest protocol: no task of the level keeps this one waiting for longer.
+const ROWS: usize = 2 * FRAME_ROWS;
+/// All rows.
+type EscBurst = Aligned<[u16; ROWS * dshot::MOTORS]>;
 
-static DMA_MOTORS: ConstStaticCell<EscBurst> =
-    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
+static DMA_MOTORS: ConstStaticCell<EscBurst> = ConstStaticCell::new(Aligned([0; ROWS * dshot::MOTORS]));
 /// That of a second timer, where there is one.
-static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> =
-    ConstStaticCell::new(Aligned([0; dshot::BURST + dshot::MOTORS]));
+static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> = ConstStaticCell::new(Aligned([0; ROWS * dshot::MOTORS]));
 
 /// How commands become compare values.
 #[derive(Clone, Copy)]
 enum Timing {
-    DShot(BitTiming),
+    /// With the time that all rows take.
+    DShot(BitTiming, Duration),
     Pulse(EscPulse, PwmTiming),
 }
 
 /// Speed controllers on channels of a 16-bit timer.
 pub struct EscTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
-    timer: Timer<'static, T>,
+    timer: low_level::Timer<'static, T>,
     /// The channel of each motor that is on this timer.
     channels: PerArm<Option<Channel>>,
+    /// The motor of each channel, 0 to 3, or [`NO_MOTOR`].
+    motors: [usize; dshot::MOTORS],
     /// Kept, so that the pins stay the timer's.
     pins: PerArm<Option<Flex<'static>>>,
-    dma: Peri<'static, D>,
-    irqs: I,
+    /// Kept, so that the stream is no one else's.
+    _dma: Peri<'static, D>,
+    _irqs: I,
+    stream: Stream,
     burst: &'static mut EscBurst,
     timing: Timing,
 }
 
-impl<T: GeneralInstance4Channel, D: UpDma<T>, I> EscTimer<T, D, I>
+impl<T: GeneralInstance4Channel, D: UpDma<T> + FrameStream, I> EscTimer<T, D, I>
 where
+    I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
     u16: Into<T::Word>,
 {
     /// Motors 1 to 4 on these pins, which stay low until the first command. The pins say the channels, in any order: two
@@ -98,26 +108,32 @@ where
 
     fn bare(
         timer: Peri<'static, T>,
-        dma: Peri<'static, D>,
+        mut dma: Peri<'static, D>,
         irqs: I,
         protocol: EscProtocol,
         burst: &'static mut EscBurst,
     ) -> Self {
         let timing = timing(protocol, rcc::frequency::<T>().0);
-        let timer = Timer::new(timer);
+        let mut timer = low_level::Timer::new(timer);
         let (prescaler, period) = match timing {
-            Timing::DShot(bit) => (0, u32::from(bit.period)),
+            Timing::DShot(bit, _) => (0, u32::from(bit.period)),
             Timing::Pulse(_, t) => (t.prescaler, t.period),
         };
         timer.regs_core().psc().write_value(prescaler);
         // `PwmTiming` and `BitTiming` are made for 16 bits: period - 1 always fits.
         timer.set_max_compare_value((period.wrapping_sub(1) as u16).into());
+        // Nothing moves: the timer stands still and asks for nothing.
+        let rows = &burst.0[..];
+        let first = timer.setup_update_dma_burst(dma.reborrow(), irqs, Channel::Ch1, Channel::Ch4, rows);
+        let stream = Stream::of::<D>(first, rows.len());
         Self {
             timer,
             channels: [None; 4],
+            motors: [NO_MOTOR; 4],
             pins: [const { None }; 4],
-            dma,
-            irqs,
+            _dma: dma,
+            _irqs: irqs,
+            stream,
             burst,
             timing,
         }
@@ -140,6 +156,9 @@ where
         if let (Some(of), Some(kept)) = (self.channels.get_mut(index), self.pins.get_mut(index)) {
             *of = Some(channel);
             *kept = Some(output);
+        }
+        if let Some(motor) = self.motors.get_mut(channel.index()) {
+            *motor = index;
         }
         self
     }
@@ -179,52 +198,51 @@ where
         });
     }
 
-    /// One frame to all motors, over when this returns; gives its beginning.
-    ///
-    /// The order matters: counter stopped, DMA armed, request enabled, counter started. With the request enabled first,
-    /// an update that comes before the stream is armed is lost, and with it the frame's first bit.
-    async fn send_frame(&mut self, bit: BitTiming, commands: PerArm<f32>) -> Instant
-    where
-        I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
-    {
-        // In the order of the channels, as the timer takes them. A channel without a motor has no pin.
-        let mut frames = [Frame::from_command(0.0); 4];
-        for (channel, command) in self.on_channels(commands) {
-            if let Some(frame) = frames.get_mut(channel.index()) {
-                *frame = Frame::from_command(command);
-            }
-        }
-        fill_burst(&mut self.burst.0, frames, bit);
+    /// Stops the counter first: a request that it makes is still served.
+    fn stop_frame(&mut self) {
         self.timer.stop();
         self.timer.enable_update_dma(false);
+        self.stream.stop();
+    }
+
+    /// One frame to all motors, over when this returns; gives its beginning.
+    ///
+    /// The order matters: counter and stream stopped, rows written, stream armed, request enabled, counter started. With
+    /// the request enabled first, an update that comes before the stream is armed is lost, and with it the frame's first
+    /// bit.
+    async fn send_frame(&mut self, bit: BitTiming, time: Duration, commands: PerArm<f32>) -> Instant {
+        // One that was given up half-way.
+        self.stop_frame();
         self.timer.reset();
-        let rows = &self.burst.0[..];
-        let transfer = self.timer.setup_update_dma_burst(
-            self.dma.reborrow(),
-            self.irqs,
-            Channel::Ch1,
-            Channel::Ch4,
-            rows,
-        );
+        // In the order of the channels, as the timer takes them. A channel without a motor has no pin.
+        let frame = |motor| {
+            commands
+                .get(motor)
+                .map_or(Frame::STOP, |c| Frame::from_command(*c))
+        };
+        let frames = self.motors.map(frame);
+        if let Some(rows) = self.burst.0.first_chunk_mut::<{ FRAME_ROWS * dshot::MOTORS }>() {
+            fill_burst(rows, frames, bit);
+        }
+        self.stream.arm();
         self.timer.enable_update_dma(true);
         self.timer.start();
         let began = Instant::now();
-        // A transfer that does not end is given up: the task must go on, and the supervisor sees it late.
-        let _ = with_timeout(LONGEST_FRAME, transfer).await;
-        self.timer.enable_update_dma(false);
-        self.timer.stop();
+        // A stream that stands still is not waited for: the next frame sets out anew.
+        Timer::at(began + time).await;
+        self.stop_frame();
         began
     }
 }
 
-impl<T: GeneralInstance4Channel, D: UpDma<T>, I> Motors for EscTimer<T, D, I>
+impl<T: GeneralInstance4Channel, D: UpDma<T> + FrameStream, I> Motors for EscTimer<T, D, I>
 where
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
     u16: Into<T::Word>,
 {
     async fn write(&mut self, commands: PerArm<f32>) -> Instant {
         match self.timing {
-            Timing::DShot(bit) => return self.send_frame(bit, commands).await,
+            Timing::DShot(bit, time) => return self.send_frame(bit, time, commands).await,
             Timing::Pulse(pulse, t) => self.shoot(pulse, t, commands),
         }
         Instant::now()
@@ -267,7 +285,12 @@ impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
 /// If the clock cannot make the protocol: a board with such a clock never starts, so it is found at the bench.
 fn timing(protocol: EscProtocol, clock_hz: u32) -> Timing {
     let found = match protocol {
-        EscProtocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(Timing::DShot),
+        EscProtocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(|bit| {
+            let counts = FRAME_ROWS as u64 * u64::from(bit.period);
+            // A microsecond for each end: the clock's resolution.
+            let time = Duration::from_micros(counts * 1_000_000 / u64::from(clock_hz) + 2);
+            Timing::DShot(bit, time)
+        }),
         EscProtocol::Pulse(pulse) => pulse.timing(clock_hz).map(|t| Timing::Pulse(pulse, t)),
     };
     match found {

@@ -27,6 +27,7 @@ mod escs;
 mod flash;
 #[cfg(family = "h7")]
 mod flash_ecc;
+mod frame_stream;
 mod i2c_bus;
 mod lights;
 #[cfg_attr(family = "h7", path = "options_h7.rs")]

@@ -1,4 +1,4 @@
-//! The stick gestures that arm and disarm.
+//! Stick gestures that arm and disarm.
 
 use crate::rc::Sticks;
 
@@ -16,7 +16,7 @@ pub enum Gesture {
     Disarm,
 }
 
-/// Recognises the gestures; each is reported once, until the stick comes back.
+/// Reports each gesture once, until the stick comes back.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GestureWatch {
     shape: Option<Gesture>,
@@ -24,7 +24,7 @@ pub struct GestureWatch {
 }
 
 impl GestureWatch {
-    /// One step of `dt` s; `None` for the sticks when the radio is lost, which starts the gesture over.
+    /// One step of `dt` s; `None` (radio lost) restarts the gesture.
     pub fn step(&mut self, sticks: Option<&Sticks>, throttle_low: f32, dt: f32) -> Option<Gesture> {
         let shape = sticks.and_then(|s| {
             let low = s.throttle <= throttle_low;

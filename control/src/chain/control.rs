@@ -39,7 +39,7 @@ impl Kind {
     #[inline(always)]
     const fn of(setpoint: &Setpoint) -> Self {
         match setpoint {
-            Setpoint::Stop | Setpoint::Idle => Self::None,
+            Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_) => Self::None,
             Setpoint::Angle { .. } | Setpoint::Resting { .. } => Self::Attitude,
             Setpoint::Escape { .. } => Self::Escape,
             Setpoint::Rate { .. } => Self::Rate,
@@ -104,6 +104,7 @@ impl Control {
         let (wanted, thrust, resting) = match command.setpoint {
             Setpoint::Stop => return Demand::Stop,
             Setpoint::Idle => return Demand::Idle,
+            Setpoint::Spin(spin) => return Demand::Spin(spin),
             Setpoint::Direct { wrench } => return Demand::Wrench(wrench),
             Setpoint::Rate { rate, thrust } => (rate, thrust, false),
             Setpoint::Angle {

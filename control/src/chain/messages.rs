@@ -1,5 +1,6 @@
 //! What the stages of the flight step hand on.
 
+use crate::bench::Spin;
 use crate::desaturation::Given;
 use crate::rate::Feedback;
 use crate::vector::{Quat, Vec3};
@@ -58,6 +59,8 @@ pub enum Demand {
     Stop,
     /// Rotors at idle.
     Idle,
+    /// One motor on the bench.
+    Spin(Spin),
     /// This wrench, yaw included.
     Wrench(Wrench),
     /// This wrench on the pipe: yaw is given up, and the arms do not hang free, so that their sensors correct nothing.

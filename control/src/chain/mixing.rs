@@ -82,7 +82,7 @@ impl<A: Allocation> Mixing<A> {
         let (wrench, yaw) = match demand {
             Demand::Wrench(wrench) => (Some(wrench), true),
             Demand::Resting(wrench) => (Some(wrench), false),
-            Demand::Idle | Demand::Stop => (None, false),
+            Demand::Idle | Demand::Stop | Demand::Spin(_) => (None, false),
         };
         let conditions = Conditions {
             yaw,
@@ -94,10 +94,12 @@ impl<A: Allocation> Mixing<A> {
             None => self.allocation.idle(dt),
         };
         let running = *demand != Demand::Stop;
-        let (thrusts, commands) = if running {
-            (mix.thrusts, self.curve.commands(&mix.thrusts, ratio))
-        } else {
-            ([0.0; 4], [0.0; 4])
+        let (thrusts, commands) = match demand {
+            Demand::Wrench(_) | Demand::Resting(_) | Demand::Idle => {
+                (mix.thrusts, self.curve.commands(&mix.thrusts, ratio))
+            }
+            Demand::Stop => ([0.0; 4], [0.0; 4]),
+            Demand::Spin(spin) => ([0.0; 4], spin.commands()),
         };
         let tilt = self.allocation.tilt();
         *out = MixOutput {

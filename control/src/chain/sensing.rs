@@ -1,4 +1,4 @@
-//! First stage: filters the inertial sensor at its own rate and hands on at the control rate.
+//! First stage: filters the inertial sensor at its own rate, outputs at the control rate.
 
 use crate::chain::{CONTROL_RATE_HZ, ImuReading, ImuSample, StepClock};
 use crate::imu_filter::ImuFilter;
@@ -11,7 +11,7 @@ use crate::vector::Vec3;
 pub struct Sensing {
     filter: ImuFilter,
     accel_bias: Vec3,
-    /// Readings that make a step, and those that have come since the last.
+    /// Readings of a step, and those since the last.
     per_step: u32,
     collected: u32,
     clock: StepClock,
@@ -29,9 +29,9 @@ impl Sensing {
         }
     }
 
-    /// Takes a batch of readings, oldest first, the newest ready at `at_us` µs. `sample` is the one given last; it is
-    /// filtered on. True when as many readings have come as make a step; such as are not finite do not count.
-    // On its own: not for size with its caller.
+    /// Takes readings, oldest first, the newest ready at `at_us` µs, and updates `sample`, the one given last. True
+    /// once the finite readings of a step have come.
+    // Never inlined: a caller optimised for size would slow it down.
     #[inline(never)]
     pub fn take(&mut self, at_us: u64, readings: &[ImuReading], sample: &mut ImuSample) -> bool {
         let mut newest = ImuReading {

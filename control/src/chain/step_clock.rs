@@ -3,19 +3,19 @@
 use crate::chain::CONTROL_RATE_HZ;
 use crate::math;
 
-/// Shortest and longest step time that a law is given, s: half and five times the nominal one. A longer gap is a fault that
-/// others report; a law that integrated over it would jump.
+/// Shortest and longest step time for a law, s: half and five times the nominal one. A longer gap is a fault reported
+/// elsewhere; integrating over it would jump.
 const SHORTEST: f32 = 0.5e-3;
 const LONGEST: f32 = 5e-3;
 
-/// Gives the time of each step from its stamp.
+/// Step times from stamps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepClock {
     last_us: Option<u64>,
 }
 
 impl StepClock {
-    /// Time since the step before, s, 0.5 to 5 ms, for a step of `at_us` µs; 1 ms for the first.
+    /// Time since the last step, s, 0.5 to 5 ms, for the stamp `at_us` µs; 1 ms at first.
     #[inline(always)]
     pub fn step(&mut self, at_us: u64) -> f32 {
         let dt = match self.last_us {
@@ -31,7 +31,7 @@ impl StepClock {
     }
 }
 
-/// Step time (s) after more than an hour, or backwards.
+/// Step time (s) for a gap of over an hour, or backwards.
 #[cold]
 const fn odd_gap(last_us: u64, at_us: u64) -> f32 {
     if at_us < last_us { SHORTEST } else { LONGEST }
@@ -60,7 +60,7 @@ mod tests {
             at += gap;
             assert!(clock.step(at) == 5e-3, "{gap}");
         }
-        // A stamp of before counts as none at all.
+        // An earlier stamp counts as none.
         assert!(clock.step(1) == 0.5e-3);
     }
 }

@@ -1,4 +1,4 @@
-//! The controller of one arm: free, approach, grip and release, and what is wrong with it.
+//! Controller of one arm: free, approach, grip, release, and its faults.
 
 use super::bend_watch::{BendSample, BendWatch};
 use super::ceiling_watch::{CeilingSample, CeilingWatch};
@@ -9,20 +9,20 @@ use crate::grip::{ArmGrip, ArmState, FreeProof, HoldProof};
 use crate::grip_fault::GripFault;
 use crate::math;
 
-/// Fastest change of the force of an arm that touches, N/s.
+/// Largest force rate of a touching arm, N/s.
 const FORCE_RATE_MAX: f32 = 300.0;
-/// Fastest rise of the force of an arm that lost touch, N/s: slow enough for the watch on unfelt contact.
+/// Largest force rise of an arm that lost touch, N/s: slow enough for the bend watch.
 const REGAIN_RATE_MAX: f32 = 30.0;
-/// Force (N) that the tendon lacks, for good, where the servo is at the end of its travel or strength.
+/// Lasting lag (N) of a servo at the end of its travel or strength.
 const LAG_STUCK: f32 = 8.0;
 /// Time at the force limit after which the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
-/// Time for which pressure and tilt must be known after a restart, s: ten frames of the servos' drives.
+/// Time for which pressure and tilt must be known after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
-/// Time without a tilt after which the arm counts as faulty, s; its servo is held from the first moment.
+/// Time without a tilt after which the arm is faulty, s; its servo is held from the first moment.
 const TILT_MISSING_MAX: f32 = 0.5;
-/// Shares of the grip pressure between which no arm can fall within one step of 10 ms (its modes are below 30 Hz):
-/// the sensor's lead broke.
+/// Shares of the grip pressure between which no arm can fall within one step of 10 ms (its modes are below 30 Hz): the
+/// sensor's lead is broken.
 const VANISHED_FROM_SHARE: f32 = 0.3;
 const VANISHED_TO_SHARE: f32 = 0.02;
 
@@ -30,16 +30,16 @@ const VANISHED_TO_SHARE: f32 = 0.02;
 pub(super) enum Phase {
     #[default]
     Free,
-    /// Bending down, nothing felt yet.
+    /// Bending down without touch.
     Approach,
-    /// After a restart, with the time for which all is known again, s: the servo stays where it is.
+    /// After a restart, with the time for which all inputs are known, s: the servo stays.
     Resume(f32),
-    /// Felt: the pressure is controlled.
+    /// Touched: the pressure is controlled.
     Grip(PressureLoop),
     Release,
 }
 
-/// The controller of one arm.
+/// Controller of one arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmGripper {
     pub(super) phase: Phase,
@@ -53,14 +53,14 @@ pub struct ArmGripper {
     tilt_missing: f32,
     /// Time at the force limit, s.
     at_limit: f32,
-    /// Pressure of the step before, unfiltered, Pa.
+    /// Unfiltered pressure of the last step, Pa.
     last_pressure: Option<f32>,
     hold: HoldProof,
     free: FreeProof,
 }
 
 impl ArmGripper {
-    /// A closed arm of which the run before asked `force` N, with the fault that stays until release.
+    /// Resumes a closed arm with the retained `force` (N) and, until release, a latched `fault`.
     pub fn resume(force: f32, fault: Option<GripFault>) -> Self {
         Self {
             phase: Phase::Resume(0.0),
@@ -70,9 +70,7 @@ impl ArmGripper {
         }
     }
 
-    /// One step of `dt` s: closes or releases the arm; returns what is known of its grip.
-    ///
-    /// Whatever the input, the force stays within 0 and the limit.
+    /// One step of `dt` s: closes or releases the arm. The force stays within 0 and the limit for any input.
     pub fn step(&mut self, cfg: &Config, input: &ArmInput, dt: f32) -> ArmGrip {
         let dt = math::clamp(dt, 1e-4, 0.1);
         let measured = self.filters.step(input, dt);
@@ -111,17 +109,16 @@ impl ArmGripper {
         }
     }
 
-    /// Why the arm is faulty, if it is.
+    /// The arm's fault.
     pub fn fault(&self) -> Option<GripFault> {
         self.fault
     }
 
-    /// The servo is to stay where a restart left it.
     pub(super) fn holds_position(&self) -> bool {
         matches!(self.phase, Phase::Resume(_))
     }
 
-    /// The arm is free: released for long enough, by all that is known of it.
+    /// The arm is free and has been for its dwell time.
     pub(super) fn is_free(&self, sensed: Pressure) -> bool {
         self.phase == Phase::Free && self.free.proven(sensed.known().is_some())
     }
@@ -138,7 +135,6 @@ impl ArmGripper {
         }
     }
 
-    /// Lets the force fall; every fault ends with it.
     fn release(&mut self, cfg: &Config, dt: f32) {
         if self.phase != Phase::Free {
             self.phase = Phase::Release;
@@ -178,7 +174,7 @@ impl ArmGripper {
         } else {
             self.watch_bending(cfg, &contact, dt);
         }
-        // A servo at the end of its travel, or at its stall, is a limit as good as the force's.
+        // A servo at the end of its travel or at stall is a limit like the force's.
         let stuck = matches!(self.phase, Phase::Grip(_)) && self.force - contact.tension > LAG_STUCK;
         let limited = self.force >= cfg.demand.force || stuck;
         self.at_limit = if limited {
@@ -188,7 +184,7 @@ impl ArmGripper {
         };
     }
 
-    /// What is wrong with the arm by its input, or has been since it closed.
+    /// Fault by the input, or the latched one.
     fn input_fault(&self, cfg: &Config, measured: &Measured) -> Option<GripFault> {
         let latched = self.fault.is_some_and(GripFault::is_latched);
         let pressure = measured.sensed.known();
@@ -211,7 +207,7 @@ impl ArmGripper {
         }
     }
 
-    /// What the loop needs; `None` while something of it is missing or the arm is faulty.
+    /// Input of the loop; `None` if part of it is missing or the arm is faulty.
     fn contact(&self, cfg: &Config, measured: &Measured) -> Option<Contact> {
         if self.fault.is_some() {
             return None;
@@ -224,7 +220,7 @@ impl ArmGripper {
         })
     }
 
-    /// Holds the force, and lets the loop restart from it: no wind-up, no kick.
+    /// Holds the force; the loop restarts from it without wind-up or kick.
     fn pause(&mut self) {
         match self.phase {
             Phase::Grip(_) => self.phase = Phase::Approach,
@@ -235,8 +231,8 @@ impl ArmGripper {
         self.ceiling_watch.pause();
     }
 
-    /// After a restart: seeds the force from the tension by the new attitude (which may show every tilt 0.02 rad off the
-    /// old one) once that has been seen for [`RESUME_TIME`]. Asked for the old force, the servo would jump.
+    /// After a restart: seeds the force from the tension by the new attitude, which may shift every tilt by 0.02 rad,
+    /// once it has been known for [`RESUME_TIME`]. The old force would make the servo jump.
     fn take_over(&mut self, cfg: &Config, contact: &Contact, seen: f32) {
         if seen < RESUME_TIME {
             self.phase = Phase::Resume(seen);
@@ -251,7 +247,7 @@ impl ArmGripper {
         };
     }
 
-    /// The force of this step: by the pressure once it has been felt, by the arm's stiffness until then.
+    /// Force of this step: by the pressure after touch, by the arm's stiffness before.
     fn control(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         let lag = self.force - contact.tension;
         match self.phase {
@@ -277,7 +273,7 @@ impl ArmGripper {
         }
     }
 
-    /// Of an arm that touches: the pressure must rise with the force.
+    /// A touching arm's pressure must rise with its force.
     fn watch_ceiling(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.bend_watch = None;
         let sample = CeilingSample {
@@ -290,7 +286,7 @@ impl ArmGripper {
         }
     }
 
-    /// Of an arm that does not touch: it must bend as the force rises. Takes the force of a rise without bending back.
+    /// An arm without touch must bend as the force rises; if not, the force of before the rise returns.
     fn watch_bending(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.ceiling_watch.pause();
         let start = BendWatch::new(contact.tilt, contact.tension);

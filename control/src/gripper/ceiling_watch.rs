@@ -1,31 +1,30 @@
 //! Watches that the pressure rises with the tension, until a sensor has shown that it can read the grip pressure.
 //!
-//! Behind a divider that no parameter states, a sensor's reading ends far below the grip pressure, however hard the arm
-//! presses: the loop would wind to the force limit. A pressure that rises so slowly that the whole limit would not bring
-//! it to the grip pressure never gets there, so no arm that could have held is stopped.
+//! Behind a divider that no parameter states, a reading ends far below the grip pressure, and the loop would wind to
+//! the force limit. Only a rise too slow to reach the grip pressure within the limit counts: no arm that could have
+//! held is stopped.
 
 use super::Config;
 use crate::filter::LowPass;
 
-/// Rise of the tension (N) over which the pressure is expected to rise: the whole way from touch to grip on a skin of
-/// 70 Pa/N, and more than an arm that is still swinging feels.
+/// Tension rise (N) over which the pressure must rise: the way from touch to grip on a skin of 70 Pa/N, and more than a
+/// swinging arm feels.
 const WINDOW: f32 = 12.0;
-/// Cut-off of the tension, rad/s: one tilt that is 0.1 rad wrong is 20 N for a frame.
+/// Cut-off of the tension, rad/s: a tilt that is 0.1 rad wrong is 20 N for a frame.
 const CUTOFF: f32 = 20.0;
 
-/// The watch of one arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CeilingWatch {
     tension: Option<LowPass>,
     from: Option<CeilingSample>,
-    /// The grip pressure has been read since the arm closed: the sensor has the range.
+    /// The grip pressure has been read since the arm closed.
     shown: bool,
 }
 
-/// One step of an arm that touches; forces without what meets the rotor's thrust.
+/// One step of a touching arm; forces without the share that meets the rotor's thrust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CeilingSample {
-    /// Tension of the tendon, N.
+    /// Tension, N.
     pub tension: f32,
     /// Force asked for, N.
     pub force: f32,
@@ -34,12 +33,12 @@ pub struct CeilingSample {
 }
 
 impl CeilingWatch {
-    /// Restarts the window after a time without control of the pressure.
+    /// Restarts the window after the pressure was not controlled.
     pub fn pause(&mut self) {
         (self.tension, self.from) = (None, None);
     }
 
-    /// One step of `dt` s. True when tension and force both rose by the window and the pressure did not follow.
+    /// One step of `dt` s; true if tension and force both rose by the window and the pressure did not follow.
     pub fn step(&mut self, cfg: &Config, sample: CeilingSample, dt: f32) -> bool {
         self.shown |= sample.pressure >= cfg.demand.pressure - cfg.demand.tolerance;
         if self.shown {
@@ -56,7 +55,7 @@ impl CeilingWatch {
         if pulled < 0.0 || asked < 0.0 {
             *from = now;
         }
-        // A push raises the tension alone, an arm at the end of its servo the force alone.
+        // A push raises only the tension, a servo at its end only the force.
         let rise = if pulled < asked { pulled } else { asked };
         if rise < WINDOW {
             return false;

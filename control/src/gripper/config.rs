@@ -50,4 +50,9 @@ impl Config {
     pub fn limit(&self) -> f32 {
         self.limit
     }
+
+    /// Force below which a grip is proven, N.
+    pub fn provable(&self) -> f32 {
+        self.demand.force
+    }
 }

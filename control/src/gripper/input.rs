@@ -1,15 +1,14 @@
-//! What comes in for one arm, and what of it is usable.
+//! Input of one arm, and what of it is usable.
 
 use crate::filter::LowPass;
 use crate::math;
 
 /// Cut-off of the measured pressure, rad/s (13 Hz).
 const PRESSURE_CUTOFF: f32 = 80.0;
-/// Cut-off of the thrust that is fed forward, rad/s: the asked thrust acts after the motors' 50 ms, less the
-/// time that the servo needs itself.
+/// Cut-off of the thrust fed forward, rad/s: it acts after the motors' 50 ms, less the servo's own delay.
 const THRUST_CUTOFF: f32 = 30.0;
 
-/// The contact pressure of one arm, or why there is none.
+/// Contact pressure of one arm, or why there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pressure {
     /// Pa.
@@ -22,7 +21,7 @@ pub enum Pressure {
 }
 
 impl Pressure {
-    /// The pressure, when it is known and a number; limited, so that filters cannot overflow.
+    /// The pressure if known and finite, limited so that filters cannot overflow.
     pub(super) fn known(self) -> Option<f32> {
         match self {
             Self::Known(p) if p.is_finite() => Some(math::clamp(p, 0.0, 1e6)),
@@ -31,7 +30,7 @@ impl Pressure {
     }
 }
 
-/// What one arm is to do in a step, and what is known of it.
+/// Command and measurements of one arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmInput {
     /// Closes the arm; releases it otherwise.
@@ -46,22 +45,22 @@ pub struct ArmInput {
     pub tilt: Option<f32>,
 }
 
-/// The input within its bounds, pressure and thrust low-passed; `None` where there is none, or no number.
+/// Bounded input, pressure and thrust low-passed; `None` where missing or not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Measured {
-    /// The pressure as it came in.
+    /// Unfiltered pressure.
     pub sensed: Pressure,
     /// Contact pressure, Pa.
     pub pressure: Option<f32>,
-    /// Thrust asked of the rotor, N.
+    /// Thrust, N.
     pub thrust: Option<f32>,
-    /// Tension that the servo can be giving, N.
+    /// Tension, N.
     pub tension: Option<f32>,
     /// Tilt, rad.
     pub tilt: Option<f32>,
 }
 
-/// The low passes on one arm's input; each settles at its first value.
+/// Low passes on one arm's input; each settles at its first value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct InputFilters {
     pressure: Option<LowPass>,
@@ -69,7 +68,6 @@ pub(super) struct InputFilters {
 }
 
 impl InputFilters {
-    /// One step of `dt` s.
     pub fn step(&mut self, input: &ArmInput, dt: f32) -> Measured {
         let pressure = input.pressure.known().map(|p| {
             let filter = self.pressure.get_or_insert(LowPass::at(p));
@@ -90,27 +88,26 @@ impl InputFilters {
         }
     }
 
-    /// The last pressure, Pa; 0 before the first.
+    /// Last pressure, Pa; 0 before the first.
     pub fn pressure(&self) -> f32 {
         self.pressure.map_or(0.0, |f| f.value())
     }
 }
 
-/// All that the pressure loop needs of an arm, in a step in which nothing is missing.
+/// Complete input of the pressure loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Contact {
     /// Contact pressure, Pa.
     pub pressure: f32,
-    /// Force of the tendon that meets the rotor's thrust, N.
+    /// Tendon force against the rotor's thrust, N.
     pub feed_forward: f32,
-    /// Tension of the tendon, N; the force asked for when it is not known.
+    /// Tension, N; the force asked for if unknown.
     pub tension: f32,
     /// Tilt, rad.
     pub tilt: f32,
 }
 
 impl Contact {
-    /// True while the sensor feels something.
     pub fn touches(&self) -> bool {
         self.pressure > super::TOUCH_PRESSURE
     }

@@ -1,4 +1,4 @@
-//! The pressure loop of an arm that touches: a PID on the pressure, with the rotor's thrust fed forward.
+//! Pressure loop of a touching arm: a PID with the rotor's thrust fed forward.
 
 use super::input::Contact;
 use super::{Config, FORCE_MIN};
@@ -6,38 +6,37 @@ use crate::filter::{CascadedLowPass, LowPass};
 use crate::math;
 use crate::tendon::TILT_CUTOFF;
 
-/// Time constant with which the reference approaches the target, s.
+/// Time constant of the reference's approach to the target, s.
 const REFERENCE_TAU: f32 = 0.25;
 /// Cut-off of the pressure's derivative, rad/s (6 Hz).
 const DERIVATIVE_CUTOFF: f32 = 40.0;
-/// Force (N) that the tendon may lag behind before the integral waits for it.
+/// Lag of the tendon (N) beyond which the integral waits.
 pub(super) const LAG_MAX: f32 = 20.0;
-/// Cut-off of the force that an arm falls back to when its touch was lost for good, rad/s.
+/// Cut-off of the force to fall back to when a touch is lost for good, rad/s.
 const MEAN_FORCE_CUTOFF: f32 = 3.0;
 
-/// State of the pressure loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressureLoop {
     /// Commanded less actual force at touch, decaying, N.
     touch_transient: CascadedLowPass,
-    /// Force of the last third of a second in touch, N.
+    /// Mean force of the last third of a second in touch, N.
     mean_force: LowPass,
-    /// Pressure that the loop follows, Pa.
+    /// Pressure reference, Pa.
     reference: f32,
     /// N.
     integral: f32,
-    /// Pressure of the step before, Pa.
+    /// Last pressure, Pa.
     last: f32,
     /// Derivative of the pressure, Pa/s.
     slope: LowPass,
 }
 
 impl PressureLoop {
-    /// Bumpless start: at the contact's pressure the output is `force` N with `transient` N in it, and the reference is
-    /// the present pressure.
+    /// Bumpless start: at the contact's pressure the output is `force` N with `transient` N in it; the reference is
+    /// that pressure.
     ///
-    /// The transient is what the tendon lacked because the arm still moved and its tilt is known late. The arm
-    /// stands still now: as the tilt catches up, the same reel position means the smaller force.
+    /// The transient is what the tendon lacked while the arm moved and its tilt came late. The arm now stands still: as
+    /// the tilt catches up, the same reel position means the smaller force.
     pub fn new(contact: &Contact, force: f32, transient: f32) -> Self {
         let base = force - transient - contact.feed_forward;
         Self {
@@ -50,7 +49,7 @@ impl PressureLoop {
         }
     }
 
-    /// One step of `dt` s, while the tendon lags by `lag` N; returns the force, N.
+    /// One step of `dt` s with the tendon's lag `lag` (N); returns the force, N.
     pub fn step(&mut self, cfg: &Config, contact: &Contact, lag: f32, dt: f32) -> f32 {
         let towards = dt / (REFERENCE_TAU + dt);
         self.reference += (cfg.demand.pressure - self.reference) * towards;
@@ -64,18 +63,17 @@ impl PressureLoop {
         let up = force >= cfg.limit || lag > LAG_MAX;
         let down = force <= FORCE_MIN || lag < -LAG_MAX;
         if !(up && error > 0.0 || down && error < 0.0) {
-            // The force fed forward may exceed the limit by itself; the integral then works against it.
+            // The feed-forward alone may exceed the limit; the integral then works against it.
             self.integral = math::clamp_abs(self.integral + cfg.i * error * dt, 2.0 * cfg.limit);
         }
         self.integral + quick
     }
 
-    /// Takes note of the force `force` (N) of an arm that touches.
     pub fn note_force(&mut self, force: f32, dt: f32) {
         self.mean_force.step(force, MEAN_FORCE_CUTOFF, dt);
     }
 
-    /// Force of the last third of a second in touch, N.
+    /// Mean force of the last third of a second in touch, N.
     pub fn mean_force(&self) -> f32 {
         self.mean_force.value()
     }

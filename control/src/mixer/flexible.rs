@@ -16,7 +16,7 @@ use crate::tilt::TiltModel;
 use crate::wrench::{Configuration, PerArm, Wrench};
 
 /// Share of the stiff frame's yaw authority k_q below which yaw fades and entries are floored.
-const YAW_FLOOR: f32 = 0.35;
+pub const YAW_FLOOR: f32 = 0.35;
 
 /// Allocation by the quasi-static Jacobian, with its state.
 #[derive(Clone, Copy, Debug, PartialEq)]

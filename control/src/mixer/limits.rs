@@ -1,4 +1,4 @@
-//! What every allocation keeps within: the rotors' range, the thrust from which yaw is used, and yaw's share.
+//! Limits of every allocation: rotor range, least thrust for yaw, share of yaw.
 
 use crate::desaturation::{Given, desaturate};
 use crate::math;
@@ -6,10 +6,10 @@ use crate::mixer::{Mix, Split};
 use crate::params::Params;
 use crate::wrench::PerArm;
 
-/// Thrust above the yaw gate at which it opens again, N: a mean that hovers about the gate must not switch yaw.
+/// Hysteresis of the yaw gate, N: a mean near the gate must not switch yaw.
 const GATE_HYSTERESIS: f32 = 0.2;
 
-/// Limits of the rotors, with the state of the yaw gate.
+/// Rotor limits, and the state of the yaw gate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     idle: f32,
@@ -20,7 +20,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The limits that the parameters describe, the yaw gate shut.
+    /// Limits by the parameters, the yaw gate shut.
     pub const fn new(p: &Params) -> Self {
         Self {
             idle: p.thrust_idle,
@@ -40,13 +40,13 @@ impl Limits {
         }
     }
 
-    /// A battery's voltage ratio within what is compensated for.
+    /// Voltage ratio for the rotors' limits: never above the nominal voltage, at least half of it.
     #[inline(always)]
     pub fn battery_ratio(ratio: f32) -> f32 {
         math::clamp(ratio, 0.5, 1.0)
     }
 
-    /// Moves the yaw gate by the low-passed thrusts (N); true where yaw may be used.
+    /// Moves the yaw gate by the low-passed thrusts (N); true if yaw may be used.
     #[inline(always)]
     pub fn open_yaw(&mut self, thrusts: PerArm<f32>) -> bool {
         let [t1, t2, t3, t4] = thrusts;
@@ -56,7 +56,7 @@ impl Limits {
         self.yaw_open
     }
 
-    /// The thrusts of `split` within the limits at the battery's voltage ratio `ratio`, yaw only where it is `usable`.
+    /// Thrusts of `split` within the limits at the voltage ratio `ratio`, yaw only if `usable`.
     #[inline(always)]
     pub fn give(&self, split: Split, usable: bool, ratio: f32) -> Mix {
         let high = self.max * ratio * ratio;
@@ -72,7 +72,7 @@ impl Limits {
         }
     }
 
-    /// Share of a yaw pattern that keeps within what one rotor may get, at most `fade`.
+    /// Share of a yaw pattern within one rotor's allowance, at most `fade`.
     #[inline(always)]
     fn yaw_share(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn the_rotor_that_yaw_moves_most_sets_its_share_whichever_it_is() {
         let limits = Limits::new(&Params::default());
-        // 3 N asked of one rotor, 1.5 N allowed: a half. 1.2 N of 3 are within it: only the fade counts.
+        // 1.5 N of 3 N are allowed: a half. 1.2 N are within it: only the fade counts.
         for worst in 0..4 {
             for sign in [1.0, -1.0] {
                 let mut yaw = [0.5, -1.0, 0.25, -2.0];

@@ -1,23 +1,23 @@
-//! A wrench split into the patterns of thrust that may be given up one after the other.
+//! A wrench split into patterns of thrust that may be given up in turn.
 
 use crate::desaturation::Patterns;
 use crate::effectiveness::{Geometry, Inverse, Load};
 use crate::math;
 use crate::wrench::{FORE, PerArm, SIDE, Wrench, YAW};
 
-/// A wrench as patterns of thrust, and how much of its yaw is to be trusted.
+/// Patterns of a wrench, and the trust in its yaw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
-    /// Thrusts of the collective, of roll and pitch and of yaw, N.
+    /// Thrusts of collective, roll and pitch, and yaw, N.
     pub patterns: Patterns,
     /// Share of the yaw pattern that has authority, 0..1.
     pub fade: f32,
 }
 
-/// The moments of `w` split into patterns, and what a newton of thrust takes; without the collective.
+/// Moments of `w` as patterns, with the thrusts of a newton of collective; without the collective itself.
 #[inline(always)]
 pub fn moment_patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
-    // A sum with -0 is the other number itself, so that it takes no instruction.
+    // Adding -0 leaves the other number: it takes no instruction.
     let moments = Load::of(
         geometry,
         Wrench {

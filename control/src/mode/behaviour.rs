@@ -21,11 +21,7 @@ pub trait Behaviour {
 
     /// What the tendons are to do.
     fn tendons(&self) -> ClampCommand {
-        match self.grip_memory() {
-            GripMemory::Open => ClampCommand::Release,
-            GripMemory::Controlled(arms) => ClampCommand::Close { arms },
-            GripMemory::HeldByGears(_) | GripMemory::Unknown => ClampCommand::Keep,
-        }
+        self.grip_memory().tendons()
     }
 
     /// What the rotors are to do, before the collective is handed over and limited.

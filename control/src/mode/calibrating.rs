@@ -10,7 +10,7 @@ use crate::grip_memory::GripMemory;
 /// See [`super::Mode::Calibrating`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibrating {
-    /// A grip outlives rotors and resets.
+    /// Grip state, retained across motor stop and reset.
     pub grip_memory: GripMemory,
 }
 
@@ -37,7 +37,7 @@ impl Behaviour for Calibrating {
         } else if i.hardware.is_empty() {
             Some(Reason::KeepStill)
         } else {
-            // A builder must see what is broken without trying to arm.
+            // Shows what is broken without an attempt to arm.
             first(i.hardware)
         }
     }

@@ -1,17 +1,17 @@
-//! Tendons closing the chosen arms under the pressure loop; rotors spool down once the grip is proven.
+//! Tendons close the chosen arms under the pressure loop; rotors spool down once the grip is proven.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
-use super::hold::{Hold, SPOOL_TIME, Spool, held, hopeless, perch_thrust};
+use super::hold::{Hold, SPOOL_TIME, Spool, held, hopeless};
 use super::{Inputs, Reason, Setpoint};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 
 /// Time from the end of the ramp until the rotors stand still, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
-/// Time for which the grip may lack its proof after the rotors have stopped, s.
+/// Time for which the proof may be missing after the rotors have stopped, s.
 const PROOF_TIME: f32 = 3.0;
-/// Time for which a chosen arm may be at its force limit, or faulty, before the closing is given up, s.
+/// Time for which a chosen arm may be at its force limit, or faulty, before the closing ends, s.
 pub const HOPELESS_TIME: f32 = 1.0;
 /// Time beyond `clamp_timeout` for spooling down and proving the grip, s.
 const SPOOL_ALLOWANCE: f32 = 10.0;
@@ -24,13 +24,12 @@ pub struct Clamping {
 }
 
 impl Clamping {
-    /// The arms hold with a good part of the grip pressure.
+    /// The arms press with a good part of the grip pressure.
     pub fn holds(&self, step: &Step<'_>) -> bool {
         held(step.inputs.grip, self.hold.arms, &step.context.params)
     }
 
-    /// Why the closing should end, if it should. Without the radio there is no pilot to fly away: a poor grip is then
-    /// better than none.
+    /// Why the closing should end. Without radio no pilot can fly away: a poor grip is then better than none.
     pub fn doubt(&self, step: &Step<'_>) -> Option<Reason> {
         let sticks = step.inputs.sticks?;
         let context = &step.context;
@@ -45,12 +44,12 @@ impl Clamping {
         }
     }
 
-    /// Why arms that hold are not opened, whatever the doubt.
+    /// Why arms that hold stay closed in spite of a doubt.
     pub fn must_stay(&self, step: &Step<'_>) -> Option<Reason> {
         if !self.holds(step) {
             None
         } else if step.context.lean.too_far_to_release() {
-            // The belly alone would not stay: a poor grip is then better than none.
+            // The belly alone would slide: a poor grip is better than none.
             Some(Reason::LeansTooFar)
         } else if step.context.dangers.line_silent() {
             // A vehicle that may not fly stays where its arms hold it.
@@ -65,12 +64,12 @@ impl Clamping {
         step.inputs.sticks.is_none() && step.context.dangers.battery_critical()
     }
 
-    /// The rotors stand still with the end of this step.
+    /// The rotors stand still at the end of this step.
     pub fn stands(&self, step: &Step<'_>) -> bool {
         self.spooled(step).still >= STOP_TIME
     }
 
-    /// The spool's progress at the end of this step.
+    /// Spool at the end of this step.
     fn spooled(&self, step: &Step<'_>) -> Spool {
         let mut spool = self.spool;
         let down = if spool.down {
@@ -119,7 +118,7 @@ impl Behaviour for Clamping {
             step.context.note(Some(Reason::GripLostSpooling));
         }
         if spool.still >= STOP_TIME + PROOF_TIME {
-            // Holds, but not as it should: carry part of the weight again and let the loop prove it.
+            // Held but not proven: carry part of the weight again until the loop proves it.
             spool = Spool::at(0.0);
         }
         self.spool = spool;
@@ -138,7 +137,7 @@ impl Behaviour for Clamping {
         if self.spool.stopped() {
             Setpoint::Stop
         } else {
-            self.spool.rotors(self.hold, perch_thrust(context))
+            self.spool.rotors(self.hold, context.perch_thrust())
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Resting on the pipe with the rotors still helping; attitude held, yaw given up.
+//! Resting on the pipe with the rotors helping; attitude held, yaw given up.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
-use super::hold::{Hold, perch_thrust};
+use super::hold::Hold;
 use super::{Inputs, Setpoint};
 
 /// Time on the pipe before the tendons close, s.
@@ -22,6 +22,6 @@ impl Behaviour for Contact {
     }
 
     fn rotors(&self, context: &Context, _: &Inputs) -> Setpoint {
-        self.hold.rotors(perch_thrust(context))
+        self.hold.rotors(context.perch_thrust())
     }
 }

@@ -1,11 +1,12 @@
 //! What outlives a state: parameters, the pilot's switches, evidence of support and lean, dangers, the collective.
 
+use super::bench::Bench;
 use super::dangers::Dangers;
 use super::demand::Collective;
-use super::descent::Probe;
 use super::hold::held;
 use super::lean::Lean;
 use super::power_up_grip::PowerUpGripCheck;
+use super::probe::Probe;
 use super::{Inputs, Reason};
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::grip_memory::GripMemory;
@@ -64,6 +65,7 @@ pub struct Context {
     pub sinking: f32,
     pub collective: Collective,
     pub probe: Probe,
+    pub bench: Bench,
     /// A reason and the time for which it is still shown, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
@@ -91,6 +93,7 @@ impl Context {
             sinking: 0.0,
             collective: Collective::default(),
             probe: Probe::default(),
+            bench: Bench::default(),
             note: (None, 0.0),
             gravity: crate::math::GRAVITY,
         }
@@ -224,6 +227,11 @@ impl Context {
     /// Collective of four rotors at full throttle, N.
     pub fn full_thrust(&self) -> f32 {
         4.0 * self.params.thrust_max
+    }
+
+    /// The pilot's collective on the pipe, N: his throttle, no more than a perch takes.
+    pub fn perch_thrust(&self) -> f32 {
+        clamp(self.throttle, 0.0, self.params.perch_thr_max) * self.full_thrust()
     }
 }
 

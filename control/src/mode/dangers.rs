@@ -1,4 +1,4 @@
-//! What may go wrong in any state.
+//! Dangers that exist in any state.
 //!
 //! | trouble | on the ground | in the air | on the pipe |
 //! |---|---|---|---|
@@ -15,23 +15,21 @@ use crate::math::deg;
 use crate::params::Params;
 use crate::support::Held;
 
-/// Silence of the inertial sensor after which the rotors stop, s. Control has stopped them before: this makes
-/// it last.
+/// Silence of the inertial sensor after which the rotors stop for good, s; control has stopped them already.
 pub const IMU_LOST_TIME: f32 = 0.05;
-/// Tilt beyond which the vehicle has tipped over, rad, and the time for which it must, s.
+/// Tilt beyond which the vehicle has tipped over, rad.
 pub const TIPPED_TILT: f32 = deg(100.0);
-/// See [`TIPPED_TILT`].
+/// Time beyond [`TIPPED_TILT`], s.
 pub const TIPPED_TIME: f32 = 0.5;
-/// Time for which the voltage must stay below critical, s: a gust's current peak is no empty battery.
+/// Time below the critical voltage, s: longer than a gust's current peak.
 pub const BATTERY_TIME: f32 = 1.0;
 
-/// Timers of what may go wrong.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dangers {
     imu: Held,
     tipped: Held,
     battery: Held,
-    /// The inertial sensor's data-ready line is silent; the port has waited long enough before it said so.
+    /// Data-ready line silent; the port waits before it reports.
     line_silent: bool,
 }
 
@@ -48,27 +46,24 @@ impl Dangers {
         self.line_silent = i.hardware.contains(ArmingInhibit::ImuLineSilent);
     }
 
-    /// The inertial sensor has been silent for [`IMU_LOST_TIME`].
     pub fn imu_silent(&self) -> bool {
         self.imu.time() >= IMU_LOST_TIME
     }
 
-    /// The vehicle has lain over for [`TIPPED_TIME`].
     pub fn tipped_over(&self) -> bool {
         self.tipped.time() >= TIPPED_TIME
     }
 
-    /// The battery has been critical for [`BATTERY_TIME`].
     pub fn battery_critical(&self) -> bool {
         self.battery.time() >= BATTERY_TIME
     }
 
-    /// The inertial sensor's data-ready line is silent.
     pub fn line_silent(&self) -> bool {
         self.line_silent
     }
 
-    /// Why the vehicle must come down while the pilot still steers, and may not leave a pipe: the more pressing first.
+    /// Why the vehicle must come down under the pilot's sticks and may not leave a pipe, the more pressing reason
+    /// first.
     pub fn landing(&self) -> Option<Reason> {
         if self.battery_critical() {
             Some(Reason::BatteryCritical)

@@ -72,7 +72,7 @@ impl Collective {
     /// The demand as it goes out: handed over, limited to what four rotors give, stopped if it is no number.
     pub fn finish(&mut self, wish: Setpoint, p: &Params, dt: f32) -> Setpoint {
         let begins = self.pending.take();
-        if matches!(wish, Setpoint::Stop | Setpoint::Idle) || !wish.is_finite() {
+        if matches!(wish, Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_)) || !wish.is_finite() {
             *self = Self::default();
             return if wish.is_finite() { wish } else { Setpoint::Stop };
         }

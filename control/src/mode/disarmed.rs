@@ -2,8 +2,9 @@
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
-use super::{Inputs, Reason, Setpoint};
+use super::{ClampCommand, Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
+use crate::bench::BenchOrder;
 use crate::grip_memory::GripMemory;
 
 /// See [`super::Mode::Disarmed`].
@@ -11,11 +12,14 @@ use crate::grip_memory::GripMemory;
 pub struct Disarmed {
     /// A grip outlives rotors and resets.
     pub grip_memory: GripMemory,
+    /// What a builder has tried now.
+    pub bench: Option<BenchOrder>,
 }
 
 impl Behaviour for Disarmed {
     fn observe(&mut self, step: &mut Step<'_>) {
         self.grip_memory = step.check_power_up_grip(self.grip_memory);
+        self.bench = step.context.bench.order();
     }
 
     fn advance(&mut self, step: &mut Step<'_>) {
@@ -26,11 +30,24 @@ impl Behaviour for Disarmed {
         self.grip_memory
     }
 
+    fn tendons(&self) -> ClampCommand {
+        match (self.bench, self.grip_memory) {
+            (Some(BenchOrder::Place(place)), GripMemory::Open) => ClampCommand::Place(place),
+            (_, grip_memory) => grip_memory.tendons(),
+        }
+    }
+
     fn rotors(&self, _: &Context, _: &Inputs) -> Setpoint {
-        Setpoint::Stop
+        match self.bench {
+            Some(BenchOrder::Spin(spin)) => Setpoint::Spin(spin),
+            _ => Setpoint::Stop,
+        }
     }
 
     fn reason(&self, context: &Context, i: &Inputs, inhibits: ArmingInhibits) -> Option<Reason> {
+        if self.bench.is_some() {
+            return Some(Reason::OnBench);
+        }
         // What just happened comes before what keeps from arming again.
         match context.noted() {
             None if i.sticks.is_some_and(|s| s.arm_switch) => first(inhibits),

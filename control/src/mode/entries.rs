@@ -21,6 +21,7 @@ pub fn calibrated(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disar
     let grip_memory = from.behaviour().grip_memory();
     Disarmed {
         grip_memory: step.context.after_switch(step.inputs.sticks, grip_memory),
+        bench: None,
     }
 }
 
@@ -36,7 +37,10 @@ pub fn stopped(from: &State, step: &mut Step<'_>, _: Option<Reason>) -> Disarmed
         }
         _ => from.behaviour().grip_memory(),
     };
-    Disarmed { grip_memory }
+    Disarmed {
+        grip_memory,
+        bench: None,
+    }
 }
 
 /// Rotors idle.

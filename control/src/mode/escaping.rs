@@ -13,7 +13,7 @@ use crate::math::{clamp, clamp_abs, deg};
 use crate::support::HINT_FORCE;
 
 /// Collective while the vehicle does not climb, share of the weight: 3.4 m/s² upwards.
-const LIFT_SHARE: f32 = 1.35;
+pub const LIFT_SHARE: f32 = 1.35;
 /// Least collective, share of the weight.
 const LEAST_SHARE: f32 = 0.9;
 /// Share of the weight for each m/s that the climb rate lacks.
@@ -30,7 +30,7 @@ const STAND_RAMP: f32 = 0.5;
 const CLEAR_TIME: f32 = 0.65;
 /// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the
 /// flank, and a lean across the crown throws it under the pipe.
-const AWAY_LEAN: f32 = deg(8.0);
+pub const AWAY_LEAN: f32 = deg(8.0);
 /// Time in which arms that open come free, s. Later ones are stuck on the pipe, and the rotors must not pull at them.
 pub const FREE_MAX: f32 = 5.0;
 /// Time in which the pilot must have taken the throttle over, s.

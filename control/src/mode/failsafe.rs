@@ -1,4 +1,4 @@
-//! The pilot is lost or the battery empty: descend, stop on whatever carries.
+//! Radio lost or battery empty: descends, stops on whatever carries.
 
 use super::behaviour::Behaviour;
 use super::context::Context;
@@ -6,9 +6,9 @@ use super::descent::descent;
 use super::{Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 
-/// Radio silence in the failsafe (beyond the link's own staleness) after which flight resumes by itself, s.
+/// Longest radio silence in the failsafe (beyond the link's own staleness) after which flight resumes by itself, s.
 pub const RESUME_TIME: f32 = 1.0;
-/// Roll or pitch stick by which the pilot takes over later than that, share of its travel.
+/// Roll or pitch stick that takes over after a longer silence, share of its travel.
 pub const RESUME_STICK: f32 = 0.3;
 
 /// See [`super::Mode::Failsafe`].
@@ -19,7 +19,7 @@ pub struct Failsafe {
 }
 
 impl Behaviour for Failsafe {
-    /// Level and sinking; with the radio there the pilot still steers.
+    /// Level and sinking; with radio the pilot still steers.
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         descent(
             context,

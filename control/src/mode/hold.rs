@@ -1,39 +1,38 @@
-//! What is held on the pipe: an attitude, a share of the collective, a grip.
+//! What is held on the pipe: attitude, share of the collective, grip.
 
-use super::context::Context;
 use super::{GripState, Inputs, Reason, Setpoint};
 use crate::grip::{ArmGrip, ArmState};
-use crate::math::{clamp, clamp_abs};
+use crate::math::clamp_abs;
 use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::Wrench;
 
-/// Time of the linear ramp of the collective between the pilot's throttle and nothing, s.
+/// Ramp time of the collective between the pilot's throttle and 0, s.
 pub const SPOOL_TIME: f32 = 1.5;
-/// Speed at which a lean at contact is taken out, rad/s.
+/// Rate at which a lean at contact is levelled, rad/s.
 const LEVEL_RATE: f32 = 0.2;
-/// Time constant with which the attitude held follows the present one while the rotors spool down, s.
+/// Time constant with which the held attitude follows the present one during spool-down, s.
 const FOLLOW_TIME: f32 = 0.2;
 /// Share of the collective below which the grip alone holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
-/// Share of the grip pressure above which an arm still holds, though not within the tolerance: the load
-/// moves from the rotors onto the arms while they spool down.
+/// Share of the grip pressure above which an arm still holds outside the tolerance: during spool-down the load moves
+/// from the rotors onto the arms.
 const HELD_SHARE: f32 = 0.6;
 
-/// The attitude held on the pipe and the arms that close.
+/// Attitude held on the pipe, and the arms that close.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
-    /// Roll at contact, rad.
+    /// Held roll, rad.
     pub roll: f32,
-    /// Pitch at contact, rad.
+    /// Held pitch, rad.
     pub pitch: f32,
-    /// The arms chosen at contact; the switch is not read again until they are free.
+    /// Arms chosen at contact; the switch is ignored until they are free.
     pub arms: ArmChoice,
 }
 
 impl Hold {
-    /// One step of levelling the roll. The crown of a pipe is an unstable seat: a lean that is merely held
-    /// grows as the rotors give the weight back. Pitch stays: it is the slope of the pipe.
+    /// Levels the roll by one step. On the crown of a pipe, an unstable seat, a lean that is merely held grows as the
+    /// rotors give the weight back. Pitch stays: it is the slope of the pipe.
     pub fn levelled(self, dt: f32) -> Self {
         Self {
             roll: self.roll - clamp_abs(self.roll, LEVEL_RATE * dt),
@@ -41,8 +40,8 @@ impl Hold {
         }
     }
 
-    /// One step of following the present attitude: what the grip holds the rotors need not, and what they do
-    /// not do any more cannot end with a jolt when they stop.
+    /// Follows the present attitude by one step: the rotors need not hold what the grip holds, and must not stop with a
+    /// jolt.
     pub fn following(self, i: &Inputs, dt: f32) -> Self {
         let Some(motion) = i.motion else {
             return self;
@@ -71,7 +70,7 @@ impl Hold {
 pub struct Spool {
     /// Share of the pilot's collective, 1 while closing, falling to 0.
     pub share: f32,
-    /// The grip was proven: the share falls as long as the arms hold.
+    /// The grip was proven: the share falls while the arms hold.
     pub down: bool,
     /// Time at share 0, s.
     pub still: f32,
@@ -80,7 +79,6 @@ pub struct Spool {
 }
 
 impl Spool {
-    /// Closing with this share of the collective.
     pub fn at(share: f32) -> Self {
         Self {
             share,
@@ -90,8 +88,8 @@ impl Spool {
         }
     }
 
-    /// Setpoint of this progress with a full collective of `thrust` N. Over the last part of the ramp they only
-    /// lift: at little thrust a moment would come from single rotors, and stop with a jolt on their arms.
+    /// Setpoint at a full collective of `thrust` N. In the last part of the ramp the rotors only lift: at little thrust
+    /// a moment would come from single rotors and stop with a jolt on their arms.
     pub fn rotors(self, hold: Hold, thrust: f32) -> Setpoint {
         let thrust = self.share * thrust;
         if self.down && self.share < LIFT_SHARE {
@@ -106,13 +104,12 @@ impl Spool {
         }
     }
 
-    /// The rotors are to stand still.
     pub fn stopped(self) -> bool {
         self.down && self.share <= 0.0
     }
 }
 
-/// Every chosen arm presses the pipe with a good part of the grip pressure.
+/// Every chosen arm presses with a good part of the grip pressure.
 pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
     let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
     grip.is_some_and(|g| {
@@ -140,9 +137,4 @@ pub fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     } else {
         None
     }
-}
-
-/// The pilot's collective on the pipe, N: his throttle, no more than a perch takes.
-pub fn perch_thrust(context: &Context) -> f32 {
-    clamp(context.throttle, 0.0, context.params.perch_thr_max) * context.full_thrust()
 }

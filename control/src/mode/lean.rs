@@ -1,32 +1,30 @@
-//! The lean across the pipe: whether the vehicle stays on the crown, slides off it, or hangs too far to let go.
+//! Lean across the pipe: whether the vehicle stays on the crown, slides off it, or hangs too far to let go.
 
 use super::Motion;
 use crate::math::deg;
 use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE, Support};
 
-/// Lean beyond which a vehicle that rests on the pipe leaves it before the arms have begun to close, rad.
+/// Lean at which a vehicle that rests on the pipe leaves it before the arms begin to close, rad.
 const TOUCH_LEAN: f32 = deg(13.0);
-/// Rate at which a lean goes back, rad/s: then the attitude loop is about to set the vehicle upright.
+/// Rate at which a lean goes back, rad/s, when the attitude loop is setting the vehicle upright.
 const LEVELLING_RATE: f32 = 0.2;
-/// Lean beyond which arms that close do not hold any more, rad: they need 1.3 s to touch, a slide from here takes 0.35 s
-/// to the flank.
+/// Lean beyond which closing arms no longer hold, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
 const HOPELESS_LEAN: f32 = deg(25.0);
-/// Lean from which on a growing one counts, rad, and its rate, rad/s. A touch 30 mm beside the crown drifts out to 14
-/// to 18° before it sits, and is held.
+/// Lean (rad) and rate (rad/s) from which a growing lean counts. A touch 30 mm beside the crown drifts out to 14 to 18°
+/// before it sits, and is held.
 const GROWING_LEAN: f32 = deg(18.0);
 const GROWING_RATE: f32 = 0.3;
-/// Time for which any of it must last, s: three steps.
+/// Time for which any of these must last, s: three steps.
 const SLIDE_TIME: f32 = 0.03;
-/// Largest lean at which the arms let go, rad: beyond, the belly slides down the flank before the rotors carry.
+/// Largest lean at which the arms let go, rad: beyond it the belly slides down the flank before the rotors carry.
 const RELEASE_LEAN_MAX: f32 = deg(17.0);
-/// Time for which next to nothing may carry a vehicle, s, whose collective is below this share of its weight.
+/// A fall: time (s) with next to no support at a collective below this share of the weight.
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;
 
-/// What the lean has done over the last steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lean {
-    /// Roll, rad; that of the last attitude known.
+    /// Roll of the last known attitude, rad.
     roll: f32,
     sliding: Held,
     leaning: Held,
@@ -34,7 +32,7 @@ pub struct Lean {
 }
 
 impl Lean {
-    /// One step of `dt` s with the support and the collective (N) that the rotors had.
+    /// One step of `dt` s with the support and the rotors' collective (N).
     pub fn step(&mut self, motion: Option<Motion>, support: &Support, collective: f32, dt: f32) {
         self.follow(motion, dt);
         let idle = support.force() < LEAVING_FORCE;
@@ -60,17 +58,16 @@ impl Lean {
             .step(lean > TOUCH_LEAN && outward > -LEVELLING_RATE, dt);
     }
 
-    /// The lean is beyond what closing arms can hold, or on its way there.
+    /// The lean is, or soon will be, beyond what closing arms can hold.
     pub fn slides(&self) -> bool {
         self.sliding.time() >= SLIDE_TIME
     }
 
-    /// Leans where a vehicle that means to perch feels the pipe.
+    /// Leans at the touch of a vehicle that is about to perch.
     pub fn slides_at_touch(&self, support: &Support) -> bool {
         self.leaning.time() >= SLIDE_TIME && support.force() > RESTING_FORCE
     }
 
-    /// Leans too far for the arms to let go.
     pub fn too_far_to_release(&self) -> bool {
         self.roll.abs() > RELEASE_LEAN_MAX
     }

@@ -1,5 +1,6 @@
 //! The state machine: one step takes what is seen and gives what is to be done.
 
+use super::bench::Table;
 use super::calibrating::Calibrating;
 use super::context::{Context, Step};
 use super::transitions::Transition;
@@ -39,6 +40,8 @@ impl ModeLogic {
         let inputs = &inputs.finite();
         let before = self.state.mode();
         self.context.observe(inputs, rotors_locked(before), dt);
+        let table = Table::new(before, self.state.behaviour().grip_memory(), inputs);
+        self.context.bench.step(inputs.bench, &table, dt);
         let step = &mut Step {
             context: &mut self.context,
             inputs,
@@ -78,6 +81,7 @@ impl ModeLogic {
             grip_memory,
             reason: state.reason(context, inputs, inhibits),
             inhibits,
+            bench: context.bench.answer(),
         }
     }
 }

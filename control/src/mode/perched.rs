@@ -15,7 +15,7 @@ pub struct Perched {
 }
 
 impl Perched {
-    /// The pilot asks for the arms to open, in the way that counts.
+    /// The pilot validly asks for the arms to open.
     pub fn release_asked(step: &Step<'_>) -> bool {
         let Context {
             params, perch_switch, ..
@@ -26,7 +26,6 @@ impl Perched {
         })
     }
 
-    /// What the pilot should know.
     fn trouble(&self, context: &Context, i: &Inputs) -> Option<Reason> {
         let asked = i
             .sticks

@@ -1,12 +1,11 @@
-//! The power-up grip check: are the arms closed on something when the power comes on?
+//! Power-up grip check: whether the arms are closed on something at power-on.
 //!
-//! Nothing that is remembered outlives a loss of power, but the arms do: the servos' gears hold them without a pulse,
-//! and the first pulse would open them. So no pulse goes out before the pressure sensors have been read.
+//! Retained state is lost with the power, but the servos' gears hold the arms without a pulse, and the first pulse
+//! would open them: no pulse goes out before the pressure sensors have been read.
 //!
-//! Arms that press are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot has the
-//! rotors carry the vehicle. Their servos are not taken up before: a pulse must name an angle, and that is known from tilt
-//! and pressure no better than to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of tilt, and a skin of unknown
-//! stiffness), a third of a grip's force that might be let go of, where doing nothing loses nothing.
+//! Arms that press are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
+//! rotors carry the vehicle. A pulse must name an angle, and tilt and pressure give it only to 0.2 rad or 20 N (1 mm of
+//! thread, 0.03 rad of tilt, unknown stiffness of the skin): a third of a grip's force might be lost.
 
 use super::Inputs;
 use crate::grip_memory::GripMemory;
@@ -17,16 +16,14 @@ use crate::wrench::PerArm;
 /// Time over which the pressures are averaged, s.
 pub const AVERAGING_TIME: f32 = 0.5;
 
-/// What one arm's sensor has felt since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Felt {
-    /// Pressure over time, Pa s.
+    /// Its integral, Pa s.
     sum: f32,
-    /// For how long it was felt, s.
+    /// Its duration, s.
     time: f32,
 }
 
-/// Pressures felt since power-on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PowerUpGripCheck {
     time: f32,
@@ -34,8 +31,8 @@ pub struct PowerUpGripCheck {
 }
 
 impl PowerUpGripCheck {
-    /// Adds `dt` s with each arm's pressure (Pa; `None`: unknown); gives the arms that press more than `least` Pa once
-    /// enough was felt. While no sensor at all speaks, nothing is decided.
+    /// Adds `dt` s of each arm's pressure (Pa; `None`: unknown); returns the arms that press more than `least` Pa on
+    /// average. Undecided while no sensor at all answers.
     fn step(&mut self, pressure: PerArm<Option<f32>>, least: f32, dt: f32) -> Option<PerArm<bool>> {
         if pressure.iter().all(Option::is_none) {
             return None;
@@ -51,7 +48,6 @@ impl PowerUpGripCheck {
     }
 }
 
-/// The pair that presses, or all when not one pair alone does.
 fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Option<ArmChoice> {
     match (front_left || front_right, rear_left || rear_right) {
         (false, false) => None,
@@ -62,7 +58,7 @@ fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Opt
 }
 
 impl PowerUpGripCheck {
-    /// The grip of a vehicle at rest: decides once whether the arms were closed when the power came on.
+    /// Decides once, at rest, whether the arms were closed at power-on.
     pub fn decide(&mut self, grip_memory: GripMemory, i: &Inputs, p: &Params, dt: f32) -> GripMemory {
         let (GripMemory::Unknown, Some(grip)) = (grip_memory, i.grip) else {
             return grip_memory;

@@ -1,4 +1,4 @@
-//! Rotors spooled up again, tendons paying out until every arm is proven free.
+//! Rotors spool up again; tendons pay out until every arm is proven free.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -8,35 +8,34 @@ use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::params::Params;
 
-/// Least throttle at which the arms are opened: some of the weight is carried when they let go. It is kept while they
-/// open or close again, whatever the stick does.
+/// Least throttle at which the arms open, so that some of the weight is carried when they let go; kept while they open
+/// or close again, whatever the stick does.
 pub const RELEASE_THROTTLE_MIN: f32 = 0.2;
 /// Time for which every arm must be free before flight, s.
 pub const FREE_TIME: f32 = 0.3;
-/// Time after which arms that do not come free are reported, s.
+/// Time after which arms that are not free are reported, s.
 const STUCK_TIME: f32 = 10.0;
 
 /// See [`super::Mode::Releasing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Releasing {
     pub hold: Hold,
-    /// Share of the collective that the rotors have reached, 0..1.
+    /// Share of the collective reached, 0..1.
     pub share: f32,
     /// Time for which every arm has been free, s.
     pub free: f32,
     /// The tendons are paying out.
     pub opening: bool,
-    /// The gears alone hold: the tendons' drives start when they open.
+    /// The gears alone hold: the drives start when the tendons open.
     pub kept: bool,
 }
 
 impl Releasing {
-    /// The arms hold with a good part of the grip pressure.
+    /// The arms press with a good part of the grip pressure.
     pub fn holds(&self, step: &Step<'_>) -> bool {
         held(step.inputs.grip, self.hold.arms, &step.context.params)
     }
 
-    /// The arms are open and free.
     pub fn released(&self, step: &Step<'_>) -> bool {
         self.opening && step.arms_free()
     }
@@ -47,12 +46,12 @@ impl Releasing {
         step.inputs.sticks.is_none_or(|s| s.perch_switch && seen_off)
     }
 
-    /// The arms have not opened yet, and the vehicle may not fly.
+    /// The arms are still closed, and the vehicle may not fly.
     pub fn grounded(&self, step: &Step<'_>) -> bool {
         !self.opening && step.context.dangers.line_silent()
     }
 
-    /// The lean may have grown since the rotors began to lift: the arms stay closed.
+    /// The lean has grown during spool-up: the arms stay closed.
     pub fn leans(&self, step: &Step<'_>) -> bool {
         !self.opening && self.spooled(step.dt) >= 1.0 && step.context.lean.too_far_to_release()
     }
@@ -63,7 +62,7 @@ impl Releasing {
     }
 }
 
-/// Collective below which the arms are not opened, N.
+/// Least collective at which the arms open, N.
 pub fn release_thrust(p: &Params) -> f32 {
     4.0 * p.thrust_max * RELEASE_THROTTLE_MIN
 }

@@ -116,6 +116,14 @@ choices! {
         Dps2000 = 2000.0, "";
     }
 
+    /// How an arm's sensor is mounted.
+    ArmSign {
+        /// The other way round: its tilt counts the other way.
+        Reversed = -1.0, "reversed";
+        /// As the drawing has it.
+        Along = 1.0, "along";
+    }
+
     /// Full scale of the accelerometer, g.
     ImuAccelRange {
         /// ±2 g.
@@ -150,7 +158,7 @@ mod tests {
                 assert!(choice.name.parse::<f32>().is_err(), "{}", choice.name);
             }
         }
-        assert_eq!(enumerated, 5);
+        assert_eq!(enumerated, 9);
     }
 
     #[test]

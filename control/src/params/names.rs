@@ -1,4 +1,4 @@
-//! What names may be, and what parameters were called before.
+//! Rules for names, and the renamed parameters.
 
 use core::f32::consts::TAU;
 
@@ -8,12 +8,12 @@ pub const NAME_MAX: usize = 16;
 /// A parameter that had another name, and perhaps another unit.
 ///
 /// The parameter store, the console and scenario files read values under the old name and convert them. Where a set has
-/// both, the new name wins: only firmware that knows it can have written it, so it is the later one.
+/// both, the new name wins: only newer firmware can have written it.
 #[derive(Clone, Copy, Debug)]
 pub struct Renamed {
-    /// Name until then.
+    /// Old name.
     pub old: &'static str,
-    /// Unit until then.
+    /// Old unit.
     pub unit: &'static str,
     /// Name in the table.
     pub new: &'static str,
@@ -21,7 +21,7 @@ pub struct Renamed {
     ratio: f32,
 }
 
-/// Every parameter that had another name.
+/// All renamed parameters.
 pub const RENAMED: &[Renamed] = &[
     Renamed {
         old: "receiver_protocol",
@@ -44,12 +44,12 @@ pub const RENAMED: &[Renamed] = &[
 ];
 
 impl Renamed {
-    /// What the parameter called `old` is called now.
+    /// Finds the entry with the old name `old`.
     pub fn find(old: &str) -> Option<&'static Self> {
         RENAMED.iter().find(|renamed| renamed.old == old)
     }
 
-    /// A value in the old unit, in the new one.
+    /// Converts a value from the old unit.
     pub fn convert(&self, old: f32) -> f32 {
         old / self.ratio
     }
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn old_defaults_and_old_limits_are_allowed_and_the_default_flies_to_the_bit() {
-        // Default, least and most under the old names.
+        // Default, minimum and maximum under the old names.
         for (old, values) in [
             ("receiver_protocol", [0.0f32, 0.0, 1.0]),
             ("perch_throttle_max", [0.42, 0.1, 0.6]),

@@ -2,7 +2,7 @@
 //! `name: Type = default, "unit";`.
 
 use super::ParamInfo;
-use super::choices::{ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol, Value};
+use super::choices::{ArmSign, ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol, Value};
 use super::names::check_names;
 
 macro_rules! params {
@@ -134,6 +134,23 @@ params! {
     tilt_bias_gain = 0.02, "1", 0.0 ..= 0.05;
     /// Largest tilt bias accepted.
     tilt_bias_max = 0.2, "rad", 0.0 ..= 0.5;
+
+    /// Tilt that the sensor of arm 1 shows while the arm is straight, taken off (`calibrate arm`).
+    arm_zero_1 = 0.0, "rad", -0.6 ..= 0.6;
+    /// Tilt that the sensor of arm 2 shows while the arm is straight.
+    arm_zero_2 = 0.0, "rad", -0.6 ..= 0.6;
+    /// Tilt that the sensor of arm 3 shows while the arm is straight.
+    arm_zero_3 = 0.0, "rad", -0.6 ..= 0.6;
+    /// Tilt that the sensor of arm 4 shows while the arm is straight.
+    arm_zero_4 = 0.0, "rad", -0.6 ..= 0.6;
+    /// Sign of the sensor of arm 1: -1 for one that is mounted the other way round (`calibrate arm`).
+    arm_sign_1: ArmSign = ArmSign::Along, "1";
+    /// Sign of the sensor of arm 2.
+    arm_sign_2: ArmSign = ArmSign::Along, "1";
+    /// Sign of the sensor of arm 3.
+    arm_sign_3: ArmSign = ArmSign::Along, "1";
+    /// Sign of the sensor of arm 4.
+    arm_sign_4: ArmSign = ArmSign::Along, "1";
 
     /// Accelerometer bias along body x, measured on a level bench: what it reads beyond gravity.
     accel_bias_x = 0.0, "m/s2", -0.6 ..= 0.6;
@@ -276,10 +293,26 @@ params! {
     fsr_scale_3 = 1.0, "1", 0.05 ..= 20.0;
     /// Full scale of the FSR of arm 4.
     fsr_scale_4 = 1.0, "1", 0.05 ..= 20.0;
+    /// Conductance of the FSR of arm 1 over `fsr_gain` (`calibrate fsr`).
+    fsr_trim_1 = 1.0, "1", 0.2 ..= 5.0;
+    /// Conductance of the FSR of arm 2 over `fsr_gain`.
+    fsr_trim_2 = 1.0, "1", 0.2 ..= 5.0;
+    /// Conductance of the FSR of arm 3 over `fsr_gain`.
+    fsr_trim_3 = 1.0, "1", 0.2 ..= 5.0;
+    /// Conductance of the FSR of arm 4 over `fsr_gain`.
+    fsr_trim_4 = 1.0, "1", 0.2 ..= 5.0;
+    /// Pressure that the FSR of arm 1 shows while nothing presses it, taken off (`calibrate fsr`).
+    fsr_zero_1 = 0.0, "Pa", 0.0 ..= 300.0;
+    /// Pressure that the FSR of arm 2 shows while nothing presses it.
+    fsr_zero_2 = 0.0, "Pa", 0.0 ..= 300.0;
+    /// Pressure that the FSR of arm 3 shows while nothing presses it.
+    fsr_zero_3 = 0.0, "Pa", 0.0 ..= 300.0;
+    /// Pressure that the FSR of arm 4 shows while nothing presses it.
+    fsr_zero_4 = 0.0, "Pa", 0.0 ..= 300.0;
 
-    /// Battery voltage over the voltage at its pin; the default is the board's own (docs/boards.md).
+    /// Battery voltage over the voltage at its pin; the default is the board's own (docs/wiring.md).
     battery_divider = 11.0, "1", 1.0 ..= 60.0;
-    /// Battery current for each volt at the current sensor's pin; the default is the board's own (docs/boards.md).
+    /// Battery current for each volt at the current sensor's pin; the default is the board's own (docs/wiring.md).
     battery_a_per_v = 40.0, "A/V", 1.0 ..= 1000.0;
     /// Battery voltage of full thrust: the curve is normalised to it (4S nominal).
     battery_nominal = 14.8, "V", 6.0 ..= 52.0;

@@ -1,4 +1,4 @@
-//! The meaning of frames, and that the transmitter's side says the same.
+//! Decoding of frames, and agreement with their encoding.
 
 use proptest::prelude::*;
 

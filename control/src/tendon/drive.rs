@@ -1,6 +1,7 @@
 //! The drive of one tendon: the servo's angle by force and tilt, and the tension that it can be giving.
 
 use super::Reel;
+use crate::bench::{PULSE_MAX_US, PULSE_MIN_US};
 use crate::filter::CascadedLowPass;
 use crate::math;
 
@@ -8,6 +9,8 @@ use crate::math;
 const RESIDUAL_TENSION: f32 = 0.5;
 /// Speed of paying out on release, rad/s: half the servo's, the arms spring back gently.
 const PAY_OUT_SPEED: f32 = 3.0;
+/// Speed of a servo on the bench, rad/s: half a second from a word to the key that stops it is half a radian.
+pub const BENCH_SPEED: f32 = 1.0;
 /// Cut-off of each of the two low passes on the tilt, rad/s: a loop gain below 1 at the taut arm's mode
 /// (8 Hz, Q about 5) with the static gain k h² / (k h² + arm) of 0.7 to 0.85.
 pub const TILT_CUTOFF: f32 = 25.0;
@@ -40,6 +43,8 @@ pub struct TendonDrive {
     tilt: Option<CascadedLowPass>,
     /// Cut-off of its low passes at the last step, rad/s.
     cutoff: f32,
+    /// Sent by a pulse of the bench, perhaps beyond its travel, and not back at its release mark yet.
+    placed: bool,
 }
 
 impl Default for TendonDrive {
@@ -55,6 +60,7 @@ impl TendonDrive {
             angle: 0.0,
             tilt: None,
             cutoff: TILT_CUTOFF,
+            placed: false,
         }
     }
 
@@ -93,6 +99,7 @@ impl TendonDrive {
         let held = !pays_out && tilt.is_none();
         if pays_out {
             self.angle = math::slew(self.angle, 0.0, PAY_OUT_SPEED * dt);
+            self.placed &= self.angle != 0.0;
         } else if let Some(filtered) = self.tilt.filter(|_| !held) {
             let target = reel.angle(force, filtered.value());
             let speed = if target > self.angle {
@@ -103,6 +110,16 @@ impl TendonDrive {
             self.angle = math::slew(self.angle, target, speed * dt);
         }
         self.output(reel, held)
+    }
+
+    /// One step of `dt` s towards the pulse `pulse_us` (µs), at [`BENCH_SPEED`] and as far as servos go.
+    pub fn place(&mut self, reel: &Reel, pulse_us: f32, tilt: Option<f32>, dt: f32) -> Drive {
+        let dt = math::clamp(dt, 0.0, 0.2);
+        self.filter_tilt(tilt.filter(|t| t.abs() <= TILT_MAX), dt);
+        let target = reel.angle_of(math::clamp(pulse_us, PULSE_MIN_US, PULSE_MAX_US));
+        self.angle = math::slew(self.angle, target, BENCH_SPEED * dt);
+        self.placed = true;
+        self.output(reel, false)
     }
 
     /// One step of `dt` s that leaves the servo where it is and only filters the tilt (rad).
@@ -130,7 +147,11 @@ impl TendonDrive {
         let wound = self.angle > 1e-3;
         let tension = self.tension(reel);
         Drive {
-            pulse_us: reel.pulse(self.angle),
+            pulse_us: if self.placed {
+                reel.pulse_beyond(self.angle)
+            } else {
+                reel.pulse(self.angle)
+            },
             tension: if wound {
                 math::clamp(tension, RESIDUAL_TENSION, f32::MAX)
             } else {

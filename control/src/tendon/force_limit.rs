@@ -1,33 +1,32 @@
-//! The largest force on a tendon: by the parameters, and by what the servo can give.
+//! Largest force on a tendon, by the parameters and by the servo.
 
 use crate::math;
 use crate::params::Params;
 
-/// Share of the stall torque that a servo is trusted to give: near stall it neither moves nor cools.
+/// Usable share of the stall torque: near stall a servo neither moves nor cools.
 const STALL_SHARE: f32 = 0.85;
-/// Largest error of the tilt of an arm at rest, rad: half a degree of the sensor's mounting, 4 mrad of the attitude that
-/// it is measured against and of noise behind the filters.
+/// Largest tilt error of an arm at rest, rad: 0.5° of sensor mounting, 4 mrad of the reference attitude and of noise
+/// behind the filters.
 const TILT_ERROR: f32 = 0.0127;
-/// Largest error of a servo's angle at rest, rad: its dead band of 2 µs in a travel of 1900 µs for 270°.
+/// Largest angle error of a servo at rest, rad: its dead band of 2 µs in a travel of 1900 µs for 270°.
 const SERVO_ERROR: f32 = 0.005;
-/// Share of the force limit that is asked for at least: tendons so stiff that less were left have no known force.
+/// Least share of the force limit that is asked for; with stiffer tendons the force is unknown.
 const ASKED_SHARE_MIN: f32 = 0.5;
 
 /// Largest force on a tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceLimit {
-    /// Force along the tendon that is never passed, N.
+    /// Force along the tendon never exceeded, N.
     pub force: f32,
-    /// Force that the clamp loop may ask for, N: what is asked is wound by the arm's measured tilt, so the tendon
-    /// has more by what that is wrong.
+    /// Largest force that the clamp loop may ask for, N: it is wound by the measured tilt, whose error adds to the
+    /// tendon's force.
     pub asked: f32,
-    /// The servo cannot give the torque that the parameters allow (`servo_torque_max`): its stall torque
-    /// limits the force. To be reported at start-up.
+    /// The servo's stall torque, not `servo_torque_max`, limits the force; reported at start-up.
     pub capped_by_servo: bool,
 }
 
 impl ForceLimit {
-    /// The limit by the parameters.
+    /// Limit by the parameters.
     pub fn from_params(p: &Params) -> Self {
         let servo = STALL_SHARE * p.servo_stall;
         let capped_by_servo = servo < p.servo_torque_max;

@@ -1,6 +1,7 @@
 //! Reel, tendon and servo of one arm: angle, force and pulse.
 
 use super::ForceLimit;
+use crate::bench;
 use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
@@ -94,6 +95,12 @@ impl Reel {
     /// Pulse width (µs, trim included) for the servo at `angle` (rad from release).
     pub fn pulse(&self, angle: f32) -> f32 {
         self.release_us + self.span_us * math::clamp(angle / self.range, 0.0, 1.0)
+    }
+
+    /// The same beyond the travel that the parameters know, as far as servos go: for the bench, where the travel is found.
+    pub fn pulse_beyond(&self, angle: f32) -> f32 {
+        let pulse = self.release_us + self.span_us * (angle / self.range);
+        math::clamp(pulse, bench::PULSE_MIN_US, bench::PULSE_MAX_US)
     }
 
     /// Angle (rad from release) that the pulse `pulse_us` (µs) asks for: what the servo makes of it, and

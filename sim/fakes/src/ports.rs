@@ -90,9 +90,10 @@ impl Part {
     }
 }
 
-/// An inertial sensor of 1 kHz at rest, level; its data-ready line may be silent.
+/// An inertial sensor of 1 kHz at rest, level; its data-ready line may be silent, and what it reads beyond level gravity
+/// is the test's.
 #[derive(Clone, Default)]
-pub struct FakeImu(pub Part, pub Rc<Cell<bool>>);
+pub struct FakeImu(pub Part, pub Rc<Cell<bool>>, pub Rc<Cell<ImuReading>>);
 
 impl Imu for FakeImu {
     type Batch = Few<ImuReading, IMU_BATCH>;
@@ -105,8 +106,8 @@ impl Imu for FakeImu {
         self.0.work(1000).await?;
         let mut batch = Few::new();
         let _ = batch.push(ImuReading {
-            gyro: Vec3::ZERO,
-            accel: Vec3::new(0.0, 0.0, -GRAVITY),
+            gyro: self.2.get().gyro,
+            accel: self.2.get().accel + Vec3::new(0.0, 0.0, -GRAVITY),
         });
         Ok(batch)
     }
@@ -120,15 +121,16 @@ impl Imu for FakeImu {
     }
 }
 
-/// Arm sensors that see level arms: their bus, and each of them.
+/// Arm sensors that see arms on a level body: their bus, each of them, and the tilt of the left arms' tips, rad.
 #[derive(Clone, Default)]
-pub struct FakeArms(pub Part, pub [Part; 4]);
+pub struct FakeArms(pub Part, pub [Part; 4], pub Rc<Cell<f32>>);
 
 impl ArmImus for FakeArms {
     async fn gravity(&mut self, arm: usize) -> Result<Vec3, PortError> {
         self.0.work(400).await?;
         self.1[arm].work(10).await?;
-        Ok(Vec3::new(0.0, 0.0, GRAVITY))
+        let left = if arm < 2 { self.2.get() } else { 0.0 };
+        Ok(Vec3::new(0.0, GRAVITY * left.sin(), GRAVITY * left.cos()))
     }
 }
 

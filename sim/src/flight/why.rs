@@ -1,13 +1,12 @@
 //! By how much a flight failed: what the samples say of the quantity that ended it, behind the reason.
 
 use core::f64::consts::PI;
-use glam::{DQuat, DVec3};
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::tendon::ForceLimit;
 
-use crate::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose};
+use crate::check::{Check, needed};
+use crate::plant::GRAVITY;
 use crate::plant::tendon::TendonSpec;
-use crate::plant::{GRAVITY, STEP, arm_spec};
 use crate::record::{SAMPLE_HZ, Sample};
 use crate::scenario::{Scenario, Step};
 
@@ -17,11 +16,6 @@ const SWING_TIME: f64 = 2.0;
 /// the pilot make less, the roll manoeuvre turns twice.
 const SWING: f64 = 12.0 * PI / 180.0;
 const SWINGS: usize = 4;
-/// Thrust to weight below which a vehicle is reported as too weak: in the default gusts 1.07 still flies, 1.05 does not.
-const WEAK: f64 = 1.1;
-/// Step of the tilt at which an arm is looked for that presses on the pipe, rad, and their number: down to -2 rad.
-const TILT_STEP: f64 = 1e-3;
-const DEEPEST: u32 = 2000;
 
 /// What is to be said behind the reason `reason` of a flight that failed in `step`; empty when there is nothing.
 pub fn detail(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], reason: &str) -> String {
@@ -32,6 +26,11 @@ pub fn detail(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], reas
     if reason.contains(Reason::ForceLimit.text()) {
         parts.extend(force(scenario, samples));
     }
+    parts.extend(
+        Check::of(scenario)
+            .failing()
+            .map(|row| format!("check: {}", row.shortfall())),
+    );
     parts.iter().map(|part| format!("; {part}")).collect()
 }
 
@@ -47,14 +46,9 @@ fn strength(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], swings
     );
     let ratio = thrust / weight;
     let low = -last.position[2] < 0.5 * height;
-    (low && !swings || ratio < WEAK).then(|| {
-        let small = if ratio < WEAK {
-            format!(", too small: at least {WEAK} is needed")
-        } else {
-            String::new()
-        };
+    (low && !swings).then(|| {
         format!(
-            "throttle {:.2} given, thrust to weight {ratio:.2} ({thrust:.1} N of {weight:.1} N){small}",
+            "throttle {:.2} given, thrust to weight {ratio:.2} ({thrust:.1} N of {weight:.1} N)",
             last.throttle
         )
     })
@@ -135,39 +129,9 @@ fn force(scenario: &Scenario, samples: &[Sample]) -> Option<String> {
     ))
 }
 
-/// Force (N) on the tendon of `arm` that holds it at the pressure `target` (Pa) on the scenario's pipe, the body level
-/// on its crown and the rotor at `thrust` (N): the static balance of rotor, spring, skin and tendon.
-fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Option<f64> {
-    let radius = 0.5 * scenario.world.pipe_diameter;
-    let pipe = Pipe {
-        north: 0.0,
-        half_length: 1.0,
-        east: 0.0,
-        down: BELLY_Z + radius,
-        radius,
-        friction: scenario.world.pipe_friction,
-    };
-    let pose = Pose {
-        position: DVec3::ZERO,
-        attitude: DQuat::IDENTITY,
-        velocity: DVec3::ZERO,
-        omega: DVec3::ZERO,
-    };
-    let spec = arm_spec(&scenario.vehicle, arm);
-    (0..DEEPEST)
-        .map(|step| -TILT_STEP * f64::from(step))
-        .find_map(|tilt| {
-            let skin = ArmSkin::new(arm).step(STEP, tilt, 0.0, &pose, &pipe);
-            let moment = ARM_LENGTH * (thrust - spec.static_load(tilt)) + skin.moment_alpha;
-            (skin.pressure >= target).then(|| (moment / TendonSpec::default().lever).max(0.0))
-        })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm_bench::{Closing, close};
-    use crate::scenario::ServoProfile;
 
     fn attitude(angle: impl Fn(f64) -> f64) -> Vec<Sample> {
         (0..400)
@@ -185,26 +149,5 @@ mod tests {
         assert_eq!(swings(&attitude(|t| 0.08 * (2.0 * PI * 3.0 * t).sin())), None);
         assert_eq!(swings(&attitude(|t| 0.45 * (2.0 * PI * 0.4 * t).sin())), None);
         assert_eq!(swings(&[]), None);
-    }
-
-    #[test]
-    fn the_force_needed_is_what_a_closing_arm_takes() {
-        for (infill, diameter) in [(6.0, 0.3), (8.0, 0.3), (6.0, 0.2)] {
-            let mut scenario = Scenario::default_mission();
-            scenario.vehicle.infill = infill;
-            scenario.world.pipe_diameter = diameter;
-            let closed = close(&Closing {
-                infill,
-                diameter,
-                servo: ServoProfile::Paper.into(),
-                thrust: 2.5,
-                seconds: 12.0,
-                seed: 1,
-            });
-            let takes = closed.steady / TendonSpec::default().reel_radius;
-            let needed = needed(&scenario, 0, 0.0, 950.0).unwrap();
-            println!("{infill} % on {diameter} m: {needed:.1} N, takes {takes:.1} N");
-            assert!((needed / takes - 1.0).abs() < 0.1, "{needed} {takes}");
-        }
     }
 }

@@ -28,8 +28,9 @@ const ACCELERATION_MAX: f64 = 2.5;
 /// Height error to climb rate, 1/s.
 const HEIGHT_GAIN: f64 = 0.9;
 /// Fastest climb and descent, m/s.
-const CLIMB_MAX: f64 = 0.7;
-const DESCENT_MAX: f64 = 0.5;
+pub const CLIMB_MAX: f64 = 0.7;
+/// See [`CLIMB_MAX`].
+pub const DESCENT_MAX: f64 = 0.5;
 /// Climb error to throttle, s/m; and to the hover trim, 1/m. These and the throttles below are those of the paper's
 /// vehicle, which hovers at 53 %: see [`Guidance::strength`].
 const CLIMB_GAIN: f64 = 0.09;
@@ -88,12 +89,17 @@ impl Guidance {
             stick_angle: f64::from(params.stick_angle),
             stick_yaw_rate: f64::from(params.stick_yaw_rate),
             hover,
-            strength: hover / self::hover(&Params::default()),
+            strength: Self::strength_of(params),
             wind: DVec2::ZERO,
             throttle: 0.0,
             foresight: Foresight::new(delay),
             ahead: Default::default(),
         }
+    }
+
+    /// The strength of a vehicle by its parameters.
+    pub fn strength_of(params: &Params) -> f64 {
+        hover(params) / hover(&Params::default())
     }
 
     /// Throttle that gives the share of the weight that 1 of it gives the paper's vehicle: below 1 for a vehicle of

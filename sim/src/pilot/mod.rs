@@ -27,8 +27,10 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::mode::Mode;
 use sophie_control::rc::CHANNELS;
 
+pub use self::guidance::{CLIMB_MAX, DESCENT_MAX};
 use self::mission::{Mission, Progress, View};
 use self::perception::Perception;
+pub use self::perch::throttle_on_pipe;
 use self::referee::Referee;
 use self::stick_dynamics::{StickDynamics, StickTarget};
 use crate::crsf::{FRAME_HZ, Frame, Telemetry, rc_frame};

@@ -1,7 +1,9 @@
 //! Steps at the pipe: fly over it, touch, perch, hold, release.
 
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::params::Params;
 
+use super::guidance::Guidance;
 use super::mission::{Mission, Phase, Progress, View};
 use super::stick_dynamics::StickTarget;
 
@@ -67,6 +69,21 @@ const GRIP_LOST_TIME: f64 = 1.0;
 /// Rise at which the vehicle is clear of the pipe and the sticks are used again, m.
 const CLEAR: f64 = 0.06;
 
+/// The throttle while closing that the scenario wants, as far as it leaves a vehicle that takes the share `lightly` of
+/// the paper's throttles standing on the pipe.
+fn closing_throttle(lightly: f64, wanted: f64) -> f64 {
+    if lightly < 1.0 {
+        wanted.min(FIRM_THROTTLE * lightly)
+    } else {
+        wanted
+    }
+}
+
+/// The throttle at which the arms of a vehicle with `params` close where a scenario wants `wanted`.
+pub fn throttle_on_pipe(params: &Params, wanted: f64) -> f64 {
+    closing_throttle(Guidance::strength_of(params).min(1.0), wanted).min(f64::from(params.perch_thr_max))
+}
+
 impl Mission {
     /// Share of the throttles on the pipe that is given: less with stronger rotors, which would lift the vehicle off,
     /// never more, since the stack takes more than `perch_thr_max` for flying on.
@@ -74,13 +91,9 @@ impl Mission {
         self.guidance.strength().min(1.0)
     }
 
-    /// The throttle while closing that the scenario wants, as far as it leaves a stronger vehicle standing on the pipe.
+    /// The throttle while closing.
     fn closing(&self, wanted: f64) -> f64 {
-        if self.lightly() < 1.0 {
-            wanted.min(FIRM_THROTTLE * self.lightly())
-        } else {
-            wanted
-        }
+        closing_throttle(self.lightly(), wanted)
     }
 
     pub(super) fn fly_to_pipe(&mut self, v: &View<'_>, dt: f64) -> Progress {

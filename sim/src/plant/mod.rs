@@ -10,6 +10,7 @@ pub mod body;
 pub mod contact;
 pub mod gust;
 pub mod rotor;
+pub mod servo_power;
 pub mod tendon;
 
 use glam::{DQuat, DVec3};
@@ -32,7 +33,7 @@ pub const GRAVITY: f64 = 9.806_65;
 /// Friction of the ground (assumed, TPU on concrete).
 const GROUND_FRICTION: f64 = 0.7;
 /// Linear air drag, N·s/m (assumed).
-const DRAG: f64 = 0.3;
+pub const DRAG: f64 = 0.3;
 /// Distance of the origin from a surface beyond which no part of the vehicle reaches it, m: an arm's length,
 /// the depth of its hinge and some margin.
 const NEAR: f64 = 0.25;

@@ -39,6 +39,22 @@ impl Default for RotorSpec {
     }
 }
 
+impl RotorSpec {
+    /// Thrust (N) of the command `command` (0..1) at `voltage` V, once the speed is steady.
+    #[must_use]
+    pub fn steady_thrust(&self, command: f64, voltage: f64) -> f64 {
+        self.thrust_max * steady_share(command, voltage).powi(2)
+    }
+}
+
+/// Steady speed over full speed, x: u V/V0 = (1 - s) x + s x², the winding's drop with the torque's square.
+fn steady_share(command: f64, voltage: f64) -> f64 {
+    let drive = command.clamp(0.0, 1.0) * voltage / NOMINAL_VOLTAGE;
+    let s = RESISTIVE_SHARE;
+    let back = 1.0 - s;
+    2.0 * drive / (back + (back * back + 4.0 * s * drive).sqrt())
+}
+
 /// One rotor.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor {
@@ -73,12 +89,7 @@ impl Rotor {
 
     /// Advances by `dt` s under the command `command` (0..1) at `voltage` V; returns the thrust, N.
     pub fn step(&mut self, dt: f64, command: f64, voltage: f64) -> f64 {
-        // Steady speed x of full speed: u V/V0 = (1 - s) x + s x², the winding's drop with the torque's square.
-        let drive = command.clamp(0.0, 1.0) * voltage / NOMINAL_VOLTAGE;
-        let s = RESISTIVE_SHARE;
-        let back = 1.0 - s;
-        let steady = 2.0 * drive / (back + (back * back + 4.0 * s * drive).sqrt());
-        let target = steady * self.full_speed;
+        let target = steady_share(command, voltage) * self.full_speed;
         self.speed += (target - self.speed) * (dt / self.spec.time_constant);
         self.thrust()
     }
@@ -126,6 +137,7 @@ mod tests {
             r.step(STEP, 1.0, NOMINAL_VOLTAGE);
         }
         assert!((r.thrust() - 8.3).abs() < 1e-3);
+        assert!((RotorSpec::default().steady_thrust(1.0, NOMINAL_VOLTAGE) - 8.3).abs() < 1e-9);
     }
 
     #[test]

@@ -4,9 +4,9 @@ use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
 use crate::decimal::Decimal;
-use crate::ports::{Chip, Look, SerialOutput, Storage};
+use crate::ports::{Chip, Look, SerialInput, SerialOutput, Storage};
 
-impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// What the start-up looked at: name, what was read, what is expected.
     pub(super) async fn silicon(&mut self) {
         for Look {

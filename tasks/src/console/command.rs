@@ -21,10 +21,21 @@ pub(super) enum Command<'a> {
     Silicon,
     BrownOut,
     SetBrownOut,
+    Rotors,
+    Calibrate(&'a str, [Option<&'a str>; 2]),
+    Watch(&'a str),
+    SelfTest,
+    PropellersOff,
+    Motor(&'a str, Option<&'a str>),
+    Servo {
+        number: &'a str,
+        to: &'a str,
+        at: Option<&'a str>,
+    },
 }
 
 /// Name and arguments, and what it does.
-pub(super) const HELP: [(&str, &str); 13] = [
+pub(super) const HELP: [(&str, &str); 20] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
     (
@@ -44,6 +55,22 @@ pub(super) const HELP: [(&str, &str); 13] = [
         "brownout [set]",
         "the level below which the chip stops, and what set does",
     ),
+    (
+        "watch [GROUP]",
+        "live numbers, or the groups of them; a key ends it",
+    ),
+    ("selftest", "tests all that can be tested without moving anything"),
+    ("propellers off", "says that they are: motors may be tried"),
+    ("motor N [%]", "spins motor N for 2 s; a key stops it"),
+    (
+        "servo N TO [AT]",
+        "TO is release, pulse (AT us) or angle (AT deg); a key ends it",
+    ),
+    (
+        "rotors",
+        "asks what turns where, motor by motor, and says what to swap",
+    ),
+    ("calibrate WHAT", "step by step; alone it lists what there is"),
 ];
 
 /// A line not understood.
@@ -78,14 +105,14 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
     let mut words = line.split_ascii_whitespace();
     let word = words.next()?;
     // One more than any command takes, so that too many are noticed.
-    let arguments = [words.next(), words.next(), words.next()];
+    let arguments = [words.next(), words.next(), words.next(), words.next()];
     let command = match (word, arguments) {
         ("help", [None, ..]) => Command::Help,
         ("status", [None, ..]) => Command::Status,
-        ("list", [part, None, _]) => Command::List(part.unwrap_or_default()),
-        ("get", [Some(name), None, _]) => Command::Get(name),
-        ("set", [Some(name), Some(value), None]) => Command::Set(name, value),
-        ("reset", [Some(name), None, _]) => Command::Reset(name),
+        ("list", [part, None, ..]) => Command::List(part.unwrap_or_default()),
+        ("get", [Some(name), None, ..]) => Command::Get(name),
+        ("set", [Some(name), Some(value), None, _]) => Command::Set(name, value),
+        ("reset", [Some(name), None, ..]) => Command::Reset(name),
         ("defaults", [None, ..]) => Command::Defaults,
         ("changes", [None, ..]) => Command::Changes,
         ("save", [None, ..]) => Command::Save,
@@ -93,7 +120,16 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("timing", [None, ..]) => Command::Timing,
         ("silicon", [None, ..]) => Command::Silicon,
         ("brownout", [None, ..]) => Command::BrownOut,
-        ("brownout", [Some("set"), None, _]) => Command::SetBrownOut,
+        ("brownout", [Some("set"), None, ..]) => Command::SetBrownOut,
+        ("rotors", [None, ..]) => Command::Rotors,
+        ("calibrate", [what, first, second, None]) => {
+            Command::Calibrate(what.unwrap_or_default(), [first, second])
+        }
+        ("watch", [group, None, ..]) => Command::Watch(group.unwrap_or_default()),
+        ("selftest", [None, ..]) => Command::SelfTest,
+        ("propellers", [Some("off"), None, ..]) => Command::PropellersOff,
+        ("motor", [Some(number), percent, None, _]) => Command::Motor(number, percent),
+        ("servo", [Some(number), Some(to), at, None]) => Command::Servo { number, to, at },
         _ => {
             let usage = HELP.iter().find(|(usage, _)| name(usage) == word);
             return Some(Err(usage.map_or(Misunderstood::Unknown(word), |(usage, _)| {

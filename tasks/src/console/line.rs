@@ -6,10 +6,10 @@ use heapless::{String, Vec};
 pub(super) const LENGTH: usize = 80;
 /// Bytes taken at once.
 pub(super) const CHUNK: usize = 32;
-/// What goes back to the terminal for one chunk: at most three bytes for each.
+/// Echo of one chunk: at most three bytes for each.
 pub(super) type Echo = Vec<u8, { 3 * CHUNK }>;
 
-/// Why a line is not obeyed, not even its beginning.
+/// Why a line is rejected as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineError {
     /// More than [`LENGTH`] characters.
@@ -30,7 +30,7 @@ impl LineError {
     }
 }
 
-/// Where in a cursor key's sequence of bytes the terminal is.
+/// Position within a cursor key's bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Escape {
     #[default]
@@ -39,7 +39,6 @@ enum Escape {
     Within,
 }
 
-/// The line being typed.
 #[derive(Default)]
 pub(super) struct Line {
     text: String<LENGTH>,
@@ -49,7 +48,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Takes one byte; true when it ends the line. CR, LF and CR LF all do.
+    /// Takes one byte; true if it ends the line (CR, LF or CR LF).
     pub(super) fn push(&mut self, byte: u8, echo: &mut Echo) -> bool {
         let after_cr = core::mem::replace(&mut self.after_cr, byte == b'\r');
         match byte {
@@ -83,12 +82,12 @@ impl Line {
         false
     }
 
-    /// The line will not be obeyed; the first reason stays.
+    /// Rejects the line; the first reason stays.
     pub(super) fn spoil(&mut self, error: LineError) {
         self.error.get_or_insert(error);
     }
 
-    /// The line that has ended, and a new one.
+    /// The finished line; begins a new one.
     pub(super) fn take(&mut self) -> Result<String<LENGTH>, LineError> {
         let text = core::mem::take(&mut self.text);
         match self.error.take() {
@@ -106,7 +105,6 @@ mod tests {
 
     use super::*;
 
-    /// The lines that `bytes` make, and what is echoed.
     fn lines(bytes: &[u8]) -> (Many<Result<Text, LineError>>, Text) {
         let mut line = Line::default();
         let (mut lines, mut echoed) = (Many::new(), Text::new());

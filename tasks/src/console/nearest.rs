@@ -1,10 +1,9 @@
-//! The name that a misspelt one was meant to be.
+//! Suggests a name for a misspelt one.
 
-/// Longest name that is compared, bytes.
+/// Longest name compared, bytes.
 const LENGTH: usize = 32;
 
-/// The first of the `names` that come nearest to `word`, if it is at most two typing errors away, and not half of the
-/// word.
+/// First of the `names` nearest to `word`, at most two typing errors and less than half of the word away.
 pub(super) fn nearest(word: &str, names: impl Iterator<Item = &'static str>) -> Option<&'static str> {
     names
         .filter_map(|name| Some((edits(word.as_bytes(), name.as_bytes())?, name)))
@@ -13,7 +12,7 @@ pub(super) fn nearest(word: &str, names: impl Iterator<Item = &'static str>) -> 
         .map(|(_, name)| name)
 }
 
-/// Bytes to insert, delete or replace to turn `a` into `b`; `None` when one is longer than 32 bytes, as no name here is.
+/// Bytes to insert, delete or replace to turn `a` into `b`; `None` if one exceeds 32 bytes, as no name does.
 pub fn edits(a: &[u8], b: &[u8]) -> Option<usize> {
     let mut row = [0; LENGTH + 1];
     let row = row.get_mut(..=b.len())?;

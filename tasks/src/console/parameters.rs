@@ -6,9 +6,9 @@ use super::Console;
 use super::nearest::nearest;
 use crate::decimal::Decimal;
 use crate::parameters::{Allowed, Shown, Unit, parse_value};
-use crate::ports::{Chip, SerialOutput, Storage};
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 
-impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn list(&mut self, part: &str) {
         let mut count = 0;
         let old = |row: &ParamInfo| RENAMED.iter().any(|r| r.new == row.name && r.old.contains(part));
@@ -70,7 +70,7 @@ impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
         self.put(row, self.default(row)).await;
     }
 
-    async fn put(&mut self, row: &ParamInfo, value: f32) {
+    pub(super) async fn put(&mut self, row: &ParamInfo, value: f32) {
         let old = self.value(row);
         let (name, unit) = (row.name, Unit(row.unit));
         let (old, shown) = (Shown(row, old), Shown(row, value));

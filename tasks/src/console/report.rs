@@ -6,9 +6,9 @@ use sophie_control::mode::{Mode, Reason};
 use super::Console;
 use crate::deadline::TaskId;
 use crate::decimal::Decimal;
-use crate::ports::{Chip, SerialOutput, Storage};
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 
-impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn status(&mut self) {
         match self.links.status.fresh() {
             None => self.out.line(format_args!("the commander is silent")).await,

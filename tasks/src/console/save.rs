@@ -5,7 +5,7 @@ use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
 use crate::links::Status;
-use crate::ports::{Chip, SerialOutput, Storage, StorageError};
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage, StorageError};
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);
@@ -14,7 +14,7 @@ const LOOK: Duration = Duration::from_millis(5);
 /// Longest save: an erase takes 4 s at worst (STM32F7 datasheet, 256 KiB), and two of them may be needed.
 const LONGEST: Duration = Duration::from_secs(10);
 
-impl<O: SerialOutput, S: Storage, C: Chip> Console<'_, O, S, C> {
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Stores the working copy and restarts. Arming is refused meanwhile: storing may stall the processor.
     pub(super) async fn save(&mut self) {
         if let Err(status) = self.hold_arming().await {

@@ -1,4 +1,4 @@
-//! Retained state that a reset leaves: what is read again, and what a torn or stale copy gives.
+//! Retained state: what is read back, and what torn or stale copies give.
 
 use proptest::prelude::*;
 
@@ -60,7 +60,7 @@ fn every_single_wrong_bit_is_found_out() {
             let mut bad = good;
             bad[word] ^= 1 << bit;
             assert_eq!(RetainedState::from_words(&bad), None, "word {word} bit {bit}");
-            // The copy written before takes its place.
+            // The copy before takes its place.
             let before = RetainedState {
                 grip_memory: GripMemory::HeldByGears(ArmChoice::All),
                 ..held()
@@ -86,7 +86,7 @@ fn a_write_that_a_reset_cut_short_anywhere_loses_one_step_at_most() {
     );
     let other = words(old, 8);
     for written in 0..=WORDS {
-        // The copy of two steps ago is written over from its start.
+        // The copy of two steps ago is overwritten from its start.
         let mut torn = words(RetainedState::default().opened(), 7);
         for (slot, word) in torn.iter_mut().zip(words(new, 9)).take(written) {
             *slot = word;
@@ -158,7 +158,7 @@ fn what_is_no_number_or_out_of_range_is_neither_kept_nor_believed() {
     for retained in bad {
         assert_eq!(retained.to_words(1), None, "{retained:?}");
     }
-    // With a sound checksum, too.
+    // Also with a sound checksum.
     for (word, value) in [
         (4, nan.to_bits()),
         (11, 1e9f32.to_bits()),

@@ -1,4 +1,4 @@
-//! The converter's counts as pressures, volts and amperes, at their rates, and its silence.
+//! The converter's counts as pressures, volts and amperes; rates and silence.
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::fsr::FsrFault;
@@ -24,7 +24,7 @@ fn started() -> (Rig, FakeAnalog) {
     (rig, port)
 }
 
-/// The sensor of an arm is sound and has this pressure, Pa.
+/// The arm's sensor is sound and reads `pressure`, Pa.
 fn near(contact: Contact, arm: usize, pressure: f32) -> bool {
     contact.arms[arm].is_ok_and(|p| (p - pressure).abs() < 0.1)
 }
@@ -61,7 +61,7 @@ fn counts_become_volts_amperes_and_charge() {
 
 #[test]
 fn the_batterys_scales_are_the_parameters() {
-    // What CUAV's power module has, in place of 11 and 40.
+    // CUAV's power module, in place of 11 and 40.
     let params = Params {
         battery_divider: 18.0,
         battery_a_per_v: 24.0,
@@ -112,7 +112,7 @@ fn each_sensor_has_its_own_pressure_and_fault_and_is_believed_again_after_a_fift
 fn a_converter_silent_for_a_tenth_of_a_second_is_reported_until_it_converts() {
     for answer in [Answer::Fails, Answer::Refuses, Answer::Hangs] {
         let (mut rig, port) = started();
-        // The conversion that begins at 50 ms is the last good one.
+        // The last good conversion begins at 50 ms.
         rig.run(50);
         port.part.answer.set(answer);
         rig.run(99);

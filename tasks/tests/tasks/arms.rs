@@ -1,6 +1,7 @@
 //! When the arms' tilts were measured.
 
 use embassy_time::Instant;
+use sophie_control::params::{ArmSign, Params};
 use sophie_tasks::arms;
 use sophie_tasks::links::{Attitude, Links};
 
@@ -55,4 +56,19 @@ fn each_tilt_grows_old_by_itself() {
     assert_eq!(known(&rig), [false, false, false, true]);
     rig.time.run_until(201_300);
     assert_eq!(known(&rig), [false; 4]);
+}
+
+#[test]
+fn each_tilt_has_the_zero_and_the_sign_of_its_sensor() {
+    let params = Params {
+        arm_zero_1: 0.1,
+        arm_sign_3: ArmSign::Reversed,
+        arm_zero_3: -0.2,
+        ..Params::DEFAULT
+    };
+    let (mut rig, port) = (Rig::with(params), FakeArms::default());
+    rig.time.spawn(arms::run(rig.links, port));
+    rig.run_with(105, level);
+    let [first, second, third, fourth] = rig.links.tilts().values().map(Option::unwrap);
+    assert!((first + 0.1).abs() < 1e-6 && second == 0.0 && (third - 0.2).abs() < 1e-6 && fourth == 0.0);
 }

@@ -1,4 +1,4 @@
-//! What the clamp task makes of commands and of inputs that are old.
+//! The clamp task's answers to commands and to old inputs.
 
 use embassy_time::Instant;
 use sophie_control::fsr::FsrFault;
@@ -19,7 +19,6 @@ use crate::rig::Rig;
 
 const CLOSE: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
-/// What the arms feel and do.
 #[derive(Clone, Copy)]
 struct World {
     command: Option<ClampCommand>,
@@ -43,7 +42,6 @@ impl World {
         }
     }
 
-    /// What the sensors give.
     fn pressed(&self) -> Contact {
         let mut contact = Contact {
             arms: self.pressure.map(Ok),
@@ -56,7 +54,7 @@ impl World {
         contact
     }
 
-    /// Arms that bend by 0.020152 rad/N, tendons that have what is asked.
+    /// Arms that bend by 0.020152 rad/N, with a tension equal to the force.
     fn speak(&self, links: &Links, at: Instant) {
         let force = force(links).unwrap_or([0.0; 4]);
         if let Some(command) = self.command {
@@ -83,7 +81,6 @@ fn force(links: &Links) -> Option<PerArm<f32>> {
         .map(|m| m.value.forces().arms.map(|arm| arm.force))
 }
 
-/// Forces of an order that is fresh.
 fn fresh(links: &Links) -> Option<TendonForces> {
     links.tendons.fresh().map(|order| *order.forces())
 }
@@ -110,7 +107,7 @@ impl Bench {
 #[test]
 fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
     for (kept, command, found) in [
-        // 80 Pa is where an arm counts as pressing.
+        // 80 Pa count as pressing.
         (&[500.0][..], ClampCommand::Release, true),
         (&[500.0], CLOSE, true),
         (&[85.0], ClampCommand::Release, true),
@@ -148,12 +145,12 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
     world.command = None;
     bench.run(500, &world);
     assert!(bench.0.links.tendons.latest().is_none() && bench.0.links.grip.latest().is_none());
-    // 34.74 N/s (0.7 rad/s of a bending of 0.020152 rad/N) from the least force of 1 N on: 101 steps in a second.
+    // 34.74 N/s (0.7 rad/s of a bending of 0.020152 rad/N) from 1 N on: 101 steps in a second.
     world.command = Some(CLOSE);
     let force = bench.run(1000, &world);
     assert!(force.iter().all(|f| (f - 34.74).abs() < 1.5), "{force:?}");
-    // The command is stale after 200 ms; from then on forces and judgement are those of the last step and age. The grip
-    // is unknown 100 ms after the last pressure that was judged, the servos stay 200 ms after it.
+    // The command is stale after 200 ms; forces and judgement then stay and age. The grip is unknown 100 ms after the
+    // last judged pressure, the servos stay 200 ms after it.
     world.command = None;
     let held = bench.run(200, &world);
     let stopped = bench.0.links.grip.latest().unwrap().at;
@@ -162,7 +159,7 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
     assert_eq!(bench.run(1000, &world), held);
     assert!(bench.0.links.tendons.fresh().is_none() && bench.0.links.grip.fresh().is_none());
     assert_eq!(bench.0.links.grip.latest().unwrap().at, stopped);
-    // Released at 80 N/s: 20 N in a quarter of a second.
+    // Released at 80 N/s: 20 N in 0.25 s.
     world.command = Some(ClampCommand::Release);
     let force = bench.run(250, &world);
     assert!((held[0] - force[0] - 20.0).abs() < 1.0, "{held:?} {force:?}");
@@ -216,7 +213,7 @@ fn only_rotors_that_run_are_met_by_the_tendons() {
     bench.run(2000, &world);
     world.pressure = [950.0; 4];
     let before = bench.run(3000, &world);
-    // What the mixer asked last is no thrust once the rotors stand: 0.178/0.025·2.5 N less, all else as it was.
+    // With standing rotors the mixer's last thrust is void: 0.178/0.025·2.5 N less.
     world.mix.running = false;
     let after = bench.run(1000, &world);
     for (before, after) in before.iter().zip(after) {
@@ -282,14 +279,14 @@ fn without_pressures_forces_follow_the_command_and_say_so() {
     let mut world = World::new(CLOSE, 500.0);
     let before = bench.run(500, &world);
     world.contact = false;
-    // The last pressures are of 499 ms: fresh for the steps up to 519 ms.
+    // The last pressures, of 499 ms, are fresh up to 519 ms.
     bench.run(60, &world);
     let links = bench.0.links;
     let order = links.tendons.latest().unwrap();
     assert!(matches!(order.value, TendonOrder::Blind(_)), "{order:?}");
-    // The time of the newest command, not of a conversion: the last step was at 550.6 ms.
+    // Time of the newest command, not of a conversion: the last step was at 550.6 ms.
     assert_eq!(order.at.as_millis(), 550);
-    // Every arm is faulty by a judgement of now, not by one of the last pressure's time.
+    // Every arm is faulty by a judgement of now.
     assert!(links.grip.fresh().is_some() && bench.states() == [ArmState::Faulty; 4]);
     let held = force(links).unwrap();
     assert!(held[0] >= before[0]);

@@ -1,4 +1,4 @@
-//! What the commander makes of the links: late deadlines, the rotors' lift, warnings.
+//! The commander's use of the links: late deadlines, the rotors' lift, warnings.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::ArmingInhibit;
@@ -16,7 +16,7 @@ use sophie_tasks::timing::Run;
 
 use crate::rig::Rig;
 
-/// A vehicle that hangs still in the air, or stands: 1 g along its thrust axis.
+/// A vehicle hanging still in the air, or standing: 1 g along its thrust axis.
 #[derive(Clone, Copy)]
 struct World {
     sticks: Sticks,
@@ -55,7 +55,7 @@ struct Bench {
     world: World,
 }
 
-/// Rotors that run with `thrust` N each on arms tilted by `tilt` rad.
+/// Rotors at `thrust` N each on arms tilted by `tilt` rad.
 fn running(thrust: f32, tilt: f32) -> MixOutput {
     MixOutput {
         running: true,
@@ -66,7 +66,7 @@ fn running(thrust: f32, tilt: f32) -> MixOutput {
 }
 
 impl Bench {
-    /// On the ground, disarmed, with nothing against arming.
+    /// On the ground, disarmed, without inhibits.
     fn starting(params: Params, cause: StartCause) -> Self {
         let start = Start { cause, ..Start::COLD };
         let rig = Rig::starting(params, start);
@@ -102,7 +102,7 @@ impl Bench {
         self.rig.links.status.fresh().unwrap().warning
     }
 
-    /// The arming gesture for 1.2 s.
+    /// Makes the arming gesture for 1.2 s.
     fn arms(&mut self) -> bool {
         self.world.sticks.arm_switch = true;
         self.world.sticks.yaw = 1.0;
@@ -122,7 +122,7 @@ impl Bench {
         bench
     }
 
-    /// `misses` periods of `task` that passed without a run.
+    /// `misses` periods of `task` without a run.
     fn late(&self, task: TaskId, misses: u32) {
         let now = Instant::now();
         let run = Run {
@@ -151,7 +151,7 @@ fn a_flight_level_that_misses_more_than_ten_deadlines_in_a_second_refuses_arming
         assert_eq!(bench.inhibits(), [ArmingInhibit::Overruns], "{task:?}");
         assert!(!bench.arms(), "{task:?}");
         assert_eq!(bench.mode(), Mode::Disarmed);
-        // A window of 1 s without any, whatever the window's phase: it may be armed again.
+        // A clean window of 1 s, whatever its phase, permits arming.
         bench.world.sticks = Sticks::default();
         bench.run(1000);
         assert_eq!(bench.inhibits(), []);
@@ -185,7 +185,7 @@ fn ten_misses_in_a_second_and_any_number_below_the_flight_level_refuse_nothing()
 #[test]
 fn a_flight_level_that_stays_late_stays_refused() {
     let mut bench = Bench::new();
-    // 20 a second, spread evenly: after the first window there is no moment without.
+    // 20 a second, spread evenly: no clean moment after the first window.
     for i in 0..100 {
         bench.late(TaskId::Control, 1);
         bench.run(50);
@@ -193,7 +193,7 @@ fn a_flight_level_that_stays_late_stays_refused() {
             assert_eq!(bench.inhibits(), [ArmingInhibit::Overruns], "{} ms", 50 * i);
         }
     }
-    // What was missed in flight is no matter there, and ends nothing.
+    // Misses in flight end nothing.
     let mut bench = Bench::flying();
     bench.late(TaskId::Control, 1000);
     bench.run(2000);
@@ -202,8 +202,8 @@ fn a_flight_level_that_stays_late_stays_refused() {
 
 #[test]
 fn what_the_rotors_lift_is_their_thrust_along_the_body_axis() {
-    // At 1 g the vehicle feels 17.7 N; what the rotors do not lift of it something else carries, and more than 3 N of
-    // that, with the perch switch on, is the pipe.
+    // At 1 g the vehicle feels 17.7 N; more than 3 N of it that the rotors do not lift, with the perch switch on, is
+    // the pipe.
     for (name, mix, touched) in [
         ("4·4.425 N on level arms", running(4.425, 0.0), false),
         (
@@ -257,16 +257,16 @@ fn what_must_be_known_is_said_where_it_matters() {
             StartCause::Watchdog,
             "restarted by the watchdog",
         ),
-        // 85 % of 2.0 N m are less than the 2.452 that are wanted.
+        // 85 % of 2.0 N m are less than the 2.452 wanted.
         (weak, StartCause::PowerOn, "servo weaker than the force limit"),
         (infill(5.9), StartCause::PowerOn, "infill below what was flown"),
         (infill(6.0), StartCause::PowerOn, ""),
-        // The restart is the more urgent.
+        // The restart is more urgent.
         (infill(5.9), StartCause::Fault, "restarted after a fault"),
     ] {
         let mut bench = Bench::starting(params, cause);
         assert_eq!(bench.warning(), warning);
-        // In the air none of it matters.
+        // Not shown in the air.
         assert!(bench.arms());
         assert_eq!(bench.warning(), "");
     }
@@ -304,7 +304,7 @@ fn a_link_that_falls_silent_counts_as_none() {
 fn pressures_that_are_held_are_a_fault_of_every_sensor() {
     let mut bench = Bench::new();
     let last = bench.rig.links.contact.latest().unwrap();
-    // Everything else is still said; the pressures stay those of now.
+    // All else is still sent, with the present pressures.
     let world = bench.world;
     // 11 ms old at the next step.
     bench.rig.run_with(10, |links, at| {

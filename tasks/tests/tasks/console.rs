@@ -18,7 +18,7 @@ use sophie_fakes::FakeLine;
 
 /// A screen that takes everything at once.
 #[derive(Clone, Default)]
-struct Screen(Rc<RefCell<String>>);
+pub struct Screen(pub Rc<RefCell<String>>);
 
 impl SerialOutput for Screen {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
@@ -29,7 +29,7 @@ impl SerialOutput for Screen {
 
 /// Storage and restart that remember.
 #[derive(Clone, Default)]
-struct Board {
+pub struct Board {
     stored: Rc<Cell<Option<Params>>>,
     restarts: Rc<Cell<u32>>,
     /// What the board's own defaults are; the table's without.
@@ -221,7 +221,7 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
     assert_eq!(listed.len(), 2);
     assert!(listed[0].starts_with("  estimator_kp ") && listed[1].starts_with("  estimator_ki "));
     assert_eq!(bench.says("list").len(), Params::TABLE.len());
-    assert_eq!(bench.says("help").len(), 13);
+    assert_eq!(bench.says("help").len(), 20);
 }
 
 #[test]

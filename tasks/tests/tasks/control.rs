@@ -1,4 +1,4 @@
-//! What the control task asks of the mixer for each kind of setpoint, by numbers.
+//! The control task's demand for each kind of setpoint.
 
 use embassy_time::Instant;
 use sophie_control::desaturation::Given;
@@ -23,7 +23,7 @@ const ESCAPE: Setpoint = Setpoint::Escape {
     thrust: 24.0,
 };
 
-/// 0.5 rad/s of roll rate that is asked for and not there.
+/// 0.5 rad/s of roll rate, asked for and absent.
 const ROLLING: Setpoint = Setpoint::Rate {
     rate: Vec3::new(0.5, 0.0, 0.0),
     thrust: 10.0,
@@ -32,7 +32,7 @@ const ROLLING: Setpoint = Setpoint::Rate {
 struct Bench {
     rig: Rig,
     q: Quat,
-    /// What the mixer says that it gave; `None`: nothing is heard of it.
+    /// The mixer's report; `None`: silent.
     mix: Option<MixOutput>,
 }
 
@@ -72,7 +72,7 @@ impl Bench {
         self.rig.links.demand.latest().unwrap().value
     }
 
-    /// `ms` steps with a setpoint renewed in each.
+    /// `ms` steps, the setpoint renewed in each.
     fn run(&mut self, ms: u64, setpoint: Setpoint) -> Demand {
         for _ in 0..ms {
             let (links, at) = (self.rig.links, Instant::now());
@@ -83,7 +83,7 @@ impl Bench {
         self.demand()
     }
 
-    /// The wrench that comes of it; yaw is usable.
+    /// The resulting wrench; yaw is usable.
     fn wrench(&mut self, ms: u64, setpoint: Setpoint) -> Wrench {
         match self.run(ms, setpoint) {
             Demand::Wrench(wrench) => wrench,
@@ -145,7 +145,7 @@ fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given()
         near(wrench.roll, 0.189) && wrench.pitch == 0.0 && wrench.thrust == 10.0,
         "{wrench:?}"
     );
-    // A mixer that is not heard of, that gave nothing, or whose word is more than 10 ms old, gives nothing.
+    // A mixer that is silent, gave nothing, or reported more than 10 ms ago gives nothing.
     let nothing = MixOutput {
         given: Given {
             roll_pitch: 0.0,
@@ -176,7 +176,7 @@ fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop_or_e
     for (between, then, left) in [
         (None, LEVEL, 0.084),
         (None, rest, 0.084),
-        // What was wound up against the pipe would throw the vehicle to that side.
+        // An integral wound up against the pipe would throw the vehicle to that side.
         (None, ESCAPE, 0.0),
         (Some(ESCAPE), LEVEL, 0.0),
         (Some(idle), rest, 0.0),
@@ -207,7 +207,7 @@ fn on_the_pipe_moments_fade_with_the_thrust_and_yaw_is_given_up() {
         pitch: -0.3,
         thrust,
     };
-    // 0.4 of 2 N at 0.178 m. Unlimited it were 4.5 1/s · 0.3 rad · 10 1/s · 0.021 kg m² = 0.28 N m and twice that.
+    // 0.4 of 2 N at 0.178 m. Unlimited: 4.5 1/s · 0.3 rad · 10 1/s · 0.021 kg m² = 0.28 N m and twice that.
     for (thrust, most) in [(2.0, 0.1424), (1.0, 0.0712), (0.0, 0.0)] {
         let Demand::Resting(wrench) = bench.run(500, resting(thrust)) else {
             panic!("{:?}", bench.demand())
@@ -215,7 +215,7 @@ fn on_the_pipe_moments_fade_with_the_thrust_and_yaw_is_given_up() {
         assert!(near(wrench.roll, most) && near(wrench.pitch, -most), "{wrench:?}");
         assert!(wrench.thrust == thrust && wrench.yaw == 0.0);
     }
-    // And nothing is integrated, for as long as the vehicle leans on something: 4.5·0.05·10·0.021 N m, and no more.
+    // No integration while the vehicle leans on something: 4.5·0.05·10·0.021 N m.
     let lean = Setpoint::Resting {
         roll: 0.05,
         pitch: 0.0,
@@ -240,7 +240,7 @@ fn the_heading_is_let_go_while_yaw_is_gated_and_held_when_it_is_not() {
         bench.q = Quat::from_euler(0.0, 0.0, 0.4);
         bench.wrench(10, LEVEL);
         bench.mix = Some(all_given());
-        // Turned by 0.4 rad to the right: 1.2 1/s · -0.4 rad · 3 1/s · 0.063 kg m² = -0.09 N m leads back.
+        // Turned 0.4 rad right: 1.2 1/s · -0.4 rad · 3 1/s · 0.063 kg m² = -0.09 N m leads back.
         let yaw = bench.wrench(500, LEVEL).yaw;
         assert!(
             if gated { yaw.abs() < 0.005 } else { yaw < -0.03 },

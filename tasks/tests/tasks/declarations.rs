@@ -13,7 +13,7 @@ use sophie_tasks::supervisor::least_runs;
 const REWRITE: &str = "WRITE_DOCS";
 
 /// The part of `page` between the marks of `name` is `table`, or becomes it.
-fn holds(page: &str, name: &str, table: &str) {
+pub fn holds(page: &str, name: &str, table: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(page);
     let text = std::fs::read_to_string(&path).unwrap();
     let (begin, end) = (
@@ -28,7 +28,7 @@ fn holds(page: &str, name: &str, table: &str) {
         assert_eq!(
             &text[from..to],
             table,
-            "{page}: {REWRITE}=1 cargo test --package sophie-tasks --test tasks declarations rewrites it"
+            "{page}: {REWRITE}=1 cargo test --package sophie-tasks --test tasks rewrites it"
         );
     }
 }
@@ -81,10 +81,11 @@ fn the_table_of_the_links_is_their_declaration() {
 }
 
 #[test]
-fn every_reader_is_a_task_or_the_log() {
+fn every_reader_is_a_task_the_console_or_the_log() {
     for link in Links::DECLARED {
         for reader in link.to.split(", ") {
-            let known = reader == "log" || TaskId::ALL.iter().any(|task| task.name() == reader);
+            let known =
+                ["console", "log"].contains(&reader) || TaskId::ALL.iter().any(|task| task.name() == reader);
             assert!(known, "{}: {reader}", link.name);
         }
     }

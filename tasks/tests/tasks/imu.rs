@@ -18,14 +18,14 @@ use crate::rig::Rig;
 /// Time that the transfer takes after data-ready, µs.
 const TRANSFER_US: u64 = 40;
 
-/// A part of `rate_hz` that is read `batch` samples at a time, and turns evenly about x.
+/// A part of `rate_hz`, read `batch` samples at a time, turning evenly about x.
 #[derive(Clone)]
 struct Part {
     rate_hz: f32,
     batch: u64,
-    /// What the next calls answer, while there are any.
+    /// Answers of the next calls.
     errors: Rc<Cell<(u32, Option<PortError>)>>,
-    /// Time that the next call takes longer, µs.
+    /// Delay of the next call, µs.
     gap: Rc<Cell<u64>>,
     ready: Rc<Cell<u64>>,
 }
@@ -150,7 +150,7 @@ fn the_time_since_the_sample_before_is_told_up_to_five_milliseconds() {
         rig.run_with(20, |links, _| {
             longest = longest.max(links.imu.latest().unwrap().value.dt)
         });
-        // A part silent for 3 ms is asked again: 3 ms are lost with what it would have given.
+        // A part silent for 3 ms is asked again; its samples are lost.
         assert!(
             (longest - dt).abs() < 1e-5 || gap > 1500 && longest <= 5e-3,
             "{gap}: {longest}"
@@ -183,7 +183,7 @@ fn the_third_error_is_reported_and_taken_back_after_a_tenth_of_a_second_without(
         part.errors.set((2, Some(error)));
         rig.run(20);
         assert!(rig.links.hardware().is_empty(), "{error:?}");
-        // The third, less than 100 ms after the others.
+        // The third within 100 ms.
         part.errors.set((1, Some(error)));
         rig.run(5);
         assert!(rig.links.hardware().iter().eq(inhibit), "{error:?}");

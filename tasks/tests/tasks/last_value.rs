@@ -21,7 +21,7 @@ fn each_value_is_seen_once_and_the_newest_of_several() {
     assert_eq!(poll_once(receiver.changed()), Poll::Ready(2));
     assert!(poll_once(receiver.changed()).is_pending());
     assert_eq!(link.look(|value| *value), Some(2));
-    // A value that was there before it is new to a receiver.
+    // An earlier value is new to a receiver.
     assert_eq!(
         poll_once(link.receiver().unwrap().changed_to(|v| v + 1)),
         Poll::Ready(3)
@@ -37,7 +37,6 @@ fn receivers_are_limited_and_given_back() {
     assert!(link.receiver().is_some());
 }
 
-/// A task that counts how often it is woken.
 #[derive(Default)]
 struct Woken(AtomicUsize);
 
@@ -64,12 +63,12 @@ fn a_value_wakes_all_who_wait_and_no_other() {
     let tasks: [Arc<Woken>; RECEIVERS] = core::array::from_fn(|_| Arc::default());
     let mut receivers: [_; RECEIVERS] = core::array::from_fn(|_| link.receiver().unwrap());
     for (task, receiver) in tasks.iter().zip(&mut receivers).skip(1) {
-        // Twice, as a task that is polled for another reason does.
+        // Twice, as a task polled for another reason.
         assert!(poll_as(task, receiver.changed()).is_pending());
         assert!(poll_as(task, receiver.changed()).is_pending());
     }
     link.send(5);
-    // Waiting is over: the second value wakes who has asked again.
+    // The second value wakes those who have asked again.
     assert_eq!(poll_as(&tasks[1], receivers[1].changed()), Poll::Ready(5));
     assert!(poll_as(&tasks[1], receivers[1].changed()).is_pending());
     link.send(6);
@@ -85,12 +84,12 @@ fn who_waits_is_woken_even_when_more_tasks_have_asked_than_there_is_room() {
     let waiting = Arc::<Woken>::default();
     let mut receiver = link.receiver().unwrap();
     assert!(poll_as(&waiting, receiver.changed()).is_pending());
-    // Waits that were given up leave their tasks behind.
+    // Waits given up leave their tasks behind.
     for _ in 0..RECEIVERS {
         let given_up = Arc::<Woken>::default();
         assert!(poll_as(&given_up, link.receiver().unwrap().changed()).is_pending());
     }
-    // Put out for want of room, it was woken to ask again.
+    // Evicted for want of room, it was woken to ask again.
     assert_eq!(waiting.times(), 1);
     assert!(poll_as(&waiting, receiver.changed()).is_pending());
     link.send(1);
@@ -103,7 +102,7 @@ fn a_wait_that_is_given_up_loses_no_value() {
     let mut receiver = link.receiver().unwrap();
     assert!(poll_once(receiver.changed()).is_pending());
     link.send(3);
-    // A future that is dropped before it is polled has seen nothing.
+    // A future dropped before it is polled has seen nothing.
     drop(receiver.changed());
     assert_eq!(poll_once(receiver.changed()), Poll::Ready(3));
 }

@@ -2,6 +2,8 @@
 
 mod analog;
 mod arms;
+mod bench;
+mod calibrate;
 mod clamp;
 mod commander;
 mod console;
@@ -13,6 +15,7 @@ mod last_value;
 mod links;
 mod mixer;
 mod parameters;
+mod pilot_page;
 mod retained_store;
 mod rig;
 mod servos;

@@ -1,4 +1,4 @@
-//! What the mixer task makes of demands, voltage and the arms' sensors.
+//! The mixer task's use of demands, voltage and the arms' sensors.
 
 use embassy_time::Instant;
 use sophie_control::mixer::Flexible;
@@ -40,7 +40,7 @@ impl Bench {
         self.0.links.battery.send(Instant::now(), battery);
     }
 
-    /// The same with arm angles at 100 Hz that are `age_ms` old.
+    /// With arm angles at 100 Hz, `age_ms` old.
     fn with_arms(&mut self, ms: u64, demand: Demand, tilt: PerArm<Option<f32>>, age_ms: u64) -> MixOutput {
         let mut i = 0;
         self.0.run_with(ms, |links, at| {
@@ -84,9 +84,9 @@ fn a_sagging_battery_gets_larger_commands_for_the_same_thrust() {
     assert!(near(bench.run(3000, HOVER).commands, 0.693, 3e-3));
     bench.battery(0.9);
     assert!(near(bench.run(1, HOVER).commands, 0.785, 3e-3));
-    // A voltage that is no longer measured still is the best guess.
+    // A stale voltage is still the best guess.
     assert!(near(bench.run(5000, HOVER).commands, 0.785, 3e-3));
-    // Full thrust is 8.3 N·0.9² then.
+    // Full thrust is then 8.3 N·0.9².
     let most = bench.run(
         3000,
         Demand::Wrench(Wrench {
@@ -121,7 +121,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     bench.run(3000, HOVER);
     let rested = bench.with_arms(1000, Demand::Resting(WEIGHT), felt, 0);
     assert!(rested.tilt_bias == [0.0; 4] && rested.yaw_gated);
-    // The demand says so, whatever was wanted of control by now.
+    // The demand decides, not the present setpoint.
     let resting = Setpoint::Resting {
         roll: 0.0,
         pitch: 0.0,
@@ -130,7 +130,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     bench.0.links.setpoint.send(Instant::now(), resting);
     assert!(bench.with_arms(200, HOVER, felt, 0).tilt_bias[3] > 0.03);
 
-    // A reading of more than 100 ms ago teaches nothing, one of 90 ms does.
+    // A reading older than 100 ms teaches nothing.
     for (age, learns) in [(90, true), (110, false)] {
         let mut bench = Bench::new();
         bench.run(3000, HOVER);
@@ -141,7 +141,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
         );
     }
 
-    // An arm without a reading learns nothing, the others do.
+    // Only an arm without a reading learns nothing.
     let mut bench = Bench::new();
     bench.run(3000, HOVER);
     let bias = bench
@@ -156,7 +156,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
 #[test]
 fn a_step_takes_the_time_between_two_samples() {
     // From idle to hover the low-passed thrust follows with 5 Hz: 1/(2π·5) = 32 ms. Steps of 4 ms are as fast in time
-    // as steps of 1 ms, and the gate for yaw opens after as long.
+    // as steps of 1 ms, and so is the yaw gate.
     let opens = |step_ms: u64| {
         let mut bench = Bench::new();
         bench.run(100, Demand::Idle);

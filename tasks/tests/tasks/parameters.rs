@@ -1,4 +1,4 @@
-//! What a start makes of the parameters' storage.
+//! Loading of the parameters at start-up.
 
 use sophie_clock::VirtualTime;
 use sophie_control::arming::ArmingInhibit;
@@ -8,7 +8,7 @@ use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 use crate::rig::Rig;
 
-/// A board whose battery divider is its own, and whose storage holds another infill.
+/// A board with its own battery divider; its storage holds another infill.
 struct Stored;
 
 static DEFAULTS: Params = Params {

@@ -1,4 +1,4 @@
-//! What is kept for the run after a reset.
+//! State kept for the run after a reset.
 
 use embassy_time::Instant;
 use sophie_control::grip::{ArmGrip, GripState};
@@ -18,7 +18,7 @@ use sophie_fakes::FakeMemory;
 const GRIP: GripMemory = GripMemory::Controlled(ArmChoice::All);
 const BIAS: Vec3 = Vec3::new(0.01, -0.02, 0.03);
 
-/// A grip of 50 N on each tendon, with rotors of 2 N.
+/// A grip of 50 N on each tendon, rotors at 2 N.
 fn speak(links: &Links, running: bool, calibrated: bool) {
     let now = Instant::now();
     links.grip_memory.send(now, GRIP);
@@ -55,14 +55,14 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     links.attitude.send(now, attitude);
 }
 
-/// What the run after a reset would find.
+/// State found after a reset.
 fn found(memory: &FakeMemory) -> Start {
     Start::new(StartCause::Watchdog, &memory.copies())
 }
 
 #[test]
 fn a_grip_is_kept_without_what_met_the_rotors_and_with_the_faults_that_last() {
-    // The tendon's share of 2 N of thrust is 0.178/0.025·2 = 14.24 N: 50 N are 35.76 N without, and 5 N are none.
+    // 2 N of thrust take 0.178/0.025·2 = 14.24 N of a tendon: 50 N leave 35.76 N, and 5 N none.
     for (running, force) in [
         (true, [35.76, 36.76, 37.76, 0.0]),
         (false, [50.0, 51.0, 52.0, 5.0]),
@@ -108,7 +108,7 @@ fn copies_are_written_by_turns_and_numbered_on_from_the_run_before() {
     };
     let (rig, memory) = (Rig::starting(Params::default(), start), FakeMemory::default());
     let mut store = RetainedStore::new(rig.links, memory.clone());
-    // Nothing was said yet: what the run before kept is kept on, as the copies with even and odd numbers.
+    // Without messages the copies of the run before stay, by even and odd numbers.
     for (sequence, writes) in [(8, [1, 0]), (9, [1, 1]), (10, [2, 1]), (11, [2, 2])] {
         store.keep(rig.links);
         assert_eq!(memory.0.get().1, writes);
@@ -129,7 +129,7 @@ fn nothing_is_kept_before_the_arms_were_looked_at_and_old_messages_change_nothin
     store.keep(rig.links);
     let kept = found(&memory).retained;
     assert!(kept.is_some());
-    // An angle that is stale when it is looked at.
+    // An angle that is stale when read.
     rig.links.reel_angle.send(Instant::now(), [6.0; 4]);
     rig.links.grip_memory.send(Instant::now(), GripMemory::Open);
     rig.run(201);

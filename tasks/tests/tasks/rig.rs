@@ -1,4 +1,4 @@
-//! Links, a virtual clock, and the world's part of every millisecond.
+//! Links of a task under test, a virtual clock, and the world's part of every millisecond.
 
 use embassy_time::Instant;
 use sophie_clock::VirtualTime;
@@ -6,7 +6,6 @@ use sophie_control::params::Params;
 use sophie_tasks::links::Links;
 use sophie_tasks::start::Start;
 
-/// The links of a task under test and its clock.
 pub struct Rig {
     pub time: VirtualTime,
     pub links: &'static Links,
@@ -30,13 +29,12 @@ impl Rig {
         }
     }
 
-    /// Runs for `ms` milliseconds.
     pub fn run(&mut self, ms: u64) {
         self.ms += ms;
         self.time.run_until(self.ms * 1000);
     }
 
-    /// Runs for `ms` milliseconds; `each` speaks at the start of every one of them.
+    /// Calls `each` at the start of every millisecond.
     pub fn run_with(&mut self, ms: u64, mut each: impl FnMut(&Links, Instant)) {
         for _ in 0..ms {
             each(self.links, Instant::now());

@@ -1,4 +1,4 @@
-//! From forces to pulses: when there are none, how fast they move, and when they stand still.
+//! From forces to pulses: their absence, speed and standstill.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::grip_memory::GripMemory;
@@ -23,7 +23,7 @@ fn started(start: Start) -> (Rig, FakeServos) {
     (rig, port)
 }
 
-/// 550 to 2450 µs are 4.71 rad: the pulse of the angle `angle`, rad, µs.
+/// Pulse of the angle `angle`, rad, µs: 550 to 2450 µs are 4.71 rad.
 fn pulse(angle: f32) -> f32 {
     550.0 + 1900.0 * angle / 4.71
 }
@@ -57,7 +57,7 @@ fn frames_come_at_the_servos_rate() {
 
 #[test]
 fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
-    // Just taut at -1.2 rad: 25 mm/15 mm·(0.4 + 1.2) = 2.667 rad, 1626 µs. From there 3 rad/s, 0.06 rad a frame.
+    // Just taut at -1.2 rad: 25 mm/15 mm·(0.4 + 1.2) = 2.667 rad, 1626 µs; from there 3 rad/s, 0.06 rad a frame.
     let (mut rig, port) = started(Start::COLD);
     rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
     assert!(
@@ -77,7 +77,7 @@ fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
             pulse(angle)
         );
     }
-    // 0.89 s of it, and then it is home for good, although the arms are still reported as found.
+    // Home after 0.89 s, for good, although the arms are still reported as found.
     assert!(pulses.len() == 60 && near(pulses[59], 550.0));
 }
 
@@ -88,7 +88,7 @@ fn arms_not_found_wound_are_at_release_from_the_first_pulse_on() {
         speak(links, at, Some(forces(0.0, false)), CLOSED)
     });
     let mut pulses = port.pulses.borrow().clone();
-    // Those before the first force are none.
+    // Frames before the first force have no pulse.
     pulses.retain(|p| *p != [0.0; 4]);
     assert!(
         pulses.len() >= 9 && pulses.iter().all(|p| near(*p, 550.0)),
@@ -99,7 +99,7 @@ fn arms_not_found_wound_are_at_release_from_the_first_pulse_on() {
 #[test]
 fn forces_wind_at_nine_tenths_of_the_servos_speed_and_old_ones_hold() {
     let (mut rig, port) = started(Start::COLD);
-    // At 0 N the servo makes 0.9·6.16 = 5.54 rad/s: 1.66 rad in 15 frames, when the tendon at -1.2 rad is slack still.
+    // At 0 N 0.9·6.16 = 5.54 rad/s: 1.66 rad in 15 frames; at -1.2 rad the tendon is still slack.
     rig.run_with(301, |links, at| {
         speak(links, at, Some(forces(60.0, false)), CLOSED)
     });
@@ -115,7 +115,7 @@ fn forces_wind_at_nine_tenths_of_the_servos_speed_and_old_ones_hold() {
     assert!(near(port.now(), pulse(3.167)), "{:?}", port.now());
     let tension = rig.links.tension.fresh().unwrap();
     assert!(tension.iter().all(|t| (t - 60.0).abs() < 0.5), "{tension:?}");
-    // Silent for more than 200 ms: nothing moves, whatever the arms do.
+    // Silent for more than 200 ms: nothing moves.
     rig.run_with(250, |links, at| speak(links, at, None, CLOSED));
     let held = port.now();
     rig.run_with(1000, |links, at| speak(links, at, None, -0.6));
@@ -171,7 +171,7 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
     }
 }
 
-/// Sends an order each 10 ms whose pressures were converted `age` ms before; `servos` reads it 0.9 ms later.
+/// Sends an order each 10 ms for pressures converted `age` ms before; `servos` reads it 0.9 ms later.
 fn ordered(rig: &mut Rig, ms: u64, age: u64, order: fn(TendonForces) -> TendonOrder) {
     rig.run_with(ms, |links, at| {
         links.arms.send(at, ArmAngles::at(at, [Some(CLOSED); 4]));
@@ -190,16 +190,16 @@ fn the_time_from_conversion_to_pulse_is_recorded_once_for_each_conversion_that_b
     port.frame_us.set(500);
     ordered(&mut rig, 1000, 1, TendonOrder::Measured);
     let timing = rig.links.contact_timing();
-    // Frames of 20 ms to 980 ms: the orders in between are overtaken.
+    // Frames of 20 ms to 980 ms overtake the orders in between.
     assert_eq!((timing.runs, timing.overruns), (49, 0));
-    // To the frame after the clamp's step, and a conversion that it saw too late.
+    // Up to the frame after the clamp's step, of a conversion that the step just missed.
     assert_eq!(timing.deadline_us, 3500);
     let take = |quantity| rig.links.take_contact_histogram(quantity);
     let [late, frame, all] = [Quantity::Lateness, Quantity::Execution, Quantity::Response].map(take);
     assert_eq!((late.min(), late.max()), (1900, 1900));
     assert_eq!((frame.min(), frame.max()), (520, 520));
     assert_eq!((all.min(), all.max(), all.count()), (2420, 2420, 49));
-    // No new conversion, no new answer, whatever the servos' frames.
+    // No new conversion, no new entry.
     rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
     assert_eq!(rig.links.contact_timing().runs, 50);
 }
@@ -253,7 +253,7 @@ fn forces_of_old_pressures_hold_although_they_were_sent_just_now() {
     ordered(&mut rig, 300, 4, TendonOrder::Measured);
     let held = port.now();
     assert!(held[0] > 1000.0, "{held:?}");
-    // Fresh orders, of pressures that were converted 201 ms ago.
+    // Fresh orders for pressures converted 201 ms ago.
     ordered(&mut rig, 20, 201, TendonOrder::Measured);
     let held = port.now();
     let runs = rig.links.contact_timing().runs;

@@ -9,7 +9,7 @@ use sophie_tasks::timing::Run;
 use crate::rig::Rig;
 use sophie_fakes::{FakeMemory, FakeWatchdog};
 
-/// Every watched task and the least number of its runs in 100 ms: half of what its rate gives.
+/// Watched tasks and their least runs in 100 ms: half of what the rate gives.
 const WATCHED: [(TaskId, u32); 9] = [
     (TaskId::Imu, 50),
     (TaskId::Estimator, 50),
@@ -38,7 +38,6 @@ struct Bench {
     watchdog: FakeWatchdog,
     ms: u64,
     calibrated: bool,
-    /// The motion is known.
     attitude: bool,
     mix: bool,
 }
@@ -59,8 +58,8 @@ impl Bench {
         }
     }
 
-    /// Runs for `ms`, a multiple of 100, in which every task has its least number of runs in 100 ms, but `other` as many
-    /// as it says; gives how often the watchdog was fed over the last 100 ms.
+    /// Runs for `ms`, a multiple of 100, with the least runs of every task but `other`, whose runs per 100 ms are
+    /// given; returns how often the watchdog was fed over the last 100 ms.
     fn run(&mut self, ms: u64, other: Option<(TaskId, u32)>) -> usize {
         let (calibrated, attitude, mix) = (self.calibrated, self.attitude, self.mix);
         let mut burst = self.ms;
@@ -109,11 +108,11 @@ fn before_calibration_the_flight_level_may_be_silent_and_the_others_may_not() {
         bench.calibrated = false;
         let fed = bench.run(4000, Some((task, 0)));
         assert_eq!(fed, if place < 5 { 10 } else { 0 }, "{task:?}");
-        // Once calibrated there is no excuse.
+        // No excuse once calibrated,
         bench.calibrated = true;
         bench.run(200, Some((task, 0)));
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
-        // Nor for one that says it is calibrated no longer.
+        // not even for one no longer calibrated.
         bench.calibrated = false;
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
     }
@@ -126,7 +125,6 @@ fn for_three_seconds_after_power_up_it_is_fed_whatever_happens() {
     for _ in 0..30 {
         assert_eq!(bench.run(100, nothing), 10);
     }
-    // At 3.00 s the time is over.
     assert_eq!(bench.run(100, nothing), 0);
 }
 
@@ -136,7 +134,7 @@ fn a_stale_attitude_or_mix_leaves_it_unfed_at_once() {
         let mut bench = Bench::new();
         assert_eq!(bench.run(4000, None), 10);
         lost(&mut bench);
-        // Stale after 5 and 10 ms: one look, or two, may still be in time.
+        // Stale after 5 and 10 ms: one or two looks may still be in time.
         assert!(bench.run(100, None) <= 2);
         assert_eq!(bench.run(100, None), 0);
     }

@@ -18,7 +18,7 @@ fn run(late: u64, end: u64, deadline: u64, skipped: u32) -> Run {
 #[test]
 fn totals_count_runs_and_misses_and_keep_the_worst() {
     let mut record = Record::new();
-    assert_eq!(record.totals, Timing::default());
+    assert_eq!(record.totals(), Timing::default());
     assert!(!record.add(&run(30, 130, 200, 0)));
     // To the microsecond in time, and one beyond.
     assert!(!record.add(&run(10, 200, 200, 0)));
@@ -27,7 +27,7 @@ fn totals_count_runs_and_misses_and_keep_the_worst() {
     assert!(record.add(&run(0, 500, 400, 3)));
     assert!(record.add(&run(0, 100, 400, 3)));
     assert_eq!(
-        record.totals,
+        record.totals(),
         Timing {
             runs: 5,
             overruns: 1 + 4 + 3,
@@ -42,7 +42,7 @@ fn totals_count_runs_and_misses_and_keep_the_worst() {
         started: Instant::from_micros(0),
         ..run(0, 0, 100, 0)
     }));
-    assert_eq!(record.totals.worst_lateness_us, 30);
+    assert_eq!(record.totals().worst_lateness_us, 30);
 }
 
 #[test]
@@ -63,5 +63,32 @@ fn each_quantity_has_its_own_histogram_and_taking_it_empties_it() {
         );
         assert_eq!(record.take(quantity).count(), 0, "{quantity:?}");
     }
-    assert_eq!(record.totals.runs, 2);
+    assert_eq!(record.totals().runs, 2);
+}
+
+#[test]
+fn a_run_that_is_noted_is_seen_by_readers_and_lost_by_none() {
+    let (mut added, mut noted) = (Record::new(), Record::new());
+    let runs = [
+        run(3, 10, 200, 0),
+        run(5, 205, 200, 0),
+        run(7, 30, 200, 2),
+        run(0, 200, 200, 0),
+    ];
+    for (i, run) in runs.iter().enumerate() {
+        assert_eq!(added.add(run), noted.note(run), "{run:?}");
+        // Settled by whoever comes first: who sends the frame, the next run, a reader.
+        match i {
+            0 => noted.settle(),
+            1 => {}
+            _ => assert_eq!(noted.totals(), added.totals(), "{run:?}"),
+        }
+    }
+    noted.note(&runs[0]);
+    added.add(&runs[0]);
+    for quantity in [Quantity::Lateness, Quantity::Execution, Quantity::Response] {
+        assert_eq!(noted.take(quantity), added.take(quantity), "{quantity:?}");
+    }
+    noted.settle();
+    assert_eq!((noted.totals(), noted.totals().runs), (added.totals(), 5));
 }

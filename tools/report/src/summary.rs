@@ -1,7 +1,7 @@
 //! `summary.json`: the flight in numbers, for programs.
 //!
 //! Units are in the names of the fields. Numbers that do not exist (NaN) are `null`. The fields and their
-//! meaning are the doc comments below; `docs/summary.md` shows them as one list.
+//! meaning are the doc comments below; `docs/summary-json.md` shows them as one list.
 
 use std::collections::BTreeMap;
 
@@ -211,7 +211,7 @@ mod tests {
     use super::super::synthetic;
     use super::*;
 
-    const DOCS: &str = include_str!("../../../docs/summary.md");
+    const DOCS: &str = include_str!("../../../docs/summary-json.md");
 
     fn json(record: &FlightRecord) -> Value {
         serde_json::from_str(&Summary::of(record).to_json()).unwrap()

@@ -1,4 +1,5 @@
 use super::*;
+use crate::bench::Spin;
 
 const THRUST: f32 = 10.0;
 /// All was given: nothing keeps the integrals from moving.
@@ -105,7 +106,14 @@ fn what_was_wound_up_goes_with_every_change_but_one_between_rate_and_angle() {
     let direct = Setpoint::Direct {
         wrench: Wrench::default(),
     };
+    let spin = Spin {
+        rotor: 0,
+        drive: 0.08,
+    };
+    let tried = Bench::new().run(1, Setpoint::Spin(spin), 0);
+    assert_eq!(tried, Demand::Spin(spin));
     for (between, then, kept) in [
+        (Setpoint::Spin(spin), ROLLING, false),
         (ROLLING, roll_to(0.0), true),
         (roll_to(0.0), ROLLING, true),
         (resting(5.0), roll_to(0.0), true),

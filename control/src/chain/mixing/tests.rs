@@ -1,4 +1,5 @@
 use super::*;
+use crate::bench::Spin;
 use crate::math::GRAVITY;
 use crate::wrench::{Configuration, Wrench};
 
@@ -116,6 +117,15 @@ fn yaw_is_given_in_the_air_and_not_on_the_pipe_and_stopped_rotors_get_nothing() 
         mix.running && mix.thrusts == [Params::default().thrust_idle; 4],
         "{mix:?}"
     );
+    let spin = |drive| Demand::Spin(Spin { rotor: 1, drive });
+    let mix = bench.run(1, &spin(0.08), &nothing);
+    assert!(
+        mix.running && mix.thrusts == [0.0; 4] && mix.commands == [0.0, 0.08, 0.0, 0.0],
+        "{mix:?}"
+    );
+    for bad in [0.5, f32::NAN] {
+        assert_eq!(bench.run(1, &spin(bad), &nothing).commands, [0.0; 4], "{bad}");
+    }
     let mix = bench.run(1, &Demand::Stop, &nothing);
     assert!(
         !mix.running && mix.thrusts == [0.0; 4] && mix.commands == [0.0; 4],

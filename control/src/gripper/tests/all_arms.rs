@@ -47,7 +47,7 @@ fn every_chosen_arm_must_hold_and_every_arm_be_free() {
     );
     out = drive(&mut gripper, [false; 4], [0.0, 0.0, 300.0, 0.0], 5.0);
     assert!(!out.released && !out.proven);
-    // Not once one arm has left the tolerance again before the other came: only when both are in it.
+    // Only with both in the tolerance at once, not one after the other.
     let mut gripper = Gripper::default();
     for (pressures, proven) in [
         ([0.0; 4], false),

@@ -1,11 +1,11 @@
-//! The watch on a sensor's ceiling, apart from the controller.
+//! The ceiling watch apart from the controller.
 
 use super::DT;
 use crate::gripper::Config;
 use crate::gripper::ceiling_watch::{CeilingSample, CeilingWatch};
 use crate::params::Params;
 
-/// Steps for 2 s in which pressure (from 300 Pa), tension and force (from 50 N) rise by so much; true for a ceiling.
+/// Raises pressure (from 300 Pa), tension and force (from 50 N) by so much in 2 s; true for a ceiling.
 fn seen(watch: &mut CeilingWatch, pressure: f32, tension: f32, force: f32) -> bool {
     let cfg = Config::from_params(&Params::default());
     (0..=200).any(|step| {
@@ -57,7 +57,7 @@ fn one_wrong_tilt_does_not_wind() {
     let cfg = Config::from_params(&Params::default());
     let mut watch = CeilingWatch::default();
     for step in 0..200 {
-        // 20 N too much for a frame of 20 ms, where both have risen by 5 N.
+        // 20 N too much for a frame of 20 ms, after a rise of both by 5 N.
         let wrong = if (100..102).contains(&step) { 20.0 } else { 0.0 };
         let base = if step > 50 { 55.0 } else { 50.0 };
         let sample = CeilingSample {

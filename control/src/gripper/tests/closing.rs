@@ -1,16 +1,16 @@
-//! How an arm approaches, takes the tendon's force over, resumes after a restart and lets go.
+//! Approach, take-over of the tendon's force, resumption after a restart, release.
 
 use super::*;
 
 #[test]
 fn the_approach_rises_with_the_arm_s_stiffness() {
-    // Infill 6.9, K 7.75: 8.2210 °/N are 0.14348 rad/N; times 0.025/0.178: 0.020152 rad/N. 0.7 rad/s
-    // over that: 34.74 N/s.
+    // Infill 6.9, K 7.75: 8.2210 °/N = 0.14348 rad/N; times 0.025/0.178: 0.020152 rad/N. 0.7 rad/s over that: 34.74
+    // N/s.
     let cfg = config();
     assert!(close(cfg.bend_per_force, 0.020_152, 1e-5) && close(cfg.approach_rate, 34.74, 0.02));
     let mut arm = ArmGripper::default();
     let grip = run(&mut arm, &cfg, 0.0, 1.0);
-    // The first step starts at the least force.
+    // From the least force on.
     assert!(
         grip.state == ArmState::Closing && close(grip.force, 34.74, 1.1),
         "{grip:?}"
@@ -23,7 +23,7 @@ fn a_touch_takes_the_tendon_s_own_force_over_without_a_kick() {
     let mut arm = ArmGripper::default();
     run(&mut arm, &cfg, 0.0, 1.5);
     let asked = arm.force;
-    // The tendon has 12 N less than asked. The pressure jumps to 300 Pa and stays.
+    // The tendon has 12 N less than asked; the pressure jumps to 300 Pa and stays.
     let mut last = asked;
     for _ in 0..50 {
         let i = ArmInput {
@@ -34,8 +34,8 @@ fn a_touch_takes_the_tendon_s_own_force_over_without_a_kick() {
         assert!((force - last).abs() < 2.0, "{last} {force}");
         last = force;
     }
-    // The surplus has gone (two filters at 25 rad/s, 0.5 s), the integral has added at most
-    // 0.05·650·0.5 = 16 N, of which 40 % in the reference's first two time constants, and P 0.0035·560.
+    // The surplus is gone (two filters at 25 rad/s, 0.5 s); the integral has added at most 0.05·650·0.5 = 16 N, of
+    // which 40 % in the reference's first two time constants, and P 0.0035·560.
     assert!((-9.0..4.0).contains(&(last - asked)), "{}", last - asked);
 }
 
@@ -44,8 +44,7 @@ fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
     let cfg = config();
     let before = holding(&cfg).force;
     let mut arm = ArmGripper::resume(before, None);
-    // While the sensors start nothing is known, then the tilt comes before the drive's tension, which by the new
-    // attitude is 4 N more.
+    // At first nothing is known, then the tilt comes before the drive's tension, 4 N more by the new attitude.
     let has = before + 4.0;
     for (pressure, tension, tilt, seconds, force, stays) in [
         (Pressure::Stale, None, None, 0.05, before, true),
@@ -78,7 +77,7 @@ fn a_resumed_arm_that_does_not_touch_goes_on_closing() {
     let mut arm = ArmGripper::resume(30.0, None);
     let grip = run(&mut arm, &cfg, 0.0, 0.5);
     assert!(close(grip.force, 30.0 + 0.3 * 34.74, 1.0) && grip.state == ArmState::Closing);
-    // A person may open it as any other.
+    // It opens as any other.
     for _ in 0..100 {
         arm.step(&cfg, &released(input(&cfg, &arm, 0.0)), DT);
     }
@@ -135,7 +134,7 @@ fn the_integral_waits_at_the_limit() {
     let cfg = config();
     let mut arm = ArmGripper::default();
     run(&mut arm, &cfg, 0.0, 1.5);
-    // 6.2 Pa/N, 830 Pa at the limit: that is reached and reported.
+    // 6.2 Pa/N, 830 Pa at the limit, which is reached and reported.
     let mut grip = ArmGrip::default();
     for _ in 0..3000 {
         let pressure = 150.0 + 6.2 * math::clamp(arm.force - 52.0, 0.0, 1e3);
@@ -145,7 +144,7 @@ fn the_integral_waits_at_the_limit() {
         grip.state == ArmState::ForceLimited && close(grip.force, cfg.limit, 1e-2),
         "{grip:?}"
     );
-    // And left at once when the pressure comes, not after unwinding 30 s.
+    // Left at once when the pressure comes, without 30 s of unwinding.
     assert!(run(&mut arm, &cfg, 1200.0, 0.3).force < cfg.limit - 2.0);
 }
 
@@ -181,7 +180,7 @@ fn release_falls_at_its_rate_and_ends_free() {
         assert!(time < 5.0);
     }
     assert!(close(time, from / 80.0, 0.03));
-    // Pressed still: not free. Light and wound back: free after the dwell.
+    // Pressed: not free. Light and wound back: free after the dwell.
     for (pressure, state) in [(500.0, ArmState::Releasing), (0.0, ArmState::Free)] {
         let mut grip = ArmGrip::default();
         for _ in 0..50 {

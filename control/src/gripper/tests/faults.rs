@@ -1,4 +1,4 @@
-//! What is wrong with an arm is seen, holds its force, and ends when it may.
+//! An arm's faults: seen, force held, and ended when allowed.
 
 use super::*;
 
@@ -14,14 +14,14 @@ fn a_fault_that_stays_until_release_outlives_a_restart() {
     assert!(run(&mut arm, &cfg, 950.0, 0.1).fault.is_none());
 }
 
-/// What a sensor reads of `pressure` on a pad of which the converter sees a `part` of the voltage, Pa: with
-/// P = pressure / 692.5 Pa the pad has P / (1 + P) of the supply.
+/// Reading (Pa) of a pad of which the converter sees a `part` of the voltage: with P = pressure / 692.5 Pa the pad has
+/// P / (1 + P) of the supply.
 fn behind(part: f32, pressure: f32) -> f32 {
     let x = part * pressure / (692.5 + pressure);
     692.5 * x / (1.0 - x)
 }
 
-/// Closes an arm on a skin of 70 Pa/N that it meets at 52 N, its sensor read through `sensor`.
+/// Closes an arm on a skin of 70 Pa/N, met at 52 N, its sensor read through `sensor`.
 fn closing_on_a_skin(sensor: impl Fn(f32) -> f32) -> (ArmGripper, ArmGrip) {
     let cfg = config();
     let mut arm = ArmGripper::default();
@@ -37,20 +37,19 @@ fn closing_on_a_skin(sensor: impl Fn(f32) -> f32) -> (ArmGripper, ArmGrip) {
 fn a_sensor_that_cannot_read_the_grip_pressure_stops_the_winding() {
     let (_, grip) = closing_on_a_skin(|pressure| pressure);
     assert!(grip.state == ArmState::Holding, "{grip:?}");
-    // Behind 1:2 the reading ends at 692 Pa. By 40 N of tension on the skin it rises by less than 6 Pa/N.
+    // Behind 1:2 the reading ends at 692 Pa; by 40 N of tension on the skin it rises by less than 6 Pa/N.
     let (mut arm, grip) = closing_on_a_skin(|pressure| behind(0.5, pressure));
     assert!(
         grip.fault == Some(GripFault::Ceiling) && grip.force < 52.0 + 50.0,
         "{grip:?}"
     );
     assert!(grip.state == ArmState::Faulty && grip.pressure < 692.5);
-    // It stays, and the force with it, until the arm is released.
+    // Fault and force stay until release.
     let cfg = config();
     let later = run(&mut arm, &cfg, 950.0, 3.0);
     assert!(later.fault == Some(GripFault::Ceiling) && later.force == grip.force);
     arm.step(&cfg, &released(input(&cfg, &arm, 500.0)), DT);
     assert!(arm.fault().is_none());
-    // Whatever sits still, wherever.
     for ceiling in [150.0, 400.0, 800.0] {
         let (_, grip) = closing_on_a_skin(|pressure| math::clamp(pressure, 0.0, ceiling));
         assert!(grip.fault == Some(GripFault::Ceiling), "{ceiling}: {grip:?}");
@@ -63,7 +62,7 @@ fn a_sensor_that_has_read_the_grip_pressure_has_the_range() {
     let cfg = config();
     let mut arm = holding(&cfg);
     let force = arm.force;
-    // The load pulls the arm away from the pipe as fast as the tendon pulls it back.
+    // The load pulls the arm off the pipe as fast as the tendon pulls it back.
     let grip = run(&mut arm, &cfg, 700.0, 3.0);
     assert!(grip.force > force + 20.0 && grip.fault.is_none(), "{grip:?}");
 }
@@ -74,7 +73,7 @@ fn a_rotor_that_starts_is_no_ceiling() {
     let mut arm = ArmGripper::default();
     let mut grip = ArmGrip::default();
     for step in 0..1500 {
-        // 0.1 s after the touch the rotor asks for 5 N, 35.6 N of the tendon's: the skin feels none of them.
+        // 0.1 s after the touch the rotor asks for 5 N, 35.6 N of the tendon's, which the skin does not feel.
         let thrust = if step > 160 { 5.0 } else { 0.0 };
         let pressure = 70.0 * math::clamp(arm.force - cfg.per_thrust * thrust - 52.0, 0.0, 1e3);
         let i = ArmInput {
@@ -184,6 +183,6 @@ fn an_arm_that_stands_still_under_a_rising_force_without_pressure_is_faulty() {
         largest = if grip.force > largest { grip.force } else { largest };
     }
     assert!(arm.fault() == Some(GripFault::Unfelt) && largest < force + 20.0);
-    // Taken back to before the rise that nothing came of.
+    // Back to the force of before the vain rise.
     assert!(arm.force < force + 8.0);
 }

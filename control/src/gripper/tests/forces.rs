@@ -1,9 +1,7 @@
-//! How fast the force of one arm may change, what it falls back to, and which way its terms act: every expected number
-//! is worked out from the constants' values, so that a changed law shows.
+//! Force rates, fallbacks and signs of the terms; every expected number follows from the constants' values.
 
 use super::*;
 
-/// One arm in a scripted world.
 struct Bench {
     cfg: Config,
     arm: ArmGripper,
@@ -27,7 +25,7 @@ impl Bench {
         -0.2 - 0.020_152 * self.arm.force
     }
 
-    /// Closes for one step, the tendon having all that was asked, and gives the change of the force, N.
+    /// Closes for one step with a tension equal to the force; returns the change of the force, N.
     fn step(&mut self, pressure: f32) -> f32 {
         let before = self.arm.force;
         let input = ArmInput {
@@ -63,8 +61,8 @@ fn near(a: f32, b: f32, tolerance: f32) -> bool {
 #[test]
 fn an_arm_that_lost_touch_pulls_harder_at_30_n_a_second() {
     let mut bench = Bench::holding(&Params::default());
-    // From 950 to 50 Pa the filter (80 rad/s, so 4/9 of the way a step) is below 100 Pa after five steps: 900·(5/9)^5 is
-    // 48. From then on the integral alone wants 0.05·900 = 45 N/s, and 30 N/s is what it gets.
+    // From 950 to 50 Pa the filter (80 rad/s: 4/9 of the way a step) is below 100 Pa after five steps: 900·(5/9)^5 =
+    // 48. Then the integral alone wants 0.05·900 = 45 N/s and gets 30 N/s.
     bench.run(50.0, 5);
     for step in 0..40 {
         let rise = bench.step(50.0);
@@ -74,7 +72,7 @@ fn an_arm_that_lost_touch_pulls_harder_at_30_n_a_second() {
 
 #[test]
 fn an_arm_that_touches_follows_its_pressure_at_300_n_a_second_at_most() {
-    // 0.05 N/Pa on the 4/9·500 Pa that the filter shows in the first step wants 11 N at once; 3 N is what it gets.
+    // 0.05 N/Pa on the first step's filtered 4/9·500 Pa wants 11 N at once and gets 3 N.
     let p = Params {
         clamp_p: 0.05,
         ..Params::default()
@@ -88,7 +86,7 @@ fn an_arm_that_touches_follows_its_pressure_at_300_n_a_second_at_most() {
 
 #[test]
 fn the_derivative_takes_force_away_while_the_pressure_rises() {
-    // The derivative alone: 0.002 N s/Pa · 1000 Pa/s = 2 N less while the pressure rises, 2 N more while it falls.
+    // The derivative alone: 0.002 N s/Pa · 1000 Pa/s = 2 N less on a rise, 2 N more on a fall.
     let p = Params {
         clamp_p: 0.0,
         clamp_i: 0.0,
@@ -121,13 +119,13 @@ fn a_touch_lost_for_good_falls_back_to_the_force_it_was_held_with() {
     let mut bench = Bench::new(&Params::default());
     bench.run(0.0, 150);
     let touched = bench.arm.force;
-    // Too little pressure for 2 s, 400 Pa on average: 0.05·400 is 20 N/s, some 30 N more. Then it is right for 2 s.
+    // 400 Pa too little on average for 2 s: 0.05·400 = 20 N/s, some 30 N more; then 2 s of the right pressure.
     for step in 0..200 {
         bench.step(300.0 + 2.5 * step as f32);
     }
     let usual = bench.run(950.0, 200);
     assert!(usual > touched + 20.0, "{touched} {usual}");
-    // The sensor slips off the pipe, and the arm, which the pipe stops, bends no more.
+    // The sensor slips off; the pipe stops the arm.
     bench.stuck_at = Some(bench.bent());
     let most = (0..100).fold(0.0f32, |most, _| {
         bench.step(50.0);
@@ -143,7 +141,7 @@ fn a_touch_lost_for_good_falls_back_to_the_force_it_was_held_with() {
 
 #[test]
 fn a_touch_lost_at_once_falls_back_to_the_tendons_own_force() {
-    // 2.5 N of thrust take 0.178/0.025·2.5 = 17.8 N of the tendon's: they are part of what it had.
+    // 2.5 N of thrust take 0.178/0.025·2.5 = 17.8 N of the tendon's force.
     let mut bench = Bench::new(&Params::default());
     bench.thrust = 2.5;
     let touched = bench.run(0.0, 150);
@@ -160,7 +158,7 @@ fn a_touch_lost_at_once_falls_back_to_the_tendons_own_force() {
 
 #[test]
 fn a_lead_that_breaks_is_a_pressure_that_vanishes_within_one_step() {
-    // Of 950 Pa: from more than 0.3 (285 Pa) to less than 0.02 (19 Pa).
+    // Of 950 Pa: from over 0.3 (285 Pa) to below 0.02 (19 Pa).
     for (from, to, broken) in [
         (950.0, 0.0, true),
         (295.0, 18.0, true),
@@ -177,12 +175,11 @@ fn a_lead_that_breaks_is_a_pressure_that_vanishes_within_one_step() {
             "{from} -> {to}"
         );
         if broken {
-            // The force is held, and the sensor stays rejected.
             assert!(near(bench.run(950.0, 100), before, 1e-6));
             assert!(bench.arm.fault() == Some(GripFault::Sensor));
         }
     }
-    // An arm that lets go takes longer: two steps of 10 ms.
+    // An arm that lets go takes two steps of 10 ms.
     let mut bench = Bench::holding(&Params::default());
     bench.step(200.0);
     bench.step(0.0);
@@ -191,11 +188,11 @@ fn a_lead_that_breaks_is_a_pressure_that_vanishes_within_one_step() {
 
 #[test]
 fn a_closed_arm_never_pays_out_below_one_newton() {
-    // 5000 Pa where 950 are wanted: the integral takes 200 N/s away, until 1 N is left, and does not go on below it.
+    // 5000 Pa against 950 Pa: the integral takes 200 N/s away, down to 1 N.
     let mut bench = Bench::holding(&Params::default());
     assert!(near(bench.run(5000.0, 500), 1.0, 1e-6));
-    // Nothing was wound up: at 600 Pa the proportional term gives 0.0035·4400 = 15 N back, and the integral
-    // 0.05·350 = 17.5 N in the first second, less what the filters and the limit on the rise cost.
+    // No wind-up: at 600 Pa the proportional term returns 0.0035·4400 = 15 N, the integral 0.05·350 = 17.5 N in the
+    // first second, less the cost of filters and rate limit.
     let force = bench.run(600.0, 100);
     assert!((25.0..34.0).contains(&force), "{force}");
 }

@@ -1,4 +1,4 @@
-//! The gripper against scripted arms: every expected number is worked out by hand.
+//! The gripper against scripted arms; expected numbers are derived by hand.
 
 mod all_arms;
 mod ceiling_watch;
@@ -21,7 +21,7 @@ fn close(a: f32, b: f32, tolerance: f32) -> bool {
     (a - b).abs() <= tolerance
 }
 
-/// An arm that bends as it should and a tendon that has what is asked.
+/// An arm that bends by its model, with a tension equal to the force.
 fn input(cfg: &Config, arm: &ArmGripper, pressure: f32) -> ArmInput {
     ArmInput {
         close: true,
@@ -32,7 +32,6 @@ fn input(cfg: &Config, arm: &ArmGripper, pressure: f32) -> ArmInput {
     }
 }
 
-/// The same input for an arm that is to open.
 fn released(input: ArmInput) -> ArmInput {
     ArmInput {
         close: false,

@@ -1,4 +1,4 @@
-//! What the flexible allocation gives, by hand and by the static model of the arms.
+//! The flexible allocation, by hand and by the arms' static model.
 
 use proptest::prelude::*;
 
@@ -38,7 +38,7 @@ fn hover_shares_the_weight_and_lifts_it() {
 
 #[test]
 fn yaw_moves_no_rotor_by_more_than_its_limit_and_the_rest_is_reported() {
-    // The rotors have room for 2.56 N of yaw each: only the limit holds it back.
+    // Each rotor has room for 2.56 N of yaw: only the limit holds it back.
     let limit = Params::default().yaw_thrust_max;
     let (m, _) = settled(HOVER);
     for yaw in [0.8, -0.8] {
@@ -72,7 +72,7 @@ fn it_gives_the_wrench_once_the_arms_have_followed() {
 
 #[test]
 fn it_gives_the_wrench_in_a_as_well() {
-    // Stiff enough for A's authority not to have been turned round.
+    // Stiff enough that A's authority is not reversed.
     let p = Params {
         gain_k: 1.0,
         ..Params::default()
@@ -121,8 +121,7 @@ fn yaw_is_gated_during_spool_up_and_never_kicks() {
 
 #[test]
 fn yaw_keeps_within_its_limit_on_every_rotor_of_a_rolling_vehicle() {
-    // Arms that bend by different thrusts take different shares of a yaw command: the one that takes most is on
-    // the left or on the right.
+    // Arms bent by different thrusts take different shares of a yaw command; the one that takes most is left or right.
     let limit = Params::default().yaw_thrust_max;
     for roll in [0.6, -0.6] {
         let w = Wrench { roll, ..HOVER };

@@ -88,7 +88,7 @@ fn reasons() -> String {
 }
 
 /// `page` with what stands between the markers of `part` replaced by `text`.
-fn replaced(page: &str, part: &str, text: &str) -> String {
+pub(super) fn replaced(page: &str, part: &str, text: &str) -> String {
     let (begin, end) = (
         std::format!("<!-- {part} -->\n"),
         std::format!("<!-- end of {part} -->"),

@@ -1,4 +1,4 @@
-//! What passes from one state to the next: the collective, the attitude held, the command in the failsafe.
+//! Handed over between states: the collective, the held attitude, the failsafe's command.
 
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;

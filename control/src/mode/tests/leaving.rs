@@ -1,4 +1,4 @@
-//! Leaving the pipe by itself: what starts an escape, what it does, who ends it; and when the arms do not let go.
+//! Escapes, their start, course and end; arms that do not let go.
 
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;
@@ -10,7 +10,7 @@ use crate::mode::*;
 use crate::rc::ArmChoice;
 
 impl Rig {
-    /// Leans by `degrees` to the right and turns further at `rate`, rad/s.
+    /// Leans right by `degrees`, turning further at `rate`, rad/s.
     fn leans(&mut self, degrees: f32, rate: f32) {
         self.inputs.motion = Some(Motion {
             q: Quat::from_euler(deg(degrees), 0.0, 0.0),
@@ -40,7 +40,7 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
         (-20.0, -0.5, true),
         (26.0, 0.0, true),
         (-26.0, 0.0, true),
-        // Rocking on the pads, and coming back.
+        // Rocking on the pads; coming back.
         (10.0, 0.5, false),
         (20.0, 0.1, false),
         (20.0, -0.5, false),
@@ -196,7 +196,7 @@ fn a_release_that_nothing_carries_is_an_escape() {
     r.expect(1.8, Mode::Releasing);
     assert_eq!(r.out.tendons, ClampCommand::Release);
     r.carried = false;
-    // 0.05 s of nothing, seen through the support's low pass of 5 Hz.
+    // 0.05 s of nothing, through the support's low pass of 5 Hz.
     let mut most = 0.0f32;
     for _ in 0..35 {
         r.step();
@@ -226,13 +226,13 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
         r.out.rotors.thrust() <= 0.42 * 33.2 + 0.1,
         "the pipe carries the rest"
     );
-    // They are reported on a release as well.
+    // Also reported on a release.
     let mut r = Rig::releasing();
     r.expect(9.8, Mode::Releasing);
     assert_eq!(r.out.reason, None);
     r.expect(0.3, Mode::Releasing);
     assert_eq!(r.out.reason, Some(Reason::ArmsStuck));
-    // What the sensors call closed may be free all the same: in the air it flies.
+    // Arms called closed may be free: in the air it flies.
     let mut r = Rig::escaping();
     r.leans(0.0, 0.0);
     r.carried = false;
@@ -285,7 +285,7 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
             r.out.reason
         );
     }
-    // The lean grows while the rotors spool up: the arms have not opened yet, and stay closed.
+    // The lean grows during spool-up: arms not yet open stay closed.
     let mut r = Rig::releasing();
     r.run(1.0);
     r.leans(18.0, 0.0);
@@ -302,7 +302,7 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
             ClampCommand::Close { arms: ArmChoice::All }
         )
     );
-    // Cancelled in the grip: it stays closed and the rotors stop.
+    // Cancelled in the grip: closed, the rotors stop.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);
@@ -311,7 +311,7 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     r.expect(0.5, Mode::Clamping);
     assert_eq!(r.out.reason, Some(Reason::LeansTooFar));
     r.expect(2.0, Mode::Perched);
-    // Upright it is a release, with the rotors carrying before the arms open.
+    // Upright: a release, the rotors carrying before the arms open.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);

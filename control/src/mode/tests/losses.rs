@@ -1,5 +1,5 @@
 //! Radio lost, or one non-finite message, at any step of any state: no rotor stops in the air, no arm opens before the
-//! rotors carry, and the state afterwards is that of an undisturbed vehicle.
+//! rotors carry, and the state becomes that of an undisturbed vehicle.
 
 use super::rig::Rig;
 use crate::grip::ArmState;
@@ -19,7 +19,7 @@ const STATES: [fn() -> Rig; 7] = [
     released,
 ];
 
-/// The arms are open and free, nothing carries any more.
+/// Arms open and free, nothing carries.
 fn released() -> Rig {
     let mut r = Rig::releasing();
     r.run(2.0);
@@ -28,7 +28,7 @@ fn released() -> Rig {
     r
 }
 
-/// Rotors may stand where nothing flies: on the ground, and on the pipe with the grip proven.
+/// Rotors may stand on the ground, and on the pipe with a proven grip.
 fn may_stand(r: &Rig) -> bool {
     matches!(r.out.mode, Mode::Calibrating | Mode::Disarmed | Mode::Perched)
         || r.out.mode == Mode::Clamping && r.inputs.grip.is_some_and(|g| g.proven)
@@ -163,7 +163,7 @@ fn no_attitude_that_is_none_is_held_on_the_pipe_or_taken_for_a_touch() {
         calibrated: true,
         ..Motion::default()
     });
-    // Spooling down, where the attitude held follows the present one: rotors that are called back must turn.
+    // Spooling down, the held attitude follows the present one: rotors called back must turn.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);

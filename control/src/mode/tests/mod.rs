@@ -1,11 +1,14 @@
 //! Tests of the mode logic: a vehicle in a world of two switches ([`rig`]), a flight in which nothing goes wrong
 //! ([`mission`]), and everything that does.
 
+mod bench;
 mod docs;
 mod hand_over;
 mod leaving;
+mod letting_go;
 mod losses;
 mod mission;
+mod pilot_page;
 mod random;
 mod reasons;
 mod restart;

@@ -1,4 +1,4 @@
-//! Random pilots, sensors and grips: what must hold whatever happens.
+//! Random pilots, sensors and grips against the invariants.
 
 extern crate std;
 use crate::grip::ArmGrip;
@@ -81,7 +81,7 @@ fn grip() -> impl Strategy<Value = Option<GripState>> {
     prop_oneof![9 => some, 1 => Just(None)]
 }
 
-/// What the vehicle meets for a while: (steps, sticks, grip, roll, carried, battery, motion is there).
+/// Conditions for a while: (steps, sticks, grip, roll, carried, battery, motion known).
 type Spell = (
     u32,
     Option<Sticks>,
@@ -144,12 +144,12 @@ proptest! {
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.is_none_or(|r| r.text().len() <= 40));
-                // Nothing opens but by the switch, turned off, or by rotors that carry.
+                // Only the switch, turned off, or carrying rotors open arms.
                 if grip_memory.arms().is_some() && tendons == ClampCommand::Release {
                     prop_assert!([Mode::Releasing, Mode::Escaping].contains(&mode) || before == Mode::Escaping || sticks.is_some_and(|s| !s.perch_switch)
                         || r.inputs.grip.is_some_and(|g| g.released), "{before:?} -> {mode:?}");
                 }
-                // Rotors start from rest only where the pilot asked for it in that very step.
+                // Rotors start from rest only when the pilot asks in that step.
                 if [Mode::Disarmed, Mode::Perched].contains(&before) && rotors.spin() {
                     prop_assert!(sticks.is_some_and(|s| s.arm_switch));
                     prop_assert!([Mode::Armed, Mode::Releasing].contains(&mode), "{before:?} -> {mode:?}");

@@ -1,4 +1,4 @@
-//! What the pilot reads beside the state, and which of two reasons comes first.
+//! Reasons shown to the pilot, and which of two comes first.
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
@@ -7,7 +7,7 @@ use crate::mode::*;
 #[test]
 fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
     let broken = ArmingInhibits::default().with(ArmingInhibit::ImuAbsent);
-    // Calibrating: the sensor that is silent, what is broken, or that it must be left alone.
+    // Calibrating: a silent sensor, what is broken, or the need for rest.
     let mut r = Rig::new();
     r.expect(0.1, Mode::Calibrating);
     assert_eq!(r.out.reason, Some(Reason::KeepStill));
@@ -19,7 +19,7 @@ fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
     r.step();
     assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::ImuStale)));
 
-    // Disarmed: what is broken at once, everything else when the pilot tries.
+    // Disarmed: what is broken at once, all else on an attempt to arm.
     let mut r = Rig::armed();
     r.sticks().yaw = -1.0;
     r.expect(1.1, Mode::Disarmed);

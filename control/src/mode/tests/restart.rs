@@ -1,4 +1,4 @@
-//! Starts on the pipe and off it: nothing opens by itself, nothing turns before the pilot has armed.
+//! Starts on and off the pipe: nothing opens by itself, nothing turns before the pilot has armed.
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
@@ -11,7 +11,7 @@ const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
 impl Rig {
     /// Restarted with this grip, the switches where they were on the pipe.
-    fn restarted(grip_memory: GripMemory) -> Self {
+    pub(super) fn restarted(grip_memory: GripMemory) -> Self {
         let mut r = Self::new();
         r.logic = ModeLogic::resume(&r.params, grip_memory);
         *r.sticks() = Sticks {
@@ -22,7 +22,7 @@ impl Rig {
         r
     }
 
-    fn calibrated(&mut self) {
+    pub(super) fn calibrated(&mut self) {
         self.inputs.motion = Some(Motion {
             calibrated: true,
             ..Motion::default()
@@ -30,7 +30,7 @@ impl Rig {
     }
 
     /// The pilot arms: switch off and on, yaw right for a second, the perch switch as it is.
-    fn arm(&mut self) {
+    pub(super) fn arm(&mut self) {
         self.sticks().throttle = 0.0;
         self.sticks().arm_switch = false;
         self.run(0.3);
@@ -41,7 +41,7 @@ impl Rig {
         self.run(0.1);
     }
 
-    /// Runs for `seconds`; in every step the rotors stand and the tendons do `tendons`.
+    /// Runs for `seconds` with standing rotors and `tendons` in every step.
     fn stays(&mut self, seconds: f32, tendons: ClampCommand) {
         for _ in 0..(seconds * 100.0) as u32 {
             self.step();
@@ -49,7 +49,7 @@ impl Rig {
         }
     }
 
-    /// Found pressed at `pressure` Pa when the power came on.
+    /// Powered on with arms pressed at `pressure` Pa.
     fn found(pressure: f32) -> Self {
         let mut r = Self::restarted(GripMemory::Unknown);
         r.grip(false, false, ArmState::Free, pressure);
@@ -70,7 +70,7 @@ fn a_restart_on_the_pipe_never_opens_and_flies_home_once_the_pilot_has_armed() {
         (r.out.mode, r.out.grip_memory),
         (Mode::Disarmed, GripMemory::Controlled(ArmChoice::All))
     );
-    // The switch that was on all along does not count: arming takes a hand.
+    // A switch left on does not count.
     assert_eq!(r.out.inhibits.first(), Some(ArmingInhibit::SwitchOnAtPowerUp));
     r.sticks().yaw = 1.0;
     r.stays(3.0, ALL);
@@ -113,7 +113,7 @@ fn the_perch_switch_that_was_left_on_opens_nothing_when_it_is_turned_off() {
             assert!(r.out.tendons != ClampCommand::Release && r.out.grip_memory == grip_memory);
             r.sticks().perch_switch = true;
             if !calibrated {
-                // Off and on so far. The next off is a person's wish, tried in the next test.
+                // Off and on so far; the next off is a wish, tested next.
                 r.logic = ModeLogic::resume(&r.params, grip_memory);
             }
         }
@@ -222,7 +222,7 @@ fn every_other_check_still_counts_on_the_pipe() {
         ),
     ];
     for (edit, why) in cases {
-        // The pilot's own choice is the front pair: what counts is the grip's.
+        // The pilot chooses the front pair: the grip's choice counts.
         let mut r = Rig::restarted(GripMemory::Controlled(ArmChoice::Rear));
         r.sticks().arms = ArmChoice::Front;
         r.calibrated();
@@ -285,7 +285,7 @@ fn arms_found_pressed_are_left_to_the_gears_until_they_are_opened_on_purpose() {
     r.sticks().perch_switch = false;
     r.expect(1.0, Mode::Releasing);
     assert!(r.out.rotors.spin() && r.out.tendons == ClampCommand::Keep);
-    // Called back before the rotors carry: the gears go on holding, as they did.
+    // Called back before the rotors carry: the gears still hold.
     r.sticks().perch_switch = true;
     r.run(0.1);
     r.sticks().perch_switch = false;
@@ -330,7 +330,7 @@ fn the_pair_that_presses_is_the_one_that_is_kept() {
         r.run(1.0);
         assert_eq!(r.out.grip_memory, grip_memory, "{pressures:?}");
     }
-    // A moment's knock is no grip.
+    // A short knock is no grip.
     let mut r = Rig::found(0.0);
     r.run(0.2);
     r.grip(false, false, ArmState::Free, 600.0);
@@ -355,48 +355,4 @@ fn nothing_is_decided_while_nothing_is_felt() {
     r.inputs.fsr_fault = [true, true, true, false];
     r.stays(1.0, ClampCommand::Keep);
     assert_eq!(r.out.grip_memory, GripMemory::HeldByGears(ArmChoice::Rear));
-}
-
-#[test]
-fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
-    // The perch switch opens the arms some steps before the arming gesture is complete, in that very step, or after it.
-    for (grip_memory, steps) in [
-        GripMemory::Controlled(ArmChoice::All),
-        GripMemory::HeldByGears(ArmChoice::All),
-    ]
-    .into_iter()
-    .flat_map(|memory| (-20..=20).map(move |steps| (memory, steps)))
-    {
-        let mut r = Rig::restarted(grip_memory);
-        r.calibrated();
-        r.grip(true, false, ArmState::Holding, 950.0);
-        r.sticks().arm_switch = false;
-        r.run(0.3);
-        r.sticks().perch_switch = false;
-        r.run(0.3);
-        r.sticks().perch_switch = true;
-        r.sticks().arm_switch = true;
-        r.run(0.3);
-        r.sticks().yaw = 1.0;
-        for step in 0..150 {
-            // The hundredth step completes the gesture.
-            r.sticks().perch_switch = step - 99 < steps;
-            r.step();
-            assert!(!r.out.rotors.spin(), "{grip_memory:?}, {steps}: step {step}");
-        }
-        if r.out.mode == Mode::Perched {
-            // Armed on the pipe before the switch was turned: off asks for a release, which takes throttle.
-            assert!(steps > 0, "{grip_memory:?}, {steps}");
-            continue;
-        }
-        assert_eq!(
-            (r.out.mode, r.out.tendons),
-            (Mode::Disarmed, ClampCommand::Release)
-        );
-        assert_eq!(r.out.inhibits.first(), Some(ArmingInhibit::ArmsClosed));
-        // Proven free: the gesture, made again, arms.
-        r.grip(false, true, ArmState::Free, 0.0);
-        r.arm();
-        assert_eq!(r.out.mode, Mode::Armed);
-    }
 }

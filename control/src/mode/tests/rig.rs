@@ -1,4 +1,4 @@
-//! A vehicle for the tests: the mode logic in a world that carries it or does not.
+//! Test vehicle: the mode logic in a world that carries it or does not.
 
 use crate::grip::ArmGrip;
 use crate::grip::ArmState;
@@ -12,13 +12,12 @@ use crate::rc::ArmChoice;
 
 pub(super) const DT: f32 = 0.01;
 
-/// A vehicle in a world of two switches: carried or not.
 #[derive(Clone)]
 pub(super) struct Rig {
     pub(super) logic: ModeLogic,
     pub(super) inputs: Inputs,
     pub(super) carried: bool,
-    /// Sink rate at which it will touch down, m/s.
+    /// Sink rate at touch-down, m/s.
     falling: f32,
     pub(super) out: Outputs,
     pub(super) params: Params,
@@ -68,7 +67,7 @@ impl Rig {
         self.inputs.lift = self.out.rotors.thrust();
         if let Some(m) = &mut self.inputs.motion {
             let felt = if self.carried {
-                // The first moment takes the speed away.
+                // The first step takes the speed away.
                 GRAVITY + core::mem::take(&mut self.falling) / DT
             } else {
                 let felt = self.inputs.lift / self.params.mass;

@@ -102,6 +102,44 @@ fn a_drive_resumes_where_it_was_and_a_wound_one_is_seeded_taut() {
 }
 
 #[test]
+fn on_the_bench_a_servo_goes_to_any_pulse_slowly_and_back_without_a_jump() {
+    // Trimmed and mirrored alike, to both ends of what servos take.
+    let mirrored = Params {
+        servo_release_2: 2000.0,
+        servo_full_2: 700.0,
+        servo_trim_2: -20.0,
+        ..params()
+    };
+    for (reel, range) in [
+        (Reel::from_params(&params(), 0), 1900.0),
+        (Reel::from_params(&mirrored, 1), 1300.0),
+    ] {
+        let (release, dt) = (reel.pulse(0.0), 0.02);
+        // BENCH_SPEED there, the speed of paying out on the way back, µs a step.
+        let [slow, fast] = [1.0, 3.0].map(|speed| speed * dt * range / 4.71 + 1e-2);
+        for goal in [500.0, 1500.0, 2500.0, 9000.0] {
+            let mut drive = TendonDrive::new();
+            let mut last = release;
+            for _ in 0..500 {
+                let output = drive.place(&reel, goal, None, dt);
+                assert!((output.pulse_us - last).abs() <= slow, "{last} {output:?}");
+                assert!(!output.held);
+                last = output.pulse_us;
+            }
+            assert!(close(last, goal.min(2500.0), 0.1), "{goal}: {last}");
+            for _ in 0..250 {
+                let output = drive.step(&reel, 0.0, None, dt);
+                assert!((output.pulse_us - last).abs() <= fast, "{last} {output:?}");
+                last = output.pulse_us;
+            }
+            assert!(close(last, release, 1e-3), "{goal}: {last}");
+            // At the release mark it is a drive like any other.
+            assert_eq!(drive, TendonDrive::new());
+        }
+    }
+}
+
+#[test]
 fn a_missing_tilt_holds_and_paying_out_needs_none() {
     let reel = Reel::from_params(&params(), 0);
     let mut drive = TendonDrive::new();

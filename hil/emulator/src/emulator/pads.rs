@@ -78,7 +78,7 @@ impl AnalogPad {
     }
 }
 
-/// What hangs on a board's pads, as `docs/boards.md` wires them. Interfaces are counted as the emulator counts them.
+/// What hangs on a board's pads, as `docs/wiring.md` wires them. Interfaces are counted as the emulator counts them.
 #[derive(Debug)]
 pub struct Pads {
     /// Name of the board.

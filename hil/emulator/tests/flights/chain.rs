@@ -5,9 +5,9 @@ use sophie_emulator::chain::Window;
 use super::*;
 
 /// Most instructions of a step between the sensor's transfer and the motor frame.
-const MOST: u64 = 6000;
+const MOST: u64 = 4780;
 /// The same on the small board, whose core lacks instructions for the minimum and the selection of floats.
-const MOST_SMALL: u64 = 6420;
+const MOST_SMALL: u64 = 5140;
 const STEPS: usize = 40;
 
 /// From the end of the sensor's transfer to the start of the motor frame no step executes more than `most`, and every

@@ -36,7 +36,7 @@ fn volts(user: &mut TcpStream) -> f64 {
 }
 
 /// A free port with the board's listener.
-fn terminal(option: &'static str) -> (u16, Terminal) {
+pub(super) fn terminal(option: &'static str) -> (u16, Terminal) {
     let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let port = free.local_addr().unwrap().port();
     drop(free);
@@ -79,7 +79,7 @@ fn at_the_console<T: Send + 'static>(
 }
 
 /// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
-fn wake(user: &mut TcpStream) {
+pub(super) fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
     // Long enough for a restart, on a machine that is busy.
     user.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
@@ -184,4 +184,51 @@ fn the_brown_out_level_of_a_new_chip_is_set_at_the_console() {
 #[test]
 fn so_is_that_of_the_small_board_whose_encoding_is_the_opposite() {
     the_brown_out_level_is_set(small_image(), "f405");
+}
+
+#[test]
+fn a_motor_a_servo_live_numbers_and_the_self_test_are_tried_at_the_console() {
+    let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();
+    let session = |user: &mut TcpStream| {
+        while !type_in(user, "status\r", "up for").contains("DISARMED") {}
+        type_in(
+            user,
+            "motor 2\r",
+            "refused: say 'propellers off' first, once they are",
+        );
+        type_in(user, "propellers off\r", "motors may be tried");
+        type_in(user, "motor 2\r", "motor 2 at 8 % for 2 s; any key stops it");
+        type_in(user, "", "motor 2 stopped\r\n> ");
+        // A row of it, then the key.
+        type_in(user, "watch imu\r", "m/s2");
+        type_in(user, "", " -9.");
+        type_in(user, "q", "\n> ");
+        let tested = type_in(user, "selftest\r", " of 17 failed\r\n> ");
+        type_in(user, "servo 1 pulse 900\r", "any key ends it");
+        tested
+    };
+    let (flight, tested) = at_the_console(&firmware, 14.0, None, None, session);
+    // The radio alone is silent.
+    assert!(tested.contains("\n1 of 17 failed"), "{tested}");
+    assert!(tested.contains("\nFAIL  receiver           silent"), "{tested}");
+    // By the frames at the pins: one motor for two seconds, the others never.
+    let asked = |s: &&Sample| s.thrust_asked[1] > 0.0;
+    let times: Vec<f64> = samples(&flight, 0.0, 14.0).filter(asked).map(|s| s.t).collect();
+    let (Some(first), Some(last)) = (times.first(), times.last()) else {
+        panic!("{}", log(&flight))
+    };
+    assert!((1.9..2.1).contains(&(last - first)), "{first} to {last} s");
+    for s in samples(&flight, 0.0, 14.0) {
+        assert!(
+            [0, 2, 3].iter().all(|rotor| s.thrust_asked[*rotor] == 0.0),
+            "{} s",
+            s.t
+        );
+        // A thirtieth of the largest, 8.3 N.
+        assert!(s.thrust_asked[1] < 0.5, "{} s: {} N", s.t, s.thrust_asked[1]);
+    }
+    let [servo, others @ ..] = flight.board.run.servos;
+    assert!((servo - 900.0).abs() < 2.0, "{servo} us");
+    assert!(others.iter().all(|us| (us - 550.0).abs() < 2.0), "{others:?} us");
+    assert_eq!(flight.gaps, []);
 }

@@ -10,12 +10,14 @@ mod chain;
 mod console;
 mod determinism;
 mod faults;
+mod first_hour;
 mod images;
 mod missions;
 mod outputs;
 mod pads;
 mod parameters;
 mod pulses;
+mod script;
 mod silicon;
 
 use std::path::{Path, PathBuf};

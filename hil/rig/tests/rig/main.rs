@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`t00_clock`] | core clock against the time base | none |
 //! | [`t10_timers`] | periods, preemption by the urgent levels | none |
+//! | [`t11_copies`] | copies of words, by length | none |
 //! | [`t20_imu`] | identity, gravity, sample rate | none |
 //! | [`t30_arms`] | each arm's BNO055 | four BNO055 |
 //! | [`t40_analog`] | conversions, half the supply | divider of two equal resistors |
@@ -19,6 +20,8 @@
 mod t00_clock;
 #[cfg(target_os = "none")]
 mod t10_timers;
+#[cfg(target_os = "none")]
+mod t11_copies;
 #[cfg(target_os = "none")]
 mod t20_imu;
 #[cfg(target_os = "none")]

@@ -1,5 +1,6 @@
 //! What the commands that fly say, and the files that they leave behind.
 
+pub mod check;
 pub mod console;
 pub mod live;
 pub mod output;

@@ -70,7 +70,7 @@ pub const MARKS: Marks = Marks {
     motors: 0x4001_0400,
 };
 
-/// The pads of `docs/boards.md`.
+/// The pads of `docs/wiring.md`.
 pub static PADS: Pads = Pads {
     name: "f405",
     part: "stm32f427",

@@ -70,7 +70,7 @@ pub const MARKS: Marks = Marks {
     motors: 0x4000_0800,
 };
 
-/// The pads of the Matek H743, as `docs/boards.md` wires them.
+/// The pads of the Matek H743, as `docs/wiring.md` wires them.
 pub static MATEK: Pads = Pads {
     name: "matek-h743",
     part: "stm32h743",

@@ -1,0 +1,100 @@
+//! The DMA stream of a motor frame. The HAL sets it up once; between two frames nothing of that changes, so that each one
+//! takes three registers: flags, length, enable. All of it, as the HAL does it, is 150 instructions between the mix and
+//! the frame.
+//!
+//! A frame's end is waited for by the clock, not by the stream's interrupt: how long it takes is known. The stream then
+//! still has rows of zeros to move, so that none of the timer's requests is left over: it would be served as the next
+//! frame is armed, and that frame would begin a bit early.
+
+use core::sync::atomic::{Ordering, fence};
+
+use embassy_stm32::dma::Transfer;
+use embassy_stm32::pac::dma::regs::{Cr, Ixr, Ndtr};
+use embassy_stm32::pac::dma::{Dma, St};
+use embassy_stm32::{pac, peripherals};
+
+/// Looks at a stream that was disabled until it stands still: it ends the beat that it is in, a few cycles of the bus.
+const LOOKS: u32 = 100;
+
+/// Where a stream's registers are.
+pub trait FrameStream {
+    /// The controller.
+    const CONTROLLER: Dma;
+    /// The stream's number, 0 to 7.
+    const NUMBER: usize;
+}
+
+macro_rules! streams {
+    ($($controller:ident: $($stream:ident $number:literal)+;)+) => {
+        $($(impl FrameStream for peripherals::$stream {
+            const CONTROLLER: Dma = pac::$controller;
+            const NUMBER: usize = $number;
+        })+)+
+    };
+}
+
+streams! {
+    DMA1: DMA1_CH0 0 DMA1_CH1 1 DMA1_CH2 2 DMA1_CH3 3 DMA1_CH4 4 DMA1_CH5 5 DMA1_CH6 6 DMA1_CH7 7;
+    DMA2: DMA2_CH0 0 DMA2_CH1 1 DMA2_CH2 2 DMA2_CH3 3 DMA2_CH4 4 DMA2_CH5 5 DMA2_CH6 6 DMA2_CH7 7;
+}
+
+/// A stream that moves the same memory to the same register each time.
+pub struct Stream {
+    controller: Dma,
+    registers: St,
+    /// Which of the two flag registers, and the stream's flags in it.
+    flags: (usize, Ixr),
+    /// As the HAL configured it, not enabled and without interrupts.
+    control: Cr,
+    length: Ndtr,
+}
+
+impl Stream {
+    /// Stream `D`, set up as `first` set it up for `length` values, and stopped.
+    pub fn of<D: FrameStream>(first: Transfer<'_>, length: usize) -> Self {
+        let registers = D::CONTROLLER.st(D::NUMBER);
+        let mut control = registers.cr().read();
+        // What is given up leaves address, length and FIFO as they are (embassy-stm32 0.6, `Channel::request_reset`).
+        drop(first);
+        control.set_en(false);
+        control.set_teie(false);
+        control.set_htie(false);
+        control.set_tcie(false);
+        let [low, high] = [D::NUMBER % 4 / 2 * 16, D::NUMBER % 2 * 6];
+        Self {
+            controller: D::CONTROLLER,
+            registers,
+            flags: (D::NUMBER / 4, Ixr(0b11_1101 << (low + high))),
+            control,
+            length: Ndtr(length as u32),
+        }
+    }
+
+    /// Ends a transfer, wherever it is; one that has ended takes a look.
+    #[inline]
+    pub fn stop(&self) {
+        let control = self.registers.cr();
+        if control.read().en() {
+            control.write_value(self.control);
+            for _ in 0..LOOKS {
+                if !control.read().en() {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Makes the stream wait for requests. It fetches the first values at once: they must lie in memory.
+    #[inline]
+    pub fn arm(&self) {
+        let (register, flags) = self.flags;
+        // A stream is not enabled while one of its flags stands (RM0433 §16.3.19, RM0090 §10.3.18).
+        self.controller.ifcr(register).write_value(flags);
+        self.registers.ndtr().write_value(self.length);
+        // What was written before is in memory when the stream fetches it.
+        fence(Ordering::SeqCst);
+        let mut control = self.control;
+        control.set_en(true);
+        self.registers.cr().write_value(control);
+    }
+}

@@ -1,0 +1,514 @@
+//! Calibration on the table: from samples at rest to what a parameter should be, or to the number that forbids it.
+//!
+//! Nothing here is kept or applied: the console shows the result, `save` stores it.
+
+use crate::math::{GRAVITY, clamp, deg, sin, sqrt};
+use crate::vector::Vec3;
+
+/// Least samples of a mean.
+pub const SAMPLES_MIN: u16 = 100;
+/// Largest spread (standard deviation) of the specific force at rest, m/s²: a table that is touched gives more.
+pub const FORCE_SPREAD_MAX: f32 = 0.15;
+/// Largest spread of the gyro at rest, rad/s (0.57 deg/s).
+pub const RATE_SPREAD_MAX: f32 = 0.01;
+/// Largest bias of an accelerometer, m/s²: 60 mg, the range of the parameters.
+pub const BIAS_MAX: f32 = 0.6;
+/// Largest lean of a face from the vertical, rad (8°): it takes 1 % off the gravity that this face reads, half of it
+/// goes into the bias (0.05 m/s²).
+pub const FACE_LEAN_MAX: f32 = deg(8.0);
+/// What may be read of gravity on the side that lies below, share of it: the largest bias there is and was taken off
+/// (0.6 m/s² and half of it), the scale and the lean.
+pub const SIDE_SHARE: [f32; 2] = [0.85, 1.15];
+/// Scale of an accelerometer's axis within which the part is sound.
+pub const SCALE: [f32; 2] = [0.97, 1.03];
+/// Largest spread of the battery's voltage, share of it.
+pub const VOLTAGE_SPREAD_MAX: f32 = 0.01;
+/// Batteries that a meter can have read, V.
+pub const METER: [f32; 2] = [3.0, 60.0];
+/// Range of the battery's divider, as of its parameter.
+pub const DIVIDER: [f32; 2] = [1.0, 60.0];
+
+/// Largest spread of a pressure at rest, Pa.
+pub const PRESSURE_SPREAD_MAX: f32 = 30.0;
+/// Pressures that a weight for the calibration makes, Pa: a fifth of a grip at least, and what the sensor bears.
+pub const WEIGHT_PRESSURE: [f32; 2] = [200.0, 5000.0];
+/// Range of a sensor's conductance over the common one, and of its zero (Pa), as of their parameters.
+pub const TRIM: [f32; 2] = [0.2, 5.0];
+/// The zero's.
+pub const ZERO: [f32; 2] = [0.0, 300.0];
+/// Largest spread of an arm's tilt at rest, rad.
+pub const TILT_SPREAD_MAX: f32 = 0.02;
+/// Turn of an arm that is bent up by hand, rad: enough for its sign, and not another thing.
+pub const TURN: [f32; 2] = [0.1, 1.5];
+/// Largest tilt that the sensor of a straight arm may show, rad, as of its parameter.
+pub const ARM_ZERO_MAX: f32 = 0.6;
+
+/// What is wrong with the samples: the number, and what is allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unfit {
+    /// What it is.
+    pub what: &'static str,
+    /// What was found.
+    pub value: f32,
+    /// Least and most that is allowed.
+    pub allowed: [f32; 2],
+    /// Unit of all three.
+    pub unit: &'static str,
+}
+
+/// `Ok` for a value within `allowed`; a value that is no number is not.
+fn within(what: &'static str, value: f32, allowed: [f32; 2], unit: &'static str) -> Result<(), Unfit> {
+    let [least, most] = allowed;
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(Unfit {
+            what,
+            value,
+            allowed,
+            unit,
+        })
+    }
+}
+
+/// Mean and spread of vectors, sample by sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Samples {
+    count: u16,
+    mean: Vec3,
+    /// Squares of the distances to the mean.
+    squares: Vec3,
+}
+
+impl Samples {
+    /// Takes one sample; after 65,535 no more. One that is no number spoils them all.
+    pub fn add(&mut self, sample: Vec3) {
+        if self.count < u16::MAX {
+            self.count += 1;
+            let before = sample - self.mean;
+            self.mean += before * (1.0 / f32::from(self.count));
+            self.squares += before.scale_by(sample - self.mean);
+        }
+    }
+
+    /// The mean.
+    pub const fn mean(&self) -> Vec3 {
+        self.mean
+    }
+
+    /// Largest standard deviation of an axis.
+    pub fn spread(&self) -> f32 {
+        let [x, y, z] = self.squares.to_array();
+        let widest = if x > y { x } else { y };
+        let widest = if widest > z { widest } else { z };
+        sqrt(widest / f32::from(self.count.max(1)))
+    }
+
+    /// The mean of enough samples that are quiet: spread at most `most` in `unit`.
+    fn quiet_mean(&self, most: f32, unit: &'static str) -> Result<Vec3, Unfit> {
+        let enough = [f32::from(SAMPLES_MIN), f32::from(u16::MAX)];
+        within("samples", f32::from(self.count), enough, "")?;
+        let sum = self.mean.x + self.mean.y + self.mean.z;
+        within("mean", sum, [f32::MIN, f32::MAX], unit)?;
+        within("noise", self.spread(), [0.0, most], unit)?;
+        Ok(self.mean)
+    }
+}
+
+/// What the gyro reads at rest, rad/s.
+///
+/// # Errors
+/// Samples that are few or noisy.
+pub fn rest_rate(samples: &Samples) -> Result<Vec3, Unfit> {
+    samples.quiet_mean(RATE_SPREAD_MAX, "rad/s")
+}
+
+/// The accelerometer's bias by one rest on a level table, m/s²; `bias` is the one that is taken off already.
+///
+/// A table that leans by 1° goes into x and y as 0.17 m/s², and an error of the scale into z.
+///
+/// # Errors
+/// Samples that are few or noisy, or a bias that no sound part on a level table has.
+pub fn level(samples: &Samples, bias: Vec3) -> Result<Vec3, Unfit> {
+    let mean = samples.quiet_mean(FORCE_SPREAD_MAX, "m/s2")?;
+    checked_bias(bias + mean + Vec3::new(0.0, 0.0, GRAVITY))
+}
+
+fn checked_bias(bias: Vec3) -> Result<Vec3, Unfit> {
+    let names = ["bias along x", "bias along y", "bias along z"];
+    for (name, value) in names.into_iter().zip(bias.to_array()) {
+        within(name, value, [-BIAS_MAX, BIAS_MAX], "m/s2")?;
+    }
+    Ok(bias)
+}
+
+/// A side of the vehicle that can lie below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Face {
+    /// Belly down: level.
+    Belly,
+    /// On its back.
+    Back,
+    /// Nose down.
+    Nose,
+    /// Tail down.
+    Tail,
+    /// Right side down.
+    Right,
+    /// Left side down.
+    Left,
+}
+
+impl Face {
+    /// All six, in the order in which they are asked for.
+    pub const ALL: [Self; 6] = [
+        Self::Belly,
+        Self::Back,
+        Self::Nose,
+        Self::Tail,
+        Self::Right,
+        Self::Left,
+    ];
+
+    /// How the vehicle lies.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Belly => "level, belly down",
+            Self::Back => "on its back",
+            Self::Nose => "nose down",
+            Self::Tail => "tail down",
+            Self::Right => "right side down",
+            Self::Left => "left side down",
+        }
+    }
+
+    /// Specific force with this side down, m/s², body.
+    pub const fn force(self) -> Vec3 {
+        match self {
+            Self::Belly => Vec3::new(0.0, 0.0, -GRAVITY),
+            Self::Back => Vec3::new(0.0, 0.0, GRAVITY),
+            Self::Nose => Vec3::new(-GRAVITY, 0.0, 0.0),
+            Self::Tail => Vec3::new(GRAVITY, 0.0, 0.0),
+            Self::Right => Vec3::new(0.0, -GRAVITY, 0.0),
+            Self::Left => Vec3::new(0.0, GRAVITY, 0.0),
+        }
+    }
+}
+
+/// Bias and scale by six faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SixFaces {
+    /// Bias of each axis, m/s², with what is taken off already.
+    pub bias: Vec3,
+    /// What each axis reads over what there is.
+    pub scale: Vec3,
+}
+
+/// The mean over one rest with `face` down, m/s².
+///
+/// # Errors
+/// Samples that are few or noisy, or another side that lies below, or one that leans.
+pub fn face(samples: &Samples, face: Face) -> Result<Vec3, Unfit> {
+    let mean = samples.quiet_mean(FORCE_SPREAD_MAX, "m/s2")?;
+    let expected = face.force();
+    let along = mean.dot(expected) / GRAVITY;
+    let allowed = SIDE_SHARE.map(|share| share * GRAVITY);
+    within("gravity on this side", along, allowed, "m/s2")?;
+    let across = mean - expected * (along / GRAVITY);
+    let most = GRAVITY * sin(FACE_LEAN_MAX) + BIAS_MAX;
+    within("lean of this side", across.norm(), [0.0, most], "m/s2")?;
+    Ok(mean)
+}
+
+/// Bias and scale from the means with each side down, in the order of [`Face::ALL`]; `bias` is taken off them already. A
+/// table that leans does no harm: of each axis only the two faces count in which it is vertical.
+///
+/// # Errors
+/// A bias or a scale that no sound part has.
+pub fn six_faces(means: &[Vec3; 6], bias: Vec3) -> Result<SixFaces, Unfit> {
+    let [belly, back, nose, tail, right, left] = means;
+    let centre = Vec3::new(tail.x + nose.x, left.y + right.y, back.z + belly.z) * 0.5;
+    let span = Vec3::new(tail.x - nose.x, left.y - right.y, back.z - belly.z);
+    let scale = span * (0.5 / GRAVITY);
+    for (name, value) in ["scale of x", "scale of y", "scale of z"]
+        .into_iter()
+        .zip(scale.to_array())
+    {
+        within(name, value, SCALE, "")?;
+    }
+    Ok(SixFaces {
+        bias: checked_bias(bias + centre)?,
+        scale,
+    })
+}
+
+/// The divider with which the battery reads what a meter reads, `meter` V; with `divider` it reads the mean of
+/// `samples` (V, along x).
+///
+/// # Errors
+/// Samples that are few or noisy, a meter's reading that is no battery's, or a divider out of its range.
+pub fn divider(samples: &Samples, divider: f32, meter: f32) -> Result<f32, Unfit> {
+    within("the meter's reading", meter, METER, "V")?;
+    let most = VOLTAGE_SPREAD_MAX * clamp(samples.mean().x.abs(), 1.0, 100.0);
+    let volts = samples.quiet_mean(most, "V")?.x;
+    within("the board's reading", volts, [0.5, 100.0], "V")?;
+    let new = divider * meter / volts;
+    within("the divider", new, DIVIDER, "")?;
+    Ok(new)
+}
+
+/// What makes a pressure of a sensor's conductance beside what all have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FsrFit {
+    /// Its conductance over the common one.
+    pub trim: f32,
+    /// What it shows while nothing presses it, Pa.
+    pub zero: f32,
+}
+
+/// The fit with which the sensor shows nothing when `empty` and `pressure` (Pa) when `loaded`; pressures (Pa, along x)
+/// were read with the fit `now`.
+///
+/// # Errors
+/// Samples that are few or noisy, a weight that is too small or too large, or a fit out of its range.
+pub fn pressure_sensor(
+    empty: &Samples,
+    loaded: &Samples,
+    pressure: f32,
+    now: FsrFit,
+) -> Result<FsrFit, Unfit> {
+    within("pressure of the weight", pressure, WEIGHT_PRESSURE, "Pa")?;
+    let [empty, loaded] = [
+        empty.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x,
+        loaded.quiet_mean(PRESSURE_SPREAD_MAX, "Pa")?.x,
+    ];
+    let trim = now.trim * (loaded - empty) / pressure;
+    within("conductance over fsr_gain", trim, TRIM, "")?;
+    let zero = (empty + now.zero) * now.trim / trim;
+    within("pressure without the weight", zero, ZERO, "Pa")?;
+    Ok(FsrFit { trim, zero })
+}
+
+/// What makes a tilt of what an arm's sensor shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmFit {
+    /// 1, or -1 for a sensor that is mounted the other way round.
+    pub sign: f32,
+    /// Tilt that it shows while the arm is straight, rad, by this sign.
+    pub zero: f32,
+}
+
+impl ArmFit {
+    /// The tilt of an arm whose sensor shows `shown`, rad.
+    pub fn tilt(&self, shown: f32) -> f32 {
+        self.sign * shown - self.zero
+    }
+}
+
+/// The fit of a sensor on an arm that was held straight, and then bent up; tilts (rad, along x) were read with the fit
+/// `now`.
+///
+/// # Errors
+/// Samples that are few or noisy, an arm that was hardly bent, or a zero out of its range.
+pub fn arm_sensor(straight: &Samples, up: &Samples, now: ArmFit) -> Result<ArmFit, Unfit> {
+    let [straight, up] = [
+        straight.quiet_mean(TILT_SPREAD_MAX, "rad")?.x,
+        up.quiet_mean(TILT_SPREAD_MAX, "rad")?.x,
+    ];
+    within("turn of the arm", (up - straight).abs(), TURN, "rad")?;
+    let shown = (straight + now.zero) * now.sign;
+    let sign = if up > straight { now.sign } else { -now.sign };
+    let zero = shown * sign;
+    within(
+        "tilt of the straight arm",
+        zero,
+        [-ARM_ZERO_MAX, ARM_ZERO_MAX],
+        "rad",
+    )?;
+    Ok(ArmFit { sign, zero })
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Noise of up to `size` about zero, by a fixed generator: its mean over 200 samples is below a tenth of it.
+    fn noise(size: f32) -> impl FnMut() -> Vec3 {
+        let mut state = 1u32;
+        move || {
+            let mut next = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                ((state >> 8) as f32 / 16_777_216.0 - 0.5) * 2.0 * size
+            };
+            Vec3::new(next(), next(), next())
+        }
+    }
+
+    fn samples(mean: Vec3, size: f32) -> Samples {
+        let (mut samples, mut noise) = (Samples::default(), noise(size));
+        for _ in 0..200 {
+            samples.add(mean + noise());
+        }
+        samples
+    }
+
+    fn vector(size: f32) -> impl Strategy<Value = Vec3> {
+        (-size..size, -size..size, -size..size).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+    }
+
+    proptest! {
+        #[test]
+        fn a_level_rest_gives_the_bias(bias in vector(0.5), taken in vector(0.3)) {
+            let reads = Face::Belly.force() + bias - taken;
+            let found = level(&samples(reads, 0.2), taken).unwrap();
+            prop_assert!((found - bias).norm() < 0.04, "{found:?}");
+        }
+
+        /// On a table that leans by up to 5°, with an error of the scale: within 0.05 m/s² and 0.5 %.
+        #[test]
+        fn six_faces_give_bias_and_scale_on_a_table_that_leans(
+            bias in vector(0.5), taken in vector(0.3), error in vector(0.02), lean in vector(0.08),
+        ) {
+            let scale = Vec3::new(1.0, 1.0, 1.0) + error;
+            let mut means = Vec::new();
+            for (i, side) in Face::ALL.into_iter().enumerate() {
+                let turned = crate::vector::Quat::from_euler(lean.x, lean.y * f32::from(i as u8 % 2), 0.0).rotate(side.force());
+                let reads = turned.scale_by(scale) + bias - taken;
+                means.push(face(&samples(reads, 0.2), side).unwrap());
+            }
+            let found = six_faces(means.as_slice().try_into().unwrap(), taken).unwrap();
+            prop_assert!((found.bias - bias).norm() < 0.07, "{:?}", found.bias);
+            prop_assert!((found.scale - scale).norm() < 0.012, "{:?}", found.scale);
+        }
+
+        #[test]
+        fn the_divider_is_found(volts in 6.0f32..50.0, wrong in 0.6f32..1.6) {
+            // The board reads `wrong` times what there is.
+            let read = samples(Vec3::new(volts * wrong, 0.0, 0.0), 0.02);
+            let found = divider(&read, 11.0, volts).unwrap();
+            prop_assert!((found - 11.0 / wrong).abs() < 0.01 * found);
+        }
+
+        /// Within 5 % and 10 Pa, under noise of 40 Pa.
+        #[test]
+        fn a_sensors_zero_and_conductance_are_found(
+            trim in 0.4f32..2.5, zero in 0.0f32..100.0, old_trim in 0.5f32..2.0, old_zero in 0.0f32..50.0, weight in 500.0f32..3000.0,
+        ) {
+            // What it shows with the old fit: the conductance is that of the true one.
+            let shown = |pressure: f32| Vec3::new((pressure + zero) * trim / old_trim - old_zero, 0.0, 0.0);
+            let now = FsrFit { trim: old_trim, zero: old_zero };
+            let found = pressure_sensor(&samples(shown(0.0), 40.0), &samples(shown(weight), 40.0), weight, now).unwrap();
+            prop_assert!((found.trim / trim - 1.0).abs() < 0.05, "{found:?}");
+            prop_assert!((found.zero - zero).abs() < 10.0 + 0.05 * zero, "{found:?}");
+        }
+
+        /// Within 0.01 rad, under noise of 0.03 rad.
+        #[test]
+        fn an_arms_zero_and_sign_are_found(
+            reversed in any::<bool>(), was_reversed in any::<bool>(), zero in -0.5f32..0.5, old_zero in -0.3f32..0.3, up in 0.15f32..0.8,
+        ) {
+            let sign = |reversed| if reversed { -1.0 } else { 1.0 };
+            let (truth, now) = (ArmFit { sign: sign(reversed), zero }, ArmFit { sign: sign(was_reversed), zero: old_zero });
+            // What the sensor shows of a tilt, and what is made of it with the old fit.
+            let read = |tilt: f32| Vec3::new(now.tilt((tilt + truth.zero) * truth.sign), 0.0, 0.0);
+            let found = arm_sensor(&samples(read(0.0), 0.03), &samples(read(up), 0.03), now).unwrap();
+            prop_assert!(found.sign == truth.sign && (found.zero - truth.zero).abs() < 0.01, "{found:?}");
+        }
+
+        #[test]
+        fn no_samples_make_a_result_that_is_no_number(values in prop::collection::vec(
+            (prop::num::f32::ANY, prop::num::f32::ANY, prop::num::f32::ANY), 0..130))
+        {
+            let mut samples = Samples::default();
+            for (x, y, z) in values {
+                samples.add(Vec3::new(x, y, z));
+            }
+            prop_assert!(level(&samples, Vec3::ZERO).is_ok_and(Vec3::is_finite) || level(&samples, Vec3::ZERO).is_err());
+            prop_assert!(divider(&samples, 11.0, 15.0).is_ok_and(f32::is_finite) || divider(&samples, 11.0, 15.0).is_err());
+        }
+    }
+
+    #[test]
+    fn mean_and_spread_by_hand() {
+        let mut samples = Samples::default();
+        for x in [1.0, 3.0, 1.0, 3.0] {
+            samples.add(Vec3::new(x, 5.0, 0.0));
+        }
+        assert_eq!(samples.mean(), Vec3::new(2.0, 5.0, 0.0));
+        assert!((samples.spread() - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_number() {
+        let rest = Face::Belly.force();
+        let what = |result: Result<Vec3, Unfit>| result.unwrap_err().what;
+        assert_eq!(what(level(&Samples::default(), Vec3::ZERO)), "samples");
+        assert_eq!(what(level(&samples(rest, 0.5), Vec3::ZERO)), "noise");
+        let leans = rest + Vec3::new(0.0, 0.7, 0.0);
+        let unfit = level(&samples(leans, 0.01), Vec3::ZERO).unwrap_err();
+        assert_eq!((unfit.what, unfit.allowed), ("bias along y", [-0.6, 0.6]));
+        assert!((unfit.value - 0.7).abs() < 0.01);
+        assert_eq!(
+            what(level(&samples(Vec3::new(f32::NAN, 0.0, 0.0), 0.1), Vec3::ZERO)),
+            "mean"
+        );
+        // Another side below, and one that leans by 20°.
+        assert_eq!(
+            what(face(&samples(rest, 0.01), Face::Nose)),
+            "gravity on this side"
+        );
+        let leaning = Vec3::new(0.0, -3.35, -9.22);
+        assert_eq!(
+            what(face(&samples(leaning, 0.01), Face::Belly)),
+            "lean of this side"
+        );
+        assert_eq!(what(rest_rate(&samples(Vec3::ZERO, 0.1))), "noise");
+        let volts = samples(Vec3::new(15.0, 0.0, 0.0), 0.01);
+        for (read, meter, name) in [
+            (&volts, 2.0, "the meter's reading"),
+            (&volts, f32::NAN, "the meter's reading"),
+            (&samples(Vec3::ZERO, 0.01), 15.0, "the board's reading"),
+            (&samples(Vec3::new(15.0, 0.0, 0.0), 0.6), 15.0, "noise"),
+            (&samples(Vec3::new(1.0, 0.0, 0.0), 0.01), 15.0, "the divider"),
+        ] {
+            assert_eq!(divider(read, 11.0, meter).unwrap_err().what, name);
+        }
+        let mut means = Face::ALL.map(Face::force);
+        means[5] = means[5] * 1.1;
+        assert_eq!(six_faces(&means, Vec3::ZERO).unwrap_err().what, "scale of y");
+    }
+
+    #[test]
+    fn a_weight_that_is_not_felt_and_an_arm_that_is_not_bent_are_refused() {
+        let at = |value| samples(Vec3::new(value, 0.0, 0.0), 0.001);
+        let now = FsrFit { trim: 1.0, zero: 0.0 };
+        for (empty, loaded, pressure, what) in [
+            (0.0, 0.0, 1000.0, "conductance over fsr_gain"),
+            (0.0, 1000.0, 100.0, "pressure of the weight"),
+            (400.0, 1400.0, 1000.0, "pressure without the weight"),
+            (f32::NAN, 1000.0, 1000.0, "mean"),
+        ] {
+            let unfit = pressure_sensor(&at(empty), &at(loaded), pressure, now).unwrap_err();
+            assert_eq!(unfit.what, what);
+        }
+        let now = ArmFit { sign: 1.0, zero: 0.0 };
+        for (straight, up, what) in [
+            (0.0, 0.05, "turn of the arm"),
+            (0.7, 1.0, "tilt of the straight arm"),
+        ] {
+            assert_eq!(arm_sensor(&at(straight), &at(up), now).unwrap_err().what, what);
+        }
+    }
+
+    #[test]
+    fn each_side_is_the_opposite_of_the_next() {
+        for pair in Face::ALL.chunks(2) {
+            assert_eq!(pair[0].force() + pair[1].force(), Vec3::ZERO);
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! Orders of the bench: when they begin, what ends them, and that nothing turns or moves otherwise.
+
+use proptest::prelude::*;
+
+use super::rig::{DT, Rig};
+use crate::arming::ArmingInhibit;
+use crate::bench::{
+    BenchAnswer, BenchOrder, BenchRefusal, BenchState, Place, SPIN_DRIVE, SPIN_DRIVE_MAX, SPIN_TIME, Spin,
+};
+use crate::mode::*;
+use crate::rc::ArmChoice;
+
+const SPIN: BenchOrder = BenchOrder::Spin(Spin {
+    rotor: 2,
+    drive: SPIN_DRIVE,
+});
+const PLACE: BenchOrder = BenchOrder::Place(Place {
+    servo: 1,
+    pulse_us: 1500.0,
+});
+
+impl Rig {
+    /// Disarmed, the arms known to be open.
+    fn on_the_table() -> Self {
+        let mut r = Self::new();
+        r.inputs.motion = Some(Motion {
+            calibrated: true,
+            ..Default::default()
+        });
+        r.expect(1.0, Mode::Disarmed);
+        assert_eq!(r.out.grip_memory, GripMemory::Open);
+        r
+    }
+
+    /// The same with propellers that are said to be off.
+    fn without_propellers() -> Self {
+        let mut r = Self::on_the_table();
+        assert_eq!(r.order(BenchOrder::PropellersOff), BenchState::Done);
+        r
+    }
+
+    /// Gives `order` under a new number; the answer after a step.
+    fn order(&mut self, order: BenchOrder) -> BenchState {
+        let number = self.out.bench.number + 1;
+        self.inputs.bench = Some(BenchRequest { number, order });
+        self.step();
+        assert_eq!(self.out.bench.number, number);
+        self.out.bench.state
+    }
+}
+
+#[test]
+fn a_motor_turns_for_two_seconds_and_no_longer_however_often_it_is_renewed() {
+    let mut r = Rig::without_propellers();
+    assert_eq!(r.order(SPIN), BenchState::Running);
+    let mut turned = 0;
+    for _ in 0..1000 {
+        match r.out.rotors {
+            Setpoint::Spin(spin) => {
+                assert_eq!((spin.rotor, r.out.bench.state), (2, BenchState::Running));
+                assert_eq!(r.out.reason, Some(Reason::OnBench));
+                turned += 1;
+            }
+            Setpoint::Stop => assert_eq!(r.out.bench.state, BenchState::Done),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(r.out.tendons, ClampCommand::Release);
+        r.step();
+    }
+    let expected = (SPIN_TIME / DT + 0.5) as i32;
+    assert!((turned - expected).abs() <= 1, "{turned} steps");
+    // Under a new number it turns again.
+    assert_eq!(r.order(SPIN), BenchState::Running);
+}
+
+#[test]
+fn whatever_speaks_against_it_refuses_an_order_and_ends_one_that_lasts() {
+    type Trouble = fn(&mut Rig);
+    let spoils: [(BenchRefusal, Trouble); 3] = [
+        (BenchRefusal::ArmSwitchOn, |r| r.sticks().arm_switch = true),
+        (BenchRefusal::Storing, |r| {
+            r.inputs.hardware = r.inputs.hardware.with(ArmingInhibit::Storing);
+        }),
+        (BenchRefusal::ImuSilent, |r| r.inputs.motion = None),
+    ];
+    for (why, spoil) in spoils {
+        for order in [SPIN, PLACE] {
+            // A servo needs no motion.
+            if (why, order) == (BenchRefusal::ImuSilent, PLACE) {
+                continue;
+            }
+            let mut r = Rig::without_propellers();
+            spoil(&mut r);
+            assert_eq!(r.order(order), BenchState::Refused(why));
+            let mut r = Rig::without_propellers();
+            assert_eq!(r.order(order), BenchState::Running);
+            r.run(0.5);
+            spoil(&mut r);
+            r.step();
+            assert_eq!(r.out.bench.state, BenchState::Ended(why), "{order:?}");
+            assert_eq!(
+                (r.out.rotors, r.out.tendons),
+                (Setpoint::Stop, ClampCommand::Release)
+            );
+            // It does not come back by itself.
+            r.sticks().arm_switch = false;
+            r.inputs.hardware = ArmingInhibits::NONE;
+            r.run(0.5);
+            assert_eq!(
+                (r.out.rotors, r.out.tendons),
+                (Setpoint::Stop, ClampCommand::Release)
+            );
+        }
+    }
+}
+
+#[test]
+fn propellers_are_confirmed_since_power_up_and_since_the_last_arming() {
+    let mut r = Rig::on_the_table();
+    assert_eq!(r.order(SPIN), BenchState::Refused(BenchRefusal::PropellersOn));
+    // A servo needs no word about propellers.
+    assert_eq!(r.order(PLACE), BenchState::Running);
+    assert_eq!(r.order(BenchOrder::PropellersOff), BenchState::Done);
+    assert_eq!(
+        r.out.tendons,
+        ClampCommand::Release,
+        "a new order ends the one before"
+    );
+    assert_eq!(r.order(SPIN), BenchState::Running);
+    r.order(BenchOrder::End);
+    *r.sticks() = Sticks {
+        arm_switch: true,
+        yaw: 1.0,
+        ..Default::default()
+    };
+    r.expect(1.1, Mode::Armed);
+    r.sticks().arm_switch = false;
+    r.expect(0.1, Mode::Disarmed);
+    assert_eq!(r.order(SPIN), BenchState::Refused(BenchRefusal::PropellersOn));
+}
+
+#[test]
+fn orders_are_for_disarmed_alone_and_not_for_arms_that_hold_or_may() {
+    for mut r in [Rig::armed(), Rig::flying(), Rig::perched(), Rig::new()] {
+        for order in [BenchOrder::PropellersOff, SPIN, PLACE] {
+            let before = r.out.mode;
+            let refused = BenchState::Refused(BenchRefusal::NotDisarmed);
+            assert_eq!(r.order(order), refused, "{before:?}");
+            assert_eq!(r.out.mode, before);
+        }
+    }
+    for (grip_memory, why) in [
+        (GripMemory::Controlled(ArmChoice::All), BenchRefusal::ArmsClosed),
+        (
+            GripMemory::HeldByGears(ArmChoice::Front),
+            BenchRefusal::ArmsClosed,
+        ),
+        (GripMemory::Unknown, BenchRefusal::GripUnknown),
+    ] {
+        let mut r = Rig::on_the_table();
+        r.logic = ModeLogic::resume(&r.params, grip_memory);
+        r.inputs.grip = None;
+        r.expect(0.5, Mode::Disarmed);
+        assert_eq!(r.order(BenchOrder::PropellersOff), BenchState::Done);
+        for order in [SPIN, PLACE] {
+            assert_eq!(r.order(order), BenchState::Refused(why));
+            assert_eq!(r.out.tendons, grip_memory.tendons());
+        }
+    }
+}
+
+#[test]
+fn silence_of_the_console_ends_an_order_for_good() {
+    for order in [SPIN, PLACE] {
+        let mut r = Rig::without_propellers();
+        r.order(order);
+        let request = r.inputs.bench.take();
+        r.step();
+        assert_eq!(r.out.bench.state, BenchState::Ended(BenchRefusal::NotRenewed));
+        assert_eq!(
+            (r.out.rotors, r.out.tendons),
+            (Setpoint::Stop, ClampCommand::Release)
+        );
+        r.inputs.bench = request;
+        r.run(0.5);
+        assert_eq!(
+            (r.out.rotors, r.out.tendons),
+            (Setpoint::Stop, ClampCommand::Release)
+        );
+    }
+}
+
+#[test]
+fn numbers_beyond_the_limits_never_begin() {
+    let mut r = Rig::without_propellers();
+    for (rotor, drive) in [(4, 0.08), (0, 0.121), (0, 0.0), (0, -0.08), (0, f32::NAN)] {
+        let order = BenchOrder::Spin(Spin { rotor, drive });
+        assert_eq!(
+            r.order(order),
+            BenchState::Refused(BenchRefusal::OutOfRange),
+            "{order:?}"
+        );
+    }
+    for (servo, pulse_us) in [(4, 1500.0), (0, 499.0), (0, 2501.0), (0, f32::INFINITY)] {
+        let order = BenchOrder::Place(Place { servo, pulse_us });
+        assert_eq!(
+            r.order(order),
+            BenchState::Refused(BenchRefusal::OutOfRange),
+            "{order:?}"
+        );
+    }
+    assert_eq!(Rig::on_the_table().out.bench, BenchAnswer::default());
+}
+
+fn order() -> impl Strategy<Value = BenchOrder> {
+    let spin = (0usize..5, -0.1f32..0.3).prop_map(|(rotor, drive)| BenchOrder::Spin(Spin { rotor, drive }));
+    let place = (0usize..5, 400.0f32..2600.0)
+        .prop_map(|(servo, pulse_us)| BenchOrder::Place(Place { servo, pulse_us }));
+    let words = prop_oneof![1 => Just(BenchOrder::End), 4 => Just(BenchOrder::PropellersOff)];
+    prop_oneof![1 => words, 2 => spin, 1 => place]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..Default::default() })]
+    #[test]
+    fn a_motor_turns_in_disarmed_alone_low_alone_and_for_two_seconds_at_most(
+        spells in prop::collection::vec(
+            (1u32..150, prop::option::weighted(0.8, order()), prop::bool::weighted(0.2), prop::bool::weighted(0.9), 0.0f32..0.3),
+            1..40,
+        )
+    ) {
+        let mut r = Rig::on_the_table();
+        let (mut confirmed, mut turning, mut number) = (false, 0.0, 0);
+        for (steps, order, arm_switch, there, throttle) in spells {
+            *r.sticks() = Sticks { arm_switch, yaw: f32::from(u8::from(arm_switch)), throttle: if throttle < 0.1 { 0.0 } else { throttle }, ..Default::default() };
+            r.inputs.motion = there.then_some(Motion { calibrated: true, ..Default::default() });
+            number += 1;
+            r.inputs.bench = order.map(|order| BenchRequest { number, order });
+            confirmed |= order == Some(BenchOrder::PropellersOff);
+            for i in 0..steps {
+                r.step();
+                let Setpoint::Spin(spin) = r.out.rotors else {
+                    turning = 0.0;
+                    continue;
+                };
+                turning = if i == 0 { DT } else { turning + DT };
+                prop_assert!(confirmed && r.out.mode == Mode::Disarmed && !arm_switch && there);
+                prop_assert!(spin.rotor < 4 && spin.drive > 0.0 && spin.drive <= SPIN_DRIVE_MAX);
+                prop_assert!(order == Some(BenchOrder::Spin(spin)), "{order:?}");
+                prop_assert!(turning <= SPIN_TIME + DT, "{turning} s");
+                prop_assert!(spin.commands().iter().filter(|c| **c > 0.0).count() == 1);
+            }
+        }
+    }
+}

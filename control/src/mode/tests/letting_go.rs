@@ -1,0 +1,51 @@
+//! Arms that a person opens on a vehicle at rest: no rotor starts before every one is proven free.
+
+use super::rig::Rig;
+use crate::arming::ArmingInhibit;
+use crate::grip::ArmState;
+use crate::mode::*;
+use crate::rc::ArmChoice;
+
+#[test]
+fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
+    // The perch switch opens the arms some steps before the arming gesture is complete, in that very step, or after it.
+    for (grip_memory, steps) in [
+        GripMemory::Controlled(ArmChoice::All),
+        GripMemory::HeldByGears(ArmChoice::All),
+    ]
+    .into_iter()
+    .flat_map(|memory| (-20..=20).map(move |steps| (memory, steps)))
+    {
+        let mut r = Rig::restarted(grip_memory);
+        r.calibrated();
+        r.grip(true, false, ArmState::Holding, 950.0);
+        r.sticks().arm_switch = false;
+        r.run(0.3);
+        r.sticks().perch_switch = false;
+        r.run(0.3);
+        r.sticks().perch_switch = true;
+        r.sticks().arm_switch = true;
+        r.run(0.3);
+        r.sticks().yaw = 1.0;
+        for step in 0..150 {
+            // The hundredth step completes the gesture.
+            r.sticks().perch_switch = step - 99 < steps;
+            r.step();
+            assert!(!r.out.rotors.spin(), "{grip_memory:?}, {steps}: step {step}");
+        }
+        if r.out.mode == Mode::Perched {
+            // Armed on the pipe before the switch was turned: off asks for a release, which takes throttle.
+            assert!(steps > 0, "{grip_memory:?}, {steps}");
+            continue;
+        }
+        assert_eq!(
+            (r.out.mode, r.out.tendons),
+            (Mode::Disarmed, ClampCommand::Release)
+        );
+        assert_eq!(r.out.inhibits.first(), Some(ArmingInhibit::ArmsClosed));
+        // Proven free: the gesture, made again, arms.
+        r.grip(false, true, ArmState::Free, 0.0);
+        r.arm();
+        assert_eq!(r.out.mode, Mode::Armed);
+    }
+}

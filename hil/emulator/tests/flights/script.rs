@@ -1,0 +1,183 @@
+//! A page's sessions at the console: what is typed, and what must be answered.
+//!
+//! They stand in blocks marked `console`. A line that begins with `> ` is typed, the lines after it are the answer, in
+//! which `…` stands for any text of that line, alone for any lines.
+
+/// A line of an answer that stands for any key; what the command has said until it was pressed may be more than the
+/// page shows.
+const ANY_KEY: &str = "(any key)";
+
+/// A command with its answer.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Typed {
+    /// Line of the page.
+    pub line: usize,
+    pub command: String,
+    pub answer: Vec<String>,
+}
+
+/// What a page has to type, in its order.
+pub(super) fn typed(page: &str) -> Vec<Typed> {
+    let mut script = Vec::<Typed>::new();
+    let mut inside = false;
+    for (number, line) in (1..).zip(page.lines()) {
+        // A block may stand in a list.
+        let text = line.trim();
+        if text.starts_with("```") {
+            inside = text == "```console";
+        } else if inside && let Some(command) = text.strip_prefix("> ") {
+            script.push(Typed {
+                line: number,
+                command: command.to_owned(),
+                answer: Vec::new(),
+            });
+        } else if inside && let Some(step) = script.last_mut() {
+            step.answer.push(text.to_owned());
+        }
+    }
+    script
+}
+
+/// What is pressed while a command runs, and the text for which that waits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Key<'a> {
+    pub after: &'a str,
+    pub key: &'a str,
+}
+
+impl Typed {
+    /// The board restarts with the last line of the answer.
+    pub fn restarts(&self) -> bool {
+        self.answer
+            .last()
+            .is_some_and(|line| line.ends_with("restarting"))
+    }
+
+    /// The keys of the answer, in their order: what follows a question, Enter where it is asked for, any key where one
+    /// ends the command, and `(any key)`, which stands in a line of its own.
+    pub fn keys(&self) -> impl Iterator<Item = Key<'_>> {
+        let before = std::iter::once("").chain(self.answer.iter().map(String::as_str));
+        before
+            .zip(&self.answer)
+            .filter_map(|(before, line)| match line.rsplit_once("? ") {
+                Some((question, key)) if key.len() == 1 => Some(Key { after: question, key }),
+                _ if line == ANY_KEY => Some(Key {
+                    after: longest(before),
+                    key: " ",
+                }),
+                _ if line.ends_with("any key ends it") => Some(Key {
+                    after: longest(line),
+                    key: " ",
+                }),
+                _ if line.starts_with("Enter when it is so") => Some(Key {
+                    after: longest(line),
+                    key: "\r",
+                }),
+                _ => None,
+            })
+    }
+}
+
+/// The longest text of a pattern between its `…`.
+fn longest(pattern: &str) -> &str {
+    let parts = pattern.split('…').map(str::trim);
+    parts.max_by_key(|part| part.len()).unwrap_or_default()
+}
+
+/// What is wrong with `said`, from the echo of the command to the next prompt; `None` when it is the page's answer.
+pub(super) fn differs(step: &Typed, said: &str) -> Option<String> {
+    let echoed = said.split_once(&step.command).map_or(said, |(_, rest)| rest);
+    let lines: Vec<&str> = echoed.lines().map(str::trim).collect();
+    let lines: Vec<&str> = lines
+        .into_iter()
+        .filter(|line| !matches!(*line, "" | ">"))
+        .collect();
+    let same = fit(&lines, &step.answer);
+    (!same).then(|| {
+        let (wanted, lines) = (step.answer.join("\n  "), lines.join("\n  "));
+        format!("'{}' is answered\n  {lines}\nand not\n  {wanted}", step.command)
+    })
+}
+
+/// The lines are those of the answer, in which `…` and `(any key)` stand for any lines.
+fn fit(lines: &[&str], answer: &[String]) -> bool {
+    let Some((pattern, rest)) = answer.split_first() else {
+        return lines.is_empty();
+    };
+    if matches!(pattern.as_str(), "…" | ANY_KEY) {
+        return (0..=lines.len()).any(|skipped| fit(&lines[skipped..], rest));
+    }
+    lines
+        .split_first()
+        .is_some_and(|(line, lines)| fits(line, pattern) && fit(lines, rest))
+}
+
+/// The line is the pattern, whose `…` stand for any text. Blanks in a row count as one.
+fn fits(line: &str, pattern: &str) -> bool {
+    let single = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (line, pattern) = (single(line), single(pattern));
+    let mut parts = pattern.split('…');
+    let Some(mut rest) = line.strip_prefix(parts.next().unwrap_or_default()) else {
+        return false;
+    };
+    let mut last = None;
+    for part in parts {
+        let Some((_, after)) = rest.split_once(part) else {
+            return false;
+        };
+        (rest, last) = (after, Some(part));
+    }
+    // The last part must end the line; an empty one takes what is left.
+    match last {
+        None => rest.is_empty(),
+        Some(part) => line.ends_with(part),
+    }
+}
+
+#[test]
+fn a_page_is_read_and_its_answers_compared() {
+    let page = "text\n> quoted\n```console\n> status\nDISARMED\nbattery … V, 0.0 A\n> get x\n  x 1\n```\n\
+                - item\n\n  ```console\n  > save\n  saved; restarting\n  ```\n```\n> not typed\n```\n";
+    let script = typed(page);
+    let commands: Vec<_> = script
+        .iter()
+        .map(|step| (step.line, step.command.as_str()))
+        .collect();
+    assert_eq!(commands, [(4, "status"), (7, "get x"), (13, "save")]);
+    let right = "\r\n> \r\n> status\r\nDISARMED\r\nbattery 16.20 V, 0.0 A\r\n> ";
+    assert_eq!(differs(&script[0], right), None);
+    for wrong in [
+        "status\r\nDISARMED: radio lost\r\nbattery 16.20 V, 0.0 A\r\n> ",
+        "status\r\nDISARMED\r\nbattery 16.20 V, 0.0 A, more\r\n> ",
+        "status\r\nDISARMED\r\n> ",
+        "status\r\nDISARMED\r\nbattery 16.20 V, 0.0 A\r\nmore\r\n> ",
+        "status\r\n> ",
+    ] {
+        assert!(differs(&script[0], wrong).is_some(), "{wrong}");
+    }
+    assert_eq!(differs(&script[1], "get x\r\n  x       1\r\n> "), None);
+    assert!(differs(&script[1], "get x\r\n  x       12\r\n> ").is_some());
+    assert_eq!(script[0].keys().count(), 0);
+}
+
+#[test]
+fn keys_are_pressed_where_the_answer_asks_for_them() {
+    let page = "```console\n> watch imu\nroll az\n… -9.…\n(any key)\n> ask\nwhich, 1 to 4? 2\nEnter when it is so:\ndone\n\
+                > servo 1\nservo 1 to 9 us; any key ends it\nback\n```\n";
+    let script = typed(page);
+    let keys = |step: &Typed| {
+        step.keys()
+            .map(|k| (k.after.to_owned(), k.key.to_owned()))
+            .collect::<Vec<_>>()
+    };
+    let key = |after: &str, key: &str| (after.to_owned(), key.to_owned());
+    assert_eq!(keys(&script[0]), [key("-9.", " ")]);
+    assert_eq!(
+        keys(&script[1]),
+        [key("which, 1 to 4", "2"), key("Enter when it is so:", "\r")]
+    );
+    assert_eq!(keys(&script[2]), [key("servo 1 to 9 us; any key ends it", " ")]);
+    let rows = "watch imu\r\n roll   az\r\n 0.1 -9.81\r\n 0.2 -9.80\r\n> ";
+    assert_eq!(differs(&script[0], rows), None);
+    assert!(differs(&script[0], "watch imu\r\n roll   az\r\n 0.1 -8.81\r\n> ").is_some());
+}

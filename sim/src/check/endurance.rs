@@ -1,0 +1,112 @@
+//! Rows of the batteries: how long the vehicle hovers and how long it holds, by the plant's own batteries and rotors.
+
+use super::grip::TriedArm;
+use super::hover::Built;
+use super::row::{Limit, Row};
+use crate::pilot::{CLIMB_MAX, DESCENT_MAX};
+use crate::plant::battery::Battery;
+use crate::plant::rotor::Rotor;
+use crate::plant::servo_power::{MG996R, endurance};
+use crate::scenario::{Scenario, Step};
+
+/// Step in which the battery is emptied, s.
+const STEP: f64 = 1.0;
+/// Longest time that is looked at, s: three hours.
+const LONGEST: f64 = 10_800.0;
+/// Seconds in a minute.
+const MINUTE: f64 = 60.0;
+
+/// Time of hover from the battery's charge until the failsafe lands.
+///
+/// Value: time until the voltage under the current of four rotors in hover is down to `battery_critical`, min. Limit: what
+/// the mission surely takes in the air. A battery at that voltage has no time.
+pub fn flight(scenario: &Scenario, built: &Built) -> Row {
+    let v = &scenario.vehicle;
+    let rotor = Rotor::turning(0, f64::from(v.configuration.chi()), v.rotor, built.hover);
+    let critical = f64::from(scenario.params.battery_critical);
+    let mut battery = Battery::new(v.battery_charge);
+    let mut time = 0.0;
+    while time < LONGEST {
+        battery.step(STEP, 4.0 * rotor.current(battery.voltage()));
+        if battery.voltage() <= critical {
+            break;
+        }
+        time += STEP;
+    }
+    Row::new(
+        "flight time",
+        time / MINUTE,
+        "min",
+        Limit::AtLeast(in_the_air(scenario) / MINUTE),
+    )
+    .advise("charge the battery, fit a larger one, or plan a shorter flight")
+}
+
+/// Time that the pilot's steps take in the air at least, s.
+fn in_the_air(scenario: &Scenario) -> f64 {
+    let mut height = 0.0;
+    let times = scenario.steps.iter().map(|step| match *step {
+        Step::TakeOff { height: to } => {
+            height = to;
+            to / CLIMB_MAX
+        }
+        Step::Hover { seconds } => seconds,
+        Step::FlyTo { height: to, .. } => {
+            height = to;
+            0.0
+        }
+        Step::Land => height / DESCENT_MAX,
+        _ => 0.0,
+    });
+    times.sum()
+}
+
+/// Time for which the servos' battery holds the grip.
+///
+/// Value: its charge over the currents of the closed arms' servos at the torque that they hold with, min. Limit: what the
+/// mission holds. Servos without load draw their idle current.
+pub fn inspection(scenario: &Scenario, tries: &[TriedArm]) -> Row {
+    let current: f64 = tries.iter().map(|arm| MG996R.at(arm.tried.steady)).sum();
+    let held: f64 = scenario
+        .steps
+        .iter()
+        .map(|step| match *step {
+            Step::Hold { seconds, .. } => seconds,
+            _ => 0.0,
+        })
+        .sum();
+    Row::new(
+        "inspection time",
+        endurance(current) / MINUTE,
+        "min",
+        Limit::AtLeast(held / MINUTE),
+    )
+    .advise("fit softer arms or a larger servo battery, or hold for less time")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hover_time_by_hand_and_none_of_an_empty_battery() {
+        let mut s = Scenario::default_mission();
+        let row = flight(&s, &Built::of(&s));
+        // 192 W and 0.6 A at about 15 V are 13.4 A: 8.1 min to the last drop of 1.8 Ah.
+        assert!(row.pass && (7.0..8.2).contains(&row.value), "{row:?}");
+        s.vehicle.battery_charge = 0.0;
+        assert!(flight(&s, &Built::of(&s)).value.abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_time_in_the_air_by_hand() {
+        let mut s = Scenario::default_mission();
+        s.steps = vec![
+            Step::TakeOff { height: 7.0 },
+            Step::Hover { seconds: 5.0 },
+            Step::Land,
+        ];
+        // At 0.7 m/s up and 0.5 m/s down.
+        assert!((in_the_air(&s) - 29.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,170 @@
+//! Rows of the grip: the gripper that flies closes each arm on the pipe.
+
+use glam::{DQuat, DVec3};
+use sophie_control::grip::ArmState;
+use sophie_control::gripper::Config;
+
+use super::row::{Limit, Row};
+use crate::arm_bench::{BenchArm, Tried, try_grip};
+use crate::pilot::throttle_on_pipe;
+use crate::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose};
+use crate::plant::tendon::{ServoSpec, TendonSpec};
+use crate::plant::{STEP, arm_spec};
+use crate::scenario::{Scenario, Step};
+
+/// Throttle while closing of a mission that names none, as a scenario file's default.
+const THROTTLE: f64 = 0.3;
+/// Step of the tilt at which an arm is looked for that presses on the pipe, rad, and their number: down to -2 rad.
+const TILT_STEP: f64 = 1e-3;
+const DEEPEST: u32 = 2000;
+
+/// An arm that was tried.
+#[derive(Clone, Copy, Debug)]
+pub struct TriedArm {
+    /// Which, 0 to 3.
+    pub arm: usize,
+    /// What became of it.
+    pub tried: Tried,
+}
+
+/// Tries every arm that the scenario closes; arms that are alike are tried once.
+#[must_use]
+pub fn tries(scenario: &Scenario) -> Vec<TriedArm> {
+    let mut done: Vec<(BenchArm, TriedArm)> = Vec::new();
+    for arm in (0..4).filter(|arm| scenario.arms.mask()[*arm]) {
+        let bench = bench(scenario, arm);
+        let alike = done
+            .iter()
+            .find(|(other, _)| other.is_like(&bench))
+            .map(|(_, tried)| *tried);
+        let tried = alike.map_or_else(
+            || try_grip(&bench, f64::from(scenario.params.clamp_timeout)),
+            |t| t.tried,
+        );
+        done.push((bench, TriedArm { arm, tried }));
+    }
+    done.into_iter().map(|(_, tried)| tried).collect()
+}
+
+fn bench(scenario: &Scenario, arm: usize) -> BenchArm {
+    let (v, w, p) = (&scenario.vehicle, &scenario.world, scenario.params);
+    let wanted = scenario.steps.iter().find_map(|step| match step {
+        Step::Perch { throttle } | Step::Clamp { throttle } => Some(*throttle),
+        _ => None,
+    });
+    BenchArm {
+        arm,
+        spec: arm_spec(v, arm),
+        servo: ServoSpec::from(v.servo).measured(&p, arm),
+        rotor_tau: v.rotor.time_constant,
+        params: p,
+        diameter: w.pipe_diameter,
+        friction: w.pipe_friction,
+        thrust: throttle_on_pipe(&p, wanted.unwrap_or(THROTTLE)) * f64::from(p.thrust_max),
+    }
+}
+
+/// Force of each arm's grip against what the gripper may ask for.
+///
+/// Value: the largest force that the gripper asks of the tendon while the arm holds the grip pressure and its rotor stops,
+/// N; of an arm that it gives up, what the static balance takes with the rotor turning, where that is more.
+/// Limit: the force below which the gripper's law proves a grip. A row passes only where that law says that the arm holds.
+pub fn rows(scenario: &Scenario, tries: &[TriedArm]) -> Vec<Row> {
+    let limit = f64::from(Config::from_params(&scenario.params).provable());
+    let row = |tried: &TriedArm| {
+        let TriedArm { arm, tried } = *tried;
+        let holds = tried.grip.state == ArmState::Holding;
+        let target = f64::from(scenario.params.grip_pressure);
+        let value = if holds {
+            tried.asked
+        } else {
+            needed(scenario, arm, bench(scenario, arm).thrust, target)
+                .map_or(f64::INFINITY, |n| n.max(tried.asked))
+        };
+        let mut row = Row::new(
+            format!("grip force arm {}", arm + 1),
+            value,
+            "N",
+            Limit::AtMost(limit),
+        );
+        row.pass &= holds;
+        row.advise(advice(&tried))
+    };
+    tries.iter().map(row).collect()
+}
+
+/// What to do about an arm that does not hold.
+fn advice(tried: &Tried) -> String {
+    let why = match (tried.grip.fault, tried.grip.state) {
+        (Some(fault), _) => format!("the gripper gives it up ({})", fault.text()),
+        (None, ArmState::ForceLimited) => "the gripper's limit comes first".to_owned(),
+        (None, _) => "the gripper does not prove it in time".to_owned(),
+    };
+    format!("{why}: fit softer arms or a stronger servo, or choose a larger pipe")
+}
+
+/// Force (N) on the tendon of `arm` that holds it at the pressure `target` (Pa) on the scenario's pipe, the body level
+/// on its crown and the rotor at `thrust` (N): the static balance of rotor, spring, skin and tendon.
+pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Option<f64> {
+    let radius = 0.5 * scenario.world.pipe_diameter;
+    let pipe = Pipe {
+        north: 0.0,
+        half_length: 1.0,
+        east: 0.0,
+        down: BELLY_Z + radius,
+        radius,
+        friction: scenario.world.pipe_friction,
+    };
+    let pose = Pose {
+        position: DVec3::ZERO,
+        attitude: DQuat::IDENTITY,
+        velocity: DVec3::ZERO,
+        omega: DVec3::ZERO,
+    };
+    let spec = arm_spec(&scenario.vehicle, arm);
+    (0..DEEPEST)
+        .map(|step| -TILT_STEP * f64::from(step))
+        .find_map(|tilt| {
+            let skin = ArmSkin::new(arm).step(STEP, tilt, 0.0, &pose, &pipe);
+            let moment = ARM_LENGTH * (thrust - spec.static_load(tilt)) + skin.moment_alpha;
+            (skin.pressure >= target).then(|| (moment / TendonSpec::default().lever).max(0.0))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm_bench::{Closing, close};
+    use crate::scenario::ServoProfile;
+
+    #[test]
+    fn the_force_needed_is_what_a_closing_arm_takes() {
+        for (infill, diameter) in [(6.0, 0.3), (8.0, 0.3), (6.0, 0.2)] {
+            let mut scenario = Scenario::default_mission();
+            scenario.vehicle.infill = infill;
+            scenario.world.pipe_diameter = diameter;
+            let closed = close(&Closing {
+                infill,
+                diameter,
+                servo: ServoProfile::Paper.into(),
+                thrust: 2.5,
+                seconds: 12.0,
+                seed: 1,
+            });
+            let takes = closed.steady / TendonSpec::default().reel_radius;
+            let needed = needed(&scenario, 0, 0.0, 950.0).unwrap();
+            assert!((needed / takes - 1.0).abs() < 0.1, "{needed} {takes}");
+        }
+    }
+
+    #[test]
+    fn a_stiff_arm_on_a_thin_pipe_is_beyond_the_gripper_and_the_default_one_is_not() {
+        let mut s = Scenario::default_mission();
+        let sound = rows(&s, &tries(&s));
+        assert!(sound.len() == 4 && sound.iter().all(|row| row.pass), "{sound:?}");
+        (s.vehicle.infill, s.vehicle.gain_k, s.world.pipe_diameter) = (8.0, 6.0, 0.2);
+        (s.params.infill, s.params.gain_k) = (8.0, 6.0);
+        let stiff = rows(&s, &tries(&s));
+        assert!(stiff.iter().all(|row| !row.pass), "{stiff:?}");
+    }
+}

@@ -1,0 +1,162 @@
+//! The laws' answer to a body rate: gyro filter, rate loop and attitude loop, each the code that flies.
+
+use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
+use sophie_control::chain::{CONTROL_RATE_HZ, ImuReading};
+use sophie_control::imu_filter::ImuFilter;
+use sophie_control::params::Params;
+use sophie_control::rate::{Feedback, RateLoop};
+use sophie_control::vector::{Quat, Vec3};
+
+use super::response::{Complex, Response, difference, quotient};
+
+/// Step of the laws, s.
+const DT: f32 = 1.0 / CONTROL_RATE_HZ;
+/// Rate (rad/s) and angle (rad) of the impulses: small, where nothing is limited.
+const RATE: f32 = 0.1;
+const ANGLE: f32 = 0.01;
+/// Steps in which the gyro's filter and the rate loop settle: 20 Hz and a notch at 1 Hz.
+const FILTER_STEPS: usize = 500;
+const LOOP_STEPS: usize = 4000;
+/// Nothing is given up.
+const ALL_GIVEN: Feedback = Feedback {
+    roll_pitch: 1.0,
+    yaw: 1.0,
+    yaw_gated: false,
+};
+
+/// The laws about roll, pitch and yaw.
+#[derive(Clone, Debug)]
+pub struct Laws {
+    /// Rate that the filter gives for one that is measured.
+    filter: Response,
+    axes: [AxisLaws; 3],
+}
+
+#[derive(Clone, Debug)]
+struct AxisLaws {
+    /// Moment against a rate, N·m·s/rad.
+    by_rate: Response,
+    /// Moment for a rate that is asked for, N·m·s/rad.
+    by_setpoint: Response,
+    /// Rate that is asked for against an angle, 1/s.
+    attitude: f64,
+}
+
+impl Laws {
+    /// The laws that `params` describe.
+    #[must_use]
+    pub fn of(params: &Params) -> Self {
+        let (by_rate, by_setpoint) = (rate_loop(params, false), rate_loop(params, true));
+        Self {
+            filter: filter(params),
+            axes: std::array::from_fn(|axis| AxisLaws {
+                by_rate: Response::of(&by_rate[axis]),
+                by_setpoint: Response::of(&by_setpoint[axis]),
+                attitude: attitude(params, axis),
+            }),
+        }
+    }
+
+    /// Moment against a rate about `axis` at `angle` rad a step, N·m·s/rad: F (C_r + C_s p T / (1 - z⁻¹)), the angle
+    /// being the sum of the rates.
+    #[must_use]
+    pub fn at(&self, axis: usize, angle: f64) -> Complex {
+        let law = &self.axes[axis];
+        let turned = quotient(Complex::new(law.attitude * f64::from(DT), 0.0), difference(angle));
+        let moment = law.by_rate.at(angle) + law.by_setpoint.at(angle).rotate(turned);
+        self.filter.at(angle).rotate(moment)
+    }
+}
+
+/// The gyro's filter as a board runs it: samples on the line between two steps, each a sample late.
+fn filter(params: &Params) -> Response {
+    let rate = params.imu_rate.number();
+    let per_step = (rate / CONTROL_RATE_HZ).max(1.0) as usize;
+    let mut filter = ImuFilter::new(params.gyro_cutoff, rate);
+    let reading = |gyro: f32| ImuReading {
+        gyro: Vec3::new(gyro, 0.0, 0.0),
+        accel: Vec3::ZERO,
+    };
+    let (mut newest, mut waiting) = (reading(0.0), reading(0.0));
+    // Settled on nothing before the impulse comes.
+    filter.batch(&[waiting], Vec3::ZERO, &mut newest);
+    let mut last = 0.0;
+    let answer: Vec<f64> = (0..FILTER_STEPS)
+        .map(|step| {
+            let now = if step == 0 { RATE } else { 0.0 };
+            for k in 1..=per_step {
+                let share = k as f32 / per_step as f32;
+                let sample = reading(last + (now - last) * share);
+                let late = std::mem::replace(&mut waiting, sample);
+                filter.batch(&[late], Vec3::ZERO, &mut newest);
+            }
+            last = now;
+            f64::from(newest.gyro.x / RATE)
+        })
+        .collect();
+    Response::of(&answer)
+}
+
+/// Moments (N·m·s/rad) after an impulse of the rate, or of the rate that is asked for, about all axes at once: the
+/// loop's axes know nothing of each other.
+fn rate_loop(params: &Params, setpoint: bool) -> [Vec<f64>; 3] {
+    let mut law = RateLoop::new(params, CONTROL_RATE_HZ);
+    let mut answers: [Vec<f64>; 3] = Default::default();
+    // The first step has no slope yet.
+    law.step(Vec3::ZERO, Vec3::ZERO, ALL_GIVEN, true, DT);
+    for step in 0..LOOP_STEPS {
+        let impulse = if step == 0 {
+            Vec3::new(RATE, RATE, RATE)
+        } else {
+            Vec3::ZERO
+        };
+        let (wanted, rate, sign) = if setpoint {
+            (impulse, Vec3::ZERO, 1.0)
+        } else {
+            (Vec3::ZERO, impulse, -1.0)
+        };
+        let moment = law.step(wanted, rate, ALL_GIVEN, true, DT).to_array();
+        for (answer, moment) in answers.iter_mut().zip(moment) {
+            answer.push(f64::from(sign * moment / RATE));
+        }
+    }
+    answers
+}
+
+/// Rate (rad/s) that the attitude loop asks for against a turn about `axis` by 1 rad: a turn of [`ANGLE`] is tried.
+fn attitude(params: &Params, axis: usize) -> f64 {
+    let mut law = AttitudeLoop::new(params);
+    law.reset(Quat::IDENTITY);
+    law.aim(AttitudeSetpoint::default());
+    let mut turn = [0.0; 3];
+    turn[axis] = 0.5 * ANGLE;
+    let [x, y, z] = turn;
+    let turned = Quat { w: 1.0, x, y, z }.normalised();
+    f64::from(-law.step(turned, DT).to_array()[axis] / ANGLE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slow_rates_meet_the_gains_and_fast_ones_the_filter() {
+        let p = Params {
+            notch_zeta_zero: 0.8,
+            ..Params::default()
+        };
+        let laws = Laws::of(&p);
+        // p 10 1/s, i 8 1/s², attitude 4.5 1/s: at 1 rad/s (10 + 8/j)(1 + 4.5/j) 0.021 = (-26 - 53 j) 0.021.
+        let slow = laws.at(0, 1e-3) / 0.021;
+        assert!((slow - Complex::new(-26.0, -53.0)).length() < 0.3, "{slow}");
+        // Yaw: (3 + 1.5/j)(1 + 1.2/j) 0.063 = (1.2 - 5.1 j) 0.063, the notch being none.
+        let yaw = laws.at(2, 1e-3) / 0.063;
+        assert!((yaw - Complex::new(1.2, -5.1)).length() < 0.03, "{yaw}");
+        // At the filter's cut-off of 90 Hz 0.707 of 0.21 is left of the gain, and the phase is beyond -90°.
+        let fast = laws.at(0, std::f64::consts::TAU * 0.09);
+        assert!(
+            (fast.length() / 0.21 - 0.707).abs() < 0.02 && fast.to_angle() < -1.6,
+            "{fast}"
+        );
+    }
+}

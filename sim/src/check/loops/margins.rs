@@ -1,0 +1,143 @@
+//! Stability and margins of a loop by its gain over the frequency.
+
+use super::response::{Complex, difference};
+use sophie_control::chain::CONTROL_RATE_HZ;
+use std::f64::consts::{PI, TAU};
+
+/// What a loop can bear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margins {
+    /// Factor by which the gain may rise or fall before the loop oscillates, the nearer of both; below 1 for one that does:
+    /// the share of its gain at which it would not.
+    pub gain: f64,
+    /// Phase that may be lost before it does, rad; negative for one that oscillates.
+    pub phase: f64,
+    /// Highest frequency at which the gain is 1, rad/s: the loop's bandwidth; 0 for a loop without.
+    pub crossover: f64,
+}
+
+impl Margins {
+    /// The margins of the loop whose gain at each frequency (rad/s, rising) is in `curve`.
+    ///
+    /// Closed, the loop divides by 1 + L. With a factor 1 - z⁻¹ for each integrator of L all poles of
+    /// F = (1 + L)(1 - z⁻¹)ⁿ are inside the unit circle, so F turns about 0 as often as the closed loop has poles outside:
+    /// along half of the circle, from a real number to another, by π for each. A loop is stable if F does not turn.
+    #[must_use]
+    pub fn of(curve: &[(f64, Complex)]) -> Self {
+        let stable = turned(curve).abs() < PI;
+        let (mut up, mut down, mut phase, mut crossover) = (f64::INFINITY, 0.0_f64, PI, 0.0);
+        for ((_, a), (omega, b)) in curve.iter().zip(curve.iter().skip(1)) {
+            // Phase crossover: through the negative real axis.
+            if a.y * b.y <= 0.0 && a.x < 0.0 && b.x < 0.0 {
+                let share = a.y / (a.y - b.y);
+                let size = -(a.x + share * (b.x - a.x));
+                if size < 1.0 {
+                    up = up.min(1.0 / size);
+                } else {
+                    down = down.max(1.0 / size);
+                }
+            }
+            if (a.length() - 1.0) * (b.length() - 1.0) <= 0.0 {
+                crossover = *omega;
+                let left = (b.to_angle() + TAU).rem_euclid(TAU) - PI;
+                phase = if left.abs() < phase.abs() { left } else { phase };
+            }
+        }
+        if stable {
+            Self {
+                gain: up.min(1.0 / down),
+                phase: phase.abs(),
+                crossover,
+            }
+        } else {
+            // Where it would not oscillate lies beyond the nearest crossing that it has passed.
+            let passed = if down > 0.0 { down } else { 1.0 / up };
+            Self {
+                gain: passed.min(1.0),
+                phase: -phase.abs(),
+                crossover,
+            }
+        }
+    }
+}
+
+/// Integrators of a loop: the slope of its gain at the lowest frequencies. Turn rate, angle and the rate loop's integral
+/// are three, fewer where a gain is 0.
+fn integrators(curve: &[(f64, Complex)]) -> u32 {
+    let Some(((low, a), (high, b))) = curve.first().zip(curve.get(1)) else {
+        return 0;
+    };
+    let slope = (a.length() / b.length()).ln() / (high / low).ln();
+    if slope.is_finite() {
+        slope.round().clamp(0.0, 4.0) as u32
+    } else {
+        0
+    }
+}
+
+/// Angle by which F turns along `curve`, rad.
+fn turned(curve: &[(f64, Complex)]) -> f64 {
+    let integrators = integrators(curve);
+    let closed = |(omega, gain): &(f64, Complex)| {
+        let angle = omega / f64::from(CONTROL_RATE_HZ);
+        let factor = difference(angle);
+        (0..integrators).fold(Complex::X + *gain, |f, _| f.rotate(factor))
+    };
+    curve
+        .iter()
+        .zip(curve.iter().skip(1))
+        .map(|(a, b)| closed(a).angle_to(closed(b)))
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::frequencies;
+    use super::super::response::quotient;
+    use super::*;
+
+    /// The margins of a loop given over s = jω.
+    fn margins(gain: impl Fn(Complex) -> Complex) -> Margins {
+        let curve: Vec<_> = frequencies().map(|w| (w, gain(Complex::new(0.0, w)))).collect();
+        Margins::of(&curve)
+    }
+
+    fn one_over(s: Complex) -> Complex {
+        quotient(Complex::X, s)
+    }
+
+    #[test]
+    fn an_integrator_with_two_lags_by_hand() {
+        // k / (s (0.05 s + 1)²): phase -180° at 20 rad/s, where the gain is k/40.
+        for (k, gain) in [(10.0, 4.0), (30.0, 40.0 / 30.0), (80.0, 0.5)] {
+            let m = margins(|s| {
+                let lag = one_over(s * 0.05 + Complex::X);
+                one_over(s).rotate(lag).rotate(lag) * k
+            });
+            assert!((m.gain / gain - 1.0).abs() < 0.02, "{k}: {m:?}");
+            assert!((m.phase > 0.0) == (gain > 1.0), "{k}: {m:?}");
+        }
+    }
+
+    #[test]
+    fn an_integrator_alone_has_a_quarter_turn_left() {
+        let m = margins(|s| one_over(s) * 5.0);
+        assert!(
+            (m.phase - 0.5 * PI).abs() < 0.03 && (m.crossover / 5.0 - 1.0).abs() < 0.05,
+            "{m:?}"
+        );
+        assert!(m.gain > 100.0);
+    }
+
+    #[test]
+    fn a_gain_too_small_for_its_integrals_oscillates_as_well() {
+        // k (s + 1)² / s³ needs k > 1/2: below, the integrals' phase is not made up for.
+        for (k, gain) in [(0.25, 0.5), (2.0, 4.0)] {
+            let m = margins(|s| {
+                let (zero, pole) = (s + Complex::X, one_over(s));
+                zero.rotate(zero).rotate(pole).rotate(pole).rotate(pole) * k
+            });
+            assert!((m.gain / gain - 1.0).abs() < 0.02, "{k}: {m:?}");
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! The control loops in hover, taken from what flies: no transfer function of plant or laws is written down here.
+//!
+//! A loop is opened between control and mixer. [`vehicle`] has the body rates that follow a moment (allocation, thrust
+//! curve and the plant with its motors and tip masses), [`laws`] the moment that follows a body rate (filter, attitude
+//! and rate loop). Both are identified by an impulse of one step of 1 ms, and their product is the loop's gain
+//! L(e^{jωT}) at the frequency ω. [`margins`] reads its margins.
+
+mod laws;
+mod margins;
+mod response;
+mod vehicle;
+
+pub use laws::Laws;
+pub use margins::Margins;
+pub use response::{Complex, Response};
+pub use vehicle::{AXES, Hovering};
+
+use sophie_control::chain::CONTROL_RATE_HZ;
+
+use crate::scenario::Scenario;
+
+/// Lowest frequency looked at, rad/s: below every integral's corner.
+const LOWEST: f64 = 1e-3;
+/// Frequencies in a decade: 3 % from one to the next, which finds a margin to 1 %.
+const PER_DECADE: f64 = 60.0;
+
+/// The margins about roll, pitch and yaw of the vehicle of `scenario` in hover.
+#[must_use]
+pub fn margins(scenario: &Scenario) -> [Margins; 3] {
+    let laws = Laws::of(&scenario.params);
+    let hovering = Hovering::of(scenario);
+    std::array::from_fn(|axis| {
+        let vehicle = hovering.response(axis);
+        let curve: Vec<_> = frequencies()
+            .map(|omega| {
+                let angle = omega / f64::from(CONTROL_RATE_HZ);
+                // What is measured at the end of a step acts in the next one.
+                let delay = Complex::from_angle(-angle);
+                let gain = vehicle.at(angle).rotate(laws.at(axis, angle)).rotate(delay);
+                (omega, gain)
+            })
+            .collect();
+        Margins::of(&curve)
+    })
+}
+
+/// Frequencies from [`LOWEST`] to half of the control rate, rad/s.
+fn frequencies() -> impl Iterator<Item = f64> {
+    let top = std::f64::consts::PI * f64::from(CONTROL_RATE_HZ);
+    let count = ((top / LOWEST).log10() * PER_DECADE) as i32;
+    (0..=count).map(move |i| LOWEST * (top / LOWEST).powf(f64::from(i) / f64::from(count)))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,193 @@
+//! The vehicle's answer to a moment in hover: allocation, thrust curve and plant, pushed by one step's moment.
+
+use glam::DVec3;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use sophie_control::chain::{
+    Attitude, CONTROL_RATE_HZ, Command, Control, Demand, MixOutput, Mixing, Surroundings,
+};
+use sophie_control::mixer::Allocation;
+use sophie_control::params::Params;
+use sophie_control::setpoint::Setpoint;
+use sophie_control::vector::{Quat, Vec3};
+use sophie_control::wrench::Wrench;
+use sophie_mixers::Mixer;
+
+use super::response::Response;
+use crate::plant::contact::ARM_LENGTH;
+use crate::plant::{Actuators, GRAVITY, Plant, STEP};
+use crate::scenario::{Scenario, World};
+
+/// Names of the axes.
+pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
+
+/// Step of the laws, s, and steps of the plant in it.
+const DT: f64 = 1.0 / CONTROL_RATE_HZ as f64;
+const PLANT_STEPS: u32 = (DT / STEP) as u32;
+/// Time in which rotors and arms come to their place in hover, steps.
+const TRIM_STEPS: u64 = 3000;
+/// Gains while they do, 1/s: as gentle as holds an attitude, whatever gains are judged.
+const GENTLE: [f32; 4] = [1.5, 3.0, 0.5, 1.0];
+/// Steps between two readings of the arms' sensors.
+const ARM_STEPS: u64 = 10;
+/// Largest share of the full thrust that is taken to hover: beyond it rotors cannot answer, and the row on thrust says so.
+const HOVER_SHARE: f64 = 0.9;
+/// Largest moments of the impulses, N·m for 1 ms: 0.7 N a rotor about roll and pitch, less than yaw is allowed of a stiff
+/// frame; and the share of the room that the rotors have which they take at most.
+const PUSH: [f64; 3] = [0.5, 0.5, 0.05];
+const ROOM_SHARE: f64 = 0.2;
+/// Longest time that a response is followed, steps, and the share of its largest change below which it has ended.
+const LONGEST: usize = 5000;
+const ENDED: f64 = 1e-3;
+/// Steps for which it must stay below: the slowest arm's mode, 1 Hz, turns twice in it.
+const QUIET: usize = 300;
+/// Where it hovers, m, NED: off the ground and the pipe.
+const PLACE: DVec3 = DVec3::new(0.0, 0.0, -1000.0);
+
+/// A vehicle that hovers in still air.
+#[derive(Clone)]
+pub struct Hovering {
+    plant: Plant,
+    mixing: Mixing<Mixer>,
+    params: Params,
+    wrench: Wrench,
+    /// Share of the largest impulses for which the rotors have room.
+    push: f64,
+    at_us: u64,
+}
+
+impl Hovering {
+    /// The vehicle of `scenario`, held level by the laws with gentle gains until arms and rotors have settled.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        let calm = Scenario {
+            world: World {
+                gust_force: 0.0,
+                gust_moment: 0.0,
+                ..scenario.world.clone()
+            },
+            ..scenario.clone()
+        };
+        let v = &scenario.vehicle;
+        let mut plant = Plant::new(&calm, Pcg64Mcg::seed_from_u64(1));
+        plant.place(PLACE, DVec3::ZERO);
+        let mixer = Mixer::new(scenario.mixer, v.configuration, &scenario.params);
+        let thrust = (v.body.mass * GRAVITY).min(HOVER_SHARE * 4.0 * v.rotor.thrust_max);
+        let mut hovering = Self {
+            plant,
+            mixing: Mixing::new(&scenario.params, mixer),
+            params: scenario.params,
+            wrench: Wrench {
+                thrust: thrust as f32,
+                ..Wrench::default()
+            },
+            push: 0.0,
+            at_us: 0,
+        };
+        hovering.settle();
+        let share = hovering.plant.battery_voltage() / f64::from(scenario.params.battery_nominal);
+        let most = v.rotor.thrust_max * share.min(1.0).powi(2);
+        let room = (most - 0.25 * thrust).max(0.0) * ROOM_SHARE * 4.0 * ARM_LENGTH;
+        hovering.push = (room / PUSH[0]).clamp(0.02, 1.0);
+        hovering
+    }
+
+    fn settle(&mut self) {
+        let p = &self.params;
+        let [attitude_p, rate_p, attitude_yaw_p, rate_yaw_p] = GENTLE;
+        let mut control = Control::new(&Params {
+            attitude_p: attitude_p.min(p.attitude_p),
+            rate_p: rate_p.min(p.rate_p),
+            attitude_yaw_p: attitude_yaw_p.min(p.attitude_yaw_p),
+            rate_yaw_p: rate_yaw_p.min(p.rate_yaw_p),
+            rate_d: 0.0,
+            ..*p
+        });
+        let command = Command {
+            setpoint: Setpoint::Angle {
+                roll: 0.0,
+                pitch: 0.0,
+                yaw_rate: 0.0,
+                thrust: self.wrench.thrust,
+            },
+            at_us: 1,
+        };
+        let mut mix = MixOutput::default();
+        for step in 0..TRIM_STEPS {
+            let pose = self.plant.pose();
+            let [x, y, z, w] = pose.attitude.to_array().map(|q| q as f32);
+            let attitude = Attitude {
+                q: Quat { w, x, y, z },
+                rate: Vec3::from(pose.omega.as_vec3().to_array()),
+                calibrated: true,
+                dt: DT as f32,
+                ..Attitude::default()
+            };
+            if let Demand::Wrench(wrench) = control.step(&attitude, &command, &mix.feedback()) {
+                self.wrench = wrench;
+            }
+            if step.is_multiple_of(ARM_STEPS) {
+                let tilt = self.plant.tilt();
+                for (arm, tilt) in tilt.into_iter().enumerate() {
+                    self.mixing.allocation.tilt_mut().correct(arm, tilt as f32);
+                }
+            }
+            self.step(self.wrench, &mut mix);
+        }
+    }
+
+    /// A step of the laws' rate under `wrench`.
+    fn step(&mut self, wrench: Wrench, mix: &mut MixOutput) {
+        self.at_us += 1000;
+        let surroundings = Surroundings {
+            battery_ratio: Some(self.plant.battery_voltage() as f32 / self.params.battery_nominal),
+            arms: None,
+        };
+        self.mixing
+            .step(self.at_us, &Demand::Wrench(wrench), &surroundings, mix);
+        let actuators = Actuators {
+            motors: mix.commands.map(f64::from),
+            ..Actuators::default()
+        };
+        for _ in 0..PLANT_STEPS {
+            self.plant.step(&actuators);
+        }
+        // Drag on what speed a lean makes turns the vehicle over within seconds, which the loops never let happen.
+        self.plant.place(PLACE, DVec3::ZERO);
+    }
+
+    /// Body rate about `axis` (0 to 2) after a moment of 1 N·m in one step, rad/(s·N·m): half the difference of two runs
+    /// pushed to either side, so that whatever both do drops out.
+    #[must_use]
+    pub fn response(&self, axis: usize) -> Response {
+        let push = PUSH[axis] * self.push;
+        let (mut there, mut back) = (self.clone(), self.clone());
+        let (mut mix_there, mut mix_back) = (MixOutput::default(), MixOutput::default());
+        let (mut answer, mut largest, mut quiet) = (Vec::new(), 0.0_f64, 0);
+        let mut last = 0.0;
+        while answer.len() < LONGEST && quiet < QUIET {
+            let now = if answer.is_empty() { push as f32 } else { 0.0 };
+            there.step(pushed(self.wrench, axis, now), &mut mix_there);
+            back.step(pushed(self.wrench, axis, -now), &mut mix_back);
+            let difference = there.plant.pose().omega[axis] - back.plant.pose().omega[axis];
+            let rate = 0.5 * difference / push;
+            let change = (rate - last).abs();
+            last = rate;
+            largest = largest.max(change);
+            quiet = if change < ENDED * largest { quiet + 1 } else { 0 };
+            answer.push(rate);
+        }
+        Response::of(&answer)
+    }
+}
+
+/// `wrench` with `moment` (N·m) more about `axis`.
+fn pushed(wrench: Wrench, axis: usize, moment: f32) -> Wrench {
+    let mut pushed = wrench;
+    match axis {
+        0 => pushed.roll += moment,
+        1 => pushed.pitch += moment,
+        _ => pushed.yaw += moment,
+    }
+    pushed
+}

@@ -1,0 +1,69 @@
+//! Whether a vehicle can fly its mission, before it does: rows of what it has against what it needs.
+//!
+//! Everything is computed from the scenario's plant and parameters by the plant's parts and the laws that fly: the rotors'
+//! thrust, the arms' statics, the mixer's patterns, the loops as they answer, the gripper as it closes. No number of either
+//! is written down again. `docs/design-check.md` explains each row.
+
+mod endurance;
+mod grip;
+mod hover;
+pub mod loops;
+mod row;
+mod stability;
+mod thrust;
+mod wind;
+mod yaw;
+
+pub(crate) use self::grip::needed;
+use self::hover::Built;
+pub use self::row::{Limit, Row};
+use crate::scenario::{Scenario, Step};
+
+/// What the check found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// The rows, in the order in which a builder looks at them.
+    pub rows: Vec<Row>,
+}
+
+impl Check {
+    /// Checks the vehicle of `scenario` for its mission. The rows of grip and pipe are there only for missions that touch
+    /// one.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        let built = Built::of(scenario);
+        let perches = scenario
+            .steps
+            .iter()
+            .any(|step| matches!(step, Step::Touch | Step::Clamp { .. } | Step::Perch { .. }));
+        let mut rows = vec![
+            thrust::to_weight(scenario, &built, perches),
+            thrust::hover_throttle(scenario, &built),
+        ];
+        rows.extend(yaw::rows(scenario, &built));
+        rows.extend(stability::rows(&loops::margins(scenario), &built));
+        rows.push(endurance::flight(scenario, &built));
+        rows.push(wind::row(scenario, &built));
+        if perches {
+            let tries = grip::tries(scenario);
+            rows.push(thrust::release(scenario, &built));
+            rows.extend(grip::rows(scenario, &tries));
+            rows.push(endurance::inspection(scenario, &tries));
+        }
+        Self { rows }
+    }
+
+    /// Every row passes.
+    #[must_use]
+    pub fn can_fly(&self) -> bool {
+        self.rows.iter().all(|row| row.pass)
+    }
+
+    /// The rows that do not.
+    pub fn failing(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| !row.pass)
+    }
+}
+
+#[cfg(test)]
+mod tests;

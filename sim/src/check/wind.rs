@@ -1,0 +1,49 @@
+//! Row of the wind in which the vehicle keeps its place.
+
+use super::hover::Built;
+use super::row::{Limit, Row};
+use super::thrust::GUST_FACTOR;
+use crate::scenario::Scenario;
+
+/// Steady force of wind against which the vehicle keeps its place and height.
+///
+/// Value: W tan θ, N, θ the largest lean: at most the stick's, and where the lift carries the weight still, L cos θ >= W.
+/// Limit: the gusts' horizontal force, three times their RMS on both axes. By the plant's drag of 0.3 N s/m a wind of v
+/// pushes with 0.3 v. A vehicle that only just lifts its weight leans by nothing and holds against nothing.
+pub fn row(scenario: &Scenario, built: &Built) -> Row {
+    let lift = built.lift(scenario.vehicle.rotor.thrust_max);
+    let upright = (built.weight / lift).clamp(0.0, 1.0).acos();
+    let lean = upright.min(f64::from(scenario.params.stick_angle));
+    let force = if lean.is_finite() {
+        built.weight * lean.tan()
+    } else {
+        0.0
+    };
+    let needed = GUST_FACTOR * scenario.world.gust_force * std::f64::consts::SQRT_2;
+    Row::new("wind force", force, "N", Limit::AtLeast(needed))
+        .advise("raise stick_angle, make it lighter, or wait for less wind")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stick_limits_the_lean_of_a_strong_vehicle_and_the_lift_that_of_a_weak_one() {
+        let mut s = Scenario::default_mission();
+        // 17.70 N · tan 0.61 rad.
+        let strong = row(&s, &Built::of(&s)).value;
+        assert!((strong - 17.70 * 0.61_f64.tan()).abs() < 0.05, "{strong}");
+        s.vehicle.body.mass = 3.0;
+        let built = Built::of(&s);
+        let weak = row(&s, &built).value;
+        let lift = built.lift(8.3);
+        // Pythagoras: what the lift has beside the weight.
+        assert!(
+            (weak - (lift * lift - built.weight * built.weight).sqrt()).abs() < 0.05,
+            "{weak}"
+        );
+        s.vehicle.rotor.thrust_max = 5.0;
+        assert!(row(&s, &Built::of(&s)).value.abs() < 1e-9);
+    }
+}

@@ -1,0 +1,201 @@
+//! The bench on the table: one motor or one servo at a time, as the commander permits it.
+//!
+//! An order is renewed while it lasts. Its end does not hang on the console: the commander ends it in time, on its own
+//! conditions, and when it is not renewed.
+
+use core::fmt;
+
+use embassy_time::{Duration, Instant};
+use sophie_control::bench::{
+    BenchOrder, BenchRefusal, BenchRequest, BenchState, PULSE_MAX_US, PULSE_MIN_US, Place, SPIN_DRIVE,
+    SPIN_DRIVE_MAX, SPIN_DRIVE_MIN, SPIN_TIME, Spin,
+};
+use sophie_control::math::{deg, to_deg};
+use sophie_control::tendon::Reel;
+
+use super::Console;
+use crate::deadline::{FixedRate, TaskId};
+use crate::decimal::{self, Decimal};
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+
+/// Time that the commander has to answer: fifty of its periods.
+const COMMANDER: Duration = Duration::from_millis(500);
+
+/// How an order has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// As it should.
+    Done,
+    /// By a key.
+    Key,
+    /// Before it began.
+    Refused(BenchRefusal),
+    /// By the commander, before its time.
+    Ended(BenchRefusal),
+    /// The commander does not answer.
+    Silent,
+}
+
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
+    pub(super) async fn propellers_off(&mut self) {
+        match self.order(BenchOrder::PropellersOff, format_args!("")).await {
+            End::Done | End::Key => {
+                self.out
+                    .line(format_args!(
+                        "propellers off: motors may be tried until the next arming or restart"
+                    ))
+                    .await;
+            }
+            end => self.not_begun(end).await,
+        }
+    }
+
+    /// Spins motor `number` at `percent` of full drive for two seconds.
+    pub(super) async fn motor(&mut self, number: &str, percent: Option<&str>) {
+        let Some(rotor) = self.one_of_four("motor", number).await else {
+            return;
+        };
+        let drive = percent.map_or(Some(SPIN_DRIVE), |text| {
+            decimal::parse(text).map(|percent| percent / 100.0)
+        });
+        let allowed = |drive: &f32| (SPIN_DRIVE_MIN..=SPIN_DRIVE_MAX).contains(drive);
+        let Some(drive) = drive.filter(allowed) else {
+            let [least, most] = [SPIN_DRIVE_MIN, SPIN_DRIVE_MAX].map(|drive| Decimal(drive * 100.0));
+            let text = percent.unwrap_or_default();
+            return self
+                .out
+                .line(format_args!(
+                    "a motor cannot be tried at '{text}'; {least:.0} to {most:.0} %"
+                ))
+                .await;
+        };
+        let (percent, seconds) = (Decimal(drive * 100.0), Decimal(SPIN_TIME));
+        let begun = format_args!("motor {number} at {percent:.0} % for {seconds} s; any key stops it");
+        let end = self.order(BenchOrder::Spin(Spin { rotor, drive }), begun).await;
+        self.say_end(format_args!("motor {number} stopped"), end).await;
+    }
+
+    /// Sends servo `number` to a pulse (µs), an angle (degrees from release) or its release mark.
+    pub(super) async fn servo(&mut self, number: &str, to: &str, at: Option<&str>) {
+        let Some(servo) = self.one_of_four("servo", number).await else {
+            return;
+        };
+        let reel = Reel::from_params(&self.links.params, servo);
+        let most = to_deg(self.links.params.servo_range);
+        let value = at.and_then(decimal::parse);
+        let pulse_us = match (to, at, value) {
+            ("release", None, _) => reel.pulse(0.0),
+            ("pulse", _, Some(us)) if (PULSE_MIN_US..=PULSE_MAX_US).contains(&us) => us,
+            ("angle", _, Some(angle)) if (0.0..=most).contains(&angle) => reel.pulse(deg(angle)),
+            _ => {
+                let [short, long, most] = [PULSE_MIN_US, PULSE_MAX_US, most].map(Decimal);
+                return self
+                    .out
+                    .line(format_args!(
+                        "a servo takes 'release', 'pulse' {short:.0} to {long:.0} us, 'angle' 0 to {most:.0} deg"
+                    ))
+                    .await;
+            }
+        };
+        let (pulse, angle) = (Decimal(pulse_us), Decimal(to_deg(reel.angle_of(pulse_us))));
+        let begun =
+            format_args!("servo {number} to {pulse:.0} us, {angle:.0} deg from release; any key ends it");
+        let end = self
+            .order(BenchOrder::Place(Place { servo, pulse_us }), begun)
+            .await;
+        self.say_end(format_args!("servo {number} back to its release mark"), end)
+            .await;
+    }
+
+    /// The index of motor or servo `number`, 1 to 4, or a line that there is none.
+    pub(super) async fn one_of_four(&mut self, what: &str, number: &str) -> Option<usize> {
+        let index = ["1", "2", "3", "4"].iter().position(|name| *name == number);
+        if index.is_none() {
+            self.out
+                .line(format_args!(
+                    "no {what} '{number}'; 1 front-left, 2 rear-left, 3 front-right, 4 rear-right"
+                ))
+                .await;
+        }
+        index
+    }
+
+    pub(super) async fn say_end(&mut self, what: fmt::Arguments<'_>, end: End) {
+        match end {
+            End::Done => self.out.line(what).await,
+            End::Key => self.out.line(format_args!("{what} by a key")).await,
+            End::Ended(why) => self.out.line(format_args!("{what}: {}", why.text())).await,
+            End::Refused(_) | End::Silent => self.not_begun(end).await,
+        }
+    }
+
+    async fn not_begun(&mut self, end: End) {
+        match end {
+            End::Refused(why) | End::Ended(why) => {
+                self.out.line(format_args!("refused: {}", why.text())).await;
+            }
+            _ => {
+                self.out
+                    .line(format_args!("refused: the commander is silent"))
+                    .await
+            }
+        }
+    }
+
+    /// Gives `order` and renews it until it has ended or a key ends it; says `begun` as soon as it lasts.
+    pub(super) async fn order(&mut self, order: BenchOrder, begun: fmt::Arguments<'_>) -> End {
+        match self.order_until_key(order, begun).await {
+            Err(end) => end,
+            Ok(_) => {
+                let number = self.next_order();
+                let order = BenchOrder::End;
+                self.links
+                    .bench
+                    .send(Instant::now(), BenchRequest { number, order });
+                // What else the key has sent.
+                self.keys.pressed();
+                End::Key
+            }
+        }
+    }
+
+    /// The same until the next key, under which the order lasts until it is not renewed.
+    pub(super) async fn order_until_key(
+        &mut self,
+        order: BenchOrder,
+        begun: fmt::Arguments<'_>,
+    ) -> Result<u8, End> {
+        let number = self.next_order();
+        let mut rate = FixedRate::of(self.links, TaskId::Console);
+        let mut said = false;
+        let asked = Instant::now();
+        loop {
+            let at = rate.next().await.started;
+            self.links.bench.send(at, BenchRequest { number, order });
+            let answer = self.links.bench_answer.fresh();
+            match answer
+                .filter(|answer| answer.number == number)
+                .map(|answer| answer.state)
+            {
+                Some(BenchState::Done) => return Err(End::Done),
+                Some(BenchState::Refused(why)) => return Err(End::Refused(why)),
+                Some(BenchState::Ended(why)) => return Err(End::Ended(why)),
+                Some(BenchState::Running) if !said => {
+                    said = true;
+                    self.out.line(begun).await;
+                }
+                Some(BenchState::Running) => (),
+                None if asked.elapsed() > COMMANDER => return Err(End::Silent),
+                None => (),
+            }
+            if let Some(key) = self.keys.poll() {
+                return Ok(key);
+            }
+        }
+    }
+
+    fn next_order(&mut self) -> u32 {
+        self.orders = self.orders.wrapping_add(1).max(1);
+        self.orders
+    }
+}

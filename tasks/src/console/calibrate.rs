@@ -1,0 +1,411 @@
+//! Calibration, step by step: what to do, a key when it is done, the numbers, and what would change.
+//!
+//! Results go into the working copy, as `set` does; `save` stores them.
+
+use embassy_time::{Duration, Timer};
+use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, Spin};
+use sophie_control::calibration::{self, Face, FsrFit, Samples, Unfit};
+use sophie_control::math::{clamp, to_deg};
+use sophie_control::params::Params;
+use sophie_control::tendon::{Reel, SPAN_MIN_US};
+use sophie_control::vector::Vec3;
+
+use super::Console;
+use super::bench::End;
+use crate::arms::fits;
+use crate::decimal::{self, Decimal};
+use crate::links::Links;
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+
+/// Samples of one rest, and the time between two: 2 s, in which a breath of wind is over.
+const SAMPLES: u16 = 200;
+const SAMPLING: Duration = Duration::from_millis(10);
+/// Step of a servo under the keys, µs: 1.4 degrees.
+const STEP_US: f32 = 10.0;
+
+/// What can be calibrated, and what that buys.
+const WHAT: [(&str, &str); 8] = [
+    (
+        "gyro",
+        "what it reads at rest; taken anew at each start, nothing to store",
+    ),
+    (
+        "level",
+        "accelerometer's bias on a level table; a lean of the table goes in with it",
+    ),
+    (
+        "accel",
+        "bias by six sides; needs no level table, and checks the scale",
+    ),
+    ("battery", "its voltage by a meter: calibrate battery VOLTS"),
+    ("servo", "release and full mark of one servo: calibrate servo N"),
+    (
+        "fsr",
+        "zero and gain of one pressure sensor by a weight: calibrate fsr N NEWTON",
+    ),
+    ("arm", "zero and sign of one arm's tilt sensor: calibrate arm N"),
+    ("esc", "whether the motor controllers understand the protocol"),
+];
+
+/// Names of the parameters that hold a bias.
+const BIAS: [&str; 3] = ["accel_bias_x", "accel_bias_y", "accel_bias_z"];
+const RELEASE: [&str; 4] = [
+    "servo_release_1",
+    "servo_release_2",
+    "servo_release_3",
+    "servo_release_4",
+];
+const TRIM: [&str; 4] = ["servo_trim_1", "servo_trim_2", "servo_trim_3", "servo_trim_4"];
+const FULL: [&str; 4] = ["servo_full_1", "servo_full_2", "servo_full_3", "servo_full_4"];
+
+/// Conductance and zero of each pressure sensor, sign and zero of each arm's.
+const FSR: [[&str; 2]; 4] = [
+    ["fsr_trim_1", "fsr_zero_1"],
+    ["fsr_trim_2", "fsr_zero_2"],
+    ["fsr_trim_3", "fsr_zero_3"],
+    ["fsr_trim_4", "fsr_zero_4"],
+];
+const ARM: [[&str; 2]; 4] = [
+    ["arm_sign_1", "arm_zero_1"],
+    ["arm_sign_2", "arm_zero_2"],
+    ["arm_sign_3", "arm_zero_3"],
+    ["arm_sign_4", "arm_zero_4"],
+];
+
+/// One sample of what is calibrated; `None` where it is not fresh.
+type Read<'a> = &'a dyn Fn(&Links) -> Option<Vec3>;
+
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
+    pub(super) async fn calibrate(&mut self, what: &str, arguments: [Option<&str>; 2]) {
+        if let Err(status) = self.stopped() {
+            return self.refuse("not calibrated", status).await;
+        }
+        match (what, arguments) {
+            ("gyro", [None, _]) => self.calibrate_gyro().await,
+            ("level", [None, _]) => self.calibrate_level().await,
+            ("accel", [None, _]) => self.calibrate_accel().await,
+            ("battery", [Some(volts), None]) => self.calibrate_battery(volts).await,
+            ("servo", [Some(number), None]) => self.calibrate_servo(number).await,
+            ("esc", [None, _]) => self.calibrate_esc().await,
+            ("fsr", [Some(number), Some(newton)]) => self.calibrate_fsr(number, newton).await,
+            ("arm", [Some(number), None]) => self.calibrate_arm(number).await,
+            _ => {
+                for (name, text) in WHAT {
+                    self.out.line(format_args!("calibrate {name:8} {text}")).await;
+                }
+            }
+        }
+    }
+
+    async fn calibrate_gyro(&mut self) {
+        let rate: Read<'_> = &|links| links.attitude.fresh().map(|a| a.rate + a.gyro_bias);
+        let Some(samples) = self.rest("Leave the vehicle at rest.", rate).await else {
+            return;
+        };
+        match calibration::rest_rate(&samples) {
+            Ok(mean) => {
+                let [x, y, z] = mean.to_array().map(|rate| Decimal(to_deg(rate)));
+                let noise = Decimal(to_deg(samples.spread()));
+                self.out
+                    .line(format_args!(
+                        "at rest {x:.2} {y:.2} {z:.2} deg/s, noise {noise:.2}; nothing to store"
+                    ))
+                    .await;
+            }
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    async fn calibrate_level(&mut self) {
+        let text = "Put the vehicle on a level table, by a spirit level on its body.";
+        let Some(samples) = self.rest(text, &force).await else {
+            return;
+        };
+        match calibration::level(&samples, self.bias_in_force()) {
+            Ok(bias) => self.put_all(&BIAS, bias.to_array()).await,
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    async fn calibrate_accel(&mut self) {
+        let mut means = [Vec3::ZERO; 6];
+        for (mean, side) in means.iter_mut().zip(Face::ALL) {
+            loop {
+                let Some(samples) = self.rest(side.text(), &force).await else {
+                    return;
+                };
+                match calibration::face(&samples, side) {
+                    Ok(found) => {
+                        *mean = found;
+                        break;
+                    }
+                    Err(unfit) => self.unfit(unfit).await,
+                }
+            }
+        }
+        match calibration::six_faces(&means, self.bias_in_force()) {
+            Ok(found) => {
+                let [x, y, z] = found.scale.to_array().map(Decimal);
+                self.out.line(format_args!("scale {x:.3} {y:.3} {z:.3}")).await;
+                self.put_all(&BIAS, found.bias.to_array()).await;
+            }
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    async fn calibrate_battery(&mut self, volts: &str) {
+        let Some(meter) = decimal::parse(volts) else {
+            return self
+                .out
+                .line(format_args!("'{volts}' is not a number of volts"))
+                .await;
+        };
+        let battery: Read<'_> = &|links| links.battery.fresh().map(|b| Vec3::new(b.voltage, 0.0, 0.0));
+        let text = "Leave the battery connected as it was measured.";
+        let Some(samples) = self.rest(text, battery).await else {
+            return;
+        };
+        match calibration::divider(&samples, self.links.params.battery_divider, meter) {
+            Ok(divider) => self.put_all(&["battery_divider"], [divider]).await,
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    async fn calibrate_fsr(&mut self, number: &str, newton: &str) {
+        let Some(arm) = self.one_of_four("pressure sensor", number).await else {
+            return;
+        };
+        let Some(weight) = decimal::parse(newton) else {
+            return self
+                .out
+                .line(format_args!("'{newton}' is not a number of newtons"))
+                .await;
+        };
+        let Some([trim, zero]) = FSR.get(arm) else {
+            return;
+        };
+        let pressure: Read<'_> = &|links| {
+            let contact = links.contact.fresh()?;
+            let pressure = contact.arms.get(arm).copied()?.ok()?;
+            Some(Vec3::new(pressure, 0.0, 0.0))
+        };
+        let Some(empty) = self.rest("Nothing may touch the sensor.", pressure).await else {
+            return;
+        };
+        let Some(loaded) = self.rest("Put the weight on its pad, all of it.", pressure).await else {
+            return;
+        };
+        let now = FsrFit {
+            trim: self.in_force(trim),
+            zero: self.in_force(zero),
+        };
+        let area = self.links.params.fsr_area;
+        match calibration::pressure_sensor(&empty, &loaded, weight / area, now) {
+            Ok(fit) => self.put_all(&[*trim, *zero], [fit.trim, fit.zero]).await,
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    async fn calibrate_arm(&mut self, number: &str) {
+        let Some(arm) = self.one_of_four("arm", number).await else {
+            return;
+        };
+        let (Some([sign, zero]), Some(now)) = (ARM.get(arm), fits(&self.links.params).get(arm).copied())
+        else {
+            return;
+        };
+        let tilt: Read<'_> = &|links| {
+            let tilt = links.tilts().values().get(arm).copied()?;
+            tilt.map(|tilt| Vec3::new(tilt, 0.0, 0.0))
+        };
+        let Some(straight) = self
+            .rest("Hold the arm straight, by a ruler along it.", tilt)
+            .await
+        else {
+            return;
+        };
+        let Some(up) = self
+            .rest("Bend its tip up by a hand's breadth, and hold.", tilt)
+            .await
+        else {
+            return;
+        };
+        match calibration::arm_sensor(&straight, &up, now) {
+            Ok(fit) => self.put_all(&[*sign, *zero], [fit.sign, fit.zero]).await,
+            Err(unfit) => self.unfit(unfit).await,
+        }
+    }
+
+    fn in_force(&self, name: &str) -> f32 {
+        self.links.params.get(name).unwrap_or_default()
+    }
+
+    async fn calibrate_servo(&mut self, number: &str) {
+        let Some(servo) = self.one_of_four("servo", number).await else {
+            return;
+        };
+        let Some((release, full)) = RELEASE.get(servo).zip(FULL.get(servo)) else {
+            return;
+        };
+        let trim = TRIM
+            .get(servo)
+            .and_then(|name| self.links.params.get(name))
+            .unwrap_or_default();
+        let Some(row) = Params::row(release) else {
+            return;
+        };
+        let allowed = [row.min + trim, row.max + trim];
+        let reel = Reel::from_params(&self.links.params, servo);
+        let mut marks = [reel.pulse(0.0), reel.pulse(self.links.params.servo_range)];
+        for (mark, name) in marks.iter_mut().zip(["release", "full"]) {
+            self.out
+                .line(format_args!(
+                    "{name} mark: + and - move the servo, Enter takes it, any other key ends"
+                ))
+                .await;
+            match self.move_servo(servo, *mark, allowed).await {
+                Some(pulse) => *mark = pulse,
+                None => return self.out.line(format_args!("ended: nothing is changed")).await,
+            }
+        }
+        let [at_release, at_full] = marks.map(|mark| mark - trim);
+        let travel = (at_full - at_release).abs();
+        if travel < SPAN_MIN_US {
+            let [travel, least] = [travel, SPAN_MIN_US].map(Decimal);
+            return self
+                .out
+                .line(format_args!(
+                    "not taken: travel is {travel:.0} us; {least:.0} at least"
+                ))
+                .await;
+        }
+        self.put_all(&[*release, *full], [at_release, at_full]).await;
+    }
+
+    /// Moves `servo` from `pulse` µs by the keys; the pulse that the builder takes.
+    async fn move_servo(&mut self, servo: usize, mut pulse_us: f32, allowed: [f32; 2]) -> Option<f32> {
+        let [least, most] = allowed;
+        loop {
+            let shown = Decimal(pulse_us);
+            let order = BenchOrder::Place(Place { servo, pulse_us });
+            let key = match self.order_until_key(order, format_args!("{shown:.0} us")).await {
+                Ok(key) => key,
+                Err(end) => {
+                    self.say_end(format_args!("servo back to its release mark"), end)
+                        .await;
+                    return None;
+                }
+            };
+            let step = match key {
+                b'+' => STEP_US,
+                b'-' => -STEP_US,
+                b'\r' | b'\n' => return Some(pulse_us),
+                _ => return None,
+            };
+            pulse_us = clamp(pulse_us + step, least, most);
+        }
+    }
+
+    /// Each controller in turn; what the builder sees says whether it understands.
+    async fn calibrate_esc(&mut self) {
+        let protocol = Params::row("motor_protocol");
+        let value = self.links.params.get("motor_protocol").unwrap_or_default();
+        let name = protocol
+            .and_then(|row| row.choice(value))
+            .map_or("", |choice| choice.name);
+        for rotor in 0..4 {
+            let number = rotor + 1;
+            let spin = Spin {
+                rotor,
+                drive: SPIN_DRIVE,
+            };
+            let begun = format_args!("motor {number} by {name}");
+            match self.order(BenchOrder::Spin(spin), begun).await {
+                End::Done => (),
+                end => return self.say_end(format_args!("motor {number} stopped"), end).await,
+            }
+            match self.ask("did it turn, evenly, and beep no more? y or n: ").await {
+                Some(b'y') => (),
+                Some(b'n') => {
+                    self.out
+                        .line(format_args!(
+                            "controller {number} does not take {name}, or has no power"
+                        ))
+                        .await;
+                    return self
+                        .out
+                        .line(format_args!(
+                            "another: 'set motor_protocol pwm', 'save', and again"
+                        ))
+                        .await;
+                }
+                _ => return self.out.line(format_args!("ended")).await,
+            }
+        }
+        self.out
+            .line(format_args!("all four controllers take {name}; nothing to store"))
+            .await;
+    }
+
+    /// Says what to do, waits for a key, and samples a rest of two seconds; `None` when it was ended.
+    async fn rest(&mut self, text: &str, read: Read<'_>) -> Option<Samples> {
+        self.out.line(format_args!("{text}")).await;
+        if !matches!(
+            self.ask("Enter when it is so, any other key ends: ").await,
+            Some(b'\r' | b'\n')
+        ) {
+            self.out.line(format_args!("ended: nothing is changed")).await;
+            return None;
+        }
+        let mut samples = Samples::default();
+        for _ in 0..SAMPLES {
+            Timer::after(SAMPLING).await;
+            if let Some(sample) = read(self.links) {
+                samples.add(sample);
+            }
+            if self.keys.pressed() {
+                self.out.line(format_args!("ended: nothing is changed")).await;
+                return None;
+            }
+        }
+        Some(samples)
+    }
+
+    fn bias_in_force(&self) -> Vec3 {
+        let p = &self.links.params;
+        Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z)
+    }
+
+    /// Puts all of `values` into the working copy, or none.
+    async fn put_all<const N: usize>(&mut self, names: &[&str; N], values: [f32; N]) {
+        for (name, value) in names.iter().zip(values) {
+            if let Some(row) = Params::row(name) {
+                self.put(row, thousandths(value)).await;
+            }
+        }
+    }
+
+    async fn unfit(&mut self, unfit: Unfit) {
+        let Unfit {
+            what, value, unit, ..
+        } = unfit;
+        let [value, least, most] = [value, unfit.allowed[0], unfit.allowed[1]].map(Decimal);
+        let unit = crate::parameters::Unit(if unit.is_empty() { "1" } else { unit });
+        self.out
+            .line(format_args!(
+                "not taken: {what} is {value:.2}; {least:.2} to {most:.2}{unit} allowed"
+            ))
+            .await;
+    }
+}
+
+/// The value to a thousandth: no calibration is better, and nobody reads more.
+fn thousandths(value: f32) -> f32 {
+    let half = if value < 0.0 { -0.5 } else { 0.5 };
+    (value * 1000.0 + half) as i32 as f32 / 1000.0
+}
+
+/// Specific force, m/s².
+fn force(links: &Links) -> Option<Vec3> {
+    links.attitude.fresh().map(|a| a.accel)
+}

@@ -1,0 +1,158 @@
+//! Which rotor is which, and which way it turns: each output in turn, and what the builder says of it.
+
+use embassy_time::Duration;
+use sophie_control::bench::{BenchOrder, SPIN_DRIVE, SPIN_TIME, Spin};
+
+use super::Console;
+use super::bench::End;
+use crate::decimal::Decimal;
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+
+/// Time that the builder has for an answer.
+pub(super) const ANSWER: Duration = Duration::from_secs(60);
+
+/// Where each rotor is, and whether it turns clockwise seen from above.
+const ROTORS: [(&str, bool); 4] = [
+    ("front-left", false),
+    ("rear-left", true),
+    ("front-right", true),
+    ("rear-right", false),
+];
+
+/// What the builder has seen of one output.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Rotor that turned, 0 to 3; `None` for none.
+    rotor: Option<usize>,
+    clockwise: bool,
+}
+
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
+    /// Spins each motor in turn, asks what turned and which way, and says which wires are to be swapped.
+    pub(super) async fn rotors(&mut self) {
+        self.out
+            .line(format_args!(
+                "1 front-left, 2 rear-left, 3 front-right, 4 rear-right; r once more, any other key ends"
+            ))
+            .await;
+        let mut seen = [Seen {
+            rotor: None,
+            clockwise: false,
+        }; 4];
+        for (output, slot) in seen.iter_mut().enumerate() {
+            match self.look_at(output).await {
+                Some(answer) => *slot = answer,
+                None => return self.out.line(format_args!("ended: nothing is changed")).await,
+            }
+        }
+        self.judge(&seen).await;
+    }
+
+    /// Spins the motor at `output` until the builder has said what turned; `None` ends it all.
+    async fn look_at(&mut self, output: usize) -> Option<Seen> {
+        let (number, seconds) = (output + 1, Decimal(SPIN_TIME));
+        loop {
+            let spin = Spin {
+                rotor: output,
+                drive: SPIN_DRIVE,
+            };
+            let begun = format_args!("output {number} turns for {seconds} s");
+            match self.order(BenchOrder::Spin(spin), begun).await {
+                End::Done => (),
+                end => {
+                    self.say_end(format_args!("output {number} stopped"), end).await;
+                    return None;
+                }
+            }
+            let rotor = match self.ask("which rotor turned, 1 to 4, or 0 for none? ").await? {
+                b'r' => continue,
+                b'0' => None,
+                key @ b'1'..=b'4' => Some(usize::from(key - b'1')),
+                _ => return None,
+            };
+            let clockwise = match rotor {
+                None => false,
+                Some(_) => match self
+                    .ask("from above, clockwise (c) or anticlockwise (a)? ")
+                    .await?
+                {
+                    b'r' => continue,
+                    b'c' => true,
+                    b'a' => false,
+                    _ => return None,
+                },
+            };
+            return Some(Seen { rotor, clockwise });
+        }
+    }
+
+    async fn judge(&mut self, seen: &[Seen; 4]) {
+        let mut wrong = 0;
+        for (output, Seen { rotor, clockwise }) in seen.iter().enumerate() {
+            let number = output + 1;
+            let Some(rotor) = *rotor else {
+                wrong += 1;
+                self.out
+                    .line(format_args!(
+                        "output {number}: nothing turned; see 'calibrate esc'"
+                    ))
+                    .await;
+                continue;
+            };
+            let (turned, (place, wanted)) = (rotor + 1, ROTORS.get(rotor).copied().unwrap_or_default());
+            let twice = seen.iter().filter(|other| other.rotor == Some(rotor)).count() > 1;
+            let moved = rotor != output;
+            let reversed = *clockwise != wanted;
+            if twice {
+                self.out
+                    .line(format_args!(
+                        "output {number}: rotor {turned} was named twice; say 'rotors' again"
+                    ))
+                    .await;
+            } else if moved {
+                self.out
+                    .line(format_args!(
+                        "output {number}: rotor {turned}, {place}; its signal wire belongs at output {turned}"
+                    ))
+                    .await;
+            }
+            if reversed {
+                let way = if wanted { "clockwise" } else { "anticlockwise" };
+                self.out
+                    .line(format_args!(
+                        "output {number}: rotor {turned} must turn {way}; swap two of its motor's three wires"
+                    ))
+                    .await;
+            }
+            if twice || moved || reversed {
+                wrong += 1;
+            } else {
+                self.out
+                    .line(format_args!(
+                        "output {number}: rotor {turned}, {place}, as it should"
+                    ))
+                    .await;
+            }
+        }
+        match wrong {
+            0 => self.out.line(format_args!("all rotors as they should")).await,
+            _ => {
+                self.out
+                    .line(format_args!(
+                        "after the change, battery off meanwhile, say 'rotors' again"
+                    ))
+                    .await;
+            }
+        }
+    }
+
+    /// The key that answers `question`; `None` where none comes in time.
+    pub(super) async fn ask(&mut self, question: &str) -> Option<u8> {
+        self.out.resume();
+        self.out.bytes(question.as_bytes()).await;
+        let key = self.keys.key(ANSWER).await;
+        let shown = key.filter(u8::is_ascii_graphic).map_or(' ', char::from);
+        self.out.line(format_args!("{shown}")).await;
+        key
+    }
+}

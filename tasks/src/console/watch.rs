@@ -1,0 +1,208 @@
+//! Live numbers, a line each fifth of a second, until a key is pressed.
+
+use core::fmt::Write;
+
+use embassy_time::{Duration, Timer};
+use heapless::{String, Vec};
+use sophie_control::math::to_deg;
+use sophie_control::rc::{ArmChoice, StickMode};
+use sophie_control::wrench::PerArm;
+
+use super::Console;
+use crate::decimal::Decimal;
+use crate::links::Links;
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+
+/// Time between two lines: 80 characters take 7 ms at 115,200 baud, and eyes follow no more.
+const PERIOD: Duration = Duration::from_millis(200);
+/// Most numbers in a line of 80 characters, and the width of each.
+const COLUMNS: usize = 9;
+const WIDTH: usize = 8;
+
+/// The numbers of a line; `None` where a message is stale or a sensor silent.
+type Row = Vec<Option<f32>, COLUMNS>;
+
+/// What can be watched.
+struct Group {
+    name: &'static str,
+    /// What the numbers are.
+    what: &'static str,
+    /// Names of the columns, each [`WIDTH`] wide.
+    columns: &'static str,
+    places: usize,
+    read: fn(&Links) -> Row,
+}
+
+const GROUPS: [Group; 6] = [
+    Group {
+        name: "sticks",
+        what: "sticks -1 to 1, throttle 0 to 1, switches by their position",
+        columns: "    roll   pitch     yaw  thrott     arm   perch    mode    arms",
+        places: 2,
+        read: sticks,
+    },
+    Group {
+        name: "imu",
+        what: "attitude in deg, body rates in deg/s, specific force in m/s2",
+        columns: "    roll   pitch     yaw       p       q       r      ax      ay      az",
+        places: 2,
+        read: imu,
+    },
+    Group {
+        name: "arms",
+        what: "tilt of each arm, tip up, and angle of each servo, deg",
+        columns: "   tilt1   tilt2   tilt3   tilt4  servo1  servo2  servo3  servo4",
+        places: 1,
+        read: arms,
+    },
+    Group {
+        name: "grip",
+        what: "contact pressure of each arm in Pa, tension of each tendon in N",
+        columns: "  press1  press2  press3  press4  tendo1  tendo2  tendo3  tendo4",
+        places: 1,
+        read: grip,
+    },
+    Group {
+        name: "power",
+        what: "battery in V and A, charge used in mAh",
+        columns: "   volts  ampere    used",
+        places: 2,
+        read: power,
+    },
+    Group {
+        name: "counts",
+        what: "counts of the converter, 0 to 4095: pressures, battery V and A",
+        columns: "    fsr1    fsr2    fsr3    fsr4    volt  ampere",
+        places: 0,
+        read: counts,
+    },
+];
+
+fn sticks(links: &Links) -> Row {
+    let Some(rc) = links.rc.fresh() else {
+        return silent(8);
+    };
+    let s = rc.sticks;
+    let switch = |on: bool| if on { 1.0 } else { 0.0 };
+    let mode = match s.stick_mode {
+        StickMode::Angle => 0.0,
+        StickMode::Rate => 1.0,
+        StickMode::Direct => 2.0,
+    };
+    let arms = match s.arms {
+        ArmChoice::All => 0.0,
+        ArmChoice::Front => 1.0,
+        ArmChoice::Rear => 2.0,
+    };
+    let switches = [switch(s.arm_switch), switch(s.perch_switch), mode, arms];
+    let sticks = [s.roll, s.pitch, s.yaw, s.throttle];
+    sticks.into_iter().chain(switches).map(Some).collect()
+}
+
+fn imu(links: &Links) -> Row {
+    let Some(a) = links.attitude.fresh() else {
+        return silent(9);
+    };
+    let (roll, pitch, yaw) = a.q.to_euler();
+    let angles = [roll, pitch, yaw]
+        .into_iter()
+        .chain(a.rate.to_array())
+        .map(to_deg);
+    angles.chain(a.accel.to_array()).map(Some).collect()
+}
+
+fn arms(links: &Links) -> Row {
+    let tilts = links.tilts().values();
+    both(tilts, links.reel_angle.fresh(), to_deg)
+}
+
+fn grip(links: &Links) -> Row {
+    let contact = links.contact.fresh().map(|contact| contact.arms);
+    let pressures = contact.map_or([None; 4], |arms| arms.map(Result::ok));
+    both(pressures, links.tension.fresh(), |force| force)
+}
+
+/// Four and four, in the unit that `shown` gives.
+fn both(first: PerArm<Option<f32>>, second: Option<PerArm<f32>>, shown: fn(f32) -> f32) -> Row {
+    let second = second.map_or([None; 4], |second| second.map(Some));
+    first
+        .into_iter()
+        .chain(second)
+        .map(|value| value.map(shown))
+        .collect()
+}
+
+fn power(links: &Links) -> Row {
+    let Some(b) = links.battery.fresh() else {
+        return silent(3);
+    };
+    // A·s to mAh.
+    [b.voltage, b.current, b.used / 3.6]
+        .into_iter()
+        .map(Some)
+        .collect()
+}
+
+fn counts(links: &Links) -> Row {
+    let Some(frame) = links.counts.fresh() else {
+        return silent(6);
+    };
+    let battery = [frame.battery_voltage, frame.battery_current];
+    frame
+        .fsr
+        .into_iter()
+        .chain(battery)
+        .map(|counts| Some(f32::from(counts)))
+        .collect()
+}
+
+fn silent(columns: usize) -> Row {
+    core::iter::repeat_n(None, columns).collect()
+}
+
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
+    /// Shows the group called `name` until a key is pressed.
+    pub(super) async fn watch(&mut self, name: &str) {
+        let Some(group) = GROUPS.iter().find(|group| group.name == name) else {
+            for Group { name, what, .. } in &GROUPS {
+                self.out.line(format_args!("watch {name:7} {what}")).await;
+            }
+            return;
+        };
+        self.out.line(format_args!("{}", group.what)).await;
+        self.out.line(format_args!("{}", group.columns)).await;
+        while !self.keys.pressed() {
+            let mut text = String::<{ COLUMNS * WIDTH }>::new();
+            for value in (group.read)(self.links) {
+                let places = group.places;
+                // Never an error but for a number that is too long, whose end is cut off.
+                let _ = match value {
+                    Some(value) => write!(text, "{:>WIDTH$.places$}", Decimal(value)),
+                    None => write!(text, "{:>WIDTH$}", '-'),
+                };
+            }
+            self.out.resume();
+            self.out.line(format_args!("{text}")).await;
+            Timer::after(PERIOD).await;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sophie_clock as _;
+    use sophie_control::params::Params;
+
+    use super::*;
+
+    #[test]
+    fn every_line_has_as_many_columns_as_its_head_and_fits_the_screen() {
+        let links = Links::new(Params::DEFAULT);
+        for group in &GROUPS {
+            let names = group.columns.split_ascii_whitespace().count();
+            assert_eq!(group.columns.len(), names * WIDTH, "{}", group.name);
+            assert_eq!((group.read)(&links).len(), names, "{}", group.name);
+            assert!("watch 1234567 ".len() + group.what.len() <= 80, "{}", group.what);
+        }
+    }
+}

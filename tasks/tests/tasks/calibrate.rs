@@ -1,0 +1,352 @@
+//! Calibration and the rotors' order, typed key by key: what is asked, what is found, what would change.
+
+use sophie_control::calibration::Face;
+use sophie_control::params::Params;
+use sophie_control::vector::Vec3;
+use sophie_tasks::ports::ImuReading;
+
+use crate::bench::{Table, UNLOADED};
+
+const ENTER: &str = "Enter when it is so, any other key ends:";
+
+impl Table {
+    /// Presses `keys` one by one, each answered within `ms` milliseconds; what is said to all of them.
+    fn presses(&mut self, keys: &str, ms: u32) -> Vec<String> {
+        keys.bytes()
+            .flat_map(|key| {
+                self.line.put(&[key]);
+                self.goes_on(ms)
+            })
+            .map(|line| line.trim_end().to_string())
+            .collect()
+    }
+
+    fn says_trimmed(&mut self, text: &str, ms: u32) -> Vec<String> {
+        let said = self.says(text, ms);
+        said.into_iter().map(|line| line.trim_end().to_string()).collect()
+    }
+
+    /// Puts the vehicle on `side`, with what its sensor reads beyond gravity.
+    fn lies(&mut self, side: Face, beyond: Vec3) {
+        self.imu.2.set(ImuReading {
+            gyro: Vec3::ZERO,
+            accel: side.force() - Face::Belly.force() + beyond,
+        });
+        self.run(500);
+    }
+}
+
+#[test]
+fn a_level_rest_gives_the_bias_over_the_one_in_force() {
+    let params = Params {
+        accel_bias_x: 0.25,
+        accel_bias_y: 0.0625,
+        accel_bias_z: -0.125,
+        ..Params::DEFAULT
+    };
+    let mut table = Table::with(UNLOADED, params);
+    let asked = table.says_trimmed("calibrate level", 100);
+    assert_eq!(
+        asked,
+        [
+            "Put the vehicle on a level table, by a spirit level on its body.",
+            ENTER
+        ]
+    );
+    // The sensor reads gravity as it is.
+    let said = table.presses("\r", 2500);
+    let found: Vec<f32> = said[1..].iter().map(|line| value(line)).collect();
+    assert!(
+        found.len() == 3 && found.iter().all(|bias| bias.abs() < 1e-4),
+        "{said:?}"
+    );
+    assert!(said[1].starts_with("accel_bias_x 0.25 -> ") && said[1].ends_with(" m/s2, in force after save"));
+    assert!(said[3].starts_with("accel_bias_z -0.125 -> "));
+    // A body that leans by 5°.
+    table.lies(Face::Belly, Vec3::new(0.0, 0.85, 0.0));
+    table.says("calibrate level", 100);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["not taken: bias along y is 0.85; -0.60 to 0.60 m/s2 allowed"]
+    );
+    let changes = table.says("changes", 100);
+    assert_eq!(changes.len(), 4, "{changes:?}");
+}
+
+/// The number after the arrow.
+fn value(line: &str) -> f32 {
+    let (_, rest) = line.split_once(" -> ").unwrap_or_else(|| panic!("{line}"));
+    rest.split_whitespace()
+        .next()
+        .unwrap()
+        .trim_end_matches(',')
+        .parse()
+        .unwrap()
+}
+
+#[test]
+fn a_noisy_rest_is_refused_with_its_noise() {
+    let mut table = Table::set();
+    table.says("calibrate level", 100);
+    table.line.put(b"\r");
+    table.lies(Face::Belly, Vec3::new(2.0, 0.0, 0.0));
+    table.imu.2.set(ImuReading::default());
+    let said = table.goes_on(2500);
+    assert!(
+        said.len() == 1
+            && said[0].starts_with("not taken: noise is 0.")
+            && said[0].ends_with("0.00 to 0.15 m/s2 allowed"),
+        "{said:?}"
+    );
+    assert_eq!(table.says("changes", 100), ["no changes"]);
+}
+
+#[test]
+fn six_sides_give_the_bias_and_a_wrong_side_is_asked_for_again() {
+    let mut table = Table::set();
+    let bias = Vec3::new(0.2, -0.1, 0.3);
+    let mut said = table.says_trimmed("calibrate accel", 100);
+    for (i, side) in Face::ALL.into_iter().enumerate() {
+        assert_eq!(said[said.len() - 2..], [side.text(), ENTER]);
+        if i == 2 {
+            // Still on its back.
+            let refused = table.presses("\r", 2500);
+            let why = "not taken: gravity on this side is -0.20; 8.34 to 11.28 m/s2 allowed";
+            assert_eq!(refused[1..], [why, side.text(), ENTER]);
+        }
+        table.lies(side, bias);
+        said = table.presses("\r", 2500);
+    }
+    assert_eq!(said[1], "scale 1.000 1.000 1.000");
+    for (line, (name, bias)) in said[2..].iter().zip([("x", 0.2), ("y", -0.1), ("z", 0.3)]) {
+        assert!(line.starts_with(&format!("accel_bias_{name} 0 -> ")), "{line}");
+        assert!((value(line) - bias).abs() < 1e-3, "{line}");
+    }
+    assert_eq!(said.len(), 5);
+}
+
+#[test]
+fn the_battery_is_read_as_the_meter_reads_it() {
+    let mut table = Table::set();
+    table.says("calibrate battery 15.5", 100);
+    let said = table.presses("\r", 2500);
+    assert!(said[1].starts_with("battery_divider 11 -> "), "{said:?}");
+    // 15.2 V by the board.
+    assert!((value(&said[1]) - 11.0 * 15.5 / 15.2).abs() < 1e-3, "{said:?}");
+    table.says("calibrate battery 2", 100);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["not taken: the meter's reading is 2.00; 3.00 to 60.00 V allowed"]
+    );
+    assert_eq!(
+        table.says("calibrate battery full", 100),
+        ["'full' is not a number of volts"]
+    );
+}
+
+#[test]
+fn the_gyro_is_shown_and_a_key_ends_any_of_it() {
+    let mut table = Table::set();
+    table.says("calibrate gyro", 100);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["at rest 0.00 0.00 0.00 deg/s, noise 0.00; nothing to store"]
+    );
+    let ended = "ended: nothing is changed";
+    for command in ["gyro", "level", "accel", "battery 15"] {
+        table.says(&format!("calibrate {command}"), 100);
+        assert_eq!(table.presses("x", 100), ["x", ended], "{command}");
+        // In the midst of the samples.
+        table.says(&format!("calibrate {command}"), 100);
+        table.presses("\r", 1000);
+        assert_eq!(table.presses("x", 100), [ended], "{command}");
+    }
+    assert_eq!(table.says("changes", 100), ["no changes"]);
+    assert_eq!(table.says("calibrate", 100).len(), 8);
+    assert_eq!(table.says("calibrate all", 100).len(), 8);
+}
+
+#[test]
+fn a_servos_marks_are_found_by_keys() {
+    let mut table = Table::set();
+    let said = table.says("calibrate servo 2", 300);
+    assert_eq!(
+        said,
+        [
+            "release mark: + and - move the servo, Enter takes it, any other key ends",
+            "550 us"
+        ]
+    );
+    // Five to and two back, then the full mark three back.
+    let said = table.presses("+++++--", 200);
+    assert_eq!(
+        said,
+        [
+            "560 us", "570 us", "580 us", "590 us", "600 us", "590 us", "580 us"
+        ]
+    );
+    assert!(
+        (table.servos.now()[1] - 580.0).abs() < 1.0,
+        "{:?}",
+        table.servos.now()
+    );
+    let said = table.presses("\r---\r", 200);
+    assert_eq!(
+        said,
+        [
+            "full mark: + and - move the servo, Enter takes it, any other key ends",
+            "2450 us",
+            "2440 us",
+            "2430 us",
+            "2420 us",
+            "servo_release_2 550 -> 580 us, in force after save",
+            "servo_full_2 2450 -> 2420 us, in force after save",
+        ]
+    );
+    table.run(6000);
+    assert!(
+        (table.servos.now()[1] - 550.0).abs() < 1.0,
+        "{:?}",
+        table.servos.now()
+    );
+    // No further than the parameters take, and nothing by another key.
+    table.says("calibrate servo 1", 300);
+    assert_eq!(table.presses("-x", 200), ["550 us", "ended: nothing is changed"]);
+    assert_eq!(table.says("changes", 100).len(), 3);
+}
+
+#[test]
+fn each_rotor_is_asked_for_and_what_is_to_be_swapped_is_said() {
+    let mut table = Table::set();
+    let refused = table.says("rotors", 300);
+    assert_eq!(refused[1], "refused: say 'propellers off' first, once they are");
+    table.says("propellers off", 100);
+    // As it should; 2 and 3 swapped, 3 the wrong way; the last once more, and then nothing.
+    table.says("rotors", 2500);
+    for keys in ["1a", "3a", "2c"] {
+        table.presses(keys, 2500);
+    }
+    let again = table.presses("r", 2500);
+    assert_eq!(again[1], "output 4 turns for 2 s");
+    let said = table.presses("0", 300);
+    assert_eq!(
+        said[1..],
+        [
+            "output 1: rotor 1, front-left, as it should",
+            "output 2: rotor 3, front-right; its signal wire belongs at output 3",
+            "output 2: rotor 3 must turn clockwise; swap two of its motor's three wires",
+            "output 3: rotor 2, rear-left; its signal wire belongs at output 2",
+            "output 4: nothing turned; see 'calibrate esc'",
+            "after the change, battery off meanwhile, say 'rotors' again",
+        ]
+    );
+    table.says("rotors", 2500);
+    for keys in ["1a", "2c", "3c", "4"] {
+        table.presses(keys, 2500);
+    }
+    let said = table.presses("a", 300);
+    assert_eq!(said.len(), 6);
+    assert_eq!(said[5], "all rotors as they should");
+    // One that is named twice, and an end in between.
+    table.says("rotors", 2500);
+    for keys in ["1a", "1a", "3c", "4"] {
+        table.presses(keys, 2500);
+    }
+    let said = table.presses("a", 300);
+    assert_eq!(said[1], "output 1: rotor 1 was named twice; say 'rotors' again");
+    table.says("rotors", 2500);
+    assert_eq!(
+        table.presses("x", 300).last().unwrap(),
+        "ended: nothing is changed"
+    );
+}
+
+#[test]
+fn the_controllers_protocol_is_judged_by_what_the_builder_sees() {
+    let mut table = Table::set();
+    table.says("propellers off", 100);
+    assert_eq!(table.says("calibrate esc", 2500)[0], "motor 1 by dshot300");
+    assert_eq!(table.presses("y", 2500)[1], "motor 2 by dshot300");
+    let said = table.presses("n", 300);
+    assert_eq!(
+        said[1..],
+        [
+            "controller 2 does not take dshot300, or has no power",
+            "another: 'set motor_protocol pwm', 'save', and again"
+        ]
+    );
+    table.says("calibrate esc", 2500);
+    table.presses("yyy", 2500);
+    let said = table.presses("y", 300);
+    assert_eq!(said[1], "all four controllers take dshot300; nothing to store");
+}
+
+#[test]
+fn a_pressure_sensor_is_fitted_by_a_known_weight() {
+    let mut table = Table::set();
+    let mut frame = UNLOADED;
+    // 100 counts are 17.3 Pa, 2047 counts 692.5 Pa: 675.2 Pa for 1.3 N on 1444 mm2, 900.3 Pa.
+    frame.fsr[2] = 100;
+    table.analog.frame.set(frame);
+    let asked = table.says_trimmed("calibrate fsr 3 1.3", 100);
+    assert_eq!(asked, ["Nothing may touch the sensor.", ENTER]);
+    let said = table.presses("\r", 2500);
+    assert_eq!(said[1..], ["Put the weight on its pad, all of it.", ENTER]);
+    frame.fsr[2] = 2047;
+    table.analog.frame.set(frame);
+    let said = table.presses("\r", 2500);
+    assert!(
+        said[1].starts_with("fsr_trim_3 1 -> 0.75") && said[2].starts_with("fsr_zero_3 0 -> 23."),
+        "{said:?}"
+    );
+    // Without the weight.
+    table.says("calibrate fsr 1 1.3", 100);
+    table.presses("\r", 2500);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["not taken: conductance over fsr_gain is 0.00; 0.20 to 5.00 allowed"]
+    );
+    assert_eq!(
+        table.says("calibrate fsr 5 1", 100),
+        ["no pressure sensor '5'; 1 front-left, 2 rear-left, 3 front-right, 4 rear-right"]
+    );
+    assert_eq!(
+        table.says("calibrate fsr 1 much", 100),
+        ["'much' is not a number of newtons"]
+    );
+}
+
+#[test]
+fn an_arms_sensor_gets_its_zero_and_its_sign() {
+    let mut table = Table::set();
+    // A body that rolls by 0.1 rad to the right under arms that stay: the left arms' tips seem to go up.
+    let asked = table.says_trimmed("calibrate arm 1", 100);
+    assert_eq!(asked, ["Hold the arm straight, by a ruler along it.", ENTER]);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["Bend its tip up by a hand's breadth, and hold.", ENTER]
+    );
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        ["not taken: turn of the arm is 0.00; 0.10 to 1.50 rad allowed"]
+    );
+    table.says("calibrate arm 1", 100);
+    table.presses("\r", 2500);
+    // Mounted the other way round: bent up, it shows a tip that goes down by 0.3 rad.
+    table.arms.2.set(-0.3);
+    table.run(200);
+    let said = table.presses("\r", 2500);
+    assert_eq!(
+        said[1..],
+        [
+            "arm_sign_1 1 along -> -1 reversed, in force after save",
+            "arm_zero_1 0 -> 0 rad, as in force"
+        ]
+    );
+}

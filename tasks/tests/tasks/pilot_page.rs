@@ -1,0 +1,57 @@
+//! The warnings on the pilot's page, each with what he is to do.
+//!
+//! `WRITE_DOCS=1 cargo test --package sophie-tasks --test tasks pilot_page` rewrites the table.
+
+use std::fmt::Write;
+
+use sophie_tasks::start::StartCause;
+use sophie_tasks::warning::Warning;
+
+use crate::declarations::holds;
+
+fn to_do(warning: Warning) -> &'static str {
+    match warning {
+        Warning::ArmTilt => {
+            "Land; `infill`, `gain_k` and the arm's sensor ([calibration](calibration.md#arms))."
+        }
+        Warning::Restarted(StartCause::PowerOn | StartCause::Software) => "",
+        Warning::Restarted(StartCause::BrownOut) => {
+            "Do not fly: find why the supply broke down; power off and on."
+        }
+        Warning::Restarted(StartCause::Watchdog) => "Do not fly before the log says which task stood still.",
+        Warning::Restarted(StartCause::Fault) => {
+            "Do not fly before the log's `the run before ended with` is understood."
+        }
+        Warning::ServoWeak => {
+            "`servo_torque_max` is above what `servo_stall` gives: a full grip may not hold."
+        }
+        Warning::InfillLow => "Arms softer than any that flew: stay low.",
+    }
+}
+
+#[test]
+fn every_warning_is_on_the_pilots_page() {
+    let mut table = String::from("| warning | what to do |\n|---|---|\n");
+    for warning in Warning::ALL {
+        let _ = writeln!(table, "| {} | {} |", warning.text(), to_do(warning));
+    }
+    holds("pilot.md", "warnings", &table);
+}
+
+#[test]
+fn every_start_that_warns_is_among_the_warnings() {
+    for cause in [
+        StartCause::PowerOn,
+        StartCause::Software,
+        StartCause::BrownOut,
+        StartCause::Watchdog,
+        StartCause::Fault,
+    ] {
+        let warning = Warning::Restarted(cause);
+        assert_eq!(
+            Warning::ALL.contains(&warning),
+            !warning.text().is_empty(),
+            "{cause:?}"
+        );
+    }
+}

@@ -1,0 +1,62 @@
+//! The `sophie` command in a directory of its own, for tests of what a user meets.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A directory of its own for one test, gone afterwards.
+pub struct Temp(pub PathBuf);
+
+impl Temp {
+    /// A new one.
+    pub fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("sophie-cli-{}-{name}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// Writes a file into it; gives its path.
+    pub fn file(&self, name: &str, content: &[u8]) -> String {
+        let path = self.0.join(name);
+        fs::write(&path, content).unwrap();
+        path.display().to_string()
+    }
+}
+
+impl Drop for Temp {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The command with these arguments in `directory`.
+pub fn command(directory: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sophie"));
+    command.current_dir(directory).args(args).stdin(Stdio::null());
+    command
+}
+
+/// What it does there.
+pub fn sophie(temp: &Temp, args: &[&str]) -> Output {
+    command(&temp.0, args).output().unwrap()
+}
+
+/// As text.
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Refused: exit status 2, nothing on stdout, one line on stderr (given back), no output directory.
+pub fn refused(temp: &Temp, args: &[&str]) -> String {
+    let output = sophie(temp, args);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
+    assert!(output.stdout.is_empty(), "{args:?}: {}", text(&output.stdout));
+    assert!(
+        told.ends_with('\n') && told.lines().count() == 1 && told.len() < 500,
+        "{args:?}: {told}"
+    );
+    assert!(!temp.0.join("out").exists(), "{args:?} left an output directory");
+    told.trim_end().to_owned()
+}
