@@ -156,7 +156,7 @@ impl Judge {
     /// A perch that ends during a hold.
     fn let_go(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
         let (t, plant, stack) = (now.t(), now.plant, now.stack);
-        // A perched vehicle holds without the radio too.
+        // Holds without the radio too.
         let holds = match now.step {
             Some((_, Step::Hold { .. })) => true,
             Some((_, Step::RadioOff { .. })) => self.hold_start.is_some() || stack.mode() == Mode::Perched,

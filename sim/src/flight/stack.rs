@@ -227,7 +227,6 @@ mod tests {
         assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
         stack.run_until(50_000).unwrap();
         assert!(stack.belief().pressure.iter().all(|p| p.is_finite()));
-        // The newest conversion is 21 ms old.
         let contact = stack.links.contact.latest().unwrap();
         let old = embassy_time::Instant::now() - embassy_time::Duration::from_millis(21);
         stack.links.contact.send(old, contact.value);

@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn the_mode_is_at_five_hertz_in_hover() {
-        // Free swing about hover on a fixed level body; counts zero crossings.
+        // Counts zero crossings about hover, body fixed and level.
         let mut arm = Arm::new(
             0,
             ArmSpec {
