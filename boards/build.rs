@@ -1,6 +1,6 @@
-//! The one place that picks a board: its file and chip by cargo's features, its memory map for the linker.
+//! Picks the board: its file and chip by cargo's features, its memory map for the linker.
 //!
-//! What links for a board only adds linker arguments, which cargo does not pass on from here.
+//! What links for a board must add the linker arguments, which cargo does not pass on from here.
 
 #[path = "src/output_pins.rs"]
 mod output_pins;
@@ -9,16 +9,14 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// Where the boards' maps are.
 const MAPS: &str = "memory";
-/// Families of chips that `src/stm32/` and `src/cortex_m/` have been written for.
+/// Chip families that `src/stm32/` and `src/cortex_m/` support.
 const FAMILIES: [&str; 3] = ["f4", "f7", "h7"];
 
-/// What is built for.
 struct Selection {
-    /// The board's memory map, called as its feature.
+    /// The board's memory map, named like its feature.
     map: PathBuf,
-    /// The family of its chip, one of [`FAMILIES`].
+    /// Chip family, one of [`FAMILIES`].
     family: &'static str,
 }
 
@@ -38,11 +36,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The board and the chip of this build. Boards are called as their memory maps; chips are features called `stm32…`.
+/// The board and chip of this build. Boards are named like their memory maps; chips are features `stm32…`.
 ///
 /// # Errors
-/// One line: no board or several, no chip or several, or one of a family without shared code; a motor or a servo on a
-/// pin that the chip pulls up by itself.
+/// One line: no board or several, no chip or several, or one of a family without shared code; a motor or servo on a pin
+/// that the chip pulls up.
 fn selection() -> Result<Selection, String> {
     let boards = boards().map_err(|error| format!("boards/{MAPS}: {error}"))?;
     let feature = |name: &str| format!("CARGO_FEATURE_{}", name.to_uppercase().replace('-', "_"));
@@ -85,7 +83,6 @@ fn selection() -> Result<Selection, String> {
     })
 }
 
-/// The boards that have a memory map.
 fn boards() -> io::Result<Vec<String>> {
     let mut boards = Vec::new();
     for entry in fs::read_dir(MAPS)? {
@@ -98,8 +95,8 @@ fn boards() -> io::Result<Vec<String>> {
     Ok(boards)
 }
 
-/// Gives the linker the map of the board (memory.x at the workspace root, which it finds first, includes it), and the
-/// compiler the family. The search path reaches whatever links this crate.
+/// Passes the board's map to the linker (included by memory.x at the workspace root, which is found first) and the
+/// family to the compiler. The search path applies to whatever links this crate.
 fn apply(selection: &Selection) -> io::Result<()> {
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     fs::copy(&selection.map, out.join("board.x"))?;

@@ -66,7 +66,7 @@ const CASES: [Case; 10] = [
     },
     Case {
         what: "arms level at 60 % of thrust, `arm_level_share` 0.5",
-        seen: "nothing; the measured tilt is off",
+        seen: "nothing: the sensors take it out",
         change: |s| s.vehicle.arm_level_share = 0.6,
     },
     Case {

@@ -1,6 +1,6 @@
-//! The board that is built for, and what it hands to the tasks.
+//! The selected board, and its ports for the tasks.
 
-// One line a board. Exactly one holds: the build script has seen to it.
+// One line per board; the build script ensures that exactly one applies.
 #[cfg_attr(feature = "matek-h743", path = "matek_h743.rs")]
 #[cfg_attr(feature = "cuav-v5", path = "cuav_v5.rs")]
 #[cfg_attr(feature = "f405", path = "f405.rs")]
@@ -17,7 +17,7 @@ use sophie_tasks::ports::Loaded;
 
 use crate::stm32::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, ThisChip};
 
-/// What a board hands to the tasks.
+/// A board's ports for the tasks.
 pub struct Board {
     /// The vehicle's inertial sensor.
     pub imu: ImuPort,
@@ -29,24 +29,24 @@ pub struct Board {
     pub motors: MotorsPort,
     /// The tendon servos.
     pub servos: ServosPort,
-    /// From the receiver.
+    /// Receiver input.
     pub receiver: ReceiverLine,
-    /// To the receiver.
+    /// Receiver output.
     pub telemetry: TelemetryLine,
-    /// From the console.
+    /// Console input.
     pub console_input: ConsoleInput,
-    /// To the console.
+    /// Console output.
     pub console_output: ConsoleOutput,
-    /// The watchdog, running.
+    /// The running watchdog.
     pub watchdog: WatchdogPort,
     /// Lights and buzzer.
     pub lights: LightsPort,
-    /// Where parameters are stored.
+    /// Parameter storage.
     pub storage: StoragePort,
-    /// The parameters as which the ports were built: what was stored, or the defaults.
+    /// Parameters of the ports: stored ones, or the defaults.
     pub params: Params,
-    /// What reading them gave.
+    /// Result of reading them.
     pub loaded: Loaded,
-    /// The chip itself.
+    /// The chip.
     pub chip: ThisChip,
 }

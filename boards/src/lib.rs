@@ -1,11 +1,10 @@
-//! The boards: everything that is specific to a chip, and every line of unsafe code of what flies, is in here.
+//! The boards: all code specific to a chip, and all unsafe code that flies.
 //!
 //! A board is one file: clocks, pins, DMA streams and timers, claimed with `assign_resources`, and `Board`'s ports
-//! built from them. `stm32` has what several boards share, `cortex_m` what all do: both go by the chip's family and
-//! never by the board. The memory maps are in `memory/`, and the build script picks the one of the board that a feature
-//! names. Nothing outside names a chip. How a run ends is `sophie-fault`'s.
+//! built from them. `stm32` is shared by several boards, `cortex_m` by all; both depend on the chip's family, never on
+//! the board. The build script picks the board's memory map in `memory/`. `sophie-fault` ends a run.
 //!
-//! On the host there is only the check of a board's pins (`output_pins`), and its tests.
+//! On the host there is only the check of a board's pins (`output_pins`).
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg_attr(

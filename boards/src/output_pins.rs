@@ -1,17 +1,17 @@
-//! Which pins may drive a motor or a servo: none of the debug port, which the chip pulls or drives from its reset on.
+//! Pins that may drive a motor or servo: none of the debug port, which the chip pulls or drives from reset on.
 //!
-//! A servo's input that is pulled up is taken for a pulse that never ends by some servos, and a reset happens on the
-//! pipe too. The build script looks at the table of the board that it builds, the tests at those of all.
+//! Some servos take a pulled-up input for an endless pulse, and a reset may happen on the pipe. The build script checks
+//! the table of its board, the tests those of all.
 
-/// Pins that an STM32 gives to its debug port at reset: SWDIO, JTDI and NJTRST with a pull-up, SWCLK with a pull-down,
-/// JTDO (RM0090 §8.3.2, RM0410 §6.3.2, RM0433 §11.3.2). They stay so until the firmware sets them.
+/// Debug port pins at reset, until the firmware sets them: SWDIO, JTDI and NJTRST with a pull-up, SWCLK with a
+/// pull-down, JTDO (RM0090 §8.3.2, RM0410 §6.3.2, RM0433 §11.3.2).
 const DEBUG_PORT: [&str; 5] = ["PA13", "PA14", "PA15", "PB3", "PB4"];
 
-/// Sees that the table of a board file (`assign_resources!`) has `motor_1` to `motor_4` and `servo_1` to `servo_4`, none
-/// of them on a pin of the debug port.
+/// Checks that a board's table (`assign_resources!`) has `motor_1` to `motor_4` and `servo_1` to `servo_4`, none of
+/// them on a debug port pin.
 ///
 /// # Errors
-/// One line: the field, its pin, and which pins are not allowed.
+/// One line: the field, its pin, and the pins not allowed.
 pub fn check(table: &str) -> Result<(), String> {
     for output in ["motor", "servo"] {
         for number in 1..=4 {
@@ -43,7 +43,6 @@ fn pin_of<'a>(table: &'a str, field: &str) -> Option<&'a str> {
 mod tests {
     use super::check;
 
-    /// The tables that are built.
     const BOARDS: [(&str, &str); 3] = [
         ("matek-h743", include_str!("matek_h743.rs")),
         ("cuav-v5", include_str!("cuav_v5.rs")),

@@ -242,6 +242,92 @@ pub fn six_faces(means: &[Vec3; 6], bias: Vec3) -> Result<SixFaces, Unfit> {
     })
 }
 
+/// A direction of the body as the firmware has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Body x.
+    Forward,
+    /// Against it.
+    Back,
+    /// Body y.
+    Right,
+    /// Against it.
+    Left,
+    /// Body z.
+    Down,
+    /// Against it.
+    Up,
+}
+
+impl Direction {
+    /// For people.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Back => "back",
+            Self::Right => "right",
+            Self::Left => "left",
+            Self::Down => "down",
+            Self::Up => "up",
+        }
+    }
+
+    const fn unit(self) -> Vec3 {
+        match self {
+            Self::Forward => Vec3::new(1.0, 0.0, 0.0),
+            Self::Back => Vec3::new(-1.0, 0.0, 0.0),
+            Self::Right => Vec3::new(0.0, 1.0, 0.0),
+            Self::Left => Vec3::new(0.0, -1.0, 0.0),
+            Self::Down => Vec3::new(0.0, 0.0, 1.0),
+            Self::Up => Vec3::new(0.0, 0.0, -1.0),
+        }
+    }
+}
+
+/// The direction that the firmware takes to point down in this rest.
+///
+/// # Errors
+/// Samples that are few or noisy, or gravity along none of them.
+pub fn below(samples: &Samples) -> Result<Direction, Unfit> {
+    let [x, y, z] = samples.quiet_mean(FORCE_SPREAD_MAX, "m/s2")?.to_array();
+    // Specific force points up.
+    let (positive, negative, force) = if x.abs() > y.abs() && x.abs() > z.abs() {
+        (Direction::Back, Direction::Forward, x)
+    } else if y.abs() > z.abs() {
+        (Direction::Left, Direction::Right, y)
+    } else {
+        (Direction::Up, Direction::Down, z)
+    };
+    let allowed = SIDE_SHARE.map(|share| share * GRAVITY);
+    within("gravity along one axis", force.abs(), allowed, "m/s2")?;
+    Ok(if force > 0.0 { positive } else { negative })
+}
+
+/// What the firmware takes for the vehicle's sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sides {
+    /// Was below with the nose down.
+    pub nose: Direction,
+    /// Was below with the right side down.
+    pub right: Direction,
+    /// Was below with the vehicle level.
+    pub belly: Direction,
+}
+
+impl Sides {
+    /// The sensor is mounted as the firmware has it.
+    pub const AS_BUILT: Self = Self {
+        nose: Direction::Forward,
+        right: Direction::Right,
+        belly: Direction::Down,
+    };
+
+    /// The three are one of the 24 ways in which a sensor can sit; otherwise a side was mistaken.
+    pub fn fit(&self) -> bool {
+        self.nose.unit().cross(self.right.unit()) == self.belly.unit()
+    }
+}
+
 /// The divider with which the battery reads what a meter reads, `meter` V; with `divider` it reads the mean of
 /// `samples` (V, along x).
 ///
@@ -377,7 +463,8 @@ mod tests {
             let scale = Vec3::new(1.0, 1.0, 1.0) + error;
             let mut means = Vec::new();
             for (i, side) in Face::ALL.into_iter().enumerate() {
-                let turned = crate::vector::Quat::from_euler(lean.x, lean.y * f32::from(i as u8 % 2), 0.0).rotate(side.force());
+                let lean = crate::vector::Quat::from_euler(lean.x, lean.y * f32::from(i as u8 % 2), 0.0);
+                let turned = lean.rotate(side.force());
                 let reads = turned.scale_by(scale) + bias - taken;
                 means.push(face(&samples(reads, 0.2), side).unwrap());
             }
@@ -397,7 +484,8 @@ mod tests {
         /// Within 5 % and 10 Pa, under noise of 40 Pa.
         #[test]
         fn a_sensors_zero_and_conductance_are_found(
-            trim in 0.4f32..2.5, zero in 0.0f32..100.0, old_trim in 0.5f32..2.0, old_zero in 0.0f32..50.0, weight in 500.0f32..3000.0,
+            trim in 0.4f32..2.5, zero in 0.0f32..100.0, old_trim in 0.5f32..2.0,
+            old_zero in 0.0f32..50.0, weight in 500.0f32..3000.0,
         ) {
             // What it shows with the old fit: the conductance is that of the true one.
             let shown = |pressure: f32| Vec3::new((pressure + zero) * trim / old_trim - old_zero, 0.0, 0.0);
@@ -410,10 +498,12 @@ mod tests {
         /// Within 0.01 rad, under noise of 0.03 rad.
         #[test]
         fn an_arms_zero_and_sign_are_found(
-            reversed in any::<bool>(), was_reversed in any::<bool>(), zero in -0.5f32..0.5, old_zero in -0.3f32..0.3, up in 0.15f32..0.8,
+            reversed in any::<bool>(), was_reversed in any::<bool>(),
+            zero in -0.5f32..0.5, old_zero in -0.3f32..0.3, up in 0.15f32..0.8,
         ) {
             let sign = |reversed| if reversed { -1.0 } else { 1.0 };
-            let (truth, now) = (ArmFit { sign: sign(reversed), zero }, ArmFit { sign: sign(was_reversed), zero: old_zero });
+            let truth = ArmFit { sign: sign(reversed), zero };
+            let now = ArmFit { sign: sign(was_reversed), zero: old_zero };
             // What the sensor shows of a tilt, and what is made of it with the old fit.
             let read = |tilt: f32| Vec3::new(now.tilt((tilt + truth.zero) * truth.sign), 0.0, 0.0);
             let found = arm_sensor(&samples(read(0.0), 0.03), &samples(read(up), 0.03), now).unwrap();
@@ -503,6 +593,39 @@ mod tests {
         ] {
             assert_eq!(arm_sensor(&at(straight), &at(up), now).unwrap_err().what, what);
         }
+    }
+
+    #[test]
+    fn a_turned_sensor_shows_which_way_it_is_turned() {
+        const ALL: [Direction; 6] = [
+            Direction::Forward,
+            Direction::Back,
+            Direction::Right,
+            Direction::Left,
+            Direction::Down,
+            Direction::Up,
+        ];
+        for down in ALL {
+            // 10° beside it, with a bias.
+            let leans = (down.unit() + Vec3::new(0.1, -0.1, 0.1)) * -GRAVITY;
+            assert_eq!(below(&samples(leans, 0.1)), Ok(down));
+        }
+        let askew = Vec3::new(0.0, -7.0, -7.0);
+        assert_eq!(
+            below(&samples(askew, 0.1)).unwrap_err().what,
+            "gravity along one axis"
+        );
+        assert!(below(&samples(Vec3::ZERO, 0.1)).is_err());
+        let mut ways = 0;
+        for nose in ALL {
+            for right in ALL {
+                for belly in ALL {
+                    ways += i32::from(Sides { nose, right, belly }.fit());
+                }
+            }
+        }
+        assert_eq!(ways, 24);
+        assert!(Sides::AS_BUILT.fit());
     }
 
     #[test]

@@ -1,13 +1,11 @@
-//! The four arm sensors on two I2C buses.
+//! The four arm sensors on two I2C buses. A broken bus costs one side.
 //!
 //! | arm | index | bus | address |
 //! |---|---|---|---|
-//! | 1 front-left | 0 | left | 0x28 |
-//! | 2 rear-left | 1 | left | 0x29 |
-//! | 3 front-right | 2 | right | 0x28 |
-//! | 4 rear-right | 3 | right | 0x29 |
-//!
-//! The front sensors have COM3 low, the rear ones high. A broken bus costs one side, never both.
+//! | 1 front-left | 0 | left | 0x28 (COM3 low) |
+//! | 2 rear-left | 1 | left | 0x29 (COM3 high) |
+//! | 3 front-right | 2 | right | 0x28 (COM3 low) |
+//! | 4 rear-right | 3 | right | 0x29 (COM3 high) |
 
 use embedded_hal_async::i2c::I2c;
 use sophie_control::vector::Vec3;
@@ -17,10 +15,10 @@ use sophie_tasks::ports::{ArmImus, PortError};
 use crate::bno055::{Address, Bno055, Calibration, Config};
 use crate::fault::Fault;
 
-/// The four arm sensors, two on bus `I1` (left) and two on bus `I2` (right).
+/// The arm sensors, two each on bus `I1` (left) and `I2` (right).
 ///
-/// The buses should run at 400 kHz, and give up a stretched clock by themselves after 2 to 3 ms where their
-/// driver waits for it without yielding.
+/// The buses should run at 400 kHz, and time a stretched clock out after 2 to 3 ms where their driver waits without
+/// yielding.
 pub struct ArmBuses<I1, I2> {
     left: I1,
     right: I2,
@@ -28,7 +26,7 @@ pub struct ArmBuses<I1, I2> {
 }
 
 impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
-    /// The sensors of the left arms on `left` and of the right arms on `right`; `configs` arm by arm.
+    /// Left arms' sensors on `left`, right arms' on `right`; `configs` per arm.
     pub const fn new(left: I1, right: I2, configs: PerArm<Config>) -> Self {
         let [one, two, three, four] = configs;
         let chips = [
@@ -40,7 +38,7 @@ impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
         Self { left, right, chips }
     }
 
-    /// Calibration of arm `arm` (0..=3) at its last reading; `None` while it gives none.
+    /// Last calibration of arm `arm` (0..=3); `None` while it gives no readings.
     pub fn calibration(&self, arm: usize) -> Option<Calibration> {
         self.chips
             .get(arm)
@@ -48,7 +46,7 @@ impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
             .map(Bno055::calibration)
     }
 
-    /// What went wrong last with arm `arm` (0..=3).
+    /// Last fault of arm `arm` (0..=3).
     pub fn last_fault(&self, arm: usize) -> Option<Fault> {
         self.chips.get(arm).and_then(Bno055::last_fault)
     }

@@ -1,10 +1,8 @@
-//! Bosch BNO055 on I2C: the sensor at an arm's tip, used for its fused gravity vector. Section numbers are
-//! those of BST-BNO055-DS000 rev. 1.4.
+//! Bosch BNO055 on I2C: the fused gravity vector at an arm's tip. Sections are those of BST-BNO055-DS000 rev. 1.4.
 //!
-//! The chip is slow and moody: 650 ms from reset, 19 ms into and 7 ms out of its configuration mode, a clock
-//! that it stretches, and now and then a reset of its own. So nothing here waits: each call does one short
-//! step, of at most a few register accesses that are bounded each, and says [`PortError::Absent`] until the
-//! chip is ready. A chip that does not answer is asked again after a pause that doubles up to 1 s.
+//! The chip takes 650 ms from reset, 19 ms into and 7 ms out of its configuration mode, stretches the clock and may
+//! reset itself. So no call waits: each does one step of a few register accesses, each bounded in time, and returns
+//! [`PortError::Absent`] until the chip is ready. After a failure it pauses, doubling up to 1 s.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_hal_async::i2c::I2c;
@@ -14,24 +12,24 @@ use sophie_tasks::ports::PortError;
 use crate::fault::{Fault, report};
 use crate::mounting::Mounting;
 
-/// Longest time that one transaction may take. The longest here has 19 bytes: 0.43 ms at 400 kHz.
+/// Time limit of a transaction. The longest here has 19 bytes: 0.43 ms at 400 kHz.
 pub const TRANSACTION: Duration = Duration::from_millis(3);
-/// From a reset until registers can be written (§1.2: 650 ms), and some.
+/// Reset until registers are writable (§1.2: 650 ms), with margin.
 const RESET_TIME: Duration = Duration::from_millis(700);
-/// From any mode to the configuration mode (§3.3, table 3-6).
+/// Any mode to configuration mode (§3.3, table 3-6).
 const TO_CONFIG: Duration = Duration::from_millis(19);
-/// From the configuration mode to any other (§3.3, table 3-6), and the first fused sample at 100 Hz.
+/// Configuration mode to any other (§3.3, table 3-6), and the first fused sample at 100 Hz.
 const FROM_CONFIG: Duration = Duration::from_millis(7 + 10);
-/// First and longest pause between attempts at a chip that does not answer.
+/// First and longest pause after a failure.
 const PAUSE: [Duration; 2] = [Duration::from_millis(20), Duration::from_secs(1)];
-/// Failed readings in a row after which the chip is taken for lost.
+/// Consecutive failed readings before the chip counts as lost.
 const FAILURES_MAX: u8 = 3;
-/// Longest time that the fusion may take to start, or be out of action.
+/// Time limit for the fusion to start or to recover.
 const FUSION_LIMIT: Duration = Duration::from_secs(2);
 
-/// Counts for each m/s² of the gravity vector (§3.6.5.7).
+/// Counts per m/s² of the gravity vector (§3.6.5.7).
 const COUNTS_PER_UNIT: f32 = 100.0;
-/// Believable length of the gravity vector, m/s², squared: the fusion scales it to 9.8.
+/// Plausible squared length of the gravity vector, (m/s²)²; the fusion scales it to 9.8.
 const LENGTH_SQUARED: core::ops::RangeInclusive<f32> = 8.0 * 8.0..=12.0 * 12.0;
 
 mod reg {
@@ -47,25 +45,24 @@ mod reg {
     pub const AXIS_MAP_SIGN: u8 = 0x42;
 }
 
-/// What the chip id register holds (§4.3.1).
+/// Content of the chip id register (§4.3.1).
 pub const CHIP_ID: u8 = 0xA0;
-/// PAGE_ID, which both pages have: the page without the registers above is selected.
+/// PAGE_ID, on both pages: the page without the registers above.
 const OTHER_PAGE: u8 = 1;
-/// SYS_TRIGGER: reset the whole system.
+/// SYS_TRIGGER: system reset.
 const RST_SYS: u8 = 0x20;
-/// UNIT_SEL: m/s², °/s, degrees, °C; Android's sense of pitch, the reset value.
+/// UNIT_SEL: m/s², °/s, degrees, °C; Android's pitch sense, the reset value.
 const UNITS: u8 = 0x80;
 /// SYS_STATUS: the fusion runs.
 const FUSION_RUNS: u8 = 5;
-/// SYS_STATUS: the chip has found an error.
+/// SYS_STATUS: system error.
 const SYSTEM_ERROR: u8 = 1;
 /// OPR_MODE: the configuration mode.
 const CONFIG_MODE: u8 = 0x00;
-/// Axis map of a chip that hands its own axes out (§3.4): [`Mounting`] turns them instead, so that a quarter
-/// turn needs no reading of the datasheet's sign rule.
+/// Identity axis map (§3.4); [`Mounting`] rotates instead.
 const AXES: [u8; 2] = [0x24, 0x00];
 
-/// Address of a chip on its bus, chosen by its COM3 pin (§4.6).
+/// I2C address, chosen by the pin COM3 (§4.6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Address {
@@ -79,26 +76,26 @@ pub enum Address {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fusion {
-    /// Accelerometer and gyroscope: what an arm beside a motor wants, whose magnets would turn a compass.
+    /// Accelerometer and gyroscope: the motor's magnets beside an arm would disturb a compass.
     #[default]
     ImuPlus = 0x08,
     /// With the magnetometer.
     Ndof = 0x0C,
 }
 
-/// What is configured.
+/// Configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     /// Fusion mode.
     pub fusion: Fusion,
-    /// How the chip sits on the straight arm, in body axes.
+    /// Orientation of the chip on the straight arm, in body axes.
     pub mounting: Mounting,
-    /// Least calibration of the gyroscope, 0 (none) to 3 (full), for a reading to be given.
+    /// Least gyroscope calibration, 0 (none) to 3 (full), of a valid reading.
     pub gyro_calibration_min: u8,
 }
 
 impl Default for Config {
-    /// Accelerometer and gyroscope, marking up and x forward, a gyroscope that has begun to calibrate.
+    /// Accelerometer and gyroscope, marking up, x forward, gyroscope calibration begun.
     fn default() -> Self {
         Self {
             fusion: Fusion::default(),
@@ -108,16 +105,16 @@ impl Default for Config {
     }
 }
 
-/// Calibration of the chip, each 0 (none) to 3 (full) (§4.3.54).
+/// Calibration levels, 0 (none) to 3 (full) (§4.3.54).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Calibration {
-    /// The fusion as a whole.
+    /// Whole fusion.
     pub system: u8,
-    /// The gyroscope: at rest for a few seconds.
+    /// Gyroscope: calibrates in a few seconds at rest.
     pub gyro: u8,
-    /// The accelerometer: six positions.
+    /// Accelerometer: needs six positions.
     pub accel: u8,
-    /// The magnetometer: a figure of eight.
+    /// Magnetometer: needs a figure of eight.
     pub magnetometer: u8,
 }
 
@@ -132,22 +129,21 @@ impl Calibration {
     }
 }
 
-/// How far a chip has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// To be asked for its identity at this time.
+    /// Identity is read at this time.
     Absent(Instant),
-    /// Reset commanded; over at this time.
+    /// Reset ends at this time.
     Resetting(Instant),
-    /// Mode switched to configuration; over at this time.
+    /// Configuration mode is reached at this time.
     Entering(Instant),
-    /// Mode switched to fusion; over at this time.
+    /// Fusion mode is reached at this time.
     Leaving(Instant),
-    /// Readings come; the last good one came at this time.
+    /// Running; time of the last good reading.
     Running(Instant),
 }
 
-/// One chip. The bus is lent to each call, since two chips share it.
+/// One chip. Two chips share a bus, so each call borrows it.
 pub struct Bno055 {
     address: Address,
     config: Config,
@@ -159,13 +155,13 @@ pub struct Bno055 {
 }
 
 impl Bno055 {
-    /// A chip at `address`; nothing happens on the bus before the first [`Bno055::gravity`].
+    /// The bus is first used by [`Bno055::gravity`].
     pub const fn new(address: Address, config: Config) -> Self {
         let [pause, _] = PAUSE;
         Self {
             address,
             config,
-            // The chip was powered with the processor: before it has booted, it need not be asked.
+            // The chip is powered with the processor and boots first.
             state: State::Absent(Instant::from_millis(RESET_TIME.as_millis())),
             pause,
             failures: 0,
@@ -179,22 +175,20 @@ impl Bno055 {
         self.calibration
     }
 
-    /// What went wrong last, if anything did since power-up.
+    /// Last fault since power-up.
     pub const fn last_fault(&self) -> Option<Fault> {
         self.last_fault
     }
 
-    /// True while readings come.
+    /// True while readings arrive.
     pub const fn is_running(&self) -> bool {
         matches!(self.state, State::Running(_))
     }
 
-    /// Takes the chip one step further, or reads it: the direction of gravity in the axes of its mounting,
-    /// m/s²; (0, 0, 9.8) for a level chip.
+    /// Advances the chip one step, or reads gravity in the axes of its mounting, m/s²; (0, 0, 9.8) when level.
     ///
     /// # Errors
-    /// `Absent` while the chip is not there, not ready or not calibrated; `Timeout` and `Corrupt` for a
-    /// reading that failed.
+    /// `Absent` while the chip is missing, not ready or not calibrated; `Timeout` and `Corrupt` for a failed reading.
     pub async fn gravity(&mut self, bus: &mut impl I2c) -> Result<Vec3, PortError> {
         let now = Instant::now();
         match self.state {
@@ -213,12 +207,11 @@ impl Bno055 {
         }
     }
 
-    /// The next step towards running.
     async fn advance(&mut self, bus: &mut impl I2c) -> Result<(), Lost> {
         self.state = match self.state {
             State::Absent(_) => {
                 self.identify(bus).await?;
-                // Whatever the chip did before a reset of the processor, it is configured from its reset state.
+                // Configured from the reset state, whatever the chip's former mode.
                 self.write(bus, reg::PAGE_ID, 0).await?;
                 self.write(bus, reg::SYS_TRIGGER, RST_SYS).await?;
                 State::Resetting(Instant::now() + RESET_TIME)
@@ -242,7 +235,6 @@ impl Bno055 {
         Ok(())
     }
 
-    /// Writes the configuration and reads it back.
     async fn configure(&self, bus: &mut impl I2c) -> Result<(), Lost> {
         let [axes, signs] = AXES;
         let settings = [
@@ -251,7 +243,7 @@ impl Bno055 {
             (reg::AXIS_MAP_CONFIG, axes),
             (reg::AXIS_MAP_SIGN, signs),
         ];
-        // Internal clock, no self-test. A write-only register: there is nothing to read back.
+        // Internal clock, no self-test. The register is write-only: no read-back.
         self.write(bus, reg::SYS_TRIGGER, 0x00).await?;
         for (register, value) in settings {
             self.write(bus, register, value).await?;
@@ -270,10 +262,10 @@ impl Bno055 {
         Ok(())
     }
 
-    /// Finds the chip on either page. What shows no page of a BNO055 is not written to.
+    /// Finds the chip on either page; writes only to one that shows a BNO055's page.
     async fn identify(&self, bus: &mut impl I2c) -> Result<(), Lost> {
         let [mut found] = self.read(bus, reg::CHIP_ID).await?;
-        // A reset of the processor alone, or a glitch on the bus, leaves the chip on the page that has no identity.
+        // A processor-only reset or a bus glitch can leave the other page selected.
         if found != CHIP_ID && self.read(bus, reg::PAGE_ID).await? == [OTHER_PAGE] {
             self.write(bus, reg::PAGE_ID, 0).await?;
             [found] = self.read(bus, reg::CHIP_ID).await?;
@@ -288,7 +280,7 @@ impl Bno055 {
         }
     }
 
-    /// One reading, with the status that validates it, in one burst.
+    /// Reads gravity and the status that validates it in one burst.
     async fn reading(&mut self, bus: &mut impl I2c, since: Instant) -> Result<Vec3, PortError> {
         match self
             .read::<16>(bus, reg::GRV_DATA_X_LSB)
@@ -305,7 +297,7 @@ impl Bno055 {
             Ok(None) => Err(PortError::Absent),
             Err(lost) => {
                 self.failures = self.failures.saturating_add(1);
-                // A chip that has left its mode will not come back by itself.
+                // A chip that left its mode does not return by itself.
                 let left = matches!(lost, Lost::Fault(Fault::Configuration { .. } | Fault::Silent));
                 if left || self.failures >= FAILURES_MAX {
                     self.lose(lost);
@@ -315,7 +307,7 @@ impl Bno055 {
         }
     }
 
-    /// What a burst from GRV_DATA to OPR_MODE says; `None` while the fusion starts or calibrates.
+    /// Evaluates a burst from GRV_DATA to OPR_MODE; `None` while the fusion starts or calibrates.
     fn judge(&mut self, bytes: [u8; 16], since: Instant) -> Result<Option<Vec3>, Lost> {
         let [
             xl,
@@ -350,7 +342,7 @@ impl Bno055 {
         if bytes.iter().all(|&b| b == 0x00) || bytes.iter().all(|&b| b == 0xFF) {
             return Err(Lost::Fault(Fault::Garbled));
         }
-        // A chip that reset itself is in its configuration mode.
+        // A self-reset leaves the configuration mode.
         expect(reg::OPR_MODE, self.config.fusion as u8, mode & 0x0F)?;
         expect(reg::UNIT_SEL, UNITS, units)?;
         self.calibration = Calibration::from_register(calibration);
@@ -363,7 +355,7 @@ impl Bno055 {
             };
         }
         let counts = [[xl, xh], [yl, yh], [zl, zh]].map(i16::from_le_bytes);
-        // The chip's gravity has the sense of its accelerometer: up when level. The port wants down.
+        // The chip's gravity points up when level, as its accelerometer; the port wants down.
         let gravity = Vec3::from(counts.map(|c| f32::from(c) * (-1.0 / COUNTS_PER_UNIT)));
         if !LENGTH_SQUARED.contains(&gravity.norm_squared()) {
             return Err(Lost::Fault(Fault::Garbled));
@@ -375,7 +367,6 @@ impl Bno055 {
         Ok(Some(self.config.mounting.to_body(gravity)))
     }
 
-    /// Gives the chip up for a pause.
     fn lose(&mut self, lost: Lost) {
         let fault = lost.fault();
         if self.last_fault != Some(fault) {
@@ -399,14 +390,12 @@ impl Bno055 {
     }
 }
 
-/// Why a step failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Lost {
-    /// The transaction was not over in time: the clock is held, or the bus hangs.
+    /// Not over in time: held clock or hung bus.
     Timeout,
     /// I2C error, usually a NACK on the address.
     Refused,
-    /// The chip answered wrongly.
     Fault(Fault),
 }
 
@@ -428,7 +417,6 @@ impl Lost {
     }
 }
 
-/// A bus transaction that takes no longer than [`TRANSACTION`].
 async fn bounded<T, E>(transaction: impl Future<Output = Result<T, E>>) -> Result<T, Lost> {
     match with_timeout(TRANSACTION, transaction).await {
         Ok(Ok(value)) => Ok(value),

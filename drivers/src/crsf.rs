@@ -1,10 +1,9 @@
 //! CRSF at 420 kbaud: TBS Crossfire, ExpressLRS.
 //!
-//! A receiver that has lost its transmitter may go on with the last channels it had. Its link statistics tell:
-//! at an uplink quality of 0 % no sticks are published, so that the link turns stale and the failsafe acts.
-//! They are again with the first frame after a quality above 0 %, or when no statistics have come for
-//! 1 s: a receiver that has stopped reporting is judged by its frames alone, as one that
-//! never reports is. Set the receiver to send nothing without a link ("no pulses") all the same.
+//! A receiver without its transmitter may repeat the last channels. At an uplink quality of 0 % in its link statistics
+//! no sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a
+//! quality above 0 %, or after 1 s without statistics, as for a receiver that sends none. The receiver should be set to
+//! send nothing without a link ("no pulses").
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
@@ -12,23 +11,23 @@ use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
 use uf_crsf::{CrsfParser, Packet};
 
-/// Silence of the link statistics after which the last of them no longer counts. Receivers report at 5 to 10 Hz.
+/// Age at which link statistics expire. Receivers report at 5 to 10 Hz.
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
-/// Time that a byte takes on the line: ten bits at 420 kbaud.
+/// Time of a byte on the line: ten bits at 420 kbaud.
 const BYTE: Duration = Duration::from_micros(24);
-/// Pause of the line by which a frame has ended: twice what the longest of 64 bytes takes. What came before it would
-/// else wait for bytes that never come, and be published as new with those of a link that comes back.
+/// Line pause that ends a frame: twice the time of the longest, 64 bytes. Otherwise an unfinished frame would be
+/// published as new with the bytes of a link that returns.
 const SILENCE: Duration = Duration::from_millis(3);
 
-/// Frames and counts out of a stream of bytes, however it is cut.
+/// Decodes frames from a stream in pieces of any length.
 pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
-    /// When the receiver last reported an uplink quality of 0 %; `None` while the radio is not known to be lost.
+    /// Time of the last report of 0 % uplink quality; `None` while the radio is not known to be lost.
     lost: Option<Instant>,
-    /// When the line was last read, or failed.
+    /// Time of the last read or failure.
     last: Option<Instant>,
-    /// The last bytes read belong to a frame that is not whole yet.
+    /// The last bytes belong to an unfinished frame.
     unfinished: bool,
 }
 
@@ -39,7 +38,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// A decoder that has heard nothing yet.
+    /// A decoder without data.
     pub fn new() -> Self {
         Self {
             parser: CrsfParser::new(),
@@ -50,7 +49,6 @@ impl Decoder {
         }
     }
 
-    /// Drops what was gathered of a frame whose rest is missing.
     fn drop_unfinished(&mut self) {
         self.parser.reset();
         if core::mem::take(&mut self.unfinished) {
@@ -61,7 +59,7 @@ impl Decoder {
 
 impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        // A read ends when its last byte is there, so these bytes began their own length earlier.
+        // A read ends with its last byte: these bytes began their length earlier.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let before = self.last.replace(at);
         let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
@@ -88,10 +86,10 @@ impl RcDecoder for Decoder {
                 },
                 Ok(Packet::LinkStatistics(link)) => {
                     self.lost = (link.uplink_link_quality == 0).then_some(at);
-                    // What came just before the report may be the last frame over again.
+                    // Frames just before the report may be repetitions.
                     news &= self.lost.is_none();
                 }
-                // Device information and the like: well formed, nothing for flying.
+                // Device information and the like: well formed, but unused.
                 Ok(_) => (),
                 Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
             }
@@ -149,7 +147,7 @@ mod tests {
         })
     }
 
-    /// The throttle published for `bytes` at `ms`, in whole percent.
+    /// Throttle published for `bytes` at `ms`, %.
     fn published(decoder: &mut Decoder, bytes: &[u8], ms: u64) -> Option<u32> {
         decoder
             .take(bytes, Instant::from_millis(ms))
@@ -171,7 +169,7 @@ mod tests {
         );
         assert_eq!(published(&mut d, &throttle(0.5), 20), Some(50));
         assert_eq!(published(&mut d, &statistics(0), 30), None);
-        // The last frame over and over, the loss reported at 5 Hz: for longer than any silence.
+        // The last frame repeated, the loss reported at 5 Hz, longer than any silence.
         for ms in (40..3000).step_by(20) {
             if ms % 200 == 0 {
                 assert_eq!(published(&mut d, &statistics(0), ms), None, "{ms}");
@@ -195,7 +193,7 @@ mod tests {
         let _ = published(&mut d, &statistics(0), 500);
         assert_eq!(published(&mut d, &throttle(0.3), 1499), None);
         assert_eq!(published(&mut d, &throttle(0.3), 1500), Some(30));
-        // A report among the frames of one read counts for all of them.
+        // A report counts for every frame of its read.
         let read = [throttle(0.1), statistics(0), throttle(0.2)].concat();
         assert_eq!(published(&mut d, &read, 1600), None);
         let read = [throttle(0.1), statistics(50), throttle(0.2)].concat();
@@ -206,12 +204,12 @@ mod tests {
     fn what_came_before_a_silence_is_never_published_after_it() {
         for later in [4, 20, 1000, 60_000] {
             for length in 2..=62 {
-                // The start of a frame of `length` bytes more, whose rest was lost, and the pilot's frame behind it.
+                // A frame start announcing `length` bytes, the rest lost, then a pilot's frame.
                 let (mut d, mut missing) = (Decoder::new(), usize::from(length) + 2);
                 let read = [std::vec![0xC8, length], throttle(0.9)].concat();
                 let seen = published(&mut d, &read, 1000);
                 missing = missing.saturating_sub(read.len());
-                // The line wakes up: enough bytes for the frame that never was one, then the pilot's present one.
+                // Enough bytes to end the false frame, then the pilot's present one.
                 assert_eq!(
                     published(&mut d, &std::vec![0; missing], 1000 + later),
                     None,
@@ -234,7 +232,7 @@ mod tests {
         let _ = published(&mut d, first, 1000);
         assert_eq!(published(&mut d, rest, 1002), Some(30));
         assert_eq!(d.state.errors, 0);
-        // A whole frame and silence after it are no error, and a read counts from its first byte.
+        // Silence after a whole frame is no error; a read counts from its first byte.
         assert_eq!(published(&mut d, &bytes.repeat(4), 1006), Some(30));
         let _ = published(&mut d, first, 2000);
         assert_eq!((d.state.frames, d.state.errors), (5, 0));

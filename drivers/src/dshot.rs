@@ -1,5 +1,4 @@
-//! DShot frames and the timer values that make them: 16 bits, first the throttle's highest bit, a long pulse
-//! for 1 and a short one for 0.
+//! DShot frames and their timer values: 16 bits, highest throttle bit first, a long pulse for 1 and a short one for 0.
 //!
 //! | bits | what |
 //! |---|---|
@@ -10,18 +9,18 @@
 use sophie_control::math;
 use sophie_control::wrench::PerArm;
 
-/// Lowest throttle value; the ones below are commands.
+/// Lowest throttle; lower values are commands.
 pub const THROTTLE_MIN: u16 = 48;
-/// Highest throttle value.
+/// Highest throttle.
 pub const THROTTLE_MAX: u16 = 2047;
-/// Bits of a frame.
+/// Bits per frame.
 pub const BITS: usize = 16;
-/// Motors in one burst.
+/// Motors per burst.
 pub const MOTORS: usize = 4;
-/// Compare values of a burst with one row of zeros after the bits.
+/// Compare values of a burst, including one row of zeros.
 pub const BURST: usize = (BITS + 1) * MOTORS;
 
-/// One frame.
+/// A frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frame(u16);
 
@@ -29,15 +28,15 @@ impl Frame {
     /// Motor stop (command 0, no telemetry).
     pub const STOP: Self = Self(0);
 
-    /// The frame with an 11-bit `value` (limited to 2047): 0 stop, 48..=2047 throttle.
+    /// A frame of an 11-bit `value` (limited to 2047): 0 stop, 48..=2047 throttle.
     pub const fn new(value: u16, telemetry: bool) -> Self {
         let value = if value > THROTTLE_MAX { THROTTLE_MAX } else { value };
         let payload = value << 1 | telemetry as u16;
         Self(payload << 4 | checksum(payload))
     }
 
-    /// The frame for a motor command as the tasks give it: 0 (or anything that is not a positive number)
-    /// stops, 0 < c <= 1 is spread over 48..=2047.
+    /// A frame of a motor command of the tasks: 0 (or anything that is not a positive number) stops, 0 < c <= 1 maps to
+    /// 48..=2047.
     pub fn from_command(command: f32) -> Self {
         if command > 0.0 {
             let span = f32::from(THROTTLE_MAX - THROTTLE_MIN);
@@ -50,12 +49,12 @@ impl Frame {
         }
     }
 
-    /// The 16 bits as they go out, highest first.
+    /// The 16 bits, highest first on the line.
     pub const fn bits(self) -> u16 {
         self.0
     }
 
-    /// The frame with these 16 bits; `None` if the checksum is wrong.
+    /// The frame of these 16 bits; `None` if the checksum is wrong.
     pub const fn from_bits(bits: u16) -> Option<Self> {
         if checksum(bits >> 4) == bits & 0xF {
             Some(Self(bits))
@@ -69,26 +68,25 @@ impl Frame {
         self.0 >> 5
     }
 
-    /// Telemetry is requested.
+    /// Telemetry request.
     pub const fn telemetry(self) -> bool {
         self.0 & 0x10 != 0
     }
 }
 
-/// Exclusive or of the three nibbles of the 12-bit payload.
 const fn checksum(payload: u16) -> u16 {
     (payload ^ payload >> 4 ^ payload >> 8) & 0xF
 }
 
-/// Bit rate, kbit/s.
+/// Bit rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Speed {
-    /// 150 kbit/s: 106.7 µs a frame.
+    /// 150 kbit/s: 106.7 µs per frame.
     Dshot150,
-    /// 300 kbit/s: 53.3 µs a frame.
+    /// 300 kbit/s: 53.3 µs per frame.
     #[default]
     Dshot300,
-    /// 600 kbit/s: 26.7 µs a frame.
+    /// 600 kbit/s: 26.7 µs per frame.
     Dshot600,
 }
 
@@ -103,23 +101,23 @@ impl Speed {
     }
 }
 
-/// Timer values of one bit, in counts of the timer's clock (prescaler 0).
+/// Timer counts of one bit (prescaler 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitTiming {
-    /// Counts of a bit; the reload register takes one less.
+    /// Counts per bit; the reload register takes one less.
     pub period: u16,
-    /// Counts high in a 1: 75 % of the bit.
+    /// High counts of a 1: 75 % of the bit.
     pub one: u16,
-    /// Counts high in a 0: 37.5 % of the bit.
+    /// High counts of a 0: 37.5 % of the bit.
     pub zero: u16,
 }
 
 impl BitTiming {
-    /// Fewest counts that a bit may have: the pulses would be off by more than 2 % of the bit.
+    /// Fewest counts per bit: below, the pulses are off by more than 2 % of the bit.
     pub const PERIOD_MIN: u32 = 24;
 
-    /// The values nearest to `speed` for a timer that counts at `timer_hz`; `None` where the bit has fewer
-    /// than [`Self::PERIOD_MIN`] counts or more than a 16-bit timer holds.
+    /// Values nearest to `speed` for a timer at `timer_hz`; `None` where a bit has fewer than [`Self::PERIOD_MIN`]
+    /// counts or more than 16 bits hold.
     pub const fn new(timer_hz: u32, speed: Speed) -> Option<Self> {
         let rate = speed.bits_per_second();
         let period = (timer_hz + rate / 2) / rate;
@@ -133,22 +131,22 @@ impl BitTiming {
         })
     }
 
-    /// Error of the bit rate against `speed`, as a fraction of it: positive when the bits are too fast.
-    /// Motor controllers take several percent.
+    /// Relative error of the bit rate against `speed`, positive when too fast. Motor controllers accept several
+    /// percent.
     pub fn rate_error(self, timer_hz: u32, speed: Speed) -> f32 {
         timer_hz as f32 / (f32::from(self.period) * speed.bits_per_second() as f32) - 1.0
     }
 
-    /// Length of a frame, s, without the rest after it.
+    /// Frame time, s, without the pause after it.
     pub fn frame_time(self, timer_hz: u32) -> f32 {
         BITS as f32 * f32::from(self.period) / timer_hz as f32
     }
 }
 
-/// Fills `buffer` with the compare values of one burst: a row for each bit, the four motors in each row in the
-/// order of the timer's channels, and zeros in every row after the bits, so that the lines rest low.
+/// Fills `buffer` with one burst: a row per bit with the four motors in the order of the timer's channels, then rows of
+/// zeros, so that the lines rest low.
 ///
-/// `N` is [`BURST`], or more by whole rows where the timer runs on for a moment after the last bit.
+/// `N` is [`BURST`], or longer by whole rows where the timer runs on briefly after the last bit.
 pub fn fill_burst<const N: usize>(buffer: &mut [u16; N], frames: PerArm<Frame>, timing: BitTiming) {
     const {
         assert!(
@@ -163,13 +161,13 @@ pub fn fill_burst<const N: usize>(buffer: &mut [u16; N], frames: PerArm<Frame>, 
     rest.fill([0; MOTORS]);
 }
 
-/// The rows of the bits of four frames, two in each word. A product for each pair in place of a choice for each motor:
-/// this stands between the mix and the first edge. Not inlined, so that it stays as fast in a caller made to be small.
+/// The rows of four frames' bits, two in each word. One product per pair replaces a choice per motor, since this stands
+/// between mix and first edge. Not inlined, so that it stays fast in a caller optimised for size.
 #[inline(never)]
 fn fill_bits(rows: &mut [[u16; MOTORS]], pairs: [u32; 2], timing: BitTiming) {
     const BOTH: u32 = 1 << 16 | 1;
     let zeros = u32::from(timing.zero) * BOTH;
-    // A 1 is longer than a 0, so no product carries into the upper half.
+    // A 1 is longer than a 0: no product carries into the upper half.
     let more = u32::from(timing.one.saturating_sub(timing.zero));
     for (row, bit) in rows.iter_mut().zip((0..BITS).rev()) {
         let [first, second] = pairs.map(|pair| (pair >> bit & BOTH) * more + zeros);
@@ -191,7 +189,7 @@ mod tests {
 
     #[test]
     fn known_frames() {
-        // The usual worked example: throttle 1046, no telemetry.
+        // Usual worked example: throttle 1046, no telemetry.
         assert_eq!(Frame::new(1046, false).bits(), 0b1000_0010_1100_0110);
         assert_eq!(Frame::STOP.bits(), 0);
         assert_eq!(Frame::new(0, false), Frame::STOP);
@@ -232,7 +230,7 @@ mod tests {
 
     #[test]
     fn timing_is_within_a_percent_on_every_board() {
-        // APB2 timers of the F405 (168 MHz) and F765 (216 MHz), the H743's at 200 and 240 MHz.
+        // APB2 timers of F405 (168 MHz) and F765 (216 MHz), H743 at 200 and 240 MHz.
         for hz in [
             84_000_000,
             108_000_000,

@@ -1,24 +1,22 @@
-//! Reads DShot from the pulses on a line, as a motor controller does: for tests and benches.
+//! Decodes DShot from pulses, as a motor controller does: for tests and benches.
 
 use crate::dshot::{BITS, Frame};
 
-/// Why pulses made no frame.
+/// Why pulses make no frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineError {
-    /// A pulse that is neither a 0 nor a 1: its share of the bit, in thousandths.
+    /// A pulse that is neither 0 nor 1: its share of the bit, ‰.
     Pulse(u16),
-    /// The checksum is wrong.
+    /// Wrong checksum.
     Checksum(u16),
-    /// The line fell silent after this many bits.
+    /// Silence after this many bits.
     Short(usize),
 }
 
-/// Gathers the bits of one line.
-///
-/// Times are in any unit, the same throughout.
+/// Gathers the bits of one line, in any unit of time.
 #[derive(Clone, Copy, Debug)]
 pub struct Decoder {
-    /// Nominal length of a bit.
+    /// Nominal bit length.
     bit: u32,
     bits: u16,
     count: usize,
@@ -36,14 +34,13 @@ impl Decoder {
         }
     }
 
-    /// Takes a pulse that rose at `rise` and lasted for `high`; gives the frame that it completes.
+    /// Adds a pulse that rose at `rise` and lasted `high`; returns a completed frame.
     ///
     /// # Errors
-    /// A pulse of a length that means nothing, a frame that ended early, a wrong checksum. The decoder then
-    /// restarts.
+    /// A pulse of invalid length, a truncated frame, a wrong checksum. The decoder then restarts.
     pub fn pulse(&mut self, rise: u64, high: u32) -> Option<Result<Frame, LineError>> {
         let gap = self.last_rise.replace(rise).map(|last| rise.saturating_sub(last));
-        // More than a bit and a half after the last rise, this is the first bit of a frame.
+        // A rise later than 1.5 bits after the last starts a frame.
         let short = match gap {
             Some(gap) if gap * 2 > u64::from(self.bit) * 3 => self.finish(),
             _ => None,
@@ -55,7 +52,7 @@ impl Decoder {
         self.take(high)
     }
 
-    /// The line has been silent: says whether a frame was cut short.
+    /// The line is silent: returns an error if a frame was truncated.
     pub fn silence(&mut self) -> Option<LineError> {
         self.last_rise = None;
         self.finish()
@@ -69,7 +66,7 @@ impl Decoder {
 
     fn take(&mut self, high: u32) -> Option<Result<Frame, LineError>> {
         let share = u64::from(high) * 1000 / u64::from(self.bit.max(1));
-        // Nominal 375 and 750, parted in the middle; what lies far outside is no pulse of DShot.
+        // Nominal 375 and 750, split in the middle; far outside it is no DShot pulse.
         let bit = match share {
             200..=562 => 0,
             563..=900 => 1,
@@ -99,7 +96,7 @@ mod tests {
     use super::*;
     use crate::dshot::{BURST, BitTiming, MOTORS, Speed, fill_burst};
 
-    /// Plays the burst of one motor on a line from time `start` on; gives what the decoder made of it.
+    /// Plays one motor's burst from `start`; returns the decoder's results.
     fn play(
         decoder: &mut Decoder,
         buffer: &[u16],
@@ -146,7 +143,7 @@ mod tests {
         fill_burst(&mut good, [frame; 4], t);
         let mut decoder = Decoder::new(u32::from(t.period));
 
-        // Cut after ten bits: noticed with the next frame's first pulse, and that frame is not lost.
+        // Cut after ten bits: detected at the next frame's first pulse; that frame is kept.
         assert!(play(&mut decoder, &good[..40], 0, t, 0).is_empty());
         let next = play(&mut decoder, &good, 0, t, 168_000);
         assert_eq!(next, [Err(LineError::Short(10)), Ok(frame)]);

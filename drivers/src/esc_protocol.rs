@@ -1,11 +1,11 @@
-//! Which frames or pulses the motor controllers get: the parameter `motor_protocol`.
+//! Protocol of the motor controllers: parameter `motor_protocol`.
 
 use sophie_control::params::{MotorProtocol, Params};
 
 use crate::dshot::Speed;
 use crate::esc_pwm::EscPulse;
 
-/// What the board's timer sends to the motor controllers.
+/// Output to the motor controllers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EscProtocol {
     /// Digital frames.
@@ -15,7 +15,7 @@ pub enum EscProtocol {
 }
 
 impl EscProtocol {
-    /// The protocol that `motor_protocol` names.
+    /// The protocol of `motor_protocol`.
     pub fn from_params(params: &Params) -> Self {
         match params.motor_protocol {
             MotorProtocol::Oneshot125 => Self::Pulse(EscPulse::OneShot125),

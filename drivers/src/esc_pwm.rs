@@ -1,26 +1,26 @@
-//! Motor controllers on pulses: standard PWM and OneShot125.
+//! Motor controllers with pulses: standard PWM and OneShot125.
 
 use sophie_control::math;
 
 use crate::pwm_timing::PwmTiming;
 
-/// Protocol of a motor controller that takes pulses.
+/// Pulse protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EscPulse {
-    /// 1000 to 2000 µs, at most 400 a second: what a DJI 430 Lite takes.
+    /// 1000 to 2000 µs, at most 400 Hz: what a DJI 430 Lite accepts.
     #[default]
     Standard,
-    /// 125 to 250 µs, one for each mix.
+    /// 125 to 250 µs, one per mix.
     OneShot125,
 }
 
 impl EscPulse {
-    /// Time that a pulse and the rest after it take, µs: no other begins before.
+    /// Least time between pulse starts, µs.
     pub const fn period_us(self) -> u32 {
         match self {
-            // Controllers on standard pulses take 400 a second (PX4 sends them so many), some no more.
+            // Standard pulses: 400 Hz (PX4's rate); some controllers accept no more.
             Self::Standard => 2500,
-            // The length of its pulses is all that OneShot125 is; two must not run into one.
+            // OneShot125 specifies only the pulse; two must not merge.
             Self::OneShot125 => 260,
         }
     }
@@ -33,19 +33,19 @@ impl EscPulse {
         }
     }
 
-    /// Timer values for a timer clocked at `clock_hz`.
+    /// Timer values at `clock_hz`.
     pub fn timing(self, clock_hz: u32) -> Option<PwmTiming> {
         PwmTiming::new(clock_hz, self.period_us())
     }
 
-    /// Pulse of a motor command, µs: the stop pulse for 0 and for anything that is not a positive number,
-    /// twice as long for 1.
+    /// Pulse of a motor command, µs: the stop pulse for 0 and anything that is not a positive number, twice as long for
+    /// 1.
     pub fn pulse_us(self, command: f32) -> f32 {
-        // The clamp turns a NaN into its lower bound.
+        // The clamp maps NaN to its lower bound.
         self.stop_us() * (1.0 + math::clamp(command, 0.0, 1.0))
     }
 
-    /// Counts of a motor command, for the compare register.
+    /// Compare value of a motor command.
     pub fn compare(self, timing: &PwmTiming, command: f32) -> u32 {
         timing.compare(self.pulse_us(command))
     }
@@ -89,7 +89,7 @@ mod tests {
                 let period = t.period as f32 * t.count_us();
                 assert!(high + 9.0 < period, "{protocol:?} {clock}: {period}");
                 let ms = (period * 1e-3) as u32;
-                // A command that comes a quarter of a millisecond early or late changes nothing.
+                // A command a quarter of a millisecond early or late changes nothing.
                 let margin = (period * 1e-3).fract();
                 assert!(
                     commands.contains(&ms) && (0.25..0.75).contains(&margin),
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn steps_are_finer_than_dshot_s() {
-        // 2000 steps over the range are what DShot has.
+        // DShot has 2000 steps over the range.
         let t = EscPulse::Standard.timing(84_000_000).unwrap();
         assert!(1000.0 / t.count_us() > 2000.0);
         let t = EscPulse::OneShot125.timing(84_000_000).unwrap();

@@ -1,56 +1,56 @@
-//! What went wrong with a chip, in words and numbers that a builder can act on.
+//! Faults of chips, in words and numbers for a builder.
 
 use core::fmt;
 
 use sophie_tasks::ports::PortError;
 
-/// What went wrong with a chip, at start-up or in flight.
+/// A chip's fault, at start-up or in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Fault {
-    /// The bus peripheral reported an error: wiring, clock or DMA.
+    /// Bus peripheral error: wiring, clock or DMA.
     Bus,
-    /// The identity register holds something else. 0x00 and 0xFF mean that nothing drives the line.
+    /// Wrong identity. 0x00 and 0xFF mean that nothing drives the line.
     Identity {
-        /// What this part answers.
+        /// Identity of this part.
         expected: u8,
-        /// What was read.
+        /// Value read.
         found: u8,
     },
-    /// A reset did not bring a register to its reset value.
+    /// A register without its reset value after a reset.
     Reset {
-        /// The register.
+        /// Register.
         register: u8,
-        /// What was read.
+        /// Value read.
         found: u8,
     },
-    /// A register does not hold what was written to it, or lost it later: a brown-out of the part.
+    /// A register not written, or lost later by a brown-out of the part.
     Configuration {
-        /// Bank of the register.
+        /// Bank.
         bank: u8,
-        /// The register.
+        /// Register.
         register: u8,
-        /// What it should hold, in the bits that matter.
+        /// Required value, masked.
         expected: u8,
-        /// What it holds, in the bits that matter.
+        /// Value read, masked.
         found: u8,
     },
-    /// No sample is ready, neither by the line nor by the part's own status, although its registers are well.
+    /// No sample, by line or status, although the registers are right.
     Silent,
-    /// A sample of nothing but zeros or ones, or the mark of "no sample yet".
+    /// A sample of all zeros or ones, or the mark of "no sample yet".
     Garbled,
-    /// The same sample again and again: no real sensor is without noise.
+    /// The same sample repeated: a real sensor has noise.
     Stuck,
-    /// The actuated sensor did not respond as the factory found it to.
+    /// The response to actuation differs from the factory's.
     SelfTest {
-        /// Which sensor.
+        /// Sensor.
         sensor: Sensor,
         /// Axis of the part: 0 x, 1 y, 2 z.
         axis: u8,
-        /// Response in percent of the one expected (of the least allowed where the part has no factory value).
+        /// Response, % of the expected one (of the least allowed without a factory value).
         percent: u16,
     },
-    /// The gyroscope's output at rest is too far from zero: a bad part, or one that was being moved.
+    /// Gyroscope offset at rest too large: a bad part, or one in motion.
     Offset {
         /// Axis of the part: 0 x, 1 y, 2 z.
         axis: u8,
@@ -68,7 +68,7 @@ pub enum Sensor {
 }
 
 impl Fault {
-    /// The fault in a few words, for an arming message.
+    /// Short text for an arming message.
     pub const fn what(&self) -> &'static str {
         match self {
             Self::Bus => "bus error",
@@ -86,7 +86,7 @@ impl Fault {
         }
     }
 
-    /// Error that the port returns to its task.
+    /// The port's error.
     pub const fn port_error(&self) -> PortError {
         match self {
             Self::Identity {
@@ -135,7 +135,7 @@ impl fmt::Display for Fault {
 }
 
 impl Sensor {
-    /// Name for messages.
+    /// Name in messages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gyro => "gyro",
@@ -152,7 +152,7 @@ const fn axis_name(axis: u8) -> char {
     }
 }
 
-/// Logs that a chip was lost; says nothing without the `defmt` feature.
+/// Logs the loss of a chip, only with the feature `defmt`.
 pub(crate) fn report(chip: &'static str, fault: &Fault) {
     #[cfg(feature = "defmt")]
     defmt::warn!("{=str}: {=str} ({})", chip, fault.what(), fault);

@@ -1,9 +1,8 @@
-//! FRAM on SPI with 32 KiB or more under addresses of two bytes, up to 20 MHz, mode 0 or 3: no erase and no waiting. The
-//! parts are Cypress (Ramtron) FM25V02, FM25V02A, FM25V05 and Fujitsu MB85RS256B, MB85RS256TY, MB85RS512T, which differ
-//! in their identities alone. Facts are those of Cypress' datasheet 001-90865 and of the tables of ArduPilot
-//! (`AP_RAMTRON`) and Betaflight's family.
+//! FRAM on SPI with 32 KiB or more and two-byte addresses, up to 20 MHz, mode 0 or 3; no erase, no wait. Parts: Cypress
+//! (Ramtron) FM25V02, FM25V02A, FM25V05 and Fujitsu MB85RS256B, MB85RS256TY, MB85RS512T, which differ only in identity.
+//! Sources: Cypress datasheet 001-90865, the tables of ArduPilot (`AP_RAMTRON`) and Betaflight's family.
 //!
-//! It serves as NOR flash, so that the parameter store is the same on every board: an erase fills a page with 0xFF.
+//! It emulates NOR flash (an erase fills a page with 0xFF), as the parameter store requires.
 
 use core::fmt;
 
@@ -14,45 +13,38 @@ use embedded_storage_async::nor_flash::{
 
 use crate::fault::{Fault, report};
 
-/// Bytes that are used: those of the smallest part.
+/// Bytes used: those of the smallest part.
 pub const CAPACITY: u32 = 32 * 1024;
-/// Bytes of a page. The part has none: eight of them let the store go round.
+/// Bytes of an emulated page; the store rotates over eight.
 pub const PAGE: usize = 4096;
 /// Most data bytes of one transfer.
 const CHUNK: usize = 64;
-/// Opcode and address.
 const HEAD: usize = 3;
 
-/// Sets the write enable latch; the end of each write clears it.
+/// Sets the write enable latch, which the end of each write clears.
 const WREN: u8 = 0x06;
-/// Reads the status register.
 const RDSR: u8 = 0x05;
-/// Writes the status register.
 const WRSR: u8 = 0x01;
-/// Reads memory.
 const READ: u8 = 0x03;
-/// Writes memory.
 const WRITE: u8 = 0x02;
-/// Reads the identity.
 const RDID: u8 = 0x9F;
-/// How the identity of a Ramtron, today Cypress, begins: JEDEC continuation codes and the maker. Then the product, then
-/// its revision.
+/// Identity prefix of Ramtron, today Cypress: JEDEC continuation codes and maker, followed by product and revision.
 const RAMTRON: [u8; 7] = [0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0xC2];
-/// Its products: F-RAM of the V family with 256 and 512 Kbit. Larger ones want an address of three bytes.
+/// Its products: V family with 256 and 512 Kbit. Larger ones need three-byte addresses.
 const RAMTRON_PARTS: [u8; 2] = [0x22, 0x23];
-/// How that of a Fujitsu begins: the maker and a continuation code. Then the product, in two bytes.
+/// Identity prefix of Fujitsu: maker and continuation code, followed by two bytes of product.
 const FUJITSU: [u8; 2] = [0x04, 0x7F];
 /// Its products: MB85RS256TY, MB85RS256B, MB85RS512T.
 const FUJITSU_PARTS: [[u8; 2]; 3] = [[0x25, 0x03], [0x05, 0x09], [0x26, 0x03]];
-/// Write protection in the status register: pin enable and both block bits.
+/// Status register write protection: pin enable and both block bits.
 const PROTECTION: u8 = 0x8C;
 
-/// What a read or write of the FRAM met.
+/// Failure of a read or write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FramFault {
-    /// The part.
+    /// Fault of the part.
     Chip(Fault),
-    /// An address behind its end, or an erase of less than a page.
+    /// Address beyond the end, or an erase of less than a page.
     OutOfBounds,
 }
 
@@ -80,10 +72,9 @@ impl NorFlashError for FramFault {
     }
 }
 
-/// The driver of an FRAM behind SPI device `S`.
+/// Driver of an FRAM on SPI device `S`.
 ///
-/// All bytes travel through a buffer in this struct, so that it lies where its owner puts it: a board whose
-/// DMA cannot reach every memory places the driver, not the stack.
+/// All transfers use a buffer in this struct: where DMA does not reach every memory, the board places the driver.
 pub struct Fram<S> {
     spi: S,
     buffer: [u8; HEAD + CHUNK],
@@ -91,7 +82,7 @@ pub struct Fram<S> {
 }
 
 impl<S: SpiDevice> Fram<S> {
-    /// A driver; nothing happens on the bus before [`Fram::init`] or the first access.
+    /// The bus is first used by [`Fram::init`] or the first access.
     pub const fn new(spi: S) -> Self {
         Self {
             spi,
@@ -100,11 +91,10 @@ impl<S: SpiDevice> Fram<S> {
         }
     }
 
-    /// Checks the identity and takes off write protection. Every access does so until it has succeeded once.
+    /// Checks the identity and clears write protection. Every access calls it until it has succeeded.
     ///
     /// # Errors
-    /// [`Fault::Identity`] when another chip answers or none, [`Fault::Configuration`] when the protection stays,
-    /// [`Fault::Bus`].
+    /// [`Fault::Identity`] for another chip or none, [`Fault::Configuration`] if the protection stays, [`Fault::Bus`].
     pub async fn init(&mut self) -> Result<(), Fault> {
         if self.ready {
             return Ok(());
@@ -140,7 +130,7 @@ impl<S: SpiDevice> Fram<S> {
         Ok(status & PROTECTION)
     }
 
-    /// One transaction; gives what came back.
+    /// One transaction; returns the bytes received.
     async fn exchange<const N: usize>(&mut self, bytes: [u8; N]) -> Result<[u8; N], Fault> {
         let transfer = self.buffer.first_chunk_mut::<N>().ok_or(Fault::Bus)?;
         *transfer = bytes;
@@ -151,7 +141,6 @@ impl<S: SpiDevice> Fram<S> {
         Ok(*transfer)
     }
 
-    /// Writes at most [`CHUNK`] bytes.
     async fn write_chunk(&mut self, at: u32, bytes: &[u8]) -> Result<(), FramFault> {
         self.exchange([WREN]).await?;
         let Some(transfer) = head(&mut self.buffer, WRITE, at, bytes.len()) else {
@@ -222,7 +211,6 @@ impl<S: SpiDevice> NorFlash for Fram<S> {
     }
 }
 
-/// Sees that an identity is that of a part with which this driver works.
 fn identify(answer: [u8; 9]) -> Result<(), Fault> {
     let agree = |expected: &[u8], found: &[u8]| {
         let mut pairs = expected.iter().copied().zip(found.iter().copied());
@@ -247,7 +235,7 @@ fn identify(answer: [u8; 9]) -> Result<(), Fault> {
     agree(&RAMTRON_PARTS, &[product])
 }
 
-/// The part of `buffer` for a transfer of `length` data bytes, with opcode and address at its start.
+/// Slice of `buffer` for `length` data bytes after opcode and address.
 fn head(buffer: &mut [u8; HEAD + CHUNK], opcode: u8, at: u32, length: usize) -> Option<&mut [u8]> {
     let [high, low] = u16::try_from(at).ok()?.to_be_bytes();
     let transfer = buffer.get_mut(..HEAD + length)?;

@@ -1,32 +1,31 @@
 //! Frees an I2C bus whose data line a chip holds low.
 //!
-//! A chip that loses its master in the middle of a byte, by a reset or by noise, keeps holding the bit that it was
-//! about to give, and no start condition gets through any more. Clocks take the rest of the byte from it: nine are
-//! enough whatever it was doing, and a stop ends the transfer (UM10204, §3.1.16).
+//! A chip that loses its master within a byte, by a reset or noise, keeps holding its present bit, which blocks start
+//! conditions. Nine clocks take the rest of any byte, and a stop ends the transfer (UM10204, §3.1.16).
 
 use embassy_time::Timer;
 use embedded_hal::digital::{InputPin, OutputPin};
 
-/// Half a clock, µs: 100 kHz, which every chip takes.
+/// Half a clock, µs: 100 kHz, accepted by every chip.
 const HALF_CLOCK_US: u64 = 5;
-/// Clocks after which nothing that still sends is an I2C chip.
+/// Clocks after which every I2C chip has stopped sending.
 const CLOCKS: u8 = 9;
-/// Halves of a clock for which a chip may stretch one: 1 ms.
+/// Clock halves for which a chip may stretch: 1 ms.
 const STRETCH: u8 = 200;
 
-/// What became of the lines.
+/// Result for the lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lines {
-    /// Both were high: nothing was done.
+    /// Both high: nothing done.
     Idle,
-    /// The data line was held and came free after this many clocks.
+    /// Data came free after this many clocks.
     Freed(u8),
-    /// A line stays low: a short circuit, or a chip without power.
+    /// A line stays low: short circuit, or chip without power.
     Held,
 }
 
-/// Frees the bus with the lines `clock` and `data`, which are open drains with pull-ups. Takes 0.3 ms at most, or 10 ms
-/// with a chip that stretches every clock; yields all the while.
+/// Frees the bus of the open drains `clock` and `data` with pull-ups. Takes at most 0.3 ms, or 10 ms with a chip that
+/// stretches every clock; yields throughout.
 pub async fn free<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) -> Lines {
     release(data).await;
     if !rises(clock).await {
@@ -52,7 +51,7 @@ pub async fn free<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) -> Lines
     Lines::Held
 }
 
-/// Data rises while the clock is high.
+/// Stop condition: data rises while the clock is high.
 async fn stop<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) {
     pull(clock).await;
     pull(data).await;
@@ -60,7 +59,7 @@ async fn stop<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) {
     release(data).await;
 }
 
-/// Lets the clock go and waits until no chip stretches it any more; false when it never rises.
+/// Releases the clock and waits until no chip stretches it; false if it never rises.
 async fn rises<L: InputPin + OutputPin>(clock: &mut L) -> bool {
     for _ in 0..STRETCH {
         release(clock).await;
@@ -71,7 +70,7 @@ async fn rises<L: InputPin + OutputPin>(clock: &mut L) -> bool {
     false
 }
 
-// A pin of the chip itself does not fail.
+// The processor's own pin does not fail.
 async fn pull(line: &mut impl OutputPin) {
     let _ = line.set_low();
     Timer::after_micros(HALF_CLOCK_US).await;

@@ -1,45 +1,45 @@
-//! Fast-mode times (400 kHz) for the I2C of an STM32 that has a register `TIMINGR` (F7, H7): from the kernel clock to the
-//! register (RM0433 §47.4.5 and §47.4.9, RM0410 §33.4.5 and §33.4.9; the times are those of UM10204 table 10).
+//! Fast-mode times (400 kHz) of an STM32 I2C with a register `TIMINGR` (F7, H7), from its kernel clock (RM0433 §47.4.5
+//! and §47.4.9, RM0410 §33.4.5 and §33.4.9; times of UM10204 table 10).
 //!
-//! embassy-stm32 0.6 computes fields that do not fit at 100 MHz, and their upper bits are lost: data would be put on the
-//! line 20 ns before the clock's edge, which the bus wants 100 ns after the slowest edge of the data.
+//! embassy-stm32 0.6 computes fields too large for the register at 100 MHz and loses their upper bits: data would
+//! change 20 ns before the clock's edge instead of the required 100 ns, from the slowest data edge.
 
-/// Slowest edge of a line, ns: with the largest pull-up and capacity that the bus allows.
+/// Slowest edge, ns: largest pull-up and capacitance of the bus.
 const EDGE_NS: u64 = 300;
-/// Data on the line before the clock rises, ns.
+/// Data valid before the clock rises, ns.
 const SET_UP_NS: u64 = 100;
-/// Data on the line after the clock has fallen, edge included, ns.
+/// Data valid after the clock falls, edge included, ns.
 const VALID_NS: u64 = 900;
-/// Shortest and longest delay of the analog filter, ns.
+/// Shortest and longest analog filter delay, ns.
 const FILTER_NS: [u64; 2] = [50, 260];
-/// Shortest low time and shortest high time of the clock, ns.
+/// Shortest low and high time of the clock, ns.
 const LOW_NS: u64 = 1300;
 const HIGH_NS: u64 = 600;
-/// Shortest period of the clock, ns: 400 kHz.
+/// Shortest clock period, ns: 400 kHz.
 const PERIOD_NS: u64 = 2500;
-/// Cycles of the kernel clock that the peripheral takes at least to see both edges of its own clock.
+/// Fewest kernel clock cycles to detect both edges of its own clock.
 const SYNC: u64 = 4;
 
-/// Nanoseconds in a second: times are counted in cycles times these, so that nothing is rounded before the end.
+/// Nanoseconds per second: times are cycles times this, rounded only at the end.
 const NS: u64 = 1_000_000_000;
 
-/// What the register holds, field by field.
+/// Register fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct I2cTiming {
-    /// Cycles of the kernel clock in a tick, less one: 0 to 15.
+    /// Kernel clock cycles per tick, less one: 0 to 15.
     pub prescaler: u8,
-    /// Ticks from data to the clock's rise, less one: 0 to 15.
+    /// Ticks from data to clock rise, less one: 0 to 15.
     pub set_up: u8,
-    /// Ticks from the clock's fall to data: 0 to 15.
+    /// Ticks from clock fall to data: 0 to 15.
     pub hold: u8,
-    /// Ticks of the clock's high time, less one.
+    /// Ticks of clock high time, less one.
     pub high: u8,
-    /// Ticks of the clock's low time, less one.
+    /// Ticks of clock low time, less one.
     pub low: u8,
 }
 
 impl I2cTiming {
-    /// Fast mode at a kernel clock of `clock_hz`, with the shortest ticks that fit; `None` where none do (some clocks below
+    /// Fast mode at a kernel clock of `clock_hz` with the shortest ticks that fit; `None` if none do (some clocks below
     /// 23 MHz, and those above some 600). No digital filter.
     pub const fn fast_mode(clock_hz: u32) -> Option<Self> {
         let hz = clock_hz as u64;
@@ -47,13 +47,13 @@ impl I2cTiming {
         while prescaler < 16 {
             let tick = (prescaler as u64 + 1) * NS;
             let set_up = ((EDGE_NS + SET_UP_NS) * hz).div_ceil(tick);
-            // The edge must have ended, but for what filter and synchroniser add of themselves.
+            // The edge must have ended, less what filter and synchroniser add.
             let hold = ((EDGE_NS - FILTER_NS[0]) * hz)
                 .saturating_sub(3 * NS)
                 .div_ceil(tick);
             let latest = ((VALID_NS - EDGE_NS - FILTER_NS[1]) * hz).saturating_sub(4 * NS) / tick;
             let period = (PERIOD_NS * hz).saturating_sub(SYNC * NS).div_ceil(tick);
-            // Two parts low and one part high, unless the bus wants more.
+            // Two parts low, one part high, unless the bus requires more.
             let low = longer((2 * period).div_ceil(3), (LOW_NS * hz).div_ceil(tick));
             let high = longer(period.saturating_sub(low), (HIGH_NS * hz).div_ceil(tick));
             if set_up <= 16 && hold <= latest && hold <= 15 && low <= 256 && high <= 256 {
@@ -79,7 +79,7 @@ const fn longer(a: u64, b: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// The fields at the kernel clocks of the Matek H743 and the CUAV V5: found while compiling, as a board's are not.
+    /// Fields at the kernel clocks of the Matek H743 and CUAV V5; evaluated at compile time, unlike a board's.
     const MATEK: Option<I2cTiming> = I2cTiming::fast_mode(100_000_000);
     const CUAV: Option<I2cTiming> = I2cTiming::fast_mode(54_000_000);
 

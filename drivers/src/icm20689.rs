@@ -1,8 +1,8 @@
 //! TDK ICM-20689 on SPI, up to 8 MHz, mode 0 or 3. Register names and values are those of DS-000143.
 //!
-//! The gyroscope samples at 8 kHz behind the part's own 250 Hz filter (0.97 ms of delay), and every second
-//! sample is read: 4 kHz. Other rates read more or fewer of them: the part's own 1 kHz would delay by 2.9 ms.
-//! The accelerometer is renewed at 1 kHz behind its filter, so its samples repeat.
+//! The gyroscope samples at 8 kHz behind the part's 250 Hz filter (0.97 ms delay); every second sample is read: 4 kHz.
+//! Other rates read another fraction: the part's own 1 kHz would delay by 2.9 ms. The accelerometer is renewed at 1 kHz
+//! behind its filter, so its samples repeat.
 
 use embassy_time::Duration;
 use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
@@ -11,14 +11,13 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
-/// Most that the part's SPI is rated for, Hz.
+/// Rated SPI clock, Hz.
 pub const SPI_HZ: u32 = 8_000_000;
 
-/// The driver of an ICM-20689 behind SPI device `S` with its INT on `D`.
+/// ICM-20689 on SPI device `S` with its INT on `D`.
 pub type Icm20689<S, D> = SpiImu<Config, S, D>;
 
 mod reg {
-    //! Addresses.
     pub const SELF_TEST_X_GYRO: u8 = 0x00;
     pub const SELF_TEST_X_ACCEL: u8 = 0x0D;
     pub const SMPLRT_DIV: u8 = 0x19;
@@ -37,7 +36,7 @@ mod reg {
     pub const WHO_AM_I: u8 = 0x75;
 }
 
-/// Range of the gyroscope, GYRO_CONFIG bits 4:3.
+/// Gyroscope range, GYRO_CONFIG bits 4:3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum GyroRange {
@@ -52,7 +51,7 @@ pub enum GyroRange {
     Dps2000 = 3,
 }
 
-/// Range of the accelerometer, ACCEL_CONFIG bits 4:3.
+/// Accelerometer range, ACCEL_CONFIG bits 4:3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum AccelRange {
@@ -67,20 +66,20 @@ pub enum AccelRange {
     G16 = 3,
 }
 
-/// Filter of the gyroscope, which decides about its rate: DLPF_CFG, CONFIG bits 2:0.
+/// Gyroscope filter, which sets its rate: DLPF_CFG, CONFIG bits 2:0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum GyroFilter {
-    /// 250 Hz, 0.97 ms of delay, 8 kHz.
+    /// 250 Hz, 0.97 ms delay, 8 kHz.
     #[default]
     Hz250 = 0,
-    /// 176 Hz, 2.9 ms of delay, 1 kHz.
+    /// 176 Hz, 2.9 ms delay, 1 kHz.
     Hz176 = 1,
-    /// 3281 Hz, 0.17 ms of delay, 8 kHz.
+    /// 3281 Hz, 0.17 ms delay, 8 kHz.
     Hz3281 = 7,
 }
 
-/// Filter of the accelerometer, ACCEL_CONFIG2 bits 3:0.
+/// Accelerometer filter, ACCEL_CONFIG2 bits 3:0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum AccelFilter {
@@ -89,29 +88,29 @@ pub enum AccelFilter {
     Hz218 = 0,
     /// 99 Hz, 1 kHz.
     Hz99 = 2,
-    /// 1046 Hz, 4 kHz: the filter is bypassed.
+    /// 1046 Hz, 4 kHz: bypassed.
     Hz1046 = 8,
 }
 
-/// What is configured.
+/// Configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// Range of the gyroscope.
+    /// Gyroscope range.
     pub gyro_range: GyroRange,
-    /// Range of the accelerometer.
+    /// Accelerometer range.
     pub accel_range: AccelRange,
-    /// Filter and rate of the gyroscope.
+    /// Gyroscope filter and rate.
     pub gyro_filter: GyroFilter,
-    /// Filter of the accelerometer.
+    /// Accelerometer filter.
     pub accel_filter: AccelFilter,
-    /// One sample in this many is read, 1 to 8.
+    /// Reads one sample in this many, 1 to 8.
     pub read_every: u8,
-    /// How the part is watched in flight.
+    /// In-flight monitoring.
     pub watch: Watch,
 }
 
 impl Config {
-    /// The rate and the ranges that the parameters ask for; the rest as by default.
+    /// Rate and ranges of the parameters; the rest as by default.
     pub fn from_params(p: &Params) -> Self {
         let read_every = match p.imu_rate {
             ImuRate::Hz1000 => 8,
@@ -163,14 +162,14 @@ impl Chip for Config {
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x98;
     const BANK_SELECT: Option<u8> = None;
-    // Accelerometer, temperature, gyroscope lie together.
+    // Accelerometer, temperature, gyroscope in sequence.
     const DATA: u8 = reg::ACCEL_XOUT_H;
     const WATCH_FROM: u8 = reg::SMPLRT_DIV;
-    // Set with each sample, cleared by reading it: INT_RD_CLEAR is 0.
+    // Set with each sample, cleared by reading: INT_RD_CLEAR is 0.
     const SAMPLE_READY: Setting = Setting::bits(0, reg::INT_STATUS, 0x01, 0x01);
     const LINE: &'static [u8] = &[reg::INT_PIN_CFG, reg::INT_ENABLE];
     const RESET: &'static [Setting] = &[Setting::all(reg::PWR_MGMT_1, 0x80)];
-    // Up to 100 ms from power to register access; PX4 gives a reset as much.
+    // Up to 100 ms from power to register access; PX4 allows a reset as much.
     const RESET_TIME: Duration = Duration::from_millis(100);
     // Asleep, reset bit gone.
     const AFTER_RESET: Setting = Setting::bits(0, reg::PWR_MGMT_1, 0xC0, 0x40);
@@ -187,7 +186,7 @@ impl Chip for Config {
     const START_UP: Duration = Duration::from_millis(45);
     const GYRO_CODES: (u8, u8) = (0, reg::SELF_TEST_X_GYRO);
     const ACCEL_CODES: (u8, u8) = (0, reg::SELF_TEST_X_ACCEL);
-    // AN-000029: the gyroscope's ratio has no upper bound.
+    // AN-000029: no upper bound for the gyroscope's ratio.
     const SELF_TEST: Limits = Limits {
         gyro_ratio_max: f32::INFINITY,
         accel_ratio_max: 1.5,

@@ -1,8 +1,8 @@
-//! TDK ICM-42688-P on SPI, up to 24 MHz, mode 0 or 3. Section numbers are those of DS-000347 rev. 1.8.
+//! TDK ICM-42688-P on SPI, up to 24 MHz, mode 0 or 3. Sections are those of DS-000347 rev. 1.8.
 //!
-//! Sampling at 1, 2, 4 (default) or 8 kHz, one burst for each data-ready pulse. The part's filters stay wide: the imu task filters.
-//! At 2 kHz and more the UI filter's bandwidth is fixed by the rate alone (§5.5: 1048 Hz at 4 kHz); only its
-//! order, and below that rate its bandwidth, can be chosen.
+//! Sampling at 1, 2, 4 (default) or 8 kHz, one burst per data-ready pulse, with wide filters: the imu task filters. At
+//! 2 kHz and above the rate alone fixes the UI filter's bandwidth (§5.5: 1048 Hz at 4 kHz); its order can be chosen,
+//! and its bandwidth only below that rate.
 
 use embassy_time::Duration;
 use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
@@ -11,14 +11,14 @@ use crate::registers::Setting;
 use crate::self_test::{Limits, Stage};
 use crate::spi_imu::{Chip, Raw, Settings, SpiImu, Watch};
 
-/// Most that the part's SPI is rated for, Hz.
+/// Rated SPI clock, Hz.
 pub const SPI_HZ: u32 = 24_000_000;
 
-/// The driver of an ICM-42688-P behind SPI device `S` with its INT1 on `D`.
+/// ICM-42688-P on SPI device `S` with its INT1 on `D`.
 pub type Icm42688p<S, D> = SpiImu<Config, S, D>;
 
 mod reg {
-    //! Addresses, §13. Bank 0 unless the name says otherwise.
+    //! Addresses, §13. Bank 0 unless named otherwise.
     pub const DEVICE_CONFIG: u8 = 0x11;
     pub const INT_CONFIG: u8 = 0x14;
     pub const FIFO_CONFIG: u8 = 0x16;
@@ -48,7 +48,7 @@ mod reg {
     pub const B2_XA_ST_DATA: u8 = 0x3B;
 }
 
-/// Range of the gyroscope (§14.37).
+/// Gyroscope range (§14.37).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum GyroRange {
@@ -63,7 +63,7 @@ pub enum GyroRange {
     Dps250 = 3,
 }
 
-/// Range of the accelerometer (§14.38).
+/// Accelerometer range (§14.38).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum AccelRange {
@@ -78,7 +78,7 @@ pub enum AccelRange {
     G2 = 3,
 }
 
-/// Samples per second of both sensors (§14.37).
+/// Sample rate of both sensors (§14.37).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Rate {
@@ -94,7 +94,7 @@ pub enum Rate {
 }
 
 impl Rate {
-    /// Samples per second.
+    /// Sample rate, Hz.
     pub const fn hz(self) -> f32 {
         match self {
             Self::Khz8 => 8000.0,
@@ -105,7 +105,7 @@ impl Rate {
     }
 }
 
-/// Order of the UI filters (§5.5).
+/// UI filter order (§5.5).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum FilterOrder {
@@ -118,7 +118,7 @@ pub enum FilterOrder {
     Third = 2,
 }
 
-/// Bandwidth of the UI filters where the rate leaves a choice, at 1 kHz and below (§14.40).
+/// UI filter bandwidth at 1 kHz and below (§14.40).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum UiBandwidth {
@@ -135,7 +135,7 @@ pub enum UiBandwidth {
     Tenth = 4,
 }
 
-/// Bandwidth of an anti-alias filter, second order (§5.3).
+/// Anti-alias bandwidth, second order (§5.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AntiAlias {
     /// 213 Hz.
@@ -169,29 +169,29 @@ impl AntiAlias {
     }
 }
 
-/// What is configured.
+/// Configuration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Config {
-    /// Range of the gyroscope.
+    /// Gyroscope range.
     pub gyro_range: GyroRange,
-    /// Range of the accelerometer.
+    /// Accelerometer range.
     pub accel_range: AccelRange,
-    /// Samples per second.
+    /// Sample rate.
     pub rate: Rate,
     /// Order of both UI filters.
     pub filter_order: FilterOrder,
-    /// Bandwidth of both UI filters, at 1 kHz.
+    /// Bandwidth of both UI filters at 1 kHz.
     pub ui_bandwidth: UiBandwidth,
-    /// Anti-alias filter of the gyroscope.
+    /// Gyroscope anti-alias filter.
     pub gyro_anti_alias: AntiAlias,
-    /// Anti-alias filter of the accelerometer.
+    /// Accelerometer anti-alias filter.
     pub accel_anti_alias: AntiAlias,
-    /// How the part is watched in flight.
+    /// In-flight monitoring.
     pub watch: Watch,
 }
 
 impl Config {
-    /// The rate and the ranges that the parameters ask for, all of which the part has; the rest as by default.
+    /// Rate and ranges of the parameters; the rest as by default.
     pub fn from_params(p: &Params) -> Self {
         let rate = match p.imu_rate {
             ImuRate::Hz1000 => Rate::Khz1,
@@ -226,16 +226,16 @@ impl Chip for Config {
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x47;
     const BANK_SELECT: Option<u8> = Some(reg::REG_BANK_SEL);
-    // Temperature, accelerometer, gyroscope lie together (§13.1).
+    // Temperature, accelerometer, gyroscope in sequence (§13.1).
     const DATA: u8 = reg::TEMP_DATA1;
     const WATCH_FROM: u8 = reg::PWR_MGMT0;
-    // Set with each sample, cleared by reading it: INT_CONFIG0 is left at its reset value (§14.21, §14.49).
+    // Set with each sample, cleared by reading: INT_CONFIG0 keeps its reset value (§14.21, §14.49).
     const SAMPLE_READY: Setting = Setting::bits(0, reg::INT_STATUS, 0x08, 0x08);
     const LINE: &'static [u8] = &[reg::INT_CONFIG, reg::INT_CONFIG1, reg::INT_SOURCE0];
     const RESET: &'static [Setting] = &[Setting::all(reg::DEVICE_CONFIG, 0x01)];
     // 1 ms (§14.1), doubled.
     const RESET_TIME: Duration = Duration::from_millis(2);
-    // Both sensors off: they are on whenever the part was in use.
+    // Both sensors off; in use they are on.
     const AFTER_RESET: Setting = Setting::all(reg::PWR_MGMT0, 0x00);
     const WAKE: &'static [Setting] = &[];
     const WAKE_TIME: Duration = Duration::from_ticks(0);
@@ -263,7 +263,7 @@ impl Chip for Config {
         let [accel_square_high, accel_square_low] = accel_square.to_be_bytes();
         let gyro_off = u8::from(self.gyro_anti_alias == AntiAlias::Off) << 1;
         let accel_off = u8::from(self.accel_anti_alias == AntiAlias::Off);
-        // All but range and rate may only be changed while the sensors are off (§12.9).
+        // Only range and rate may change while the sensors are on (§12.9).
         Settings::from_array([
             // INT1 pulsed, push-pull, active high.
             Setting::bits(0, reg::INT_CONFIG, 0x07, 0x03),
@@ -271,18 +271,18 @@ impl Chip for Config {
             Setting::bits(0, reg::FIFO_CONFIG, 0xC0, 0x00),
             // Big-endian data, -32768 until the first sample, I2C off.
             Setting::bits(0, reg::INTF_CONFIG0, 0x93, 0x13),
-            // Adaptive full scale off, a bit that the datasheet reserves: the gyroscope's output stalls for some
-            // 2 ms at times with it on (found by ArduPilot, pull request 25332; Betaflight and INAV do the same).
-            // Clock from the PLL when it is there.
+            // Adaptive full scale off, a bit that the datasheet reserves: with it on, the gyroscope's output stalls at
+            // times for some 2 ms (ArduPilot pull request 25332; also off in Betaflight and INAV). Clock from the PLL
+            // when available.
             Setting::bits(0, reg::INTF_CONFIG1, 0xC3, 0x41),
             Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, (self.gyro_range as u8) << 5 | rate),
             Setting::bits(0, reg::ACCEL_CONFIG0, 0xEF, (self.accel_range as u8) << 5 | rate),
             Setting::bits(0, reg::GYRO_CONFIG1, 0x0C, order << 2),
             Setting::all(reg::GYRO_ACCEL_CONFIG0, bandwidth << 4 | bandwidth),
             Setting::bits(0, reg::ACCEL_CONFIG1, 0x18, order << 3),
-            // Pulses of 8 µs without a pause, needed from 4 kHz up (§14.50); INT_ASYNC_RESET off (§12.6).
+            // Pulses of 8 µs without a pause, needed from 4 kHz on (§14.50); INT_ASYNC_RESET off (§12.6).
             Setting::bits(0, reg::INT_CONFIG1, 0x70, 0x60),
-            // Data-ready alone on INT1.
+            // Only data-ready on INT1.
             Setting::bits(0, reg::INT_SOURCE0, 0x7F, 0x08),
             // Gyroscope: factory notch on, anti-alias filter.
             Setting::bits(1, reg::B1_GYRO_CONFIG_STATIC2, 0x03, gyro_off),
@@ -309,8 +309,8 @@ impl Chip for Config {
     fn self_test_settings(stage: Stage) -> Settings {
         let actuate = |axes| Setting::bits(0, reg::SELF_TEST_CONFIG, 0x7F, axes);
         match stage {
-            // 250 °/s and 2 g at 1 kHz, third order, a tenth of the rate: the maker's own choice. Filters may only
-            // be changed while the sensors are off (§12.9).
+            // 250 °/s and 2 g at 1 kHz, third order, a tenth of the rate: the maker's choice. Filters may only change
+            // while the sensors are off (§12.9).
             Stage::Rest => Settings::from_array([
                 Setting::bits(0, reg::PWR_MGMT0, 0x2F, 0x00),
                 Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, 3 << 5 | Rate::Khz1 as u8),
@@ -322,7 +322,7 @@ impl Chip for Config {
                 Self::POWER,
             ]),
             Stage::Gyro => Settings::from_array([actuate(0x07)]),
-            // The accelerometer's actuation has a supply of its own, bit 6.
+            // The accelerometer's actuation has its own supply, bit 6.
             Stage::Accel => Settings::from_array([actuate(0x78)]),
         }
     }

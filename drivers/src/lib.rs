@@ -1,14 +1,14 @@
-//! Drivers of SOPHIE's sensors and the wire formats of its receiver and actuators.
+//! Drivers of SOPHIE's sensors, and the wire formats of receiver and actuators.
 //!
-//! No HAL: chips are reached through the embedded-hal traits, timers through counts that a board writes into
-//! its compare registers. A board builds the drivers and hands them to the tasks as their ports.
+//! Chips are reached through embedded-hal traits, timers through counts that a board writes into compare registers. A
+//! board builds the drivers and gives them to the tasks as ports.
 //!
 //! | module | part or protocol | port |
 //! |---|---|---|
-//! | [`icm42688p`], [`icm20689`] over [`spi_imu`] | inertial sensor of the vehicle, SPI | `Imu` |
-//! | [`line_watch`] | a data-ready line that falls silent | used by [`spi_imu`] |
-//! | [`bno055`], [`arm_buses`] | inertial sensors of the arms, I2C | `ArmImus` |
-//! | [`i2c_lines`] | a held I2C bus is freed | used by the board's buses |
+//! | [`icm42688p`], [`icm20689`] over [`spi_imu`] | vehicle's inertial sensor, SPI | `Imu` |
+//! | [`line_watch`] | silent data-ready line | used by [`spi_imu`] |
+//! | [`bno055`], [`arm_buses`] | arms' inertial sensors, I2C | `ArmImus` |
+//! | [`i2c_lines`] | held I2C bus | used by the board's buses |
 //! | [`esc_protocol`]: [`dshot`], [`dshot_decoder`], [`esc_pwm`] | motor controllers | used by the board's `Motors` |
 //! | [`rc_decoder`]: [`crsf`], [`sbus`] | receiver | `RcDecoder` |
 //! | [`servo_pulse`] | tendon servos | used by the board's `Servos` |

@@ -1,49 +1,48 @@
-//! Whether the data-ready line of a part can be relied on, and when samples are read by the clock in its place.
+//! Decides whether a data-ready line is reliable, and when samples are polled instead.
 //!
-//! A line that has been silent is taken up again when its pulses and the part's own status have agreed for a while;
-//! how long, doubles with each silence, so that a loose contact does not make the driver toggle. One
-//! short silence is nothing; a line that stays silent, or falls silent again and again, is reported.
+//! A silent line is used again once its pulses and the part's status have agreed for a time that doubles with each
+//! silence, so that a loose contact does not toggle the driver. A lasting or repeated silence is reported, a single
+//! short one is not.
 
 use embassy_time::{Duration, Instant};
 
-/// Time for which samples must have been read by the clock before the line is reported as silent: one short silence,
-/// which ends within the first of `BACK_AFTER`, is no reason to land.
+/// Polling time after which the line is reported as silent: one short silence, which ends within the first
+/// `BACK_AFTER`, is no reason to land.
 pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
-/// First and longest time for which line and status must agree before the line is used again.
+/// First and longest time of agreement before the line is used again.
 const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];
-/// Time on the line after which an earlier silence is forgotten.
+/// Time on the line that clears earlier silences.
 const FORGOTTEN_AFTER: Duration = Duration::from_secs(10);
-/// Time between two samples, µs, times the rate, Hz: 1.5 % shorter than the part's. Its own clock, locked to the
-/// gyroscope, is off by about 1 %: as good as none of its samples is missed, and the filters' rate is met within 2 %.
+/// Poll period times rate, µs·Hz: 1.5 % shorter than the part's, whose clock, locked to the gyroscope, is off by about
+/// 1 %. Practically no sample is missed, and the filters' rate is met within 2 %.
 const PERIOD_BY_RATE: f32 = 0.985e6;
-/// A sample that is not there yet is asked for again after this part of the period: what it may come late by.
+/// Fraction of the period until a missing sample is requested again; bounds its lateness.
 const AGAIN: u32 = 4;
 
-/// State of the line.
+/// Line state.
 #[derive(Clone, Copy, Debug)]
 pub struct LineWatch {
     clock: Option<Clock>,
     back_after: Duration,
-    /// When the line was taken up again.
+    /// When the line came back into use.
     back_at: Option<Instant>,
 }
 
-/// Samples are read by the clock.
 #[derive(Clone, Copy, Debug)]
 struct Clock {
     since: Instant,
-    /// When the part is to be asked next, and the time between two samples.
+    /// Next poll, and sample period.
     due: Instant,
     period: Duration,
-    /// Samples with a pulse less those without, never below 0, and how many make the line sound.
+    /// Samples with a pulse minus those without, at least 0, and the number that makes the line sound.
     agreeing: u32,
     sound: u32,
     reported: bool,
 }
 
 impl Clock {
-    /// The part is to be asked again after `time`: from when it was due, or what the processor takes would make the
-    /// period longer than the part's; after a stall from `now` on, without a burst.
+    /// Schedules the next poll after `time`: from the due time, since processing would lengthen the period, but after a
+    /// stall from `now`, which avoids a burst.
     fn go_on(&mut self, now: Instant, time: Duration) {
         let late = now.saturating_duration_since(self.due) > time;
         self.due = if late { now } else { self.due } + time;
@@ -57,7 +56,7 @@ impl Default for LineWatch {
 }
 
 impl LineWatch {
-    /// A line that nothing is known against.
+    /// A line without faults.
     pub const fn new() -> Self {
         let [back_after, _] = BACK_AFTER;
         Self {
@@ -67,17 +66,17 @@ impl LineWatch {
         }
     }
 
-    /// When the part is to be asked; `None` while its line says when.
+    /// Time of the next poll; `None` while the line is used.
     pub fn due(&self) -> Option<Instant> {
         self.clock.map(|clock| clock.due)
     }
 
-    /// The line is silent for good, or again and again.
+    /// The silence lasts or repeats.
     pub fn reported(&self) -> bool {
         self.clock.is_some_and(|clock| clock.reported)
     }
 
-    /// The line has fallen silent at `now` although the part is well; samples come at `rate_hz`.
+    /// The line is silent at `now` although the part is well; samples come at `rate_hz`.
     pub fn silent(&mut self, now: Instant, rate_hz: f32) {
         let [first, longest] = BACK_AFTER;
         self.back_after = match self.back_at {
@@ -98,14 +97,14 @@ impl LineWatch {
         });
     }
 
-    /// The part had no sample when it was asked at `now`.
+    /// The poll at `now` found no sample.
     pub fn not_yet(&mut self, now: Instant) {
         if let Some(clock) = &mut self.clock {
             clock.go_on(now, clock.period / AGAIN);
         }
     }
 
-    /// The part had a sample at `now`, which the line had announced or not.
+    /// The poll at `now` found a sample, `announced` by the line or not.
     pub fn sample(&mut self, now: Instant, announced: bool) {
         let Some(clock) = &mut self.clock else { return };
         clock.go_on(now, clock.period);
@@ -132,7 +131,7 @@ mod tests {
         Instant::from_micros(us)
     }
 
-    /// Samples of 4 kHz from `from` on, announced or not, until the line is used again or `to`; gives the time then.
+    /// Feeds samples at 4 kHz from `from` until the line is back in use or `to`; returns that time.
     fn run(line: &mut LineWatch, from: u64, to: u64, announced: impl Fn(u64) -> bool) -> u64 {
         let mut now = from;
         while now < to && line.due().is_some() {
@@ -162,11 +161,11 @@ mod tests {
         let back = run(&mut line, 0, 1000 * MS, |_| true);
         assert!((50 * MS..53 * MS).contains(&back), "{back}");
         assert!(!line.reported(), "one short silence is nothing");
-        // A third of the pulses is missed while the part is being asked: longer, and still.
+        // A third of the pulses is missed during polls: longer, but the line returns.
         line.silent(at(20_000 * MS), 4000.0);
         let back = run(&mut line, 20_000 * MS, 21_000 * MS, |us| us % 750 != 0) - 20_000 * MS;
         assert!((140 * MS..160 * MS).contains(&back), "{back}");
-        // Pulses that have nothing to do with the samples are no line.
+        // Pulses unrelated to the samples.
         line.silent(at(40_000 * MS), 4000.0);
         let back = run(&mut line, 40_000 * MS, 45_000 * MS, |us| us % 500 == 0);
         assert_eq!(back, 45_000 * MS);
@@ -221,13 +220,11 @@ mod tests {
             );
             line.not_yet(at(1000 + period / 4 + period + 30));
             assert_eq!(line.due(), Some(at(1000 + 2 * (period / 4) + period)));
-            // After a stall the phase restarts: no burst.
             line.sample(at(50_000), false);
             assert_eq!(line.due(), Some(at(50_000 + period)));
             line.not_yet(at(90_000));
             assert_eq!(line.due(), Some(at(90_000 + period / 4)));
         }
-        // A rate that is no number does not stop the clock.
         let mut line = LineWatch::new();
         line.silent(at(0), f32::NAN);
         assert_eq!(line.due(), Some(at(9850 / 4)));

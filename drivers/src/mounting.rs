@@ -1,26 +1,26 @@
-//! How a sensor sits on the vehicle: a signed permutation of its axes.
+//! Orientation of a sensor on the vehicle: a signed permutation of axes.
 
 use sophie_control::vector::Vec3;
 
-/// One axis of a sensor, with its sense.
+/// A signed sensor axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// Along the sensor's x axis.
+    /// +x.
     PlusX,
-    /// Against the sensor's x axis.
+    /// -x.
     MinusX,
-    /// Along the sensor's y axis.
+    /// +y.
     PlusY,
-    /// Against the sensor's y axis.
+    /// -y.
     MinusY,
-    /// Along the sensor's z axis.
+    /// +z.
     PlusZ,
-    /// Against the sensor's z axis.
+    /// -z.
     MinusZ,
 }
 
 impl Axis {
-    /// This component of a vector in the sensor's axes.
+    /// Component of `v`, a vector in sensor axes.
     pub const fn of(self, v: Vec3) -> f32 {
         match self {
             Self::PlusX => v.x,
@@ -44,21 +44,21 @@ impl Axis {
     }
 }
 
-/// Where the sensor's x axis points, seen from above.
+/// Direction of the sensor's x axis, seen from above.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Heading {
-    /// To the nose.
+    /// Nose.
     #[default]
     Forward,
-    /// To the right.
+    /// Right.
     Right,
-    /// To the tail.
+    /// Tail.
     Back,
-    /// To the left.
+    /// Left.
     Left,
 }
 
-/// How a sensor sits: which of its axes lies along body forward, right and down.
+/// The sensor axes along body forward, right and down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mounting {
     forward: Axis,
@@ -67,8 +67,7 @@ pub struct Mounting {
 }
 
 impl Mounting {
-    /// The mounting with these axes along body x (forward), y (right) and z (down); `None` unless they are a
-    /// right-handed triple, which every real mounting is.
+    /// Sensor axes along body x (forward), y (right) and z (down); `None` unless right-handed.
     pub const fn new(forward: Axis, right: Axis, down: Axis) -> Option<Self> {
         let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (forward.unit(), right.unit(), down.unit());
         let determinant = (ay * bz - az * by) * cx + (az * bx - ax * bz) * cy + (ax * by - ay * bx) * cz;
@@ -79,8 +78,7 @@ impl Mounting {
         }
     }
 
-    /// The part's marked side up, as the InvenSense and Bosch parts draw it (x, y in the plane, z out of
-    /// the marking), its x axis pointing to `heading`.
+    /// Marked side up (InvenSense and Bosch: x, y in the plane, z out of the marking), x axis to `heading`.
     pub const fn top_up(heading: Heading) -> Self {
         let (forward, right) = match heading {
             Heading::Forward => (Axis::PlusX, Axis::MinusY),
@@ -95,7 +93,7 @@ impl Mounting {
         }
     }
 
-    /// The part's marked side down, its x axis pointing to `heading`.
+    /// Marked side down, x axis to `heading`.
     pub const fn top_down(heading: Heading) -> Self {
         let (forward, right) = match heading {
             Heading::Forward => (Axis::PlusX, Axis::PlusY),
@@ -110,7 +108,7 @@ impl Mounting {
         }
     }
 
-    /// A vector in the sensor's axes, turned into body axes (forward, right, down).
+    /// Turns a vector from sensor axes into body axes (forward, right, down).
     pub const fn to_body(self, sensor: Vec3) -> Vec3 {
         Vec3::new(
             self.forward.of(sensor),
@@ -121,7 +119,6 @@ impl Mounting {
 }
 
 impl Default for Mounting {
-    /// Marked side up, x forward.
     fn default() -> Self {
         Self::top_up(Heading::Forward)
     }
@@ -146,7 +143,7 @@ mod tests {
 
     #[test]
     fn axes_point_where_the_heading_says() {
-        // The sensor's x axis in body axes, for each heading.
+        // Sensor x axis in body axes, per heading.
         let expected = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         for (heading, [forward, right]) in HEADINGS.into_iter().zip(expected) {
             for mounting in [Mounting::top_up(heading), Mounting::top_down(heading)] {
@@ -154,7 +151,7 @@ mod tests {
                 assert!(x == Vec3::new(forward, right, 0.0), "{heading:?}: {x:?}");
             }
         }
-        // At rest an accelerometer with its marking up sees +g along z: specific force is up, body -z.
+        // At rest with the marking up, specific force is +g along z: up, body -z.
         let rest = Mounting::default().to_body(Vec3::new(0.0, 0.0, 9.81));
         assert!(rest == Vec3::new(0.0, 0.0, -9.81));
     }

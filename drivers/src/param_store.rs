@@ -1,14 +1,14 @@
 //! Parameters in flash or FRAM.
 //!
-//! One item of a `sequential_storage` map holds the whole set, so that a save that power cuts short leaves either the
-//! old set or the new one, never a mixture. An item is a tag and one record of eight bytes for each parameter that
-//! differs from the board's default: the FNV-1a hash of its name and the bits of its value. Firmware with other parameters
-//! still reads those that it knows, and those that it knows under another name.
+//! One item of a `sequential_storage` map holds the whole set: a save cut short by power loss leaves the old set or the
+//! new one, never a mixture. An item is a tag and a record of eight bytes per parameter that differs from the board's
+//! default: FNV-1a hash of its name, bits of its value. Other firmware reads the parameters that it knows, also by
+//! former names.
 //!
-//! Saves are appended; a page is erased when the log comes round to it. Loading never writes and never erases, whatever
-//! it finds: an erase at start-up could outlast the watchdog.
+//! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
+//! start-up could outlast the watchdog.
 //!
-//! Memory: one buffer of [`BUFFER`] bytes in the future of the call, none in between.
+//! Memory: one buffer of [`BUFFER`] bytes in the future of a call.
 
 mod foreign;
 mod guard;
@@ -28,25 +28,24 @@ use self::guard::ReadOnly;
 pub use self::set::hash;
 use self::set::{LONGEST, Set};
 
-/// Bytes of the buffer of a load or a save: the longest set, in whole words of 32 bytes.
+/// Buffer of a load or save: the longest set, in multiples of 32 bytes.
 pub const BUFFER: usize = LONGEST.next_multiple_of(32);
 
-/// The parameter store in `range` of flash `F`.
+/// Parameter store in `range` of flash `F`.
 pub struct ParamStore<F> {
     flash: F,
     range: Range<u32>,
     defaults: &'static Params,
 }
 
-/// What was found in the flash.
 struct Found {
     set: Option<Set>,
-    /// Something was written there that cannot be read, at least not as the newest set.
+    /// Written data are unreadable, at least as the newest set.
     damaged: bool,
 }
 
 impl Found {
-    /// True when this is just what a save of `params` leaves where they would else be `defaults`.
+    /// True if a save of `params` over `defaults` leaves exactly this.
     fn holds(&self, params: &Params, defaults: &Params) -> bool {
         let same = match &self.set {
             Some(set) => set.refused == 0 && !set.renamed && set.over(defaults) == *params,
@@ -57,9 +56,9 @@ impl Found {
 }
 
 impl<F: NorFlash> ParamStore<F> {
-    /// A store in the bytes `range` of `flash`: at least two whole erase pages, each long enough for a set, at most 32.
+    /// A store in the bytes `range` of `flash`: 2 to 32 whole erase pages, each long enough for a set.
     ///
-    /// A range that does not suit shows as a storage that cannot be read or written.
+    /// An unsuitable range shows as storage that cannot be read or written.
     pub const fn new(flash: F, range: Range<u32>) -> Self {
         Self {
             flash,
@@ -68,12 +67,12 @@ impl<F: NorFlash> ParamStore<F> {
         }
     }
 
-    /// The same for a board with these defaults: what is like them is not stored.
+    /// Sets the board's defaults; values equal to them are not stored.
     pub fn with_defaults(self, defaults: &'static Params) -> Self {
         Self { defaults, ..self }
     }
 
-    /// Gives the flash back.
+    /// Returns the flash.
     pub fn release(self) -> F {
         self.flash
     }
@@ -86,7 +85,6 @@ impl<F: NorFlash> ParamStore<F> {
             .flatten()
     }
 
-    /// Reads without writing.
     async fn find(&mut self, buffer: &mut [u8; BUFFER]) -> Found {
         let unreadable = Found {
             set: None,
@@ -109,7 +107,7 @@ impl<F: NorFlash> ParamStore<F> {
         }
     }
 
-    /// Whose data lie in a page, where they are another firmware's.
+    /// Owner of the data in a page that belongs to other firmware.
     async fn foreign(&mut self) -> Option<&'static str> {
         self.config::<&mut F>()?;
         let mut page = self.range.start;
@@ -127,13 +125,13 @@ impl<F: NorFlash> ParamStore<F> {
 
     async fn append(&mut self, params: &Params, buffer: &mut [u8; BUFFER]) -> Result<(), StorageError> {
         let config = self.config().ok_or(StorageError::Broken)?;
-        // The place of the one key is remembered, or moving a page's items would search it once for each of them.
+        // Caches the place of the one key; otherwise moving a page searches it for each item.
         let cache = Cache::new(Uncached, Uncached, ArrayKeyPointers::<(), 1>::new());
         let mut map = MapStorage::<(), _, _>::new(&mut self.flash, config, cache);
         map.store_item(buffer, &(), &Set::of(*params, self.defaults))
             .await
             .map_err(|e| match e {
-                // A log that is full makes room for one set by itself, or its flash does not hold the marks.
+                // A full log makes room for one set by itself; failing that, its flash does not hold the marks.
                 Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
                 _ => StorageError::Broken,
             })
@@ -171,12 +169,12 @@ impl<F: NorFlash> Storage for ParamStore<F> {
         if found.holds(params, self.defaults) {
             return Ok(());
         }
-        // Appending keeps the old set until the new one is complete; where no old one can be read there is none to keep.
+        // Appending keeps the old set, if readable, until the new one is complete.
         if found.set.is_some() || !found.damaged {
             match self.append(params, &mut buffer).await {
                 Ok(()) if self.find(&mut buffer).await.holds(params, self.defaults) => return Ok(()),
                 Err(StorageError::Full) => return Err(StorageError::Full),
-                // What was there is in the way.
+                // Existing data are in the way.
                 Ok(()) | Err(StorageError::Broken) => (),
             }
         }

@@ -1,28 +1,27 @@
-//! Timer values of pulse trains: from microseconds to counts.
+//! Timer values of pulse trains: microseconds to counts.
 
 use sophie_control::math;
 
-/// Prescaler and period of a timer for a frame rate, and the length of a count.
+/// Prescaler and period for a frame rate, and counts per µs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PwmTiming {
-    /// What the prescaler register takes: the clock is divided by one more.
+    /// Prescaler register: the clock is divided by one more.
     pub prescaler: u16,
-    /// Counts of a frame; the reload register takes one less.
+    /// Counts per frame; the reload register takes one less.
     pub period: u32,
     counts_per_us: f32,
 }
 
 impl PwmTiming {
-    /// Counts of a 16-bit timer.
     const COUNTS: u32 = 1 << 16;
-    /// Counts at the end of a frame that no pulse may fill: two pulses must not run into one.
+    /// Counts at the end of a frame that separate two pulses.
     const REST: u32 = 2;
 
-    /// Values for frames of `frame_us` µs on a 16-bit timer that is clocked at `clock_hz`; `None` for frames that it cannot
-    /// make. The finest ones that make them exactly, so that frames keep their phase to the board's clock for good: a
-    /// rounding of 1e-7 would shift them by 0.4 ms an hour. Where that takes more than twice the finest count, the finest.
+    /// Finest values of a 16-bit timer at `clock_hz` that make frames of `frame_us` µs exactly; `None` if the timer
+    /// cannot. Exact frames keep their phase to the board's clock: an error of 1e-7 shifts them by 0.4 ms an hour.
+    /// Where exactness takes more than twice the finest count: the finest.
     pub fn new(clock_hz: u32, frame_us: u32) -> Option<Self> {
-        // In millionths of a clock, of which a count has `MICRO` times the divider.
+        // Unit: a millionth of a clock; a count has `MICRO` times the divider.
         const MICRO: u64 = 1_000_000;
         let frame = u64::from(clock_hz) * u64::from(frame_us);
         let least = frame.div_ceil(MICRO * u64::from(Self::COUNTS)).max(1);
@@ -38,23 +37,23 @@ impl PwmTiming {
         })
     }
 
-    /// Length of a count, µs.
+    /// Count length, µs.
     pub fn count_us(&self) -> f32 {
         1.0 / self.counts_per_us
     }
 
-    /// Counts of a frame after `us` µs of it, within it.
+    /// Counts after `us` µs of a frame, limited to the frame.
     pub fn passed(&self, us: u32) -> u32 {
         ((us as f32 * self.counts_per_us) as u32).min(self.period - 1)
     }
 
-    /// What is left of a frame of which `passed` counts have passed, µs, rounded.
+    /// Rest of a frame after `passed` counts, µs, rounded.
     pub fn left_us(&self, passed: u32) -> u32 {
         (self.period.saturating_sub(passed) as f32 * self.count_us() + 0.5) as u32
     }
 
-    /// Counts of a pulse of `us` µs, for the compare register; 0 (no pulse) for 0, for a negative number and
-    /// for a NaN, and never as long as the frame.
+    /// Compare value of a pulse of `us` µs: 0 (no pulse) for 0, negative numbers and NaN, and always shorter than the
+    /// frame.
     pub fn compare(&self, us: f32) -> u32 {
         let longest = self.period.saturating_sub(Self::REST);
         let counts = math::clamp(us * self.counts_per_us + 0.5, 0.0, longest as f32);
@@ -85,7 +84,7 @@ mod tests {
                     u64::from(clock) * u64::from(frame_us),
                     "{t:?}"
                 );
-                // Half a count of rounding at most; a count is at most a third of a µs, at 50 Hz.
+                // Rounding of half a count; a count is at most a third of a µs, at 50 Hz.
                 for us in [125.0, 250.0f32] {
                     assert!((t.compare(us) as f32 * t.count_us() - us).abs() <= 0.51 * t.count_us());
                 }

@@ -1,4 +1,4 @@
-//! What the receiver speaks: the parameter `rc_protocol`.
+//! Receiver protocol: parameter `rc_protocol`.
 
 use embassy_time::Instant;
 use sophie_control::params::{Params, RcProtocol};
@@ -7,16 +7,16 @@ use sophie_tasks::ports::RcDecoder;
 
 use crate::{crsf, sbus};
 
-/// The decoder of the receiver in use.
+/// Receiver decoder.
 pub enum Decoder {
-    /// Of CRSF.
+    /// CRSF.
     Crsf(crsf::Decoder),
-    /// Of SBUS.
+    /// SBUS.
     Sbus(sbus::Decoder),
 }
 
 impl Decoder {
-    /// The decoder of the protocol that the parameters name.
+    /// The decoder of `rc_protocol`.
     pub fn from_params(params: &Params) -> Self {
         match params.rc_protocol {
             RcProtocol::Crsf => Self::Crsf(crsf::Decoder::new()),

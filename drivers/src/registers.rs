@@ -1,30 +1,30 @@
-//! Registers of an SPI part in the InvenSense manner: address byte first, its top bit set for a read, the
-//! address advancing by itself in a burst, and on some parts banks behind a select register.
+//! Registers of an InvenSense SPI part: address byte first, top bit set for a read, address increment in bursts, and on
+//! some parts banks behind a select register.
 
 use embedded_hal_async::spi::SpiDevice;
 
 use crate::fault::Fault;
 
-/// Bit of the address byte that makes a transfer a read (DS-000347 §9.6, DS-000143).
+/// Read bit of the address byte (DS-000347 §9.6, DS-000143).
 const READ: u8 = 0x80;
-/// The longest burst that a driver here reads, bytes.
+/// Longest burst read, bytes.
 const BURST: usize = 15;
 
-/// What a register is to hold.
+/// A required register value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
     /// Bank, 0 on parts without banks.
     pub bank: u8,
     /// Address in the bank.
     pub register: u8,
-    /// The bits that matter; the others keep their value.
+    /// Relevant bits; the others keep their value.
     pub mask: u8,
-    /// What those bits are to be.
+    /// Value of those bits.
     pub value: u8,
 }
 
 impl Setting {
-    /// The bits `mask` of a register in `bank` are to be `value`.
+    /// Requires `value` in the bits `mask` of a register in `bank`.
     pub const fn bits(bank: u8, register: u8, mask: u8, value: u8) -> Self {
         Self {
             bank,
@@ -34,12 +34,12 @@ impl Setting {
         }
     }
 
-    /// A whole register of bank 0 is to be `value`.
+    /// Requires `value` of a whole register in bank 0.
     pub const fn all(register: u8, value: u8) -> Self {
         Self::bits(0, register, 0xFF, value)
     }
 
-    /// Compares what was read from the register with what it is to hold.
+    /// Compares a value read with the required one.
     ///
     /// # Errors
     /// [`Fault::Configuration`] where they differ.
@@ -60,8 +60,7 @@ impl Setting {
 
 /// The registers of one part.
 ///
-/// All bytes travel through a buffer in this struct, so that it lies where its owner puts it: a board whose
-/// DMA cannot reach every memory places the driver, not the stack.
+/// All transfers use a buffer in this struct: where DMA does not reach every memory, the board places the driver.
 pub struct Registers<S> {
     spi: S,
     bank_select: Option<u8>,
@@ -69,7 +68,7 @@ pub struct Registers<S> {
 }
 
 impl<S: SpiDevice> Registers<S> {
-    /// Registers behind `spi`; `bank_select` is the address of the bank select register, if the part has one.
+    /// Registers on `spi`; `bank_select` is the bank select register, if any.
     pub const fn new(spi: S, bank_select: Option<u8>) -> Self {
         Self {
             spi,
@@ -78,7 +77,7 @@ impl<S: SpiDevice> Registers<S> {
         }
     }
 
-    /// Reads `N` registers of the selected bank, from `first` upwards, in one transaction.
+    /// Reads `N` registers of the selected bank from `first` on.
     ///
     /// # Errors
     /// [`Fault::Bus`].
@@ -110,7 +109,7 @@ impl<S: SpiDevice> Registers<S> {
         self.spi.transfer_in_place(transfer).await.map_err(|_| Fault::Bus)
     }
 
-    /// Selects a bank; nothing happens on a part without banks.
+    /// Selects a bank; no effect on a part without banks.
     ///
     /// # Errors
     /// [`Fault::Bus`].
@@ -121,7 +120,7 @@ impl<S: SpiDevice> Registers<S> {
         }
     }
 
-    /// Writes `settings` in order, keeping the bits outside their masks, and selects bank 0 again.
+    /// Writes `settings` in order, keeps the bits outside their masks, and selects bank 0.
     ///
     /// # Errors
     /// [`Fault::Bus`].
@@ -144,7 +143,7 @@ impl<S: SpiDevice> Registers<S> {
         self.follow(0, &mut selected).await
     }
 
-    /// Reads every register of `settings` back and compares; selects bank 0 again if all is well.
+    /// Reads back and compares `settings`; selects bank 0 if they match.
     ///
     /// # Errors
     /// [`Fault::Configuration`] for the first register that differs, [`Fault::Bus`].

@@ -7,38 +7,34 @@
 //! | 23 | flags: 0x04 frame lost, 0x08 failsafe, 0x01 and 0x02 the switch channels |
 //! | 24 | 0x00, or 0x04 with a slot number in the upper nibble (SBUS2) |
 //!
-//! The counts are those of CRSF: 172 and 1811 at the ends of a stick's travel, 992 at its centre, so a frame's
-//! channels go into the same table of meanings.
+//! Counts are those of CRSF: 172 and 1811 at the stick's ends, 992 at its centre.
 //!
-//! There is no checksum. A frame is found only where it began after silence or where the frame before it ended;
-//! after garbage on an unbroken stream, the first frame found serves to find the second. And the pilot's sticks are accepted
-//! only from the third frame on that comes without garbage between: bytes that are no SBUS look like one frame now
-//! and then (in 70,000 random ones after silence), hardly ever like three.
+//! There is no checksum. A frame must begin after silence or at the end of another frame; after garbage on an unbroken
+//! stream, the first frame found only locates the second. Sticks are accepted from the third consecutive frame on:
+//! random bytes after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
 //!
-//! A receiver that has lost its transmitter says so in the flags: such frames, and those that it repeats, publish no
-//! sticks, so that the link turns stale and the failsafe acts.
+//! Frames whose flags report a lost transmitter, and repeated ones, publish no sticks: the link turns stale and the
+//! failsafe acts.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::{CHANNELS, ChannelError, Sticks};
 use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
 
-/// Bytes of a frame.
+/// Bytes per frame.
 pub const FRAME: usize = 25;
-/// First byte.
 const HEADER: u8 = 0x0F;
-/// Bits of a channel.
 const CHANNEL_BITS: u32 = 11;
-/// Flags that mean something; no receiver sets the others.
+/// Defined flags; no receiver sets others.
 const FLAGS: u8 = 0x0F;
-/// Time that a byte takes on the line: twelve bits.
+/// Time of a byte on the line: twelve bits.
 const BYTE: Duration = Duration::from_micros(120);
-/// Pause of the line that parts two frames. Receivers leave 4 ms and more; within a frame there is none.
+/// Pause between two frames. Receivers leave 4 ms or more; within a frame there is none.
 const SILENCE: Duration = Duration::from_millis(3);
-/// Frames in a row from which on the sticks are accepted.
+/// Consecutive frames before sticks are accepted.
 const BELIEVED_FROM: u8 = 3;
 
-/// One frame.
+/// A frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
     /// Counts, 0..=2047.
@@ -47,27 +43,27 @@ pub struct Frame {
     pub channel_17: bool,
     /// Channel 18, a switch.
     pub channel_18: bool,
-    /// The receiver missed this frame from its transmitter and repeats the one before.
+    /// The receiver missed this frame and repeats the one before.
     pub frame_lost: bool,
-    /// The receiver has given its transmitter up: the channels are its failsafe values.
+    /// The transmitter is lost: the channels are failsafe values.
     pub failsafe: bool,
 }
 
-/// Why bytes are not the pilot's wishes.
+/// Why bytes give no sticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SbusError {
-    /// Bytes that are no frame.
+    /// No frame.
     Garbage,
-    /// The receiver repeats an old frame.
+    /// A repeated old frame.
     FrameLost,
-    /// The receiver has lost its transmitter.
+    /// Transmitter lost.
     Failsafe,
-    /// A channel outside what a transmitter sends.
+    /// Channel out of range.
     Channel(ChannelError),
 }
 
 impl Frame {
-    /// The frame in these bytes; `None` unless header, flags and end fit.
+    /// Decodes a frame; `None` unless header, flags and end fit.
     pub fn decode(bytes: &[u8; FRAME]) -> Option<Self> {
         let [header, payload @ .., flags, end] = bytes;
         if *header != HEADER || flags & !FLAGS != 0 || !is_end(*end) {
@@ -94,7 +90,7 @@ impl Frame {
         })
     }
 
-    /// The bytes of this frame, as a receiver sends them; channels are cut to 11 bits.
+    /// Encodes a frame as a receiver does; channels are cut to 11 bits.
     pub fn encode(&self) -> [u8; FRAME] {
         let mut bytes = [0; FRAME];
         let [header, payload @ .., flags, _end] = &mut bytes;
@@ -117,11 +113,10 @@ impl Frame {
         bytes
     }
 
-    /// What the pilot wishes.
+    /// The pilot's sticks.
     ///
     /// # Errors
-    /// A frame that the receiver made up, or a channel out of range: it is to be dropped as if it had not
-    /// come, so that the link turns stale.
+    /// A frame that the receiver made up, or a channel out of range: the caller drops it, so the link turns stale.
     pub fn sticks(&self) -> Result<Sticks, SbusError> {
         if self.failsafe {
             return Err(SbusError::Failsafe);
@@ -137,15 +132,15 @@ const fn is_end(byte: u8) -> bool {
     byte == 0x00 || byte & 0xCF == 0x04
 }
 
-/// Finds frames in a stream of bytes, however it is cut.
+/// Finds frames in a stream of bytes in pieces of any length.
 ///
-/// Call [`Parser::silence`] wherever the line was idle (a receiver's is, for 4 ms or more after each frame): data
-/// that stands still can look like frames at the wrong place, and only silence separates them.
+/// [`Parser::silence`] must be called wherever the line was idle (4 ms or more after each frame): constant data can
+/// look like frames at a wrong offset, and only silence separates them.
 #[derive(Clone, Copy, Debug)]
 pub struct Parser {
     bytes: [u8; FRAME],
     count: usize,
-    /// The frame being gathered began after silence or after a whole frame.
+    /// The present frame began after silence or after a whole frame.
     aligned: bool,
 }
 
@@ -156,7 +151,7 @@ impl Default for Parser {
 }
 
 impl Parser {
-    /// A parser somewhere in a stream.
+    /// A parser at an unknown place in a stream.
     pub const fn new() -> Self {
         Self {
             bytes: [0; FRAME],
@@ -165,24 +160,23 @@ impl Parser {
         }
     }
 
-    /// Bytes are missing here: an unfinished frame is dropped, and the next byte may be any of a frame.
+    /// Bytes are missing: drops an unfinished frame; the next byte may be any of a frame.
     pub fn gap(&mut self) {
         (self.count, self.aligned) = (0, false);
     }
 
-    /// The line has been silent for longer than a byte: the next byte starts a frame. True if bytes of an
-    /// unfinished frame were dropped.
+    /// The line was silent for longer than a byte: the next byte starts a frame. True if an unfinished frame was
+    /// dropped.
     pub fn silence(&mut self) -> bool {
         let dropped = self.count > 0;
         (self.count, self.aligned) = (0, true);
         dropped
     }
 
-    /// The next frame, or one report of garbage, in `bytes`, which is moved behind what was taken; `None` when
-    /// it is used up.
+    /// The next frame or report of garbage in `bytes`, which is advanced past what was used; `None` at its end.
     ///
     /// # Errors
-    /// [`SbusError::Garbage`] where the stream is no SBUS, once for each run of bytes thrown away.
+    /// [`SbusError::Garbage`], once for each run of discarded bytes.
     pub fn next_frame(&mut self, bytes: &mut &[u8]) -> Option<Result<Frame, SbusError>> {
         loop {
             let (&byte, rest) = bytes.split_first()?;
@@ -216,7 +210,7 @@ impl Parser {
         }
     }
 
-    /// Looks for another start among the bytes gathered.
+    /// Looks for another start among the gathered bytes.
     fn resume(&mut self) {
         self.aligned = false;
         let next = self
@@ -235,14 +229,14 @@ impl Parser {
     }
 }
 
-/// The pilot's wishes out of the bytes of a line.
+/// Decodes sticks from the bytes of a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Decoder {
     parser: Parser,
     state: RcState,
-    /// Frames in a row without garbage between.
+    /// Consecutive frames without garbage.
     in_a_row: u8,
-    /// When the line was last read, or failed.
+    /// Time of the last read or failure.
     last: Option<Instant>,
 }
 
@@ -253,7 +247,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// A decoder that has heard nothing yet.
+    /// A decoder without data.
     pub fn new() -> Self {
         Self {
             parser: Parser::new(),
@@ -271,7 +265,7 @@ impl Decoder {
 
 impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        // A read ends when its last byte is there, so these bytes began their own length earlier.
+        // A read ends with its last byte: these bytes began their length earlier.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let before = self.last.replace(at);
         let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
@@ -292,7 +286,7 @@ impl RcDecoder for Decoder {
                     news = true;
                 }
                 Ok(_) => (),
-                // What came just before the report may be the last frame over again.
+                // Frames just before the report may be repetitions.
                 Err(SbusError::Failsafe | SbusError::FrameLost) => news = false,
                 Err(_) => {
                     news = false;

@@ -1,60 +1,60 @@
-//! Verdict on the built-in self-test of an InvenSense part: the sensors are actuated electrically, and the
-//! change of their output is compared with what the factory found.
+//! Verdict on the self-test of an InvenSense part: the sensors are actuated electrically, and their response is
+//! compared with the factory's.
 //!
-//! Procedure and limits are those of the maker's own drivers (TDK's ICM-426xx driver; application note
-//! AN-000029 for the older register map): 200 samples averaged at rest and actuated, at 250 °/s and 2 g.
+//! Procedure and limits are those of TDK's ICM-426xx driver and of application note AN-000029 (older register map): 200
+//! samples averaged at rest and actuated, at 250 °/s and 2 g.
 
 use crate::fault::{Fault, Sensor};
 
-/// Samples averaged in each stage.
+/// Samples averaged per stage.
 pub const SAMPLES: u16 = 200;
-/// Counts per °/s at the range of the test, 250 °/s.
+/// Counts per °/s at 250 °/s.
 pub const COUNTS_PER_DPS: f32 = 32768.0 / 250.0;
-/// Counts per g at the range of the test, 2 g.
+/// Counts per g at 2 g.
 pub const COUNTS_PER_G: f32 = 32768.0 / 2.0;
-/// Response of factory code 1, counts at the range of the test; each code more is 1 % more.
+/// Response of factory code 1, counts; each further code adds 1 %.
 const CODE_BASE: f32 = 2620.0;
-/// Least ratio of the response to the factory's.
+/// Least ratio of response to factory response.
 const RATIO_MIN: f32 = 0.5;
 
-/// What is actuated.
+/// Actuated sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Nothing: the offsets.
+    /// None: the offsets.
     Rest,
-    /// The gyroscope.
+    /// Gyroscope.
     Gyro,
-    /// The accelerometer.
+    /// Accelerometer.
     Accel,
 }
 
-/// What a part must do to pass.
+/// Limits for a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Greatest ratio of the gyroscope's response to the factory's.
+    /// Greatest gyroscope response over the factory's.
     pub gyro_ratio_max: f32,
-    /// Greatest ratio of the accelerometer's response to the factory's.
+    /// Greatest accelerometer response over the factory's.
     pub accel_ratio_max: f32,
-    /// Least response of a gyroscope without a factory code, °/s.
+    /// Least gyroscope response without a factory code, °/s.
     pub gyro_min_dps: f32,
-    /// Least and greatest response of an accelerometer without a factory code, g.
+    /// Least and greatest accelerometer response without a factory code, g.
     pub accel_g: [f32; 2],
-    /// Greatest output of the gyroscope at rest, °/s.
+    /// Greatest gyroscope output at rest, °/s.
     pub gyro_offset_dps: f32,
 }
 
-/// Mean outputs and factory codes of one sensor's axes, in counts.
+/// Mean outputs and factory codes of a sensor's axes, counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Response {
     /// Mean output at rest.
     pub rest: [f32; 3],
     /// Mean output while actuated.
     pub actuated: [f32; 3],
-    /// Factory codes; 0 where there is none.
+    /// Factory codes; 0: none.
     pub codes: [u8; 3],
 }
 
-/// What was measured of one part.
+/// Measurements of one part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
     /// Gyroscope.
@@ -63,7 +63,7 @@ pub struct Measured {
     pub accel: Response,
 }
 
-/// Responses of a part that passed, in percent of the factory's (of the least allowed where there is none).
+/// Responses of a part that passed, % of the factory's (of the least allowed if it has none).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SelfTest {
@@ -73,14 +73,13 @@ pub struct SelfTest {
     pub accel: [u16; 3],
 }
 
-/// The verdict.
+/// Judges a part.
 ///
 /// # Errors
-/// The first axis that does not respond as it should, or whose gyroscope is far from zero at rest.
+/// The first axis with a wrong response, or whose gyroscope is too far from zero at rest.
 pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
     for (axis, rest) in (0u8..).zip(m.gyro.rest) {
         let limit = limits.gyro_offset_dps * COUNTS_PER_DPS;
-        // A NaN is in no range.
         if !(-limit..=limit).contains(&rest) {
             return Err(Fault::Offset { axis });
         }
@@ -93,7 +92,7 @@ pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
     })
 }
 
-/// Judges one sensor; `absolute` are its limits, counts, for a part without factory codes.
+/// Judges one sensor; `absolute`: limits, counts, without factory codes.
 fn sensor(
     sensor: Sensor,
     measured: &Response,
@@ -105,7 +104,7 @@ fn sensor(
         actuated,
         codes,
     } = measured;
-    // One axis without a code: the maker takes none of them for programmed.
+    // With one code missing, the maker regards none as programmed.
     let coded = codes.iter().all(|&c| c != 0);
     let [least, greatest] = absolute;
     let mut percents = [0; 3];
@@ -131,7 +130,7 @@ fn sensor(
     Ok(percents)
 }
 
-/// What the factory found, counts at the range of the test.
+/// Factory response, counts at the test's range.
 fn factory_response(code: u8) -> f32 {
     (1..code).fold(CODE_BASE, |counts, _| counts * 1.01)
 }

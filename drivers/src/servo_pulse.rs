@@ -1,15 +1,15 @@
-//! Servo pulses: microseconds to counts, in the frames that the servo takes.
+//! Servo pulses: microseconds to counts.
 
 use sophie_control::math;
 
 use crate::pwm_timing::PwmTiming;
 
-/// Shortest and longest pulse that a servo gets, µs. The drive's own range lies inside; these catch nonsense.
+/// Shortest and longest pulse, µs; a safety limit outside the drive's own range.
 pub const LIMITS_US: [f32; 2] = [400.0, 2600.0];
-/// Shortest and longest frame, µs: analog servos take 50 a second, digital ones up to 333.
+/// Shortest and longest frame, µs: analog servos accept 50 Hz, digital ones up to 333 Hz.
 pub const FRAME_US: core::ops::RangeInclusive<u32> = 3003..=20_000;
 
-/// Timer values for servos on a timer clocked at `clock_hz`; `None` for frames outside [`FRAME_US`].
+/// Timer values at `clock_hz`; `None` for frames outside [`FRAME_US`].
 pub fn timing(clock_hz: u32, frame_us: u32) -> Option<PwmTiming> {
     if FRAME_US.contains(&frame_us) {
         PwmTiming::new(clock_hz, frame_us)
@@ -18,8 +18,8 @@ pub fn timing(clock_hz: u32, frame_us: u32) -> Option<PwmTiming> {
     }
 }
 
-/// Counts of a pulse of `us` µs, for the compare register: 0 (no pulse, the servo is not driven) for 0 and for
-/// anything that is not a positive number, else limited to [`LIMITS_US`].
+/// Compare value of a pulse of `us` µs: 0 (no pulse, servo not driven) for 0 and anything that is not a positive
+/// number, else limited to [`LIMITS_US`].
 pub fn compare(timing: &PwmTiming, us: f32) -> u32 {
     let [shortest, longest] = LIMITS_US;
     if us > 0.0 {

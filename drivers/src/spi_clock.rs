@@ -1,13 +1,13 @@
-//! The clock of an SPI, which divides its own by powers of two.
+//! Clock of an SPI, divided by powers of two.
 
-/// Dividers that an STM32's SPI has.
+/// Dividers of an STM32's SPI.
 const LEAST: u32 = 2;
 const MOST: u32 = 256;
 
-/// The fastest clock, Hz, not above `most_hz`, that an SPI at `clock_hz` makes; the slowest where none is slow enough.
+/// The fastest clock, Hz, up to `most_hz` that an SPI at `clock_hz` makes; the slowest where all are faster.
 ///
-/// To be asked for by its exact value: embassy-stm32 0.6 takes another for the nearest divider, which may be too fast (84
-/// MHz by 8, 10.5 MHz, where 8 MHz are asked for).
+/// To be requested by its exact value: embassy-stm32 0.6 may take too fast a divider for an inexact one (84 MHz by 8,
+/// 10.5 MHz, for 8 MHz).
 pub fn at_most(clock_hz: u32, most_hz: u32) -> u32 {
     let ratio = clock_hz.div_ceil(most_hz.max(1)).min(MOST);
     clock_hz / ratio.next_power_of_two().max(LEAST)

@@ -1,18 +1,14 @@
-//! An inertial sensor on SPI with a data-ready line: what the InvenSense parts have in common.
+//! Driver of InvenSense inertial sensors on SPI with a data-ready line; a [`Chip`] gives the registers and bits. It
+//! detects a part that is silent, garbled, stuck, or has lost its configuration.
 //!
-//! A [`Chip`] says which registers and bits; this driver resets, configures, reads back, reads samples, and
-//! notices a part that is silent, garbled, stuck, or has lost its configuration.
+//! If the line falls silent while the part answers and its registers are right, samples are polled by the clock; the
+//! part's status shows which are new, so none counts twice. The first comes 0.4 ms after the silence is detected (1.2
+//! ms at 1 kHz), later ones up to a quarter of a period and one transfer after they are ready; each is stamped with the
+//! time of its request. [`line_watch`](crate::line_watch) decides when the line is used again.
 //!
-//! A line that falls silent while the part answers and its registers are well is done without: samples are then read by
-//! the clock, each after the part's status register has said that it is new, so that none counts twice. The first one
-//! comes 0.4 ms after the silence was found out (1.2 ms at 1 kHz), each later one up to a quarter of a period and one
-//! transfer after it was ready, and is stamped with the time at which it was asked for. [`line_watch`](crate::line_watch)
-//! says when the line is used again.
-//!
-//! The caller bounds the wait for a sample (the imu task gives up after 3 ms) by dropping the future of
-//! `read`. Every step may be dropped: the next call resumes at a consistent step, and takes a wait that was
-//! dropped for a silence, which is looked into. Failures are paced (1 ms, doubling to 128 ms), so a dead part
-//! costs its task no processor time.
+//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms). Every step may be dropped:
+//! the next call resumes at a consistent step and examines a dropped wait as a silence. Failures are followed by a
+//! pause (1 ms, doubling to 128 ms), so a dead part costs no processor time.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
@@ -29,35 +25,30 @@ use crate::mounting::Mounting;
 use crate::registers::{Registers, Setting};
 use crate::self_test::{Limits, Measured, SAMPLES, SelfTest, Stage, judge};
 
-/// Bytes of one sample: accelerometer, gyroscope and temperature, two bytes each.
+/// Bytes of one sample: accelerometer, gyroscope, temperature.
 const SAMPLE: usize = 14;
-/// Registers that are compared in flight.
 const WATCHED: usize = 6;
-/// Garbled samples in a row after which the part is reset.
+/// Consecutive garbled samples before a reset.
 const GARBLED_MAX: u8 = 4;
-/// Dropped waits in a row after which a part whose registers are well is reset.
+/// Consecutive dropped waits before a reset of a part whose registers are right.
 const SILENCES_MAX: u8 = 2;
-/// Time for which a part that is read by the clock may say that it has no sample, before it is reset: two periods at the
-/// slowest rate, and less than the caller waits.
+/// Longest time without a sample while polling, before a reset: two periods at the slowest rate, and less than the
+/// caller waits.
 const NOT_READY_MAX: Duration = Duration::from_millis(2);
-/// The accelerometer may repeat itself for longer than the gyroscope: on some parts it is slower.
+/// Factor on `stuck_after` for the accelerometer, which is slower on some parts.
 const ACCEL_PATIENCE: u16 = 4;
 /// First and longest pause after a failure.
 const PAUSE: [Duration; 2] = [Duration::from_millis(1), Duration::from_millis(128)];
-/// Quiet time from before power is switched on: no register may be written for 200 µs after it (DS-000347
-/// §14.36).
+/// Margin before power is switched on: no register may be written for 200 µs after it (DS-000347 §14.36).
 const POWER_QUIET: Duration = Duration::from_micros(500);
-/// Time between two samples of a self-test, at 1 kHz.
 const SELF_TEST_PERIOD: Duration = Duration::from_millis(1);
-/// Attempts at a sample of a self-test.
 const SELF_TEST_ATTEMPTS: u16 = 2 * SAMPLES;
-/// Counts of an axis that has no sample yet.
 const NO_SAMPLE: i16 = i16::MIN;
 
-/// A list of registers and what they are to hold.
+/// Registers and their required contents.
 pub type Settings = Vec<Setting, 32>;
 
-/// One sample as the part gives it, counts.
+/// One sample, counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Raw {
     /// Specific force.
@@ -68,18 +59,18 @@ pub struct Raw {
     pub temperature: i16,
 }
 
-/// How a part is watched in flight.
+/// In-flight monitoring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Watch {
-    /// Samples between two looks at identity and configuration; 0 never looks.
+    /// Samples between checks of identity and configuration; 0: none.
     pub check_every: u16,
-    /// Gyroscope samples, all alike, that make it stuck; 0 for never (a plant without noise).
+    /// Equal gyroscope samples in a row that mean a stuck part; 0: no limit (a plant without noise).
     pub stuck_after: u16,
 }
 
 impl Watch {
-    /// A look each 100 ms of samples at `rate_hz`; stuck after 16 samples alike, which noise does not bring about
-    /// at any rate (two alike are not rare at 1 kHz, where the noise is less than a count).
+    /// Checks every 100 ms; stuck after 16 equal samples, which noise rules out at every rate. (Two are not rare at 1
+    /// kHz, where the noise is below one count.)
     pub const fn at(rate_hz: f32) -> Self {
         Self {
             check_every: (rate_hz * 0.1) as u16,
@@ -97,83 +88,80 @@ impl Default for Watch {
 
 /// Differences between the parts.
 pub trait Chip {
-    /// Name for messages.
+    /// Name in messages.
     const NAME: &'static str;
     /// Identity register.
     const WHO_AM_I: u8;
-    /// What the identity register holds.
+    /// Content of the identity register.
     const IDENTITY: u8;
     /// Bank select register, on parts that have banks.
     const BANK_SELECT: Option<u8>;
     /// First of the 14 data registers.
     const DATA: u8;
-    /// First of the six registers, in bank 0, that are compared with the configuration in flight.
+    /// First of the six bank 0 registers that are checked in flight.
     const WATCH_FROM: u8;
-    /// The status bit that says a sample is new, and that reading it clears.
+    /// Status bit of a new sample, cleared by reading it.
     const SAMPLE_READY: Setting;
-    /// The registers, in bank 0, that make the line pulse.
+    /// Bank 0 registers that make the line pulse.
     const LINE: &'static [u8];
-    /// Resets the part.
+    /// Reset commands.
     const RESET: &'static [Setting];
-    /// Time that a reset takes.
+    /// Duration of a reset.
     const RESET_TIME: Duration;
-    /// What a register holds after the reset and not before.
+    /// A register content that only a reset leaves.
     const AFTER_RESET: Setting;
     /// Makes the registers writable.
     const WAKE: &'static [Setting];
-    /// Time from waking to the configuration.
+    /// Wait between [`Chip::WAKE`] and configuration.
     const WAKE_TIME: Duration;
-    /// Switches both sensors on, last of all.
+    /// Switches both sensors on; written last.
     const POWER: Setting;
-    /// Time from power to samples within their specification.
+    /// Time from power to samples within specification.
     const START_UP: Duration;
-    /// Bank and first register of the gyroscope's factory codes.
+    /// Bank and first register of the gyroscope's factory self-test codes.
     const GYRO_CODES: (u8, u8);
-    /// Bank and first register of the accelerometer's factory codes.
+    /// Bank and first register of the accelerometer's factory self-test codes.
     const ACCEL_CODES: (u8, u8);
-    /// What the self-test must give.
+    /// Limits of the self-test.
     const SELF_TEST: Limits;
 
-    /// Everything that is configured before power is switched on.
+    /// Configuration to write before power is switched on.
     fn settings(&self) -> Settings;
-    /// The configuration of a stage of the self-test, to be written over [`Chip::settings`].
+    /// Configuration of a self-test stage, written over [`Chip::settings`].
     fn self_test_settings(stage: Stage) -> Settings;
-    /// Time for the outputs to settle in a stage.
+    /// Settling time of a self-test stage.
     fn self_test_time(stage: Stage) -> Duration;
-    /// The sample in the seven words of a burst.
+    /// Sorts the seven words of a burst into a sample.
     fn arrange(words: [i16; 7]) -> Raw;
     /// Temperature, °C.
     fn celsius(raw: i16) -> f32;
-    /// Pulses of the data-ready line for each sample read, at least 1.
+    /// Data-ready pulses per sample read, at least 1.
     fn pulses_per_sample(&self) -> u8;
-    /// Samples read in a second.
+    /// Sample rate, Hz.
     fn rate_hz(&self) -> f32;
-    /// Range of the gyroscope, °/s.
+    /// Gyroscope range, °/s.
     fn gyro_range(&self) -> f32;
-    /// Range of the accelerometer, g.
+    /// Accelerometer range, g.
     fn accel_range(&self) -> f32;
-    /// How the part is watched.
+    /// Monitoring limits.
     fn watch(&self) -> Watch;
 }
 
-/// How far the part has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// To be reset at this time.
+    /// Reset is due at this time.
     Down(Instant),
-    /// Reset commanded; over at this time.
+    /// Reset ends at this time.
     Resetting(Instant),
-    /// Woken; to be configured at this time.
+    /// Configuration is due at this time.
     Waking(Instant),
-    /// Power is being switched on; the registers are left alone until this time.
+    /// Power is being switched on; no register is written until this time.
     Powering(Instant),
-    /// Configured; samples are good from this time on.
+    /// Configured; samples are valid from this time on.
     Settling(Instant),
-    /// Samples come.
     Running,
 }
 
-/// Repetitions of a value.
 #[derive(Clone, Copy, Debug)]
 struct Repeats {
     last: Option<[i16; 3]>,
@@ -189,7 +177,7 @@ impl Repeats {
         alive: false,
     };
 
-    /// Takes the next value; true when `limit` (0: none) values in a row were alike.
+    /// Adds a value; true if the last `limit` values were equal (0: never).
     fn too_many(&mut self, value: [i16; 3], limit: u16) -> bool {
         let same = self.last == Some(value);
         self.count = if same { self.count.saturating_add(1) } else { 1 };
@@ -199,7 +187,7 @@ impl Repeats {
     }
 }
 
-/// The driver of chip `C` behind SPI device `S` with data-ready line `D`.
+/// Driver of chip `C` on SPI device `S` with data-ready line `D`.
 pub struct SpiImu<C, S, D> {
     chip: C,
     registers: Registers<S>,
@@ -208,7 +196,7 @@ pub struct SpiImu<C, S, D> {
     mounting: Mounting,
     state: State,
     pause: Duration,
-    /// A wait for data-ready has begun and not ended.
+    /// A wait for data-ready has not ended.
     waiting: bool,
     silences: u8,
     line: LineWatch,
@@ -216,14 +204,13 @@ pub struct SpiImu<C, S, D> {
     since_check: u16,
     gyro: Repeats,
     accel: Repeats,
-    /// The last sample.
     raw: Raw,
     temperature: f32,
     last_fault: Option<Fault>,
 }
 
 impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
-    /// A driver; nothing happens on the bus before [`SpiImu::init`] or the first read.
+    /// The bus is first used by [`SpiImu::init`] or the first read.
     ///
     /// `data_ready` rises with each sample. `mounting` turns the part's axes into the body's.
     pub const fn new(spi: S, data_ready: D, chip: C, mounting: Mounting) -> Self {
@@ -253,18 +240,18 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Resets the part, checks its identity, configures it, reads the configuration back and waits until
-    /// samples are good. Takes about 50 ms (ICM-42688-P) or 190 ms (ICM-20689).
+    /// Resets, identifies and configures the part, verifies the configuration and waits for valid samples: about 50 ms
+    /// (ICM-42688-P) or 190 ms (ICM-20689).
     ///
     /// # Errors
-    /// What is wrong with the part. A driver that failed here may still serve as the port: it tries again.
+    /// The fault of the part. The driver still serves as a port, which retries.
     pub async fn init(&mut self) -> Result<(), Fault> {
         let result = self.bring_up().await;
         self.note(result)
     }
 
-    /// Actuates both sensors and compares their response with the factory's; takes about 1.5 s, with the
-    /// vehicle at rest. The part is reset and configured afterwards, whatever the outcome.
+    /// Actuates both sensors and compares their response with the factory codes; about 1.5 s, vehicle at rest. Then
+    /// resets and configures the part in any case.
     ///
     /// # Errors
     /// The first axis that fails, or a fault of the part.
@@ -288,18 +275,17 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         self.temperature
     }
 
-    /// What went wrong last, if anything did since power-up.
+    /// Last fault since power-up.
     pub const fn last_fault(&self) -> Option<Fault> {
         self.last_fault
     }
 
-    /// Takes one sample, in counts: here and below it lies in `self`, not in what is returned, which would be copied at
-    /// each level.
+    /// Takes one sample, in counts. It is kept in `self`, since a returned value would be copied at each level.
     async fn sample(&mut self) -> Result<(), Fault> {
         self.bring_up().await?;
         loop {
             self.next_raw().await?;
-            // A part that hung may still hang after its reset: samples are discarded until the data change.
+            // A hung part may hang after its reset too: samples are discarded until they change.
             if self.gyro.alive || self.chip.watch().stuck_after == 0 {
                 return Ok(());
             }
@@ -318,7 +304,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Waits for data-ready, reads the sample, and looks at it and from time to time at the part.
+    /// Waits for, reads and checks the sample; periodically checks the part.
     async fn next_raw(&mut self) -> Result<(), Fault> {
         if self.waiting {
             self.look_into_silence().await?;
@@ -336,7 +322,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         let raw = self.raw;
         let watch = self.chip.watch();
         let accel_limit = watch.stuck_after.saturating_mul(ACCEL_PATIENCE);
-        // Both, always: each keeps its own count.
+        // No short circuit: each keeps its own count.
         let gyro_stuck = self.gyro.too_many(raw.gyro, watch.stuck_after);
         if self.accel.too_many(raw.accel, accel_limit) || gyro_stuck {
             return Err(Fault::Stuck);
@@ -349,14 +335,14 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
-    /// Asks the part by the clock until its status says that a sample is new, with an eye on the line.
+    /// Polls the status until a sample is new, and watches the line.
     async fn next_by_clock(&mut self) -> Result<(), Fault> {
         let give_up = Instant::now() + NOT_READY_MAX;
         let mut announced = false;
         while let Some(due) = self.line.due() {
             let in_time = Timer::at(due);
             if let Either::First(_) = select(self.data_ready.next(), in_time).await {
-                // Whatever the line does, the part is asked no more often.
+                // A pulse does not make the polls more frequent.
                 announced = true;
                 until(due).await;
             }
@@ -375,7 +361,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
-    /// Takes the part from wherever it is to running; returns at once when it runs.
+    /// Brings the part from any state to running.
     async fn bring_up(&mut self) -> Result<(), Fault> {
         loop {
             match self.state {
@@ -406,7 +392,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                     self.registers.select(0).await?;
                     self.registers.apply(&settings).await?;
                     self.registers.verify(&settings).await?;
-                    // From here on nothing may be configured again: a dropped call resumes behind the switch.
+                    // A dropped call resumes after the switch: nothing is configured again.
                     self.state = State::Powering(Instant::now() + POWER_QUIET);
                     self.registers.apply(&[C::POWER]).await?;
                 }
@@ -429,7 +415,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// The caller dropped the last wait: is the part well? If it is, its samples are read by the clock from here on.
+    /// After a dropped wait: checks the part and, if it is well, starts polling.
     async fn look_into_silence(&mut self) -> Result<(), Fault> {
         self.silences = self.silences.saturating_add(1);
         self.check().await?;
@@ -443,7 +429,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                 let [value] = self.registers.read(setting.register).await?;
                 setting.compare(value)?;
             }
-            // The status has not been read yet: its content may be stale.
+            // The unread status may be stale.
             let [_] = self.registers.read(C::SAMPLE_READY.register).await?;
             self.line.silent(Instant::now(), self.chip.rate_hz());
         }
@@ -462,7 +448,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Compares identity and the registers that decide about scale and rate with what they should hold.
+    /// Compares identity, scale and rate registers with the configuration.
     async fn check(&mut self) -> Result<(), Fault> {
         self.identify().await?;
         let read: [u8; WATCHED] = self.registers.read(C::WATCH_FROM).await?;
@@ -476,7 +462,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
-    /// One sample in counts.
     async fn read_raw(&mut self) -> Result<(), Fault> {
         let bytes: [u8; SAMPLE] = self.registers.read(C::DATA).await?;
         let mut words = [0; SAMPLE / 2];
@@ -492,7 +477,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
-    /// The stages of the self-test.
     async fn actuate(&mut self) -> Result<SelfTest, Fault> {
         let mut m = Measured::default();
         (m.gyro.rest, m.accel.rest) = self.stage(Stage::Rest).await?;
@@ -531,13 +515,13 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(codes)
     }
 
-    /// Keeps account of a result: after a failure the part is reset, after a pause.
+    /// Records a result; a failure schedules a reset after a pause.
     fn note<T>(&mut self, result: Result<T, Fault>) -> Result<T, Fault> {
         let Err(fault) = &result else { return result };
         let first = self.last_fault != Some(*fault);
         self.last_fault = Some(*fault);
         if *fault == Fault::Garbled && self.state == State::Running && self.garbled < GARBLED_MAX {
-            // Paced by data-ready, and mostly over with the next sample.
+            // Paced by data-ready, and usually over with the next sample.
             self.garbled += 1;
             return result;
         }

@@ -1,4 +1,4 @@
-//! The arm sensors' driver against fake chips.
+//! The arm sensors' driver with fake chips.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -31,13 +31,11 @@ fn arms(configs: [Config; 4]) -> (ArmBuses<Bus, Bus>, Chips) {
     )
 }
 
-/// What a call took.
 struct Call {
     result: Result<Vec3, PortError>,
     took: Duration,
 }
 
-/// A round as the arms task does it.
 async fn round(arms: &mut ArmBuses<Bus, Bus>) -> [Call; 4] {
     let mut calls = Vec::new();
     for arm in 0..4 {
@@ -51,7 +49,7 @@ async fn round(arms: &mut ArmBuses<Bus, Bus>) -> [Call; 4] {
     calls.try_into().ok().unwrap()
 }
 
-/// Rounds at 100 Hz for `time`; gives the last.
+/// Rounds at 100 Hz for `time`; returns the last.
 async fn rounds(arms: &mut ArmBuses<Bus, Bus>, time: Duration) -> [Call; 4] {
     let end = Instant::now() + time;
     loop {
@@ -78,7 +76,7 @@ fn four_chips_come_up_in_a_second_and_a_half_without_a_long_call() {
             Timer::after_millis(10).await;
         }
         let took = (Instant::now() - start).as_millis();
-        // The chips boot for 650 ms from power-on, and again after their reset.
+        // The chips boot for 650 ms at power-on and after their reset.
         assert!(took < 2200, "{took} ms");
         assert!(worst < Duration::from_millis(3), "{} µs", worst.as_micros());
         for chip in &chips {
@@ -117,15 +115,15 @@ fn a_chip_left_on_its_second_page_is_found() {
     run(async {
         let (mut arms, chips) = arms([Config::default(); 4]);
         Timer::after_millis(700).await;
-        // A reset of the processor alone leaves chips as they were: in their configuration mode, fusing.
+        // A processor-only reset leaves chips in any mode: configuration, fusion.
         chips[0].borrow_mut().pages[0][0x07] = 1;
         chips[1].borrow_mut().pages[0][0x07] = 1;
         chips[1].borrow_mut().pages[0][0x3D] = 0x08;
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls.iter().all(|c| c.result.is_ok()), "{:?}", arms.last_fault(0));
         assert!((0..4).all(|arm| arms.last_fault(arm).is_none()));
-        // A glitch on the bus turns the page of one that gives readings, of one that boots after its reset, and of one
-        // that enters its configuration mode.
+        // A bus glitch changes the page of a chip that gives readings, one that boots, and one that enters
+        // configuration mode.
         for wait in [0, 725, 735] {
             chips[2].borrow_mut().pages[0][0x07] = 1;
             rounds(&mut arms, Duration::from_millis(wait)).await;
@@ -166,7 +164,7 @@ fn gravity_points_down_in_the_arm_s_axes() {
         ];
         let (mut arms, chips) = arms(configs);
         rounds(&mut arms, Duration::from_secs(2)).await;
-        // Level: the chip's accelerometer sense, +z out of its marking.
+        // Level: +z out of the chip's marking.
         chips[0].borrow_mut().gravity = [0, 0, 981];
         chips[1].borrow_mut().gravity = [0, 0, 981];
         chips[2].borrow_mut().gravity = [0, 0, -981];
@@ -175,7 +173,7 @@ fn gravity_points_down_in_the_arm_s_axes() {
             let g = call.result.unwrap();
             assert!((g - Vec3::new(0.0, 0.0, 9.81)).norm() < 1e-3, "{g:?}");
         }
-        // Right side down by 30°: gravity leans to body +y, so what the chips feel leans to body -y.
+        // Right side down by 30°: gravity leans to body +y, so specific force leans to body -y.
         let (side, height) = (490, 850);
         chips[0].borrow_mut().gravity = [0, side, height]; // y is left
         chips[1].borrow_mut().gravity = [side, 0, height]; // x is left
@@ -243,7 +241,7 @@ fn a_chip_that_resets_itself_is_noticed_at_once_and_set_up_again() {
     run(async {
         let (mut arms, chips) = arms([Config::default(); 4]);
         rounds(&mut arms, Duration::from_secs(2)).await;
-        // Back from a brown-out before anybody asked.
+        // Back from a brown-out before the next read.
         chips[3].borrow_mut().pages[0][0x3D] = 0x00;
         let calls = round(&mut arms).await;
         assert_eq!(calls[3].result, Err(PortError::Corrupt));
@@ -256,7 +254,6 @@ fn a_chip_that_resets_itself_is_noticed_at_once_and_set_up_again() {
         assert_eq!(arms.last_fault(3), Some(fault));
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls[3].result.is_ok());
-        // Silent while it boots: reported within three rounds.
         chips[3].borrow_mut().reset();
         let calls = rounds(&mut arms, Duration::from_millis(40)).await;
         assert_eq!(calls[3].result, Err(PortError::Absent));
@@ -282,7 +279,6 @@ fn nonsense_is_refused() {
         chips[1].borrow_mut().failure = Failure::None;
         chips[2].borrow_mut().gravity = [0, 0, 981];
         chips[3].borrow_mut().calibration = 0x10;
-        // One bad reading is no reason for a reset.
         let calls = round(&mut arms).await;
         assert!(calls.iter().all(|c| c.result.is_ok()));
     });
@@ -338,7 +334,7 @@ fn an_arm_that_does_not_exist_is_absent() {
 
 #[test]
 fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
-    // Power-up of the chips before, with and after that of the processor: each misses the driver's attempts by more.
+    // The chips' power-up before, with and after the processor's.
     for late_ms in [0, 100, 300, 600] {
         run(async move {
             let (port, chips) = arms([Config::default(); 4]);
@@ -354,7 +350,6 @@ fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
                     Instant::now().as_millis()
                 );
             }
-            // A wire falls off, a bus hangs: one chip, then both of the other side.
             chips[1].borrow_mut().failure = Failure::Missing;
             let _ = with_timeout(Duration::from_millis(1100), task.as_mut()).await;
             assert!(links.hardware().iter().eq([ArmingInhibit::ArmSensor2]));

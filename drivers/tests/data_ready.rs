@@ -1,4 +1,4 @@
-//! A data-ready line that falls silent, comes back, or hangs loosely, on both parts.
+//! A data-ready line that falls silent, returns, or is loose, on both parts.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -22,7 +22,6 @@ use sophie_tasks::ports::{Imu, PortError};
 
 type Shared = Rc<RefCell<Part>>;
 
-/// A driver of `chip` with its part.
 fn pair<C: Chip>(kind: Kind, chip: C) -> (SpiImu<C, Bus, DataReady>, Shared) {
     let part = Part::new(kind);
     let (bus, line) = (Bus(part.clone()), DataReady(part.clone()));
@@ -35,13 +34,12 @@ fn at_rate(hz: f32) -> Params {
     params
 }
 
-/// What a stretch of reading gave.
 #[derive(Debug, Default)]
 struct Read {
-    /// Times at which samples were ready, by the driver, µs.
+    /// Driver's sample times, µs.
     stamps: Vec<u64>,
     errors: Vec<PortError>,
-    /// Longest time between two samples, µs.
+    /// Longest time between samples, µs.
     gap: u64,
 }
 
@@ -64,7 +62,7 @@ async fn read_for(driver: &mut impl Imu, ms: u64) -> Read {
     read
 }
 
-/// The line is cut and joined again under a part whose clock is off by `skew` µs a period.
+/// Cuts and joins the line of a part whose clock is off by `skew` µs per period.
 async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Shared, skew: i64) {
     driver.init().await.unwrap();
     part.borrow_mut().skew = skew;
@@ -76,7 +74,7 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
     part.borrow_mut().failure = Failure::LineCut;
     let writes = part.borrow().writes.len();
 
-    // 3 ms until the wait is given up, a look at the part, and a sample that is new.
+    // 3 ms until the wait is dropped, a check of the part, and a new sample.
     let first = read_for(&mut driver, 190).await;
     assert!(first.errors.is_empty(), "{case}: {first:?}");
     assert!(first.gap < 3100 + each + each / 4, "{case}: {} us", first.gap);
@@ -90,15 +88,15 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
         "{case}: {} us",
         timed.gap
     );
-    // As many as the part samples, within 2 %, and none of them twice.
+    // As many as the part makes, within 2 %, all different.
     let samples = part.borrow().samples.clone();
     let share = samples.len() as f64 / f64::from(rate);
     assert!((0.98..1.02).contains(&share), "{case}: {share}");
     assert!(samples.windows(2).all(|pair| pair[0] < pair[1]), "{case}: twice");
-    // Asked for at most a quarter of a period and a transfer after it was ready; or while it was getting ready.
+    // Read at most a quarter of a period and a transfer after it was ready, or while it became ready.
     for (stamp, sample) in timed.stamps.iter().zip(&samples) {
         let late = stamp.cast_signed() - (sample * period).cast_signed();
-        // A part that has several samples for each one read: the newest.
+        // With several samples per sample read: the newest.
         let most = if each > period { period } else { period / 4 }.cast_signed() + 10;
         assert!(
             *stamp >= start && (-25..=most).contains(&late),
@@ -107,7 +105,6 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
     }
     assert_eq!(part.borrow().writes.len(), writes, "{case}: the part is well");
 
-    // Joined again it is used again, after a while, and the part is not asked any more.
     part.borrow_mut().failure = Failure::None;
     let joined = Instant::now();
     while driver.line_silent() {
@@ -126,7 +123,7 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
         back.gap
     );
     let asked = part.borrow().transactions.iter().filter(|&&n| n == 2).count();
-    // A look at the part asks for its identity.
+    // A check of the part reads its identity.
     assert!(asked <= 1, "{case}: {asked}");
     assert_eq!(part.borrow().violations, Vec::<String>::new(), "{case}");
 }
@@ -147,7 +144,7 @@ fn a_cut_line_is_done_without_and_used_again_once_it_is_joined() {
             cut_and_joined(driver, part, skew).await;
         });
     }
-    // Every sample of this one's 8 kHz is one, and some of them are read.
+    // At 8 kHz every sample counts, and some are read.
     for (rate, skew) in [(1000.0, 0), (4000.0, 1), (8000.0, -1)] {
         run(async move {
             let (driver, part) = pair(Kind::Icm20689, icm20689::Config::from_params(&at_rate(rate)));
@@ -241,12 +238,11 @@ fn a_loose_contact_is_reported_and_samples_come_throughout() {
                 reported.push(nth);
             }
         }
-        // One silence is nothing, nor are two; then the line has to agree for longer each time.
+        // One or two silences are not reported; then the line must agree for longer each time.
         assert!(
             matches!(reported[..], [1 | 2, ..]) && reported.len() >= 6,
             "{reported:?}"
         );
-        // Left in peace it is used again for good.
         read_for(&mut driver, 5000).await;
         assert!(!driver.line_silent());
     });
@@ -274,7 +270,7 @@ fn the_imu_task_keeps_its_rate_over_a_cut_line_reports_it_and_takes_it_back() {
                 told = Some(ms);
             }
         }
-        // A reader takes a sample for stale after 5 ms.
+        // A reader regards a sample as stale after 5 ms.
         assert!(longest < 4600, "{longest} us");
         assert!((1960..2040).contains(&count), "{count}");
         assert!(told.is_some_and(|ms| (195..215).contains(&ms)), "{told:?}");

@@ -1,4 +1,4 @@
-//! The FRAM driver against a fake part.
+//! The FRAM driver with a fake part.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -17,7 +17,7 @@ use sophie_drivers::fram::{CAPACITY, Fram, FramFault};
 use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
-/// What identity and protection take before the first access.
+/// Identity and protection before the first access.
 fn bring_up() -> Vec<Vec<u8>> {
     vec![
         vec![0x9F, 0, 0, 0, 0, 0, 0, 0, 0, 0],
@@ -43,7 +43,7 @@ fn every_transfer_is_what_the_datasheet_asks_for() {
     expected.push(vec![0x02, 0x12, 0x34, 1, 2, 3]);
     expected.push(vec![0x03, 0x12, 0x33, 0, 0, 0, 0, 0]);
     let mut sent = chip.borrow().sent.clone();
-    // What lies in the buffer where the part speaks does not matter.
+    // Bytes sent while the part answers do not matter.
     sent.last_mut().unwrap()[3..].fill(0);
     assert_eq!(sent, expected);
     assert_eq!(chip.borrow().status, 0x40, "the latch has dropped");
@@ -126,7 +126,7 @@ fn another_chip_or_none_is_named() {
         assert_eq!(first_read(&chip), Err(FramFault::Chip(fault)));
         assert_eq!(fault.what(), "no answer");
     }
-    // Another maker, a part of half the size, and one whose addresses have three bytes; the same of the other maker.
+    // Another maker, a part of half the size, one with three-byte addresses; the same of the other maker.
     let ramtron = Chip::new().borrow().identity;
     let fujitsu = [0x04, 0x7F, 0x25, 0x03, 0, 0, 0, 0, 0];
     for (identity, index, expected, found) in [
@@ -163,7 +163,7 @@ fn every_part_that_boards_of_this_kind_carry_is_taken() {
         ramtron(0x22, 0x00),
         ramtron(0x22, 0x08),
         ramtron(0x23, 0x00),
-        // MB85RS256B, MB85RS256TY, MB85RS512T; what comes after their four bytes is not theirs.
+        // MB85RS256B, MB85RS256TY, MB85RS512T; only four bytes are the identity.
         fujitsu(0x05, 0x09, 0x00),
         fujitsu(0x25, 0x03, 0xFF),
         fujitsu(0x26, 0x03, 0x04),
@@ -190,7 +190,6 @@ fn write_protection_is_taken_off_once() {
     assert_eq!(sent, [vec![0x05, 0], vec![0x06], vec![0x01, 0], vec![0x05, 0]]);
 }
 
-/// Loads, saves and loads again.
 fn store(chip: &Rc<RefCell<Chip>>, params: Params) -> (Loaded, Result<(), StorageError>, Params) {
     let bus = Bus(chip.clone());
     run(async move {
@@ -221,7 +220,7 @@ fn it_keeps_parameters_and_a_missing_one_is_a_broken_storage() {
         );
         assert_eq!(again, Params::default());
     }
-    // One that takes no write is found out by reading back, and keeps what it had.
+    // A part that ignores writes is detected by reading back, and keeps its contents.
     chip.borrow_mut().answer = Answer::Deaf;
     let (_, saved, again) = store(&chip, Params::default());
     assert_eq!((saved, again), (Err(StorageError::Broken), params));
@@ -265,7 +264,7 @@ fn sets_of_256_records_go_round_the_pages() {
         item.extend(hash(&format!("another_{i}")).to_le_bytes());
         item.extend([0; 4]);
     }
-    // A page holds one of them: twice round the eight pages.
+    // One per page: twice round the eight pages.
     for round in 0..16 {
         let (bus, item) = (Bus(chip.clone()), item.clone());
         let (params, loaded) = run(async move {

@@ -1,4 +1,4 @@
-//! Freeing a held bus, against a chip that was cut off in the middle of a byte.
+//! Freeing a held bus from a chip cut off within a byte.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -12,17 +12,16 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use fake::run;
 use sophie_drivers::i2c_lines::{Lines, free};
 
-/// The two lines, and what a chip does to them.
 #[derive(Default)]
 struct Wires {
     master_clock_low: bool,
     master_data_low: bool,
-    /// Bits that the chip has still to give, the next one last.
+    /// Bits still to send, the next one last.
     bits: Vec<bool>,
-    /// Line shorted to ground.
+    /// Short to ground.
     clock_shorted: bool,
     data_shorted: bool,
-    /// Reads of the clock for which the chip keeps stretching it, of each clock.
+    /// Clock reads for which the chip stretches each clock.
     stretch: u32,
     stretched: u32,
     clocks: u32,
@@ -100,7 +99,7 @@ impl InputPin for Line {
     }
 }
 
-/// Result, time taken in µs, and the wires afterwards.
+/// Result, duration in µs, and final wires.
 fn freed(wires: Wires) -> (Lines, u64, Rc<RefCell<Wires>>) {
     let wires = Rc::new(RefCell::new(wires));
     let kept = wires.clone();
@@ -123,7 +122,7 @@ fn an_idle_bus_is_left_alone() {
 
 #[test]
 fn whatever_is_left_of_a_byte_is_clocked_out_and_ended_with_a_stop() {
-    // Every byte, cut off at every bit that holds the line low.
+    // Every byte, at every bit that holds the line low.
     for byte in 0..=255u8 {
         for left in 1..=8 {
             let bits: Vec<bool> = (0..left).map(|bit| byte >> bit & 1 == 1).collect();

@@ -1,4 +1,4 @@
-//! The ICM-20689 driver against a fake part; what it shares with the other part is tested there.
+//! The ICM-20689 driver with a fake part; icm42688p.rs tests what both share.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -47,7 +47,7 @@ fn it_is_configured_and_read_at_4_khz() {
         }
         let took = (Instant::now() - start).as_millis();
         assert!((995..=1005).contains(&took), "{took} ms for 4000 samples");
-        // The first sample only shows that there are others.
+        // The first sample only proves a change.
         let bursts = part.borrow().transactions.iter().filter(|&&n| n == 15).count();
         assert_eq!(bursts, 4001);
         let reading = last.unwrap();
@@ -200,7 +200,7 @@ fn the_parameters_set_rate_and_ranges_and_the_scales_follow() {
                         Mounting::default(),
                     );
                     driver.init().await.unwrap();
-                    // The filter of 250 Hz at 8 kHz at every rate: no divider, no slower filter.
+                    // The 250 Hz filter at 8 kHz at every rate: no divider, no slower filter.
                     let b0 = part.borrow().banks[0];
                     assert_eq!(b0[0x19..0x1E], [0x00, 0x00, gyro << 3, accel << 3, 0x00]);
                     assert!((driver.rate_hz() - rate).abs() < 0.1);

@@ -1,4 +1,4 @@
-//! The ICM-42688-P driver against a fake part.
+//! The ICM-42688-P driver with a fake part.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -22,7 +22,6 @@ use sophie_tasks::ports::{Imu, ImuReading, PortError};
 
 type Driver = Icm42688p<Bus, DataReady>;
 type Shared = Rc<RefCell<Part>>;
-/// Breaks a part.
 type Spoil = fn(&mut Part);
 
 fn pair(config: Config) -> (Driver, Shared) {
@@ -38,13 +37,12 @@ fn pair(config: Config) -> (Driver, Shared) {
     )
 }
 
-/// A read as the imu task does it.
 async fn read(driver: &mut Driver) -> Option<Result<ImuReading, PortError>> {
     let batch = with_timeout(Duration::from_millis(3), driver.read()).await.ok()?;
     Some(batch.map(|b| b[0]))
 }
 
-/// Reads for `time`; gives the number of samples, of errors, and the time of the last sample.
+/// Reads for `time`; returns samples, errors, and the last sample's time.
 async fn read_for(driver: &mut Driver, time: Duration) -> (u32, Vec<PortError>, Instant) {
     let end = Instant::now() + time;
     let (mut good, mut errors, mut last) = (0, Vec::new(), Instant::from_ticks(0));
@@ -145,7 +143,6 @@ fn samples_come_at_4_khz_in_body_axes_one_burst_each() {
         let reading = read(&mut driver).await.unwrap().unwrap();
         let gyro = Vec3::new(-50.0, 100.0, -25.0).map(f32::to_radians);
         let accel = Vec3::new(0.2, 0.1, -1.0).map(|g| g * GRAVITY);
-        // Noise of two counts.
         assert!((reading.gyro - gyro).norm() < 4e-3, "{:?}", reading.gyro);
         assert!((reading.accel - accel).norm() < 2e-2, "{:?}", reading.accel);
         assert!((driver.temperature() - 35.0).abs() < 0.01);
@@ -160,7 +157,7 @@ fn samples_come_at_4_khz_in_body_axes_one_burst_each() {
             (3999..=4001).contains(&good) && errors.is_empty(),
             "{good} {errors:?}"
         );
-        // Beyond the samples: ten looks at identity and configuration.
+        // Besides samples: ten checks of identity and configuration.
         assert_eq!(part.borrow().transactions.len() as u32, 2 + good + 2 * 10);
     });
 }
@@ -249,7 +246,7 @@ fn a_part_that_appears_late_is_taken_up_by_the_task() {
             errors.iter().all(|&e| e == PortError::Absent) && !errors.is_empty(),
             "{errors:?}"
         );
-        // A missing part costs next to nothing: a handful of transactions, not a busy loop.
+        // A missing part causes no busy loop.
         assert!(
             part.borrow().transactions.len() < 100,
             "{}",
@@ -297,7 +294,7 @@ fn every_failure_in_flight_is_noticed_within_5_ms_and_got_over() {
                     found: 0xFF,
                 },
             };
-            // A frozen part answers its resets, so in the end it has no samples.
+            // A frozen part answers its resets, so it ends without samples.
             assert!(
                 driver.last_fault() == Some(expected) || failure == Failure::Frozen,
                 "{failure:?}: {:?}",
@@ -416,7 +413,7 @@ fn a_call_dropped_at_any_moment_leaves_nothing_half_done() {
         for after in (0..60_000).step_by(37) {
             let (mut driver, part) = pair(Config::default());
             let _ = with_timeout(Duration::from_micros(after), driver.init()).await;
-            // Dropped just before the sensors were switched on, it finds them off and starts again.
+            // Dropped just before switch-on, it finds the sensors off and restarts.
             if driver.init().await.is_err() {
                 driver.init().await.unwrap();
             }
@@ -426,7 +423,7 @@ fn a_call_dropped_at_any_moment_leaves_nothing_half_done() {
                 "after {after} µs: {reading:?}"
             );
             assert_eq!(part.borrow().violations, Vec::<String>::new(), "after {after} µs");
-            // And in the middle of samples.
+            // The same within samples.
             for _ in 0..20 {
                 let _ = with_timeout(Duration::from_micros(after % 300), driver.read()).await;
             }
@@ -450,7 +447,7 @@ fn nothing_is_believed_before_the_part_has_settled() {
 
 #[test]
 fn the_parameters_set_rate_and_ranges_and_the_scales_follow() {
-    // Parameter, the register's bits, and what the fake part makes of them: a data-ready each period.
+    // Parameter, register bits, and a data-ready each period.
     for (rate, odr) in [(1000.0, 6), (2000.0, 5), (4000.0, 4), (8000.0, 3)] {
         for (dps, gyro) in [(250.0, 3), (500.0, 2), (1000.0, 1), (2000.0, 0)] {
             for (g, accel) in [(2.0, 3), (4.0, 2), (8.0, 1), (16.0, 0)] {
@@ -504,7 +501,7 @@ fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
             driver.init().await.unwrap();
             part.borrow_mut().transactions.clear();
             read_for(&mut driver, Duration::from_secs(1)).await;
-            // A look is the identity, 2 bytes, and six registers.
+            // A check reads the identity, 2 bytes, and six registers.
             let looks = part.borrow().transactions.iter().filter(|&&n| n == 7).count();
             assert!((9..=10).contains(&looks), "{looks} at {rate} Hz");
         });

@@ -1,4 +1,4 @@
-//! The parameter store on flash of three kinds, whatever happens to power and contents.
+//! The parameter store on three kinds of flash, with power loss and damaged contents.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -16,7 +16,7 @@ use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
 use sophie_fakes::Flash;
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
-/// Pages as small as a short log needs, so that it goes round often.
+/// Small pages, so that a short log rotates often.
 const SMALL: usize = 512;
 
 fn load<const W: usize, const P: usize>(flash: &Flash<W, P>) -> (Params, Loaded) {
@@ -48,7 +48,6 @@ fn set(values: &[(&str, f32)]) -> Params {
     params
 }
 
-/// Every parameter away from its default.
 fn all_changed() -> Params {
     let mut params = Params::default();
     for row in Params::TABLE {
@@ -104,14 +103,14 @@ fn goes_round<const W: usize, const P: usize>(pages: usize, saves: u32) -> usize
 
 #[test]
 fn the_log_goes_round_and_spares_the_flash() {
-    // 20 bytes in items of 64 (32 + 32), 28 (8 + 20) and 28 bytes; a page holds 14, 18 and 145 of them.
+    // 20 bytes in items of 64 (32 + 32), 28 (8 + 20) and 28 bytes; a page holds 14, 18 and 145.
     assert!(goes_round::<32, 1024>(2, 300) <= 300 / 13);
     assert!(goes_round::<1, SMALL>(2, 300) <= 300 / 16);
-    // Eleven pages are begun; with the eighth one in use, the next must be blank.
+    // Eleven pages are begun; while the eighth is in use, the next must be blank.
     assert_eq!(goes_round::<1, 4096>(8, 1500), 4);
 }
 
-/// Saves the sets in turn on flash that loses power at every step, one after the other.
+/// Saves the sets in turn on flash that loses power at each step.
 fn survives_cuts<const W: usize, const P: usize>(pages: usize, before: &[Params], new: Params) -> usize {
     let start = Flash::<W, P>::blank(pages);
     for params in before {
@@ -131,7 +130,6 @@ fn survives_cuts<const W: usize, const P: usize>(pages: usize, before: &[Params]
         assert!(found == old || found == new, "cut {cut}: neither old nor new");
         assert_eq!(loaded.refused, 0, "cut {cut}");
         assert_eq!(contents, flash.0.borrow().bytes, "loading wrote");
-        // Power is lost once more while it is saved again, at the same step of that save.
         let again = flash.copy();
         let steps = again.0.borrow().steps;
         again.0.borrow_mut().cut_at = Some(steps + cut - first);
@@ -153,7 +151,7 @@ fn survives_cuts<const W: usize, const P: usize>(pages: usize, before: &[Params]
 fn power_may_go_at_every_step_of_every_save() {
     let at = |i: usize| set(&[("infill", 4.0 + 0.1 * i as f32), ("rate_p", 5.0), ("rate_i", 3.0)]);
     let mut cuts = 0;
-    // The first save, and each up to twice round the log: appends, new pages, moves of a page's last item, erases.
+    // The first save and each one up to twice round the log: appends, new pages, moves of a page's last item, erases.
     for saves in 0..40 {
         let before: Vec<Params> = (0..saves).map(at).collect();
         cuts += survives_cuts::<32, 512>(2, &before, at(saves));
@@ -200,19 +198,19 @@ fn what_firmware_with_other_parameters_stored_is_read_as_far_as_it_is_known() {
         ..Loaded::default()
     };
     assert_eq!(load(&flash), (known, loaded));
-    // A save leaves nothing of what was refused.
+    // A save removes what was refused.
     assert_eq!(save(&flash, known), Ok(()));
     assert_eq!(load(&flash), (known, sound(2)));
 }
 
-/// Two sectors as firmware of before the names of today left them after two saves; erased behind these bytes.
+/// Two sectors after two saves by firmware with the old names; erased behind these bytes.
 fn of_old<const W: usize, const P: usize>(stored: &[u8]) -> Flash<W, P> {
     let mut bytes = stored.to_vec();
     bytes.resize(2 * P, 0xFF);
     Flash::holding(bytes)
 }
 
-/// What that firmware was told: receiver_protocol 1, perch_throttle_max 0.5, setpoint_cutoff 20 rad/s, infill 8 %,
+/// Settings of that firmware: receiver_protocol 1, perch_throttle_max 0.5, setpoint_cutoff 20 rad/s, infill 8 %,
 /// motor_protocol 600.
 fn as_of_old() -> Params {
     set(&[
@@ -229,7 +227,7 @@ fn reads_old_names<const W: usize, const P: usize>(stored: &[u8]) {
     let before = flash.0.borrow().bytes.clone();
     assert_eq!(load(&flash), (as_of_old(), sound(5)));
     assert!(flash.0.borrow().bytes == before, "a load wrote");
-    // A save writes the names of today, once.
+    // A save writes the present names, once.
     for written in [true, false] {
         let steps = flash.0.borrow().steps;
         assert_eq!(save(&flash, as_of_old()), Ok(()));
@@ -262,16 +260,14 @@ fn of_an_old_and_a_new_name_in_one_set_the_new_one_counts() {
         let flash = with_item::<4, SMALL>(item.leak());
         assert_eq!(load(&flash), (set(&[("setpoint_lpf_hz", 2.5)]), sound(1)));
     }
-    // An old value that is out of range is left out, as under a new name.
     let item = [b"SPH1".to_vec(), record("setpoint_cutoff", 500.0)].concat();
     let (params, loaded) = load(&with_item::<4, SMALL>(item.leak()));
     assert_eq!((params, loaded.taken, loaded.refused), (Params::default(), 0, 1));
 }
 
-/// Records of the fullest set.
 const FULL: usize = 256;
 
-/// A set of [`FULL`] records as firmware with more parameters stores it: all that there are here, and others.
+/// [`FULL`] records of firmware with more parameters: all known ones, and others.
 fn full_set(params: &Params) -> Vec<u8> {
     let known = Params::TABLE
         .iter()
@@ -286,7 +282,7 @@ fn full_set(params: &Params) -> Vec<u8> {
     item
 }
 
-/// Stores `saves` sets of [`FULL`] records, each read back; gives the erases.
+/// Stores `saves` sets of [`FULL`] records, reads each back; returns the erases.
 fn keeps_full_sets<const W: usize, const P: usize>(saves: usize) -> usize {
     let flash = Flash::<W, P>::blank(2);
     for i in 0..saves {
@@ -317,8 +313,8 @@ fn keeps_full_sets<const W: usize, const P: usize>(saves: usize) -> usize {
 
 #[test]
 fn sets_of_256_records_are_kept_on_the_boards_sectors_and_spare_them() {
-    // Items of 2052 bytes: 62 in a sector of the H743 (words of 32 bytes), 7 in one of the F405, of which the newest of
-    // the sector before is one.
+    // Items of 2052 bytes: 62 in an H743 sector (words of 32 bytes), 7 in an F405 sector, one of them the newest of the
+    // sector before.
     let (large, small) = (
         keeps_full_sets::<32, { 128 * 1024 }>(140),
         keeps_full_sets::<4, { 16 * 1024 }>(60),
@@ -326,7 +322,7 @@ fn sets_of_256_records_are_kept_on_the_boards_sectors_and_spare_them() {
     assert!(large <= 140 / 60 && small <= 60 / 6, "{large}, {small} erases");
 }
 
-/// A flash of an F405's sectors that another stack has used: the second page begins with `head`, the rest is full.
+/// F405 sectors used by another stack: the second page begins with `head`, the rest is full.
 fn used_before(head: &[u8]) -> Flash<4, 0x4000> {
     let mut bytes: Vec<u8> = (0..0x8000)
         .map(|n: u32| (n.wrapping_mul(2_654_435_761) >> 24) as u8)
@@ -394,14 +390,14 @@ fn damage_to_the_newest_set_is_noticed_and_the_one_before_is_kept() {
 
 #[test]
 fn a_flash_that_is_too_small_or_broken_says_so() {
-    // A page of 256 bytes does not take every parameter, and keeps what it had.
+    // A page of 256 bytes cannot hold every parameter, and keeps its contents.
     let flash = Flash::<1, 256>::blank(2);
     let few = set(&[("infill", 5.0)]);
     assert_eq!(save(&flash, few), Ok(()));
     assert_eq!(save(&flash, all_changed()), Err(StorageError::Full));
     assert_eq!(load(&flash).0, few);
 
-    // A cell that takes no 0, in the mark, the head and the values of the first item.
+    // A cell that cannot be programmed to 0, in the mark, the head and the values of the first item.
     for cell in [0, 4, 8, 12, 20] {
         let flash = Flash::<4, SMALL>::blank(2);
         flash.0.borrow_mut().stuck = Some(cell);
@@ -436,7 +432,6 @@ fn a_range_that_does_not_suit_is_a_broken_storage() {
     }
 }
 
-/// Loads and saves on flash with `bytes` in it; gives what was loaded.
 fn lives_with<const W: usize, const P: usize>(bytes: Vec<u8>) -> (Params, Loaded) {
     let flash = Flash::<W, P>::holding(bytes.clone());
     let (params, loaded) = load(&flash);
@@ -452,7 +447,6 @@ fn lives_with<const W: usize, const P: usize>(bytes: Vec<u8>) -> (Params, Loaded
     (params, loaded)
 }
 
-/// `length` bytes of a seeded noise.
 fn noise(seed: u32, length: usize) -> Vec<u8> {
     let mut state = seed | 1;
     let next = || {
@@ -485,7 +479,7 @@ proptest! {
     #[test]
     fn noise_boots_with_the_defaults_and_takes_a_save(seed in any::<u32>(), marks in any::<[u8; 8]>()) {
         for (params, loaded) in [
-            // The sectors of an STM32F405, pages with and without the marks of the map.
+            // F405 sectors, pages with and without the map's marks.
             lives_with::<1, { 16 * 1024 }>(noise(seed, 32 * 1024)),
             lives_with::<32, 2048>(noise(seed, 8192)),
             lives_with::<1, 1024>({
@@ -533,12 +527,12 @@ fn a_board_with_defaults_of_its_own_stores_what_differs_from_those() {
         let mut store = ParamStore::new(bytes.clone(), range).with_defaults(&CUAV);
         assert_eq!(*store.defaults(), CUAV);
         let mut params = CUAV;
-        // Blank, and saved as it is: nothing is written, the board's own stay.
+        // Blank, and saved as it is: nothing is written; the board's defaults stay.
         assert_eq!(store.load(&mut params).await, sound(0));
         assert_eq!(params, CUAV);
         assert_eq!(store.save(&CUAV).await, Ok(()));
         assert_eq!(bytes.0.borrow().steps, 0);
-        // The table's defaults differ from the board's: they are kept.
+        // The table's defaults differ from the board's, so they are stored.
         let other = Params {
             infill: 8.0,
             battery_a_per_v: 40.0,

@@ -1,10 +1,10 @@
-//! Linker arguments of the tests on a board; nothing for the host. The board is picked in `boards/build.rs`.
+//! Linker arguments of the tests on a board; none for the host. `boards/build.rs` picks the board.
 
 use std::env;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    // The tests' macro asks for it.
+    // Used by the tests' macro.
     println!("cargo:rustc-check-cfg=cfg(rust_analyzer)");
     if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none") {
         for argument in ["-Tlink.x", "-Tdefmt.x", "-Tembedded-test.x", "--nmagic"] {

@@ -1,15 +1,14 @@
-//! Tells of a proven grip, arm by arm: what the clamp loop measured when it was proven.
+//! Logs a proven grip: the clamp loop's measurements per arm at the proof.
 
 use sophie_tasks::links::Links;
 
-/// Tells once for each grip.
+/// Logs each grip once.
 #[derive(Default)]
 pub struct GripReport {
     proven: bool,
 }
 
 impl GripReport {
-    /// Looks at the grip.
     pub fn look(&mut self, links: &Links) {
         let Some(grip) = links.grip.latest().map(|g| g.value) else {
             return;

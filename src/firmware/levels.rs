@@ -1,9 +1,8 @@
-//! The executors of the levels, and which task goes to which: as the tasks are declared.
+//! Executors of the levels; each task runs on its declared level.
 
 use embassy_executor::{SendSpawner, SpawnToken, Spawner};
 use sophie_tasks::schedule::{Level, TaskId};
 
-/// The three executors.
 pub struct Levels {
     flight: SendSpawner,
     steady: SendSpawner,
@@ -11,7 +10,6 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Starts the executors above `background`.
     pub fn new(background: Spawner) -> Self {
         let (flight, steady) = sophie_boards::start_levels();
         Self {
@@ -21,7 +19,7 @@ impl Levels {
         }
     }
 
-    /// Spawns the task that is declared as `task`, on the level of its declaration.
+    /// Spawns `task` on its declared level.
     pub fn spawn<S: Send>(&self, task: TaskId, token: SpawnToken<S>) {
         let token = named(task.level(), task.name(), token);
         match task.level() {
@@ -37,7 +35,7 @@ impl Levels {
     }
 }
 
-/// Keeps what a task is called and where it runs; used by the trace alone.
+/// Records a task's name and level; only for the trace.
 #[cfg(not(feature = "trace"))]
 fn named<T>(_: Level, _: &'static str, token: T) -> T {
     token

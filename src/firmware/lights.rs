@@ -1,4 +1,4 @@
-//! Lights and buzzer: what the pilot sees and hears at the vehicle itself. Background, 10 Hz.
+//! Lights and buzzer on the vehicle. Background, 10 Hz.
 //!
 //! | state light | meaning |
 //! |---|---|
@@ -16,10 +16,10 @@ use sophie_tasks::links::Links;
 
 use sophie_boards::LightsPort;
 
-/// Time between two looks; ten make a pattern.
+/// Step; ten make a pattern.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Ten looks, first one first.
+/// Ten steps, in order.
 const FAST: [bool; 10] = [true, false, true, false, true, false, true, false, true, false];
 const FLASH: [bool; 10] = [
     true, false, false, false, false, false, false, false, false, false,
@@ -27,7 +27,6 @@ const FLASH: [bool; 10] = [
 const DOUBLE: [bool; 10] = [true, false, true, false, false, false, false, false, false, false];
 const ON: [bool; 10] = [true; 10];
 
-/// Shows the state; never returns.
 pub async fn run(links: &Links, mut lights: LightsPort) -> ! {
     let mut ticker = Ticker::every(PERIOD);
     loop {
@@ -39,7 +38,7 @@ pub async fn run(links: &Links, mut lights: LightsPort) -> ! {
                 Some(Mode::Perched) => DOUBLE,
                 Some(_) => ON,
             };
-            // No commander at all is the worst of faults.
+            // A missing commander is a fault.
             let fault = status.is_none_or(|s| s.reason.is_some());
             let acts = status.is_some_and(|s| matches!(s.mode, Mode::Failsafe | Mode::Escaping));
             let alarm = acts && DOUBLE[step];

@@ -1,7 +1,5 @@
-//! What the firmware has besides the tasks of `sophie_tasks`: their static wrappers, their levels, the greeting,
-//! lights and the log.
-//!
-//! Nothing here knows the chip; that is [`sophie_boards`]'s.
+//! The firmware besides `sophie_tasks`: static task wrappers, levels, start-up log, lights and log. Chip code is in
+//! [`sophie_boards`].
 
 mod grip;
 mod levels;
@@ -26,19 +24,17 @@ pub use self::levels::Levels;
 
 sophie_boards::ends_with!(sophie_boards::stop_and_restart);
 
-/// Every link of the vehicle.
 static LINKS: StaticCell<Links> = StaticCell::new();
 
-/// What is known at start-up, before clocks and log are there.
+/// State at start-up, before clocks and log run.
 pub struct Beginning {
-    /// Why the chip was reset.
     pub cause: ResetCause,
-    /// What the tasks go on from.
+    /// State that the tasks resume from.
     pub start: Start,
     kept: Kept,
 }
 
-/// Takes the cause of the reset and what the run before left, and the memory for the next. Called once, first of all.
+/// Takes the reset cause, the last run's state and the memory for the next. Called once, before all else.
 pub fn begin() -> (Beginning, Memory) {
     let cause = sophie_boards::take_reset_cause();
     let (kept, memory) = retained::start(cause);
@@ -51,7 +47,7 @@ pub fn links(params: Params, start: Start) -> &'static Links {
     LINKS.init_with(|| Links::starting(params, start))
 }
 
-/// Says who this is and why it starts, with what the run before left behind.
+/// Logs version, board, reset cause and what the last run left.
 pub fn greet(beginning: &Beginning) {
     let Beginning { cause, start, kept } = beginning;
     defmt::info!(
@@ -83,7 +79,7 @@ pub fn greet(beginning: &Beginning) {
     }
 }
 
-/// Tells what reading the parameters gave; storage that cannot be read speaks against arming.
+/// Logs the result of reading the parameters; unreadable storage inhibits arming.
 pub fn loaded(links: &Links, loaded: Loaded) {
     defmt::info!("parameters: {=u16} from storage", loaded.taken);
     if loaded.refused > 0 {
@@ -105,7 +101,7 @@ pub fn loaded(links: &Links, loaded: Loaded) {
     parameters::report(links, loaded);
 }
 
-/// Refuses arming for what the start-up found in the chip and cannot be flown with.
+/// Inhibits arming for failed checks of the chip.
 pub fn looked(links: &Links, looks: &[Look]) {
     for look in looks {
         if let (Some(inhibit), false) = (look.inhibits, look.ok) {

@@ -1,8 +1,8 @@
-//! What the firmware logs over defmt while it runs. Background: logging never delays a flight.
+//! The defmt log while the firmware runs. Background: logging never delays a flight.
 //!
-//! A line when the state, its reason or the warning changes, for each arm of a proven grip, and for each thing of the
-//! hardware that begins or ceases to speak against arming; each second the timing of every task, and missed deadlines
-//! ([`super::timing`]); at the start what was looked at in the chip; every ten seconds the depth of the stack. The first line says how long the start took.
+//! At the start its duration and the chip's checks; a line at each change of state, reason, warning or hardware arming
+//! inhibit, and for each arm of a proven grip; each second the timing of every task and missed deadlines
+//! ([`super::timing`]); every ten seconds the stack depth.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Ticker};
@@ -14,16 +14,15 @@ use super::grip::GripReport;
 use super::timing::TimingReport;
 use sophie_boards::stack;
 
-/// Time between two looks.
 const PERIOD: Duration = Duration::from_millis(50);
-/// Looks in a second: one for each task's timing and the chains', so that they do not come in one burst.
+/// Polls per second, one for each task's timing and the chains', to avoid a burst.
 const SECOND: u32 = 20;
-/// Looks between two reports of the stack.
+/// Polls between two reports of the stack.
 const STACK_EVERY: u32 = 200;
 
 /// Logs each second and at each change; never returns.
 pub async fn run(links: &Links, looks: &[Look]) -> ! {
-    // The clock starts when the chip's clocks are up, some milliseconds after the reset.
+    // The clock starts some milliseconds after the reset, with the chip's clocks.
     defmt::info!("started in {=u64} ms", Instant::now().as_millis());
     let mut ticker = Ticker::every(PERIOD);
     let mut shown: Option<Status> = None;
@@ -32,12 +31,12 @@ pub async fn run(links: &Links, looks: &[Look]) -> ! {
     let mut grip = GripReport::default();
     let mut round = 0u32;
     loop {
-        // A missed deadline of the flight level does not wait for the next look, but only one in each look.
+        // A missed deadline of the flight level is logged at once, but only one per poll.
         if let Either::Second(()) = select(ticker.next(), links.missed.wait()).await {
             timing.missed(links);
             ticker.next().await;
         }
-        // One a round: the log's buffer is short.
+        // One per round: the log's buffer is short.
         if let Some(look) = looks.get(round as usize) {
             silicon(look);
         }
@@ -72,7 +71,6 @@ fn state(now: Status, before: Option<Status>) {
     }
 }
 
-/// One thing that the start-up looked at in the chip.
 fn silicon(look: &Look) {
     let read = look.read.as_str();
     let Look { name, expected, .. } = look;
@@ -93,7 +91,7 @@ fn silicon(look: &Look) {
     }
 }
 
-/// All that speaks against arming, where the state's line has room for the first reason only.
+/// All hardware arming inhibits; the state's line has room for the first reason only.
 fn hardware(links: &Links, shown: &mut ArmingInhibits) {
     let now = links.hardware();
     for reason in ArmingInhibit::ALL {

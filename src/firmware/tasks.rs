@@ -1,5 +1,5 @@
-//! The tasks as the executors want them: static, not generic, and spawned on a board's ports. What they do is in
-//! `sophie_tasks`, their levels are declared in [`sophie_tasks::schedule`].
+//! The tasks as static, non-generic executor tasks on a board's ports. `sophie_tasks` has their code,
+//! [`sophie_tasks::schedule`] their levels.
 
 use embassy_executor::SpawnError;
 use sophie_boards::Board;
@@ -14,13 +14,13 @@ use sophie_tasks::schedule::TaskId;
 
 use super::Levels;
 
-/// Most self-tests of the inertial sensor at one start.
+/// Most attempts at the inertial sensor's self-test per start.
 const SELF_TESTS: u8 = 3;
 
-/// Spawns every task; `self_test`: the inertial sensor's, before anything else of it. Called once.
+/// Spawns every task; `self_test`: the inertial sensor's, first. Called once.
 ///
 /// # Errors
-/// A task that was spawned before: each is static.
+/// A task that was already spawned: each is static.
 pub fn spawn(
     levels: &Levels,
     links: &'static Links,
@@ -42,7 +42,6 @@ pub fn spawn(
     levels.spawn(TaskId::Servos, servos(links, board.servos)?);
     levels.spawn(TaskId::Arms, arms(links, board.arms)?);
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
-    // What has no deadline.
     let looks = board.chip.looks;
     let (input, output) = (board.console_input, board.console_output);
     levels.spawn_unmeasured(
@@ -58,8 +57,8 @@ pub fn spawn(
 
 /// Inertial sensor.
 ///
-/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. One
-/// that fails is repeated, since a vehicle that is being carried fails it too; the last verdict stands.
+/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. A
+/// failed one is repeated, since a vehicle being carried also fails; the last verdict counts.
 #[embassy_executor::task]
 async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
     for _ in 0..if self_test { SELF_TESTS } else { 0 } {
@@ -76,79 +75,67 @@ async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test:
     sophie_tasks::imu::run(links, port).await
 }
 
-/// Attitude.
 #[embassy_executor::task]
 async fn estimator(links: &'static Links) {
     sophie_tasks::estimator::run(links).await;
 }
 
-/// Attitude and rate control.
 #[embassy_executor::task]
 async fn control(links: &'static Links) {
     sophie_tasks::control::run(links).await;
 }
 
-/// Allocation.
 #[embassy_executor::task]
 async fn mixer(links: &'static Links) {
     sophie_tasks::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
 }
 
-/// Motors.
 #[embassy_executor::task]
 async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
     sophie_tasks::motors::run(links, port).await;
 }
 
-/// Pressure sensors and battery.
 #[embassy_executor::task]
 async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
     sophie_tasks::analog::run(links, port).await
 }
 
-/// Clamp loops.
 #[embassy_executor::task]
 async fn clamp(links: &'static Links) -> ! {
     sophie_tasks::clamp::run(links).await
 }
 
-/// Tendon servos.
 #[embassy_executor::task]
 async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
     sophie_tasks::servos::run(links, port).await
 }
 
-/// Receiver.
 #[embassy_executor::task]
 async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
     sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
 }
 
-/// Mode logic.
 #[embassy_executor::task]
 async fn commander(links: &'static Links) -> ! {
     sophie_tasks::commander::run(links).await
 }
 
-/// Supervision, watchdog, and what outlives it.
+/// Also keeps the state that outlives a reset.
 #[embassy_executor::task]
 async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
     sophie_tasks::supervisor::run(links, port, memory).await
 }
 
-/// Arm sensors.
 #[embassy_executor::task]
 async fn arms(links: &'static Links, port: sophie_boards::ArmsPort) -> ! {
     sophie_tasks::arms::run(links, port).await
 }
 
-/// Telemetry to the pilot.
 #[embassy_executor::task]
 async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) -> ! {
     sophie_tasks::telemetry::run(links, port).await
 }
 
-/// The builder's console.
 #[embassy_executor::task]
 async fn console(
     links: &'static Links,
@@ -160,13 +147,11 @@ async fn console(
     sophie_tasks::console::run(links, input, output, storage, chip).await
 }
 
-/// Lights and buzzer.
 #[embassy_executor::task]
 async fn lights(links: &'static Links, lights: sophie_boards::LightsPort) -> ! {
     super::lights::run(links, lights).await
 }
 
-/// The log.
 #[embassy_executor::task]
 async fn report(links: &'static Links, looks: &'static [Look]) -> ! {
     super::report::run(links, looks).await

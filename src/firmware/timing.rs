@@ -6,8 +6,8 @@
 //! timing contact: 50/s, 901/901/901 us from pressure to servo command, 1498/1499/1499/1499 us to its pulse of 3500 us, 0 missed
 //! ```
 //!
-//! Times are half, 99 % and all of the second's runs (too large by less than a quarter; the last is exact); where there
-//! are four, the first is the shortest. docs/timing.md says what they are of.
+//! Times are half, 99 % and all of the second's runs (too large by less than a quarter; the last is exact); of four
+//! times the first is the shortest. docs/timing.md defines them.
 
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::histogram::Histogram;
@@ -25,8 +25,8 @@ pub struct TimingReport {
 }
 
 impl TimingReport {
-    /// What is due in the `look`-th look of each second: one task's record, after the last task that of the chain from
-    /// pressure to pulse, and then the deadlines that were missed.
+    /// Report of the `look`-th poll of each second: one task, after the last task the chain from pressure to pulse,
+    /// then missed deadlines.
     pub fn second(&mut self, links: &Links, look: u32) {
         match TaskId::ALL.get(look as usize) {
             Some(&task) => self.record(links, task),
@@ -36,7 +36,7 @@ impl TimingReport {
         }
     }
 
-    /// Names every task that has missed deadlines since it was named last, with its worst times since the start.
+    /// Logs every task with new missed deadlines, with its worst times since the start.
     pub fn missed(&mut self, links: &Links) {
         for (task, told) in TaskId::ALL.into_iter().zip(&mut self.told) {
             tell(task.name(), &links.timing(task), told);
@@ -44,7 +44,7 @@ impl TimingReport {
         tell("contact", &links.contact_timing(), &mut self.contact_told);
     }
 
-    /// The chain from the conversion of pressures to the pulse that answers them.
+    /// The chain from pressure conversion to the resulting pulse.
     fn contact(&mut self, links: &Links) {
         let [command, pulse] =
             [Quantity::Lateness, Quantity::Response].map(|quantity| links.take_contact_histogram(quantity));
@@ -52,7 +52,7 @@ impl TimingReport {
         let missed = totals
             .overruns
             .wrapping_sub(core::mem::replace(&mut self.contact_recorded, totals.overruns));
-        // No force, no pulse: before the first command, and while no pressure is fresh.
+        // No pulse before the first command, and while no pressure is fresh.
         if pulse.count() == 0 {
             return;
         }
@@ -82,7 +82,7 @@ impl TimingReport {
         let missed = totals
             .overruns
             .wrapping_sub(core::mem::replace(recorded, totals.overruns));
-        // A task that does not run, such as telemetry beside SBUS, has nothing to tell.
+        // A task that does not run, such as telemetry beside SBUS.
         if run.count() == 0 && missed == 0 {
             return;
         }
@@ -117,7 +117,6 @@ impl TimingReport {
     }
 }
 
-/// Names what has missed deadlines since it was named last.
 fn tell(name: &str, t: &Timing, told: &mut u32) {
     if t.overruns != *told {
         *told = t.overruns;

@@ -1,4 +1,4 @@
-//! The executor trace over defmt (feature `trace`): the names of the tasks again and again, and every event.
+//! The executor trace over defmt (feature `trace`): the tasks' names in rotation, and every event.
 //!
 //! ```text
 //! trace task 240051c0 flight imu
@@ -6,8 +6,8 @@
 //! trace lost 12
 //! ```
 //!
-//! The number before the events is that of the first of them since the start, so that a reader sees what the probe
-//! dropped; each event has eight bytes ([`sophie_boards::trace`]), low byte first.
+//! The number before the events is that of the first one since the start, which shows what the probe dropped; each
+//! event has eight bytes ([`sophie_boards::trace`]), low byte first.
 
 use core::cell::RefCell;
 
@@ -20,16 +20,13 @@ use sophie_tasks::links::Raw;
 
 use sophie_boards::trace;
 
-/// Time between two looks at the ring.
 const PERIOD: Duration = Duration::from_millis(2);
-/// Looks between two names, so that a log that begins anywhere has all of them within a second.
+/// Polls between two names, so that any second of the log has all of them.
 const NAME_EVERY: u32 = 20;
-/// Events in a line: a longer one would keep interrupts waiting while it is encoded.
+/// Events per line: encoding a longer one would delay interrupts.
 const EVENTS: usize = 6;
-/// Most tasks.
 const TASKS: usize = 20;
 
-/// A spawned task.
 #[derive(Clone, Copy)]
 struct Named {
     id: u32,
@@ -39,7 +36,7 @@ struct Named {
 
 static TASKS_SPAWNED: Mutex<Raw, RefCell<Vec<Named, TASKS>>> = Mutex::new(RefCell::new(Vec::new()));
 
-/// Keeps what `token`'s task is called and where it runs.
+/// Records the name and level of `token`'s task.
 pub fn named<S>(level: Level, name: &'static str, token: SpawnToken<S>) -> SpawnToken<S> {
     trace::start();
     let id = token.id();
@@ -61,7 +58,7 @@ pub async fn trace() -> ! {
             name(looks / NAME_EVERY);
         }
         looks = looks.wrapping_add(1);
-        // No more than the ring holds: events that come meanwhile wait for the next look.
+        // At most the ring's contents: later events wait for the next poll.
         for _ in 0..=trace::EVENTS as usize / EVENTS {
             let mut events = [[0; 2]; EVENTS];
             let count = trace::drain(&mut events);

@@ -1,4 +1,4 @@
-//! What a board's flash holds, kept in a file and brought back: the way back from this firmware to the one before.
+//! Backup of a board's flash in a file, and restoring it: the way back to the former firmware.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -10,16 +10,14 @@ use crate::build::typed;
 use crate::tools::{self, PROBE_RS};
 use crate::{Error, Refused, build};
 
-/// What is asked for.
 pub struct Backup<'a> {
-    /// The board.
     pub board: &'static Board,
     file: Option<&'a str>,
     dry: bool,
 }
 
 impl<'a> Backup<'a> {
-    /// What `words`, the arguments behind `verb`, ask for.
+    /// Parses `words`, the arguments behind `verb`.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -64,10 +62,10 @@ impl<'a> Backup<'a> {
         self.file.map_or_else(|| usual(self.board), PathBuf::from)
     }
 
-    /// Reads the whole flash twice and keeps it in the file, once both are equal.
+    /// Reads the whole flash twice and keeps it in the file if both are equal.
     ///
     /// # Errors
-    /// The file is there already; there is no probe; probe-rs fails or reads nothing that could be brought back.
+    /// The file exists; there is no probe; probe-rs fails or reads nothing that could be restored.
     pub fn save(&self) -> Result<(), Error> {
         let path = self.path();
         if !self.dry && path.symlink_metadata().is_ok() {
@@ -91,7 +89,7 @@ impl<'a> Backup<'a> {
         tools::probe(self.board)?;
         let kept = keep(self.board, commands, &parts, &path);
         for part in &parts {
-            // The first is gone where it has become the backup.
+            // The first is already renamed if it became the backup.
             let _ = fs::remove_file(part);
         }
         kept?;
@@ -102,7 +100,7 @@ impl<'a> Backup<'a> {
     /// Writes the file over the whole flash.
     ///
     /// # Errors
-    /// The file is none that could be a backup of this board; there is no probe; probe-rs fails.
+    /// The file cannot be a backup of this board; there is no probe; probe-rs fails.
     pub fn restore(&self) -> Result<(), Error> {
         let path = self.path();
         sound(self.board, &path).map_err(|why| Refused(format!("restore: {why}")))?;
@@ -126,15 +124,15 @@ impl<'a> Backup<'a> {
     }
 }
 
-/// Where a board's backup is looked for and put when nothing else is named.
+/// Default path of a board's backup.
 pub fn usual(board: &Board) -> PathBuf {
     build::root().join("backups").join(format!("{}.bin", board.name))
 }
 
-/// The file is one that [`Backup::restore`] takes.
+/// Checks that [`Backup::restore`] accepts the file.
 ///
 /// # Errors
-/// What is wrong with it, and what is wanted.
+/// What is wrong with it, and what is required.
 pub fn sound(board: &Board, path: &Path) -> Result<(), String> {
     let wanted = format!(
         "wanted are the {} bytes that `cargo xtask backup {}` writes",
@@ -152,7 +150,7 @@ pub fn sound(board: &Board, path: &Path) -> Result<(), String> {
     let mut file = File::open(path).map_err(unread)?;
     file.read_exact(&mut head).map_err(unread)?;
     let [stack, reset] = [0, 4].map(|at| u32::from_le_bytes(std::array::from_fn(|n| head[at + n])));
-    // What a core starts with: a stack in RAM, and the address of an instruction in flash, with the Thumb bit.
+    // A core starts with a stack in RAM, and the address of an instruction in flash, with the Thumb bit.
     let flash = FLASH..FLASH + board.flash_size();
     if (0x1000_0000..0x4000_0000).contains(&stack) && reset % 2 == 1 && flash.contains(&u64::from(reset)) {
         Ok(())
@@ -164,7 +162,6 @@ pub fn sound(board: &Board, path: &Path) -> Result<(), String> {
     }
 }
 
-/// Reads the whole flash into `file`.
 fn read(board: &Board, file: &Path) -> Command {
     let [address, words] = [format!("{FLASH:#010x}"), (board.flash_size() / 4).to_string()];
     let mut command = PROBE_RS.command(&["read", "--chip", board.probe_rs_chip, "--format", "binary"]);
@@ -172,7 +169,7 @@ fn read(board: &Board, file: &Path) -> Command {
     command
 }
 
-/// Runs both reads, compares, and gives the first one its name.
+/// Runs both reads, compares, and renames the first.
 fn keep(board: &Board, commands: [Command; 2], parts: &[PathBuf; 2], path: &Path) -> Result<(), Error> {
     for (mut command, part) in commands.into_iter().zip(parts) {
         PROBE_RS

@@ -1,4 +1,4 @@
-//! Flies the firmware of a board on the emulated board.
+//! Flies a board's firmware on the emulated board.
 
 use std::ffi::OsStr;
 use std::process::{Command, ExitCode};
@@ -7,13 +7,12 @@ use crate::boards::{self, Board};
 use crate::build::Variant;
 use crate::{Error, build};
 
-/// Boards that can be emulated.
 const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
-/// What is said before the emulator is built: its code generator takes long.
+/// Printed before the emulator is built: its code generator takes long.
 const FIRST_BUILD: &str = "building the emulated board: minutes the first time, seconds from then on";
 
-/// Options of the emulator's own that stand alone, and those with a value and its name.
+/// The emulator's options without a value, and those with one and its name.
 const ALONE: [&str; 2] = ["--json", "--factory"];
 const WITH_VALUE: [(&str, &str); 5] = [
     ("--seed", "N"),
@@ -23,18 +22,15 @@ const WITH_VALUE: [(&str, &str); 5] = [
     ("--telemetry", "PORT"),
 ];
 
-/// What is asked for.
 pub struct Bench<'a> {
-    /// The board.
     pub board: &'static Board,
     variant: Variant,
-    /// Goes to the emulator.
+    /// Passed to the emulator.
     rest: Vec<&'a str>,
 }
 
 impl<'a> Bench<'a> {
-    /// What `words`, the arguments behind the verb, ask for. Looked at before the minutes of building; what values may
-    /// be the emulator knows.
+    /// Parses `words`, the arguments behind the verb, before the minutes of building; the emulator checks the values.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -78,7 +74,7 @@ impl<'a> Bench<'a> {
         Ok(bench)
     }
 
-    /// Builds and flies; the exit status is the emulator's own.
+    /// Builds and flies; returns the emulator's exit status.
     ///
     /// # Errors
     /// The firmware does not build.
@@ -92,7 +88,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The emulated board that `words`, the arguments behind `verb`, begin with, and the other arguments.
+/// The emulated board at the start of `words`, the arguments behind `verb`, and the other arguments.
 fn emulated<'w, 'a>(verb: &str, words: &'w [&'a str]) -> Result<(&'static Board, &'w [&'a str]), String> {
     let allowed = EMULATED.join(", ");
     let (name, rest) = match words {
@@ -105,16 +101,15 @@ fn emulated<'w, 'a>(verb: &str, words: &'w [&'a str]) -> Result<(&'static Board,
     Ok((board, rest))
 }
 
-/// Instructions of the control path are to be counted.
+/// A count of the control path's instructions.
 pub struct Chain<'a> {
-    /// The board.
     pub board: &'static Board,
-    /// How many steps, where that is said.
+    /// Number of steps, if given.
     steps: Option<&'a str>,
 }
 
 impl<'a> Chain<'a> {
-    /// What `words`, the arguments behind the verb, ask for.
+    /// Parses `words`, the arguments behind the verb.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -132,7 +127,7 @@ impl<'a> Chain<'a> {
         Ok(Self { board, steps })
     }
 
-    /// Builds, flies and prints the counts; the exit status is the emulator's own.
+    /// Builds, flies and prints the counts; returns the emulator's exit status.
     ///
     /// # Errors
     /// The firmware does not build.
@@ -143,7 +138,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// Builds the emulator and runs its binary `name` with `arguments` and what the caller adds; the exit status is its own.
+/// Builds the emulator and runs its binary `name` with `arguments` and the caller's additions; returns its exit status.
 ///
 /// # Errors
 /// Cargo does not start.
@@ -162,7 +157,7 @@ pub fn emulator<'a>(
     ))
 }
 
-/// Builds and runs the emulator's binary `name`, with cargo's progress on stderr.
+/// Command to build and run the emulator's binary `name`, with cargo's progress on stderr.
 fn run(name: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // The emulator declares a newer Rust than it needs.

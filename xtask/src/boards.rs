@@ -1,48 +1,45 @@
-//! The boards, as far as a build has to know them.
+//! Board data for builds and checks.
 
 /// First address of the flash, all chips.
 pub const FLASH: u64 = 0x0800_0000;
 
-/// Equal sectors of a flash, one behind the other.
+/// Consecutive equal sectors.
 #[derive(Clone, Copy, Debug)]
 pub struct Sectors {
-    /// How many.
     pub count: u64,
     /// Bytes of each.
     pub size: u64,
 }
 
-/// The USB loader that a chip has from its maker.
+/// The chip maker's USB loader.
 #[derive(Clone, Copy)]
 pub enum UsbLoader {
-    /// How it is entered.
+    /// How to enter it.
     Enter(&'static str),
-    /// It cannot be entered on this board: why.
+    /// Why it cannot be entered on this board.
     OutOfReach(&'static str),
 }
 
-/// One board.
 #[derive(Clone, Copy)]
 pub struct Board {
-    /// Name, which is also its cargo feature.
+    /// Name, also the cargo feature.
     pub name: &'static str,
-    /// Chip, as probe-rs knows it.
+    /// Chip name of probe-rs.
     pub probe_rs_chip: &'static str,
-    /// Core, for code that uses all of it. The plain target is built for an M4F.
+    /// Core, for code specific to it. The plain target is built for an M4F.
     pub core: &'static str,
-    /// Interrupts of the chip.
     pub interrupts: usize,
-    /// Vectors of the flight and the steady level.
+    /// Vectors of the flight and steady level.
     pub levels: [&'static str; 2],
-    /// The flash, from [`FLASH`] on: what is erased at once.
+    /// Flash sectors from [`FLASH`] on.
     pub flash: &'static [Sectors],
-    /// The chip's own loader, for those without a probe.
+    /// The chip's own loader, for use without a probe.
     pub usb_loader: UsbLoader,
-    /// Memories that DMA1 and DMA2 reach: first address, and first one beyond.
+    /// Memories that DMA1 and DMA2 reach: first address and end.
     pub dma_reaches: &'static [(u64, u64)],
-    /// Memory that keeps what outlives a reset: the first address, and the first one beyond.
+    /// Memory that outlives a reset: first address and end.
     pub retained: (u64, u64),
-    /// It flies with the data cache off, and there is an image with the cache on.
+    /// It flies with the data cache off, and has an image with the cache on.
     pub data_cache_is_optional: bool,
 }
 
@@ -56,7 +53,7 @@ pub const BOARDS: [Board; 3] = [
         levels: ["SAI3", "SAI4"],
         // Two banks (RM0433 §4.3.4).
         flash: &[sectors(16, 128)],
-        // BOOT0 has a button, USB is on PA11 and PA12, which the loader uses (AN2606).
+        // BOOT0 has a button; USB is on PA11 and PA12, which the loader uses (AN2606).
         usb_loader: UsbLoader::Enter("hold its button BOOT while plugging USB in"),
         // AXI SRAM, SRAM1 to SRAM3 (RM0433 §2.1); not the tightly coupled memories.
         dma_reaches: &[(0x2400_0000, 0x2408_0000), (0x3000_0000, 0x3004_8000)],
@@ -72,10 +69,10 @@ pub const BOARDS: [Board; 3] = [
         levels: ["SAI1", "SAI2"],
         // One bank (RM0410 §3.3.2), as in `boards/memory/cuav-v5.x`.
         flash: &[sectors(4, 32), sectors(1, 128), sectors(7, 256)],
-        // FMUv5 is flashed over USB by a loader that itself lies in the flash.
+        // FMUv5 is flashed over USB by a loader in the flash.
         usb_loader: UsbLoader::OutOfReach("it has no button for BOOT0, and its case leads the pin nowhere"),
-        // DTCM, which is never cached: the data cache is on, and the DMA's other memories, SRAM1 and SRAM2 (RM0410
-        // §2.1), are behind it.
+        // DTCM, which is never cached: the data cache is on, and caches the DMA's other memories, SRAM1 and SRAM2
+        // (RM0410 §2.1).
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
         // DTCM.
         retained: (0x2001_FC00, 0x2002_0000),
@@ -89,7 +86,7 @@ pub const BOARDS: [Board; 3] = [
         levels: ["CAN1_TX", "CAN2_TX"],
         // RM0090 §3.3.
         flash: &[sectors(4, 16), sectors(1, 64), sectors(7, 128)],
-        // PA11 and PA12 are free for a USB connector, and so the chip's pin BOOT0 for a button.
+        // PA11 and PA12 are free for a USB connector, and the chip's pin BOOT0 for a button.
         usb_loader: UsbLoader::Enter("take BOOT0 to 3.3 V while plugging USB (PA11, PA12) in"),
         // SRAM1 and SRAM2 (RM0090 §2.1); not the core-coupled memory.
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
@@ -107,18 +104,15 @@ const fn sectors(count: u64, kib: u64) -> Sectors {
 }
 
 impl Board {
-    /// Bytes of the flash.
     pub fn flash_size(&self) -> u64 {
         self.flash.iter().map(|equal| equal.count * equal.size).sum()
     }
 }
 
-/// The board called `name`; `None` when there is none.
 pub fn find(name: &str) -> Option<&'static Board> {
     BOARDS.iter().find(|b| b.name == name)
 }
 
-/// The boards' names, for a sentence.
 pub fn names() -> String {
     BOARDS.map(|b| b.name).join(", ")
 }

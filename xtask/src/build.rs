@@ -1,4 +1,4 @@
-//! Builds a board's firmware with whatever toolchain is there.
+//! Builds a board's firmware with the available toolchain.
 
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader};
@@ -10,22 +10,21 @@ use crate::Error;
 use crate::boards::Board;
 use crate::toolchain::{self, TARGET};
 
-/// Bytes of the log's buffer in a build with trace: 2 ms of events and their frames, where a probe may be slow.
+/// Bytes of the log's buffer in a build with trace: 2 ms of events and their frames, for a slow probe.
 const TRACE_BUFFER: &str = "8192";
 
-/// Which of a board's images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variant {
-    /// The one that flies.
+    /// The image that flies.
     Plain,
-    /// One that logs every event of the executors (docs/timing.md).
+    /// Logs every event of the executors (docs/timing.md).
     Trace,
-    /// One with the data cache on, for a board that flies without (docs/boards.md).
+    /// Data cache on, for a board that flies without (docs/boards.md).
     DataCache,
 }
 
 impl Variant {
-    /// The variant that an option of the command line asks for.
+    /// The variant of a command line option.
     pub fn asked(option: &str) -> Option<Self> {
         match option {
             "--trace" => Some(Self::Trace),
@@ -34,7 +33,7 @@ impl Variant {
         }
     }
 
-    /// The same, for `board`.
+    /// The variant, checked for `board`.
     ///
     /// # Errors
     /// One line: the board has no such image.
@@ -52,7 +51,7 @@ impl Variant {
 /// Builds the firmware of `board`; returns the path of its ELF.
 ///
 /// # Errors
-/// No toolchain, or the build failed (and said why).
+/// No toolchain, or the build failed (with its output).
 pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
     let (feature, variables): (_, &[_]) = match variant {
         Variant::Plain => ("", &[]),
@@ -76,25 +75,23 @@ pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
     })
 }
 
-/// What an image is built of. The profile and the flags are the same for all images.
+/// Inputs of an image. Profile and flags are the same for all.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe<'a> {
-    /// Package with the binary.
     pub package: &'a str,
-    /// Further arguments of `cargo build`.
     pub arguments: &'a [&'a str],
-    /// Environment variables of the build: name and value.
+    /// Environment variables: name and value.
     pub variables: &'a [(&'a str, &'a str)],
-    /// The processor's core, as rustc calls it.
+    /// Core, by rustc's name.
     pub core: &'a str,
-    /// What the name of the ELF ends in.
+    /// Suffix of the ELF's name.
     pub kept: &'a str,
 }
 
 /// Builds an image of this workspace; returns the path of its ELF.
 ///
 /// # Errors
-/// No toolchain, or the build failed (and said why).
+/// No toolchain, or the build failed (with its output).
 pub fn image(recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     image_in(root(), recipe)
 }
@@ -102,7 +99,7 @@ pub fn image(recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
 /// [`image`] of the workspace in `folder`.
 ///
 /// # Errors
-/// As there.
+/// As [`image`].
 pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     let &Recipe {
         package,
@@ -117,7 +114,7 @@ pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(folder);
     if folder != root() {
-        // What does not lie in the folder is built once for both.
+        // Builds what lies outside the folder once for both.
         command.env("CARGO_TARGET_DIR", target_dir());
     }
     command.args([
@@ -133,7 +130,7 @@ pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     command.args(arguments).args(toolchain.arguments);
     command.envs(toolchain.variables.iter().map(|(name, value)| (name, value)));
     command.envs(variables.iter().copied());
-    // Only makes the code faster: an image that is built without it does the same.
+    // Only for speed: an image built without it does the same.
     let mut flags = env::var_os("RUSTFLAGS").unwrap_or_default();
     if !flags.is_empty() {
         flags.push(" ");
@@ -158,29 +155,27 @@ pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
         return Err(format!("{package} does not build for {kept}").into());
     }
     let built = built.ok_or("cargo built no executable")?;
-    // Cargo calls every board's image the same: keep one of each.
+    // Cargo names every board's image alike: keeps one of each.
     let copy = built.with_file_name(format!("{package}-{kept}.elf"));
     fs::copy(&built, &copy)?;
     Ok(copy)
 }
 
-/// Folder of the workspace.
 pub fn root() -> &'static Path {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap_or(here)
 }
 
-/// Where cargo builds.
 pub fn target_dir() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
-/// A path as one would type it in the workspace's folder.
+/// A path relative to the workspace's folder.
 pub fn typed(path: &Path) -> String {
     path.strip_prefix(root()).unwrap_or(path).display().to_string()
 }
 
-/// The command as one would type it.
+/// The command as typed in a shell.
 pub fn shown(command: &Command) -> String {
     let mut words = Vec::new();
     for (name, value) in command.get_envs() {

@@ -1,5 +1,5 @@
-//! The conformance image on QEMU and on the emulated core: equal logs, line by line, or the emulator is not to be trusted
-//! with a flight. The control laws' lines must also be those that the host prints: its tests are tests of what flies.
+//! The conformance image on QEMU and on the emulated core, whose logs must be equal. The control laws' lines must also
+//! equal the host's, so that its tests hold for the chip.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -9,13 +9,13 @@ use crate::build::Recipe;
 use crate::cost::{CORES, Core};
 use crate::{Error, build};
 
-/// Differing lines shown; the rest is counted.
+/// Most differing lines shown; the rest is counted.
 const SHOWN: usize = 5;
 
 /// Builds the image for each core, runs it on both, compares.
 ///
 /// # Errors
-/// No toolchain or no QEMU, an image that does not end well, or logs that differ.
+/// No toolchain or QEMU, an image that fails, or logs that differ.
 pub fn conformance() -> Result<(), Error> {
     let laws = output(cargo().args(["run", "--quiet", "--locked", "--package", "sophie-conformance"]))?;
     for core in &CORES {
@@ -109,7 +109,6 @@ fn cargo() -> Command {
     command
 }
 
-/// What a command prints.
 fn output(command: &mut Command) -> Result<String, Error> {
     eprintln!("{}", build::shown(command));
     let output = command

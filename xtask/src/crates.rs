@@ -1,7 +1,7 @@
-//! What each crate takes of an image's flash, by its symbols.
+//! Flash of an image by crate, from its symbols.
 //!
-//! A function counts for the crate that its name begins with: what one crate makes of another's generics is the other's.
-//! What has no name of a crate is shown apart, so that a column adds up to the image.
+//! A function counts for the crate that its name begins with: an instance of another crate's generics counts for the
+//! instantiating one. Bytes without a crate's name are listed apart, so that a column adds up to the image.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +10,11 @@ use crate::boards::Board;
 use crate::image::{Image, Section, Static};
 use crate::sizes::Sizes;
 
-/// Crates that take less than this on every board are added up, bytes.
+/// Crates below this on every board are summed, bytes.
 const SMALL: u64 = 2048;
-/// Constants that the compiler gives no name of a crate.
+/// Constants without a crate's name.
 const NAMELESS: &str = "constants without a name";
-/// What no symbol covers, or one without a crate.
+/// Bytes without a symbol, or with one without a crate.
 const REST: &str = "rest: vectors, assembly, C names, padding";
 
 /// Bytes of flash by crate.
@@ -27,7 +27,7 @@ pub type Shares = BTreeMap<String, u64>;
 pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
     let symbols = image.functions.iter().chain(&image.statics);
     let mut symbols: Vec<&Static> = symbols.filter(|symbol| symbol.size > 0).collect();
-    // Where two lie at one address, the longer counts.
+    // Of two at one address, the longer counts.
     symbols.sort_by_key(|symbol| (symbol.address, std::cmp::Reverse(symbol.size)));
     let mut shares = Shares::new();
     for section in image.sections.iter().filter(|section| section.in_image) {
@@ -45,7 +45,7 @@ pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
     }
 }
 
-/// Gives every byte of `section` to one owner.
+/// Assigns every byte of `section` to one owner.
 fn share(section: &Section, symbols: &[&Static], shares: &mut Shares) {
     let mut give = |owner: String, bytes: u64| {
         if bytes > 0 {
@@ -89,7 +89,7 @@ fn first_crate(path: &str) -> Option<&str> {
             "" => return None,
             "mut" | "const" | "dyn" | "as" => rest = behind,
             _ if behind.starts_with("::") => return Some(word),
-            // A type that is no crate's own.
+            // A type of no crate.
             _ => rest = behind,
         }
     }
@@ -213,7 +213,7 @@ mod tests {
             stack: 0,
         };
         let shares = shares(&image(), &sizes(128)).unwrap();
-        // 4 before, 24 between, 16 where the section ends before the symbol does; constants overlap by 8.
+        // 4 before, 24 between, 16 where the section ends before the symbol; constants overlap by 8.
         let expected = [
             ("alpha", 20 + 16),
             ("beta", 16),

@@ -1,10 +1,9 @@
-//! A firmware onto a chip through the USB loader that the chip has from its maker (ST's AN2606 and AN3156).
+//! Writes firmware through the chip maker's USB loader (ST's AN2606 and AN3156).
 //!
-//! The loader erases whole sectors and writes where `dfu-util` says; `dfu-util` erases each sector that a file touches, and
-//! remembers nothing from one call to the next. So the image goes in stretches, no two of which share a sector: a flat
-//! file would erase what lies between, on the f405 the stored parameters, and a file for each segment would erase the
-//! end of the one before. The stretch with the vector table goes last: the loader is left to the address of the last
-//! call and takes stack and first instruction from there, and a transfer that breaks off leaves the old table or none.
+//! `dfu-util` erases each sector that a file touches, and keeps no state between calls. So the image is written in
+//! stretches that share no sector: a flat file would erase the gaps (on the f405 the stored parameters), a file per
+//! segment the end of the one before. The stretch with the vector table comes last: the loader starts the firmware at
+//! the address of the last call, and an interrupted transfer leaves the old table or none.
 
 use std::fs;
 use std::path::PathBuf;
@@ -16,24 +15,22 @@ use crate::{Error, Refused, build};
 
 /// Vendor and product of ST's loader, all chips.
 const DEVICE: &str = "0483:df11";
-/// Its setting for the flash; others are option bytes and what is written once.
+/// Its setting for the flash; others are option bytes and one-time memory.
 const SETTING: &str = "0";
-/// Flash is written in words of up to so many bytes (an H7's): a stretch holds whole ones.
+/// Largest flash word, bytes (an H7's): a stretch holds whole ones.
 const WORD: u64 = 32;
 
 /// Bytes to write in one call.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Stretch {
-    /// Address of the first.
     pub start: u64,
-    /// The bytes.
     pub bytes: Vec<u8>,
 }
 
-/// Writes `image` to the chip in its loader and starts it; `dry` only shows how.
+/// Writes `image` to the chip in its loader and starts it; `dry` only prints the commands.
 ///
 /// # Errors
-/// The board's chip cannot be reached so, none is in its loader or it is another one, or dfu-util fails.
+/// The board's chip cannot be reached this way, none is in its loader or it is another one, or dfu-util fails.
 pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
     let enter = enter(board)?;
     let stretches = stretches(&image.loads, board.flash)?;
@@ -69,7 +66,7 @@ pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
     Ok(())
 }
 
-/// How the loader of the board's chip is entered.
+/// How to enter the loader of the board's chip.
 ///
 /// # Errors
 /// It cannot be: why, and what to do.
@@ -83,10 +80,10 @@ pub fn enter(board: &Board) -> Result<&'static str, Refused> {
     }
 }
 
-/// The stretches of `loads` in the order in which they are written, the one with the vector table last.
+/// The stretches of `loads` in writing order, the one with the vector table last.
 ///
 /// # Errors
-/// Something lies outside the flash, or over something else.
+/// A part lies outside the flash, or overlaps another.
 fn stretches(loads: &[Load], flash: &[Sectors]) -> Result<Vec<Stretch>, Error> {
     let mut sorted: Vec<_> = loads.iter().collect();
     sorted.sort_by_key(|load| load.address);
@@ -106,7 +103,7 @@ fn stretches(loads: &[Load], flash: &[Sectors]) -> Result<Vec<Stretch>, Error> {
             Some(before) if before.end() > load.address => {
                 return Err(format!("two parts of the image lie at {:#010x}", load.address).into());
             }
-            // The sector in which the one before ends must not be erased again.
+            // The sector in which the previous one ends must not be erased again.
             Some(before) if before.end() > first.0 => before.extend_to(load.address),
             _ => {
                 let mut stretch = Stretch {
@@ -132,19 +129,18 @@ fn stretches(loads: &[Load], flash: &[Sectors]) -> Result<Vec<Stretch>, Error> {
 }
 
 impl Stretch {
-    /// First address beyond.
     fn end(&self) -> u64 {
         self.start + self.bytes.len() as u64
     }
 
-    /// Fills with what an erased flash reads, up to `address`.
+    /// Pads with erased bytes up to `address`.
     fn extend_to(&mut self, address: u64) {
         let length = address.saturating_sub(self.start) as usize;
         self.bytes.resize(length.max(self.bytes.len()), 0xFF);
     }
 }
 
-/// The sector that holds `address`: its first address, and the first one beyond.
+/// The sector that holds `address`: first address and end.
 pub fn sector(flash: &[Sectors], address: u64) -> Option<(u64, u64)> {
     let mut start = FLASH;
     for sectors in flash {
@@ -158,7 +154,7 @@ pub fn sector(flash: &[Sectors], address: u64) -> Option<(u64, u64)> {
     None
 }
 
-/// Writes each stretch into a file of its own, which stays: the commands can be repeated by hand.
+/// Writes each stretch to a file, which stays: the commands can be repeated by hand.
 fn files(board: &Board, stretches: &[Stretch]) -> Result<Vec<PathBuf>, Error> {
     let folder = build::target_dir().join("dfu");
     fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -172,7 +168,7 @@ fn files(board: &Board, stretches: &[Stretch]) -> Result<Vec<PathBuf>, Error> {
         .collect()
 }
 
-/// Sees that exactly one chip is in its loader, and that its flash is the board's.
+/// Checks that exactly one chip is in its loader, with the board's flash.
 fn chip(board: &Board, enter: &str) -> Result<(), Error> {
     let output = DFU_UTIL.ask(&mut DFU_UTIL.command(&["-d", DEVICE, "--list"]))?;
     let [listed, complaints] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
@@ -196,7 +192,7 @@ fn chip(board: &Board, enter: &str) -> Result<(), Error> {
     }
 }
 
-/// The layouts of the flash of all chips that `dfu-util --list` shows in their loader.
+/// Flash layouts of all chips that `dfu-util --list` shows in their loader.
 fn found(listed: &str) -> Vec<String> {
     let field = |line: &str, name: &str| {
         let (_, rest) = line.split_once(&format!("{name}="))?;
@@ -209,7 +205,7 @@ fn found(listed: &str) -> Vec<String> {
         .collect()
 }
 
-/// The sectors that a layout names: `@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg` (UM0424, §4.3.2).
+/// The sectors of a layout: `@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg` (UM0424, §4.3.2).
 fn flash_of(layout: &str) -> Option<Vec<Sectors>> {
     let mut parts = layout.split('/').skip(1);
     let start = parts.next()?.trim().strip_prefix("0x")?;
@@ -233,7 +229,7 @@ fn flash_of(layout: &str) -> Option<Vec<Sectors>> {
     sectors.collect()
 }
 
-/// The same sectors, however they are grouped.
+/// Equal sectors, whatever the grouping.
 fn same(one: &[Sectors], other: &[Sectors]) -> bool {
     let each = |flash: &[Sectors]| -> Vec<u64> {
         let sizes = flash
@@ -294,7 +290,7 @@ mod tests {
 
     #[test]
     fn what_shares_a_sector_is_written_at_one_go_and_the_vector_table_last() {
-        // Table; code and constants in one sector with a gap; initial values in the next but one.
+        // Table; code and constants in one sector with a gap; initial values two sectors further.
         let loads = [
             load(0x0800_0000, &[1; 40]),
             load(0x0800_C000, &[2; 64]),

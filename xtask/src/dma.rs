@@ -1,20 +1,19 @@
-//! Where DMA reads and writes: in memory that it reaches.
+//! Checks that DMA's buffers are in memory that it reaches.
 //!
-//! Two kinds of memory are DMA's: statics called `DMA_…`, and the futures of the tasks (embassy's statics `POOL`), since
-//! a buffer that lives across an `await` is part of its task's future. A buffer elsewhere would be moved from or to
-//! nowhere, and on most chips nothing would say so.
+//! These are statics named `DMA_…`, and the futures of the tasks (embassy's statics `POOL`), since a buffer that lives
+//! across an `await` is part of its task's future. DMA would silently fail elsewhere on most chips.
 
 use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Fewest buffers that a board with motors, receiver and converter can have.
+/// Fewest buffers of a board with motors, receiver and converter.
 const FEWEST: usize = 3;
 
-/// Checks every buffer; returns how many there are.
+/// Checks every buffer; returns their number.
 ///
 /// # Errors
-/// A buffer where DMA does not reach, by name; or too few buffers, which means that the names have changed.
+/// A buffer that DMA does not reach, by name; or too few buffers, which means that the names have changed.
 pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     let buffers: Vec<_> = image
         .statics

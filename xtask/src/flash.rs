@@ -1,4 +1,4 @@
-//! Flashes a board: by a probe, or through the chip's own USB loader.
+//! Flashes a board by a probe, or through the chip's own USB loader.
 
 use std::path::{Path, PathBuf};
 
@@ -7,38 +7,34 @@ use crate::build::{self, Variant};
 use crate::tools::{self, PROBE_RS};
 use crate::{Error, Refused, backup, dfu};
 
-/// How the firmware gets there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum By {
     Probe,
     Usb,
 }
 
-/// What must be kept of a board before it is flashed.
+/// Backup required before flashing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Before<'a> {
-    /// A backup where it usually lies.
+    /// A backup at the default path.
     Usual,
-    /// A backup in this file.
     File(&'a str),
-    /// Nothing: the user wants it so.
+    /// None, by the user's choice.
     Nothing,
 }
 
-/// What is asked for.
 pub struct Flash<'a> {
-    /// The board.
     pub board: &'static Board,
     by: By,
     variant: Variant,
-    /// The image, if it is not to be built.
+    /// The image, unless it is to be built.
     elf: Option<&'a str>,
     before: Before<'a>,
     dry: bool,
 }
 
 impl<'a> Flash<'a> {
-    /// What `words`, the arguments behind the verb, ask for.
+    /// Parses `words`, the arguments behind the verb.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -128,8 +124,8 @@ impl<'a> Flash<'a> {
         }
     }
 
-    /// Where the chip's own loader cannot be entered, the loader in the flash is the only way to the firmware that the
-    /// board came with, and flashing overwrites it.
+    /// Requires a backup where the chip's own loader cannot be entered: flashing overwrites the loader in the flash,
+    /// the only way back to the board's original firmware.
     fn backed_up(&self) -> Result<(), Refused> {
         if self.before == Before::Nothing || matches!(self.board.usb_loader, UsbLoader::Enter(_)) {
             return Ok(());
@@ -150,7 +146,7 @@ impl<'a> Flash<'a> {
 
     fn by_probe(&self, elf: &Path) -> Result<(), Error> {
         let mut command = PROBE_RS.command(&["run", "--chip", self.board.probe_rs_chip]);
-        // The firmware drops log lines rather than wait for a probe; the probe must not make it wait either.
+        // The firmware drops log lines rather than wait for a probe; the probe must not make it wait.
         command.args(["--rtt-channel-mode", "no-block-trim"]).arg(elf);
         if self.dry {
             println!("{}", build::shown(&command));

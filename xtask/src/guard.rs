@@ -1,17 +1,16 @@
-//! The guard against damaged words in the flash of an H7.
+//! The guard against damaged words in the flash of an H7: `boards/src/stm32/flash_ecc.rs`.
 //!
-//! Power that fails while a parameter is stored leaves a word that this family's error correction cannot mend, and
-//! reading it is a bus fault at every start from then on. `boards/src/stm32/flash_ecc.rs` stands between; an image that
-//! reads its parameters without it builds and flies until that day.
+//! Power loss while a parameter is stored leaves an uncorrectable word, whose reading is a bus fault at every later
+//! start. An image without the guard flies until then.
 
 use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Where the guard begins: parts of the mangled name of a function that is never inlined.
+/// Parts of the mangled name of the guard's function, which is never inlined.
 const GUARD: [&str; 2] = ["flash_ecc", "begin_guard"];
 
-/// Whether the image needs the guard, which it then has.
+/// Returns whether the image needs the guard, which it then has.
 ///
 /// # Errors
 /// It needs the guard and has none.

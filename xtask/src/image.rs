@@ -1,4 +1,4 @@
-//! What the checks need to know of an ELF.
+//! ELF contents for the checks.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -8,64 +8,47 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
 
 use crate::Error;
 
-/// A section that takes memory on the chip.
 pub struct Section {
-    /// Name.
     pub name: String,
-    /// Where the program sees it.
+    /// Run-time address.
     pub address: u64,
-    /// Its length.
     pub size: u64,
-    /// It has contents in the image; without, it is RAM that start-up clears or leaves alone.
+    /// It has contents in the image; otherwise it is RAM that start-up clears or leaves alone.
     pub in_image: bool,
-    /// The program may write to it.
     pub writable: bool,
 }
 
-/// Bytes that flashing writes.
 pub struct Load {
-    /// Where they are written to.
+    /// Load address.
     pub address: u64,
-    /// The bytes.
     pub bytes: Vec<u8>,
 }
 
 impl Load {
-    /// How many.
     pub fn size(&self) -> u64 {
         self.bytes.len() as u64
     }
 }
 
-/// A static, or a function.
 pub struct Static {
-    /// Mangled name.
     pub name: String,
-    /// Where it lies.
     pub address: u64,
-    /// Its length.
     pub size: u64,
 }
 
-/// An ELF, read.
 pub struct Image {
     /// Address of the first instruction.
     pub entry: u64,
-    /// Sections that take memory.
     pub sections: Vec<Section>,
-    /// What flashing writes.
     pub loads: Vec<Load>,
-    /// Statics.
     pub statics: Vec<Static>,
-    /// Functions.
     pub functions: Vec<Static>,
     /// Addresses of all named symbols.
     pub symbols: HashMap<String, u64>,
-    /// Contents of the vector table, word by word.
+    /// Words of the vector table.
     pub vectors: Vec<u32>,
 }
 
-/// The named symbols of an image.
 #[derive(Default)]
 struct Symbols {
     statics: Vec<Static>,
@@ -78,7 +61,7 @@ impl Symbols {
         let mut symbols = Self::default();
         for symbol in file.symbols() {
             let Ok(name) = symbol.name() else { continue };
-            // The log's texts are symbols too, in sections that never reach the chip.
+            // The log's texts are symbols too, in sections that are not loaded.
             let on_chip = |s: &Section| (s.address..s.address + s.size).contains(&symbol.address());
             if symbol.kind() == SymbolKind::Data && sections.iter().any(on_chip) {
                 symbols.statics.push(Static {
@@ -90,7 +73,7 @@ impl Symbols {
             if symbol.kind() == SymbolKind::Text {
                 symbols.functions.push(Static {
                     name: name.into(),
-                    // Without the bit that says Thumb.
+                    // Without the Thumb bit.
                     address: symbol.address() & !1,
                     size: symbol.size(),
                 });
@@ -170,7 +153,7 @@ impl Image {
     /// Address of the symbol `name`.
     ///
     /// # Errors
-    /// The image has none of this name.
+    /// There is no such symbol.
     pub fn symbol(&self, name: &str) -> Result<u64, Error> {
         self.symbols
             .get(name)

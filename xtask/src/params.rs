@@ -1,11 +1,11 @@
-//! The flash that is kept for parameters: flashing a firmware must leave it alone.
+//! Checks that flashing keeps the parameter flash.
 
 use crate::boards::{Board, Sectors};
 use crate::image::{Image, Load};
 use crate::{Error, dfu};
 
-/// Checks that nothing is loaded into the sectors where parameters are stored, which would be erased for it; returns how
-/// many bytes are kept, none where the board stores them elsewhere.
+/// Checks that nothing is loaded into the parameters' sectors, which flashing would erase; returns their bytes, 0 where
+/// the board stores parameters elsewhere.
 ///
 /// # Errors
 /// Part of the image lies there: its address.
@@ -59,7 +59,6 @@ mod tests {
                 inside,
                 "{address:#x} {size:#x}"
             );
-            // Parameters in the middle of a sector are erased with it.
             let found = first_in(&loads, flash, 0x0801_8000, 0x0802_0000).is_some();
             assert!(!found, "{address:#x} {size:#x}");
         }

@@ -1,13 +1,12 @@
-//! What outlives a reset: in memory that keeps it, and that neither the loading of the image nor start-up touches.
+//! Checks that retained data lie in memory that outlives a reset and that neither loading nor start-up touches.
 
 use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Name of its section.
 const SECTION: &str = ".retained";
 
-/// Checks where it lies; returns its bytes.
+/// Checks its place; returns its bytes.
 ///
 /// # Errors
 /// There is none, it lies elsewhere, or flashing would write it.
@@ -45,7 +44,7 @@ mod tests {
     use crate::boards;
     use crate::image::Section;
 
-    /// The complaint about 0x184 bytes at `address`, while start-up clears what is from `bss` on.
+    /// The error for 0x184 bytes at `address`, while start-up clears memory from `bss` on.
     fn complaint(address: u64, in_image: bool, bss: (u64, u64)) -> Option<String> {
         let symbols = [
             ("__sbss", bss.0),

@@ -1,4 +1,4 @@
-//! The tests of a board: built, and run on it through a probe, or on the emulated board.
+//! Builds a board's tests and runs them by a probe, or on the emulated board.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -11,30 +11,24 @@ use crate::{Error, build};
 /// The board whose tests the emulator can run.
 const EMULATED: &str = "matek-h743";
 
-/// Where the tests are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Where {
-    /// Nowhere: they are only built.
     Built,
-    /// On the emulated board.
     Emulated,
-    /// On the board at the probe.
     Probe,
 }
 
-/// What is asked for.
 pub struct Rig<'a> {
-    /// The board.
     pub board: &'static Board,
     on: Where,
     wired: bool,
     variant: Variant,
-    /// Goes to the runner: parts of the names of the tests to run.
+    /// Passed to the runner: parts of test names.
     names: Vec<&'a str>,
 }
 
 impl<'a> Rig<'a> {
-    /// What `words`, the arguments behind the verb, ask for.
+    /// Parses `words`, the arguments behind the verb.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -73,12 +67,12 @@ impl<'a> Rig<'a> {
         Ok(rig)
     }
 
-    /// Builds the tests and runs them; the exit status is the runner's own.
+    /// Builds the tests and runs them; returns the runner's exit status.
     ///
     /// # Errors
     /// The tests do not build, their image is wrong, or there is no probe.
     pub fn run(&self) -> Result<ExitCode, Error> {
-        // On the emulated board every jumper is in place.
+        // The emulated board has every jumper.
         let wired = self.wired || self.on == Where::Emulated;
         let cached = self.variant == Variant::DataCache;
         let features = format!(

@@ -1,4 +1,4 @@
-//! What a board's firmware takes of flash and RAM, against limits and ceilings.
+//! Flash and RAM of a board's firmware, against limits and ceilings.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,18 +14,17 @@ const FLASH_LIMIT: u64 = 400 * 1024;
 /// Most static RAM on any board, bytes.
 const RAM_LIMIT: u64 = 64 * 1024;
 
-/// Where the ceilings are shown to users, between two marks.
+/// Page with the ceilings, between two marks.
 const PAGE: &str = "docs/boards.md";
 const BEGIN: &str = "<!-- sizes: written by `cargo xtask sizes --tighten` -->";
 const END: &str = "<!-- sizes end -->";
 
-/// Sizes of one image, bytes.
+/// Sizes of an image, bytes.
 pub struct Sizes {
     /// Code, constants and initial values.
     pub flash: u64,
-    /// Statics, the futures of the tasks among them.
+    /// Statics, including the tasks' futures.
     pub ram: u64,
-    /// Memory set aside for the stack.
     pub stack: u64,
 }
 
@@ -33,7 +32,7 @@ impl Sizes {
     /// Sizes of `image`.
     ///
     /// # Errors
-    /// The image does not say where its stack lies.
+    /// The image does not define its stack.
     pub fn of(image: &Image) -> Result<Self, Error> {
         let sum = |what: fn(&crate::image::Section) -> bool| {
             image.sections.iter().filter(|s| what(s)).map(|s| s.size).sum()
@@ -47,14 +46,12 @@ impl Sizes {
     }
 }
 
-/// The ceilings of one board.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 struct Ceiling {
     flash: u64,
     ram: u64,
 }
 
-/// Prints the sizes as a table.
 pub fn print(rows: &[(&Board, Sizes)]) {
     println!("| board | flash, bytes | static RAM, bytes | stack, bytes |");
     println!("|---|---:|---:|---:|");
@@ -64,11 +61,11 @@ pub fn print(rows: &[(&Board, Sizes)]) {
     println!("| limit | {FLASH_LIMIT} | {RAM_LIMIT} | |");
 }
 
-/// Compares with the limits, with `xtask/ceilings.toml`, and that with its table in `docs/boards.md`. If `tighten`,
-/// lowers the ceilings and writes the table.
+/// Compares with the limits and `xtask/ceilings.toml`, and that with its table in `docs/boards.md`. `tighten` lowers
+/// the ceilings and writes the table.
 ///
 /// # Errors
-/// What is too large or out of date, each on its line.
+/// What is too large or out of date, one per line.
 pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let path = build::root().join("xtask/ceilings.toml");
     let text = fs::read_to_string(&path)?;
@@ -104,7 +101,7 @@ pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let stacks: Vec<_> = rows.iter().map(|(board, s)| (board.name, s.stack)).collect();
     let updated = with_table(&page, &ceilings, &stacks)?;
     if tighten {
-        // The reasons of the ceilings stand above them, and stay.
+        // Keeps the reasons above the ceilings.
         let head: String = text
             .lines()
             .take_while(|line| line.starts_with('#'))
@@ -124,7 +121,6 @@ pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     }
 }
 
-/// `page` with the ceilings between its marks.
 fn with_table(
     page: &str,
     ceilings: &BTreeMap<String, Ceiling>,
@@ -146,13 +142,13 @@ fn with_table(
     Ok(format!("{head}{BEGIN}{table}{END}{tail}"))
 }
 
-/// A board's row up to its stack, which only an image knows.
+/// A board's row without its stack, which only an image knows.
 fn row(name: &str, ceiling: &Ceiling) -> String {
     let (flash, ram) = (ceiling.flash / 1024, ceiling.ram / 1024);
     format!("| `{name}` | {flash} | {ram} |")
 }
 
-/// A few per cent of room, in whole KiB: compilers differ.
+/// A few per cent of margin, in whole KiB: compilers differ.
 fn rounded(size: u64) -> u64 {
     (size + size / 32).next_multiple_of(1024)
 }

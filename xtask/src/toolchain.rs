@@ -1,7 +1,5 @@
-//! Finds something that compiles for the boards.
-//!
-//! Two ways: the target's library from rustup, or, where rustup has nothing to give (an offline machine), a compiler
-//! that comes with the library's source and builds it: Debian's packages `rustc-web` and `rust-web-src`.
+//! Finds a toolchain for the boards: the target's library from rustup, or, on an offline machine, a compiler that comes
+//! with the library's source: Debian's packages `rustc-web` and `rust-web-src`.
 
 use std::env;
 use std::ffi::OsString;
@@ -10,25 +8,19 @@ use std::process::Command;
 
 use crate::Error;
 
-/// The boards' target.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
-/// Where Debian installs its compiler.
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 
-/// A toolchain that compiles for [`TARGET`].
 pub struct Toolchain {
-    /// What it is, for the user.
     pub name: String,
-    /// Arguments for cargo.
     pub arguments: &'static [&'static str],
-    /// Variables for cargo.
     pub variables: Vec<(&'static str, OsString)>,
 }
 
-/// The toolchain that serves here.
+/// The available toolchain.
 ///
 /// # Errors
-/// None does: what to install.
+/// None: what to install.
 pub fn find() -> Result<Toolchain, Error> {
     let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     let libraries = ask(&rustc, &["--print", "target-libdir", "--target", TARGET]).map(PathBuf::from);
@@ -59,7 +51,7 @@ fn debian(rustc: &str) -> Option<Toolchain> {
     if !sysroot.join("lib/rustlib/src/rust/library/core").is_dir() {
         return None;
     }
-    // Debian's compiler comes without the linker that the target asks for; every rustup toolchain has one.
+    // Debian's compiler lacks the target's linker; every rustup toolchain has one.
     let host = ask(rustc, &["-vV"])?
         .lines()
         .find_map(|l| l.strip_prefix("host: ").map(str::to_string))?;
@@ -74,8 +66,7 @@ fn debian(rustc: &str) -> Option<Toolchain> {
     let path = env::join_paths(std::iter::once(linkers).chain(env::split_paths(&path))).ok()?;
     Some(Toolchain {
         name: format!("Debian's {version}, building `core` from its source"),
-        // On the command line and not in .cargo/config.toml: there it would also reach the host's builds of anyone
-        // who uses a nightly cargo.
+        // Not in .cargo/config.toml, where it would also affect host builds with a nightly cargo.
         arguments: &["-Zbuild-std=core"],
         variables: vec![
             ("RUSTC", DEBIAN_RUSTC.into()),
@@ -86,7 +77,7 @@ fn debian(rustc: &str) -> Option<Toolchain> {
     })
 }
 
-/// First line, or all lines, that a program prints; `None` when it fails.
+/// Output of a program; `None` when it fails.
 fn ask(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

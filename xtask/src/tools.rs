@@ -1,4 +1,4 @@
-//! Programs that the user installs, and one line for whatever goes wrong with them.
+//! Programs that the user installs, with one line per error.
 
 use std::io::ErrorKind;
 use std::process::{Command, Output, Stdio};
@@ -6,10 +6,9 @@ use std::process::{Command, Output, Stdio};
 use crate::boards::Board;
 use crate::{Error, build};
 
-/// A program.
 pub struct Tool {
     program: &'static str,
-    /// Where it comes from.
+    /// Installation source.
     install: &'static str,
 }
 
@@ -21,25 +20,24 @@ pub const PROBE_RS: Tool = Tool {
 
 /// Writes a chip through its own USB loader.
 ///
-/// The program and not a crate (`dfu-libusb`, `dfu-nusb`): it comes with every system, is what people already flash
-/// autopilots with, and knows the oddities of ST's loaders; a crate would put a USB library into every build of xtask.
+/// A program instead of a crate (`dfu-libusb`, `dfu-nusb`): every system has it, users flash autopilots with it, and it
+/// handles the quirks of ST's loaders; a crate would add a USB library to every build of xtask.
 pub const DFU_UTIL: Tool = Tool {
     program: "dfu-util",
     install: "Debian, Ubuntu: apt-get install dfu-util; macOS: brew install dfu-util; else https://dfu-util.sourceforge.net",
 };
 
 impl Tool {
-    /// The program with `arguments`.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(self.program);
         command.args(arguments);
         command
     }
 
-    /// Shows the command and runs it in the user's terminal.
+    /// Writes a chip through its own USB loader.
     ///
-    /// # Errors
-    /// The program is not installed, or fails.
+    /// A program instead of a crate (`dfu-libusb`, `dfu-nusb`): every system has it, and it handles the quirks of ST's
+    /// loaders; a crate would add a USB library to every build of xtask.
     pub fn run(&self, command: &mut Command) -> Result<(), Error> {
         eprintln!("{}", build::shown(command));
         let status = command.status().map_err(|e| self.missing(&e))?;
@@ -50,7 +48,7 @@ impl Tool {
         }
     }
 
-    /// Runs the command and keeps what it prints.
+    /// Runs the command and returns its output.
     ///
     /// # Errors
     /// The program is not installed.
@@ -59,7 +57,6 @@ impl Tool {
         output.map_err(|e| self.missing(&e).into())
     }
 
-    /// Why the program does not start.
     fn missing(&self, error: &std::io::Error) -> String {
         match error.kind() {
             ErrorKind::NotFound => format!("{} is not installed; {}", self.program, self.install),
@@ -68,7 +65,7 @@ impl Tool {
     }
 }
 
-/// Sees that a probe is plugged in.
+/// Checks that a probe is plugged in.
 ///
 /// # Errors
 /// probe-rs is not installed, or lists none.

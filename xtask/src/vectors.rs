@@ -1,18 +1,18 @@
-//! The vector table: what the core reads before the first instruction, and what it jumps to ever after.
+//! Checks the vector table, which the core reads at the start and at every exception.
 
 use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Words of the table before the first interrupt: stack pointer and fifteen exceptions.
+/// Words before the first interrupt: stack pointer and fifteen exceptions.
 const EXCEPTIONS: usize = 16;
 
-/// Register of the core with the address of the table (ARMv7-M, B3.2.5).
+/// Vector table offset register (ARMv7-M, B3.2.5).
 const VTOR: u32 = 0xE000_ED08;
-/// Bytes of start-up code in which it must be written: before anything that may take an exception.
+/// Bytes of start-up code within which it must be written: before any possible exception.
 const AT_ONCE: u64 = 16;
 
-/// Checks the table; returns how many of its interrupts have a handler of their own.
+/// Checks the table; returns how many interrupts have their own handler.
 ///
 /// # Errors
 /// What is wrong with it.
@@ -79,7 +79,7 @@ fn takes_its_own(image: &Image) -> Result<bool, Error> {
         let word = image.word(at & !3)?;
         Some(if at & 2 == 0 { word & 0xFFFF } else { word >> 16 })
     };
-    // Register and word of a load from behind the code (encoding T1, ARMv7-M A7.7.44).
+    // Register and word of a PC-relative load (encoding T1, ARMv7-M A7.7.44).
     let load = |at: u64| {
         let code = half(at).filter(|code| code >> 11 == 0b01001)?;
         let word = image.word(((at + 4) & !3) + 4 * u64::from(code & 0xFF))?;
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
     use crate::image::Load;
 
-    /// An image that starts with `code` at 0x0800_0102, its words behind it.
+    /// An image that starts with `code` at 0x0800_0102, followed by its words.
     fn starting_with(code: &[u16], words: &[u32]) -> Image {
         let halves = code.iter().flat_map(|half| half.to_le_bytes());
         let bytes = [0; 2].into_iter().chain(halves);
@@ -143,7 +143,7 @@ mod tests {
         assert!(takes_its_own(&starting_with(&code, &own)).unwrap());
         assert!(!takes_its_own(&starting_with(&code, &[VTOR, 0x1FFF_0000])).unwrap());
         assert!(!takes_its_own(&starting_with(&code, &[0xE000_ED88, 0x0800_0000])).unwrap());
-        // Stored the other way round, loaded and never stored, nothing of all that.
+        // Stored the other way round, loaded and not stored, none of it.
         for code in [
             [0x4802, 0x4902, 0x6008, 0xBF00, 0xBF00],
             [0x4802, 0x4902, 0xBF00, 0xBF00, 0xBF00],

@@ -1,25 +1,22 @@
-//! The handler of a hard fault, which everything ends in that the processor cannot do: an address where nothing is, an
-//! undefined instruction, a stack that has overflowed.
+//! Hard fault handler: unmapped addresses, undefined instructions, stack overflow.
 //!
-//! It trusts no stack. One that overflows has left its memory, and a handler that went on there would fault itself, at
-//! the highest priority: the processor then locks up, without a message and with the motors as they are.
+//! It does not use the old stack. An overflowed one has left its memory, where the handler would fault again at the
+//! highest priority: the processor would lock up without a message, with the motors unchanged.
 
 use core::arch::naked_asm;
 
 use crate::end_of_run;
 
-/// Bytes of a frame that the processor stacks without floats.
+/// Bytes of an exception frame without floats.
 const FRAME: u32 = 32;
-/// In the fault status: what was to be stacked could not be, by memory protection and by the bus (ARMv7-M, B3.2.15).
+/// Fault status: stacking failed by memory protection or by the bus (ARMv7-M, B3.2.15).
 const STACKING: u32 = 1 << 4 | 1 << 12;
 
 /// The address of a memory fault is valid, and that of a bus fault.
 const MEMORY_ADDRESS: u32 = 1 << 7;
 const BUS_ADDRESS: u32 = 1 << 15;
 
-/// The entry in the vector table: takes what it can from the frame, and begins the whole stack anew.
-///
-/// Nothing returns to what is on it. The frame's own words are read first, and only where the stack is.
+/// Entry in the vector table: reads the frame, if it lies in the stack, then restarts the stack from its top.
 ///
 /// # Safety
 /// Only the processor calls it.
@@ -28,7 +25,7 @@ const BUS_ADDRESS: u32 = 1 << 15;
 #[allow(non_snake_case, reason = "the name that the vector table wants")]
 unsafe extern "C" fn HardFault() -> ! {
     naked_asm!(
-        // The next float instruction would save float registers on the old stack: called off (FPCCR.LSPACT).
+        // Cancels the float state's pending save to the old stack (FPCCR.LSPACT).
         "movw r3, #0xEF34",
         "movt r3, #0xE000",
         "ldr r2, [r3]",
@@ -58,17 +55,17 @@ unsafe extern "C" fn HardFault() -> ! {
     )
 }
 
-/// Ends the run. `stacked` is where the frame lies, `pc` and `lr` are what it says of the fault, if it can be read.
+/// Ends the run. `stacked`: address of the frame; `pc`, `lr`: from the frame, if readable.
 extern "C" fn told(stacked: u32, pc: u32, lr: u32) -> ! {
     unsafe extern "C" {
         static _stack_start: u32;
         static _stack_end: u32;
     }
     let (end, start) = (&raw const _stack_end as u32, &raw const _stack_start as u32);
-    // Configurable fault status, HardFault status, and the addresses that memory and bus faults tell (ARMv7-M, B3.2).
+    // Configurable fault status, HardFault status, addresses of memory and bus faults (ARMv7-M, B3.2).
     let [cfsr, hfsr, mmfar, bfar] =
         [0xE000_ED28, 0xE000_ED2C, 0xE000_ED34, 0xE000_ED38_usize].map(|address| {
-            // SAFETY: registers of the core, always there and readable without side effects.
+            // SAFETY: core registers, always present and readable without side effects.
             unsafe { (address as *const u32).read_volatile() }
         });
     if cfsr & STACKING != 0 || !(end..=start - FRAME).contains(&stacked) {

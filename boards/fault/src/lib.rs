@@ -1,14 +1,13 @@
-//! How a run on a Cortex-M ends, whatever the chip: the motors stop first, then the message is kept, then the chip is
-//! reset.
+//! The end of a run on a Cortex-M: stops the motors, keeps the message, resets the chip.
 //!
-//! A reset, because nothing after a fault can be trusted, and because it is the fastest way to motors that are
-//! *commanded* to stop: the motor task's first act is a frame of zeros. The message is logged at the next start.
+//! After a fault nothing can be trusted; a reset leads fastest to motors that are *commanded* to stop, since the motor
+//! task first sends a frame of zeros. The next start logs the message.
 //!
-//! A second fault on the way comes here again and goes straight to the reset. Within the handler of a hard fault it
-//! locks the processor up instead: the motors' pins are low by then, and the watchdog resets the chip. Either way the
-//! next start finds the words that were kept before the message was made.
+//! A second fault goes straight to the reset. Within a hard fault handler it locks the processor up, with the motors'
+//! pins already low, and the watchdog resets the chip. The next start then finds the text kept before the message was
+//! made.
 //!
-//! The crate knows no chip and no board, so that an image for QEMU runs the very code that flies. Empty on the host.
+//! The crate knows no chip or board, so an image for QEMU runs the same code. Empty on the host.
 
 #![no_std]
 #![cfg(target_os = "none")]
@@ -22,18 +21,18 @@ mod hard_fault;
 use core::fmt::Arguments;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// What is kept while the message is made.
+/// Kept while the message is made.
 const UNTOLD: &str = "a fault, and another one while it was to be told";
 
 /// A run is ending. Set by [`stop_and_restart`]; a reset clears it.
 pub static ENDING: AtomicBool = AtomicBool::new(false);
 
-/// What a board does at the end of a run. Called with interrupts off, from any handler, on any depth of the stack.
+/// A board's part in the end of a run. Called with interrupts off, from any handler, at any stack depth.
 pub trait Machine {
-    /// Drives the motors' pins low by plain accesses to registers: nothing that can fault.
+    /// Drives the motors' pins low by plain register accesses, which cannot fault.
     fn stop_motors();
 
-    /// Keeps `message` for the next start. May fault where the message does.
+    /// Keeps `message` for the next start. May fault in formatting it.
     fn keep(message: Arguments<'_>);
 
     /// Restarts the chip.
@@ -43,7 +42,7 @@ pub trait Machine {
 /// Stops the motors, keeps `message` for the next start and restarts the machine `M`.
 pub fn stop_and_restart<M: Machine>(message: Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
-    // Nothing that can fault stands before the motors.
+    // Nothing that can fault precedes this.
     M::stop_motors();
     if !ENDING.load(Ordering::Relaxed) {
         ENDING.store(true, Ordering::Relaxed);
@@ -53,7 +52,7 @@ pub fn stop_and_restart<M: Machine>(message: Arguments<'_>) -> ! {
     M::reset()
 }
 
-/// Ends the run as the image has said with [`ends_with!`].
+/// Ends the run as the image defines with [`ends_with!`].
 pub fn end_of_run(message: Arguments<'_>) -> ! {
     unsafe extern "Rust" {
         // SAFETY: `ends_with!` defines it with this signature; an image without one does not link.
@@ -62,8 +61,7 @@ pub fn end_of_run(message: Arguments<'_>) -> ! {
     sophie_end_of_run(message)
 }
 
-/// Says how the runs of an image end that a fault or a panic gives up: a function `fn(fmt::Arguments<'_>) -> !`. Once
-/// in an image.
+/// Defines the end of an image's run after a fault or panic: a function `fn(fmt::Arguments<'_>) -> !`. Once per image.
 #[macro_export]
 macro_rules! ends_with {
     ($end:path) => {

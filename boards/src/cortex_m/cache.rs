@@ -1,21 +1,20 @@
-//! The caches of a Cortex-M7, and the memory protection that they need.
+//! Caches of a Cortex-M7, and the memory protection that they need.
 
 use cortex_m::peripheral::{MPU, Peripherals, SCB};
 
-/// Regions of the memory protection, each with its base, memory type and access (ARMv7-M B3.5.8, B3.5.9): the default
-/// map (B3.1) written out, but for external memories, to which there is no access, not even by a speculative read, and
-/// for data memories, which are never cached. The background map, which is for privileged code only, would do for the
-/// rest, but the emulator checks it at each access.
+/// Protection regions with base, memory type and access (ARMv7-M B3.5.8, B3.5.9): the default map (B3.1), but no access
+/// to external memories, speculative reads included, and no caching of data memories. The background map (privileged
+/// code only) would serve for the rest, but the emulator checks it at each access.
 const MAP: [(u32, u32); 4] = [
-    // All addresses without the eighths below 0x6000_0000 and from 0xE000_0000 on.
+    // All addresses but the eighths below 0x6000_0000 and from 0xE000_0000 on.
     (0, NEVER_EXECUTED | 0x87 << 8 | SIZE_4_GB | ENABLED),
     (CODE, FULL_ACCESS | WRITTEN_THROUGH | SIZE_512_MB | ENABLED),
     (DATA, FULL_ACCESS | NEVER_CACHED | SIZE_512_MB | ENABLED),
     (PERIPHERALS, FULL_ACCESS | DEVICE | SIZE_512_MB | ENABLED),
 ];
-/// Flash, and memory of instructions.
+/// Flash and instruction memory.
 const CODE: u32 = 0x0000_0000;
-/// The tightly coupled memory, which no cache is between, and those that DMA reaches.
+/// Tightly coupled memory, which has no cache, and memories that DMA reaches.
 const DATA: u32 = 0x2000_0000;
 const PERIPHERALS: u32 = 0x4000_0000;
 const NEVER_EXECUTED: u32 = 1 << 28;
@@ -26,12 +25,11 @@ const DEVICE: u32 = NEVER_EXECUTED | 1 << 16;
 const SIZE_4_GB: u32 = 31 << 1;
 const SIZE_512_MB: u32 = 28 << 1;
 const ENABLED: u32 = 1;
-/// Protection on; the default map where no region is, which is the system's own space.
+/// Protection on; default map outside the regions, in the system's own space.
 const ON: u32 = 1 << 2 | 1;
 
-/// Switches the instruction cache on, and with `data` the data cache, for what is read from flash; and keeps the core
-/// from reading ahead at the addresses of external memories, where a controller that was never set up may stall it
-/// without end. Called once, at the start.
+/// Enables the instruction cache, and with `data` the data cache, for reads from flash; blocks speculative reads of
+/// external memories, where a controller that is not set up may stall the core forever. Called once, at the start.
 pub fn enable_caches(data: bool) {
     // SAFETY: nothing else uses the core's cache control and memory protection, and nothing else runs yet.
     let mut core = unsafe { Peripherals::steal() };
@@ -42,36 +40,35 @@ pub fn enable_caches(data: bool) {
     }
 }
 
-/// Sets the regions and switches the protection on.
 fn protect(mpu: &MPU) {
     cortex_m::asm::dmb();
     for (number, (base, attributes)) in (0..).zip(MAP) {
-        // SAFETY: the registers are the core's own; a region is switched on with its attributes, in one write.
+        // SAFETY: the core's own registers; one write enables a region with its attributes.
         unsafe {
             mpu.rnr.write(number);
             mpu.rbar.write(base);
             mpu.rasr.write(attributes);
         }
     }
-    // SAFETY: as above; every address that the firmware uses is in a region with full access, and no cache is on yet.
+    // SAFETY: as above; every address in use is in a region with full access, and no cache is on yet.
     unsafe { mpu.ctrl.write(ON) };
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
 }
 
-/// Drops what the data cache keeps of `length` bytes at `address`, which were changed behind it.
+/// Drops cached data of `length` bytes at `address`, changed behind the cache.
 pub fn forget_cached(address: usize, length: usize) {
     if SCB::dcache_enabled() {
-        // SAFETY: the cache control is the core's own, and dropping what is cached of flash loses no write: it is never
-        // written through the cache.
+        // SAFETY: cache control is the core's own, and dropping cached flash loses no write: flash is never written
+        // through the cache.
         let mut core = unsafe { Peripherals::steal() };
         core.SCB.clean_invalidate_dcache_by_address(address, length);
     }
 }
 
-/// The core does not read ahead at external memories: every region is as it was set.
+/// Every region is as set: no speculative reads of external memories.
 pub fn protected() -> bool {
-    // SAFETY: this only selects the region that is read, and nothing else uses the protection's registers.
+    // SAFETY: this only selects the region to read, and nothing else uses the protection's registers.
     let mpu = unsafe { &*MPU::PTR };
     let regions = (0..).zip(MAP).all(|(number, (base, attributes))| {
         // SAFETY: as above.

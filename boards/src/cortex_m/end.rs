@@ -1,4 +1,4 @@
-//! The end of a run, as the boards do it.
+//! The end of a run on the boards.
 
 use core::fmt::Arguments;
 
@@ -7,7 +7,6 @@ use sophie_fault::Machine;
 use super::{restart, retained};
 use crate::stop_motors;
 
-/// The board that is built for.
 struct Here;
 
 impl Machine for Here {

@@ -1,4 +1,4 @@
-//! What else ends a run than a hard fault: a panic, an unserved interrupt. How it ends is up to the image
+//! Ends of a run other than a hard fault: panic, unserved interrupt. The image defines the end
 //! ([`ends_with!`](crate::ends_with)): the firmware restarts, a test reports.
 
 use core::panic::PanicInfo;
@@ -11,7 +11,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
     end_of_run(format_args!("{info}"))
 }
 
-// Also that of the interrupt that cannot be masked (-14), by which the chips tell of a crystal that has stopped.
+// Includes the non-maskable interrupt (-14), which reports a stopped crystal.
 #[exception]
 // SAFETY: only the processor calls it.
 unsafe fn DefaultHandler(number: i16) -> ! {

@@ -1,4 +1,4 @@
-//! The three levels of urgency: two interrupt executors above the one of thread mode.
+//! The three levels: two interrupt executors above thread mode.
 //!
 //! | level | runs in | priority | may be delayed by |
 //! |---|---|---|---|
@@ -6,19 +6,19 @@
 //! | steady | a second one | 7 | the flight level |
 //! | background | thread mode | none | both |
 //!
-//! Priorities 0 to 5 stay with the drivers: an executor at or above them would keep the DMA, data-ready and timer
-//! interrupts waiting that it needs itself.
+//! Priorities 0 to 5 are the drivers': an executor there would delay the DMA, data-ready and timer interrupts that it
+//! needs.
 
 use embassy_stm32::interrupt::Priority;
 
-/// Priority of the flight level's vector.
+/// Flight level priority.
 pub const FLIGHT: Priority = Priority::P6;
-/// Priority of the steady level's vector.
+/// Steady level priority.
 pub const STEADY: Priority = Priority::P7;
 
-/// Makes two interrupt vectors of the board the flight and the steady level.
+/// Makes two of the board's interrupt vectors the flight and steady level.
 ///
-/// The priority is set before the executor starts: unmasked first, it would run at the reset priority, above all.
+/// The priority is set before the executor starts: unmasked first, it would run at the reset priority, the highest.
 macro_rules! levels_on {
     ($flight:ident, $steady:ident) => {
         static FLIGHT_LEVEL: embassy_executor::InterruptExecutor = embassy_executor::InterruptExecutor::new();
@@ -26,17 +26,17 @@ macro_rules! levels_on {
 
         #[embassy_stm32::interrupt]
         unsafe fn $flight() {
-            // SAFETY: this is the only place that polls this executor, and it runs in its vector.
+            // SAFETY: the only poll of this executor, in its vector.
             unsafe { FLIGHT_LEVEL.on_interrupt() }
         }
 
         #[embassy_stm32::interrupt]
         unsafe fn $steady() {
-            // SAFETY: this is the only place that polls this executor, and it runs in its vector.
+            // SAFETY: the only poll of this executor, in its vector.
             unsafe { STEADY_LEVEL.on_interrupt() }
         }
 
-        /// Starts the flight and the steady level, in this order.
+        /// Starts the flight and steady level, in this order.
         pub fn start_levels() -> (embassy_executor::SendSpawner, embassy_executor::SendSpawner) {
             use embassy_stm32::interrupt::{self, InterruptExt};
             interrupt::$flight.set_priority($crate::cortex_m::FLIGHT);

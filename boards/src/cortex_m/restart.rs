@@ -1,4 +1,4 @@
-//! A restart on purpose.
+//! Deliberate restart.
 
 use cortex_m::peripheral::SCB;
 

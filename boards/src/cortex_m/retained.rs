@@ -1,9 +1,9 @@
-//! The few words that outlive a reset: how often the board started, what ended the run before, and two copies of what
-//! the tasks go on from (`sophie_tasks::retained_state`), which this file only stores.
+//! Memory that outlives a reset: the count of starts, the end of the last run, and two copies of the state that the
+//! tasks resume from (`sophie_tasks::retained_state`), which this file only stores.
 //!
-//! Nothing but these functions reaches the memory: the linker gives it to no one else, no DMA is pointed at it, and the
-//! stack lies alone at the very bottom of a memory, where one that overflows faults. A fault handler writes the message
-//! only; the copies are not in its way, however torn the one being written is.
+//! Only these functions reach the memory: the linker gives it to nothing else, no DMA is pointed at it, and the stack
+//! lies at the bottom of another memory, where an overflow faults. A fault handler writes only the message, so a
+//! half-written copy does not matter to it.
 
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
@@ -13,25 +13,25 @@ use sophie_tasks::ports::Retain;
 use sophie_tasks::retained_state::{WORDS as STATE_WORDS, Words};
 use sophie_tasks::start::StartCause;
 
-/// Why the chip was reset.
+/// Reset cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum ResetCause {
     /// Power was switched on.
     PowerOn,
-    /// The supply fell below the brown-out level.
+    /// Supply below the brown-out level.
     BrownOut,
-    /// A watchdog was not fed.
+    /// Watchdog not fed.
     Watchdog,
-    /// The firmware asked for it: after a fault, or on command.
+    /// Requested by the firmware: after a fault, or on command.
     Software,
-    /// The reset pin: a button or the probe.
+    /// Reset pin: button or probe.
     Pin,
-    /// The chip does not tell.
+    /// Not given by the chip.
     Unknown,
 }
 
 impl ResetCause {
-    /// The tasks' view; `fault` when a message of the run before says that it gave up.
+    /// The tasks' view; `fault` if the last run left a message of a fault.
     pub fn told(self, fault: bool) -> StartCause {
         match self {
             Self::PowerOn => StartCause::PowerOn,
@@ -43,25 +43,24 @@ impl ResetCause {
     }
 }
 
-/// Longest message of a fault.
 const LONGEST: usize = 240;
-/// Message of the fault that ended the run before.
+/// Message of the fault that ended the last run.
 pub type LastWords = String<LONGEST>;
 
-/// What is known at start-up.
+/// State at start-up.
 pub struct Kept {
-    /// Starts since power-on, this one included.
+    /// Starts since power-on, including this one.
     pub starts: u32,
-    /// Starts since power-on that a fault or the watchdog caused.
+    /// Starts since power-on after a fault or watchdog reset.
     pub faults: u32,
-    /// Message of the fault that ended the run before.
+    /// Message of the fault that ended the last run.
     pub last_words: Option<LastWords>,
-    /// The copies that the run before kept; blank after power-on.
+    /// Copies kept by the last run; blank after power-on.
     pub copies: [Words; 2],
 }
 
 const WORDS: usize = LONGEST / 4;
-/// Marks a block that this firmware wrote ("SOPH"), so that noise after power-on is rejected.
+/// Marks a block of this firmware ("SOPH"): noise after power-on is rejected.
 const MAGIC: u32 = 0x534F_5048;
 
 #[repr(C)]
@@ -104,43 +103,42 @@ impl Block {
             .take(self.length as usize);
         let mut words = LastWords::new();
         for byte in bytes {
-            // Only ASCII was stored.
+            // Only ASCII is stored.
             words.push(char::from(byte)).ok()?;
         }
         (!words.is_empty()).then_some(words)
     }
 }
 
-/// The block, in memory that start-up code neither clears nor fills.
+/// The block, in memory that start-up code does not initialise.
 #[repr(transparent)]
 struct Cell(UnsafeCell<Block>);
 
-// SAFETY: every access goes through `load` and `store`, and those are only called where nothing else runs: at
-// start-up before any task, and from a fault handler with interrupts off.
+// SAFETY: accessed only by `load` and `store`, which are called only where nothing else runs: at start-up before any
+// task, and in a fault handler with interrupts off.
 unsafe impl Sync for Cell {}
 
-// SAFETY: the linker script gives the section its own memory, which nothing else uses.
+// SAFETY: the linker script gives the section its own memory.
 #[unsafe(link_section = ".retained")]
 static BLOCK: Cell = Cell(UnsafeCell::new(Block::EMPTY));
 
-/// The copies, beside the block.
 #[repr(transparent)]
 struct Copies(UnsafeCell<[Words; 2]>);
 
-// SAFETY: written by `Memory` alone, of which `start` makes one; read by `start`, before there is one.
+// SAFETY: written only by `Memory`, of which `start` makes one; read by `start` before that.
 unsafe impl Sync for Copies {}
 
 // SAFETY: as for the block.
 #[unsafe(link_section = ".retained")]
 static COPIES: Copies = Copies(UnsafeCell::new([[0; STATE_WORDS]; 2]));
 
-/// Writes the copies. One exists, from [`start`].
+/// Writes the copies; [`start`] makes the only one.
 pub struct Memory(());
 
 impl Retain for Memory {
     fn keep(&mut self, second: bool, words: &Words) {
         // SAFETY: the pointer stays within the two copies. Nothing reads them before the next start, and nothing else
-        // writes them: `start` gave this out once. Volatile, because the compiler sees no reader at all.
+        // writes them: `start` made one `Memory`. Volatile, since the compiler sees no reader.
         unsafe {
             COPIES
                 .0
@@ -153,7 +151,7 @@ impl Retain for Memory {
 }
 
 fn load() -> Block {
-    // SAFETY: valid, aligned and any bits are a `Block`; volatile, because the compiler believes in the initialiser.
+    // SAFETY: valid, aligned, and any bits are a `Block`; volatile, since the compiler assumes the initialiser.
     unsafe { BLOCK.0.get().read_volatile() }
 }
 
@@ -165,9 +163,9 @@ fn store(mut block: Block) {
     }
 }
 
-/// Takes what the run before left, counts this start and forgets the message. Called once, before any task.
+/// Takes the state of the last run, counts this start and clears the message. Called once, before any task.
 pub fn start(cause: ResetCause) -> (Kept, Memory) {
-    // After power-on the block is noise, and its memory's error correction would stumble over it.
+    // After power-on the block is noise and fails the memory's error correction.
     let lost = matches!(cause, ResetCause::PowerOn | ResetCause::BrownOut);
     let mut block = if lost { Block::EMPTY } else { load() };
     if !block.is_whole() && !lost {
@@ -180,7 +178,7 @@ pub fn start(cause: ResetCause) -> (Kept, Memory) {
     let mut memory = Memory(());
     let blank = [[0; STATE_WORDS]; 2];
     let copies = if lost {
-        // Written before it is ever read, as the error correction wants it.
+        // The error correction needs a write before the first read.
         for (second, words) in [false, true].into_iter().zip(&blank) {
             memory.keep(second, words);
         }
@@ -199,7 +197,7 @@ pub fn start(cause: ResetCause) -> (Kept, Memory) {
     (kept, memory)
 }
 
-/// Leaves `message` for the next start. Called with interrupts off, as the last thing before a reset.
+/// Keeps `message` for the next start. Called with interrupts off, just before a reset.
 pub fn leave(message: fmt::Arguments<'_>) {
     let mut block = load();
     if !block.is_whole() {
@@ -209,7 +207,7 @@ pub fn leave(message: fmt::Arguments<'_>) {
         words: [0; WORDS],
         length: 0,
     };
-    // Never fails: what does not fit is cut off.
+    // Never fails: an overlong message is truncated.
     let _ = text.write_fmt(message);
     store(Block {
         length: text.length as u32,
@@ -218,13 +216,12 @@ pub fn leave(message: fmt::Arguments<'_>) {
     });
 }
 
-/// Takes the message back: what it was left for did not happen. Called before any task runs.
+/// Withdraws the message: its cause did not occur. Called before any task runs.
 pub fn forget() {
     let block = load();
     store(Block { length: 0, ..block });
 }
 
-/// Text packed into words.
 struct Ascii {
     words: [u32; WORDS],
     length: usize,

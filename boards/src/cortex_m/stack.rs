@@ -1,11 +1,10 @@
-//! How deep the stack has ever been, from the paint that start-up left on it.
-//!
-//! All levels share the one stack: the deepest point is background + steady + flight + a driver's interrupt.
+//! Greatest stack depth so far, from the start-up's paint. All levels share the stack: the greatest depth is background
+//! + steady + flight + a driver's interrupt.
 
-/// Value with which cortex-m-rt paints the stack (feature `paint-stack`).
+/// Paint of cortex-m-rt (feature `paint-stack`).
 const PAINT: u32 = 0xCCCC_CCCC;
 
-/// Bytes of stack, and how many of them were never used.
+/// Stack size, and bytes never used.
 pub fn size_and_free() -> (usize, usize) {
     unsafe extern "C" {
         static _stack_start: u32;

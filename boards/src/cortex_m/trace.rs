@@ -1,10 +1,9 @@
-//! What the executors do, event by event, into a ring in RAM (feature `trace`).
+//! Trace of the executors' events into a ring in RAM (feature `trace`).
 //!
-//! An event is two words: the clock's low half (µs), and from the lowest bit on its kind (3 bits), the task's or
-//! executor's address without its two lowest bits (18 bits: enough to tell apart what lies in one memory) and the number
-//! of the exception that was active (9 bits, 0 in thread mode). The ring is filled in interrupts and emptied by
-//! [`drain`]; what does not fit is counted and lost. Nothing is logged here: a log line wakes no task, but takes longer
-//! than most of what is traced.
+//! An event is two words: the clock's low half (µs), and from the lowest bit the kind (3 bits), the address of task or
+//! executor without its two lowest bits (18 bits: enough within one memory) and the active exception (9 bits, 0 in
+//! thread mode). Interrupts fill the ring, [`drain`] empties it; events that do not fit are counted. Nothing is logged
+//! here: a log line takes longer than most events.
 
 use core::sync::atomic::Ordering::Relaxed;
 use core::sync::atomic::{AtomicBool, AtomicU32};
@@ -12,22 +11,21 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 use cortex_m::peripheral::SCB;
 use embassy_time::Instant;
 
-/// Events that the ring holds, a power of two: 20 ms of a flight, more than the background ever stands still.
+/// Capacity, a power of two: 20 ms of a flight, more than the background ever stalls.
 pub const EVENTS: u32 = 1024;
-/// Bits of the address that an event keeps, and where.
+/// Address bits of an event, and their shift.
 const ADDRESS: u32 = 0x000F_FFFC;
 const ADDRESS_SHIFT: u32 = 1;
-/// Where the exception's number is.
 const EXCEPTION_SHIFT: u32 = 21;
 
-/// What happened, in the order of their numbers.
+/// Event kinds, by number.
 #[repr(u32)]
 enum Kind {
     /// A task was woken.
     Ready = 0,
-    /// A task is polled.
+    /// A poll begins.
     Begin = 1,
-    /// It has been.
+    /// A poll ends.
     End = 2,
     /// An executor has nothing left to poll.
     Idle = 3,
@@ -35,14 +33,14 @@ enum Kind {
 
 static RING: [[AtomicU32; 2]; EVENTS as usize] =
     [const { [const { AtomicU32::new(0) }; 2] }; EVENTS as usize];
-/// Events ever written and ever read.
+/// Events written and read since the start.
 static WRITTEN: AtomicU32 = AtomicU32::new(0);
 static READ: AtomicU32 = AtomicU32::new(0);
 static LOST: AtomicU32 = AtomicU32::new(0);
-/// The clock runs: before it does, its registers must not be read.
+/// The clock runs; before that its registers must not be read.
 static ON: AtomicBool = AtomicBool::new(false);
 
-/// Begins to record. The clock must run.
+/// Starts recording. The clock must run.
 pub fn start() {
     ON.store(true, Relaxed);
 }
@@ -64,18 +62,18 @@ fn record(kind: Kind, address: u32) {
     });
 }
 
-/// Number of the active exception; 0 in thread mode.
+/// Active exception; 0 in thread mode.
 fn exception() -> u32 {
-    // SAFETY: the register exists on every Cortex-M and reading it changes nothing.
+    // SAFETY: the register exists on every Cortex-M; reading has no side effect.
     unsafe { (*SCB::PTR).icsr.read() & 0x1FF }
 }
 
-/// Moves events into `events`, oldest first, and says how many. Called by one task only.
+/// Moves events into `events`, oldest first; returns their number. Called by one task only.
 pub fn drain(events: &mut [[u32; 2]]) -> usize {
     let mut count = 0;
     for slot in events {
         let read = READ.load(Relaxed);
-        // Entries before `WRITTEN` are whole: it moves last, within the writer's critical section.
+        // Entries before `WRITTEN` are complete: it moves last, in the writer's critical section.
         if read == WRITTEN.load(Relaxed) {
             break;
         }
@@ -93,10 +91,10 @@ pub fn lost() -> u32 {
     LOST.load(Relaxed)
 }
 
-/// The executor of thread mode has polled since it was idle. Every interrupt wakes it, mostly for nothing.
+/// The thread mode executor polled since it was idle; every interrupt wakes it, mostly without work.
 static POLLED: AtomicBool = AtomicBool::new(false);
 
-// SAFETY (all seven): the symbols are those that embassy-executor declares, each defined once with its signature.
+// SAFETY (all seven): symbols declared by embassy-executor, each defined once with its signature.
 
 #[unsafe(no_mangle)]
 fn _embassy_trace_poll_start(_executor: u32) {}

@@ -1,17 +1,17 @@
-//! The F4's flash accelerator. embassy-stm32 0.6 sets the wait states by a write that switches it off: five wait states
-//! at each branch and each constant, which costs a third to a half of the speed.
+//! The F4's flash accelerator. embassy-stm32 0.6 switches it off when it sets the wait states: five wait states at each
+//! branch and constant cost a third to a half of the speed.
 
 use embassy_stm32::pac::{DBGMCU, FLASH};
 
 /// Revision A: its prefetch must stay off (STM32F405 errata, "ART accelerator prefetch").
 const REVISION_A: u16 = 0x1000;
 
-/// The prefetch may be used.
+/// Prefetch is usable.
 pub fn has_prefetch() -> bool {
     DBGMCU.idcode().read().rev_id() != REVISION_A
 }
 
-/// Switches both caches on, empty, and the prefetch where it works. Called once, when the clocks run.
+/// Enables both caches, emptied, and the prefetch where it works. Called once, after the clocks.
 pub fn enable() {
     let caches = |on| {
         FLASH.acr().modify(|w| {
@@ -31,8 +31,8 @@ pub fn enable() {
     caches(true);
 }
 
-/// Does `change`, which writes or erases flash, with the data cache off and empties it: it does not see such changes, and
-/// what is read back to verify would be what was there before (RM0090 §3.5.2).
+/// Runs `change`, which writes or erases flash, with the data cache off, and empties it: the cache does not see such
+/// changes, so a verifying read would return old data (RM0090 §3.5.2).
 pub fn uncached<T>(change: impl FnOnce() -> T) -> T {
     FLASH.acr().modify(|w| w.set_dcen(false));
     let result = change();

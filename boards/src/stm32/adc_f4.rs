@@ -1,7 +1,7 @@
 //! A scan on the converter of the F4 and F7.
 //!
-//! embassy-stm32 0.6 has only a ring there, which converts without end and interrupts thousands of times a second for
-//! readings that are wanted 500 times. This starts one scan when one is wanted.
+//! embassy-stm32 0.6 only has a free-running ring there, with thousands of interrupts a second for 500 readings. This
+//! starts single scans.
 
 use embassy_stm32::Peri;
 use embassy_stm32::adc::{Adc, AnyAdcChannel, RxDma, SampleTime};
@@ -16,12 +16,12 @@ use sophie_tasks::ports::PortError;
 use super::Aligned;
 use super::analog::{CHANNELS, Scan};
 
-/// A scan takes about 0.05 ms; one that takes this long never ends.
+/// Time-out; a scan takes about 0.05 ms.
 const LONGEST: Duration = Duration::from_millis(1);
 
-/// The converter with its channels.
+/// Converter and channels.
 pub struct Converter<D: RxDma<ADC1>, I> {
-    /// Kept, so that converter and pins stay this driver's.
+    /// Held so that converter and pins stay this driver's.
     _kept: (Adc<'static, ADC1>, [AnyAdcChannel<'static, ADC1>; CHANNELS]),
     dma: Peri<'static, D>,
     irqs: I,
@@ -29,10 +29,10 @@ pub struct Converter<D: RxDma<ADC1>, I> {
 }
 
 impl<D: RxDma<ADC1>, I> Converter<D, I> {
-    /// Bits that the converter gives beyond the port's twelve.
+    /// Bits beyond the port's twelve.
     pub const EXTRA_BITS: u32 = 0;
 
-    /// The converter with pressure sensors 1 to 4, battery voltage and battery current on `channels`.
+    /// Pressure sensors 1 to 4, battery voltage and battery current on `channels`.
     pub fn new(
         adc: Peri<'static, ADC1>,
         channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],
@@ -51,9 +51,9 @@ impl<D: RxDma<ADC1>, I> Converter<D, I> {
         registers.sqr1().modify(|w| w.set_l(CHANNELS as u8 - 1));
         for (rank, channel) in channels.iter().enumerate() {
             let number = channel.get_hw_channel();
-            // The third register holds ranks 1 to 6: all there are.
+            // The third register holds ranks 1 to 6: all in use.
             registers.sqr3().modify(|w| w.set_sq(rank, number));
-            // Long enough for the 10 kOhm of a pressure sensor's divider.
+            // Sampling time for the 10 kOhm of a pressure sensor's divider.
             if number <= 9 {
                 registers
                     .smpr2()
@@ -80,7 +80,7 @@ where
 {
     async fn scan(&mut self) -> Result<[u16; CHANNELS], PortError> {
         let r = pac::ADC1;
-        // The request must fall before each scan: after the last transfer of the one before it stays masked.
+        // The request must fall before each scan: it stays masked after the previous scan's last transfer.
         r.cr2().modify(|w| w.set_dma(false));
         r.sr().modify(|w| {
             w.set_eoc(false);

@@ -1,4 +1,4 @@
-//! A scan on the H7's converter, through embassy-stm32's driver.
+//! A scan on the H7's converter.
 
 use embassy_stm32::Peri;
 use embassy_stm32::adc::{Adc, AnyAdcChannel, RxDma, SampleTime};
@@ -11,13 +11,13 @@ use sophie_tasks::ports::PortError;
 use super::Aligned;
 use super::analog::{CHANNELS, Scan};
 
-/// A scan takes about 0.1 ms; one that takes this long never ends.
+/// Time-out; a scan takes about 0.1 ms.
 const LONGEST: Duration = Duration::from_millis(1);
 
-/// Long enough for the 10 kOhm of a pressure sensor's divider.
+/// Sampling time for the 10 kOhm of a pressure sensor's divider.
 const SAMPLE_TIME: SampleTime = SampleTime::CYCLES387_5;
 
-/// The converter with its channels.
+/// Converter and channels.
 pub struct Converter<D: RxDma<ADC1>, I> {
     adc: Adc<'static, ADC1>,
     channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],
@@ -27,10 +27,10 @@ pub struct Converter<D: RxDma<ADC1>, I> {
 }
 
 impl<D: RxDma<ADC1>, I> Converter<D, I> {
-    /// Bits that the converter gives beyond the port's twelve.
+    /// Bits beyond the port's twelve.
     pub const EXTRA_BITS: u32 = 4;
 
-    /// The converter with pressure sensors 1 to 4, battery voltage and battery current on `channels`.
+    /// Pressure sensors 1 to 4, battery voltage and battery current on `channels`.
     pub fn new(
         adc: Peri<'static, ADC1>,
         channels: [AnyAdcChannel<'static, ADC1>; CHANNELS],

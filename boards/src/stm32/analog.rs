@@ -1,4 +1,4 @@
-//! The analog inputs: six channels of one converter, moved by DMA in one scan on demand.
+//! Analog inputs: six channels of one converter, scanned on demand by DMA.
 
 use embassy_stm32::Peri;
 use embassy_stm32::adc::{AnyAdcChannel, RxDma};
@@ -11,9 +11,9 @@ use static_cell::ConstStaticCell;
 use super::Aligned;
 use super::adc::Converter;
 
-/// Channels of a scan: pressure sensors 1 to 4, battery voltage, battery current.
+/// Channels: pressure sensors 1 to 4, battery voltage, battery current.
 pub const CHANNELS: usize = 6;
-/// Full scale at the pin, V, over its counts.
+/// Full scale at the pin, V, per count.
 const VOLTS_PER_COUNT: f32 = 3.3 / 4095.0;
 
 static DMA_ANALOG: ConstStaticCell<Aligned<[u16; CHANNELS]>> = ConstStaticCell::new(Aligned([0; CHANNELS]));
@@ -24,7 +24,7 @@ pub trait Scan {
     async fn scan(&mut self) -> Result<[u16; CHANNELS], PortError>;
 }
 
-/// The analog inputs of a board.
+/// A board's analog inputs.
 pub struct AnalogInputs<D: RxDma<ADC1>, I> {
     converter: Converter<D, I>,
 }

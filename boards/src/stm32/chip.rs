@@ -1,4 +1,4 @@
-//! The chip itself: its restart, its option bytes, and what the start-up looked at.
+//! The chip: restart, option bytes, results of start-up checks.
 
 use sophie_tasks::ports::{Chip, Look, Looks, NotSet};
 use static_cell::StaticCell;
@@ -12,12 +12,12 @@ static LOOKS: StaticCell<Looks> = StaticCell::new();
 
 /// The chip.
 pub struct ThisChip {
-    /// What the start-up looked at.
+    /// Results of the start-up checks.
     pub looks: &'static [Look],
 }
 
 impl ThisChip {
-    /// The chip in which `looks` were found. Called once.
+    /// The chip with the check results `looks`. Called once.
     pub fn new(looks: Looks) -> Self {
         Self {
             looks: LOOKS.init(looks),
@@ -40,8 +40,7 @@ impl Chip for ThisChip {
     }
 
     async fn set_brown_out(&mut self) -> Result<(), NotSet> {
-        // The write may stall the processor for longer than the watchdog's patience. Only disarmed: nothing is being
-        // watched that could fall.
+        // May stall the processor beyond the watchdog's normal time-out. Only while disarmed.
         watchdog::be_patient(true).await;
         let set = options::set_brown_out();
         watchdog::be_patient(false).await;

@@ -1,5 +1,5 @@
-//! From the reset to running clocks: outputs and watchdog first, so that nothing spins and nothing hangs while the
-//! chip waits for its crystal and its PLLs.
+//! From reset to running clocks: outputs and watchdog first, so that nothing spins or hangs while crystal and PLLs
+//! start.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -10,16 +10,15 @@ use embassy_stm32::{Config, Peripherals, rcc};
 use super::watchdog;
 use crate::cortex_m::retained;
 
-/// Message of the next start after one that hung in starting its clocks.
 const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
 
-/// The clock of embassy-time counts: before it does, its registers must not be read.
+/// embassy-time's clock counts; before that its registers must not be read.
 static COUNTING: AtomicBool = AtomicBool::new(false);
 
-/// Clock of the bus that the flash is on, Hz; 0 before the clocks run.
+/// Clock of the flash's bus, Hz; 0 before the clocks run.
 static BUS: AtomicU32 = AtomicU32::new(0);
 
-/// Clock of the bus that the flash is on, Hz.
+/// Clock of the flash's bus, Hz.
 pub fn bus_hz() -> u32 {
     BUS.load(Ordering::Relaxed)
 }
@@ -33,9 +32,9 @@ pub fn micros() -> u64 {
     }
 }
 
-/// Gives the outputs their first levels and starts the watchdog, then the clocks as `config` says. `timer` is the one that
-/// embassy-time counts with. A crystal that never starts and a PLL that never locks end by the watchdog, and the next start
-/// says which. Called once.
+/// Sets the outputs' first levels, starts the watchdog, then the clocks of `config`. `timer` is embassy-time's. A
+/// crystal that does not start or a PLL that does not lock ends in a watchdog reset, and the next start reports which.
+/// Called once.
 pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals {
     first_levels();
     watchdog::start();
@@ -45,9 +44,9 @@ pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals 
     retained::leave(format_args!("{STUCK}"));
     let peripherals = critical_section::with(|_| {
         let peripherals = embassy_stm32::init(config);
-        // embassy-stm32 loads the timer by an update event while counter and compare values are all zero, at which the
-        // compare flags rise. Its interrupt would count half a turn of 65.5 ms that never was; from then on, an instant
-        // asked for between each half turn and its interrupt would lie 65.5 ms before the one asked for just before.
+        // embassy-stm32 loads the timer by an update event while counter and compare values are zero, which raises the
+        // compare flags. Their interrupt would count a half turn of 65.5 ms too many; from then on, between each half
+        // turn and its interrupt, the time would read 65.5 ms too early.
         timer.sr().write_value(SrGp16(0));
         peripherals
     });
@@ -58,7 +57,8 @@ pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals 
     peripherals
 }
 
-/// Starts the crystal of `mhz` MHz, before embassy-stm32 does it without a word. The watchdog bounds the wait.
+/// Starts the crystal of `mhz` MHz before embassy-stm32, which would not report a failure. The watchdog bounds the
+/// wait.
 fn start_crystal(mhz: u32) {
     retained::leave(format_args!("the {mhz} MHz crystal does not start"));
     RCC.cr().modify(|w| w.set_hseon(true));

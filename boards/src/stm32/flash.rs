@@ -1,8 +1,8 @@
-//! The part of the chip's own flash that is kept for parameters.
+//! The chip's own flash for parameters.
 //!
-//! Where it lies says the memory map (`_params_start`, `_params_end`); nothing outside can be reached. Erasing and writing
-//! wait for the flash without yielding, a few seconds at most: the H7 runs on from its other bank, and only the
-//! background waits; the F4 stalls whole. Time that is lost then matters to no one, since a restart follows.
+//! The memory map places it (`_params_start`, `_params_end`); nothing outside is reachable. Erasing and writing block
+//! for up to a few seconds: on the H7, which runs on from its other bank, only the background, on the F4 everything. A
+//! restart follows.
 
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Error, FLASH_BASE, Flash, WRITE_SIZE};
@@ -12,17 +12,16 @@ use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, 
 #[cfg(family = "h7")]
 use super::flash_ecc as ecc;
 
-/// The parameters' flash, in sectors of `SECTOR` bytes.
+/// Parameter flash in sectors of `SECTOR` bytes.
 pub struct ParamFlash<const SECTOR: usize> {
     flash: Flash<'static, Blocking>,
-    /// First byte, from the start of the flash.
+    /// Offset in the flash.
     start: u32,
-    /// Bytes.
     length: u32,
 }
 
 impl<const SECTOR: usize> ParamFlash<SECTOR> {
-    /// The sectors that the memory map keeps.
+    /// The sectors of the memory map.
     pub fn new(flash: Peri<'static, FLASH>) -> Self {
         unsafe extern "C" {
             static _params_start: u8;
@@ -36,7 +35,6 @@ impl<const SECTOR: usize> ParamFlash<SECTOR> {
         }
     }
 
-    /// Where in the flash `length` bytes at `offset` of the sectors lie.
     fn place(&self, offset: u32, length: usize) -> Result<u32, NorFlashErrorKind> {
         u32::try_from(length)
             .ok()
@@ -47,13 +45,13 @@ impl<const SECTOR: usize> ParamFlash<SECTOR> {
     }
 }
 
-/// Does `change`, which writes or erases `length` bytes at `place` of the flash, so that no cache keeps what was there.
+/// Runs `change`, which writes or erases `length` bytes at `place`; no cache keeps old data.
 #[cfg(family = "f4")]
 fn uncached<T>(_place: u32, _length: usize, change: impl FnOnce() -> T) -> T {
     super::accelerator::uncached(change)
 }
 
-/// Does `change`, which writes or erases `length` bytes at `place` of the flash, so that no cache keeps what was there.
+/// Runs `change`, which writes or erases `length` bytes at `place`; no cache keeps old data.
 #[cfg(not(family = "f4"))]
 fn uncached<T>(place: u32, length: usize, change: impl FnOnce() -> T) -> T {
     let result = change();

@@ -1,24 +1,24 @@
-//! Reading flash that may be damaged on the H7, whose every 32 bytes carry an error correction.
+//! Reads flash of the H7 that may be damaged; every 32 bytes have an error correction.
 //!
-//! Power that fails in the middle of a write leaves a word that cannot be corrected, and reading it is a bus fault: met
-//! at the start, it would end every start. Here such a word is an error like any other (RM0433 §4.3.12, §4.7.7).
+//! Power loss during a write leaves an uncorrectable word. Reading it is a bus fault, which would end every start; here
+//! it is an ordinary error (RM0433 §4.3.12, §4.7.7).
 
 use core::arch::asm;
 
 use embassy_stm32::pac;
 
-/// Configuration and control register of the core (ARMv7-M, B3.2.8).
+/// Core configuration and control register (ARMv7-M, B3.2.8).
 const CCR: *mut u32 = 0xE000_ED14 as *mut u32;
-/// Handlers at the priority of a hard fault or above ignore bus faults of data.
+/// Handlers at hard fault priority or above ignore data bus faults.
 const BFHFNMIGN: u32 = 1 << 8;
 
-/// The bank of the parameters: the second.
+/// Parameter bank: the second.
 fn bank() -> pac::flash::Bank {
     pac::FLASH.bank(1)
 }
 
-/// Clears what earlier accesses left. embassy-stm32 0.6 does it in a register that cannot be written here, and so takes
-/// an old error for one of each later access.
+/// Clears errors of earlier accesses. embassy-stm32 0.6 clears them in a register that is not writable here, and so
+/// reports an old error at each later access.
 pub fn forget_errors() {
     bank().ccr().write(|w| {
         w.set_clr_wrperr(true);
@@ -33,15 +33,15 @@ pub fn forget_errors() {
     });
 }
 
-/// Lets bus faults of data pass from here on.
+/// Suppresses data bus faults from here on.
 ///
-/// A function of its own that is never inlined: by its name `cargo xtask` finds the guard in an image.
+/// Never inlined: `cargo xtask` finds the guard in an image by its name.
 ///
 /// # Safety
-/// FAULTMASK raises what follows to the priority of a hard fault: no interrupt runs until [`end_guard`] is called.
+/// FAULTMASK raises the following code to hard fault priority: no interrupt runs until [`end_guard`].
 #[inline(never)]
 unsafe fn begin_guard() {
-    // SAFETY: the register is the core's own, and the bit changes nothing below the priority of a hard fault.
+    // SAFETY: the core's own register; the bit has no effect below hard fault priority.
     unsafe {
         asm!("cpsid f");
         CCR.write_volatile(CCR.read_volatile() | BFHFNMIGN);
@@ -52,7 +52,7 @@ unsafe fn begin_guard() {
 /// Undoes [`begin_guard`].
 ///
 /// # Safety
-/// Only behind it.
+/// Only after it.
 unsafe fn end_guard() {
     // SAFETY: as above.
     unsafe {
@@ -63,8 +63,8 @@ unsafe fn end_guard() {
     }
 }
 
-/// Does `read`; `None` when it met a word that cannot be corrected. Every interrupt waits meanwhile: some microseconds
-/// for the few bytes that are read at once.
+/// Calls `read`; `None` if it met an uncorrectable word. Every interrupt waits meanwhile: some microseconds for the few
+/// bytes that are read at once.
 pub fn read<T>(read: impl FnOnce() -> T) -> Option<T> {
     forget_errors();
     // SAFETY: both are undone before anything else runs. `read` only copies bytes.

@@ -1,4 +1,4 @@
-//! The arm sensors' I2C buses: freed from a chip that holds them low, at the start and whenever one fails.
+//! The arm sensors' I2C buses, freed at start-up and after failures from chips that hold them.
 
 use embassy_stm32::gpio::OutputOpenDrain;
 use embassy_stm32::i2c::mode::Master;
@@ -11,22 +11,22 @@ use sophie_drivers::i2c_lines::{Lines, free};
 #[cfg(any(family = "f7", family = "h7"))]
 use sophie_drivers::i2c_timing::I2cTiming;
 
-/// What a bus is made of: the board's pins and peripheral, from which it can be built again and again.
+/// Pins and peripheral of a bus, from which it can be built repeatedly.
 pub trait BusParts {
-    /// Which bus, for the log.
+    /// Name in the log.
     const NAME: &'static str;
 
     /// The two lines as plain pins, high: clock, data.
     fn lines(&mut self) -> (OutputOpenDrain<'_>, OutputOpenDrain<'_>);
 
-    /// The peripheral, reset and set up.
+    /// Resets and sets up the peripheral.
     ///
     /// # Safety
-    /// What was built before is gone: there is one at a time, and none while the lines are used.
+    /// At most one bus exists at a time, and none while the lines are used.
     unsafe fn build(&mut self) -> I2c<'static, Async, Master>;
 }
 
-/// Makes the parts that `assign_resources!` names `$parts` (fields `bus`, `clock`, `data`, `tx_dma`, `rx_dma`) an I2C bus.
+/// Makes the parts `$parts` of `assign_resources!` (fields `bus`, `clock`, `data`, `tx_dma`, `rx_dma`) an I2C bus.
 macro_rules! i2c_bus {
     ($parts:ident, $irqs:ident) => {
         impl $crate::stm32::BusParts for $parts {
@@ -52,7 +52,7 @@ macro_rules! i2c_bus {
                 embassy_stm32::mode::Async,
                 embassy_stm32::i2c::mode::Master,
             > {
-                // SAFETY: these parts own the peripherals, and the caller sees to it that only one bus uses them.
+                // SAFETY: these parts own the peripherals, and the caller ensures that only one bus uses them.
                 let bus = unsafe {
                     embassy_stm32::i2c::I2c::new(
                         self.bus.clone_unchecked(),
@@ -72,19 +72,19 @@ macro_rules! i2c_bus {
 }
 pub(crate) use i2c_bus;
 
-/// 400 kHz, and an end to every wait.
+/// 400 kHz, every wait limited.
 pub fn i2c_config() -> Config {
     let mut config = Config::default();
     config.frequency = Hertz(400_000);
-    // The driver spins this long on a stretched clock; only the background can afford that.
+    // The driver spins this long on a stretched clock, which only the background can afford.
     config.timeout = Duration::from_millis(3);
     config
 }
 
-/// An I2C whose times are in a register `TIMINGR`.
+/// An I2C with a register `TIMINGR`.
 #[cfg(any(family = "f7", family = "h7"))]
 pub trait TimedBus: embassy_stm32::PeripheralType + embassy_stm32::rcc::RccPeripheral {
-    /// Its registers.
+    /// Registers of the I2C.
     fn registers() -> embassy_stm32::pac::i2c::I2c;
 }
 
@@ -101,15 +101,15 @@ macro_rules! timed {
 
 #[cfg(any(family = "f7", family = "h7"))]
 timed!(I2C1, I2C2, I2C3);
-// Not every F7 has it.
+// Some F7 lack it.
 #[cfg(family = "h7")]
 timed!(I2C4);
 
-/// Gives the bus the times of fast mode, in place of embassy-stm32's, whose upper bits do not fit the register. Called
-/// while nothing is on its way.
+/// Sets fast-mode times instead of embassy-stm32's, whose upper bits do not fit the register. Called while no transfer
+/// runs.
 ///
 /// # Panics
-/// If the clock cannot make them: a board with such a clock never starts, so it is found at the bench.
+/// If the clock cannot make them: such a board never starts, which shows on the bench.
 #[cfg(any(family = "f7", family = "h7"))]
 pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
     let clock = embassy_stm32::rcc::frequency::<T>().0;
@@ -117,7 +117,7 @@ pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
         panic!("an I2C cannot make 400 kHz from {clock} Hz")
     };
     let registers = T::registers();
-    // The register is taken only while the peripheral is off.
+    // Writable only while the peripheral is off.
     registers.cr1().modify(|w| w.set_pe(false));
     registers.timingr().write(|w| {
         w.set_presc(timing.prescaler);
@@ -129,23 +129,23 @@ pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
     registers.cr1().modify(|w| w.set_pe(true));
 }
 
-/// The older I2C has other registers, and embassy-stm32 gives it the right times: nothing to do.
+/// No effect: embassy-stm32 sets the older I2C's times right.
 #[cfg(family = "f4")]
 pub fn set_fast_mode<T: embassy_stm32::PeripheralType>(_bus: &embassy_stm32::Peri<'static, T>) {}
 
-/// A bus that is taken apart when it fails: the lines are clocked free, then the peripheral starts from its reset.
+/// A bus that is rebuilt after a failure: clocks free the lines, then the peripheral starts from reset.
 ///
-/// Only the background may use it: what it waits for, up to some milliseconds, it waits for there.
+/// For the background only: it blocks for up to some milliseconds.
 pub struct ArmBus<P> {
     parts: P,
     /// The bus while it works.
     bus: Option<I2c<'static, Async, Master>>,
-    /// What was found of the lines last.
+    /// Last result for the lines.
     lines: Lines,
 }
 
 impl<P: BusParts> ArmBus<P> {
-    /// The bus made of `parts`, which are touched with the first transfer.
+    /// The bus of `parts`, which the first transfer touches.
     pub const fn new(parts: P) -> Self {
         Self {
             parts,
@@ -154,7 +154,7 @@ impl<P: BusParts> ArmBus<P> {
         }
     }
 
-    /// A bus whose lines are free; none where clocks cannot free them.
+    /// A bus with free lines; `None` where clocks cannot free them.
     async fn rebuilt(&mut self) -> Option<I2c<'static, Async, Master>> {
         let (mut clock, mut data) = self.parts.lines();
         let lines = free(&mut clock, &mut data).await;
@@ -180,13 +180,13 @@ impl<P> ErrorType for ArmBus<P> {
 
 impl<P: BusParts> embedded_hal_async::i2c::I2c for ArmBus<P> {
     async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
-        // Taken out, so that a transfer that is given up half-way leaves no bus behind: the next one rebuilds it.
+        // Taken out: the transfer after a dropped one rebuilds the bus.
         let mut bus = match self.bus.take() {
             Some(bus) => bus,
             None => self.rebuilt().await.ok_or(Error::Bus)?,
         };
         let result = bus.transaction(address, operations).await;
-        // A chip that does not answer leaves the bus in order; anything else may not.
+        // A missing answer leaves the bus in order; other errors may not.
         if matches!(result, Ok(()) | Err(Error::Nack)) {
             self.bus = Some(bus);
         }

@@ -3,20 +3,20 @@
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 
-/// What is on or off.
+/// A switchable device.
 pub trait Switch {
     /// Switches on or off.
     fn set(&mut self, on: bool);
 }
 
-/// A pin that switches something on.
+/// A device switched by a pin.
 pub struct Lamp {
     pin: Output<'static>,
     on: Level,
 }
 
 impl Lamp {
-    /// Something that is on while `pin` is at `on`; off.
+    /// A device, off, that is on while `pin` is at `on`.
     pub fn new(pin: Peri<'static, impl Pin>, on: Level) -> Self {
         let off = if on == Level::High {
             Level::Low
@@ -36,11 +36,11 @@ impl Switch for Lamp {
     }
 }
 
-/// Two lights, and a buzzer that is a pin or a tone.
+/// Two lights, and a buzzer on a pin or tone.
 pub struct Lights<B> {
-    /// State of the vehicle.
+    /// State light.
     pub state: Lamp,
-    /// Something is wrong.
+    /// Fault light.
     pub fault: Lamp,
     /// Buzzer.
     pub buzzer: B,

@@ -1,29 +1,27 @@
-//! The option bytes of the H7.
+//! Option bytes of the H7.
 
 use embassy_stm32::pac::FLASH;
 use embassy_time::{Duration, Instant};
 
-/// What stands for brown-out level 3 here: two bits that count upwards, zero for none (RM0433 §4.9.8). The F4 and F7 count
-/// downwards.
+/// Brown-out level 3: two bits that count upwards, zero for none (RM0433 §4.9.8). The F4 and F7 count downwards.
 const HIGHEST: u8 = 0b11;
-/// Keys of the option bytes (RM0433 §4.5.1).
+/// Option byte keys (RM0433 §4.5.1).
 const KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
-/// Longest write: no datasheet states it; that of the F7 serves.
+/// Time-out of a write, the F7's, since no datasheet of the H7 states one.
 const LONGEST: Duration = Duration::from_secs(2);
-/// Read-out protection: off, and what can never be undone.
+/// Read-out protection: off, and irreversible.
 const OPEN: u8 = 0xAA;
 const SEALED: u8 = 0xCC;
 
-/// Supply voltage below which brown-out level 3 holds the chip in reset, V (STM32H743 datasheet, VBOR3 falling, typical:
-/// 2.61).
+/// Supply voltage of the reset at brown-out level 3, V (STM32H743 datasheet, VBOR3 falling, typical: 2.61).
 pub const BROWN_OUT_VOLTS: f32 = 2.6;
 
-/// The brown-out level, 0 (off) to 3.
+/// Brown-out level, 0 (off) to 3.
 pub fn brown_out_level() -> u8 {
     FLASH.optsr_cur().read().bor_lev()
 }
 
-/// The level of the read-out protection.
+/// Read-out protection level.
 pub fn read_protection() -> u8 {
     match FLASH.optsr_cur().read().rdp() {
         OPEN => 0,
@@ -32,13 +30,13 @@ pub fn read_protection() -> u8 {
     }
 }
 
-/// Sectors that are protected from writes, a bit each: those of bank 1, then those of bank 2.
+/// Write-protected sectors, one bit each: bank 1, then bank 2.
 pub fn write_protected() -> u32 {
     let [one, two] = [0, 1].map(|bank| !u32::from(FLASH.bank(bank).wpsn_curr().read().wrpsn()) & 0xFF);
     one | two << 8
 }
 
-/// Sets brown-out level 3; false when the flash does not take it.
+/// Sets brown-out level 3; false if the flash rejects it.
 pub fn set_brown_out() -> bool {
     if !ready() {
         return false;
@@ -53,7 +51,7 @@ pub fn set_brown_out() -> bool {
     done && !FLASH.optsr_cur().read().optchangeerr() && brown_out_level() == 3
 }
 
-/// Waits until the option bytes are not being changed; false when that lasts too long.
+/// Waits until the option bytes are idle; false on time-out.
 fn ready() -> bool {
     let start = Instant::now();
     while FLASH.optsr_cur().read().opt_busy() {

@@ -1,5 +1,4 @@
-//! Pads as the builder's hand meets them: plain pins, beside and below the drivers that own them. For the tests on a
-//! board, which join some of them by jumpers.
+//! Pads as plain pins, apart from their drivers, for tests on a board that join some of them by jumpers.
 
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::vals::Moder;
@@ -8,32 +7,32 @@ pub use embassy_stm32::pac::gpio::vals::Pupdr;
 /// A pad and its pin.
 #[derive(Clone, Copy)]
 pub struct Pad {
-    /// What is printed on the board or its connector, with the pin.
+    /// Label on board or connector, with the pin.
     pub name: &'static str,
     port: Gpio,
     pin: usize,
 }
 
-/// What a board's tests have to know of it besides its drivers: pads that fly anyway, so that every board has them.
+/// What a board's tests need besides its drivers; every board has these pads.
 pub struct Wiring {
-    /// Clock of the core, Hz.
+    /// Core clock, Hz.
     pub core_hz: u32,
-    /// Motor 1, and the pad it is joined to.
+    /// Motor 1, and the pad joined to it.
     pub motor: [Pad; 2],
-    /// Servo 1, and the pad it is joined to.
+    /// Servo 1, and the pad joined to it.
     pub servo: [Pad; 2],
-    /// The receiver's line: out, and the input it is joined to.
+    /// Receiver output, and the input joined to it.
     pub receiver: [Pad; 2],
-    /// The pressure sensor's input that gets half the supply, and its number, 0 to 3.
+    /// Pressure input at half the supply, and its number, 0 to 3.
     pub divider: (Pad, usize),
 }
 
-/// The pad called `name` on `pin` of `port`.
+/// Pad `name` on `pin` of `port`.
 pub const fn pad(name: &'static str, port: Gpio, pin: usize) -> Pad {
     Pad { name, port, pin }
 }
 
-/// How a pad was before it was taken; given back when dropped.
+/// A taken pad; dropping it restores its former state.
 pub struct Taken {
     pad: Pad,
     mode: Moder,
@@ -41,7 +40,7 @@ pub struct Taken {
 }
 
 impl Pad {
-    /// Takes the pad from whatever drives it; it floats.
+    /// Takes the pad from its driver; it floats.
     pub fn take(self) -> Taken {
         let taken = Taken {
             pad: self,
@@ -52,7 +51,7 @@ impl Pad {
         taken
     }
 
-    /// A peripheral drives or reads the pad: what the board's own file says of it is true.
+    /// True if a peripheral drives or reads the pad, as the board's file states.
     pub fn serves_a_peripheral(self) -> bool {
         self.port.moder().read().moder(self.pin) == Moder::ALTERNATE
     }

@@ -1,4 +1,4 @@
-//! Pulses from some of a timer's channels. embassy-stm32's `SimplePwm` wants a timer with four of them.
+//! Pulses from any of a timer's channels; embassy-stm32's `SimplePwm` requires four.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
@@ -8,7 +8,7 @@ use embassy_time::{Duration, Instant};
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_tasks::deadline::begins_next;
 
-/// A running timer; its outputs are low until they are set. Channels that have no pin are left alone.
+/// A running timer; its outputs are low until set. Channels without a pin are left alone.
 pub struct PulseTimer<T: GeneralInstance4Channel> {
     timer: Timer<'static, T>,
 }
@@ -19,17 +19,16 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         let timer = Timer::new(timer);
         let registers = timer.regs_gp16();
         registers.psc().write_value(timing.prescaler);
-        // `PwmTiming` is made for 16 bits: period - 1 always fits.
+        // `PwmTiming` is for 16 bits: period - 1 fits.
         registers.arr().write(|w| w.set_arr((timing.period - 1) as u16));
-        // Takes prescaler and period over.
         timer.generate_update_event();
         timer.enable_outputs();
         timer.start();
         Self { timer }
     }
 
-    /// Moves the frames so that one of each `frame` begins at `phase` of the board's clock. For before the outputs: a
-    /// pulse under way would change its length.
+    /// Shifts the frames so that one of each `frame` begins at `phase` of the board's clock. To be called before the
+    /// outputs start: it would change a pulse under way.
     pub fn put_frames_at(&mut self, timing: &PwmTiming, frame: Duration, phase: Duration) {
         critical_section::with(|_| {
             let now = Instant::now();
@@ -40,13 +39,13 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         });
     }
 
-    /// Makes `pin` the output of its channel. The pin is the timer's as long as what is returned lives.
+    /// Makes `pin` its channel's output while the returned value lives.
     pub fn output<C: TimerChannel>(&mut self, pin: Peri<'static, impl TimerPin<T, C>>) -> Flex<'static> {
         let channel = C::CHANNEL;
         self.set(channel, 0);
         self.timer
             .set_output_compare_mode(channel, OutputCompareMode::PwmMode1);
-        // Preloaded: a new width takes effect with the next frame, never within a pulse.
+        // Preloaded: a new width takes effect at the next frame, never within a pulse.
         self.timer.set_output_compare_preload(channel, true);
         self.timer.enable_channel(channel, true);
         let function = pin.af_num();
@@ -55,14 +54,14 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         pin
     }
 
-    /// Sets the pulses of a channel to `counts`; 0 for none.
+    /// Sets a channel's pulses to `counts`; 0: none.
     pub fn set(&mut self, channel: Channel, counts: u32) {
         let registers = self.timer.regs_gp16();
         registers.ccr(channel.index()).write(|w| w.set_ccr(counts as u16));
     }
 
-    /// When the next frame begins, to the microsecond: the pulses that were set last take effect then. A frame that
-    /// begins between their setting and this call is not seen; the one after it is given.
+    /// Start of the next frame, to the microsecond, when the pulses set last take effect. A frame that begins between
+    /// their setting and this call is missed; the next one is returned.
     pub fn next_frame(&self, timing: &PwmTiming) -> Instant {
         let passed = self.timer.regs_gp16().cnt().read().cnt();
         Instant::now() + Duration::from_micros(timing.left_us(u32::from(passed)).into())

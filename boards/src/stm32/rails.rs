@@ -1,5 +1,5 @@
-//! Pins that hold a level: of the motors and whatever a floating line would move, sound or switch, from the first
-//! instructions on; and those that switch supplies or keep other chips quiet.
+//! Pins at fixed levels: from the first instructions on, those of the motors and of whatever a floating line would
+//! move, sound or switch; also switches of supplies and other chips.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Speed};
@@ -7,16 +7,15 @@ use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::vals::Moder;
 
-/// Ports A to H in the clock controller.
 const PORTS: u32 = 0xFF;
 
-/// Holds `pin` at `level` for good: it is leaked, since a pin that is dropped floats again.
+/// Holds `pin` at `level` permanently: leaked, since a dropped pin floats.
 pub fn hold(pin: Peri<'static, AnyPin>, level: Level) {
     core::mem::forget(Output::new(pin, level, Speed::Low));
 }
 
-/// Makes pins of a port outputs at `level`, whatever drove them: the first act of a start, before the clocks run, and for
-/// the motors the last resort of a fault handler.
+/// Makes pins of a port outputs at `level`, whatever drove them: the first step of a start, before the clocks run, and
+/// for the motors the last step of a fault handler.
 pub fn drive(port: Gpio, pins: &[usize], level: Level) {
     clock_ports();
     for &pin in pins {
@@ -28,7 +27,7 @@ pub fn drive(port: Gpio, pins: &[usize], level: Level) {
     }
 }
 
-/// Gives every port its clock, which a port that is written to before the start has none of.
+/// Enables every port's clock, off before the start.
 fn clock_ports() {
     let bus = pac::RCC;
     #[cfg(family = "h7")]

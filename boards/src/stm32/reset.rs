@@ -1,13 +1,12 @@
-//! Why the chip was reset, from its own register.
+//! Reset cause from the chip's register.
 
 use embassy_stm32::pac::RCC;
 
 use crate::cortex_m::retained::ResetCause;
 
-/// Reads the cause of the last reset and clears it for the next.
+/// Reads and clears the reset cause.
 ///
-/// Every reset also pulls the reset pin, so the pin only counts without any other cause; and a power-on sets the
-/// brown-out bit too.
+/// Every reset sets the pin's flag, so it counts only alone; a power-on also sets the brown-out flag.
 #[cfg(family = "h7")]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.rsr().read();
@@ -21,10 +20,9 @@ pub fn take_reset_cause() -> ResetCause {
     )
 }
 
-/// Reads the cause of the last reset and clears it for the next.
+/// Reads and clears the reset cause.
 ///
-/// Every reset also pulls the reset pin, so the pin only counts without any other cause; and a power-on sets the
-/// brown-out bit too.
+/// Every reset sets the pin's flag, so it counts only alone; a power-on also sets the brown-out flag.
 #[cfg(not(family = "h7"))]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.csr().read();

@@ -1,4 +1,4 @@
-//! Serial lines: the receiver's, both ways, and the console's.
+//! Serial lines of receiver and console.
 
 use embassy_stm32::gpio::Pull;
 use embassy_stm32::interrupt::typelevel::Binding;
@@ -16,16 +16,15 @@ use static_cell::ConstStaticCell;
 
 use super::Aligned;
 
-/// The longest telemetry frame takes 1.6 ms at 420 kbaud; a line that needs this long is broken.
+/// Time-out of a frame; the longest telemetry frame takes 1.6 ms at 420 kbaud.
 const LONGEST_FRAME: Duration = Duration::from_millis(20);
-/// The console's longest line takes 20 ms at 115,200 baud, behind a buffer of as many.
+/// Time-out of a line; the longest takes 20 ms at 115,200 baud, behind a buffer of the same length.
 const LONGEST_LINE: Duration = Duration::from_millis(200);
 
 static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(Aligned([0; 512]));
 static CONSOLE_IN: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; 128]);
 static CONSOLE_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
 
-/// How the receiver's line is set up for a protocol.
 fn receiver_config(protocol: RcProtocol) -> Config {
     let mut config = Config::default();
     match protocol {
@@ -37,7 +36,7 @@ fn receiver_config(protocol: RcProtocol) -> Config {
             config.baudrate = 100_000;
             config.parity = Parity::ParityEven;
             config.stop_bits = StopBits::STOP2;
-            // The F4's ports cannot invert: an inverter on the board makes the line idle high there.
+            // The F4's ports cannot invert: the board's inverter makes the line idle high.
             #[cfg(family = "f4")]
             {
                 config.rx_pull = Pull::Up;
@@ -52,7 +51,7 @@ fn receiver_config(protocol: RcProtocol) -> Config {
     config
 }
 
-/// The receiver's line, as the parameter `rc_protocol` says.
+/// The receiver's line for the parameter `rc_protocol`.
 #[expect(clippy::too_many_arguments, reason = "the parts of one port of the board")]
 pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     uart: Peri<'static, T>,
@@ -74,7 +73,7 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
             let (tx, rx) = accepted(both).split();
             (rx, Some(tx))
         }
-        // The other pin is unused: it stays an input.
+        // The other pin stays an input.
         RcProtocol::Sbus => {
             let rx = UartRx::new(uart, rx, rx_dma, irqs, config);
             (accepted(rx), None)
@@ -86,7 +85,7 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     )
 }
 
-/// The console's line: 115,200 baud, 8N1, moved by the processor byte by byte, since streams are scarce.
+/// Console line: 115,200 baud, 8N1, moved by the processor, since DMA streams are scarce.
 pub fn console_lines<T: Instance>(
     uart: Peri<'static, T>,
     rx: Peri<'static, impl RxPin<T>>,
@@ -95,14 +94,14 @@ pub fn console_lines<T: Instance>(
 ) -> (ConsoleInput, ConsoleOutput) {
     let mut config = Config::default();
     config.baudrate = 115_200;
-    // Nothing plugged in must not look like a character.
+    // An open input must not read as a character.
     config.rx_pull = Pull::Up;
     let uart = BufferedUart::new(uart, rx, tx, CONSOLE_OUT.take(), CONSOLE_IN.take(), irqs, config);
     let (tx, rx) = accepted(uart).split();
     (ConsoleInput(rx), ConsoleOutput(tx))
 }
 
-/// Every rate above is within every port's range: a refusal is a mistake of the board's clocks, found at the bench.
+/// Every rate above is within every port's range: a refusal means wrong clocks of the board, which shows on the bench.
 fn accepted<U>(port: Result<U, ConfigError>) -> U {
     match port {
         Ok(port) => port,
@@ -110,17 +109,17 @@ fn accepted<U>(port: Result<U, ConfigError>) -> U {
     }
 }
 
-/// From the receiver: a ring filled by DMA, read when the line falls idle, that is at the end of a frame.
+/// Receiver input: a ring filled by DMA, read when the line falls idle at the end of a frame.
 pub struct ReceiverLine(RingBufferedUartRx<'static>);
 
 impl SerialInput for ReceiverLine {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
-        // Framing, noise and overrun stop the ring; the next call starts it again.
+        // Framing, noise and overrun errors stop the ring; the next call restarts it.
         self.0.read(buffer).await.map_err(|_| PortError::Corrupt)
     }
 }
 
-/// To the receiver; nothing where it does not listen.
+/// Output to the receiver; none where it does not listen.
 pub struct TelemetryLine(Option<UartTx<'static, Async>>);
 
 impl SerialOutput for TelemetryLine {
@@ -132,7 +131,7 @@ impl SerialOutput for TelemetryLine {
     }
 }
 
-/// From the console.
+/// Console input.
 pub struct ConsoleInput(BufferedUartRx<'static>);
 
 impl SerialInput for ConsoleInput {
@@ -141,7 +140,7 @@ impl SerialInput for ConsoleInput {
     }
 }
 
-/// To the console.
+/// Console output.
 pub struct ConsoleOutput(BufferedUartTx<'static>);
 
 impl SerialOutput for ConsoleOutput {

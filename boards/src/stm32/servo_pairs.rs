@@ -1,4 +1,4 @@
-//! The tendon servos where no timer has four free channels: two on one timer, two on another.
+//! Tendon servos on two timers, where no timer has four free channels.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::Flex;
@@ -13,12 +13,11 @@ use sophie_tasks::ports::Servos;
 use super::pulse_timer::PulseTimer;
 use super::servos::timer_with_frames;
 
-/// Two servos on two channels of a timer.
 struct Pair<T: GeneralInstance4Channel> {
     timer: PulseTimer<T>,
     timing: PwmTiming,
     channels: [Channel; 2],
-    /// Kept, so that the pins stay the timer's.
+    /// Held so that the pins stay the timer's.
     _pins: [Flex<'static>; 2],
 }
 
@@ -47,7 +46,7 @@ impl<T: GeneralInstance4Channel> Pair<T> {
         }
     }
 
-    /// Sets both pulses, µs, and gives when the first ones of these widths begin.
+    /// Sets both pulses, µs; returns when the first of these widths begin.
     fn set(&mut self, pulses_us: [f32; 2]) -> Instant {
         for (channel, pulse) in self.channels.into_iter().zip(pulses_us) {
             self.timer.set(channel, servo_pulse::compare(&self.timing, pulse));
@@ -56,15 +55,15 @@ impl<T: GeneralInstance4Channel> Pair<T> {
     }
 }
 
-/// Servos 1 and 2 on channels of one timer, servos 3 and 4 on channels of another.
+/// Servos 1 and 2 on one timer, 3 and 4 on another.
 pub struct ServoPairs<A: GeneralInstance4Channel, B: GeneralInstance4Channel> {
     first: Pair<A>,
     second: Pair<B>,
 }
 
 impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
-    /// Servos on these pins without pulses, with the frames of the parameter `servo_frame_rate`. The pins say the
-    /// channels, in any order: two of one channel do not build.
+    /// Servos on these pins without pulses, at the parameter `servo_frame_rate`. The pins determine the channels, in
+    /// any order: two of one channel do not build.
     ///
     /// # Panics
     /// As [`timer_with_frames`].
@@ -90,7 +89,7 @@ impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
 
 impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> Servos for ServoPairs<A, B> {
     async fn write(&mut self, [one, two, three, four]: PerArm<f32>) -> Instant {
-        // Two timers, two frames: the later one counts.
+        // The later of the two timers' frames counts.
         let [first, second] = [self.first.set([one, two]), self.second.set([three, four])];
         first.max(second)
     }

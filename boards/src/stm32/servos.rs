@@ -1,4 +1,4 @@
-//! The tendon servos: four channels of one timer.
+//! Tendon servos on four channels of one timer.
 
 use embassy_stm32::gpio::Flex;
 use embassy_stm32::timer::{Ch1, Ch2, Ch3, Ch4, Channel, GeneralInstance4Channel, TimerPin};
@@ -13,13 +13,12 @@ use sophie_tasks::servos;
 
 use super::pulse_timer::PulseTimer;
 
-/// The channels in the order of the servos.
 const SERVOS: [Channel; 4] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
 
-/// `timer` with the frames of the parameter `servo_frame_rate`, at [`servos::FRAME_AT`] of the board's clock.
+/// `timer` with frames of the parameter `servo_frame_rate`, at [`servos::FRAME_AT`] of the board's clock.
 ///
 /// # Panics
-/// If the timer's clock cannot make the frames: a board with such a clock never starts, so it is found at the bench.
+/// If the timer's clock cannot make the frames: such a board never starts, which shows on the bench.
 pub(super) fn timer_with_frames<T: GeneralInstance4Channel>(
     timer: Peri<'static, T>,
     params: &Params,
@@ -36,16 +35,16 @@ pub(super) fn timer_with_frames<T: GeneralInstance4Channel>(
     (timer, timing)
 }
 
-/// Four servos on the channels 1 to 4 of a timer.
+/// Four servos on channels 1 to 4 of a timer.
 pub struct ServoTimer<T: GeneralInstance4Channel> {
     timer: PulseTimer<T>,
     timing: PwmTiming,
-    /// Kept, so that the pins stay the timer's.
+    /// Held so that the pins stay the timer's.
     _pins: [Flex<'static>; 4],
 }
 
 impl<T: GeneralInstance4Channel> ServoTimer<T> {
-    /// Servos on these pins without pulses, with the frames of the parameter `servo_frame_rate`.
+    /// Servos on these pins without pulses, at the parameter `servo_frame_rate`.
     ///
     /// # Panics
     /// As [`timer_with_frames`].

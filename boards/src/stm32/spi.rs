@@ -1,4 +1,4 @@
-//! One chip on an SPI bus of its own.
+//! One chip on its own SPI bus.
 
 use embassy_stm32::gpio::{Level, Output, Pin, Speed};
 use embassy_stm32::spi::mode::Master;
@@ -9,7 +9,7 @@ use embassy_time::Timer;
 use embedded_hal_async::spi::{ErrorType, Operation, SpiBus, SpiDevice};
 use sophie_drivers::spi_clock;
 
-/// Mode 3, which every chip on these boards takes, and the fastest clock of bus `T` that is not above `most_hz`.
+/// Mode 3, which every chip on these boards accepts, and the fastest clock of bus `T` up to `most_hz`.
 pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Config {
     let mut config = Config::default();
     config.mode = MODE_3;
@@ -20,16 +20,16 @@ pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Conf
 /// A bus with its only chip's select line.
 pub struct Selected<B> {
     bus: B,
-    /// Low while the chip is spoken to.
+    /// Low during transfers.
     select: Output<'static>,
 }
 
 impl<B> Selected<B> {
     /// The chip on `bus` that `select` addresses.
     ///
-    /// The line's edges are slow, some tens of nanoseconds, less than a chip is given before the first clock. The select
-    /// of the Matek needs it: PC13 to PC15 hang on the supply of the clock's domain, and drive no more than 2 MHz and
-    /// 30 pF, one at a time (STM32H743 datasheet, pin table).
+    /// The select edges are slow, some tens of nanoseconds, shorter than the time before the first clock: the Matek's
+    /// select (PC13 to PC15, on the backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743
+    /// datasheet, pin table).
     pub fn new(bus: B, select: Peri<'static, impl Pin>) -> Self {
         Self {
             bus,
@@ -38,15 +38,15 @@ impl<B> Selected<B> {
     }
 }
 
-/// A chip whose bus is moved by DMA.
+/// A chip on a bus with DMA.
 pub type DmaChip = Selected<Spi<'static, embassy_stm32::mode::Async, Master>>;
 
-/// A chip whose bus is moved by the processor, which waits meanwhile.
+/// A chip on a bus moved by the processor, which waits meanwhile.
 pub type PlainChip = Selected<
     embassy_embedded_hal::adapter::BlockingAsync<Spi<'static, embassy_stm32::mode::Blocking, Master>>,
 >;
 
-/// Holds the select line low; a transfer that is given up half-way still lets go of the chip.
+/// Holds the select line low; a dropped transfer also releases the chip.
 struct Hold<'a>(&'a mut Output<'static>);
 
 impl Drop for Hold<'_> {

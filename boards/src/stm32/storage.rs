@@ -1,4 +1,4 @@
-//! Parameters that outlive power, in whichever memory the board has.
+//! Non-volatile parameters in the board's memory.
 
 use embedded_storage_async::nor_flash::NorFlash;
 use sophie_control::params::Params;
@@ -7,13 +7,13 @@ use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 use super::watchdog;
 
-/// The parameters' storage on memory `F`.
+/// Parameter storage on memory `F`.
 pub struct BoardStorage<F>(ParamStore<F>);
 
 impl<F: NorFlash> BoardStorage<F> {
-    /// The storage that fills `memory`, on a board with these defaults.
+    /// Storage in all of `memory`, with these defaults.
     pub fn new(memory: F, defaults: &'static Params) -> Self {
-        // Every memory here is shorter than 4 GiB.
+        // Every memory here is smaller than 4 GiB.
         let all = 0..memory.capacity() as u32;
         Self(ParamStore::new(memory, all).with_defaults(defaults))
     }
@@ -29,8 +29,7 @@ impl<F: NorFlash> Storage for BoardStorage<F> {
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
-        // Erasing may stall the processor for longer than the watchdog's patience. Only disarmed: nothing is being
-        // watched that could fall.
+        // May stall the processor beyond the watchdog's normal time-out. Only while disarmed.
         watchdog::be_patient(true).await;
         let saved = self.0.save(params).await;
         watchdog::be_patient(false).await;

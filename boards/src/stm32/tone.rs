@@ -1,4 +1,4 @@
-//! A sounder without electronics of its own, which wants a tone.
+//! A passive sounder, which needs a tone.
 
 use embassy_stm32::gpio::Flex;
 use embassy_stm32::timer::{Ch1, Channel, GeneralInstance4Channel, TimerPin};
@@ -8,15 +8,15 @@ use sophie_drivers::pwm_timing::PwmTiming;
 use super::lights::Switch;
 use super::pulse_timer::PulseTimer;
 
-/// Length of a wave, µs: about 2.7 kHz, where such sounders are loudest.
+/// Wave period, µs: about 2.7 kHz, where such sounders are loudest.
 const WAVE_US: u32 = 370;
 
-/// A sounder on the first channel of a timer.
+/// A sounder on a timer's first channel.
 pub struct Tone<T: GeneralInstance4Channel> {
     timer: PulseTimer<T>,
     /// Counts of half a wave.
     half: u32,
-    /// Kept, so that the pin stays the timer's.
+    /// Held so that the pin stays the timer's.
     _pin: Flex<'static>,
 }
 
@@ -24,7 +24,7 @@ impl<T: GeneralInstance4Channel> Tone<T> {
     /// The sounder on `pin`, silent.
     ///
     /// # Panics
-    /// If the clock cannot make the tone: a board with such a clock never starts, so it is found at the bench.
+    /// If the clock cannot make the tone: such a board never starts, which shows on the bench.
     pub fn new(timer: Peri<'static, T>, pin: Peri<'static, impl TimerPin<T, Ch1>>) -> Self {
         let Some(timing) = PwmTiming::new(rcc::frequency::<T>().0, WAVE_US) else {
             panic!("the sounder's timer cannot make waves of {WAVE_US} us")

@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::bench::Spin;
 use crate::chain::{Demand, MixOutput, StepClock};
 use crate::mixer::{Allocation, Conditions, Flexible};
 use crate::params::Params;
@@ -94,12 +95,10 @@ impl<A: Allocation> Mixing<A> {
             None => self.allocation.idle(dt),
         };
         let running = *demand != Demand::Stop;
-        let (thrusts, commands) = match demand {
-            Demand::Wrench(_) | Demand::Resting(_) | Demand::Idle => {
-                (mix.thrusts, self.curve.commands(&mix.thrusts, ratio))
-            }
-            Demand::Stop => ([0.0; 4], [0.0; 4]),
-            Demand::Spin(spin) => ([0.0; 4], spin.commands()),
+        let (thrusts, commands) = if running {
+            (mix.thrusts, self.curve.commands(&mix.thrusts, ratio))
+        } else {
+            ([0.0; 4], [0.0; 4])
         };
         let tilt = self.allocation.tilt();
         *out = MixOutput {
@@ -112,7 +111,18 @@ impl<A: Allocation> Mixing<A> {
             tilt_bias: tilt.bias(),
             tilt_fault: tilt.fault(),
         };
+        if let Demand::Spin(spin) = demand {
+            on_bench(out, spin);
+        }
     }
+}
+
+/// One motor in place of the idling four. Apart from the flying, which must not pay for it.
+#[cold]
+#[inline(never)]
+fn on_bench(out: &mut MixOutput, spin: &Spin) {
+    out.thrusts = [0.0; 4];
+    out.commands = spin.commands();
 }
 
 /// The readings of the arms' sensors that have not corrected their arm yet.

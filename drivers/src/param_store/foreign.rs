@@ -1,37 +1,37 @@
-//! Whose data lie where parameters are stored, by how the common flight stacks begin theirs: a board that was used before
-//! has them in the very sectors and the very FRAM that this firmware uses.
+//! Identifies other flight stacks' data where parameters are stored: a board used before has them in the same sectors
+//! or FRAM.
 
-/// Bytes of a page's beginning that tell.
+/// Bytes of a page that identify its owner.
 pub(super) const HEAD: usize = 16;
 
-/// AP_FlashStorage's mark in an F4's sector, 24 bits behind a byte of state, and in an H7's, behind a word of state.
+/// AP_FlashStorage's mark: in an F4's sector 24 bits after a byte of state, in an H7's after a word of state.
 const ARDUPILOT_F4: [u8; 3] = [0x5B, 0x68, 0x51];
 const ARDUPILOT_H7: [u8; 4] = [0x62, 0x5B, 0x68, 0x51];
-/// AP_Param's header in an FRAM: "PA" and the revision of its format.
+/// AP_Param's header in an FRAM: "PA" and format revision.
 const ARDUPILOT_FRAM: [u8; 4] = [0x50, 0x41, 6, 0];
-/// The second byte of Betaflight's and INAV's configuration, behind the version of its format.
+/// Second byte of Betaflight's and INAV's configuration, after the format version.
 const BETAFLIGHT: u8 = 0xBE;
-/// The mark of PX4's parameters in flash.
+/// Mark of PX4's parameters in flash.
 const PX4_FLASH: [u8; 4] = [0xC3, 0x3C, 0x55, 0xAA];
-/// BSON's 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a document of them, named in capitals.
+/// BSON's 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a BSON document with names in capitals.
 const BSON_TYPES: [u8; 2] = [0x01, 0x10];
 
-/// The stack that a page beginning with `head` belongs to; `None` for a page that is blank, this firmware's or unknown.
+/// The stack that owns a page beginning with `head`; `None` for a blank page, this firmware's or an unknown one.
 pub(super) fn owner(head: &[u8; HEAD]) -> Option<&'static str> {
     match *head {
         [_, a, b, c, ..] if [a, b, c] == ARDUPILOT_F4 => Some("ArduPilot"),
         [_, _, _, _, a, b, c, d, ..] if [a, b, c, d] == ARDUPILOT_H7 => Some("ArduPilot"),
         [a, b, c, d, ..] if [a, b, c, d] == ARDUPILOT_FRAM => Some("ArduPilot"),
         [a, b, c, d, ..] if [a, b, c, d] == PX4_FLASH => Some("PX4"),
-        // Length of the document, of which older ones write 0, then its first entry: type and name.
+        // Document length (older ones write 0), then the first entry: type and name.
         [_, _, _, 0, kind, ref name @ ..] if BSON_TYPES.contains(&kind) && capitals(name) => Some("PX4"),
-        // Version, mark, then the length of the first record: 6 bytes of head at least.
+        // Version, mark, then the length of the first record, with at least 6 bytes of head.
         [100..=250, BETAFLIGHT, 6..=255, 0..=0x0F, ..] => Some("Betaflight"),
         _ => None,
     }
 }
 
-/// The beginning of a name of a PX4 parameter, such as `SYS_AUTOSTART`: three characters at least.
+/// The start of a PX4 parameter's name, such as `SYS_AUTOSTART`: three characters or more.
 fn capitals(name: &[u8]) -> bool {
     let length = name.iter().position(|byte| *byte == 0).unwrap_or(name.len());
     let letter = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || *byte == b'_';
@@ -42,7 +42,7 @@ fn capitals(name: &[u8]) -> bool {
 mod tests {
     use super::*;
 
-    /// A page that begins with `bytes`, erased behind them.
+    /// A page of `bytes`, then erased.
     fn page(bytes: &[u8]) -> [u8; HEAD] {
         let mut head = [0xFF; HEAD];
         head[..bytes.len()].copy_from_slice(bytes);
@@ -52,9 +52,9 @@ mod tests {
     #[test]
     fn each_stack_is_known_by_its_beginning() {
         let known: [(&[u8], &str); 6] = [
-            // A sector in use of an F4: state 0xFE or 0xFC below 0x51685B.
+            // F4 sector in use: state 0xFE or 0xFC below 0x51685B.
             (&[0xFC, 0x5B, 0x68, 0x51, 0x00], "ArduPilot"),
-            // Of an H7: state, then the signature 0x51685B62.
+            // H7: state, then the signature 0x51685B62.
             (&[0xF1, 0x99, 0x0D, 0x21, 0x62, 0x5B, 0x68, 0x51], "ArduPilot"),
             (&[0x50, 0x41, 0x06, 0x00, 0x12, 0x34], "ArduPilot"),
             (&[0xB0, 0xBE, 0x2A, 0x00, 0x0B, 0x00], "Betaflight"),

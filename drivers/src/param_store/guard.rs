@@ -1,4 +1,4 @@
-//! Flash for looking, not for touching.
+//! Read-only view of flash.
 
 use core::ops::Range;
 
@@ -6,17 +6,16 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Reads after which the contents count as noise: five times what the fullest sound log takes.
+/// Reads after which the contents count as noise: five times those of the fullest valid log.
 const READS_MAX: u16 = 20_000;
-/// Bits at 0 in a page's mark from which it counts as set (the map's own rule).
+/// Zero bits from which a page's mark counts as set (the map's rule).
 const MARKED: u32 = 4;
 
-/// Why a read was not made, or gave nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refused {
-    /// By the flash.
+    /// Flash error.
     Flash,
-    /// It was a write, or one read too many.
+    /// A write, or one read too many.
     NotAllowed,
 }
 
@@ -26,14 +25,13 @@ impl NorFlashError for Refused {
     }
 }
 
-/// Lets the map read, and repair in its imagination only: a page that it erases reads as blank from then on.
+/// Lets the map read, and erase in this view only: an erased page reads as blank.
 pub(super) struct ReadOnly<'a, F> {
     flash: &'a mut F,
     range: Range<u32>,
-    /// Pages that count as erased, a bit each.
+    /// Pages that count as erased, one bit each.
     erased: u32,
     reads: u16,
-    /// End of the last read.
     end: u32,
 }
 
@@ -55,14 +53,14 @@ impl<'a, F: NorFlash> ReadOnly<'a, F> {
         }
     }
 
-    /// True when nothing at all is written in the range, not even in pages that count as erased.
+    /// True if the range is blank, including pages that count as erased.
     pub(super) async fn blank(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
         self.erased = 0;
         self.all_ones(self.range.clone(), buffer).await
     }
 
-    /// True when nothing is written behind the item that was read last, which is the newest sound one: something
-    /// there is a newer one that was cut short, or that has been damaged.
+    /// True if nothing is written behind the item read last, the newest valid one: data there are a newer item, cut
+    /// short or damaged.
     pub(super) async fn blank_behind_last_read(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
         let (end, start) = (self.end, self.range.start);
         let page = start + end.saturating_sub(start + 1) / Self::PAGE * Self::PAGE;
@@ -74,7 +72,7 @@ impl<'a, F: NorFlash> ReadOnly<'a, F> {
         } else {
             start
         };
-        // A closed page is an old one, an unmarked one is to be erased before its use.
+        // A closed page is old; an unmarked one is erased before use.
         let in_use =
             self.marked(next).await? && !self.marked(next + Self::PAGE - F::READ_SIZE as u32).await?;
         let inside = next + Self::WORD..next + Self::PAGE - Self::WORD;
@@ -101,7 +99,6 @@ impl<'a, F: NorFlash> ReadOnly<'a, F> {
         Ok(true)
     }
 
-    /// Bit of the page that `at` lies in.
     const fn bit(&self, at: u32) -> Option<u32> {
         1u32.checked_shl(at.saturating_sub(self.range.start) / Self::PAGE)
     }

@@ -1,15 +1,14 @@
-//! A set of parameters as one item of the map.
+//! A set of parameters as an item of the map.
 
 use sequential_storage::map::{SerializationError, Value};
 use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 
-/// Marks an item as ours, and how it is laid out.
+/// Marks an item and its layout.
 const TAG: [u8; 4] = *b"SPH1";
-/// Bytes of a record: hash of the name and bits of the value, both little-endian.
+/// Bytes of a record: hash of the name, bits of the value, both little-endian.
 const RECORD: usize = 8;
-/// Most records of a set. More than the table has, so that a set of other firmware can be read.
+/// Most records: more than the table has, so that other firmware's sets are readable.
 pub(super) const RECORDS: usize = 256;
-/// Bytes of the longest set.
 pub(super) const LONGEST: usize = TAG.len() + RECORDS * RECORD;
 
 const _: () = assert!(
@@ -17,7 +16,7 @@ const _: () = assert!(
     "the buffer does not hold every parameter"
 );
 
-/// What stands for a parameter's name in storage: its 32-bit FNV-1a hash.
+/// Key of a parameter in storage: 32-bit FNV-1a hash of its name.
 pub const fn hash(name: &str) -> u32 {
     let mut rest = name.as_bytes();
     let mut hash = 0x811C_9DC5;
@@ -28,18 +27,17 @@ pub const fn hash(name: &str) -> u32 {
     hash
 }
 
-/// A set of parameters.
 pub(super) struct Set {
     params: Params,
-    /// What was written as a set: the parameters that differ from these.
+    /// For writing: only parameters that differ from these are stored.
     defaults: &'static Params,
-    /// What was read as a set: the rows of the table that had a record.
+    /// Of a set read: the table rows with a record.
     given: Rows,
-    /// Something stands under an old name: it is written under the new one at the next save.
+    /// A record has an old name; the next save writes the new one.
     pub renamed: bool,
-    /// Records taken over.
+    /// Records accepted.
     pub taken: u16,
-    /// Records of unknown names, or of values that are not allowed.
+    /// Records of unknown names or invalid values.
     pub refused: u16,
 }
 
@@ -55,14 +53,14 @@ impl Set {
         }
     }
 
-    /// What was read, and for everything else the defaults.
+    /// The values read, over `defaults`.
     pub(super) fn over(&self, defaults: &Params) -> Params {
         let mut params = *defaults;
         for (at, row) in Params::TABLE.iter().enumerate() {
             if self.given.contains(at)
                 && let Some(value) = self.params.get(row.name)
             {
-                // Allowed: it was set in the same way when it was read.
+                // Valid: it was set in the same way when it was read.
                 let _ = params.set(row.name, value);
             }
         }
@@ -70,7 +68,7 @@ impl Set {
     }
 }
 
-/// Rows of the table, a bit each.
+/// Table rows, one bit each.
 #[derive(Clone, Copy)]
 struct Rows([u32; RECORDS / 32]);
 
@@ -88,12 +86,10 @@ impl Rows {
     }
 }
 
-/// What a record's name stands for.
 struct Known {
-    /// The row's place in the table.
     at: usize,
     row: &'static ParamInfo,
-    /// Where the record has the row's old name.
+    /// Set if the record has the row's old name.
     renamed: Option<&'static Renamed>,
 }
 
@@ -108,7 +104,6 @@ impl Known {
 }
 
 impl<'a> Value<'a> for Set {
-    /// Writes the tag and a record for each parameter that differs from its default.
     fn serialize_into(&self, buffer: &mut [u8]) -> Result<usize, SerializationError> {
         const SHORT: SerializationError = SerializationError::BufferTooSmall;
         let (tag, mut rest) = buffer.split_first_chunk_mut().ok_or(SHORT)?;
@@ -139,7 +134,7 @@ impl<'a> Value<'a> for Set {
             return Err(SerializationError::InvalidFormat);
         };
         let mut set = Self::of(Params::DEFAULT, &Params::DEFAULT);
-        // Rows that have a record under the name of the table, which goes before one under the old name.
+        // Rows recorded under the table's name, which precedes an old name.
         let mut under_new = Rows::NONE;
         for &[h0, h1, h2, h3, v0, v1, v2, v3] in records {
             let (name, value) = (
@@ -182,7 +177,7 @@ mod tests {
         let names = names.chain(RENAMED.iter().map(|renamed| renamed.old));
         let hashes: BTreeSet<u32> = names.map(hash).collect();
         assert_eq!(hashes.len(), Params::TABLE.len() + RENAMED.len());
-        // Published vectors of FNV-1a, 32 bit: what is stored must mean the same in every release.
+        // Published 32-bit FNV-1a vectors: stored keys must not change between releases.
         assert_eq!(
             [hash(""), hash("a"), hash("foobar")],
             [0x811C_9DC5, 0xE40C_292C, 0xBF9C_F968]

@@ -1,4 +1,4 @@
-//! Frames, the search for them in a stream, and what is published of them.
+//! Frames, their search in a stream, and what is published.
 
 extern crate std;
 
@@ -43,7 +43,7 @@ fn pilot() -> Frame {
 
 #[test]
 fn a_known_frame() {
-    // Every channel at its centre, 992: the bit pattern repeats each eleven bytes.
+    // Every channel at its centre, 992: the bit pattern repeats every eleven bytes.
     let mut bytes = [0; FRAME];
     bytes[0] = 0x0F;
     let centre = [0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C];
@@ -94,7 +94,7 @@ fn a_frame_after_garbage_is_not_believed_before_the_stream_is_understood() {
     }
     let (frames, errors) = stream(&mut fresh(), &bytes);
     assert_eq!((frames.len(), errors), (2, 1));
-    // With silence before it, the very first is.
+    // After silence, the very first frame is found.
     let mut parser = fresh();
     assert!(stream(&mut parser, &[0x55; 11]).0.is_empty());
     parser.silence();
@@ -122,14 +122,14 @@ fn a_lost_byte_costs_its_frame_and_the_next() {
     }
 }
 
-/// Throttle published, in whole percent, and the decoder's counts.
+/// Throttle published, %.
 fn published(decoder: &mut Decoder, bytes: &[u8], us: u64) -> Option<u32> {
     decoder
         .take(bytes, Instant::from_micros(us))
         .map(|state| (state.sticks.throttle * 100.0 + 0.5) as u32)
 }
 
-/// A decoder that has heard three frames, 7 ms apart, the last at 21 ms.
+/// A decoder after three frames, 7 ms apart, the last at 21 ms.
 fn believing() -> Decoder {
     let mut d = Decoder::new();
     assert_eq!(published(&mut d, &[0x00], 0), None);
@@ -143,13 +143,11 @@ fn believing() -> Decoder {
 fn the_third_frame_in_a_row_is_believed() {
     let mut d = believing();
     assert_eq!((d.state.frames, d.state.errors), (3, 0));
-    // One frame in two reads.
     let frame = pilot().encode();
     assert_eq!(published(&mut d, &frame[..11], 27_000), None);
     assert_eq!(published(&mut d, &frame[11..], 28_680), Some(30));
-    // Two at once: the task was held up.
     assert_eq!(published(&mut d, &[frame, frame].concat(), 42_000), Some(30));
-    // Garbage between: three more.
+    // After garbage: three more.
     assert_eq!(published(&mut d, &[0x55; 25], 49_000), None);
     assert_eq!(published(&mut d, &frame, 56_000), None);
     assert_eq!(published(&mut d, &frame, 63_000), None);
@@ -158,12 +156,12 @@ fn the_third_frame_in_a_row_is_believed() {
 
 #[test]
 fn only_a_pause_beyond_the_bytes_own_time_is_silence() {
-    // Half a frame, then a frame's worth of bytes that took 3 ms: the line never rested.
+    // Half a frame, then a frame's length of bytes over 3 ms without idle time.
     let frame = pilot().encode();
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 31_500), None, "still the same stream");
-    // The same with a rest of 4 ms: the half is dropped, the frame is found, and no longer accepted alone.
+    // After 4 ms of idle time: the half is dropped, and the next frame not accepted alone.
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 35_000), None);
@@ -184,7 +182,7 @@ fn a_receiver_without_its_transmitter_publishes_nothing_and_is_believed_again_at
         for i in 4..200 {
             assert_eq!(published(&mut d, &lost.encode(), 7_000 * i), None);
         }
-        // A report among the frames of one read counts for what came before it.
+        // A report applies to the earlier frames of its read.
         let read = [pilot().encode(), lost.encode()].concat();
         assert_eq!(published(&mut d, &read, 1_400_000), None);
         assert_eq!(published(&mut d, &pilot().encode(), 1_407_000), Some(30));
@@ -198,12 +196,11 @@ fn a_line_error_costs_the_frame_in_progress_and_trust() {
     let frame = pilot().encode();
     assert_eq!(published(&mut d, &frame[..12], 27_000), None);
     d.broken(Instant::from_micros(27_500));
-    // What follows the error is the rest of that frame.
+    // The rest of the frame with the error.
     assert_eq!(published(&mut d, &frame[13..], 29_000), None);
     assert_eq!(published(&mut d, &frame, 35_000), None);
     assert_eq!(published(&mut d, &frame, 42_000), None);
     assert_eq!(published(&mut d, &frame, 49_000), Some(30));
-    // The error, and what was left of that frame.
     assert_eq!((d.state.frames, d.state.errors), (6, 2));
 }
 
@@ -248,9 +245,8 @@ proptest! {
             bytes.extend(pilot().encode());
         }
         let (frames, _) = stream(&mut fresh(), &bytes);
-        // Garbage may end in the head of a frame that was never sent, which swallows one and unsettles one.
+        // Garbage may end in a false head, which swallows one frame and misaligns another.
         prop_assert!(frames.iter().rev().take(3).all(|f| *f == pilot()) && frames.len() >= 3);
-        // And after silence the next frame is accepted at once.
         let mut parser = Parser::new();
         stream(&mut parser, &bytes);
         parser.silence();
@@ -276,7 +272,7 @@ proptest! {
     fn bytes_that_are_almost_sbus_give_no_sticks(
         reads in proptest::collection::vec((proptest::array::uniform23(any::<u8>()), 0u8..4), 1..60),
     ) {
-        // A right header after silence, and wrong in one place only: header, flags or end in turn.
+        // A valid header after silence, with one error: header, flags or end in turn.
         let mut decoder = Decoder::new();
         for (i, (inner, wrong)) in (1..).zip(reads) {
             let mut bytes = [0; FRAME];
@@ -285,7 +281,7 @@ proptest! {
             bytes[23] = if wrong == 1 { inner[22] | 0x10 } else { 0x00 };
             bytes[24] = if wrong == 2 { 0x01 } else { 0x00 };
             if wrong == 3 {
-                // Whole, but from a receiver that has no transmitter.
+                // Whole, but from a receiver without transmitter.
                 bytes[23] = 0x08;
             }
             prop_assert_eq!(decoder.take(&bytes, Instant::from_micros(7_000 * i)), None);

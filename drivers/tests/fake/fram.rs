@@ -1,4 +1,4 @@
-//! An FM25V02A on SPI, and what may sit in its place.
+//! A fake FM25V02A on SPI, and what may replace it.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -9,28 +9,25 @@ use embedded_hal_async::spi::SpiDevice;
 
 use super::spi::BusError;
 
-/// What answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Answer {
-    /// The part.
+    /// A sound part.
     #[default]
     Sound,
-    /// This byte, always: an undriven line.
+    /// Always this byte: an undriven line.
     Only(u8),
-    /// The bus peripheral reports an error.
     Bus,
-    /// The part, which takes no write.
+    /// A part that ignores writes.
     Deaf,
 }
 
-/// The part.
 pub struct Chip {
     pub answer: Answer,
     pub identity: [u8; 9],
     pub cells: Vec<u8>,
     /// WPEN, BP1, BP0 and the latch; bit 6 reads as 1.
     pub status: u8,
-    /// Bytes of every transaction, as the controller sent them.
+    /// Bytes of every transaction from the controller.
     pub sent: Vec<Vec<u8>>,
 }
 
@@ -45,11 +42,11 @@ impl Chip {
         }))
     }
 
-    /// One transaction, from select to deselect; gives what the part drives.
+    /// One transaction, from select to deselect; returns the part's bytes.
     fn transfer(&mut self, sent: &[u8]) -> Vec<u8> {
         let mut answer = vec![0; sent.len()];
         let latched = self.status & 0x02 != 0;
-        // 15 bits of address: the top one is ignored.
+        // 15 address bits: the top one is ignored.
         let address = |i: usize| (usize::from(u16::from_be_bytes([sent[1], sent[2]])) + i) & 0x7FFF;
         match sent[0] {
             0x06 => self.status |= 0x02,
@@ -85,7 +82,6 @@ impl Chip {
     }
 }
 
-/// The part's bus.
 pub struct Bus(pub Rc<RefCell<Chip>>);
 
 impl ErrorType for Bus {

@@ -1,4 +1,4 @@
-//! A bus with up to two BNO055: registers, pages, boot and mode switch times, and the ways in which they fail.
+//! A fake bus with up to two BNO055: registers, pages, boot and mode switch times, failures.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -7,19 +7,17 @@ use embassy_time::{Duration, Instant, Timer};
 use embedded_hal::i2c::{self, ErrorKind, NoAcknowledgeSource, Operation};
 use embedded_hal_async::i2c::I2c;
 
-/// How a chip fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     None,
-    /// The address is not acknowledged.
+    /// No acknowledge.
     Missing,
-    /// The clock stays held.
+    /// Clock held.
     Stretched,
     /// All bytes read as this.
     Reads(u8),
 }
 
-/// One chip.
 pub struct Chip {
     pub address: u8,
     pub failure: Failure,
@@ -30,7 +28,7 @@ pub struct Chip {
     pub violations: Vec<String>,
     boots_until: Instant,
     switches_until: Instant,
-    /// Counts of the gravity vector as the chip computes them.
+    /// Gravity vector, counts.
     pub gravity: [i16; 3],
     pub calibration: u8,
     pub status: u8,
@@ -55,7 +53,7 @@ impl Chip {
         Rc::new(RefCell::new(chip))
     }
 
-    /// Power-on values; the chip is deaf for 650 ms.
+    /// Power-on values; no answer for 650 ms.
     pub fn reset(&mut self) {
         self.pages = [[0; 128]; 2];
         let p0 = &mut self.pages[0];
@@ -124,7 +122,6 @@ impl Chip {
     }
 }
 
-/// A bus with its chips.
 pub struct Bus(pub Vec<Rc<RefCell<Chip>>>);
 
 #[derive(Debug)]
@@ -152,7 +149,7 @@ impl I2c for Bus {
         if failure == Failure::Stretched {
             core::future::pending::<()>().await;
         }
-        // 22.5 µs a byte: 400 kHz.
+        // 22.5 µs per byte: 400 kHz.
         let bytes: usize = operations
             .iter()
             .map(|o| {

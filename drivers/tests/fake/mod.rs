@@ -1,4 +1,4 @@
-//! Stand-ins for chips and their buses, in virtual time.
+//! Fake chips and buses in virtual time.
 
 pub mod fram;
 pub mod i2c;
@@ -10,7 +10,7 @@ use std::rc::Rc;
 
 use sophie_clock::VirtualTime;
 
-/// Runs `future` on a clock of its own; it must end within ten minutes of that clock.
+/// Runs `future` on its own clock, for at most ten minutes of it.
 pub fn run<T: 'static>(future: impl Future<Output = T> + 'static) -> T {
     let time = VirtualTime::new();
     let result = Rc::new(RefCell::new(None));

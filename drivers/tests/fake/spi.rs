@@ -1,5 +1,4 @@
-//! An InvenSense part on SPI: registers in banks, read-only ones, reset values, data-ready, self-test, and the
-//! ways in which such a part fails.
+//! A fake InvenSense part on SPI: banks, read-only registers, reset values, data-ready, self-test, failures.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -9,14 +8,12 @@ use embedded_hal::spi::{self, Operation};
 use embedded_hal_async::spi::SpiDevice;
 use sophie_drivers::data_ready;
 
-/// Which part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Icm42688p,
     Icm20689,
 }
 
-/// How it fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     None,
@@ -24,47 +21,45 @@ pub enum Failure {
     Zeros,
     /// MISO held high, or no part fitted.
     Ones,
-    /// The bus peripheral reports an error.
     Bus,
-    /// No sample is ready, whoever is asked.
+    /// No sample, by line or status.
     Mute,
-    /// The data-ready line is cut; the part samples on.
+    /// Data-ready line cut; the part still samples.
     LineCut,
-    /// The sample registers stand still.
     Frozen,
 }
 
-/// The state of the part; shared by its bus and its data-ready line.
+/// State of the part; shared by bus and data-ready line.
 pub struct Part {
     pub kind: Kind,
     pub failure: Failure,
     pub banks: [[u8; 128]; 5],
     bank: u8,
-    /// Registers that do not take what is written to them.
+    /// Registers that ignore writes.
     pub deaf: Vec<(u8, u8)>,
-    /// Every write but bank selects: bank, register, value.
+    /// Writes other than bank selects: bank, register, value.
     pub writes: Vec<(u8, u8, u8)>,
-    /// Length of every transaction, bytes.
+    /// Transaction lengths, bytes.
     pub transactions: Vec<usize>,
-    /// What the datasheet forbids.
+    /// Breaches of the datasheet.
     pub violations: Vec<String>,
-    /// Angular rate (°/s) and specific force (g) in the part's axes.
+    /// Angular rate (°/s), specific force (g), part's axes.
     pub gyro: [f32; 3],
     pub accel: [f32; 3],
-    /// Response to the self-test over the factory's, per axis: gyro, then accel.
+    /// Self-test response over the factory's, per axis: gyro, then accel.
     pub health: [f32; 6],
     noise: u32,
-    /// What the part's clock makes each period longer, µs.
+    /// Clock error, µs added to each period.
     pub skew: i64,
-    /// When the status was read last, µs; a sample since then sets its bit.
+    /// Last status read, µs; a later sample sets its bit.
     status_read: u64,
-    /// Samples that were read, by the number of the period in which they were ready.
+    /// Samples read, by the number of their period.
     pub samples: Vec<u64>,
     powered_at: Instant,
     busy_until: Instant,
 }
 
-/// Factory codes of the fake: 1.01^(code - 1) times 2620 counts.
+/// Fake factory codes: 1.01^(code - 1) times 2620 counts.
 pub const CODES: [u8; 6] = [90, 100, 110, 60, 70, 80];
 
 impl Part {
@@ -92,7 +87,6 @@ impl Part {
         Rc::new(RefCell::new(part))
     }
 
-    /// Power-on values.
     pub fn reset(&mut self) {
         self.banks = [[0; 128]; 5];
         self.bank = 0;
@@ -143,12 +137,12 @@ impl Part {
         }
     }
 
-    /// Number of the period under way: that of the newest sample.
+    /// Number of the newest sample's period.
     fn newest(&self) -> Option<u64> {
         self.period().map(|period| Instant::now().as_micros() / period)
     }
 
-    /// The status register, which clears when it is read.
+    /// The status register; reading clears it.
     fn status(&mut self) -> u8 {
         let now = Instant::now().as_micros();
         let last = std::mem::replace(&mut self.status_read, now);
@@ -159,12 +153,12 @@ impl Part {
         }
     }
 
-    /// Time between two pulses of data-ready, µs; `None` while there are none.
+    /// Data-ready period, µs; `None` without pulses.
     fn pulses(&self) -> Option<u64> {
         self.period().filter(|_| self.failure != Failure::LineCut)
     }
 
-    /// Time between two samples, µs; `None` while there are none.
+    /// Sample period, µs; `None` without samples.
     pub fn period(&self) -> Option<u64> {
         let b0 = &self.banks[0];
         if !self.on() || self.failure == Failure::Mute {
@@ -187,7 +181,6 @@ impl Part {
         nominal?.checked_add_signed(self.skew)
     }
 
-    /// Fresh counts in the sample registers.
     fn convert(&mut self) {
         if self.failure == Failure::Frozen || !self.on() {
             return;
@@ -219,11 +212,11 @@ impl Part {
                 (1, self.accel[axis], accel_scale, 16384.0),
             ] {
                 let index = 3 * sensor + axis;
-                // A small deterministic noise of -2..=1 counts.
+                // Small deterministic noise, -2..=1 counts.
                 self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let mut c = value * scale + (self.noise >> 30) as f32 - 2.0;
                 if actuated[sensor] >> axis & 1 == 1 {
-                    // Counts at the range of the test, brought to the present range.
+                    // Counts at the test's range, scaled to the present range.
                     let response = 2620.0 * 1.01f32.powi(i32::from(CODES[index]) - 1);
                     c += self.health[index] * response * scale / full;
                 }
@@ -265,7 +258,7 @@ impl Part {
                 self.bank = value & 7;
                 return;
             }
-            // What §12.9 allows while the sensors are on, and the self-test's own register.
+            // Allowed by §12.9 while the sensors are on, and the self-test's own register.
             let allowed = self.bank == 0 && matches!(register, 0x11 | 0x4E | 0x4F | 0x50 | 0x70);
             if self.on() && !allowed {
                 self.violations.push(format!(
@@ -298,10 +291,8 @@ impl Part {
     }
 }
 
-/// The part's bus.
 pub struct Bus(pub Rc<RefCell<Part>>);
 
-/// The part's data-ready line.
 pub struct DataReady(pub Rc<RefCell<Part>>);
 
 #[derive(Debug)]
@@ -319,7 +310,7 @@ impl spi::ErrorType for Bus {
 
 impl SpiDevice for Bus {
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), BusError> {
-        // 2 µs overhead and 1 µs a byte, about 8 MHz: a transaction can be dropped half way.
+        // 2 µs overhead and 1 µs per byte, about 8 MHz: a transaction can be dropped half way.
         let length: usize = operations
             .iter()
             .map(|o| match o {

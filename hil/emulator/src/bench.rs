@@ -1,4 +1,4 @@
-//! The emulated board as the aircraft of a flight: what the world sees of it is its pins, its telemetry and its log.
+//! The emulated board as the aircraft of a flight; the world sees its pins, telemetry and log.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -29,10 +29,10 @@ use crate::terminal::Sockets;
 use crate::tilt::{TiltError, Tilts};
 use crate::wires::{BoardFault, Digest, Pins, Run, Wires};
 
-/// Height at which the arms hang free in the air, m.
+/// Height at which the arms hang free, m.
 const AIRBORNE: f64 = 0.3;
 
-/// A vehicle with the emulated board in it.
+/// A vehicle with the emulated board.
 pub struct Bench<'a> {
     /// `None` before power-on.
     emulator: Option<Emulator>,
@@ -51,7 +51,7 @@ pub struct Bench<'a> {
     grip: PerArm<ArmGrip>,
     proven: bool,
     setpoint: [f64; 3],
-    /// The last reset that the mission asked for, how many there were, and whether the board is still dead from it.
+    /// The mission's last reset, the number of resets, and whether the board is down.
     reset: Option<Reset>,
     cuts: u32,
     dead: bool,
@@ -61,60 +61,59 @@ pub struct Bench<'a> {
     protocol: RcProtocol,
     watched: Watched,
     tilts: Tilts,
-    /// Every line of the log.
+    /// Log lines.
     pub lines: Vec<Line>,
     raw: Vec<u8>,
-    /// Restarts of the processor: when (ms since power-on) and why.
+    /// Processor resets: time (ms since power-on) and cause.
     pub resets: Vec<(f64, String)>,
 }
 
-/// What the log says of the vehicle's state.
 struct Status {
     mode: Mode,
     reason: String,
     warning: String,
 }
 
-/// What the bench sees of the plant besides the pins.
+/// Plant state besides the pins.
 #[derive(Default)]
 struct Watched {
     tilt: PerArm<f64>,
     voltage: f64,
 }
 
-/// What is left of a bench after its run.
+/// Results of a bench after its run.
 pub struct Finished {
     /// The emulator's record.
     pub run: Run,
     /// Missed deadlines by task, as last logged.
     pub overruns: BTreeMap<String, u32>,
-    /// Digest of every line of the log with its time.
+    /// Digest of all log lines with their times.
     pub log_digest: u64,
-    /// How far the arms' measured tilt was from the model's in flight.
+    /// Measured minus modelled arm tilt in flight.
     pub tilt_error: TiltError,
-    /// Every line of the log.
+    /// Log lines.
     pub lines: Vec<Line>,
-    /// The log as the firmware wrote it.
+    /// The log as written by the firmware.
     pub log: Vec<u8>,
-    /// Restarts of the processor: when (ms since power-on) and why.
+    /// Processor resets: time (ms since power-on) and cause.
     pub resets: Vec<(f64, String)>,
-    /// Stretches of the log that could not be decoded.
+    /// Parts of the log that could not be decoded.
     pub malformed: u32,
 }
 
-/// How a board is run.
+/// Settings of a run.
 pub struct Setup {
-    /// Instructions a cycle of the core clock.
+    /// Instructions per core cycle.
     pub speed: f64,
-    /// What goes wrong on the way.
+    /// Planned troubles.
     pub plan: Plan,
-    /// The serial lines that are on a socket.
+    /// Serial lines on sockets.
     pub sockets: Sockets,
 }
 
 impl<'a> Bench<'a> {
-    /// A vehicle with `firmware` in its board, which runs as `setup` has it with the parameters of `scenario` and a
-    /// calibrated accelerometer; the sensors are out of the bag that `rng` holds. Each line of the log goes to `logged`.
+    /// A vehicle with `firmware` in its board, run as in `setup` with the parameters of `scenario` and a calibrated
+    /// accelerometer; `rng` draws the sensors' errors. `logged` receives each line of the log.
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
@@ -181,7 +180,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// What the pins show now.
+    /// Present state of the pins.
     #[must_use]
     pub fn pins(&self) -> &Pins {
         &self.pins
@@ -222,7 +221,7 @@ impl<'a> Bench<'a> {
         pressure
     }
 
-    /// Thrust of each rotor (N) that its motor's command asks for.
+    /// Commanded thrust of each rotor, N.
     fn thrusts(&self) -> PerArm<f32> {
         let curve = ThrustCurve::from_params(&self.params);
         let ratio = self.watched.voltage as f32 / self.params.battery_nominal;
@@ -231,7 +230,7 @@ impl<'a> Bench<'a> {
             .map(|command| curve.thrust(command as f32, ratio))
     }
 
-    /// Force of each tendon (N) that its servo's pulse asks for.
+    /// Commanded force of each tendon, N.
     fn tension(&self) -> PerArm<f64> {
         let mut force = [0.0; 4];
         let pins = self.pins.servos.into_iter().zip(self.watched.tilt);
@@ -345,7 +344,7 @@ impl Aircraft for Bench<'_> {
         self.pins.motors
     }
 
-    // The processor stands still until its watchdog bites. Scenarios with another cause are refused beforehand.
+    // The processor stands still until its watchdog's reset; other causes are refused beforehand.
     fn cut(&mut self, cause: StartCause, step: usize, at: f64) {
         self.wires.faults.push(BoardFault::Hang(true));
         self.reset = Some(Reset { cause, step, at });
@@ -372,7 +371,7 @@ impl Aircraft for Bench<'_> {
     }
 }
 
-/// Where the sticks are by a frame of the radio; `None` for other frames.
+/// Sticks of a radio frame; `None` for other frames.
 fn sticks(protocol: RcProtocol, mut frame: &[u8]) -> Option<Sticks> {
     match protocol {
         RcProtocol::Crsf => match CrsfParser::default().next_packet(&mut frame) {
@@ -383,7 +382,7 @@ fn sticks(protocol: RcProtocol, mut frame: &[u8]) -> Option<Sticks> {
     }
 }
 
-/// A byte as it goes over the receiver's line: SBUS puts an even parity on top.
+/// A byte as a word on the receiver's line: SBUS adds even parity as the top bit.
 fn on_line(protocol: RcProtocol, byte: u8) -> u16 {
     let parity = match protocol {
         RcProtocol::Crsf => 0,

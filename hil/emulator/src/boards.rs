@@ -1,30 +1,30 @@
-//! The boards that can be emulated, and what their images may use.
+//! The emulated boards, and the memory for their images.
 
-/// Which of them.
+/// Board type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The reference board, STM32H743.
+    /// Reference board, STM32H743.
     MatekH743,
-    /// The custom board, STM32F405.
+    /// Custom board, STM32F405.
     F405,
 }
 
-/// One board.
+/// A board.
 #[derive(Debug)]
 pub struct EmulatedBoard {
-    /// Which it is.
+    /// Type.
     pub kind: Kind,
-    /// Its name, everywhere.
+    /// Name.
     pub name: &'static str,
-    /// Its processor.
+    /// Processor.
     pub chip: &'static str,
-    /// Flash: first address, and first one beyond.
+    /// Flash: first address and end.
     pub flash: (u64, u64),
-    /// RAM that the stack may lie in.
+    /// RAM permitted for the stack.
     pub ram: &'static [(u64, u64)],
 }
 
-/// All of them, the reference board first.
+/// All boards, the reference board first.
 pub static BOARDS: [EmulatedBoard; 2] = [
     EmulatedBoard {
         kind: Kind::MatekH743,
@@ -44,10 +44,10 @@ pub static BOARDS: [EmulatedBoard; 2] = [
     },
 ];
 
-/// The board called `name`.
+/// The board `name`.
 ///
 /// # Errors
-/// One line: the name and what is allowed.
+/// One line: the name, and the permitted ones.
 pub fn find(name: &str) -> Result<&'static EmulatedBoard, String> {
     BOARDS.iter().find(|board| board.name == name).ok_or_else(|| {
         let names = BOARDS.each_ref().map(|board| board.name).join(", ");

@@ -1,7 +1,6 @@
-//! What the control path executes on the flashed image, by symbol: everything around the laws has its share named.
+//! Instructions of the control path on the flashed image, by symbol: names the share of everything around the laws.
 //!
-//! A function that the compiler inlined counts where it was put: what a task does itself, with the links and records that
-//! went into it, is the task's.
+//! Inlined functions count where they were inlined: a task's own share includes its links and records.
 
 mod groups;
 
@@ -12,19 +11,19 @@ use object::{Object, ObjectSymbol, SymbolKind};
 
 use self::groups::{group_of, names};
 
-/// The steps that are to be counted.
+/// Steps to count.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
-    /// Millisecond since power-on from which on steps are counted.
+    /// First millisecond since power-on.
     pub from_ms: u64,
-    /// How many.
+    /// Number of steps.
     pub steps: usize,
 }
 
-/// Functions of the image, by their addresses.
+/// Functions of the image by address.
 #[derive(Debug, Default)]
 pub struct Functions {
-    /// First address, first one beyond, and name.
+    /// First address, end, and name.
     all: Vec<(u64, u64, String)>,
 }
 
@@ -40,7 +39,7 @@ impl Functions {
             .filter(|s| s.kind() == SymbolKind::Text && s.size() > 0);
         let mut all: Vec<_> = functions
             .filter_map(|s| {
-                // Without the bit that says Thumb.
+                // Without the Thumb bit.
                 let begin = s.address() & !1;
                 let name = format!("{:#}", rustc_demangle::demangle(s.name().ok()?));
                 Some((begin, begin + s.size(), name))
@@ -51,7 +50,7 @@ impl Functions {
         Ok(Self { all })
     }
 
-    /// Where the function `name` begins.
+    /// Address of the function `name`.
     #[must_use]
     pub fn begin_of(&self, name: &str) -> Option<u64> {
         self.all
@@ -60,14 +59,14 @@ impl Functions {
             .map(|(begin, ..)| *begin)
     }
 
-    /// Every address at which an instruction may lie.
+    /// Every possible address of an instruction.
     pub fn halfwords(&self) -> impl Iterator<Item = u64> {
         self.all
             .iter()
             .flat_map(|(begin, end, _)| (*begin..*end).step_by(2))
     }
 
-    /// The function that `address` lies in: its number.
+    /// Number of the function at `address`.
     #[must_use]
     pub fn at(&self, address: u64) -> usize {
         self.all
@@ -75,7 +74,7 @@ impl Functions {
             .saturating_sub(1)
     }
 
-    /// The name of function `number`.
+    /// Name of function `number`.
     #[must_use]
     pub fn name(&self, number: usize) -> &str {
         self.all.get(number).map_or("?", |(.., name)| name)
@@ -85,32 +84,32 @@ impl Functions {
 /// Instructions by function.
 pub type Counts = BTreeMap<usize, u64>;
 
-/// One step.
+/// A counted step.
 #[derive(Clone, Debug, Default)]
 pub struct Step {
-    /// From the handler of data-ready to that of the transfer's end.
+    /// From the data-ready handler to that of the transfer's end.
     pub reading: Counts,
     /// From there to the start of the motor frame.
     pub acting: Counts,
-    /// The core's own count of instructions at the end of the transfer.
+    /// The core's instruction count at the end of the transfer.
     pub received: u64,
-    /// How many it counted from there to the frame: what `acting` adds up to.
+    /// The core's count from there to the frame: the sum of `acting`.
     pub passed: u64,
 }
 
-/// Every step that was counted.
+/// All counted steps.
 #[derive(Clone, Debug, Default)]
 pub struct Counted {
-    /// In their order.
+    /// Steps in order.
     pub steps: Vec<Step>,
 }
 
-/// Mean and largest of one number of each step.
+/// Mean and maximum over the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Share {
     /// Mean.
     pub mean: f64,
-    /// Largest.
+    /// Maximum.
     pub most: u64,
 }
 
@@ -125,13 +124,13 @@ impl Share {
 }
 
 impl Counted {
-    /// From the end of the transfer to the frame, as the core counts.
+    /// From the end of the transfer to the frame, by the core's count.
     #[must_use]
     pub fn acting(&self) -> Share {
         Share::of(self.steps.iter().map(|step| step.passed))
     }
 
-    /// The tables: from the end of the transfer to the frame by part and by function, and what goes before by part.
+    /// Tables: from the end of the transfer to the frame by part and function, and before it by part.
     #[must_use]
     pub fn tables(&self, functions: &Functions) -> String {
         let mut text = format!("{} steps, instructions of each\n\n", self.steps.len());

@@ -1,15 +1,14 @@
-//! The same flight on the host and on the chip, phase by phase.
+//! The same flight on host and chip, phase by phase.
 //!
-//! On the host the attitude error is against what the controller aims at; the chip does not tell that, there it is against
-//! the sticks. What else differs is the millisecond by which the world feels the pins later, the self-test before
-//! calibration, and the gusts that the pilot therefore meets at other places.
+//! The attitude error is against the controller's target on the host, and against the sticks on the chip, which does
+//! not report its target. On the chip the world feels the pins a millisecond later, and the self-test before
+//! calibration makes the pilot meet gusts at other places.
 
 use serde_json::{Value, json};
 use sophie_report::terminal::table::{Align, Table};
 use sophie_report::units::{deg, kgcm};
 use sophie_sim::record::{FlightRecord, Grip, Phase};
 
-/// How a flight ended, in a table's cell.
 fn outcome(record: &FlightRecord) -> &'static str {
     if record.outcome.accomplished {
         "accomplished"
@@ -18,7 +17,7 @@ fn outcome(record: &FlightRecord) -> &'static str {
     }
 }
 
-/// One table for people: each line on the host, then on the chip.
+/// A table for people: each line on the host, then on the chip.
 #[must_use]
 pub fn lines(host: &FlightRecord, chip: &FlightRecord) -> Vec<String> {
     use Align::{Left, Right};

@@ -1,4 +1,4 @@
-//! The image that is flashed: the ELF with what the bench has to know of it.
+//! The flashed image: the ELF and what the bench needs of it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,23 +12,23 @@ use crate::loader::Loader;
 
 /// A firmware image.
 pub struct Firmware {
-    /// Where it was read from.
+    /// File.
     pub path: PathBuf,
-    /// The file.
+    /// Contents of the file.
     pub bytes: Vec<u8>,
     /// Address of the log's control block.
     pub rtt: u64,
-    /// The flash that is kept for parameters: first address, and first one beyond.
+    /// Parameter flash: first address and end.
     pub params: (u64, u64),
-    /// Addresses of the tasks, by their names in `src/firmware/tasks.rs`.
+    /// Task addresses, by the names in `src/firmware/tasks.rs`.
     pub tasks: BTreeMap<String, u64>,
-    /// How the log is written.
+    /// Format of the log.
     pub table: Table,
-    /// The board that it is for.
+    /// Target board.
     pub board: &'static EmulatedBoard,
-    /// What the chip starts in before it; `None`: nothing.
+    /// Loader that runs before it; `None`: none.
     pub loader: Option<Loader>,
-    /// Steps whose instructions are counted; `None`: none.
+    /// Steps with counted instructions; `None`: none.
     pub count: Option<Window>,
 }
 
@@ -36,7 +36,7 @@ impl Firmware {
     /// Reads an image for `board`.
     ///
     /// # Errors
-    /// One line: the file, what is wrong with it and what is wanted.
+    /// One line: the file, what is wrong, and what is required.
     pub fn read(path: &Path, board: &'static EmulatedBoard) -> Result<Self, String> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
         let wrong = |what: String| format!("{}: {what}", path.display());
@@ -78,7 +78,6 @@ impl Firmware {
     }
 }
 
-/// Whether `file` is an image for `board`; otherwise what is wrong with it.
 fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
     if file.architecture() != Architecture::Arm || file.is_64() {
         let found = file.architecture();
@@ -109,7 +108,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
             board.chip
         ));
     }
-    // The name that the image greets with: boards of other chips also start at this flash address.
+    // The name in the first log line: other boards' images also start at this address.
     let named = |name: &[u8]| {
         let mut data = file
             .sections()
@@ -130,7 +129,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
     Ok(())
 }
 
-/// The name of the task whose pool is called `symbol`: in mangled names each part has its length before it.
+/// The task whose pool is named `symbol`: a mangled name has its length before each part.
 fn task(symbol: &str) -> Option<String> {
     let (_, rest) = symbol.strip_suffix("4POOL")?.rsplit_once("5tasks")?;
     let name = rest.trim_start_matches(|c: char| c.is_ascii_digit());

@@ -1,4 +1,4 @@
-//! A motor controller at the end of its wire: makes a command of edges, and stops when it hears nothing.
+//! A motor controller: decodes edges into a command, and stops without frames.
 
 use sophie_control::params::MotorProtocol;
 use sophie_drivers::dshot::{THROTTLE_MAX, THROTTLE_MIN};
@@ -7,17 +7,17 @@ use sophie_drivers::dshot_decoder::{Decoder, LineError};
 /// Silence after which a controller stops its motor, ns (assumed; controllers differ between 0.1 and 0.5 s).
 const SILENCE: u64 = 250_000_000;
 
-/// What the controller understands.
+/// Protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
-    /// DShot with this many kbit/s.
+    /// DShot, kbit/s.
     DShot(u32),
     /// Pulses from this many µs (stop) to twice as many.
     Pulse(u32),
 }
 
 impl Line {
-    /// The line of controllers that speak `protocol`.
+    /// The line for `protocol`.
     #[must_use]
     pub const fn of(protocol: MotorProtocol) -> Self {
         match protocol {
@@ -30,18 +30,18 @@ impl Line {
     }
 }
 
-/// What a controller has heard.
+/// Input statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EscStats {
-    /// Frames or pulses understood.
+    /// Valid frames or pulses.
     pub frames: u64,
-    /// Frames or pulses that meant nothing.
+    /// Invalid frames or pulses.
     pub bad: u64,
-    /// Shortest and longest time between two frames, ns; `None` before the second.
+    /// Shortest and longest time between frames, ns; `None` before the second.
     pub interval: Option<[u64; 2]>,
 }
 
-/// One controller.
+/// A controller.
 #[derive(Clone, Debug)]
 pub struct Esc {
     line: Line,
@@ -51,7 +51,7 @@ pub struct Esc {
     began: Option<u64>,
     command: f64,
     heard: Option<u64>,
-    /// What it has heard.
+    /// Input so far.
     pub stats: EscStats,
 }
 
@@ -74,7 +74,7 @@ impl Esc {
         }
     }
 
-    /// The line changes to `high` at `at` ns. Gives the time of the first edge of a frame that this completes.
+    /// Level change to `high` at `at` ns; returns the first edge's time of a complete frame.
     pub fn edge(&mut self, at: u64, high: bool) -> Option<u64> {
         if high {
             self.rose = Some(at);
@@ -90,7 +90,7 @@ impl Esc {
                     Ok(frame) => throttle(frame.value()),
                     Err(error) => {
                         self.stats.bad += 1;
-                        // A frame that was cut short: this pulse is the first of the next one.
+                        // A truncated frame: this pulse is the first of the next one.
                         self.began = matches!(error, LineError::Short(_)).then_some(rose);
                         return None;
                     }
@@ -117,7 +117,7 @@ impl Esc {
         Some(began)
     }
 
-    /// The command in force at `now` ns, 0..1.
+    /// Command at `now` ns, 0..1.
     #[must_use]
     pub fn command(&self, now: u64) -> f64 {
         match self.heard {
@@ -127,7 +127,7 @@ impl Esc {
     }
 }
 
-/// The command that a DShot value means: what is no throttle stops the motor.
+/// The command of a DShot value; values below the throttle stop the motor.
 fn throttle(value: u16) -> f64 {
     f64::from(value.saturating_sub(THROTTLE_MIN)) / f64::from(THROTTLE_MAX - THROTTLE_MIN)
 }
@@ -138,7 +138,7 @@ mod tests {
 
     use super::*;
 
-    /// Sends `bits` from `at` on with bits of 3333 ns; returns the result of the completed frame.
+    /// Sends `bits` at `at`, 3333 ns each; returns the complete frame's result.
     fn send(esc: &mut Esc, at: u64, bits: u16, count: u32) -> Option<u64> {
         let mut done = None;
         for n in 0..count {

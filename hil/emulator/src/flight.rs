@@ -1,4 +1,4 @@
-//! One flight of an image on the bench, with its verdict.
+//! A flight of an image on the bench, with its verdict.
 
 use sophie_sim::flight::fly_with;
 use sophie_sim::record::{FlightRecord, Observer};
@@ -10,24 +10,24 @@ use crate::log;
 use crate::wires::Gap;
 use crate::{flyable, gaps};
 
-/// A flown flight.
+/// A flight.
 pub struct Flight {
-    /// The record, as that of any flight.
+    /// Flight record.
     pub record: FlightRecord,
-    /// The emulated board's own record.
+    /// Record of the emulated board.
     pub board: Finished,
-    /// Gaps of the emulation that are not allowed; with any, the flight proves nothing.
+    /// Emulation gaps that are not allowed; with any, the flight proves nothing.
     pub gaps: Vec<Gap>,
 }
 
 impl Flight {
-    /// The mission was flown, and the emulation vouches for it.
+    /// The mission was flown, without gaps of the emulation.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.record.outcome.accomplished && self.gaps.is_empty()
     }
 
-    /// Digest of the log and of the pins: equal digests mean equal runs.
+    /// Digest of log and pins: equal digests mean equal runs.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut digest = crate::wires::Digest::default();
@@ -37,7 +37,7 @@ impl Flight {
     }
 }
 
-/// Flies `scenario` with `firmware` on a board as `setup` has it. Each line of the log is passed to `logged`.
+/// Flies `scenario` with `firmware` on a board as in `setup`. `logged` receives each line of the log.
 ///
 /// # Errors
 /// One line: why the scenario cannot be flown, or the emulator failed.

@@ -1,4 +1,4 @@
-//! Whether the image can fly a scenario: parameters are stored for it, but some of what it flies is built into it.
+//! Checks that the image can fly a scenario: parameters are stored for it, but some settings are built in.
 
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;
@@ -8,7 +8,7 @@ use sophie_tasks::start::StartCause;
 /// Refuses a scenario that needs another image.
 ///
 /// # Errors
-/// One line: the scenario, the setting, its value and what the image has.
+/// One line: the scenario, the setting, its value and the image's.
 pub fn check(scenario: &Scenario) -> Result<(), String> {
     let name = &scenario.name;
     if scenario.mixer != Variant::default() {

@@ -1,10 +1,9 @@
-//! Which of the emulator's gaps a run may contain: those that `allowed_gaps.toml` names, with their reasons.
+//! Permitted gaps of the emulator: those in `allowed_gaps.toml`, with reasons.
 
 use serde::Deserialize;
 
 use crate::wires::Gap;
 
-/// The list, as built in.
 const ALLOWED: &str = include_str!("../allowed_gaps.toml");
 
 #[derive(Deserialize)]
@@ -13,7 +12,6 @@ struct List {
     gap: Vec<Entry>,
 }
 
-/// A gap that may be.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {

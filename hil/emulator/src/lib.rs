@@ -1,4 +1,4 @@
-//! Flies the image that is flashed: an emulated board in closed loop with SOPHIE's simulated vehicle.
+//! Flies the flashed image: an emulated board in closed loop with SOPHIE's simulated vehicle.
 //!
 //! ```text
 //! plant ─> sensors ─> wires ─┐                 ┌─> pins ─> motor controllers, servos ─> plant
@@ -6,8 +6,7 @@
 //!                                              └─> log
 //! ```
 //!
-//! The image learns nothing of the simulation but by its registers and wires, and the simulation nothing of the image
-//! but by its pins, its telemetry and its log.
+//! The image and the simulation are connected only by registers and wires, pins, telemetry and log.
 
 pub mod bench;
 pub mod boards;

@@ -1,27 +1,27 @@
-//! A loader that jumps to the firmware with the vector table still its own, as the chip's USB loader does when it is left.
+//! A loader that jumps to the firmware with its own vector table still active, like the chip's USB loader.
 
 use object::{Object, ObjectSection};
 
 use crate::elf::Firmware;
 
-/// Where the loader lies: flash of every emulated chip that no firmware and no parameter takes.
+/// Address of the loader: flash of every emulated chip outside firmware and parameters.
 const AT: u32 = 0x080E_0000;
-/// Length of its vector table, words: a power of two, and more than any chip has vectors.
+/// Words of its vector table: a power of two, more than any chip's vectors.
 const VECTORS: u32 = 256;
-/// Where the core looks for its vectors (ARMv7-M, B3.2.5).
+/// Vector table offset register (ARMv7-M, B3.2.5).
 const VTOR: u32 = 0xE000_ED08;
 
-/// Bytes that lie in the flash beside the firmware.
+/// Flash contents besides the firmware.
 #[derive(Clone, Debug)]
 pub struct Loader {
-    /// Where.
+    /// Address.
     pub at: u64,
-    /// What.
+    /// Contents.
     pub bytes: Vec<u8>,
 }
 
 impl Firmware {
-    /// Puts a loader before the firmware: the chip starts in it, it takes every vector to a loop without end, and jumps
+    /// Puts a loader before the firmware: the chip starts in it; all its vectors lead to an endless loop, and it jumps
     /// to the firmware.
     ///
     /// # Errors

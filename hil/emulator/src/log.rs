@@ -1,17 +1,17 @@
-//! The firmware's log, decoded as the probe's host does it.
+//! The firmware's log, decoded as by a probe's host.
 
 use defmt_decoder::{DecodeError, StreamDecoder, Table};
 
-/// One line of the log.
+/// A line of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Emulated time at which it was read, ms: at most one after it was written.
+    /// Emulated time of reading, ms: at most one after it was written.
     pub ms: u64,
-    /// The firmware's own time stamp.
+    /// The firmware's time stamp.
     pub stamp: String,
     /// `ERROR`, `WARN`, `INFO`, `DEBUG` or `TRACE`; empty without level.
     pub level: &'static str,
-    /// What it says.
+    /// Text.
     pub text: String,
 }
 
@@ -21,16 +21,16 @@ impl std::fmt::Display for Line {
     }
 }
 
-/// The decoder of a run.
+/// Decoder of a run.
 pub struct Log<'a> {
     decoder: Box<dyn StreamDecoder + Send + Sync + 'a>,
     recovers: bool,
-    /// Stretches that could not be decoded.
+    /// Parts that could not be decoded.
     pub malformed: u32,
 }
 
 impl<'a> Log<'a> {
-    /// A decoder for what an image with `table` writes.
+    /// A decoder for an image with `table`.
     #[must_use]
     pub fn new(table: &'a Table) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl<'a> Log<'a> {
         }
     }
 
-    /// Takes bytes read at `ms`; gives the lines that they complete.
+    /// Adds bytes read at `ms`; returns completed lines.
     pub fn take(&mut self, ms: u64, bytes: &[u8]) -> Vec<Line> {
         let mut lines = Vec::new();
         if bytes.is_empty() {

@@ -1,6 +1,7 @@
-//! `sophie-emulator`: flies a scenario with the image of a board, emulated. `cargo xtask bench` builds both and calls it.
+//! `sophie-emulator`: flies a scenario with the image of an emulated board. `cargo xtask bench` builds both and calls
+//! it.
 //!
-//! Exit status: 0 when the mission was accomplished and the emulator vouches for it, 1 when not, 2 for bad input.
+//! Exit status: 0 when the mission was accomplished without gaps of the emulation, 1 when not, 2 for bad input.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -25,13 +26,12 @@ use sophie_report::terminal::{Besides, FILES, complain, finish, result};
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario};
 
-/// Name before every complaint.
 const PROGRAM: &str = "bench";
-/// The log as it was decoded, and as the firmware wrote it.
+/// The decoded log, and the log as written by the firmware.
 const LOG_FILES: [&str; 2] = ["log.txt", "log.bin"];
-/// Begin of the log's lines that come too often for a terminal.
+/// Prefixes of log lines too frequent for a terminal.
 const EACH_SECOND: [&str; 2] = ["timing ", "trace "];
-/// Instructions for each cycle of the clock that can be asked for.
+/// Permitted instructions per clock cycle.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
 
 /// Flies a mission with the image that is flashed, on an emulated board.
@@ -82,7 +82,7 @@ fn main() -> ExitCode {
         }
         Err(error) => {
             let text = error.render().to_string();
-            // What is wrong stands before the first empty line.
+            // The error precedes the first empty line.
             let lines: Vec<&str> = text
                 .lines()
                 .map(str::trim)
@@ -156,7 +156,7 @@ fn run(args: &Args) -> Result<bool, String> {
     Ok(flight.passed())
 }
 
-/// Writes the flight's files, and prints what came of it beside the same flight on the host.
+/// Writes the flight's files, and prints the result beside the host's flight.
 fn write(
     args: &Args,
     scenario: &Scenario,
@@ -164,7 +164,7 @@ fn write(
     out: &OutDir,
     console: &Console,
 ) -> Result<(), String> {
-    // A second's work beside the minutes of the emulation.
+    // A second's work beside minutes of emulation.
     let host = sophie_sim::flight::fly(scenario, &mut Silent);
     let mut value = told(args, flight);
     value["host"] = compare::value(&host);
@@ -186,7 +186,6 @@ fn write(
     Ok(())
 }
 
-/// Says on stderr why the flight did not pass.
 fn complain_of(flight: &Flight) {
     if !flight.record.outcome.accomplished {
         let reason = console::one_line(&flight.record.outcome.reason);
@@ -203,7 +202,7 @@ fn complain_of(flight: &Flight) {
     }
 }
 
-/// What the bench knows besides the flight, for programs.
+/// The bench's results besides the flight, for programs.
 fn told(args: &Args, flight: &Flight) -> serde_json::Value {
     let board = &flight.board;
     let run = &board.run;

@@ -1,22 +1,22 @@
-//! What goes wrong during a run, and when.
+//! Planned troubles of a run.
 
 use sophie_sim::sensors::fsr::FsrBreak;
 
 use crate::sensors::Sensors;
 use crate::wires::BoardFault;
 
-/// Something that goes wrong, or is mended.
+/// A trouble or its repair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
-    /// At the board itself.
+    /// At the board.
     Board(BoardFault),
-    /// The lead of this arm's pressure sensor (0 to 3) breaks, touches its neighbour, or is mended.
+    /// Lead of an arm's pressure sensor (0 to 3) broken, shorted to its neighbour, or mended.
     Fsr(usize, Option<FsrBreak>),
-    /// The receiver sends nothing (true), or again.
+    /// The receiver is silent (true) or sends.
     RadioSilent(bool),
-    /// Bits flipped in one byte out of so many from the receiver; 0 is a sound line.
+    /// Bits flipped in one of this many bytes from the receiver; 0: none.
     RadioBits(u32),
-    /// Share of the battery's voltage that its divider still sees.
+    /// Share of the battery voltage at its divider.
     BatteryShare(f64),
 }
 
@@ -31,7 +31,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// A run on which these happen, each at its time in ms since power-on.
+    /// A plan of these troubles, with times in ms since power-on.
     #[must_use]
     pub fn new(troubles: impl IntoIterator<Item = (u64, Trouble)>) -> Self {
         let mut troubles: Vec<_> = troubles.into_iter().collect();
@@ -42,7 +42,7 @@ impl Plan {
         }
     }
 
-    /// Does what is due at `ms`.
+    /// Applies what is due at `ms`.
     pub fn apply(&mut self, ms: u64, sensors: &mut Sensors, faults: &mut Vec<BoardFault>) {
         while let Some((at, trouble)) = self.troubles.get(self.next)
             && *at <= ms
@@ -58,7 +58,7 @@ impl Plan {
         }
     }
 
-    /// What of `words` comes out of the receiver's line.
+    /// Appends to `line` what the receiver delivers of `words`.
     pub fn radio(&mut self, words: impl Iterator<Item = u16>, line: &mut Vec<u16>) {
         if self.silent {
             return;

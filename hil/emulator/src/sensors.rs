@@ -1,5 +1,4 @@
-//! What the vehicle's sensors put on the board's wires: the errors of the simulated board's sensors, as voltages and
-//! samples.
+//! Voltages and samples on the board's wires, with the errors of the simulated board's sensors.
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -14,18 +13,17 @@ use sophie_sim::sensors::imu::Imu;
 
 use crate::wires::Wires;
 
-/// Reference of the converter, V, and its full scale in the counts that the models speak.
+/// Converter reference, V, and full scale, counts.
 const REFERENCE: f64 = 3.3;
 const FULL_SCALE: f64 = 4095.0;
-/// Plant steps in a millisecond.
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
 
 /// The vehicle's sensors.
 pub struct Sensors {
     imu: Imu,
-    /// Samples of the inertial sensor in a plant step.
+    /// Inertial samples per plant step.
     samples: u32,
-    /// What the builder's calibration finds of the accelerometer's bias, m/s².
+    /// Calibrated accelerometer bias, m/s².
     pub calibration: [f32; 3],
     arms: PerArm<ArmImu>,
     fsr: PerArm<FsrSensor>,
@@ -33,14 +31,14 @@ pub struct Sensors {
     rng: Pcg64Mcg,
     arm_clock: f64,
     gravity: PerArm<Vec3>,
-    /// Counts of 12 bits at the pressure sensors' pins.
+    /// 12-bit counts at the pressure sensors' pins.
     pub pressure_counts: PerArm<u16>,
-    /// Factor on the battery's voltage at its divider: 1 is a sound battery.
+    /// Factor on the battery voltage at its divider; 1: intact.
     pub battery_share: f64,
 }
 
 impl Sensors {
-    /// Sensors with errors drawn from `rng`, in the order of [`sophie_sim::board::Board::configured`]: one seed, one
+    /// Sensors with errors drawn from `rng` in the order of [`sophie_sim::board::Board::configured`]: one seed, one
     /// vehicle.
     #[must_use]
     pub fn new(params: &Params, rng: &mut Pcg64Mcg) -> Self {
@@ -64,21 +62,21 @@ impl Sensors {
         }
     }
 
-    /// Breaks the lead of a pressure sensor, or mends it.
+    /// Breaks or mends the lead of a pressure sensor.
     pub fn break_fsr(&mut self, arm: usize, broken: Option<FsrBreak>) {
         if let Some(sensor) = self.fsr.get_mut(arm) {
             sensor.set_broken(broken);
         }
     }
 
-    /// Steps the plant by a millisecond and puts what the sensors make of it on `wires`.
+    /// Steps the plant by a millisecond and writes the sensors' outputs to `wires`.
     pub fn step(&mut self, plant: &mut Plant, actuators: &sophie_sim::plant::Actuators, wires: &mut Wires) {
         for _ in 0..STEPS_PER_MS {
             let (rate, force) = (plant.pose().omega, plant.specific_force());
             plant.step(actuators);
             let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
             for k in 1..=self.samples {
-                // The part samples faster than the plant steps: on the line between two steps.
+                // The part samples faster than the plant steps: linear interpolation.
                 let share = f64::from(k) / f64::from(self.samples);
                 let rotors = plant.rotor_speed();
                 let reading = self

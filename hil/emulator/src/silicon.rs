@@ -1,21 +1,21 @@
-//! What the firmware's start-up looked at in the chip, as logged.
+//! The firmware's start-up checks of the chip, as logged.
 
 use serde::Serialize;
 
-/// One thing.
+/// A check.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Look {
-    /// What.
+    /// Name.
     pub name: String,
-    /// What was read.
+    /// Value read.
     pub read: String,
-    /// What the firmware is made for.
+    /// Value expected.
     pub expected: String,
-    /// They go together.
+    /// Passed.
     pub ok: bool,
 }
 
-/// A look as one line of the log: `silicon: NAME: READ, expected EXPECTED: ok`, or `: not ok`.
+/// Parses a line of the log: `silicon: NAME: READ, expected EXPECTED: ok`, or `: not ok`.
 #[must_use]
 pub fn told(text: &str) -> Option<Look> {
     let (name, rest) = text.strip_prefix("silicon: ")?.split_once(": ")?;

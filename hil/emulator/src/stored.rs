@@ -1,4 +1,4 @@
-//! Parameters in the flash, as the console's `save` leaves them: written on the host by the firmware's own code.
+//! Parameters in flash as the console's `save` leaves them, written on the host by the firmware's code.
 
 use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
@@ -8,7 +8,7 @@ use sophie_tasks::ports::Storage;
 
 use crate::boards::Kind;
 
-/// Flash with words of `WORD` bytes and sectors of `SECTOR`, erased.
+/// Erased flash with words of `WORD` bytes and sectors of `SECTOR`.
 struct Sectors<const WORD: usize, const SECTOR: usize>(Vec<u8>);
 
 impl<const WORD: usize, const SECTOR: usize> ErrorType for Sectors<WORD, SECTOR> {
@@ -52,7 +52,7 @@ impl<const WORD: usize, const SECTOR: usize> NorFlash for Sectors<WORD, SECTOR> 
     }
 }
 
-/// What the `length` bytes of a board's parameter sectors hold after `params` were saved in them.
+/// The `length` bytes of a board's parameter sectors after a save of `params`.
 ///
 /// # Errors
 /// One line: they cannot be stored there.

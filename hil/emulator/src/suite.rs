@@ -1,8 +1,7 @@
-//! The image of a board's tests (`hil/rig`): which tests it holds, and how one is entered.
+//! The image of a board's tests (`hil/rig`): list of tests, and entry into one.
 //!
-//! A probe answers the image's question for its command line with the address of a test. The emulator has no such
-//! answer, so the first instructions of the function that asks are replaced: they call the tests' setup, as it does, and
-//! then the test. Nothing else of the image is touched.
+//! A probe answers the image's request for a command line with the address of a test. Here the first instructions of
+//! the requesting function are replaced by calls of the tests' setup and of the test.
 
 use std::collections::BTreeMap;
 
@@ -11,11 +10,10 @@ use serde::Deserialize;
 
 use crate::elf::Firmware;
 
-/// Function that would ask for the command line.
+/// Function that requests the command line.
 const ASKING: &str = "__embedded_test_start";
-/// The tests' own setup.
 const SETUP: &str = "_embedded_test_setup";
-/// Section of the tests' descriptions: for each, the address of its function and its module.
+/// Section of test descriptions: address of the function, and its module.
 const TESTS: &str = ".embedded_test";
 /// Version of that description.
 const VERSION: (&str, u8) = ("EMBEDDED_TEST_VERSION", 1);
@@ -25,15 +23,14 @@ const VERSION: (&str, u8) = ("EMBEDDED_TEST_VERSION", 1);
 pub struct Test {
     /// Module and function, as a probe shows it.
     pub name: String,
-    /// Must fail to pass.
+    /// Passes only by a panic.
     pub should_panic: bool,
-    /// Not to be run unless asked for.
+    /// Run only on request.
     pub ignored: bool,
     /// Address of its function.
     entry: u32,
 }
 
-/// What the name of a test's symbol says.
 #[derive(Deserialize)]
 struct Described {
     name: String,
@@ -44,7 +41,7 @@ struct Described {
 /// The tests of `image`, by name.
 ///
 /// # Errors
-/// One line: the image holds no tests, or describes them in another way.
+/// One line: the image holds no tests, or describes them differently.
 pub fn tests(image: &Firmware) -> Result<Vec<Test>, String> {
     let file = parsed(&image.bytes)?;
     let section = file
@@ -73,7 +70,7 @@ pub fn tests(image: &Firmware) -> Result<Vec<Test>, String> {
         let ((entry, module), length) = place.ok_or("a test's description is cut short")?;
         let module = bytes_at(&file, module.into(), length as usize).ok_or("a test without module")?;
         let module = String::from_utf8_lossy(module);
-        // Crate and the module that every file has inside say nothing.
+        // Drops the crate and the module inside every file.
         let (_, module) = module.split_once("::").unwrap_or(("", &module));
         let name = format!("{}::{}", module.trim_end_matches("::tests"), described.name);
         let test = Test {
@@ -87,7 +84,7 @@ pub fn tests(image: &Firmware) -> Result<Vec<Test>, String> {
     Ok(tests.into_values().collect())
 }
 
-/// `image` that runs `test` and nothing else.
+/// `image` changed to run only `test`.
 ///
 /// # Errors
 /// One line: the image lacks a function.
@@ -120,10 +117,10 @@ pub fn entering(image: &Firmware, test: &Test) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Thumb code at `address` that calls `setup` and continues in `test`.
+/// Thumb code at `address` that calls `setup` and jumps to `test`.
 fn enter(address: u64, setup: u32, test: u32) -> Vec<u8> {
     const NOP: u16 = 0xBF00;
-    // ldr r0, [pc, #4]; blx r0; ldr r0, [pc, #4]; bx r0: each load finds its word behind the four, if those are aligned.
+    // ldr r0, [pc, #4]; blx r0; ldr r0, [pc, #4]; bx r0: the loads' words follow the four, if aligned.
     const CALLS: [u16; 4] = [0x4801, 0x4780, 0x4801, 0x4700];
     let aligned = address.is_multiple_of(4);
     let lead = if aligned { None } else { Some(NOP) };
@@ -136,7 +133,6 @@ fn parsed(bytes: &[u8]) -> Result<object::File<'_>, String> {
     object::File::parse(bytes).map_err(|e| e.to_string())
 }
 
-/// Section that holds `address`, with the offset in it.
 fn section_at<'a, 'b>(file: &'b object::File<'a>, address: u64) -> Option<(object::Section<'a, 'b>, usize)> {
     file.sections()
         .filter(|s| s.address() != 0)

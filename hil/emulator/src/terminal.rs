@@ -1,31 +1,31 @@
-//! The board's serial lines on sockets: what a program at the far end of a line would be.
+//! The board's serial lines on sockets.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 
-/// Bytes taken from the socket in a millisecond: more than the line carries.
+/// Bytes read per millisecond: more than the line carries.
 const AT_ONCE: usize = 64;
 
-/// The lines that are on sockets.
+/// Lines on sockets.
 #[derive(Default)]
 pub struct Sockets {
-    /// The console, both ways.
+    /// Console, both ways.
     pub console: Option<Terminal>,
-    /// What the board sends to its receiver; what comes back is dropped, the receiver's line is the pilot's.
+    /// Board's output to its receiver; input is dropped, as the line is the pilot's.
     pub telemetry: Option<Terminal>,
 }
 
-/// A listener on the loopback interface, and whoever is connected: one at a time, the latest.
+/// A listener on the loopback interface with one connection, the latest.
 pub struct Terminal {
     listener: TcpListener,
     user: Option<TcpStream>,
 }
 
 impl Terminal {
-    /// A listener on `port`, which `option` asked for.
+    /// A listener on `port`, as requested by `option`.
     ///
     /// # Errors
-    /// One line: the port, and why it cannot be had.
+    /// One line: the port, and why it is unavailable.
     pub fn listen(option: &str, port: u16) -> Result<Self, String> {
         let refused = |e: std::io::Error| format!("{option} {port}: cannot listen on 127.0.0.1:{port}: {e}");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
@@ -33,7 +33,7 @@ impl Terminal {
         Ok(Self { listener, user: None })
     }
 
-    /// Hands the board's `said` to the user and gives what the user has typed. Never waits.
+    /// Sends the board's `said` to the user; returns the user's input. Never waits.
     pub fn exchange(&mut self, said: &[u8]) -> Vec<u8> {
         if let Ok((user, _)) = self.listener.accept()
             && user.set_nonblocking(true).is_ok()

@@ -1,21 +1,20 @@
-//! Tilt of the arms as their sensors measure it, against the static model of the mixer under the commands at the motors'
-//! pins.
+//! Measured arm tilt against the mixer's static model, from the motors' pins.
 
 use sophie_control::params::Params;
 use sophie_control::tilt::TiltModel;
 use sophie_control::wrench::{PerArm, SIDE};
 
-/// Difference between measurement and model: all arms together.
+/// Difference of measurement and model over all arms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TiltError {
     sum: f64,
     count: u64,
-    /// The largest, rad.
+    /// Largest, rad.
     pub worst: f64,
 }
 
 impl TiltError {
-    /// Mean size, rad; `None` of a vehicle that never flew.
+    /// Mean magnitude, rad; `None` without flight.
     #[must_use]
     pub fn mean(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum / self.count as f64)
@@ -31,13 +30,13 @@ impl TiltError {
     }
 }
 
-/// Both tilts, rad, tip up positive, and how they differ in flight.
+/// Both tilts, rad, tip up positive, and their difference in flight.
 #[derive(Clone, Debug)]
 pub struct Tilts {
     model: TiltModel,
-    /// As the sensors measure it.
+    /// Measured tilt.
     pub measured: PerArm<f64>,
-    /// How they differ.
+    /// Difference.
     pub error: TiltError,
 }
 
@@ -52,14 +51,14 @@ impl Tilts {
         }
     }
 
-    /// By the model.
+    /// Modelled tilt.
     #[must_use]
     pub fn modelled(&self) -> PerArm<f64> {
         self.model.tilt().map(f64::from)
     }
 
-    /// A millisecond with the thrusts (N) that the motors are asked for, gravity at each arm's sensor (arm axes) and the
-    /// body's roll (rad); `flies`: the arms hang free in the air.
+    /// Adds a millisecond with the commanded thrusts (N), gravity at each arm's sensor (arm axes) and the body's roll
+    /// (rad); `flies`: the arms hang free.
     pub fn step(&mut self, thrusts: &PerArm<f32>, arms: &PerArm<[f64; 3]>, body_roll: f64, flies: bool) {
         self.model.step(thrusts, 1e-3);
         for ((measured, [_, y, z]), side) in self.measured.iter_mut().zip(arms).zip(SIDE) {

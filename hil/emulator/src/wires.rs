@@ -1,4 +1,4 @@
-//! What crosses between the emulated board and the world: plain data, whatever emulates the board.
+//! Data between the emulated board and the world, independent of the emulator.
 
 use std::collections::BTreeMap;
 
@@ -7,122 +7,121 @@ use sophie_control::wrench::PerArm;
 use crate::chain::Counted;
 use crate::esc::EscStats;
 
-/// What the world puts on the board's wires for the next millisecond.
+/// The world's inputs to the board for the next millisecond.
 #[derive(Clone, Debug, Default)]
 pub struct Wires {
-    /// Samples of the inertial sensor, evenly over the millisecond: body rate (rad/s), specific force (m/s²), both in
-    /// body axes.
+    /// Inertial samples, spread evenly over the millisecond: body rate (rad/s), specific force (m/s²), body axes.
     pub imu: Vec<([f64; 3], [f64; 3])>,
-    /// Gravity at each arm's sensor, m/s², in the arm's axes: forward, right, down.
+    /// Gravity at each arm's sensor, m/s², arm axes: forward, right, down.
     pub arms: PerArm<[f64; 3]>,
-    /// Volts at the pads of pressure 1 to 4, the battery's voltage (V) and its current (A).
+    /// Voltage at the pads of pressure 1 to 4 (V), battery voltage (V) and current (A).
     pub analog: [f64; 6],
-    /// Words from the radio's receiver, the parity on top where its line has one.
+    /// Words from the receiver, with parity as the top bit where its line has one.
     pub receiver: Vec<u16>,
-    /// Bytes that are typed at the console.
+    /// Bytes typed at the console.
     pub console: Vec<u8>,
-    /// What breaks or is mended now.
+    /// Faults and repairs in this millisecond.
     pub faults: Vec<BoardFault>,
 }
 
-/// Something done to the board, from now on unless it says otherwise.
+/// A fault or event of the board; faults last unless stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardFault {
-    /// The inertial sensor is unplugged (true) or plugged in again.
+    /// Inertial sensor unplugged (true) or plugged in.
     ImuUnplugged(bool),
-    /// The data-ready line of the inertial sensor is cut (true) or joined again; its bus is sound.
+    /// Data-ready line of the inertial sensor cut (true) or joined; its bus works.
     DataReadyCut(bool),
-    /// Bits flipped in the next word that the inertial sensor answers.
+    /// Bits flipped in the inertial sensor's next word.
     ImuWord(u8),
-    /// The pad that this pressure sensor, 0 to 3, hangs on has a divider of one to so many before its pin.
+    /// A divider of 1 to n at the pad of a pressure sensor, 0 to 3.
     PadDivider(usize, u32),
-    /// The sensor of this arm, 0 to 3, is unplugged (true) or plugged in again.
+    /// Sensor of an arm, 0 to 3, unplugged (true) or plugged in.
     ArmUnplugged(usize, bool),
-    /// The chips on this bus of the arms, 0 or 1, hold the clock low for so many µs after each byte; 0 is none.
+    /// The chips on an arm bus, 0 or 1, hold the clock low for this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
-    /// The processor's supply breaks down (false), or is back.
+    /// The processor's supply fails (false) or returns.
     Supply(bool),
-    /// The task of this name in `src/firmware/tasks.rs` is never run again: it hangs in what it awaits.
+    /// The task of this name in `src/firmware/tasks.rs` hangs in what it awaits.
     TaskHung(&'static str),
-    /// The task of this name calls itself without end as soon as it runs.
+    /// The task of this name recurses endlessly at its next run.
     StackOverflow(&'static str),
-    /// The task of this name faults, as soon as it runs, at the priority of the hard fault's handler: the processor locks
-    /// up (ARMv7-M B1.5.15), as by a fault within that handler.
+    /// The task of this name faults at its next run, at hard fault priority: the processor locks up (ARMv7-M B1.5.15),
+    /// as by a fault within that handler.
     LockUp(&'static str),
-    /// The flash that is kept for parameters is overwritten, as a program of another maker would.
+    /// The parameter flash is overwritten, as by foreign firmware.
     CorruptParameters,
-    /// The flash that is kept for parameters begins as ArduPilot leaves it.
+    /// The parameter flash begins as ArduPilot leaves it.
     ForeignParameters,
-    /// The option bytes are those of a new chip: no brown-out level. To be done before the first instruction.
+    /// Option bytes of a new chip: no brown-out level. Before the first instruction only.
     FactoryOptions,
-    /// The processor is one of the first revision.
+    /// A processor of the first revision.
     FirstRevision,
-    /// The crystal does not start. To be done before the first instruction.
+    /// The crystal does not start. Before the first instruction only.
     NoCrystal,
-    /// The core's PLL never locks. To be done before the first instruction.
+    /// The core's PLL never locks. Before the first instruction only.
     NoPll,
-    /// The processor stands still (true) or runs again: only the watchdog is left.
+    /// The processor stands still (true) or runs; only the watchdog is left.
     Hang(bool),
-    /// The reset pin is pulled, once.
+    /// A pulse on the reset pin.
     ResetPin,
 }
 
-/// What the board did in the millisecond past.
+/// The board's outputs in the last millisecond.
 #[derive(Clone, Debug, Default)]
 pub struct Pins {
     /// Time since power-on, ms.
     pub ms: u64,
-    /// Command of each motor as its controller decodes it, 0..1.
+    /// Motor commands as decoded by the controllers, 0..1.
     pub motors: PerArm<f64>,
-    /// Pulse of each servo, µs; 0 is none.
+    /// Servo pulses, µs; 0: none.
     pub servos: PerArm<f64>,
-    /// Bytes to the radio's receiver.
+    /// Bytes to the receiver.
     pub telemetry: Vec<u8>,
-    /// Bytes that the console says.
+    /// Bytes from the console.
     pub console: Vec<u8>,
-    /// Bytes of the log, as they lie in the buffer that a probe reads.
+    /// Bytes of the log, as in the probe's buffer.
     pub log: Vec<u8>,
-    /// State light, fault light and buzzer: level of the pin.
+    /// Pin levels of state light, fault light and buzzer.
     pub signals: [bool; 3],
-    /// Restarts of the processor: when (ns since power-on) and why.
+    /// Processor resets: time (ns since power-on) and cause.
     pub resets: Vec<(u64, String)>,
 }
 
-/// What a run leaves behind.
+/// Results of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// What the emulator could not do, or reported as done wrongly.
+    /// What the emulator could not do, or reported as wrong.
     pub gaps: Vec<Gap>,
     /// Instructions executed.
     pub instructions: u64,
-    /// What each motor's controller heard.
+    /// Input of each motor controller.
     pub escs: PerArm<EscStats>,
-    /// From data-ready to the first edge of the motor frame: count, mean and largest, µs.
+    /// Latency from data-ready to the first edge of the motor frame, µs.
     pub latency_us: Latency,
-    /// What the motors' pins did when the processor stood still last.
+    /// The motors' pins at the processor's last standstill.
     pub hung: Option<Hung>,
-    /// Erases of each flash sector, by its first address.
+    /// Erases per flash sector, by first address.
     pub erases: BTreeMap<u64, u32>,
-    /// What resets did to the outputs.
+    /// The outputs around resets.
     pub outputs: Vec<Output>,
-    /// Pulse of each servo at the end, µs; 0 is none.
+    /// Servo pulses at the end, µs; 0: none.
     pub servos: PerArm<f64>,
-    /// Digest of every edge at the motors' pins, every servo pulse and every telemetry byte.
+    /// Digest of every edge at the motors' pins, every servo pulse and telemetry byte.
     pub pins_digest: u64,
-    /// Steps whose instructions were counted.
+    /// Steps with counted instructions.
     pub counted: Counted,
 }
 
-/// An output of the board around its resets.
+/// An output around resets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// What hangs on it.
+    /// Connected device.
     pub what: String,
-    /// The processor's pin.
+    /// Processor pin.
     pub pin: String,
-    /// The processor itself pulls it up until the firmware drives it.
+    /// The processor pulls it up until the firmware drives it.
     pub pulled_up: bool,
-    /// From each start of the processor until the firmware drives it, µs; `None` if it never did.
+    /// Time from each start until the firmware drives it, µs; `None`: never.
     pub after_us: Vec<Option<f64>>,
 }
 
@@ -138,28 +137,28 @@ impl Output {
     }
 }
 
-/// The motors' pins while the processor stands still.
+/// The motors' pins during a standstill of the processor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hung {
-    /// From its stop to the last rising edge at any of them, µs; 0 without one.
+    /// Time to the last rising edge at any of them, µs; 0 without one.
     pub last_rise_us: f64,
-    /// The pins that are high at the end.
+    /// Pins high at the end.
     pub high: PerArm<bool>,
 }
 
 /// Statistics of a latency.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Latency {
-    /// How many were measured.
+    /// Number of values.
     pub count: u64,
-    /// Their sum, µs.
+    /// Sum, µs.
     pub sum: f64,
-    /// The largest, µs.
+    /// Largest, µs.
     pub worst: f64,
 }
 
 impl Latency {
-    /// Adds one, µs.
+    /// Adds a value, µs.
     pub fn add(&mut self, us: f64) {
         self.count += 1;
         self.sum += us;
@@ -178,9 +177,9 @@ impl Latency {
 pub struct Gap {
     /// `unmapped`, `refused`, `unimplemented`, `undefined`, `unrouted`, `told` or `miswired`.
     pub kind: &'static str,
-    /// Where: instance and register, an address, or a pin.
+    /// Instance and register, address, or pin.
     pub at: String,
-    /// What happened there.
+    /// Description.
     pub what: String,
 }
 

@@ -1,12 +1,12 @@
-//! Linker arguments of the target build; nothing for the host.
+//! Linker arguments of the target build; none for the host.
 
 use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-/// Memory that QEMU's mps2-an386 and mps2-an500 have; the emulated core is given the same. As on the boards the stack
-/// lies at the bottom, above addresses where nothing is. The file is called board.x because the workspace's memory.x,
-/// which the linker finds first, includes that.
+/// Memory of QEMU's mps2-an386 and mps2-an500, and of the emulated core. As on the boards the stack lies at the bottom,
+/// above unmapped addresses. The file is named board.x because the workspace's memory.x, which the linker finds first,
+/// includes that.
 const MEMORY: &str = "\
 MEMORY
 {

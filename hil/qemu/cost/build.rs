@@ -1,11 +1,11 @@
-//! Linker arguments of the target build; nothing for the host.
+//! Linker arguments of the target build; none for the host.
 
 use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-/// Memory that QEMU's mps2-an386 and mps2-an500 have. The file is called board.x
-/// because the workspace's memory.x, which the linker finds first, includes that.
+/// Memory of QEMU's mps2-an386 and mps2-an500. The file is named board.x because the workspace's memory.x, which the
+/// linker finds first, includes that.
 const MEMORY: &str = "\
 MEMORY
 {

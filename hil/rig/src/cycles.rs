@@ -1,4 +1,4 @@
-//! The core's cycle counter: the finest clock there is, and one that no driver uses.
+//! The core's cycle counter, which no driver uses.
 
 use cortex_m::peripheral::{DWT, Peripherals};
 
@@ -11,12 +11,12 @@ pub fn start() {
         panic!("the core's peripherals are taken");
     };
     core.DCB.enable_trace();
-    // A Cortex-M7 takes no writes to the counter before that.
+    // A Cortex-M7 ignores writes to the counter before that.
     DWT::unlock();
     core.DWT.enable_cycle_counter();
 }
 
-/// Cycles of the core; wraps around.
+/// Core cycles; wraps around.
 pub fn now() -> u32 {
     DWT::cycle_count()
 }

@@ -1,11 +1,10 @@
-//! Tests that run on a real board, through a probe: what they share. The tests are in `tests/rig/`, the wiring in
-//! `hil/README.md`.
+//! Shared code of the tests on a real board, run by a probe. `tests/rig/` has the tests, `hil/README.md` the wiring.
 //!
-//! The board is the crate that the firmware flies with, so what is tested are the very drivers, pins and timers that
-//! fly. Each test starts from a reset and takes the board as the firmware does.
+//! The board crate is the firmware's, so the tests use the drivers, pins and timers that fly. Each test starts from a
+//! reset.
 //!
-//! What a test finds missing, a jumper or a part outside the board, it logs in a line that begins with `ignored:` and
-//! passes; with the feature `wired` it fails. Empty on the host.
+//! A missing jumper or external part is logged in a line that begins with `ignored:`, and the test passes; with the
+//! feature `wired` it fails. Empty on the host.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(target_os = "none")]
@@ -28,13 +27,13 @@ sophie_boards::ends_with!(verdict::end_of_run);
 /// Watchdog feed period; the shortest time-out is 200 ms.
 const MEAL: Duration = Duration::from_millis(50);
 
-/// Starts the urgent levels and feeds the watchdog from one of them, for as long as the test runs; returns the flight
-/// level, for what the test itself wants there. Called once.
+/// Starts the flight and steady level and feeds the watchdog from the latter while the test runs; returns the flight
+/// level for the test. Called once.
 pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
     defmt::info!("{=str}", sophie_boards::NAME);
     resumable_test::leave(resumable_test::ResumableTest::Test);
     let (flight, steady) = start_levels();
-    // Only a second call could fail, and `start_levels` panics at one.
+    // Only a second call could fail, at which `start_levels` panics.
     if let Ok(feeder) = feed(watchdog) {
         steady.spawn(feeder);
     }

@@ -1,10 +1,10 @@
-//! Jumpers between pads. What listens is a servo's pad, taken from its timer for as long as the test runs.
+//! Jumpers between pads. The listener is a servo's pad, taken from its timer.
 
 use sophie_boards::{Pad, Pupdr, WIRING};
 
 use crate::cycles;
 
-/// The first pad reaches the second one: that follows it, against its own pull, both ways.
+/// Checks that the second pad follows the first against its own pull, both ways.
 pub fn joined([from, to]: [Pad; 2]) -> bool {
     let (driver, listener) = (from.take(), to.take());
     let follows = |high| {

@@ -5,26 +5,26 @@ use heapless::Vec;
 use crate::cycles;
 use sophie_boards::{Pad, WIRING};
 
-/// Most pulses of one recording: two DShot frames.
+/// Most pulses of a recording: two DShot frames.
 pub const MOST: usize = 32;
 
-/// A pulse on a pad, in cycles of the core.
+/// A pulse on a pad, in core cycles.
 #[derive(Clone, Copy, defmt::Format)]
 pub struct Pulse {
-    /// When it rose, from the beginning of the recording.
+    /// Rising edge, from the start of the recording.
     pub rise: u32,
-    /// How long it was high.
+    /// Duration.
     pub high: u32,
 }
 
-/// Whole pulses on `pad` during the next `us` µs, at most [`MOST`]. Does not yield; the error of an edge is a turn of the
-/// loop, some ten cycles, where no interrupt comes between.
+/// Whole pulses on `pad` during the next `us` µs, at most [`MOST`]. Does not yield; without interrupts an edge's error
+/// is a turn of the loop, some ten cycles.
 pub fn record(pad: Pad, us: u32) -> Vec<Pulse, MOST> {
     let length = us * (WIRING.core_hz / 1_000_000);
     let mut pulses = Vec::new();
     let start = cycles::now();
     let mut was_high = pad.is_high();
-    // A pulse under way at the beginning has no rise.
+    // A pulse under way at the start has no rise.
     let mut rise = None;
     loop {
         let high = pad.is_high();

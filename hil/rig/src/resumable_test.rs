@@ -1,7 +1,7 @@
-//! What a test has still to do when a reset cuts it in two, kept in the memory that outlives one.
+//! The remaining part of a test that a reset interrupts, in memory that outlives the reset.
 //!
-//! The probe names the test to run once, before the first half. The second half therefore starts by itself, from the
-//! tests' own setup, and says by itself how it ended.
+//! The probe names the test once, before the first part. The second part therefore starts from the tests' setup, and
+//! reports its own result.
 
 use core::cell::RefCell;
 
@@ -20,13 +20,13 @@ pub enum ResumableTest {
     None,
     /// A test that no reset may interrupt.
     Test,
-    /// The watchdog starves; for how long so far, µs.
+    /// The watchdog starves; duration so far, µs.
     Starving(u32),
-    /// A parameter was stored changed; what it was before.
+    /// A changed parameter was stored; its former value.
     Stored(f32),
 }
 
-/// Marks words that are a test ("RIG" and the version of their layout).
+/// Marks words that hold a test ("RIG" and layout version).
 const MAGIC: u32 = 0x5249_4701;
 
 static MEMORY: Mutex<RefCell<Option<Memory>>> = Mutex::new(RefCell::new(None));
@@ -59,7 +59,7 @@ impl ResumableTest {
     }
 }
 
-/// Says what the reset that just happened has interrupted, and why it happened. Called once, first of all.
+/// Returns what the reset interrupted, and its cause. Called once, before all else.
 ///
 /// # Panics
 /// If the watchdog interrupted a test that feeds it.
@@ -80,7 +80,7 @@ pub fn begin() -> (ResumableTest, ResetCause) {
     (test, cause)
 }
 
-/// Leaves a test for after the next reset.
+/// Keeps a test for after the next reset.
 pub fn leave(test: ResumableTest) {
     critical_section::with(|cs| {
         if let Some(memory) = MEMORY.borrow(cs).borrow_mut().as_mut() {

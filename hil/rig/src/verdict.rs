@@ -1,13 +1,13 @@
-//! How a test ends.
+//! The end of a test.
 
 use core::fmt;
 
 use defmt::Display2Format;
 
-/// A part or a jumper that a test wants is not there: `what`, and where it belongs. The test then has nothing to say.
+/// Reports a missing part or jumper `what`, with its place. The test then has no result.
 ///
 /// # Panics
-/// With the feature `wired`, where everything must be there.
+/// With the feature `wired`, where everything must be present.
 pub fn absent(what: fmt::Arguments<'_>) {
     if cfg!(feature = "wired") {
         panic!("not found: {what}");
@@ -15,12 +15,12 @@ pub fn absent(what: fmt::Arguments<'_>) {
     defmt::warn!("ignored: not found: {}", Display2Format(&what));
 }
 
-/// Ends a test well that a reset cut in two: the probe no longer waits for its return.
+/// Passes a test after its reset, when the probe no longer waits for its return.
 pub fn passed() -> ! {
     semihosting::process::exit(0)
 }
 
-/// A panic or a fault ends the test, not the chip: the motors stop and the probe gets the verdict.
+/// A panic or fault ends the test without a reset of the chip: the motors stop and the probe gets the verdict.
 pub fn end_of_run(message: fmt::Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
     sophie_boards::stop_motors();

@@ -4,7 +4,7 @@
 
 use embassy_time::{Duration, Timer};
 use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, Spin};
-use sophie_control::calibration::{self, Face, FsrFit, Samples, Unfit};
+use sophie_control::calibration::{self, Direction, Face, FsrFit, Samples, Sides, Unfit};
 use sophie_control::math::{clamp, to_deg};
 use sophie_control::params::Params;
 use sophie_control::tendon::{Reel, SPAN_MIN_US};
@@ -24,7 +24,7 @@ const SAMPLING: Duration = Duration::from_millis(10);
 const STEP_US: f32 = 10.0;
 
 /// What can be calibrated, and what that buys.
-const WHAT: [(&str, &str); 8] = [
+const WHAT: [(&str, &str); 9] = [
     (
         "gyro",
         "what it reads at rest; taken anew at each start, nothing to store",
@@ -36,6 +36,10 @@ const WHAT: [(&str, &str); 8] = [
     (
         "accel",
         "bias by six sides; needs no level table, and checks the scale",
+    ),
+    (
+        "mounting",
+        "whether the inertial sensor sits as the firmware has it, by tilting",
     ),
     ("battery", "its voltage by a meter: calibrate battery VOLTS"),
     ("servo", "release and full mark of one servo: calibrate servo N"),
@@ -84,6 +88,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             ("gyro", [None, _]) => self.calibrate_gyro().await,
             ("level", [None, _]) => self.calibrate_level().await,
             ("accel", [None, _]) => self.calibrate_accel().await,
+            ("mounting", [None, _]) => self.calibrate_mounting().await,
             ("battery", [Some(volts), None]) => self.calibrate_battery(volts).await,
             ("servo", [Some(number), None]) => self.calibrate_servo(number).await,
             ("esc", [None, _]) => self.calibrate_esc().await,
@@ -151,6 +156,44 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
             Err(unfit) => self.unfit(unfit).await,
         }
+    }
+
+    async fn calibrate_mounting(&mut self) {
+        let mut below = [Direction::Down; 3];
+        for (found, side) in below.iter_mut().zip([Face::Belly, Face::Nose, Face::Right]) {
+            let Some(samples) = self.rest(side.text(), &force).await else {
+                return;
+            };
+            match calibration::below(&samples) {
+                Ok(direction) => *found = direction,
+                Err(unfit) => return self.unfit(unfit).await,
+            }
+        }
+        let [belly, nose, right] = below;
+        let sides = Sides { nose, right, belly };
+        if sides == Sides::AS_BUILT {
+            return self
+                .out
+                .line(format_args!("mounted as the firmware has it; nothing to store"))
+                .await;
+        }
+        if !sides.fit() {
+            return self
+                .out
+                .line(format_args!("not taken: these are no three sides of one vehicle"))
+                .await;
+        }
+        let [belly, nose, right] = below.map(Direction::name);
+        self.out
+            .line(format_args!(
+                "nose is where the firmware has {nose}, right side {right}, belly {belly}"
+            ))
+            .await;
+        self.out
+            .line(format_args!(
+                "turn the board, or say in its file how it sits: 'mounting' in docs/boards.md"
+            ))
+            .await;
     }
 
     async fn calibrate_battery(&mut self, volts: &str) {

@@ -165,8 +165,8 @@ fn the_gyro_is_shown_and_a_key_ends_any_of_it() {
         assert_eq!(table.presses("x", 100), [ended], "{command}");
     }
     assert_eq!(table.says("changes", 100), ["no changes"]);
-    assert_eq!(table.says("calibrate", 100).len(), 8);
-    assert_eq!(table.says("calibrate all", 100).len(), 8);
+    assert_eq!(table.says("calibrate", 100).len(), 9);
+    assert_eq!(table.says("calibrate all", 100).len(), 9);
 }
 
 #[test]
@@ -349,4 +349,37 @@ fn an_arms_sensor_gets_its_zero_and_its_sign() {
             "arm_zero_1 0 -> 0 rad, as in force"
         ]
     );
+}
+
+#[test]
+fn the_mounting_is_found_by_tilting() {
+    let mut table = Table::set();
+    // As it lies, and what the sensor takes for it.
+    for (lie, answers) in [
+        (
+            [Face::Belly, Face::Nose, Face::Right],
+            &["mounted as the firmware has it; nothing to store"][..],
+        ),
+        (
+            [Face::Belly, Face::Right, Face::Tail],
+            &[
+                "nose is where the firmware has right, right side back, belly down",
+                "turn the board, or say in its file how it sits: 'mounting' in docs/boards.md",
+            ],
+        ),
+        (
+            [Face::Belly, Face::Tail, Face::Right],
+            &["not taken: these are no three sides of one vehicle"],
+        ),
+    ] {
+        table.lies(lie[0], Vec3::ZERO);
+        let asked = table.says_trimmed("calibrate mounting", 100);
+        assert_eq!(asked, [Face::Belly.text(), ENTER]);
+        table.presses("\r", 2500);
+        table.lies(lie[1], Vec3::ZERO);
+        let asked = table.presses("\r", 2500);
+        assert_eq!(asked[1..], [Face::Right.text(), ENTER]);
+        table.lies(lie[2], Vec3::ZERO);
+        assert_eq!(table.presses("\r", 2500)[1..], *answers);
+    }
 }

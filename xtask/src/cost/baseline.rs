@@ -1,4 +1,4 @@
-//! What the stages cost when the baseline was taken.
+//! Baseline of the stages' cost.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,10 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::Count;
 use crate::{Error, build};
 
-/// Share by which a stage may become dearer: compilers differ.
+/// Permitted relative increase of a stage: compilers differ.
 const TOLERANCE: f64 = 0.03;
 
-/// Instructions of a call.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 struct Call {
     mean: f64,
@@ -26,10 +25,10 @@ fn path() -> PathBuf {
     build::root().join("hil/qemu/cost/baseline.toml")
 }
 
-/// Compares with the baseline and says what has become cheaper.
+/// Compares with the baseline and reports decreases.
 ///
 /// # Errors
-/// What has become dearer, each on its line.
+/// Every increase, one per line.
 pub fn compare(counts: &[Count]) -> Result<(), Error> {
     let baseline: Baseline = toml::from_str(&fs::read_to_string(path())?)?;
     let mut complaints = Vec::new();

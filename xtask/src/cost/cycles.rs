@@ -1,5 +1,5 @@
-//! Bounds of the cycles that a Cortex-M4 takes for the control path: every instruction that QEMU executes of it, with
-//! the times of the core's manual, and what a flash with wait states adds at worst.
+//! Bounds of a Cortex-M4's cycles for the control path: every instruction that QEMU executes, with the times of the
+//! core's manual, and the worst case of a flash with wait states.
 
 use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, BufReader};
@@ -12,35 +12,33 @@ use crate::build::Recipe;
 use crate::image::Image;
 use crate::{Error, build};
 
-/// Stages of the step in their order, each a function of the counting image.
+/// Stages in order, each a function of the counting image.
 const STAGES: [&str; 4] = ["filter", "estimator", "control", "mixing"];
-/// Steps of calibration at rest, which do not count (`hil/qemu/cost/src/inputs.rs`), and steps that are looked at.
+/// Steps of calibration at rest, not counted (`hil/qemu/cost/src/inputs.rs`), and counted steps.
 const REST: u32 = 2500;
 const STEPS: u32 = 1000;
-/// Bytes that one access to the F405's flash reads, and cycles that it waits at 168 MHz (RM0090 §3.5).
+/// Bytes per access to the F405's flash, and wait cycles at 168 MHz (RM0090 §3.5).
 const LINE: u64 = 16;
 const WAIT: u64 = 5;
-/// Bytes of a line of an M7's instruction cache.
+/// Bytes of an M7's instruction cache line.
 const CACHE_LINE: u64 = 32;
 
-/// What was executed.
 #[derive(Default)]
 struct Sum {
     instructions: u64,
     least: u64,
     most: u64,
-    /// Entries into another line of the flash.
+    /// Entries into another flash line.
     lines: u64,
-    /// Constants read from the flash.
     constants: u64,
-    /// Lines of a cache that were executed from.
+    /// Cache lines with executed code.
     code: HashSet<u64>,
 }
 
-/// Runs the counting images one instruction at a time and prints what they read of the flash, and the bounds of an M4F.
+/// Runs the counting images in single steps; prints their flash reads, and the bounds of an M4F.
 ///
 /// # Errors
-/// No toolchain or no QEMU, or an image did not get as far as the steps that are looked at.
+/// No toolchain or no QEMU, or an image did not reach the counted steps.
 pub fn cycles() -> Result<(), Error> {
     for core in &CORES {
         let elf = build::image(&Recipe {
@@ -61,7 +59,7 @@ pub fn cycles() -> Result<(), Error> {
         row("lines of 16 bytes", sum.lines);
         let code = sum.code.len() as u64 * CACHE_LINE;
         println!("code: {code} bytes, in lines of {CACHE_LINE}");
-        // An M7 executes two at a time at best, and its caches are larger than the code.
+        // An M7 executes at most two at a time, and its caches are larger than the code.
         if core.name == "M4F" {
             let missed = sum.most + WAIT * (sum.lines + sum.constants);
             row("cycles, at least", sum.least);
@@ -79,7 +77,6 @@ pub fn cycles() -> Result<(), Error> {
     Ok(())
 }
 
-/// Adds up the instructions of the steps that are looked at.
 fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
     let image = Image::read(elf)?;
     let stages = stages(&image)?;
@@ -138,7 +135,6 @@ fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
     Ok(sum)
 }
 
-/// Where the stages begin.
 fn stages(image: &Image) -> Result<Vec<u64>, Error> {
     let names = image.functions.iter().map(|f| {
         let name = format!("{:#}", rustc_demangle::demangle(&f.name));
@@ -152,8 +148,7 @@ fn stages(image: &Image) -> Result<Vec<u64>, Error> {
     STAGES.iter().map(begin).collect()
 }
 
-/// The address of the instruction in a line of QEMU's log:
-/// `Trace 0: HOST [BASE/ADDRESS/FLAGS/...] SYMBOL`.
+/// The instruction's address in a line of QEMU's log: `Trace 0: HOST [BASE/ADDRESS/FLAGS/...] SYMBOL`.
 fn address(line: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(line).ok()?.strip_prefix("Trace ")?;
     let (_, parts) = text.split_once('[')?;

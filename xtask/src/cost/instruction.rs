@@ -1,23 +1,22 @@
-//! Cycles of an instruction on a Cortex-M4 with FPU, by its encoding: ARM DDI 0439B, tables 3-1 and 7-1.
+//! Cycles of a Cortex-M4 (FPU) instruction by its encoding: ARM DDI 0439B, tables 3-1 and 7-1.
 //!
-//! Only what decides about time is decoded; the encodings are those of ARMv7-M (DDI 0403E, A5).
+//! Decodes only what determines the time; encodings are those of ARMv7-M (DDI 0403E, A5).
 
-/// Fewest and most cycles that a taken branch fills the pipeline anew.
+/// Fewest and most cycles of a pipeline refill after a taken branch.
 const REFILL: [u32; 2] = [1, 3];
 
-/// What an instruction does to time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruction {
-    /// Its bytes, 2 or 4.
+    /// Length, 2 or 4 bytes.
     pub bytes: u64,
-    /// Fewest and most cycles when the next instruction follows it.
+    /// Fewest and most cycles if the next instruction follows.
     pub cycles: [u32; 2],
-    /// It reads a constant that lies between the instructions, thus from flash.
+    /// Reads a constant from between the instructions, thus from flash.
     pub constant: bool,
 }
 
 impl Instruction {
-    /// The instruction of these two halfwords, the second one of the next instruction if this one is short.
+    /// The instruction of two halfwords; the second belongs to the next instruction if this one is short.
     pub fn of(first: u16, second: u16) -> Self {
         if first >> 11 >= 0b11101 {
             let (cycles, constant) = long(first, second);
@@ -36,7 +35,7 @@ impl Instruction {
         }
     }
 
-    /// Fewest and most cycles of it, with the refilling of the pipeline where it did not go on to the next one.
+    /// Fewest and most cycles, with the pipeline refill if the branch is `taken`.
     pub fn cycles(&self, taken: bool) -> [u32; 2] {
         let [least, most] = self.cycles;
         let [quick, slow] = if taken { REFILL } else { [0, 0] };
@@ -54,7 +53,7 @@ const fn several(registers: u32) -> [u32; 2] {
 
 fn short(i: u16) -> ([u32; 2], bool) {
     match i >> 11 {
-        // LDR from the constants; loads and stores by register, by offset and by the stack pointer.
+        // LDR from the constants; loads and stores by register, offset and stack pointer.
         0b01001 => (SINGLE, true),
         0b01010..=0b10011 => (SINGLE, false),
         // STM, LDM.
@@ -86,7 +85,7 @@ fn long(first: u16, second: u16) -> ([u32; 2], bool) {
 }
 
 fn float(first: u16, second: u16) -> ([u32; 2], bool) {
-    // Two registers of the core: VMOV.
+    // Two core registers: VMOV.
     if first & 0xFFE0 == 0xEC40 {
         return ([2, 2], false);
     }
@@ -105,7 +104,7 @@ fn float(first: u16, second: u16) -> ([u32; 2], bool) {
     if second >> 4 & 1 == 1 {
         return (PLAIN, false);
     }
-    // One cycle longer where the next instruction takes the result.
+    // One cycle longer if the next instruction uses the result.
     let with_use = |cycles| ([cycles, cycles + 1], false);
     match (first >> 7 & 1, first >> 4 & 0b11) {
         // VMLA, VMLS, VNMLA, VNMLS; VMUL; VADD, VSUB.
@@ -114,7 +113,7 @@ fn float(first: u16, second: u16) -> ([u32; 2], bool) {
         // VDIV; VFNMA, VFNMS, VFMA, VFMS.
         (1, 0b00) => with_use(14),
         (1, 0b01 | 0b10) => with_use(3),
-        // VSQRT among those of one operand, which else take one cycle.
+        // VSQRT; other one-operand instructions take one cycle.
         (_, _) if first & 0xF == 1 && second >> 6 & 0b11 == 0b11 => with_use(14),
         _ => with_use(1),
     }
@@ -124,7 +123,7 @@ fn float(first: u16, second: u16) -> ([u32; 2], bool) {
 mod tests {
     use super::*;
 
-    /// `expected` cycles of the instruction of the halfwords `code`.
+    /// Expects these `cycles` of the instruction of the halfwords `code`.
     fn takes(what: &str, code: [u16; 2], bytes: u64, expected: [u32; 2], constant: bool) {
         let [first, second] = code;
         let instruction = Instruction {

@@ -12,7 +12,6 @@ use serde::Serialize;
 use crate::build::Recipe;
 use crate::{Error, build};
 
-/// The cores that the boards have.
 pub const CORES: [Core; 2] = [
     Core {
         name: "M4F",
@@ -26,50 +25,42 @@ pub const CORES: [Core; 2] = [
     },
 ];
 
-/// A core, and where QEMU has one.
 pub struct Core {
     /// Name in tables.
     pub name: &'static str,
-    /// Name for the compiler.
+    /// The compiler's name.
     pub cpu: &'static str,
-    /// QEMU's machine with this core.
+    /// QEMU machine with this core.
     pub machine: &'static str,
 }
 
-/// What to do with the counts.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Then {
-    /// Print them as a table and compare with the baseline.
+    /// Print a table and compare with the baseline.
     Compare,
-    /// The same, printed as JSON.
+    /// The same as JSON.
     Json,
     /// Print them and make them the baseline.
     Tighten,
-    /// Print the cycles that an M4F takes at least and at most, instead.
+    /// Print bounds of an M4F's cycles instead.
     Cycles,
 }
 
-/// Counts of one stage on one core; instructions.
+/// Instructions of one stage on one core.
 #[derive(Clone, Serialize)]
 pub struct Count {
-    /// Name of the stage.
     pub stage: String,
-    /// Name of the core.
     pub core: &'static str,
-    /// Calls counted.
     pub calls: u64,
-    /// Mean of a call.
     pub mean: f64,
-    /// Cheapest call.
     pub min: f64,
-    /// Dearest call.
     pub max: f64,
 }
 
-/// Builds and runs the image of each core, then does as `then` says.
+/// Builds and runs the image of each core, then acts as in `then`.
 ///
 /// # Errors
-/// No toolchain or no QEMU, the cores disagree on the motor commands, or a stage has become dearer.
+/// No toolchain or no QEMU, the cores' motor commands differ, or a stage costs more.
 pub fn cost(then: Then) -> Result<(), Error> {
     if then == Then::Cycles {
         return cycles::cycles();
@@ -88,7 +79,7 @@ pub fn cost(then: Then) -> Result<(), Error> {
         counts.extend(run.counts);
         commands.extend(run.commands);
     }
-    // Stage by stage or at one go, on either core: the same bits, or something else was counted.
+    // By stage or whole, on either core, the bits must be equal, or something else was counted.
     if commands.windows(2).any(|pair| pair.first() != pair.last()) {
         return Err(format!("the motor commands differ: {}", commands.join(", ")).into());
     }

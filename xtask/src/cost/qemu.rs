@@ -1,4 +1,4 @@
-//! Runs the counting image and reads what it prints.
+//! Runs the counting image and reads its output.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -6,18 +6,15 @@ use std::process::{Child, Command, Stdio};
 use super::{Core, Count};
 use crate::{Error, build};
 
-/// What one run gave.
 pub struct Run {
-    /// Counts of every stage.
     pub counts: Vec<Count>,
-    /// Digests of the motor commands: stage by stage, and at one go.
+    /// Digests of the motor commands: by stage, and whole.
     pub commands: Vec<String>,
 }
 
-/// QEMU with `elf` on `core`.
 pub fn command(core: &Core, elf: &Path) -> Command {
     let mut command = Command::new("qemu-system-arm");
-    // An instruction lasts 2^7 ns, some ticks of the machine's timer: what the image counts with.
+    // An instruction lasts 2^7 ns, some ticks of the machine's timer, with which the image counts.
     command.args(["-machine", core.machine, "-nographic", "-icount", "shift=7"]);
     command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
     command.arg(elf).stdin(Stdio::null());
@@ -41,7 +38,7 @@ pub fn started(command: &mut Command) -> Result<Child, Error> {
 /// Runs `elf` on `core`.
 ///
 /// # Errors
-/// No QEMU, or the image did not end well.
+/// No QEMU, or the image failed.
 pub fn run(core: &Core, elf: &Path) -> Result<Run, Error> {
     let mut command = command(core, elf);
     command.stdout(Stdio::piped()).stderr(Stdio::inherit());

@@ -1,21 +1,18 @@
-//! The stages: what they are, what they may cost, and what the best peer takes for the same.
+//! The stages: names, cost targets, and the best peer's cost.
 
-/// Share by which a stage may cost more on an M4F than its target on an M7.
+/// M4F's permitted cost over the target on an M7.
 pub const M4F_ALLOWANCE: f64 = 1.3;
-/// Largest part of the dearest call over the mean one.
+/// Largest ratio of the costliest call to the mean.
 pub const SPREAD: f64 = 1.05;
 
-/// One stage.
 pub struct Stage {
     /// Name in the image's output.
     pub name: &'static str,
-    /// What it is.
     pub what: &'static str,
-    /// Parts of a call that the figures are for.
+    /// Parts of a call; the figures are per part.
     pub parts: f64,
-    /// Instructions that it may take on an M7.
+    /// Most instructions on an M7.
     pub target: Option<f64>,
-    /// Best peer's figure.
     pub peer: &'static str,
 }
 
@@ -29,7 +26,6 @@ const fn stage(name: &'static str, what: &'static str, target: Option<f64>, peer
     }
 }
 
-/// In the order of the table.
 pub const STAGES: [Stage; 13] = [
     Stage {
         parts: 3.0,

@@ -13,7 +13,6 @@ use crate::{Error, build};
 const BEGIN: &str = "<!-- cargo xtask cost --tighten writes from here -->\n";
 const END: &str = "<!-- to here -->\n";
 
-/// One stage on one core, judged.
 #[derive(Serialize)]
 pub struct Row {
     stage: &'static str,
@@ -23,12 +22,11 @@ pub struct Row {
     min: f64,
     max: f64,
     max_over_mean: f64,
-    /// Most that it may take on this core; `None` where nothing is asked.
+    /// Most instructions on this core; `None`: no target.
     target: Option<f64>,
     best_peer: &'static str,
-    /// The mean is within the target.
     met: bool,
-    /// The dearest call is close enough to the mean one.
+    /// The costliest call is close enough to the mean.
     constant: bool,
 }
 
@@ -51,7 +49,6 @@ fn row(stage: &Stage, count: &Count) -> Row {
     }
 }
 
-/// Every stage on every core.
 pub fn rows(counts: &[Count]) -> Vec<Row> {
     let rows = STAGES.iter().flat_map(|stage| {
         let mine = counts.iter().filter(|c| c.stage == stage.name);
@@ -60,7 +57,7 @@ pub fn rows(counts: &[Count]) -> Vec<Row> {
     rows.collect()
 }
 
-/// The table as Markdown: a line for each stage, the cores side by side.
+/// The table as Markdown: a line per stage, the cores side by side.
 pub fn markdown(counts: &[Count]) -> String {
     let mut text = String::from("| stage |");
     for core in &CORES {
@@ -99,10 +96,10 @@ pub fn markdown(counts: &[Count]) -> String {
     text
 }
 
-/// Puts the table into docs/cost.md.
+/// Writes the table into docs/cost.md.
 ///
 /// # Errors
-/// The document is not there or has lost the marks.
+/// The document is missing or has lost the marks.
 pub fn write(counts: &[Count]) -> Result<(), Error> {
     let path = build::root().join("docs/cost.md");
     let text = fs::read_to_string(&path)?;

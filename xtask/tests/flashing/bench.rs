@@ -1,4 +1,4 @@
-//! A bench: a folder with a board's flash, the stand-ins, and xtask.
+//! A folder with a board's flash, the stand-ins, and xtask.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -11,7 +11,6 @@ use crate::chips::Chip;
 use crate::fixture::{self, Fixture};
 use crate::stand_ins::{BOARD, CALLS, FOLDER, MEMORY, MOOD, STARTED};
 
-/// A test under its function's name.
 pub fn trial(name: &str, test: fn()) -> Trial {
     Trial::test(name, move || {
         test();
@@ -19,18 +18,15 @@ pub fn trial(name: &str, test: fn()) -> Trial {
     })
 }
 
-/// The bench with a board on it.
 pub struct Bench {
     pub chip: &'static Chip,
     pub image: Fixture,
     folder: PathBuf,
 }
 
-/// How a run of xtask ended.
 pub struct Ended {
     pub status: Option<i32>,
     pub stdout: String,
-    /// The last line that it complains with.
     pub complaint: String,
 }
 
@@ -54,12 +50,11 @@ impl Bench {
         Self { chip, image, folder }
     }
 
-    /// A file on the bench.
     pub fn file(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// Makes something go wrong.
+    /// Sets an error mode of the stand-ins.
     pub fn mood(&self, mood: &str) {
         fs::write(self.file(MOOD), mood).unwrap();
     }
@@ -76,12 +71,11 @@ impl Bench {
         command
     }
 
-    /// Runs it.
     pub fn run(&self, line: &str) -> Ended {
         ended(self.command(line).output().unwrap())
     }
 
-    /// Runs it where no program is installed.
+    /// Runs it without any program installed.
     pub fn run_bare(&self, line: &str) -> Ended {
         ended(self.command(line).env("PATH", "/nowhere").output().unwrap())
     }
@@ -98,12 +92,11 @@ impl Bench {
         fs::read(self.file(MEMORY)).unwrap()
     }
 
-    /// The address that the chip's loader was left to, or the word `reset`.
+    /// The address at which the chip's loader started the firmware, or the word `reset`.
     pub fn started(&self) -> Option<String> {
         fs::read_to_string(self.file(STARTED)).ok()
     }
 
-    /// Files of the bench whose names begin with `name`.
     pub fn files(&self, name: &str) -> Vec<String> {
         let entries = fs::read_dir(&self.folder).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -122,13 +115,12 @@ impl Drop for Bench {
 }
 
 impl Ended {
-    /// It was refused or failed with `status` and one line that has `told` in it.
+    /// It was refused or failed with `status` and one line that contains `told`.
     pub fn complains(&self, status: i32, told: &str) {
         assert_eq!(self.status, Some(status), "{}", self.complaint);
         assert!(self.complaint.contains(told), "{}", self.complaint);
     }
 
-    /// It was done.
     pub fn done(&self) {
         assert_eq!(self.status, Some(0), "{}", self.complaint);
     }

@@ -1,21 +1,21 @@
-//! The boards' chips as the manuals have them, independent of xtask's own table.
+//! The boards' chips after the manuals, independent of xtask's table.
 
 use std::ops::Range;
 
 /// First address of the flash.
 pub const FLASH: usize = 0x0800_0000;
 
-/// A board, and what its image must have.
+/// A board, and requirements on its image.
 #[derive(Clone)]
 pub struct Chip {
     pub board: &'static str,
-    /// As probe-rs calls it.
+    /// probe-rs' name.
     pub name: &'static str,
-    /// As its USB loader calls its flash.
+    /// The USB loader's name of the flash.
     pub layout: &'static str,
-    /// Sizes of the flash's sectors, KiB.
+    /// Flash sectors, KiB.
     pub sectors: &'static [usize],
-    /// Interrupts, and two of them that are the levels'.
+    /// Interrupts, and those of the two levels.
     pub interrupts: usize,
     pub levels: [(&'static str, usize); 2],
     /// Where code may begin.
@@ -23,7 +23,6 @@ pub struct Chip {
     /// RAM for statics and the top of the stack.
     pub ram: u32,
     pub stack: u32,
-    /// Flash that parameters are stored in.
     pub params: Option<Range<usize>>,
 }
 
@@ -66,7 +65,6 @@ pub static CUAV: Chip = Chip {
     params: None,
 };
 
-/// The board called `name`.
 pub fn find(name: &str) -> &'static Chip {
     [&F405, &MATEK, &CUAV]
         .into_iter()
@@ -75,7 +73,6 @@ pub fn find(name: &str) -> &'static Chip {
 }
 
 impl Chip {
-    /// Bytes of the flash.
     pub fn size(&self) -> usize {
         self.sectors.iter().sum::<usize>() * 1024
     }
@@ -93,7 +90,7 @@ impl Chip {
         first..last
     }
 
-    /// What the flash holds before: another firmware, no byte of it erased, and stored parameters.
+    /// Contents before the test: another firmware without erased bytes, and stored parameters.
     pub fn used(&self) -> Vec<u8> {
         let mut flash: Vec<u8> = (0..self.size())
             .map(|at| (at * 7 + at / 251) as u8 & 0x7F)

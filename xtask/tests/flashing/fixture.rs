@@ -1,23 +1,20 @@
-//! Images that pass xtask's checks: vectors, start-up, code, constants, initial values and statics of a board, no more.
+//! Minimal images that pass xtask's checks: a board's vectors, start-up, code, constants, initial values and statics.
 
 use crate::chips::{Chip, FLASH};
 
 /// Bytes of code: on the f405 it ends in the fifth sector.
 const CODE: usize = 0x4800;
-/// Bytes of constants and of initial values.
 const CONSTANTS: usize = 0x130;
 const VALUES: usize = 0x24;
-/// Bytes of statics, and where lies what outlives a reset: the same on every board.
+/// Bytes of statics, and address of retained data, on every board.
 const STATICS: u32 = 0x400;
 const RETAINED: u32 = 0x2001_FC00;
-/// Between code and constants, bytes that belong to nothing.
+/// Unused bytes between code and constants.
 const GAP: u32 = 12;
 
-/// An image.
 pub struct Fixture {
-    /// The ELF.
     pub elf: Vec<u8>,
-    /// What must be in the flash afterwards: address and bytes of each segment.
+    /// Expected flash afterwards: address and bytes of each segment.
     pub segments: Vec<(usize, Vec<u8>)>,
 }
 
@@ -26,10 +23,10 @@ struct Section {
     kind: u32,
     flags: u32,
     address: u32,
-    /// Where flashing writes it.
+    /// Load address.
     loaded: u32,
     bytes: Vec<u8>,
-    /// Without contents: its length.
+    /// Length without contents.
     length: u32,
 }
 
@@ -41,7 +38,6 @@ const EXECUTE: u32 = 4;
 const OBJECT: u8 = 1;
 const FUNCTION: u8 = 2;
 
-/// The image of a board.
 pub fn image(chip: &Chip) -> Fixture {
     let text = chip.text;
     let [reset, fault, default] = [text, text + 0x40, text + 0x42];
@@ -56,7 +52,7 @@ pub fn image(chip: &Chip) -> Fixture {
     for ((_, number), handler) in chip.levels.iter().zip(levels) {
         vectors[16 + number] = handler | 1;
     }
-    // ldr r0, =VTOR; ldr r1, =table; str r1, [r0]; b .; the words behind it.
+    // ldr r0, =VTOR; ldr r1, =table; str r1, [r0]; b .; followed by the words.
     let mut code: Vec<u8> = (0..CODE).map(|at| (at * 13 + at / 255) as u8 & 0x7F).collect();
     let start: [u16; 4] = [0x4801, 0x4902, 0x6001, 0xE7FE];
     for (at, half) in start.iter().enumerate() {

@@ -1,7 +1,6 @@
-//! `cargo xtask flash`, `backup` and `restore` as a user runs them, with stand-ins for probe-rs and dfu-util.
+//! `cargo xtask flash`, `backup` and `restore` as run by a user, with stand-ins for probe-rs and dfu-util.
 //!
-//! The stand-ins are this binary under their names, first on PATH. They keep a flash in a file, erase and write it as the
-//! real ones and the chip do, and note how they were called.
+//! The stand-ins are this binary under their names, first on PATH. They keep a flash in a file and record their calls.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

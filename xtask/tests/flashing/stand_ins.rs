@@ -1,4 +1,4 @@
-//! The stand-ins: what dfu-util 0.11 and probe-rs 0.32 do with these arguments, to a flash in a file.
+//! Stand-ins for dfu-util 0.11 and probe-rs 0.32 on a flash in a file.
 
 use std::fs;
 use std::io::Write;
@@ -8,16 +8,16 @@ use std::time::Duration;
 
 use crate::chips::{self, Chip, FLASH};
 
-/// Variable with the folder that the stand-ins work in.
+/// Variable with the stand-ins' folder.
 pub const FOLDER: &str = "STAND_INS";
-/// In it: the flash, how the programs were called, which board it is, what is to go wrong, where a chip was started.
+/// Files in it: flash, calls, board, error mode, start address.
 pub const MEMORY: &str = "flash.bin";
 pub const CALLS: &str = "calls";
 pub const BOARD: &str = "board";
 pub const MOOD: &str = "mood";
 pub const STARTED: &str = "started";
 
-/// dfu-util's exit status for wrong words and for a device that fails (sysexits.h).
+/// dfu-util's exit status for wrong arguments and for a failed device (sysexits.h).
 const USAGE: u8 = 64;
 const DEVICE: u8 = 74;
 
@@ -33,7 +33,7 @@ fn chip() -> &'static Chip {
     chips::find(text(BOARD).trim())
 }
 
-/// Notes the call; returns the words, and how often the program has been called with the first of them.
+/// Records the call; returns the words, and the number of calls with the first of them.
 fn called(program: &str) -> (Vec<String>, usize) {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let line = format!("{program} {}\n", words.join(" "));
@@ -52,7 +52,7 @@ fn called(program: &str) -> (Vec<String>, usize) {
     (words, count)
 }
 
-/// Erases the sectors that `bytes` touch and writes them; a bit that was not erased stays 0.
+/// Erases the sectors of `bytes` and writes them; a bit that was not erased stays 0.
 fn program(address: usize, bytes: &[u8]) {
     let path = folder().join(MEMORY);
     let mut flash = fs::read(&path).unwrap();
@@ -70,7 +70,6 @@ fn number(text: &str) -> Option<usize> {
     }
 }
 
-/// dfu-util.
 pub fn dfu_util() -> ExitCode {
     let (words, _) = called("dfu-util");
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -129,7 +128,6 @@ fn download(mood: &str, at: &str, file: &str) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// probe-rs.
 pub fn probe_rs() -> ExitCode {
     let (words, count) = called("probe-rs");
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -184,7 +182,7 @@ pub fn probe_rs() -> ExitCode {
             if mood == "run fails" {
                 return ExitCode::FAILURE;
             }
-            // Sector by sector what the segments say: the image is known.
+            // Writes the segments by sector: the image is known.
             for (address, bytes) in joined(crate::fixture::image(chip()).segments) {
                 program(address, &bytes);
             }
@@ -198,7 +196,7 @@ pub fn probe_rs() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Segments that share a sector are one: probe-rs erases once.
+/// Joins segments that share a sector: probe-rs erases once.
 fn joined(segments: Vec<(usize, Vec<u8>)>) -> Vec<(usize, Vec<u8>)> {
     let mut joined: Vec<(usize, Vec<u8>)> = Vec::new();
     for (address, bytes) in segments {

@@ -1,5 +1,4 @@
 use super::*;
-use crate::bench::Spin;
 use crate::math::GRAVITY;
 use crate::wrench::{Configuration, Wrench};
 

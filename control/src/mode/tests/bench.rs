@@ -225,14 +225,20 @@ proptest! {
     #[test]
     fn a_motor_turns_in_disarmed_alone_low_alone_and_for_two_seconds_at_most(
         spells in prop::collection::vec(
-            (1u32..150, prop::option::weighted(0.8, order()), prop::bool::weighted(0.2), prop::bool::weighted(0.9), 0.0f32..0.3),
+            (1u32..150, prop::option::weighted(0.8, order()), prop::bool::weighted(0.2),
+             prop::bool::weighted(0.9), 0.0f32..0.3),
             1..40,
         )
     ) {
         let mut r = Rig::on_the_table();
         let (mut confirmed, mut turning, mut number) = (false, 0.0, 0);
         for (steps, order, arm_switch, there, throttle) in spells {
-            *r.sticks() = Sticks { arm_switch, yaw: f32::from(u8::from(arm_switch)), throttle: if throttle < 0.1 { 0.0 } else { throttle }, ..Default::default() };
+            *r.sticks() = Sticks {
+                arm_switch,
+                yaw: f32::from(u8::from(arm_switch)),
+                throttle: if throttle < 0.1 { 0.0 } else { throttle },
+                ..Default::default()
+            };
             r.inputs.motion = there.then_some(Motion { calibrated: true, ..Default::default() });
             number += 1;
             r.inputs.bench = order.map(|order| BenchRequest { number, order });

@@ -1,7 +1,7 @@
-//! `chain BOARD ELF [STEPS]`: flies the image to a hover on the emulated board and counts what so many steps of the control
-//! path execute, by part and by function. `cargo xtask chain BOARD` builds both and calls it.
+//! `chain BOARD ELF [STEPS]`: flies the image to a hover on the emulated board and counts the instructions of this many
+//! steps of the control path, by part and function. `cargo xtask chain BOARD` builds both and calls it.
 //!
-//! Exit status: 0 when they were counted, 1 when the flight did not come that far, 2 for bad input.
+//! Exit status: 0 when counted, 1 when the flight did not come that far, 2 for bad input.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -18,10 +18,9 @@ use sophie_sim::scenario::{Overrides, Scenario, Step};
 
 /// Millisecond since power-on at which the vehicle hovers.
 const HOVERS: u64 = 7500;
-/// Steps when none are asked for, and the most: each instruction of them is a stop of the emulator.
+/// Default and most steps: each of their instructions is a stop of the emulator.
 const STEPS: usize = 100;
 const STEPS_MAX: usize = 2000;
-/// The scenario's seed.
 const SEED: u64 = 1;
 
 fn main() -> ExitCode {
@@ -73,7 +72,6 @@ fn count(arguments: &[String]) -> Result<bool, String> {
     Ok(counted.steps.len() == steps && flight.gaps.is_empty())
 }
 
-/// Up and hover, until the steps are over.
 fn fly(firmware: &Firmware, steps: usize) -> Result<Flight, String> {
     let overrides = Overrides {
         seed: Some(SEED),

@@ -1,5 +1,5 @@
 //! `core ELF m4f|m7`: runs the conformance image on the emulated core and prints its log. `cargo xtask conformance`
-//! builds the image, runs this and QEMU, and compares.
+//! builds it, runs this and QEMU, and compares.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,7 +1,7 @@
-//! Which part of the control path a function belongs to, by its path.
+//! Assigns functions to parts of the control path, by path.
 
-/// Parts, each with what the demangled names of its functions contain. The first that fits counts: a task's poll names the
-/// executor too, and a driver's names its bus.
+/// Parts, with substrings of their functions' demangled names. The first match counts: a task's poll also names the
+/// executor, and a driver's its bus.
 const GROUPS: [(&str, &[&str]); 11] = [
     ("laws", &["sophie_control::"]),
     (
@@ -73,18 +73,18 @@ const GROUPS: [(&str, &[&str]); 11] = [
     (OTHER, &[""]),
 ];
 
-/// What no other part claims.
+/// Functions of no other part.
 pub const OTHER: &str = "other";
 
-/// Names of all parts, in the order of the table.
+/// Names of all parts, in the table's order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     GROUPS.iter().map(|(name, _)| *name)
 }
 
-/// The part that the function with this demangled name belongs to.
+/// The part of a function, by its demangled name.
 #[must_use]
 pub fn group_of(function: &str) -> &'static str {
-    // What a generic function is made for says whose it is, but for the laws: a task's poll names them as well.
+    // A generic function belongs to the part of its arguments, except for the laws, which a task's poll names too.
     let own = |pattern: &&str| function.contains(*pattern);
     let law = |function: &str| {
         let begin = function.trim_start_matches(['<', '&']);

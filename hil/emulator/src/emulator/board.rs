@@ -1,4 +1,4 @@
-//! A board: a processor with SOPHIE's parts on its pads.
+//! A processor with SOPHIE's parts on its pads.
 
 use rigless::device::Level;
 use rigless::machine::{Board, Target};
@@ -14,19 +14,17 @@ use super::edge_probe::Edge;
 use super::pads::{At, Pads};
 use super::serial::Setup;
 
-/// The board.
 #[derive(Debug)]
 pub struct Wired<C> {
-    /// The processor.
     pub(super) chip: C,
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
-    /// Dividers at the pads of the pressure sensors besides the board's own.
+    /// Additional dividers at the pressure sensors' pads.
     dividers: [f64; 4],
 }
 
 impl<C: Chip> Wired<C> {
-    /// A board with `chip` wired as `pads` says, running `speed` instructions for each cycle of its clock.
+    /// A board with `chip` wired as in `pads`, at `speed` instructions per clock cycle.
     ///
     /// # Errors
     /// The emulator cannot make it.
@@ -42,36 +40,32 @@ impl<C: Chip> Wired<C> {
         })
     }
 
-    /// Power comes up: lines take the level at which they rest.
+    /// Power-up: lines take their idle levels.
     pub fn power_up(&mut self, now: VirtualNanos) {
         for pin in self.pads.resting_high {
             self.chip.drive(now, *pin, Level::High);
         }
     }
 
-    /// The inertial sensor.
     pub fn imu(&mut self) -> Option<&mut Imu> {
         self.chip.imu(self.pads.imu)
     }
 
-    /// A vector of body axes on the axes of the inertial sensor.
+    /// Turns a vector from body axes into the inertial sensor's.
     pub fn on_imu(&self, vector: [f64; 3]) -> [f64; 3] {
         (self.pads.imu_axes)(vector)
     }
 
-    /// Cuts the inertial sensor off, or connects it.
     pub fn silence_imu(&mut self, silent: bool) {
         self.chip.silence_imu(self.pads.imu, silent);
     }
 
-    /// Cuts the inertial sensor's data-ready line, or joins it.
     pub fn cut_data_ready(&mut self, cut: bool) {
         if let Some(imu) = self.imu() {
             imu.line_cut = cut;
         }
     }
 
-    /// Flips `mask` in the next word that the inertial sensor answers.
     pub fn flip_imu_word(&mut self, mask: u64) {
         self.chip.flip_imu_word(self.pads.imu, mask);
     }
@@ -82,24 +76,22 @@ impl<C: Chip> Wired<C> {
         self.chip.arm(bus, arm % 2)
     }
 
-    /// Cuts the sensor of arm `arm` off, or connects it.
     pub fn silence_arm(&mut self, arm: usize, silent: bool) {
         if let Some((bus, _)) = self.pads.arms.get(arm) {
             self.chip.silence_arm(*bus, arm % 2, silent);
         }
     }
 
-    /// Makes the chips on a bus of the arms hold the clock for `us` µs after each byte; false where the emulator cannot.
+    /// Makes the chips on an arm bus hold the clock for `us` µs after each byte; false where the emulator cannot.
     pub fn hold_clock(&mut self, bus: usize, us: u32) -> bool {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
 
-    /// Makes the next reset one by a supply that broke down.
     pub fn brown_out(&mut self) {
         self.chip.brown_out();
     }
 
-    /// Puts the pads of pressure 1 to 4 on so many volts, and the battery's voltage and current on its own.
+    /// Sets the pads of pressure 1 to 4, battery voltage (V) and current (A).
     pub fn set_analog(&mut self, values: [f64; 6]) {
         let mut values = values;
         for (pad, divider) in values.iter_mut().zip(self.dividers) {
@@ -117,7 +109,7 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// What the board's outputs lead to, and their pins.
+    /// Devices at the board's outputs, and their pins.
     pub fn outputs(&self) -> Vec<(String, At)> {
         let (port, pin) = self.pads.imu_select;
         let select = At(usize::from(port.as_bytes()[port.len() - 1] - b'A'), pin);
@@ -136,32 +128,27 @@ impl<C: Chip> Wired<C> {
             .collect()
     }
 
-    /// The firmware drives the pin.
     pub fn drives(&mut self, now: VirtualNanos, pin: At) -> bool {
         self.chip.drives(now, pin)
     }
 
-    /// The processor pulls the pin up.
     pub fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool {
         self.chip.pulls_up(now, pin)
     }
 
-    /// The receiver's line.
     pub fn receiver(&mut self) -> Option<&mut Line> {
         self.chip.line(self.pads.receiver)
     }
 
-    /// The console's line.
     pub fn console(&mut self) -> Option<&mut Line> {
         self.chip.line(self.pads.console)
     }
 
-    /// Takes the edges at the motor timer's outputs, oldest first.
     pub fn motor_edges(&mut self) -> Vec<Edge> {
         self.chip.motor_edges()
     }
 
-    /// The motors' pins are their timer's.
+    /// True where the timer drives the motor's pin.
     pub fn motors_driven(&mut self, now: VirtualNanos) -> [bool; 4] {
         let motors = self.pads.motors;
         motors
@@ -178,18 +165,16 @@ impl<C: Chip> Wired<C> {
         })
     }
 
-    /// Levels of state light, fault light and buzzer.
     pub fn signals(&mut self, now: VirtualNanos) -> [bool; 3] {
         self.pads.signals.map(|pin| self.chip.is_high(now, pin))
     }
 
-    /// The first words that ArduPilot leaves in the sectors of this board's parameters.
+    /// The first words that ArduPilot leaves in this board's parameter sectors.
     pub fn foreign(&self) -> &'static [u64] {
         self.pads.foreign
     }
 
-    /// Pins that do not carry what is wired to them, with what they carry, and a receiver's port that is not set up as
-    /// `receiver` says.
+    /// Pins with a wrong function, and a receiver's port that differs from `receiver`.
     pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let port = self.chip.serial_setup(self.pads.receiver);
@@ -236,7 +221,7 @@ impl<C: Chip> Board for Wired<C> {
     }
 }
 
-// No snapshot is ever taken of a run.
+// No snapshot of a run is taken.
 impl<C> Store for Wired<C> {
     fn store(&self, _: &mut Writer) -> Result<(), Error> {
         Err(Error::Failed)

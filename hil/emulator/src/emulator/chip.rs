@@ -1,7 +1,6 @@
-//! What the bench does with a processor, whichever it is.
+//! The bench's interface to a processor.
 //!
-//! The emulator has the same interfaces under a type of its own for every part; [`same_on_this_part!`] is written once
-//! and means each part's.
+//! The emulator has the same interfaces under a type per part; [`same_on_this_part!`] implements them for each part.
 
 use std::fmt::Debug;
 
@@ -16,96 +15,84 @@ use super::edge_probe::Edge;
 use super::pads::{At, Pads, ServoPin};
 use super::serial::Setup;
 
-/// What the option bytes are.
+/// Contents of the option bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Options {
-    /// As the chip leaves its maker.
     Factory,
-    /// With the brown-out level that the firmware wants.
+    /// With the firmware's brown-out level.
     BrownOut,
 }
 
-/// A clock that does not come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// The crystal.
     Crystal,
     /// The core's PLL.
     Pll,
 }
 
-/// The bits in the clocks' control register that say that the crystal runs and that the core's PLL is locked, on every part
-/// here (RM0090 §7.3.1, RM0433 §8.7.2).
+/// Crystal ready bit of the clock control register (RM0090 §7.3.1, RM0433 §8.7.2).
 pub const CRYSTAL_READY: u64 = 1 << 17;
-/// As above.
+/// Core PLL locked bit, in the same register.
 pub const PLL_LOCKED: u64 = 1 << 25;
 
 /// A processor with the bench's parts on its interfaces.
 pub trait Chip: Mcu + Debug + Send + 'static {
-    /// Puts the parts where `pads` says.
+    /// Connects the parts of `pads`.
     fn attach(&mut self, pads: &Pads);
-    /// The inertial sensor on a serial interface.
     fn imu(&mut self, interface: usize) -> Option<&mut Imu>;
-    /// Cuts it off, or connects it.
+    /// Disconnects (true) or connects it.
     fn silence_imu(&mut self, interface: usize, silent: bool);
-    /// Flips `mask` in the next word that it answers.
+    /// Flips `mask` in its next word.
     fn flip_imu_word(&mut self, interface: usize, mask: u64);
     /// The `nth` arm sensor on a bus.
     fn arm(&mut self, bus: usize, nth: usize) -> Option<&mut Bno055>;
-    /// Cuts it off, or connects it.
+    /// Disconnects (true) or connects it.
     fn silence_arm(&mut self, bus: usize, nth: usize, silent: bool);
-    /// Puts millivolts on a channel of the converter.
     fn set_input(&mut self, channel: u8, millivolts: u32);
-    /// The far end of a serial port.
     fn line(&mut self, port: usize) -> Option<&mut Line>;
-    /// The alternate function that a pin carries; `None` when it carries none.
+    /// A pin's alternate function; `None` without one.
     fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8>;
-    /// Drives a pin from outside.
     fn drive(&mut self, now: VirtualNanos, pin: At, level: Level);
-    /// The firmware drives the pin: it is an output, or a peripheral's other than the debug port's.
+    /// The pin is an output, or a peripheral's other than the debug port's.
     fn drives(&mut self, now: VirtualNanos, pin: At) -> bool;
-    /// The pin's own pull-up is on.
     fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool;
-    /// The pin is high.
     fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool;
     /// Takes the edges at the motor timer's outputs, oldest first.
     fn motor_edges(&mut self) -> Vec<Edge>;
-    /// High time and period of the pulses that a servo's timer makes, ns; `None` without pulses.
+    /// High time and period of a servo's pulses, ns; `None` without pulses.
     fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)>;
-    /// What of the PLLs is set to a range that it is not in; nothing where they have none to choose.
+    /// PLLs set to a wrong range; `None` where there are no ranges.
     fn pll_ranges(&self) -> Option<String> {
         None
     }
-    /// What of the times that a bus of the arms is set to is not what the bus wants; nothing where they are not in a
-    /// register of their own.
+    /// Times of an arm bus that breach its specification; `None` without such registers.
     fn bus_times(&self, bus: usize) -> Option<String> {
         let _ = bus;
         None
     }
     /// Makes the chips on a bus hold the clock for `hold` ns after each byte; false where the emulator cannot.
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool;
-    /// Makes the next reset one by a supply that broke down.
+    /// Makes the next reset a brown-out.
     fn brown_out(&mut self);
-    /// How a serial port is set up.
     fn serial_setup(&self, port: usize) -> Setup;
-    /// Puts option bytes in, as a probe would.
+    /// Sets the option bytes, as a probe would.
     fn set_options(&mut self, options: Options);
-    /// Makes it one of the first revision.
+    /// Makes it a first revision.
     fn age(&mut self);
-    /// Keeps a clock from coming, from the next reset of the clocks on.
+    /// Stops a clock from the next reset of the clocks on.
     fn stop_clock(&mut self, clock: Clock);
-    /// A write of `value` to `address` changes the flash while its data cache is on: what is read back is what was there.
+    /// The write changes flash while its data cache is on: reads would return old data.
     fn changes_cached_flash(&self, address: u64, value: u64) -> bool;
-    /// First address of the flash sector that a write of `value` to `address` begins to erase.
+    /// First address of the flash sector that the write begins to erase.
     fn erased(&self, address: u64, value: u64) -> Option<u64>;
-    /// Core, ready to run `speed` instructions for each cycle of its clock.
+    /// The core, at `speed` instructions per clock cycle.
     ///
     /// # Errors
     /// One line: the emulator cannot make it.
     fn core(&self, speed: f64) -> Result<rigless::emulator::CoreSpec, String>;
 }
 
-/// The methods of [`Chip`] that read alike for every part; `$soc` is its module.
+/// Methods of [`Chip`] that are alike for every part; `$soc` is its module.
 macro_rules! same_on_this_part {
     ($soc:ident) => {
         fn attach(&mut self, pads: &Pads) {

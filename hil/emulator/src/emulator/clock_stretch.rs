@@ -1,21 +1,19 @@
-//! An I2C interface whose chips hold the clock, which the emulator's cannot.
+//! An I2C interface with clock stretching, which the emulator lacks.
 
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::time::{EventId, VirtualNanos};
 
-/// The interface: what ends on the wire ends later by the time that a chip holds the clock.
+/// Delays the ends of bytes on the wire by the time that a chip holds the clock.
 #[derive(Debug)]
 pub struct ClockStretch<D> {
-    /// The interface with chips that hold nothing.
     pub inner: D,
-    /// How long a chip holds the clock low after each byte, ns.
+    /// Clock hold after each byte, ns.
     pub hold: u64,
-    /// The end of a hold, and what then ends on the wire.
+    /// End of a hold, and the delayed end on the wire.
     held: Option<(EventId, EventId)>,
 }
 
 impl<D> ClockStretch<D> {
-    /// `inner`, with chips that hold nothing.
     pub fn new(inner: D) -> Self {
         Self {
             inner,

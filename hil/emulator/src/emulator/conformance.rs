@@ -1,4 +1,4 @@
-//! The emulator's core alone, with the memory of QEMU's mps2 machines: runs the conformance image and keeps its log.
+//! Runs the conformance image on the emulator's core with the memory of QEMU's mps2 machines.
 
 use std::num::{NonZeroU32, NonZeroU64};
 use std::path::Path;
@@ -13,12 +13,12 @@ use rigless::snapshot::{self, Reader, Store, Writer};
 use rigless::soc::{Bus, Cpu, Endian, Region};
 use rigless::time::{NO_DEADLINE, VirtualNanos};
 
-/// Memory of mps2-an386 and mps2-an500, as the image's linker map has it.
+/// Memory of mps2-an386 and mps2-an500, as in the image's linker map.
 const MEMORY: &[Region] = &[
     Region::flash("code", 0, 4 << 20),
     Region::ram("ram", 0x2000_0000, 4 << 20),
 ];
-/// Virtual time after which an image that does not end is stopped: it takes a tenth of that.
+/// Virtual time limit, ten times the image's duration.
 const LONGEST: VirtualNanos = VirtualNanos(10_000_000_000);
 /// Interrupt lines of both machines.
 const LINES: u16 = 32;
@@ -71,7 +71,7 @@ impl Board for Machine {
             variant,
             clock_hz: hz,
             interrupt_lines: NonZeroU32::new(u32::from(LINES)).expect("not zero"),
-            // What an STM32 has; the image only uses priorities that three bits tell apart.
+            // As on an STM32; the image uses only priorities that differ in three bits.
             priority_bits: 4,
             refclk_divider: NonZeroU32::new(8).expect("not zero"),
             instructions_per_second: hz,
@@ -79,13 +79,12 @@ impl Board for Machine {
         };
         let mut config = Config::new(core, &[]);
         config.fpu = fpu;
-        // The code region is at zero itself, not only an alias of it.
+        // The code region is at zero itself, not only an alias.
         config.vector_table = Some(0);
         vec![Target::new("core", &mut self.mcu, config.spec())]
     }
 }
 
-/// Keeps what the image prints.
 #[derive(Default)]
 struct Console(Vec<u8>);
 
@@ -99,10 +98,10 @@ impl Driver<Machine> for Console {
     }
 }
 
-/// What the image at `elf` prints on the emulated core.
+/// Output of the image at `elf` on the emulated core.
 ///
 /// # Errors
-/// An image that cannot be read or placed, that ends with another status than 0, or that does not end.
+/// An image that cannot be read or placed, that ends with a status other than 0, or that does not end.
 pub fn run(elf: &Path, kind: CoreKind) -> Result<String, Box<dyn std::error::Error>> {
     let cpu = Cpu::new("core", true, LINES, Endian::Little);
     let mcu = Bare::new(Bus::builder(cpu, MEMORY, []))?;

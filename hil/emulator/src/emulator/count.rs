@@ -1,32 +1,31 @@
-//! Counts the instructions of the control path on the running image: from data-ready to the end of the sensor's transfer,
-//! and from there to the start of the motor frame.
+//! Counts the instructions of the control path on the running image: from data-ready to the end of the sensor's
+//! transfer, and from there to the start of the motor frame.
 //!
-//! Every instruction of the image is watched while steps are counted, so each one is known by its address, whatever the
-//! core's code generator makes of it; nothing of the run changes.
+//! Every instruction is watched while steps are counted, so each is known by its address, independent of the emulator's
+//! code generator.
 
 use rigless::emulator::{Access, AccessKind, Hit, Host, Watch};
 
 use crate::chain::{Counted, Functions, Step};
 use crate::elf::Firmware;
 
-/// The timer's enable bit in its first control register.
+/// Enable bit in the timer's first control register.
 const ENABLE: u64 = 1;
 
-/// Where a board's control path begins and ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Marks {
-    /// Handler of the sensor's data-ready line.
+    /// Handler of the data-ready line.
     pub ready: &'static str,
-    /// Handler of the DMA stream that the sensor's words arrive by.
+    /// Handler of the sensor's DMA stream.
     pub received: &'static str,
     /// First control register of the motors' timer.
     pub motors: u64,
 }
 
-/// What is being counted of a step.
+/// Counted part of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
-    /// Nothing: before data-ready, or behind the start of the frame.
+    /// Before data-ready, or after the start of the frame.
     Neither,
     /// From data-ready to the end of the transfer.
     Reading,
@@ -34,14 +33,13 @@ enum Part {
     Acting,
 }
 
-/// The counter of a run.
 #[derive(Debug)]
 pub struct Counter {
     functions: Functions,
     ready: u64,
     received: u64,
     motors: u64,
-    /// Millisecond of the run from which on steps are counted, and how many.
+    /// First millisecond, and number of steps.
     from_ms: u64,
     wanted: usize,
     watching: bool,
@@ -51,7 +49,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// Counts what `firmware` asks for; `None` where it asks for nothing.
+    /// A counter for `firmware`; `None` where nothing is to be counted.
     ///
     /// # Errors
     /// One line: what the image lacks.
@@ -78,7 +76,7 @@ impl Counter {
         }))
     }
 
-    /// Starts and stops watching, as the millisecond `ms` and the number of counted steps say.
+    /// Starts and stops watching at millisecond `ms` and at the wanted number of steps.
     pub fn on_millisecond(&mut self, ms: u64, host: &mut dyn Host) {
         let wanted = ms >= self.from_ms && self.counted.steps.len() < self.wanted;
         if wanted == self.watching {
@@ -95,7 +93,6 @@ impl Counter {
         }
     }
 
-    /// The core is about to execute an instruction.
     pub fn on_hit(&mut self, hit: Hit) {
         if hit.address == self.ready {
             self.step = Step::default();
@@ -112,7 +109,6 @@ impl Counter {
         *counts.entry(self.functions.at(hit.address)).or_default() += 1;
     }
 
-    /// The core has accessed a peripheral.
     pub fn on_access(&mut self, access: &Access) {
         let starts =
             access.kind == AccessKind::Write && access.address == self.motors && access.value & ENABLE != 0;
@@ -124,7 +120,6 @@ impl Counter {
         }
     }
 
-    /// What was counted.
     pub fn finish(self) -> Counted {
         self.counted
     }

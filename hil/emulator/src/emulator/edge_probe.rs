@@ -1,33 +1,30 @@
-//! A timer whose outputs are watched: every change of level with its instant.
+//! A timer with recorded output edges.
 
 use rigless::device::{Device, DeviceContext, Level, RegisterFile, RequestChange};
 use rigless::soc::RegisterSpec;
 use rigless::soc::stm32h743::peripherals::tim::{Channel, Family, Tim};
 use rigless::time::{EventId, VirtualNanos};
 
-/// A change of level at one of a timer's four outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// When, ns of emulated time.
+    /// Emulated time, ns.
     pub at: u64,
     /// Channel, 0 to 3.
     pub channel: usize,
-    /// The level from now on; a pin that nothing drives is low.
+    /// New level; an undriven pin is low.
     pub high: bool,
 }
 
-/// A timer and the edges at its outputs that have not been taken yet.
 #[derive(Debug)]
 pub struct EdgeProbe<F: Family> {
     tim: Tim<F>,
     make: fn() -> Tim<F>,
     high: [bool; 4],
-    /// Edges, oldest first.
     pub edges: Vec<Edge>,
 }
 
 impl<F: Family> EdgeProbe<F> {
-    /// The timer that `make` gives, now and after each reset.
+    /// The timer made by `make`, now and after each reset.
     pub fn new(make: fn() -> Tim<F>) -> Self {
         Self {
             tim: make(),
@@ -37,7 +34,7 @@ impl<F: Family> EdgeProbe<F> {
         }
     }
 
-    /// The timer after a reset of the part; its outputs fall.
+    /// Resets the timer; its outputs fall.
     pub fn restart(&mut self, at: VirtualNanos) {
         self.tim = (self.make)();
         for channel in 0..4 {
@@ -45,7 +42,6 @@ impl<F: Family> EdgeProbe<F> {
         }
     }
 
-    /// The output of `channel`, 0 to 3, is high.
     pub fn is_high(&self, channel: usize) -> bool {
         self.high[channel]
     }
@@ -99,7 +95,7 @@ where
         self.look(file, c.now());
     }
 
-    // As with [`super::ignore_dma::IgnoreDma`]: a burst through DMAR serves its request by itself.
+    // As [`super::ignore_dma::IgnoreDma`]: a burst through DMAR serves its request itself.
     fn on_request(&mut self, _: RequestChange, _: &mut RegisterFile, _: &mut DeviceContext<'_>) {}
 
     fn on_clock(&mut self, hz: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {

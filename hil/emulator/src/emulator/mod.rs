@@ -1,7 +1,7 @@
-//! The emulated board, a millisecond at a time. Nothing outside this module knows which emulator it is.
+//! The emulated board, stepped by the millisecond. Nothing outside this module knows which emulator it is.
 //!
-//! The emulator keeps its core to itself on a thread of its own and calls back at each stop; here the call waits for the
-//! next millisecond's [`Wires`]. So the two threads take turns, and a run is as deterministic as one thread.
+//! The emulator's core has its own thread and calls back at each stop, where the call waits for the next millisecond's
+//! [`Wires`]. The threads take turns, so a run is deterministic.
 
 mod board;
 mod chip;
@@ -50,38 +50,38 @@ use crate::stored;
 use crate::wires::{BoardFault, Digest, Gap, Hung, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
-/// Registers of all ports of either processor: first address, and first one beyond (RM0433 table 8, RM0090 table 1).
+/// Registers of all ports of either processor: first address and end (RM0433 table 8, RM0090 table 1).
 const PORTS: [std::ops::Range<u64>; 2] = [0x5802_0000..0x5802_2C00, 0x4002_0000..0x4002_2C00];
-/// From a start of the processor until every pin must be what it is wired to, ns: the arms' buses wait for their chips.
+/// Time from start until every pin must be configured, ns: the arms' buses wait for their chips.
 const START_UP: u64 = 1000 * MS;
-/// Longest time from data-ready to motor frame that differs from a lost sample: the time between two samples, ns.
+/// Longest latency from data-ready to motor frame distinguishable from a lost sample: the sample period, ns.
 const SAMPLE: u64 = 250_000;
 
-/// What a corrupted flash holds: each word its address with these bits flipped.
+/// Corrupted flash holds each word's address with these bits flipped.
 const NOISE: u64 = 0x5A5A_5A5A;
 
-/// Bytes of the header of a task of embassy-executor 0.10, and in its state the bits "spawned" and "queued to run".
+/// Bytes of the task header in embassy-executor 0.10; state bits "spawned" and "queued to run".
 const HEADER: u64 = 64;
 const SPAWNED: u64 = 1;
 const QUEUED: u64 = 1 << 8;
 
-/// Code that fills the stack: `push {r0-r7, lr}`, over and over.
+/// Code that overflows the stack: `push {r0-r7, lr}`, repeated.
 const RECURSION: u64 = 0xE7FD_B5FF;
-/// Code that locks the processor up: `cpsid f`, which takes the priority of a hard fault, and `udf`.
+/// Code that locks the processor up: `cpsid f` (priority of a hard fault) and `udf`.
 const LOCK_UP: u64 = 0xDE00_B671;
-/// Where it is put: bytes before the end of the RAM, where no image has statics.
+/// Its place, in bytes before the end of RAM, where no image has statics.
 const SPARE: u64 = 0x1000;
 
-/// How the board is emulated.
+/// Emulation settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Instructions for each cycle of the core's clock.
+    /// Instructions per core cycle.
     pub speed: f64,
-    /// What is stored in its flash.
+    /// Stored parameters.
     pub params: Params,
 }
 
-/// A board under emulation.
+/// An emulated board.
 pub struct Emulator {
     wires: Option<SyncSender<Wires>>,
     pins: Receiver<Pins>,
@@ -89,10 +89,10 @@ pub struct Emulator {
 }
 
 impl Emulator {
-    /// The board with `firmware` in its flash, powered and about to execute its first instruction.
+    /// The board with `firmware` in flash, powered, before its first instruction.
     ///
     /// # Errors
-    /// One line: what the emulator refuses.
+    /// One line: why the emulator refuses.
     pub fn power_on(firmware: &Firmware, settings: Settings) -> Result<Self, String> {
         let image = Image::new(&firmware.path, firmware.bytes.clone(), None)
             .map_err(|e| format!("{}: {e}", firmware.path.display()))?;
@@ -152,12 +152,12 @@ impl Emulator {
         Ok(emulator)
     }
 
-    /// Runs the board for a millisecond with `wires`.
+    /// Runs a millisecond with `wires`.
     ///
     /// # Errors
-    /// One line: why the processor cannot go on.
+    /// One line: why the processor stopped.
     pub fn advance(&mut self, wires: Wires) -> Result<Pins, String> {
-        // The wait reports a closed channel.
+        // A closed channel shows at the wait.
         if let Some(sender) = &self.wires {
             let _ = sender.send(wires);
         }
@@ -188,7 +188,6 @@ impl Emulator {
     }
 }
 
-/// Where the control path of a board begins and ends.
 const fn marks(kind: Kind) -> Marks {
     match kind {
         Kind::MatekH743 => h743::MARKS,
@@ -196,7 +195,6 @@ const fn marks(kind: Kind) -> Marks {
     }
 }
 
-/// The emulator's thread.
 fn run<C: Chip>(
     chip: C,
     pads: &'static Pads,
@@ -207,7 +205,7 @@ fn run<C: Chip>(
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
     let board = Wired::new(chip, pads, speed)?;
     let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
-    // The first stop is at power-on, to get the wires of the first millisecond.
+    // The first stop is at power-on, for the wires of the first millisecond.
     session.run_until(VirtualNanos(1));
     let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| told(&e))?;
     let (at, instructions) = finished
@@ -253,7 +251,7 @@ fn run<C: Chip>(
     })
 }
 
-/// Everything that the emulator says it could not do.
+/// Everything that the emulator reports as not done.
 fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
     let mut gaps = Vec::new();
     let mut add = |kind, at: String, what: String| gaps.push(Gap { kind, at, what });
@@ -300,49 +298,46 @@ fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
     gaps
 }
 
-/// The world's end of the wires, called by the emulator each millisecond.
+/// The world's end of the wires, called each millisecond.
 struct World {
     wires: Receiver<Wires>,
     pins: SyncSender<Pins>,
     ms: u64,
     rtt: Rtt,
-    /// The flash that is kept for parameters: first address, and first one beyond.
+    /// Parameter flash: first address and end.
     params: (u64, u64),
-    /// How the receiver's port must be set up.
+    /// Required set-up of the receiver's port.
     receiver: serial::Setup,
     erases: BTreeMap<u64, u32>,
-    /// Writes to the flash with its data cache on.
+    /// Flash writes with the data cache on.
     cached: u32,
-    /// Addresses of the tasks.
+    /// Task addresses.
     tasks: BTreeMap<String, u64>,
-    /// Flash: first address, and first one beyond.
+    /// Flash: first address and end.
     flash: (u64, u64),
-    /// A word of RAM that no image uses.
+    /// A RAM word that no image uses.
     spare: u64,
-    /// Faults that this part cannot have.
+    /// Faults that this part does not have.
     impossible: Vec<BoardFault>,
-    /// The supply is down.
+    /// Supply down.
     dark: bool,
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
-    /// Levels of the motors' pins.
     high: PerArm<bool>,
-    /// Since when the processor stands still, ns.
+    /// Start of the processor's standstill, ns.
     still: Option<u64>,
     hung: Option<Hung>,
     latency: Latency,
     digest: Digest,
     /// Data-ready pulses of the last milliseconds, ns.
     pulses: Vec<u64>,
-    /// The outputs since each start.
     outputs: Outputs,
-    /// Counts the instructions of the control path, where that is asked for.
+    /// Instruction counter of the control path, if requested.
     counter: Option<Counter>,
 }
 
 impl World {
-    /// Reads the pins at `now`.
     fn read<C: Chip>(
         &mut self,
         session: &mut Session<Wired<C>>,
@@ -385,7 +380,7 @@ impl World {
         }
     }
 
-    /// Takes the motors' edges until `now`, in a millisecond in which the processor was reset at `reset`.
+    /// Takes the motors' edges until `now`; `reset` is the time of a reset within this millisecond.
     fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos, reset: u64) {
         let driven = board.motors_driven(now);
         for edge in board.motor_edges() {
@@ -394,7 +389,7 @@ impl World {
             if edge.at >= reset {
                 self.started();
             }
-            // A pin that is not the timer's does not show what the timer does.
+            // A pin not driven by the timer does not show its edges.
             if !driven[edge.channel] {
                 continue;
             }
@@ -408,7 +403,7 @@ impl World {
             let Some(began) = self.escs[edge.channel].edge(edge.at, edge.high) else {
                 continue;
             };
-            // A stopped motor's frames come by themselves, not from a sample.
+            // A stopped motor's frames follow no sample.
             let ready = self.pulses.iter().rev().find(|at| **at <= began);
             if edge.channel == 0
                 && self.escs[0].command(edge.at) > 0.0
@@ -424,13 +419,12 @@ impl World {
         }
     }
 
-    /// The processor was reset: its pins float, and it stands still no more.
+    /// Processor reset: pins float, and a standstill ends.
     fn started(&mut self) {
         self.still = None;
         self.high = [false; 4];
     }
 
-    /// Breaks or mends something; false where the emulator cannot.
     fn inflict<C: Chip>(
         &mut self,
         fault: BoardFault,
@@ -486,10 +480,10 @@ impl World {
         true
     }
 
-    /// Marks a task as waiting in its executor's queue, where it is not: nothing will ever put it there again.
+    /// Marks a task as queued outside its executor's queue, so it never runs again.
     fn hang(&self, name: &str, host: &mut dyn Host) -> bool {
         let mut word = |at: u64| host.read(at, Width::W32).unwrap_or(0);
-        // The executor's header has no fixed layout: the state is what is "spawned" in every task.
+        // The executor's header has no fixed layout: the state word is "spawned" in every task.
         let mut places = (0..HEADER).step_by(4);
         let state = places.find(|place| {
             self.tasks
@@ -502,7 +496,7 @@ impl World {
         host.write(task + state, Width::W32, SPAWNED | QUEUED).is_ok()
     }
 
-    /// Makes the function that runs a task the two instructions `code`.
+    /// Replaces the start of a task's function by the two instructions `code`.
     fn replace(&self, name: &str, code: u64, host: &mut dyn Host) -> bool {
         let Some(task) = self.tasks.get(name) else {
             return false;
@@ -518,7 +512,6 @@ impl World {
         })
     }
 
-    /// Puts the world's side on the wires.
     fn write<C: Chip>(
         &mut self,
         session: &mut Session<Wired<C>>,
@@ -546,7 +539,7 @@ impl World {
         }
         for (arm, [x, y, z]) in wires.arms.into_iter().enumerate() {
             if let Some(sensor) = board.arm(arm) {
-                // Marking up, x forward: the chip's y points left and its z up, and it feels what carries it.
+                // Marking up, x forward: the chip's y points left, its z up.
                 sensor.up = [-x, y, z];
             }
         }
@@ -560,7 +553,6 @@ impl World {
     }
 }
 
-/// Takes the bytes that the chip has sent over a line.
 fn heard(line: Option<&mut Line>) -> Vec<u8> {
     let words = line.map_or(Vec::new(), |line| std::mem::take(&mut line.incoming));
     words.into_iter().map(|word| word as u8).collect()
@@ -601,14 +593,14 @@ impl<C: Chip> Driver<Wired<C>> for World {
             session.board_mut().power_up(stop.at);
         }
         let pins = self.read(session, stop.at, host);
-        // Both ends close when the run is to end.
+        // Both ends close at the end of the run.
         self.pins.send(pins).ok()?;
         let wires = self.wires.recv().ok()?;
         self.write(session, stop, wires, host);
         if let Some(counter) = &mut self.counter {
             counter.on_millisecond(self.ms, host);
         }
-        // On its own grid: a stop may come slightly late.
+        // On a fixed grid, since a stop may come slightly late.
         self.ms += 1;
         Some(VirtualNanos(self.ms * MS))
     }

@@ -1,4 +1,4 @@
-//! How long after a reset each output of the board is not the firmware's yet, and whether the chip pulls it up meanwhile.
+//! Time after a reset until the firmware drives each output, and the chip's pull-ups meanwhile.
 
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
@@ -7,20 +7,18 @@ use super::board::Wired;
 use super::chip::Chip;
 use crate::wires::Output;
 
-/// The outputs, looked at whenever the firmware has written a register of a port.
+/// The outputs, checked at each write to a port's register.
 #[derive(Debug, Default)]
 pub struct Outputs {
-    /// Starts of the processor that have been seen, the one at power-on among them, and when the last one was, ns.
+    /// Starts of the processor, including power-on, and time of the last, ns.
     starts: usize,
     since: u64,
-    /// Outputs that the firmware does not drive yet.
+    /// Outputs not yet driven.
     open: usize,
-    /// What has been found.
     pub found: Vec<Output>,
 }
 
 impl Outputs {
-    /// Looks at what the firmware drives at `now`.
     pub fn look<C: Chip>(&mut self, session: &mut Session<Wired<C>>, now: VirtualNanos) {
         let starts = session.resets().len() + 1;
         if starts != self.starts {

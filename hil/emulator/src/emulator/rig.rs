@@ -1,4 +1,4 @@
-//! The emulated board on a test rig: it lies still, and every jumper and part of `hil/README.md` is in place.
+//! The emulated board on a test rig, at rest, wired as in `hil/README.md`.
 
 use std::path::Path;
 
@@ -22,71 +22,70 @@ use crate::log::{Line, Log};
 use crate::suite::{self, Test};
 use crate::wires::Gap;
 
-/// Virtual time after which a test is given up.
+/// Virtual time limit of a test.
 const LONGEST: u64 = 30_000 * MS;
-/// Instructions for each cycle of the core's clock.
 const SPEED: f64 = 1.0;
-/// Registers of all ports: first address, and first one beyond.
+/// Registers of all ports: first address and end.
 const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
-/// Time for which a processor that stalls stands still, and how often, ns: not in step with a task of 1 kHz.
+/// Duration and period of a stalling processor's stalls, ns: not in step with 1 kHz.
 const STALL: u64 = 600_000;
 const STALL_EVERY: u64 = 1_700_000;
-/// The wrong crystal, Hz: one at which the chip still starts.
+/// Wrong crystal, Hz, at which the chip still starts.
 const CRYSTAL: u64 = 6_000_000;
-/// Flash of the parameters: first address, and first one beyond.
+/// Parameter flash: first address and end.
 const PARAMETERS: std::ops::Range<u64> = 0x081C_0000..0x0820_0000;
-/// Half the supply, V, from a divider at every analog input.
+/// Half the supply, V, at every analog input.
 const HALF: f64 = 1.65;
 /// The same from resistors that differ by 20 %.
 const UNEQUAL: f64 = 1.5;
-/// Samples of the inertial sensor in a millisecond, and 1 g in its thousands of thousandths.
+/// Inertial samples per millisecond, and 1 g in millionths.
 const SAMPLES: u64 = 4;
 const G: i32 = 1_000_000;
-/// What an arm's sensor feels at rest, marking up, m/s².
+/// Specific force at an arm's sensor at rest, marking up, m/s².
 const UP: [f64; 3] = [0.0, 0.0, 9.806_65];
 
-/// What the jumpers join: motor 1 with servo 3, servo 1 with servo 4, the receiver's output with its input.
+/// Jumpers: motor 1 to servo 3, servo 1 to servo 4, receiver output to input.
 static MOTOR: [At; 2] = [MATEK.motors.pins[0], MATEK.servos[2].pin];
 static SERVO: [At; 2] = [MATEK.servos[0].pin, MATEK.servos[3].pin];
 const RECEIVER: [At; 2] = [At(2, 6), At(2, 7)];
 /// Alternate function of the receiver's output.
 const PORT_FUNCTION: u8 = 7;
 
-/// What may be wrong with a rig.
+/// Defects of a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
     /// Nothing.
     None,
-    /// The crystal is not the one that the board expects.
+    /// Wrong crystal frequency.
     Crystal,
-    /// The inertial sensor is unplugged.
+    /// Inertial sensor unplugged.
     NoImu,
-    /// The sensor of arm 3 is unplugged.
+    /// Sensor of arm 3 unplugged.
     NoArm,
-    /// No jumper is in place.
+    /// No jumpers.
     NoJumpers,
-    /// The divider is not of equal resistors.
+    /// Divider of unequal resistors.
     Divider,
     /// The processor stands still for a third of the time, 0.6 ms at once.
     Stalls,
     /// The watchdog's clock stands still.
     Watchdog,
-    /// What is stored is gone with a reset.
+    /// A reset erases what is stored.
     Forgets,
 }
 
-/// How a test ended.
+/// Result of a test.
 #[derive(Debug)]
 pub struct Ended {
-    /// Status that the image ended with; `None` when it did not within 30 s.
+    /// Exit status of the image; `None` if it did not end within 30 s.
     pub status: Option<u32>,
     /// Its log.
     pub lines: Vec<Line>,
-    /// What the emulator could not do.
+    /// Gaps of the emulator.
     pub gaps: Vec<Gap>,
 }
 
-/// Reads the tests' image of the one board that has a rig here, the reference board.
+/// Reads the test image of the reference board, the only one with a rig here.
 ///
 /// # Errors
 /// One line: what is wrong with the file.
@@ -94,10 +93,10 @@ pub fn read(path: &Path) -> Result<Firmware, String> {
     Firmware::read(path, boards::find(MATEK.name)?)
 }
 
-/// Runs `test` of `image` on a rig with a defect, from power-on.
+/// Runs `test` of `image` from power-on on a rig with `defect`.
 ///
 /// # Errors
-/// One line: what the emulator refuses.
+/// One line: why the emulator refuses.
 pub fn run(image: &Firmware, test: &Test, defect: Defect) -> Result<Ended, String> {
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
     let bytes = suite::entering(image, test)?;
@@ -128,21 +127,20 @@ pub fn run(image: &Firmware, test: &Test, defect: Defect) -> Result<Ended, Strin
     })
 }
 
-/// What hangs on the board's pads, called by the emulator.
+/// The parts at the board's pads, called by the emulator.
 struct Rig {
     defect: Defect,
-    /// When the next look at it is due, ns.
+    /// Next update, ns.
     next: u64,
     rtt: Rtt,
-    /// What was read of the log, with the instant.
+    /// Log read so far, with times.
     log: Vec<(u64, Vec<u8>)>,
     resets: usize,
-    /// Counts samples of the inertial sensor, over and over.
+    /// Counts inertial samples, wrapping.
     samples: u8,
 }
 
 impl Rig {
-    /// The rig as power comes up.
     fn set_up(&self, board: &mut Wired<H743>, now: VirtualNanos) {
         board.power_up(now);
         let half = if self.defect == Defect::Divider {
@@ -150,7 +148,6 @@ impl Rig {
         } else {
             HALF
         };
-        // No battery.
         let [battery, current] = [0.0; 2];
         board.set_analog([half, half, half, half, battery, current]);
         for arm in 0..4 {
@@ -166,7 +163,7 @@ impl Rig {
         }
     }
 
-    /// Gives the inertial sensor a millisecond of samples at rest: never two alike, as a real one's.
+    /// Feeds a millisecond of inertial samples at rest, never two equal.
     fn shake(&mut self, board: &mut Wired<H743>, now: u64) {
         let Some(imu) = board.imu() else { return };
         for nth in 0..SAMPLES {
@@ -180,13 +177,13 @@ impl Rig {
         }
     }
 
-    /// Takes every jumper's level from one end to the other.
+    /// Transfers each jumper's level.
     fn carry(&self, board: &mut Wired<H743>, now: VirtualNanos) {
         if self.defect == Defect::NoJumpers {
             return;
         }
         let (motor, servo) = (board.chip.first_motor_is_high(), board.chip.first_servo_is_high());
-        // A serial line rests high; its bytes go their own way.
+        // A serial line rests high; its bytes are transferred separately.
         for ([from, to], function, peripheral) in [
             (MOTOR, MATEK.motors.function, motor),
             (SERVO, MATEK.servos[0].function, servo),
@@ -205,7 +202,7 @@ impl Rig {
     }
 }
 
-/// Erases the parameters behind the chip's back.
+/// Erases the parameters without the chip.
 fn erase(host: &mut dyn Host) {
     for address in PARAMETERS.step_by(8) {
         // Refused only where there is no flash.
@@ -245,7 +242,7 @@ impl Driver<Wired<H743>> for Rig {
         let board = session.board_mut();
         if self.next == 0 {
             self.set_up(board, stop.at);
-            // The last words come right before the end, at no stop.
+            // The last output comes right before the end, between stops.
             host.watch(Watch::Writes {
                 address: self.rtt.written(),
                 length: 4,

@@ -1,36 +1,33 @@
-//! The probe's side of the log: reads the firmware's buffer in its memory and says how far it has read.
+//! The probe's side of the log: reads the firmware's buffer.
 
 use rigless::emulator::Host;
 use rigless::soc::Width;
 
-/// From the control block to the first buffer from the firmware to the probe.
+/// Control block to first up buffer.
 const UP: u64 = 24;
-/// From a buffer's descriptor to its fields.
+/// Field offsets in a buffer's descriptor.
 const BUFFER: u64 = 4;
 const SIZE: u64 = 8;
 const WRITTEN: u64 = 12;
 const READ: u64 = 16;
-/// Largest believable buffer: before the firmware has set it up, memory holds anything.
+/// Largest plausible buffer: memory is undefined before the firmware sets it up.
 const LARGEST: u64 = 1 << 16;
 
-/// The reader.
 #[derive(Debug)]
 pub struct Rtt {
     up: u64,
 }
 
 impl Rtt {
-    /// A reader of the control block at `address`.
     pub fn new(address: u64) -> Self {
         Self { up: address + UP }
     }
 
-    /// Address of the word that says how far the firmware has written.
+    /// Address of the write position.
     pub fn written(&self) -> u64 {
         self.up + WRITTEN
     }
 
-    /// Takes what has been written since the last call.
     pub fn drain(&mut self, host: &mut dyn Host) -> Vec<u8> {
         let mut field = |offset| host.read(self.up + offset, Width::W32).unwrap_or(0);
         let (buffer, size, written, mut read) = (field(BUFFER), field(SIZE), field(WRITTEN), field(READ));
@@ -45,7 +42,7 @@ impl Rtt {
             bytes.push(byte as u8);
             read = (read + 1) % size;
         }
-        // Refused only where there is no memory, and then nothing was read either.
+        // Refused only without memory there, and then nothing was read.
         let _ = host.write(self.up + READ, Width::W32, read);
         bytes
     }

@@ -1,5 +1,5 @@
-//! How a serial port is set up: the emulator carries words at whatever rate a port has, and neither levels nor polarity,
-//! so what the receiver's line needs is looked up in the port's registers.
+//! Settings of a serial port. The emulator carries words at any rate, without levels or polarity, so the receiver's
+//! settings are read from the port's registers.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -7,24 +7,21 @@ use sophie_control::params::RcProtocol;
 
 use crate::boards::Kind;
 
-/// Largest error of a rate, share: what an asynchronous line bears.
+/// Largest relative rate error of an asynchronous line.
 const RATE_ERROR: f64 = 0.02;
 
-/// The set-up of a port.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
     /// Rate, baud.
     pub rate: f64,
-    /// Even parity.
     pub parity: bool,
-    /// Two stop bits.
     pub two_stops: bool,
     /// Idle is low.
     pub inverted: bool,
 }
 
 impl Setup {
-    /// What the receiver's line of a board needs for `protocol`.
+    /// Required settings of a board's receiver line.
     pub fn of(protocol: RcProtocol, board: Kind) -> Self {
         match protocol {
             RcProtocol::Crsf => Self {
@@ -43,7 +40,7 @@ impl Setup {
         }
     }
 
-    /// The set-up in the registers `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz, whose fields are those of both
+    /// Settings in the registers `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz, with the same fields on both
     /// parts (RM0090 §30.6, RM0433 §48.8); the F4 has no bit 16 in its `CR2`.
     pub fn in_registers(clock: f64, brr: u64, cr1: u64, cr2: u64) -> Self {
         let oversampled_by_8 = cr1 >> 15 & 1 == 1;
@@ -56,7 +53,7 @@ impl Setup {
         }
     }
 
-    /// A line of this set-up and a port of `other` understand each other.
+    /// The two settings can communicate.
     pub fn fits(&self, other: &Self) -> bool {
         (other.rate / self.rate - 1.0).abs() < RATE_ERROR
             && Self {

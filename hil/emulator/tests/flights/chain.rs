@@ -1,18 +1,17 @@
-//! What the control path executes on the flashed images (docs/cost.md).
+//! Instructions of the control path on the flashed images (docs/cost.md).
 
 use sophie_emulator::chain::Window;
 
 use super::*;
 
-/// Most instructions that a step may take between the sensor's transfer and the motor frame.
+/// Most instructions of a step between the sensor's transfer and the motor frame.
 const MOST: u64 = 4780;
-/// The same on the small board, whose core has no instructions for the lesser of two floats and for a choice of them.
+/// The same on the small board, whose core lacks instructions for the minimum and the selection of floats.
 const MOST_SMALL: u64 = 5140;
-/// Steps that are counted, in a hover.
 const STEPS: usize = 40;
 
-/// From the end of the sensor's transfer to the start of the motor frame no step executes more than `most`, and all that
-/// the core executes meanwhile has its function.
+/// From the end of the sensor's transfer to the start of the motor frame no step executes more than `most`, and every
+/// instruction has its function.
 fn executes(image: &Path, board: &str, most: u64) {
     let mut firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
     firmware.count = Some(Window {
@@ -27,7 +26,7 @@ fn executes(image: &Path, board: &str, most: u64) {
         assert_eq!(step.acting.values().sum::<u64>(), step.passed);
     }
     let acting = counted.acting();
-    // The laws alone are more than this.
+    // The laws alone exceed this.
     assert!(acting.mean > 1500.0 && acting.most <= most, "{board}: {acting:?}");
 }
 

@@ -9,7 +9,7 @@ fn start(seed: u64) -> Scenario {
     }
 }
 
-/// One seed is one run to the last edge at a pin, and another seed is another.
+/// Equal seeds give equal runs to the last edge at a pin, other seeds others.
 fn repeats(fly: impl Fn(&Scenario) -> Flight) {
     let [first, second, other] = [1, 1, 2].map(|seed| fly(&start(seed)));
     assert!(told(&first, 0.0, "FLIGHT").is_some(), "{}", log(&first));

@@ -1,11 +1,11 @@
-//! Parts that fail at their wires: what the log says and what the pins do.
+//! Parts that fail at their wires: effect on log and pins.
 
 use sophie_emulator::wires::BoardFault;
 use sophie_sim::sensors::fsr::FsrBreak;
 
 use super::*;
 
-/// A flight of the hover of at most `seconds` s with a trouble in the air, on the reference board.
+/// A hover of at most `seconds` s with an airborne trouble, on the reference board.
 fn with(trouble: Trouble, seconds: f64) -> Flight {
     sound_before(fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]))
 }
@@ -15,7 +15,7 @@ fn with_small(trouble: Trouble, seconds: f64) -> Flight {
     sound_before(fly_small(&hover(seconds), &[(AIRBORNE, trouble)]))
 }
 
-/// The flight, which was in the air before its trouble came.
+/// Requires that the flight was in the air before its trouble.
 fn sound_before(flight: Flight) -> Flight {
     assert!(
         told(&flight, 0.0, "FLIGHT").is_some_and(|t| t < AIRBORNE),
@@ -43,7 +43,7 @@ fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board
         "{}",
         log(&flight)
     );
-    // The supervisor feeds no watchdog without a flight level.
+    // Without a flight level the supervisor does not feed the watchdog.
     assert!(
         told(&flight, AIRBORNE, "start after Watchdog").is_some(),
         "{}",
@@ -73,21 +73,18 @@ fn ended_by_the_watchdog(flight: &Flight, within: f64, stopped_by: f64) {
     );
 }
 
-/// Cuts the data-ready line of the inertial sensor.
 const CUT: Trouble = Trouble::Board(BoardFault::DataReadyCut(true));
-/// Joins it again.
 const JOINED: Trouble = Trouble::Board(BoardFault::DataReadyCut(false));
-/// What the mode then says.
 const LINE: &str = "inertial sensor: data-ready line silent";
 
-/// The line was cut in hover at [`AIRBORNE`]: the vehicle lands as one that flies, and says why.
+/// Requires a normal landing with its reason after a cut line in hover at [`AIRBORNE`].
 fn lands_without_data_ready(flight: &Flight) {
     let t = told(flight, AIRBORNE, &format!("FAILSAFE: {LINE}"));
     assert!(t.is_some_and(|t| t < AIRBORNE + 0.4), "{}", log(flight));
     let down =
         told(flight, AIRBORNE, &format!("DISARMED: {LINE}")).unwrap_or_else(|| panic!("{}", log(flight)));
     assert!(running(flight, AIRBORNE - 0.5, down - 0.1), "{}", log(flight));
-    // No faster than a descent, no further than 10 degrees from level, and down from 3 m.
+    // At most the descent's speed, 10 degrees from level, and down from 3 m.
     for s in samples(flight, AIRBORNE, down) {
         let [.., sink] = s.velocity;
         let [roll, pitch, _] = s.attitude.map(f64::to_degrees);
@@ -98,7 +95,7 @@ fn lands_without_data_ready(flight: &Flight) {
     for task in FLIGHT_LEVEL {
         assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(flight));
     }
-    // 87 us with the line on the small board; a quarter of a period of 250 us more, and the status' transfer.
+    // 87 us with the line on the small board; polling adds a quarter of a period of 250 us and the status' transfer.
     let latency = flight.board.run.latency_us;
     assert!(latency.worst < 170.0, "{latency:?}");
     assert!(flight.board.resets.is_empty(), "{:?}", flight.board.resets);
@@ -205,7 +202,7 @@ fn a_pulled_reset_pin_is_told_as_such() {
 #[test]
 #[ignore = "campaign: minutes of emulated flight"]
 fn a_bus_whose_clock_is_held_keeps_the_background_only() {
-    // 300 us a byte: a reading of one sensor takes four milliseconds.
+    // 300 us per byte: reading one sensor takes 4 ms.
     let troubles = [(AIRBORNE, Trouble::Board(BoardFault::ClockHeld(0, 300)))];
     let flight = fly(&hover(AIRBORNE + 3.0), 1.0, &troubles);
     assert!(
@@ -242,7 +239,7 @@ fn overflows(task: &'static str, small: bool) {
     let [(ms, cause)] = &flight.board.resets[..] else {
         panic!("{:?}\n{}", flight.board.resets, log(&flight))
     };
-    // At once: the watchdog would have taken 0.2 s.
+    // At once: the watchdog would take 0.2 s.
     let after = ms * 1e-3 - AIRBORNE;
     assert!((0.0..0.1).contains(&after), "{after} {cause}");
     for text in [
@@ -261,7 +258,8 @@ fn overflows(task: &'static str, small: bool) {
         "{}",
         log(&flight)
     );
-    // The emulator lets accesses to nothing pass and lists them, so the fault comes when a return address is read there.
+    // The emulator passes and lists accesses to unmapped memory, so the fault comes when a return address is read
+    // there.
     let bottom = if small { 0x1000_0000 } else { 0x2000_0000 };
     let below = |gap: &&sophie_emulator::wires::Gap| {
         let at = u64::from_str_radix(gap.at.trim_start_matches("0x"), 16).unwrap_or_default();

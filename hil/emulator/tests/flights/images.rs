@@ -1,6 +1,6 @@
 use super::*;
 
-/// The complaint about an image with `bytes`.
+/// The error for an image with `bytes`.
 fn refused(name: &str, bytes: &[u8]) -> String {
     let path = std::env::temp_dir().join(format!("sophie-image-{}-{name}", std::process::id()));
     std::fs::write(&path, bytes).unwrap();
@@ -28,7 +28,7 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
     let good = std::fs::read(image()).unwrap();
     assert!(Firmware::read(image(), board).is_ok());
     assert!(!refused("half", &good[..good.len() / 2]).is_empty());
-    // The names of symbols and sections, made unreadable one at a time.
+    // Names of symbols and sections, made unreadable one at a time.
     for (name, wanted) in [
         ("_SEGGER_RTT", "has no log"),
         (".vector_table", "has no vector table"),

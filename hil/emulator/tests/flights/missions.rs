@@ -4,7 +4,7 @@ use sophie_timing::live::{self, Contact, Line};
 
 use super::*;
 
-/// Each second's record of the chain from contact pressure to servo pulse.
+/// Each second's record of the chain from pressure to pulse.
 fn contact(flight: &Flight) -> Vec<Contact> {
     let lines = flight.board.lines.iter();
     let read = lines.filter_map(|line| live::parse(&line.text));
@@ -15,10 +15,10 @@ fn contact(flight: &Flight) -> Vec<Contact> {
     .collect()
 }
 
-/// Every conversion that a servo answers has its pulse within the deadline, in at least `seconds` of the flight.
+/// Every conversion answered by a servo has its pulse within the deadline, in at least `seconds` of the flight.
 fn answers_contact_in_time(flight: &Flight, seconds: usize) {
     let all = contact(flight);
-    // Servos at 50 Hz; the first record and the last are of parts of a second.
+    // Servos at 50 Hz; the first and last record cover partial seconds.
     let whole = all.iter().filter(|second| second.pulses >= 49);
     assert!(whole.count() >= seconds, "{all:?}");
     for second in &all {
@@ -93,8 +93,8 @@ fn the_small_board_flies_in_time() {
     assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
 }
 
-/// The buses of the arms' sensors as slow as a stretched clock makes them, and a line in the log every 50 ms or more
-/// often: sensors lost and found again, buses clocked free, pressure sensors cut and mended.
+/// Arm sensor buses as slow as clock stretching makes them, and at least a log line every 50 ms: sensors lost and
+/// found, buses freed by clocks, pressure sensors cut and mended.
 fn background_at_its_worst() -> Vec<(f64, Trouble)> {
     let mut troubles = Vec::new();
     for bus in 0..2 {
@@ -109,7 +109,8 @@ fn background_at_its_worst() -> Vec<(f64, Trouble)> {
     troubles
 }
 
-/// Zero overruns of the flight level, and frames within `longest` us of data-ready, at most `jitter` later than the mean.
+/// Zero overruns of the flight level, and frames within `longest` us of data-ready, at most `jitter` later than the
+/// mean.
 fn in_time(flight: &Flight, longest: f64, jitter: f64) {
     assert_eq!(flight.gaps, [], "{}", log(flight));
     for task in FLIGHT_LEVEL {
@@ -120,7 +121,7 @@ fn in_time(flight: &Flight, longest: f64, jitter: f64) {
         "{}",
         log(flight)
     );
-    // The buses really were slow.
+    // The buses were slow.
     assert!(flight.board.overruns.contains_key("arms"), "{}", log(flight));
     let latency = flight.board.run.latency_us;
     // For docs/timing.md.

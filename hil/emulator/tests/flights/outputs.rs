@@ -1,10 +1,10 @@
-//! What a reset does to a board's outputs.
+//! Outputs of a board during a reset.
 
 use sophie_emulator::wires::{BoardFault, Output};
 
 use super::*;
 
-/// Two seconds, with the reset pin pulled at the first one; and what became of the outputs.
+/// Two seconds with a pulse on the reset pin after one.
 fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
     let flight = fly(&hover(2.2), &[(1.0, Trouble::Board(BoardFault::ResetPin))]);
     for output in &flight.board.run.outputs {
@@ -24,14 +24,14 @@ fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
     flight
 }
 
-/// The longest time from a start until the firmware drives the outputs whose names begin so, ms.
+/// Longest time until the firmware drives the outputs with this prefix, ms.
 fn longest_ms(outputs: &[Output], what: &str) -> f64 {
     let these = outputs.iter().filter(|output| output.what.starts_with(what));
     let times = these.flat_map(|output| output.after_us.iter().flatten());
     times.fold(0.0, |longest: f64, us| longest.max(us * 1e-3))
 }
 
-/// No output is pulled up by the chip but those named, and each but the lights is driven in time, before the clocks run.
+/// The chip pulls up only the named outputs, and all but the lights are driven in time, before the clocks run.
 fn in_order(flight: &Flight, pulled_up: &[&str], limit_ms: f64) {
     let outputs = &flight.board.run.outputs;
     assert_eq!(outputs.len(), 12);

@@ -1,4 +1,4 @@
-//! Parameters that are stored in the chip's flash.
+//! Parameters stored in the chip's flash.
 
 use sophie_control::params::{MotorProtocol, RcProtocol};
 use sophie_emulator::wires::BoardFault;
@@ -25,7 +25,7 @@ fn the_image_flies_what_is_stored() {
     // Both, and the calibration of the accelerometer's three axes.
     let taken = told(&flight, 0.0, "parameters: 5 from storage");
     assert!(taken.is_some(), "{}", log(&flight));
-    // Off the ground by an inverted line with parity, on motor frames of twice the rate.
+    // Airborne with an inverted line with parity, and motor frames at twice the rate.
     assert!(told(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
     for esc in flight.board.run.escs {
         assert!(esc.frames > 5000 && esc.bad == 0, "{esc:?}");
@@ -74,7 +74,7 @@ fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
         log(&flight)
     );
     assert!(stopped(&flight, 0.0, f64::INFINITY));
-    // Frames of the default rate: the controllers, made for the stored one, take none.
+    // Frames at the default rate, which controllers for the stored one reject.
     assert!(flight.board.run.escs.iter().all(|esc| esc.frames == 0));
     assert_eq!(flight.gaps, []);
 }

@@ -1,15 +1,15 @@
-//! Motor controllers that take pulses: how often they get one, and that none begins once the software stands still.
+//! Pulse protocols: pulse rate, and no new pulse once the software stands still.
 
 use sophie_control::params::MotorProtocol;
 use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Where the processor stands still, off the ground; and the end of the flight, before its watchdog has bitten.
+/// Standstill of the processor in the air; end of the flight, before the watchdog's reset.
 const STILL: f64 = AIRBORNE - 0.5;
 const END: f64 = STILL + 0.18;
 
-/// The hover with controllers that speak `protocol`, until the processor stands still.
+/// The hover with controllers of `protocol`, until the processor stands still.
 fn hung(protocol: MotorProtocol, small: bool) -> Flight {
     let mut scenario = hover(END);
     scenario.params.motor_protocol = protocol;
@@ -29,8 +29,8 @@ fn hung(protocol: MotorProtocol, small: bool) -> Flight {
     flight
 }
 
-/// Frames come within `interval` µs of each other, each is understood, and none begins later than `last` µs after the
-/// processor has stopped; the pins are low then.
+/// Frames are within `interval` µs of each other and valid; none begins later than `last` µs after the processor has
+/// stopped; the pins are low then.
 fn ends(protocol: MotorProtocol, interval: [f64; 2], last: f64) {
     for small in [false, true] {
         let flight = hung(protocol, small);
@@ -47,7 +47,7 @@ fn ends(protocol: MotorProtocol, interval: [f64; 2], last: f64) {
 #[test]
 #[ignore = "campaign: minutes of emulated flight"]
 fn a_pulse_is_the_last_one_when_the_software_stands_still() {
-    // At most 400 Hz; at 100 Hz while no mix comes. A pulse that was under way ends, and nothing follows.
+    // At most 400 Hz; 100 Hz without mixes. A pulse under way ends, and none follows.
     ends(MotorProtocol::Pwm, [2500.0, 13_000.0], 0.0);
 }
 

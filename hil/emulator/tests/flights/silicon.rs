@@ -1,17 +1,17 @@
-//! What the start-up looks at in the chip, and what it does where a clock never comes.
+//! The start-up's checks of the chip, and its behaviour where a clock fails.
 
 use sophie_emulator::silicon::{self, Look};
 use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Both boards, each with what its caches are called in the log and how they must be.
+/// Both boards, each with the required state of its caches as logged.
 const BOARDS: [(&str, [&str; 2]); 2] = [
     ("matek-h743", ["caches", "I+ D-"]),
     ("f405", ["flash acceleration", "prefetch+ I+ D+"]),
 ];
 
-/// `seconds` s on the ground, disarmed, with `fault` from before the first instruction on.
+/// `seconds` s on the ground, disarmed, with `fault` from before the first instruction.
 fn on_the_bench(board: &str, seconds: f64, fault: Option<BoardFault>) -> Flight {
     let scenario = Scenario {
         time_limit: seconds,
@@ -34,7 +34,6 @@ fn looks(flight: &Flight) -> Vec<Look> {
     lines.filter_map(|line| silicon::told(&line.text)).collect()
 }
 
-/// The logged look `name`.
 fn look(flight: &Flight, name: &str) -> Look {
     let all = looks(flight);
     let found = all.iter().find(|look| look.name == name);
@@ -109,7 +108,7 @@ fn another_firmwares_parameters_are_named_with_what_to_do() {
     assert_eq!(look(&flight, "stored data of").read, "ArduPilot");
 }
 
-/// A clock that never comes ends in a message and a reset, again and again, with the motors' pins low.
+/// A failed clock causes a message and a reset, repeatedly, with the motors' pins low.
 fn never_starts(board: &str, fault: BoardFault, message: &str, by: &str) {
     let flight = on_the_bench(board, 1.2, Some(fault));
     assert!(

@@ -1,4 +1,4 @@
-//! What only the target's core can show: its instructions and its exceptions.
+//! Instructions and exceptions, which only the target's core can show.
 
 #![allow(
     unsafe_code,
@@ -11,7 +11,6 @@ mod float;
 
 use core::fmt::Arguments;
 
-/// Prints a line for each group.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     float::run(print);
     exceptions::run(print);

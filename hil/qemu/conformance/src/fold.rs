@@ -1,4 +1,4 @@
-//! Long results as one number.
+//! Folds long results into one number.
 
 /// FNV-1a over 32-bit words, with a count: `<count> words <hash>`.
 #[derive(Clone, Copy)]
@@ -14,7 +14,7 @@ impl Default for Fold {
 }
 
 impl Fold {
-    /// Nothing folded yet.
+    /// An empty fold.
     pub const fn new() -> Self {
         Self {
             words: 0,
@@ -22,7 +22,7 @@ impl Fold {
         }
     }
 
-    /// Takes one more word.
+    /// Adds a word.
     pub fn add(&mut self, word: u32) {
         self.words = self.words.wrapping_add(1);
         for byte in word.to_le_bytes() {
@@ -37,11 +37,11 @@ impl core::fmt::Display for Fold {
     }
 }
 
-/// Numbers that look like noise and are the same everywhere (xorshift32).
+/// Deterministic noise (xorshift32), equal on every machine.
 pub struct Noise(u32);
 
 impl Noise {
-    /// A sequence of its own for each `seed` other than 0.
+    /// A sequence for each nonzero `seed`.
     pub const fn new(seed: u32) -> Self {
         Self(seed)
     }
@@ -54,7 +54,7 @@ impl Noise {
         self.0
     }
 
-    /// The next number in -1..1; exact in binary, so the same on every machine.
+    /// The next number in -1..1; exact in binary, so equal on every machine.
     pub fn unit(&mut self) -> f32 {
         (self.word() >> 8) as f32 * (2.0 / 16_777_216.0) - 1.0
     }

@@ -1,4 +1,4 @@
-//! The control laws on inputs that look like flight, folded stage by stage: equal on every machine, bit by bit.
+//! The control laws on flight-like inputs, folded by stage: bit-identical on every machine.
 
 use core::fmt::Arguments;
 
@@ -11,21 +11,18 @@ use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, Wrench};
 use sophie_mixers::{Mixer, Variant};
 
-/// Inputs of each function of the maths module.
+/// Inputs per function of the maths module.
 const INPUTS: u32 = 4096;
-/// Control steps of each mixer: 3 s of flight, with the calibration at rest before them.
+/// Control steps per mixer: 3 s of flight, after calibration at rest.
 const STEPS: u32 = 3000;
 const REST: u32 = 3000;
-/// Readings of the inertial sensor in a control step.
 const READINGS: usize = 4;
 const RATE_HZ: f32 = 4000.0;
-/// Steps for which a kind of setpoint holds.
+/// Steps per kind of setpoint.
 const STRETCH: u32 = 250;
 
-/// A function of one number.
 type Function = fn(f32) -> f32;
 
-/// Prints a line for each group.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     functions(print);
     for (name, variant) in [
@@ -63,7 +60,7 @@ fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
     print(format_args!("math atan2: {fold}"));
 }
 
-/// Sensor to motor command, open loop: the inputs are noise about a swaying attitude, and every kind of setpoint comes.
+/// Sensor to motor command, open loop: noise around a swaying attitude.
 fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     let params = Params::default();
     let mut noise = Noise::new(3);
@@ -114,7 +111,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     print(format_args!("{name} mixer: {mixed}"));
 }
 
-/// The setpoint of a step of the `stretch`: attitudes for the most part, between them rates, the pipe and off it, a wrench.
+/// Setpoint of a step: mostly attitudes; also rates, the pipe and off it, a wrench.
 fn setpoint(stretch: u32, noise: &mut Noise) -> Setpoint {
     let [roll, pitch, yaw_rate] = [0.5 * noise.unit(), 0.5 * noise.unit(), 0.5 * noise.unit()];
     let thrust = 18.0 + 16.0 * noise.unit();

@@ -1,4 +1,4 @@
-//! What the images for a processor under test share: numbers that are the same everywhere.
+//! Shared code of the images for a processor under test.
 
 #![no_std]
 

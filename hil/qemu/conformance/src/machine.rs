@@ -1,4 +1,4 @@
-//! What the end of a run wants of a board, where there is none.
+//! The `Machine` at the end of a run, without a board.
 
 use core::cell::RefCell;
 use core::fmt::{Arguments, Write};
@@ -11,11 +11,9 @@ use crate::core_under_test::faults::{self, Left};
 
 static LEFT: Mutex<RefCell<Left>> = Mutex::new(RefCell::new(Left::new()));
 
-/// A core without a board.
 struct Bare;
 
 impl Machine for Bare {
-    /// Says so.
     fn stop_motors() {
         faults::STOPPED.store(true, Relaxed);
     }
@@ -26,18 +24,17 @@ impl Machine for Bare {
         interrupt::free(|cs| LEFT.borrow(cs).replace(left));
     }
 
-    /// In place of a reset: goes on with the next scenario.
+    /// Continues with the next scenario instead of a reset.
     fn reset() -> ! {
         faults::go_on()
     }
 }
 
-/// Shows what was kept last.
 pub fn with_kept<R>(show: impl FnOnce(&Left) -> R) -> R {
     interrupt::free(|cs| show(&LEFT.borrow(cs).borrow()))
 }
 
-/// How a run ends, as in the firmware.
+/// The end of a run as in the firmware.
 fn stop_and_restart(message: Arguments<'_>) -> ! {
     sophie_fault::stop_and_restart::<Bare>(message)
 }

@@ -1,11 +1,11 @@
-//! What a Cortex-M core does with exceptions, floats and the control laws, as a log of lines.
+//! Logs how a Cortex-M core runs exceptions, floats and the control laws.
 //!
-//! The same ELF runs on QEMU and on the emulated core that flies the firmware; equal logs are the second opinion on
-//! that core. On the host only the laws run, and print the same lines: the tests of the control laws there are tests of
-//! what flies.
+//! The same ELF runs on QEMU and on the emulated core that flies the firmware; equal logs verify that core
+//! independently. On the host only the laws run and print the same lines: the host's tests of the control laws then
+//! hold for the chip.
 //!
-//! A line is `<group>: <what it gave>`; long results are folded into a hash, short ones are spelled out, so that
-//! two logs that differ say where.
+//! A line is `<group>: <result>`; long results are hashed, short ones are spelled out, so that a difference can be
+//! located.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

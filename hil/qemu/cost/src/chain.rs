@@ -1,7 +1,7 @@
-//! The flight step from raw readings to motor commands: its stages, its laws one by one, and all of it at one go.
+//! The flight step from raw readings to motor commands: its stages, its laws, and the whole.
 //!
-//! Each is a function that is not inlined, with its inputs and outputs in memory: what a call from a task costs. The stages
-//! are those of [`FlightChain`], called in its order; a law is run on a copy of its own, so that nothing is composed here.
+//! Each is a function that is not inlined, with inputs and outputs in memory, as a task calls it. The stages are those
+//! of [`FlightChain`] in its order; a law runs on its own copy, so nothing is composed here.
 
 use core::hint::black_box;
 
@@ -17,48 +17,47 @@ use sophie_control::wrench::{Configuration, PerArm};
 
 use crate::inputs::Inputs;
 
-/// At rest, with parameters of which the compiler knows nothing.
+/// At rest, with parameters unknown to the compiler.
 pub fn at_rest() -> FlightChain {
     let p = black_box(Params::default());
     let allocation = Flexible::new(black_box(Configuration::B), &p);
     FlightChain::new(&p, black_box(4000.0), allocation)
 }
 
-/// Nothing but the call.
 #[inline(never)]
 pub fn nothing(_: &mut (), _: &u32) {}
 
-/// First stage: one batch through the filter of the inertial sensor.
+/// Stage 1: one batch through the inertial sensor's filter.
 #[inline(never)]
 pub fn filter(c: &mut FlightChain, i: &Inputs) {
     c.sense(i.at_us, &i.batch);
 }
 
-/// Second stage: attitude and rate from the filtered sample.
+/// Stage 2: attitude and rate from the filtered sample.
 #[inline(never)]
 pub fn estimator(c: &mut FlightChain, _: &Inputs) {
     c.estimate();
 }
 
-/// Third stage: the demand, with loop switching and resting limits.
+/// Stage 3: the demand, with loop switching and resting limits.
 #[inline(never)]
 pub fn control(c: &mut FlightChain, i: &Inputs) {
     c.control(&i.command);
 }
 
-/// Fourth stage: commands from the demand, with the arms' readings.
+/// Stage 4: commands from the demand, with the arms' readings.
 #[inline(never)]
 pub fn mixing(c: &mut FlightChain, i: &Inputs) {
     c.mix(&i.surroundings);
 }
 
-/// All of it at one go, as one call.
+/// The whole step in one call.
 #[inline(never)]
 pub fn whole(c: &mut FlightChain, i: &Inputs) {
     c.step(i.at_us, &i.batch, &i.command, &i.surroundings);
 }
 
-/// The laws of the chain on copies of their own, and what they are given and give.
+/// The chain's laws on their own copies, with inputs and outputs.
 pub struct Laws {
     flow: Flow,
     axes: AxisFilter,
@@ -75,7 +74,6 @@ pub struct Laws {
 }
 
 impl Laws {
-    /// At rest.
     pub fn new(chain: &FlightChain) -> Self {
         let p = black_box(Params::default());
         Self {
@@ -94,7 +92,6 @@ impl Laws {
         }
     }
 
-    /// Takes over where `chain` stands.
     pub fn take(&mut self, chain: &FlightChain) {
         self.flow = chain.flow;
         self.attitude = chain.control.attitude;
@@ -110,13 +107,13 @@ pub fn axes(l: &mut Laws, i: &Inputs) {
     l.smooth = l.axes.step(first.gyro);
 }
 
-/// The direction that the sticks want, at 100 Hz.
+/// Direction from the sticks, 100 Hz.
 #[inline(never)]
 pub fn aim(l: &mut Laws, i: &Inputs) {
     l.attitude.aim(i.sticks);
 }
 
-/// Wanted rates from the attitude, and the target that is logged. A yaw that was given up takes the heading along.
+/// Wanted rates from the attitude, and the logged target. With yaw given up, the heading follows.
 #[inline(never)]
 pub fn attitude(l: &mut Laws, _: &Inputs) {
     let a = &l.flow.attitude;
@@ -127,7 +124,6 @@ pub fn attitude(l: &mut Laws, _: &Inputs) {
     l.target = l.attitude.target();
 }
 
-/// Moments from the rates.
 #[inline(never)]
 pub fn rate(l: &mut Laws, i: &Inputs) {
     let (a, feedback) = (&l.flow.attitude, l.flow.mix.feedback());
@@ -153,13 +149,12 @@ pub fn tilt(l: &mut Laws, _: &Inputs) {
     l.allocation.follow(&l.mix.thrusts, l.flow.attitude.dt);
 }
 
-/// Motor commands from thrusts and battery.
 #[inline(never)]
 pub fn commands(l: &mut Laws, i: &Inputs) {
     l.commands = l.curve.commands(&l.mix.thrusts, i.battery_ratio);
 }
 
-/// What the sensor of one arm corrects of its tilt, each at 100 Hz.
+/// Tilt correction by one arm's sensor, 100 Hz each.
 #[inline(never)]
 pub fn arm_sensor(l: &mut Laws, i: &Inputs) {
     if let Some((arm, measured)) = i.arm {

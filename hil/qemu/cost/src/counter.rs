@@ -1,22 +1,16 @@
-//! The count of executed instructions, and its statistics.
+//! Counts executed instructions.
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// Counts of one stage's calls.
 #[derive(Clone, Copy)]
 pub struct Tally {
-    /// Calls.
     pub calls: u32,
-    /// Instructions of all calls.
     pub total: u64,
-    /// Instructions of the cheapest call.
     pub min: u32,
-    /// Instructions of the dearest call.
     pub max: u32,
 }
 
 impl Tally {
-    /// No calls.
     pub const fn new() -> Self {
         Self {
             calls: 0,
@@ -26,7 +20,6 @@ impl Tally {
         }
     }
 
-    /// Adds a call of `count` instructions.
     pub fn add(&mut self, count: u32) {
         self.calls += 1;
         self.total += u64::from(count);
@@ -35,13 +28,13 @@ impl Tally {
     }
 }
 
-/// Instructions of one run of `work`, with those of reading the counter and of the call.
+/// Instructions of one run of `work`, plus those of reading the counter and of the call.
 ///
-/// Not inlined and called with different functions, so that every one of them is called alike.
+/// Not inlined and called with different functions, so that all are called alike.
 #[inline(never)]
 pub fn gross<S, I>(work: fn(&mut S, &I), state: &mut S, input: &I) -> u32 {
     let before = clock::now();
-    // Nothing may be moved across, or it would be counted wrongly.
+    // Nothing may move across, or it would be miscounted.
     compiler_fence(Ordering::SeqCst);
     work(state, input);
     compiler_fence(Ordering::SeqCst);
@@ -66,7 +59,6 @@ mod clock {
     const VALUE: *mut u32 = (TIMER + 4) as *mut u32;
     const RELOAD: *mut u32 = (TIMER + 8) as *mut u32;
 
-    /// Starts the counter.
     pub fn start() {
         // SAFETY: the timer's registers, which nothing else uses.
         unsafe {
@@ -76,23 +68,21 @@ mod clock {
         }
     }
 
-    /// Ticks left.
     #[inline(always)]
     pub fn now() -> u32 {
-        // SAFETY: reading the timer changes nothing.
+        // SAFETY: reading the timer has no side effect.
         unsafe { VALUE.read_volatile() }
     }
 
     /// Executes 2 `rounds` instructions, `rounds` > 0, and one to load that number.
     #[inline(never)]
     pub fn known_loop(_: &mut (), rounds: &u32) {
-        // SAFETY: counts a register of its own down to zero.
+        // SAFETY: counts its own register down to zero.
         unsafe {
             asm!("2:", "subs {n}, {n}, #1", "bne 2b", n = inout(reg) *rounds => _);
         }
     }
 
-    /// Instructions of [`known_loop`].
     pub const fn known(rounds: u32) -> u32 {
         2 * rounds + 1
     }
@@ -103,15 +93,12 @@ mod clock {
     /// The host counts nothing.
     pub fn start() {}
 
-    /// Always the same.
     pub fn now() -> u32 {
         0
     }
 
-    /// Executes nothing that counts.
     pub fn known_loop(_: &mut (), _: &u32) {}
 
-    /// Nothing.
     pub const fn known(_: u32) -> u32 {
         0
     }

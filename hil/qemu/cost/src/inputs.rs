@@ -1,8 +1,7 @@
-//! What the control path is fed with: flight-like numbers that take every branch, the same on every machine.
+//! Inputs of the control path: flight-like numbers that take every branch, equal on every machine.
 //!
-//! Half-second stretches of hover, gusts, hard turns, saturated rotors, low thrust with yaw given up, and a sagging
-//! battery follow each other; rates and sticks are held for a while with noise on top. Now and then a reading is no
-//! number.
+//! Half-second stretches: hover, gusts, hard turns, saturated rotors, low thrust with yaw given up, a sagging battery.
+//! Rates and sticks are held for a while, with noise. A few readings are NaN.
 
 use sophie_conformance::fold::Noise;
 use sophie_control::attitude::AttitudeSetpoint;
@@ -11,44 +10,40 @@ use sophie_control::math::GRAVITY;
 use sophie_control::setpoint::Setpoint;
 use sophie_control::vector::Vec3;
 
-/// Readings of the inertial sensor in a control step: 4 kHz.
+/// Inertial readings per control step: 4 kHz.
 pub const READINGS: usize = 4;
-/// Steps before the vehicle moves, in which the estimator calibrates.
+/// Steps at rest, in which the estimator calibrates.
 pub const REST: u32 = 2500;
-/// Steps of flight.
 pub const FLIGHT: u32 = 12_000;
-/// Steps of a stretch.
+/// Steps per stretch.
 const STRETCH: u32 = 500;
-/// Steps for which a rate and the sticks are held.
+/// Steps for which rate and sticks are held.
 const HOLD: u32 = 40;
-/// The step of ten in which the sticks speak; the arms' sensors do in the first four.
+/// Step of ten with new sticks; the first four have the arms' sensors.
 const STICKS: usize = 5;
-/// One reading of this many is no number.
+/// One reading in this many is NaN.
 const BAD: u32 = 4001;
 
-/// Inputs of one control step.
 #[derive(Clone, Copy)]
 pub struct Inputs {
-    /// When the newest reading was ready, µs.
+    /// Time of the newest reading, µs.
     pub at_us: u64,
     /// Raw rates (rad/s) and specific forces (m/s²).
     pub batch: [ImuReading; READINGS],
-    /// What the sticks want of the rotors, renewed in one step of ten.
+    /// Command of the sticks, renewed in one step of ten.
     pub command: Command,
-    /// The direction in it, and whether it is renewed in this step.
+    /// Its direction, and whether it is renewed in this step.
     pub sticks: AttitudeSetpoint,
     pub renewed: bool,
-    /// The vehicle rests on the pipe.
     pub resting: bool,
     /// Battery voltage over nominal.
     pub battery_ratio: f32,
-    /// That, and the arms' sensors, which are read in one step of ten and taken one after the other.
+    /// Battery ratio and the arms' sensors, each read in one step of ten.
     pub surroundings: Surroundings,
-    /// The arm whose reading is taken in this step, and its tilt, rad.
+    /// The arm read in this step, and its tilt, rad.
     pub arm: Option<(usize, f32)>,
 }
 
-/// Which setpoint flies a stretch.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Angle,
@@ -56,7 +51,6 @@ enum Kind {
     Escape,
 }
 
-/// What one stretch of flight is like.
 struct Stretch {
     rate: f32,
     noise: f32,
@@ -78,16 +72,16 @@ const fn stretch(rate: f32, noise: f32, stick: f32, thrust: (f32, f32), battery:
 }
 
 const STRETCHES: [Stretch; 9] = [
-    // Hover, then gusts on it.
+    // Hover, then gusts.
     stretch(0.1, 0.05, 0.05, (17.7, 1.0), 1.05),
     stretch(1.0, 0.3, 0.2, (17.7, 3.0), 1.0),
     // Hard turns; full throttle, where roll and pitch are given up too.
     stretch(3.0, 1.0, 1.0, (18.0, 8.0), 0.95),
     stretch(4.0, 2.0, 1.5, (30.0, 6.0), 0.85),
-    // About the yaw gate, and down to nothing.
+    // Around the yaw gate, and down to zero.
     stretch(0.5, 0.2, 0.3, (8.0, 3.0), 1.1),
     stretch(2.0, 0.5, 0.8, (2.0, 2.0), 1.2),
-    // Anything, on a battery that is nearly empty.
+    // Anything, on a nearly empty battery.
     stretch(3.0, 1.5, 2.0, (17.0, 17.0), 0.7),
     // On the pipe: yaw given up, integrators held, moments limited. Then off it.
     Stretch {
@@ -100,7 +94,6 @@ const STRETCHES: [Stretch; 9] = [
     },
 ];
 
-/// Gives the inputs step by step.
 pub struct Sequence {
     noise: Noise,
     step: u32,
@@ -114,7 +107,6 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// From the start.
     pub const fn new() -> Self {
         Self {
             noise: Noise::new(7),
@@ -135,7 +127,6 @@ impl Sequence {
         }
     }
 
-    /// Inputs of the next step.
     pub fn next(&mut self) -> Inputs {
         let step = self.step;
         self.step += 1;
@@ -188,7 +179,7 @@ impl Sequence {
         }
     }
 
-    /// One reading about the held rate, `noise` rad/s and five times as many m/s² off.
+    /// A reading around the held rate, `noise` rad/s and five times as many m/s² off.
     fn read(&mut self, noise: f32) -> ImuReading {
         self.reading += 1;
         let mut gyro = self.rate + self.vector() * noise;
@@ -204,7 +195,6 @@ impl Sequence {
     }
 }
 
-/// The setpoint of a kind.
 const fn setpoint(kind: Kind, sticks: AttitudeSetpoint, thrust: f32) -> Setpoint {
     let AttitudeSetpoint {
         roll,

@@ -1,12 +1,10 @@
-//! Counts the instructions of every stage of the control path, for each call, on the core that it is built for.
+//! Counts the instructions per call of every stage of the control path, on the core that it is built for.
 //!
-//! It runs under QEMU with `-icount shift=7`: an instruction lasts 128 ns there, 3.2 ticks of the board's timer, so a
-//! difference of two readings gives the number of instructions between them exactly. Instructions, not cycles: what
-//! a cache, a flash or a division's fourteen cycles cost is not in it.
+//! Under QEMU with `-icount shift=7` an instruction lasts 128 ns, 3.2 ticks of the board's timer, so two readings give
+//! the number of instructions between them exactly. Cycles of caches, flash or a division (fourteen) are not included.
 //!
-//! Every stage is a call of its own, from memory to memory, fed with what the stage before it gave; then the whole
-//! step is counted on the same inputs and must give the same motor commands. On the host only those are
-//! printed, for comparison.
+//! Every stage is a separate call on the output of the stage before; then the whole step is counted on the same inputs
+//! and must give the same motor commands. The host prints only those, for comparison.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -10,22 +10,20 @@ use crate::chain::{self, Laws};
 use crate::counter::{self, Tally, gross};
 use crate::inputs::{FLIGHT, Inputs, REST, Sequence};
 
-/// A stage or law: its name and what to call.
 type Part<S> = (&'static str, fn(&mut S, &Inputs));
 
-/// The stages, each after the laws that it is made of, in the order of the data.
+/// Stages in the order of the data, each after its laws.
 const FILTER: Part<FlightChain> = ("filter", chain::filter);
 const ESTIMATOR: Part<FlightChain> = ("estimator", chain::estimator);
 const CONTROL: Part<FlightChain> = ("control", chain::control);
 const MIXING: Part<FlightChain> = ("mixing", chain::mixing);
-/// Laws before and in control.
 const BEFORE_CONTROL: [Part<Laws>; 4] = [
     ("biquads", chain::axes),
     ("aim", chain::aim),
     ("attitude", chain::attitude),
     ("rate", chain::rate),
 ];
-/// Laws of mixing. The tilt follows the thrusts, so it comes after the allocation that it serves next.
+/// Laws of mixing. The tilt follows the thrusts, so it comes after the allocation.
 const BEFORE_MIXING: [Part<Laws>; 4] = [
     ("allocation", chain::allocation),
     ("tilt", chain::tilt),
@@ -33,7 +31,7 @@ const BEFORE_MIXING: [Part<Laws>; 4] = [
     ("arm-sensor", chain::arm_sensor),
 ];
 
-/// Counts everything; prints a line for each stage: `stage NAME CALLS TOTAL MIN MAX`.
+/// Counts everything; prints a line per stage: `stage NAME CALLS TOTAL MIN MAX`.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     counter::start();
     let overhead = overhead();
@@ -45,7 +43,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     print(format_args!("commands-whole {again}"));
 }
 
-/// Instructions that counting and calling add; stops where the counter does not count right.
+/// Instructions of counting and calling; panics if the counter is wrong.
 fn overhead() -> u32 {
     let nothing = gross(chain::nothing, &mut (), &0);
     for rounds in 1..1000 {
@@ -58,7 +56,7 @@ fn overhead() -> u32 {
     nothing
 }
 
-/// Counts of the parts by name, and what one call takes more than its work.
+/// Counts by part, and the overhead of a call.
 struct Counts {
     overhead: u32,
     tallies: [(&'static str, Tally); 12],
@@ -73,7 +71,7 @@ impl Counts {
         Self { overhead, tallies }
     }
 
-    /// Runs a part, and counts it where it is `due`.
+    /// Runs a part; counts it if `due`.
     fn call<S>(&mut self, (name, work): Part<S>, state: &mut S, inputs: &Inputs, due: bool) {
         let count = gross(work, state, inputs) - self.overhead;
         // The arms' sensors are read in four steps of ten, the sticks in one.
@@ -144,7 +142,7 @@ fn whole(overhead: u32) -> (Fold, Tally) {
     (fold, tally)
 }
 
-/// A step came of the batch: not where a reading was no number, which leaves one too few.
+/// The batch gave a step: not with a NaN reading, which leaves one too few.
 fn stepped(chain: &FlightChain, inputs: &Inputs) -> bool {
     chain.flow.at_us == inputs.at_us
 }

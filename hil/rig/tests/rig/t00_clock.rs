@@ -1,5 +1,5 @@
-//! The core's clock against the time base, dividers of their own from one crystal, and the time base against itself. That the crystal is the one that the
-//! board expects shows where another oscillator comes in: the inertial sensor's (`t20_imu`), the watchdog's
+//! The core's clock against the time base, which divide one crystal separately, and the time base against itself. A
+//! wrong crystal shows only against other oscillators: the inertial sensor's (`t20_imu`) and the watchdog's
 //! (`t70_watchdog`).
 
 #[embedded_test::tests]
@@ -8,11 +8,11 @@ mod tests {
     use sophie_boards::WIRING;
     use sophie_rig::{cycles, keep_alive};
 
-    /// Measured for this long; a tick of the time base is 1 µs.
+    /// Measuring time; a tick of the time base is 1 µs.
     const SPAN: Duration = Duration::from_millis(100);
-    /// Spans two half turns of the time base's 16-bit counter, each 32.8 ms.
+    /// Two half turns of the time base's 16-bit counter, 32.8 ms each.
     const TURN: Duration = Duration::from_millis(70);
-    /// As long as an interrupt that counts a half turn may have to wait.
+    /// Longest delay of the interrupt that counts half turns.
     const WAIT: u32 = 100;
 
     #[test]

@@ -1,4 +1,4 @@
-//! The time base's alarms, and the levels of urgency on top of it.
+//! The time base's alarms, and the levels.
 
 #[embedded_test::tests]
 mod tests {
@@ -8,7 +8,7 @@ mod tests {
     use sophie_rig::keep_alive;
 
     const PERIOD: Duration = Duration::from_millis(1);
-    /// Latest that an alarm may come in an idle processor, µs. A period of the fastest task is 1000.
+    /// Latest alarm in an idle processor, µs. A period of the fastest task is 1000.
     const LATE_MAX: u32 = 20;
 
     static BEATS: AtomicU32 = AtomicU32::new(0);
@@ -23,7 +23,6 @@ mod tests {
         assert!(worst <= LATE_MAX, "an alarm came {worst} us late");
     }
 
-    /// A background that never yields must not delay the flight level.
     #[test]
     async fn the_flight_level_preempts_the_background() {
         let board = sophie_boards::take().await;
@@ -48,7 +47,7 @@ mod tests {
         }
     }
 
-    /// Largest lateness of so many periods, µs.
+    /// Largest lateness of `periods` periods, µs.
     async fn worst_lateness(periods: u32) -> u32 {
         let start = Instant::now();
         let mut ticker = Ticker::every(PERIOD);

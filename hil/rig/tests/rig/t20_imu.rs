@@ -1,5 +1,5 @@
-//! The vehicle's inertial sensor. It has an oscillator of its own, good to 1 or 2 %: a crystal other than the board
-//! expects shows in its sample rate. The board lies still, whichever way up.
+//! The vehicle's inertial sensor. Its own oscillator is good to 1 or 2 %, so a wrong crystal of the board shows in its
+//! sample rate. The board lies still, in any orientation.
 
 #[embedded_test::tests]
 mod tests {
@@ -7,11 +7,10 @@ mod tests {
     use sophie_rig::keep_alive;
     use sophie_tasks::ports::Imu;
 
-    /// From the first call until samples must come.
+    /// Limit from the first call to samples.
     const START_UP: Duration = Duration::from_secs(2);
     const SPAN: Duration = Duration::from_secs(1);
 
-    /// Waits for the first sample.
     async fn first(imu: &mut sophie_boards::ImuPort) -> sophie_tasks::ports::ImuReading {
         let mut last = Err(sophie_tasks::ports::PortError::Timeout);
         let start = Instant::now();
@@ -28,7 +27,7 @@ mod tests {
         panic!("no sample: {:?}", last.err())
     }
 
-    /// The driver compares WHO_AM_I and reads every register that it writes: a sample means that all were right.
+    /// The driver compares WHO_AM_I and reads back every register that it writes: a sample means that all were right.
     #[test]
     async fn it_answers_by_its_name_and_feels_gravity() {
         let mut board = sophie_boards::take().await;

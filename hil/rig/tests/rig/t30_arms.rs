@@ -1,4 +1,4 @@
-//! The arms' inertial sensors: those that are plugged in answer by their name, run, and feel gravity. They lie still.
+//! The arms' inertial sensors: those plugged in identify themselves, run, and measure gravity. They lie still.
 
 #[embedded_test::tests]
 mod tests {
@@ -6,7 +6,7 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::{ArmImus, PortError};
 
-    /// Reset, configuration, and the first seconds of rest in which the gyroscope calibrates.
+    /// Reset, configuration, and the seconds of rest in which the gyroscope calibrates.
     const START_UP: Duration = Duration::from_secs(10);
 
     #[test]

@@ -1,4 +1,4 @@
-//! The analog inputs: conversions in time, and a voltage that is known.
+//! The analog inputs: conversion time, and a known voltage.
 
 #[embedded_test::tests]
 mod tests {
@@ -8,9 +8,9 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Analog;
 
-    /// Longest conversion of all inputs: a quarter of the 2 ms between two readings.
+    /// Longest conversion of all inputs: a quarter of the 2 ms between readings.
     const LONGEST: Duration = Duration::from_micros(500);
-    /// Half of the full scale, and 2 % of it, counts.
+    /// Half of full scale, and 2 % of it, counts.
     const HALF: u16 = 2048;
     const TOLERANCE: u16 = 41;
 
@@ -35,13 +35,13 @@ mod tests {
         assert!(worst <= LONGEST, "{} us", worst.as_micros());
     }
 
-    /// A divider of two equal resistors, 1 to 10 kOhm each, from 3.3 V to ground, its middle at the pad.
+    /// A divider of two equal resistors, 1 to 10 kOhm, from 3.3 V to ground, its middle at the pad.
     #[test]
     async fn half_the_supply_is_half_the_scale() {
         let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let (pad, _) = WIRING.divider;
-        // Without a divider the pad keeps the charge that it was given last.
+        // Without a divider the pad keeps its last charge.
         let mut counts = [0; 2];
         for (counts, high) in counts.iter_mut().zip([false, true]) {
             let taken = pad.take();

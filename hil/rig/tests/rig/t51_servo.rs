@@ -9,7 +9,7 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Servos;
 
-    /// Widths that are asked for, µs.
+    /// Commanded widths, µs.
     const WIDTHS: [f32; 3] = [550.0, 1500.0, 2450.0];
 
     #[test]
@@ -26,7 +26,7 @@ mod tests {
         let us = |cycles: u32| cycles as f32 * (1e6 / WIRING.core_hz as f32);
         for width in WIDTHS {
             board.servos.write([width, 0.0, 0.0, 0.0]).await;
-            // A new width holds from the next frame on.
+            // A new width starts with the next frame.
             Timer::after_micros(2 * frame as u64).await;
             let line = record(listener, 3 * frame as u32);
             let [first, second, ..] = line.as_slice() else {
@@ -34,7 +34,7 @@ mod tests {
             };
             let (high, between) = (us(first.high), us(second.rise - first.rise));
             defmt::info!("{=f32} us every {=f32} us", high, between);
-            // 0.2 %, and what an interrupt takes.
+            // 0.2 %, and an interrupt's time.
             let near = |found: f32, asked: f32| (found - asked).abs() <= 0.002 * asked + 5.0;
             assert!(near(high, width), "{high} us instead of {width}");
             assert!(near(between, frame), "every {between} us instead of {frame}");

@@ -1,4 +1,4 @@
-//! The receiver's line, looped back: what telemetry sends comes in as from a receiver, at 420 kbaud. The receiver is
+//! The receiver's line, looped back: telemetry output comes in as from a receiver, at 420 kbaud. The receiver is
 //! unplugged.
 
 #[embedded_test::tests]
@@ -11,13 +11,12 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::{SerialInput, SerialOutput};
 
-    /// Length of the receiver's frames with sixteen channels.
+    /// Length of a receiver's frame with sixteen channels.
     const LENGTH: usize = 26;
     const FRAMES: u8 = 100;
-    /// A frame takes 0.6 ms.
+    /// Time limit; a frame takes 0.6 ms.
     const LONGEST: Duration = Duration::from_millis(10);
 
-    /// Bytes that differ from frame to frame and from place to place.
     fn frame(number: u8) -> [u8; LENGTH] {
         core::array::from_fn(|place| (place as u8).wrapping_mul(37) ^ number)
     }
@@ -48,7 +47,7 @@ mod tests {
         if !joined(WIRING.receiver) {
             return absent(format_args!("jumper from {} to {}", out.name, into.name));
         }
-        // The ring starts here, and what the search for the jumper left on the line goes.
+        // Starts the ring, and discards what the search for the jumper left on the line.
         let _ = with_timeout(LONGEST, board.receiver.read(&mut [0; LENGTH])).await;
         for number in 0..FRAMES {
             let sent = frame(number);

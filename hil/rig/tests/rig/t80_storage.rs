@@ -1,5 +1,5 @@
-//! A parameter is stored, outlives a reset, and is put back. Whoever cuts the power in between finds the trim of servo 4
-//! off by 1 µs.
+//! A parameter is stored, outlives a reset, and is restored. If power is cut in between, the trim of servo 4 is off by
+//! 1 µs.
 
 use embassy_executor::Executor;
 use sophie_control::params::Params;
@@ -7,7 +7,7 @@ use sophie_rig::keep_alive;
 use sophie_tasks::ports::Storage;
 use static_cell::StaticCell;
 
-/// What is stored; it must be readable to the last value.
+/// Stored parameters; all must be readable.
 async fn stored(storage: &mut impl Storage) -> Params {
     let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
@@ -15,7 +15,6 @@ async fn stored(storage: &mut impl Storage) -> Params {
     params
 }
 
-/// Stores `params` and reads them back.
 async fn store(storage: &mut impl Storage, params: &Params) {
     if let Err(error) = storage.save(params).await {
         panic!("{error:?}");
@@ -26,17 +25,17 @@ async fn store(storage: &mut impl Storage, params: &Params) {
     );
 }
 
-/// The trim next to `trim`, µs, within the range of the parameter.
+/// A neighbour of `trim`, µs, within the parameter's range.
 fn next_to(trim: f32) -> f32 {
     if trim > 0.0 { trim - 1.0 } else { trim + 1.0 }
 }
 
-/// The second half, after the reset: the trim `was` what is to be put back.
+/// The part after the reset: restores the trim `was`.
 pub fn restarted(was: f32) -> ! {
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     let executor = EXECUTOR.init(Executor::new());
     executor.run(|background| {
-        // The only one of its kind: this is called once after a reset.
+        // Unique: called once after a reset.
         if let Ok(task) = put_back(was) {
             background.spawn(task);
         }

@@ -1,8 +1,8 @@
-//! A BNO055 on I2C, written after its datasheet (BST-BNO055-DS000 rev. 1.4): what a driver of an arm's sensor sees.
+//! A BNO055 on I2C after its datasheet (BST-BNO055-DS000 rev. 1.4), as far as the driver of an arm's sensor uses it.
 //!
 //! | behaviour | section |
 //! |---|---|
-//! | nothing is acknowledged for 400 ms after power-on and 650 ms after a reset by SYS_TRIGGER | 1.2, table 0-2 |
+//! | no acknowledge for 400 ms after power-on and 650 ms after a reset by SYS_TRIGGER | 1.2, table 0-2 |
 //! | identity registers, two pages, the page selected by PAGE_ID | 4.2 |
 //! | configuration registers take writes in the configuration mode only | 3.3 |
 //! | 7 ms from the configuration mode, 19 ms into it; until then the old mode stays | table 3-6 |
@@ -10,7 +10,7 @@
 //! | gravity, Euler angles, UNIT_SEL's scales, axis remapping | 3.4, 3.6 |
 //! | calibration of the gyroscope rises from 0 to 3 within 3 s at rest (assumed) | 3.10 |
 //!
-//! Not there: the clock stretch (the emulator's bus carries none), the other sensors' raw data, interrupts, power modes.
+//! Missing: clock stretching (not on the emulator's bus), the other sensors' raw data, interrupts, power modes.
 
 use rigless::chip::{Timeline, i2c};
 use rigless::snapshot::store;
@@ -28,22 +28,21 @@ mod reg {
     pub const SYS_TRIGGER: u8 = 0x3F;
     pub const AXIS_MAP_CONFIG: u8 = 0x41;
     pub const AXIS_MAP_SIGN: u8 = 0x42;
-    /// First and last register that only the configuration mode may write, but for mode and trigger.
+    /// Registers writable only in configuration mode, except mode and trigger.
     pub const SETTINGS: core::ops::RangeInclusive<u8> = 0x3B..=0x6A;
 }
 
 const MS: u64 = 1_000_000;
-/// From power-on and from a reset until the chip answers, ns.
+/// Boot time from power-on and from a reset, ns.
 const BOOT: [u64; 2] = [400 * MS, 650 * MS];
-/// Into the configuration mode, and out of it, ns.
+/// Into configuration mode, and out of it, ns.
 const SWITCH: [u64; 2] = [19 * MS, 7 * MS];
-/// Time between two results of the fusion, ns.
+/// Fusion period, ns.
 const FUSION: u64 = 10 * MS;
-/// Time at rest for each step of the gyroscope's calibration, ns (assumed).
+/// Time at rest per step of the gyroscope's calibration, ns (assumed).
 const CALIBRATION: u64 = 1000 * MS;
 /// Registers 0 to 6: chip, accelerometer, magnetometer, gyroscope, software revision, boot loader.
 const IDENTITY: [u8; 7] = [0xA0, 0xFB, 0x32, 0x0F, 0x11, 0x03, 0x15];
-/// Registers whose reset value is not zero.
 const RESET_VALUES: [(u8, u8); 6] = [
     (0x36, 0x0F),
     (reg::TEMP, 24),
@@ -53,7 +52,6 @@ const RESET_VALUES: [(u8, u8); 6] = [
     (0x40, 0x02),
 ];
 
-/// One chip.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Bno055 {
     address: u8,
@@ -61,15 +59,15 @@ pub struct Bno055 {
     page: u8,
     pointer: u8,
     first: bool,
-    /// When it answers again, ns.
+    /// End of booting, ns.
     boots_at: u64,
-    /// The mode to come and when, ns.
+    /// Next mode and its time, ns.
     switch: Option<(u8, u64)>,
-    /// Since when the mode runs, ns.
+    /// Start of the present mode, ns.
     since: u64,
-    /// Results of the fusion given since then.
+    /// Fusion results since then.
     fused: u64,
-    /// Direction of gravity in the sense of an accelerometer (up), m/s², on the chip's own axes.
+    /// Specific force at rest (up), m/s², chip axes.
     pub up: [f64; 3],
 }
 
@@ -110,7 +108,7 @@ impl Bno055 {
         self.registers[usize::from(reg::OPR_MODE)] & 0x0F
     }
 
-    /// Brings the registers up to `now`.
+    /// Updates the registers to `now`.
     fn settle(&mut self, now: u64) {
         if let Some((mode, at)) = self.switch
             && at <= now
@@ -141,7 +139,6 @@ impl Bno055 {
         }
     }
 
-    /// One result of the fusion into the registers.
     fn fuse(&mut self) {
         let map = self.registers[usize::from(reg::AXIS_MAP_CONFIG)];
         let signs = self.registers[usize::from(reg::AXIS_MAP_SIGN)];

@@ -1,7 +1,5 @@
-//! The inertial sensor: the emulator's ICM-42688-P, given what it lacks.
-//!
-//! Added here after DS-000347 rev. 1.8: the data-ready pulses on INT1 (§12.5, §14.50), the self-test (§14.52, and the
-//! maker's application note for the factory codes), and samples of their own for every data-ready.
+//! The emulator's ICM-42688-P with additions after DS-000347 rev. 1.8: data-ready pulses on INT1 (§12.5, §14.50), the
+//! self-test (§14.52; factory codes after the maker's application note), and separate samples for every data-ready.
 
 use std::collections::VecDeque;
 
@@ -12,7 +10,7 @@ use rigless::time::{EventId, VirtualNanos};
 use serde::{Deserialize, Serialize};
 
 mod reg {
-    //! Addresses in bank 0 unless the name says otherwise.
+    //! Addresses in bank 0 unless named otherwise.
     pub const DEVICE_CONFIG: u8 = 0x11;
     pub const PWR_MGMT0: u8 = 0x4E;
     pub const GYRO_CONFIG0: u8 = 0x4F;
@@ -25,23 +23,22 @@ mod reg {
 
 /// Address bit of a read (§9.6).
 const READ: u8 = 0x80;
-/// PWR_MGMT0: the gyroscope in low-noise mode, without which there are no samples at its rate.
+/// PWR_MGMT0: gyroscope in low-noise mode, required for samples at its rate.
 const GYRO_ON: u8 = 0x0C;
 /// INT_SOURCE0: data-ready routed to INT1.
 const DATA_READY_ON_INT1: u8 = 0x08;
-/// Factory codes of this part, gyroscope and accelerometer: the response to the actuation that the factory found.
+/// Factory codes, gyroscope and accelerometer: the response to actuation.
 const CODES: [[u8; 3]; 2] = [[101, 97, 106], [118, 121, 109]];
-/// Response of code 1 in the counts of the test, 250 °/s and 2 g full scale; each code more is 1 % more.
+/// Response of code 1, counts at 250 °/s and 2 g full scale; each further code adds 1 %.
 const CODE_BASE: f64 = 2620.0;
-/// Counts for each °/s and each g at the ranges of the test.
+/// Counts per °/s and per g at the ranges of the test.
 const TEST_COUNTS: [f64; 2] = [32_768.0 / 250.0, 32_768.0 / 2.0];
 /// Samples kept: far more than a millisecond's.
 const QUEUE: usize = 64;
 
-/// One sample on the chip's own axes.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Sample {
-    /// From when on it holds, ns of emulated time.
+    /// Start of validity, ns of emulated time.
     pub at: u64,
     /// Angular rate, thousandths of °/s.
     pub rate: [i32; 3],
@@ -49,15 +46,14 @@ pub struct Sample {
     pub force: [i32; 3],
 }
 
-/// The part.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Imu {
     inner: Icm42688p,
-    /// Data-ready pulses that have reached the far end of their line since power-on.
+    /// Data-ready pulses that arrived since power-on.
     pub pulses: u64,
-    /// The line is cut: the part keeps sampling, and no pulse arrives.
+    /// Line cut: the part samples, no pulse arrives.
     pub line_cut: bool,
-    /// When the samples were ready that have not been taken yet, ns.
+    /// Ready times of samples not yet read, ns.
     pub pulsed: Vec<u64>,
     samples: VecDeque<Sample>,
     now: Sample,
@@ -71,7 +67,7 @@ pub struct Imu {
     next: Option<(EventId, VirtualNanos)>,
 }
 
-/// A transfer under way: its address byte and the data bytes passed since.
+/// A transfer under way: address byte, and data bytes so far.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Transfer {
     address: u8,
@@ -104,7 +100,7 @@ impl Default for Imu {
 }
 
 impl Imu {
-    /// Queues a sample; those without a reader are dropped, oldest first.
+    /// Queues a sample; the oldest are dropped if not read.
     pub fn feed(&mut self, sample: Sample) {
         if self.samples.len() >= QUEUE {
             self.samples.pop_front();
@@ -112,7 +108,6 @@ impl Imu {
         self.samples.push_back(sample);
     }
 
-    /// Puts what is to be measured at `now` before the part's converters.
     fn measure(&mut self, now: u64) {
         while let Some(sample) = self.samples.front().copied()
             && sample.at <= now
@@ -136,7 +131,7 @@ impl Imu {
         self.inner.set_acceleration(ax, ay, az);
     }
 
-    /// Time between two samples, ns; `None` while none are signalled.
+    /// Sample period, ns; `None` while none are signalled.
     fn period(&self) -> Option<u64> {
         let period = match self.rate_code & 0x0F {
             3 => 125_000,
@@ -156,7 +151,6 @@ impl Imu {
         });
     }
 
-    /// A register of bank 0 was written.
     fn written(&mut self, register: u8, value: u8, c: &mut Timeline<'_, '_>) {
         match (self.bank, register) {
             (_, reg::REG_BANK_SEL) => self.bank = value & 0x07,
@@ -181,7 +175,6 @@ impl Imu {
         }
     }
 
-    /// The factory code that a register holds.
     fn code(&self, register: u8) -> Option<u8> {
         let (codes, first) = match self.bank {
             1 => (&CODES[0], reg::B1_XG_ST_DATA),
@@ -192,7 +185,7 @@ impl Imu {
     }
 }
 
-/// What the factory found, in counts of the test.
+/// Factory response, counts of the test.
 fn response(code: u8) -> f64 {
     CODE_BASE * 1.01f64.powi(i32::from(code) - 1)
 }

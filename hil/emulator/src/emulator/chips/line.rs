@@ -1,4 +1,4 @@
-//! The far end of a serial line: what is queued goes out as the line is free, what comes in is kept.
+//! The far end of a serial line.
 
 use std::collections::VecDeque;
 
@@ -7,12 +7,10 @@ use rigless::snapshot::store;
 use rigless::time::VirtualNanos;
 use serde::{Deserialize, Serialize};
 
-/// Both directions of a line. The port times the bytes: each takes what its rate gives.
+/// Both directions of a line; the port times the bytes by its rate.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Line {
-    /// Words to be sent to the chip.
     pub outgoing: VecDeque<u16>,
-    /// Words that the chip has sent.
     pub incoming: Vec<u16>,
 }
 

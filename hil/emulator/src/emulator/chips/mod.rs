@@ -1,4 +1,4 @@
-//! What hangs on the chip's buses.
+//! Chips on the processor's buses.
 
 pub mod bno055;
 pub mod icm42688p;

@@ -1,9 +1,9 @@
-//! External interrupts and the routing of pins to them, which the emulator's F427 lacks (RM0090 §12, §9).
+//! External interrupts and their pin routing, which the emulator's F427 lacks (RM0090 §12, §9).
 
 use rigless::device::{Device, DeviceContext, Level, RegisterFile};
 use rigless::soc::stm32f427::generated::{exti, syscfg};
 
-/// The system configuration: its registers are kept, and [`routed_to`] reads them.
+/// System configuration: keeps its registers, which [`routed_to`] reads.
 #[derive(Debug, Default)]
 pub struct Syscfg;
 
@@ -22,7 +22,7 @@ pub fn routed_to(line: u8, file: &RegisterFile) -> usize {
     (file.get(register) >> (4 * (line % 4)) & 0xF) as usize
 }
 
-/// Where each vector stands in the instance's table, and the lines that raise it (table 62, the F405's).
+/// Place of each vector in the instance's table, and its lines (table 62, the F405's).
 const VECTORS: [(usize, u64); 7] = [
     (1, 1 << 0),
     (2, 1 << 1),
@@ -40,7 +40,6 @@ pub struct Exti {
 }
 
 impl Exti {
-    /// The pin that is routed to `line` changes to `level`.
     pub fn edge(&mut self, line: u8, level: Level, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {
         let selected = file.get(match level {
             Level::High => exti::Register::Rtsr,
@@ -76,7 +75,7 @@ impl Device for Exti {
         match register {
             exti::Register::Pr => {
                 self.pending &= !value;
-                // A line triggered by software is let go with its pending bit (§12.3.5).
+                // Clearing the pending bit also clears the software trigger (§12.3.5).
                 let software = file.get(exti::Register::Swier) & !value;
                 file.set(exti::Register::Swier, software);
                 self.raise(file, c);

@@ -1,7 +1,7 @@
-//! An I2C interface with what the emulator's lacks: the last byte of a DMA read is not acknowledged.
+//! The emulator's I2C interface, with no acknowledge for the last byte of a DMA read.
 //!
-//! The DMA controller signals to the interface on the part when the byte on the wire is the last that it will take (RM0090
-//! §27.3.7, bit LAST). Without that the emulator's reads on, and the next transfer finds one byte too many.
+//! On the part, the DMA controller signals the last byte to the interface (RM0090 §27.3.7, bit LAST). Otherwise the
+//! emulator's interface reads on, and the next transfer finds one byte too many.
 
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::soc::Width;
@@ -9,19 +9,16 @@ use rigless::soc::stm32f427::generated::i2c3::{Register, cr1, cr2, sr2};
 use rigless::soc::stm32f427::peripherals::i2c::I2c;
 use rigless::time::{EventId, VirtualNanos};
 
-/// The interface.
 #[derive(Debug)]
 pub struct DmaI2c {
-    /// The emulator's.
     pub inner: I2c,
-    /// Address of the register that counts what the receiving DMA stream has still to take.
+    /// Register of the receiving DMA stream's remaining count.
     remaining: u64,
     /// Ends of bytes that wait for that count.
     ends: Vec<EventId>,
 }
 
 impl DmaI2c {
-    /// `inner`, read by the DMA stream whose count is at `remaining`.
     pub fn new(inner: I2c, remaining: u64) -> Self {
         Self {
             inner,

@@ -1,15 +1,15 @@
-//! The two-channel timer TIM12 (RM0090 §19.4), which the emulator's part has the registers of but no model.
+//! The two-channel timer TIM12 (RM0090 §19.4), of which the emulator has registers but no model.
 
 use rigless::soc::st::tim::{Counter, Family, Kind, Part};
 use rigless::soc::stm32f427::generated::tim9::Register;
 use rigless::soc::stm32f427::peripherals::tim::{PART, Tim};
 
-/// Clock of the timers on the slow bus, Hz, from the board's start on. The emulator's clock tree does not lead to it.
+/// Timer clock on the slow bus, Hz, from the board's start; the emulator's clock tree does not reach it.
 const CLOCK: u64 = 84_000_000;
-/// In the register of the slow bus's clocks, the timer's.
+/// The timer's bit in the slow bus's clock register.
 pub const ENABLED: u64 = 1 << 6;
 
-/// The layout of TIM9 and TIM12: two channels, counting up.
+/// Layout of TIM9 and TIM12: two channels, counting up.
 #[derive(Debug, Clone, Copy)]
 pub struct TwoChannels;
 
@@ -20,7 +20,6 @@ impl Family for TwoChannels {
     const KINDS: &'static [Kind] = &[Kind::TwoChannelSlave];
 }
 
-/// The timer out of reset.
 pub fn tim12() -> Tim<TwoChannels> {
     Tim::with_clock(CLOCK, Counter::Narrow)
 }

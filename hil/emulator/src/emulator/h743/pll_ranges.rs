@@ -1,24 +1,20 @@
-//! The ranges that the PLLs are set to, against what they make: the emulator's lock whatever they are, real ones do not.
+//! Checks the PLLs' ranges against their frequencies: the emulator's PLLs lock in any range, real ones do not.
 
-/// What the clocks' registers say: `CR`, `PLLCKSELR`, `PLLCFGR` and the `DIVR` of each PLL.
+/// Clock registers: `CR`, `PLLCKSELR`, `PLLCFGR` and each PLL's `DIVR`.
 pub struct Settings {
-    /// Which PLLs are on.
     pub control: u64,
-    /// Their source's dividers.
     pub dividers: u64,
-    /// Their ranges.
     pub ranges: u64,
-    /// Their multipliers.
     pub multipliers: [u64; 3],
 }
 
 /// Reference frequencies of the input ranges, MHz (RM0433 §8.7.12).
 const INPUTS: [[f64; 2]; 4] = [[1.0, 2.0], [2.0, 4.0], [4.0, 8.0], [8.0, 16.0]];
-/// Frequencies of the wide and the medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
+/// Frequencies of the wide and medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
 const WIDE: [f64; 2] = [192.0, 836.0];
 const MEDIUM: [f64; 2] = [150.0, 420.0];
 
-/// What of the PLLs that are on is outside its range, with a source of `hz`.
+/// The first enabled PLL outside its range, with a source of `hz`.
 pub fn wrong(settings: &Settings, hz: f64) -> Option<String> {
     (0..3).find_map(|nth| one(settings, nth, hz * 1e-6).map(|what| format!("PLL{}: {what}", nth + 1)))
 }
@@ -70,7 +66,7 @@ mod tests {
         assert_eq!(first(1, 100, 3, 0), None);
         assert_eq!(first(4, 100, 1, 0), None);
         for ((divider, multiplier, input, medium), told) in [
-            // What the firmware set once: 200 MHz of the medium oscillator, from 8 MHz.
+            // A former setting of the firmware: 200 MHz of the medium oscillator, from 8 MHz.
             (
                 (1, 25, 3, 1),
                 "PLL1: reference of the medium oscillator 8 MHz, its range is 1 to 2",

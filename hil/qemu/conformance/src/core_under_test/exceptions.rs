@@ -1,7 +1,7 @@
-//! Nesting, priorities, masks, tail-chaining, faults, sleep, and floats across interrupts: the order of events.
+//! Order of events in nesting, priorities, masks, tail-chaining, faults, sleep, and floats across interrupts.
 //!
-//! An event is the number of the interrupt whose handler starts, its negative when the handler ends, and for everything
-//! else a number from 1000 on that says which line of the scenario was reached.
+//! An event is an interrupt's number when its handler starts, the negative number when it ends, or a number from 1000
+//! on for a line of the scenario.
 
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments};
@@ -14,9 +14,8 @@ use cortex_m::peripheral::{NVIC, SCB};
 use cortex_m::register::{basepri, basepri_max, control};
 use cortex_m_rt::exception;
 
-/// Events kept of one scenario.
 const EVENTS: usize = 128;
-/// Interrupts used, each with a priority (the upper bits count: four on one machine, three on the other would both do).
+/// Interrupts and priorities. The upper bits count: four on one machine, three on the other.
 const PRIORITIES: [(u16, u8); 7] = [
     (1, 0x40),
     (2, 0x20),
@@ -29,16 +28,16 @@ const PRIORITIES: [(u16, u8); 7] = [
 
 static LOG: [AtomicI32; EVENTS] = [const { AtomicI32::new(0) }; EVENTS];
 static LENGTH: AtomicUsize = AtomicUsize::new(0);
-/// Interrupt that a handler pends before it ends, once; 0 for none.
+/// Interrupt that a handler pends once before it ends; 0: none.
 static CHAIN: [AtomicI32; 8] = [const { AtomicI32::new(0) }; 8];
-/// Fault status that the last usage fault left, and how many there were.
+/// Status of the last usage fault, and number of usage faults.
 static FAULT_STATUS: AtomicU32 = AtomicU32::new(0);
 static FAULTS: AtomicU32 = AtomicU32::new(0);
 
 #[derive(Clone, Copy)]
 struct Line(u16);
 
-// SAFETY: numbers of interrupts that both machines have.
+// SAFETY: interrupt numbers of both machines.
 unsafe impl InterruptNumber for Line {
     fn number(self) -> u16 {
         self.0
@@ -52,14 +51,13 @@ fn event(number: i32) {
     }
 }
 
-/// Pends an interrupt; it has run, if it may, when this returns.
+/// Pends an interrupt; if enabled, it has run on return.
 fn pend(line: u16) {
     NVIC::pend(Line(line));
     dsb();
     isb();
 }
 
-/// What one scenario logged.
 struct Events;
 
 impl fmt::Display for Events {
@@ -76,7 +74,7 @@ impl fmt::Display for Events {
 unsafe fn DefaultHandler(number: i16) {
     event(i32::from(number));
     if number % 2 == 1 {
-        // SAFETY: it changes only registers that the processor keeps for the code interrupted, or that a callee keeps.
+        // SAFETY: it changes only registers that the processor saves for the interrupted code, or that a callee saves.
         unsafe { conformance_spoil_floats() };
     }
     let next = usize::try_from(number).ok().and_then(|n| CHAIN.get(n));
@@ -110,7 +108,7 @@ fn SysTick() {
 }
 
 global_asm!(
-    // Every float register that a handler need not keep is spoilt, and the others are kept as a compiler would.
+    // Spoils every caller-saved float register, and saves the others as a compiler would.
     ".syntax unified",
     ".thumb_func",
     ".global conformance_spoil_floats",
@@ -130,7 +128,7 @@ global_asm!(
     "vpop {{s16-s31}}",
     "bx lr",
     ".ltorg",
-    // A usage fault steps over the instruction that caused it, two or four bytes long, and reports its kind.
+    // A usage fault skips its instruction, two or four bytes, and reports its kind.
     ".thumb_func",
     ".global UsageFault",
     "UsageFault:",
@@ -147,7 +145,7 @@ global_asm!(
     "addlo r1, #2",
     "str r1, [r0, #24]",
     "b conformance_usage_fault",
-    // What faults: a division by zero, an instruction that does not exist, a doubleword at an odd place.
+    // Faulting code: a division by zero, an undefined instruction, a misaligned doubleword.
     ".thumb_func",
     ".global conformance_divide",
     "conformance_divide:",
@@ -176,7 +174,7 @@ unsafe extern "C" {
 
 #[unsafe(no_mangle)]
 extern "C" fn conformance_usage_fault() {
-    // SAFETY: the fault status register, always there; writing back what was read clears it.
+    // SAFETY: the fault status register, always present; writing back what was read clears it.
     let status = unsafe {
         let cfsr = 0xE000_ED28 as *mut u32;
         let status = cfsr.read_volatile();
@@ -188,9 +186,8 @@ extern "C" fn conformance_usage_fault() {
     event(930);
 }
 
-/// Prints a line for each scenario.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
-    // SAFETY: this is the only place that takes them, and nothing runs beside it.
+    // SAFETY: the only place that takes them, and nothing runs beside it.
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     for (line, priority) in PRIORITIES {
         // SAFETY: no critical section relies on these priorities.
@@ -226,7 +223,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     }
 }
 
-/// A lower interrupt pends a higher one, a higher one a lower.
+/// A lower interrupt pends a higher one, and the reverse.
 fn nesting(_: &mut cortex_m::Peripherals) {
     chain(1, 2);
     chain(2, 4);
@@ -234,7 +231,7 @@ fn nesting(_: &mut cortex_m::Peripherals) {
     event(1000);
 }
 
-/// All at once, released together: by priority, equals by number.
+/// All released together: by priority, equal ones by number.
 fn ties(_: &mut cortex_m::Peripherals) {
     cortex_m::interrupt::disable();
     [7, 4, 3, 6, 1, 2, 5].into_iter().for_each(pend);
@@ -250,7 +247,7 @@ fn base_priority(_: &mut cortex_m::Peripherals) {
     unsafe { basepri::write(0x50) };
     [7, 4, 3, 1, 2].into_iter().for_each(pend);
     event(1003);
-    // Only ever raises: 0x80 is lower and is ignored.
+    // Only raises: 0x80 is lower and is ignored.
     basepri_max::write(0x80);
     event(i32::from(basepri::read()));
     // SAFETY: as above.
@@ -274,7 +271,7 @@ fn fault_mask(_: &mut cortex_m::Peripherals) {
     event(1008);
 }
 
-/// A supervisor call at once; PendSV, pended before it, when nothing else is left.
+/// A supervisor call runs at once; PendSV, pended before it, runs last.
 fn supervisor_call(_: &mut cortex_m::Peripherals) {
     cortex_m::interrupt::disable();
     SCB::set_pendsv();
@@ -288,7 +285,7 @@ fn supervisor_call(_: &mut cortex_m::Peripherals) {
     event(1010);
 }
 
-/// A sum over interrupts that spoil the float registers is the sum without them.
+/// Interrupts that spoil the float registers do not change a sum.
 fn floats(_: &mut cortex_m::Peripherals) {
     let sum = |interrupted: bool| {
         let mut s = 0.0f32;
@@ -296,7 +293,7 @@ fn floats(_: &mut cortex_m::Peripherals) {
             let v = core::hint::black_box(1.5f32) * f32::from(k);
             if interrupted {
                 NVIC::pend(Line(if k % 2 == 0 { 1 } else { 7 }));
-                // Nothing between the pend and the next operation, so that the frame holds half a calculation.
+                // Pended directly before the next operation, so that the frame holds half a sum.
             }
             s += v / (s + 0.75);
             isb();
@@ -305,14 +302,14 @@ fn floats(_: &mut cortex_m::Peripherals) {
     };
     let alone = sum(false);
     let interrupted = sum(true);
-    // A hundred handlers' events say less than their number and the sums.
+    // Only the number of a hundred handlers' events is logged.
     let events = LENGTH.swap(0, Relaxed);
     event(events as i32);
     event(alone.to_bits() as i32);
     event(interrupted.to_bits() as i32);
 }
 
-/// Whether the core believes that floats are in use, before and after an interrupt that uses them.
+/// The core's mark that floats are in use, before and after an interrupt that uses them.
 fn lazy_frame(_: &mut cortex_m::Peripherals) {
     let active = || i32::from(control::read().fpca() == control::Fpca::Active);
     // SAFETY: clears the mark that floats are in use; none is live across it.
@@ -337,33 +334,33 @@ fn usage_faults(core: &mut cortex_m::Peripherals) {
         event(FAULT_STATUS.swap(0, Relaxed) as i32);
         event(FAULTS.swap(0, Relaxed) as i32);
     };
-    // SAFETY: the instruction is stepped over by the handler.
+    // SAFETY: the handler skips the instruction.
     unsafe { conformance_undefined() };
     show();
-    // SAFETY: a division by zero gives 0 as long as it is not trapped.
+    // SAFETY: a division by zero gives 0 while it is not trapped.
     event(unsafe { conformance_divide() } as i32);
     show();
-    // SAFETY: traps divisions by zero; the handler steps over them.
+    // SAFETY: traps divisions by zero; the handler skips them.
     unsafe { core.SCB.ccr.modify(|ccr| ccr | 1 << 4) };
     dsb();
     isb();
     // SAFETY: as above.
     unsafe { conformance_divide() };
     show();
-    // SAFETY: no longer.
+    // SAFETY: ends the trap.
     unsafe { core.SCB.ccr.modify(|ccr| ccr & !(1 << 4)) };
     let words = [0u32; 4];
-    // SAFETY: within `words`; the load faults, since doublewords must be aligned to four, and is stepped over.
+    // SAFETY: within `words`; the load faults, since doublewords must be aligned to four, and is skipped.
     unsafe { conformance_unaligned(words.as_ptr().cast::<u8>().add(2)) };
     show();
 }
 
 fn sleep(core: &mut cortex_m::Peripherals) {
-    // An event registered before the wait ends it at once.
+    // An event before the wait ends it at once.
     sev();
     wfe();
     event(1030);
-    // A pending interrupt wakes even while masked, and runs afterwards.
+    // A pending interrupt wakes while masked, and runs afterwards.
     cortex_m::interrupt::disable();
     pend(6);
     wfi();
@@ -372,8 +369,7 @@ fn sleep(core: &mut cortex_m::Peripherals) {
     unsafe { cortex_m::interrupt::enable() };
     isb();
     event(1032);
-    // With SEVONPEND even an interrupt that is switched off wakes.
-    // SAFETY: sets SEVONPEND.
+    // With SEVONPEND even a disabled interrupt wakes. SAFETY: sets SEVONPEND.
     unsafe { core.SCB.scr.modify(|scr| scr | 1 << 4) };
     NVIC::mask(Line(6));
     sev();
@@ -382,7 +378,7 @@ fn sleep(core: &mut cortex_m::Peripherals) {
     wfe();
     event(1033);
     NVIC::unpend(Line(6));
-    // SAFETY: as before, and back.
+    // SAFETY: restores the former state.
     unsafe {
         core.SCB.scr.modify(|scr| scr & !(1 << 4));
         NVIC::unmask(Line(6));

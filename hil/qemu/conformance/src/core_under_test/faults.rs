@@ -1,6 +1,5 @@
-//! Runs that end: a stack that overflows, an address where nothing is, a fault while one is reported. The very handlers
-//! that fly (`sophie-fault`) are called; where the firmware restarts the chip, the image continues with the next
-//! line.
+//! Ends of runs: stack overflow, unmapped address, a fault during a fault's report. Uses the flight handlers
+//! (`sophie-fault`); where the firmware restarts the chip, the image continues with the next line.
 
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments, Write};
@@ -10,31 +9,28 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use cortex_m::asm::{dsb, isb};
 
-/// First address of the guard below the stack, and the log2 of its bytes. QEMU's machines ignore accesses to where they
-/// have nothing, so the memory protection stands in for that.
+/// First address of the guard below the stack, and log2 of its bytes. QEMU's machines ignore accesses to unmapped
+/// memory, so memory protection replaces it.
 const NOWHERE: u32 = 0x1FFF_F000;
 const NOWHERE_SIZE: u32 = 12;
-/// Of the memory protection: on, in fault handlers too, and only where a region says so (ARMv7-M, B3.5).
+/// Memory protection: on, also in fault handlers, and only where a region requires it (ARMv7-M, B3.5).
 const PROTECTED: u32 = 0b111;
-/// Bytes of stack that are left to the handler.
+/// Stack bytes left to the handler.
 const HANDLER: usize = 8192;
-/// Words of a frame that the processor stacks, and the place of the address to go on at, and of the program status.
+/// Words of an exception frame, and places of return address and program status.
 const FRAME: usize = 8;
 const PC: usize = 6;
 const STATUS: usize = 7;
-/// Thumb state.
 const THUMB: u32 = 1 << 24;
 
-/// The motors were stopped.
 pub static STOPPED: AtomicBool = AtomicBool::new(false);
-/// Stack pointer to go on with.
 #[unsafe(no_mangle)]
 static CONFORMANCE_STACK: AtomicU32 = AtomicU32::new(0);
 
 global_asm!(
     ".syntax unified",
     ".fpu fpv4-sp-d16",
-    // Calls the function in r0; when that ends the run, returns all the same.
+    // Calls the function in r0, and returns even when that ends the run.
     ".thumb_func",
     ".global conformance_try",
     "conformance_try:",
@@ -58,14 +54,12 @@ unsafe extern "C" {
     fn conformance_go_on();
 }
 
-/// What a run leaves for the next: the message.
 pub struct Left {
     text: [u8; 240],
     length: usize,
 }
 
 impl Left {
-    /// Nothing.
     pub const fn new() -> Self {
         Self {
             text: [0; 240],
@@ -91,12 +85,12 @@ impl fmt::Display for Left {
     }
 }
 
-/// Goes on in `conformance_try`, in thread mode and from whatever handler.
+/// Continues in `conformance_try`, in thread mode, from any handler.
 pub fn go_on() -> ! {
     sophie_fault::ENDING.store(false, Relaxed);
     let stack = CONFORMANCE_STACK.load(Relaxed) as *mut u32;
-    // SAFETY: `conformance_try` left its registers above that, and what it called will not go on. In a handler the
-    // frame makes the processor return there; in thread mode the same place is jumped to.
+    // SAFETY: `conformance_try` left its registers above that, and its callee will not continue. In a handler the frame
+    // makes the processor return there; thread mode jumps to the same place.
     unsafe {
         if cortex_m::peripheral::SCB::vect_active() == cortex_m::peripheral::scb::VectActive::ThreadMode {
             asm!(
@@ -127,9 +121,9 @@ pub fn go_on() -> ! {
     }
 }
 
-/// Prints a line for each scenario, and calls `done`.
+/// Prints a line per scenario, and calls `done`.
 ///
-/// The handler begins at the top of the stack, so nothing up there is returned to.
+/// The handler begins at the top of the stack, so nothing there can be returned to.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) -> ! {
     let room = black_box([0u8; HANDLER]);
     try_all(print, done);
@@ -146,7 +140,7 @@ fn try_all(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) {
         ("nothing there", nothing_there),
         ("a fault in a message", fault_in_a_message),
     ];
-    // SAFETY: nothing is there that anybody uses, and nothing else uses the memory protection.
+    // SAFETY: nothing uses that memory, and nothing else uses the memory protection.
     unsafe {
         let mpu = &*cortex_m::peripheral::MPU::PTR;
         mpu.rnr.write(0);
@@ -159,12 +153,12 @@ fn try_all(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) {
     isb();
     for (name, scenario) in scenarios {
         STOPPED.store(false, Relaxed);
-        // SAFETY: the status registers of faults; ones clear what former scenarios left.
+        // SAFETY: fault status registers; ones clear what former scenarios left.
         unsafe {
             (0xE000_ED28 as *mut u32).write_volatile(u32::MAX);
             (0xE000_ED2C as *mut u32).write_volatile(u32::MAX);
         }
-        // SAFETY: it returns with every register kept that a callee keeps.
+        // SAFETY: it returns with every callee-saved register restored.
         unsafe { conformance_try(scenario) };
         let stopped = if STOPPED.load(Relaxed) {
             "stopped"
@@ -198,9 +192,8 @@ extern "C" fn float_overflow() {
     black_box(deeper_with_floats(1.0));
 }
 
-/// Reads where nothing is.
 fn read_nowhere() -> u32 {
-    // SAFETY: the read gives no value, the processor faults.
+    // SAFETY: the read gives no value; the processor faults.
     unsafe { (NOWHERE as *const u32).read_volatile() }
 }
 
@@ -208,7 +201,7 @@ extern "C" fn nothing_there() {
     black_box(read_nowhere());
 }
 
-/// A message that cannot be made.
+/// A message whose formatting faults.
 struct Unreadable;
 
 impl fmt::Display for Unreadable {

@@ -1,4 +1,4 @@
-//! Every floating-point instruction of the core on awkward operands, in every mode, with the flags that it leaves.
+//! Every floating-point instruction on critical operands, in every mode, with its flags.
 
 use core::fmt::Arguments;
 
@@ -6,8 +6,8 @@ use cortex_m::register::fpscr::{self, Fpscr};
 
 use sophie_conformance::fold::{Fold, Noise};
 
-/// Numbers at which something changes: zeros, subnormals, the ends of the range, infinities, NaNs quiet and signalling,
-/// halves that round, and the ends of the integers.
+/// Critical operands: zeros, subnormals, the ends of the range, infinities, quiet and signalling NaNs, halves that
+/// round, and the ends of the integers.
 const AWKWARD: [u32; 32] = [
     0x0000_0000, // 0
     0x8000_0000, // -0
@@ -42,19 +42,18 @@ const AWKWARD: [u32; 32] = [
     0x7F80_5678, // signalling NaN
     0xFFA0_0001,
 ];
-/// Random operands besides.
 const RANDOM: usize = 16;
 const OPERANDS: usize = AWKWARD.len() + RANDOM;
 
-/// Modes: rounding to nearest, up, down, to zero; each with subnormals kept or flushed, NaNs kept or replaced.
+/// Rounding to nearest, up, down, to zero; each with subnormals kept or flushed, NaNs kept or replaced.
 const ROUNDING: [(&str, u32); 4] = [("rn", 0), ("rp", 1), ("rm", 2), ("rz", 3)];
 const ROUNDING_AT: u32 = 22;
 const FLUSH: u32 = 1 << 24;
 const DEFAULT_NAN: u32 = 1 << 25;
-/// Flags that operations leave, and the condition flags of a comparison.
+/// Flags of operations, and the condition flags of a comparison.
 const LEFT: u32 = 0xF000_009F;
 
-/// An instruction on the operands in `a`, `b` and `c` (bits); what it gives, as bits.
+/// An instruction on the operands `a`, `b` and `c`; operands and result are bits.
 type Operation = unsafe extern "C" fn(a: u32, b: u32, c: u32) -> u32;
 
 macro_rules! instructions {
@@ -133,7 +132,7 @@ mod single {
         from_half_top: "vcvtt.f32.f16 s3, s0", "vmov r0, s3";
     }
 
-    /// What every core with a floating-point unit has.
+    /// Instructions of every core with a floating-point unit.
     pub const ALL: &[(&str, Operation)] = LIST;
 }
 
@@ -154,7 +153,7 @@ mod fpv5 {
         round_even: "vrintn.f32 s3, s0", "vmov r0, s3";
         round_exact: "vrintx.f32 s3, s0", "vmov r0, s3";
         round_zero: "vrintz.f32 s3, s0", "vmov r0, s3";
-        // Doubles, made of singles: the operands as they are, and with a low half that needs rounding.
+        // Doubles made of singles: the operands unchanged, and with a low half that needs rounding.
         double_add: "vcvt.f64.f32 d2, s0", "vmov d3, r0, r1", "vadd.f64 d2, d2, d3", "vmov r0, r1, d2", "eor r0, r1";
         double_mul: "vcvt.f64.f32 d2, s0", "vmov d3, r1, r0", "vmul.f64 d2, d2, d3", "vmov r0, r1, d2", "eor r0, r1";
         double_div: "vmov d2, r0, r1", "vmov d3, r2, r0", "vdiv.f64 d2, d2, d3", "vmov r0, r1, d2", "eor r0, r1";
@@ -166,11 +165,10 @@ mod fpv5 {
         double_round: "vmov d2, r0, r1", "vrintr.f64 d2, d2", "vmov r0, r1, d2", "eor r0, r1";
     }
 
-    /// What FPv5 has besides, double precision among it.
+    /// Additional instructions of FPv5, double precision among them.
     pub const ALL: &[(&str, Operation)] = LIST;
 }
 
-/// Prints a line for each instruction and rounding.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     let mut noise = Noise::new(4);
     let mut operands = [0; OPERANDS];
@@ -185,7 +183,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     for &(name, operation) in fpv5::ALL {
         modes(print, name, operation, &operands);
     }
-    // SAFETY: what it was when the compiler's own code relied on it.
+    // SAFETY: restores the mode that the compiler's code relies on.
     unsafe { fpscr::write(before) };
 }
 
@@ -197,7 +195,7 @@ fn modes(print: &mut dyn FnMut(Arguments<'_>), name: &str, operation: Operation,
             let mode = bits << ROUNDING_AT | special;
             for (i, &a) in operands.iter().enumerate() {
                 for (j, &b) in operands.iter().enumerate() {
-                    // Every third operand once with every pair is plenty for the fused instructions.
+                    // For fused instructions every third operand once with every pair suffices.
                     let c = operands.get((7 * i + 3 * j) % OPERANDS).copied().unwrap_or(0);
                     let (result, left) = at(mode, operation, [a, b, c]);
                     results.add(result);
@@ -209,10 +207,10 @@ fn modes(print: &mut dyn FnMut(Arguments<'_>), name: &str, operation: Operation,
     }
 }
 
-/// One operation in `mode`, with the flags cleared before: its result and the flags after.
+/// One operation in `mode` with cleared flags: result and flags.
 #[inline(never)]
 fn at(mode: u32, operation: Operation, [a, b, c]: [u32; 3]) -> (u32, u32) {
-    // SAFETY: any mode is allowed; the code until `run` restores it does no floating-point arithmetic of its own.
+    // SAFETY: any mode is allowed; until `run` restores it no other floating-point arithmetic is done.
     unsafe { fpscr::write(Fpscr::from_bits(mode)) };
     // SAFETY: the operations above use only registers that a call may change.
     let result = unsafe { operation(a, b, c) };
