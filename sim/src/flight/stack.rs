@@ -23,6 +23,7 @@ use crate::scenario::Scenario;
 pub struct Stack {
     /// Executor and start time (µs after power-up); `None` while nothing runs.
     running: Option<(VirtualTime, u64)>,
+    /// Its board.
     pub board: &'static Board,
     /// Its links.
     pub links: &'static Links,
