@@ -248,8 +248,7 @@ struct Outcome {
     released_in: f64,
 }
 
-/// Closes, stops the rotor, holds, disturbs, spools up and releases, with assertions; `None` if the arm reports
-/// insufficient force.
+/// Closes, stops the rotor, holds, disturbs, spools up, releases; `None` if the arm reports insufficient force.
 fn whole_run(infill: f64, diameter: f64, seed: u64) -> Option<Outcome> {
     whole_run_with(Params::default(), infill, diameter, seed)
 }
