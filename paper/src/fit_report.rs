@@ -7,8 +7,8 @@ use super::bench_data::Point;
 use super::fit::{Fit, Fitted};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// Largest span of tilts taken for radians: a quarter turn and 0.01 of rounding. The stiffest arm of Table I (10 %, K =
-/// 1) bends by 2.8° up to the largest thrust.
+/// Largest span of tilts taken for radians: a quarter turn and rounding. Table I's stiffest arm (10 %, K = 1) bends by
+/// 2.8°.
 const RADIANS: f64 = 1.58;
 /// Share of a rotor's largest thrust that the data must reach; below it hover is extrapolated.
 const REACH: f64 = 0.5;
