@@ -30,7 +30,7 @@ impl Studied {
 /// spool-up.
 const FADE: (f32, f32) = (0.5, 1.2);
 
-/// Law of a [`Studied`] allocation.
+/// The law of a [`Studied`] allocation.
 #[derive(Clone, Copy, Debug)]
 pub struct StudiedLaw {
     kind: Studied,

@@ -23,7 +23,7 @@ use crate::scenario::Scenario;
 pub struct Stack {
     /// Executor and start time (µs after power-up); `None` while nothing runs.
     running: Option<(VirtualTime, u64)>,
-    /// Its board.
+    /// Board that the stack runs on.
     pub board: &'static Board,
     /// Its links.
     pub links: &'static Links,
@@ -228,6 +228,7 @@ mod tests {
         assert!(stack.belief().pressure.iter().all(|p| p.is_nan()));
         stack.run_until(50_000).unwrap();
         assert!(stack.belief().pressure.iter().all(|p| p.is_finite()));
+        // The newest conversion is 21 ms old.
         let contact = stack.links.contact.latest().unwrap();
         let old = embassy_time::Instant::now() - embassy_time::Duration::from_millis(21);
         stack.links.contact.send(old, contact.value);
