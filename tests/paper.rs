@@ -329,7 +329,6 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
             && line.contains("still rises at hover"),
         "{line}"
     );
-    // Thrusts in newtons that end early are fitted, with a warning on stderr and on the page.
     write("short.csv", example(|x| (x[0] == 6.9 && x[1] < 3.6).then_some(x)));
     let output = sophie(&temp.0, &["fit-arm", "short.csv"]);
     let told = text(&output.stderr);
@@ -350,7 +349,6 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
 #[test]
 fn a_coefficient_that_may_be_none_is_told() {
     let temp = Temp::new("interval");
-    // Without errors the example's coefficients all differ from 0.
     fs::write(temp.0.join("good.csv"), example(Some)).unwrap();
     let output = sophie(&temp.0, &["fit-arm", "good.csv"]);
     assert_eq!(
@@ -379,7 +377,6 @@ fn a_coefficient_that_may_be_none_is_told() {
         let name = name.as_str().unwrap();
         let warning = format!("the 95 % interval of {name} holds 0");
         let crosses = from[i].as_f64().unwrap() <= 0.0 && to[i].as_f64().unwrap() >= 0.0;
-        // An arm may be level at rest; K is not written.
         let told_of = crosses && !["α0", "K"].contains(&name);
         crossing += usize::from(told_of);
         let lines: Vec<&str> = told.lines().filter(|l| l.starts_with("sophie: ")).collect();

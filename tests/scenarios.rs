@@ -39,7 +39,7 @@ fn flown_as_expected(path: &Path) -> Result<(), Failed> {
     let scenario = Scenario::load(path, &Overrides::default())?;
     let record = fly(&scenario, &mut Silent);
     judge(&scenario.expect, &record)?;
-    // Deadlines are never missed in virtual time.
+    // Never missed in virtual time.
     if record.overruns > 0 {
         return Err(format!("{} deadlines missed", record.overruns).into());
     }

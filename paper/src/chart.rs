@@ -132,7 +132,7 @@ pub fn draw(chart: &Chart) -> String {
     for (at, word) in &chart.uprights {
         let x = f.px(*at);
         svg += &line(x, TOP, x, bottom, "level");
-        // Centred on the line unless the label would leave the drawing.
+        // Centred on the line, but within the drawing.
         let half = 3.2 * word.chars().count() as f64;
         let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
         svg += &text(middle, TOP - 5.0, "small mid", word);

@@ -7,8 +7,8 @@ use super::bench_data::Point;
 use super::fit::{Fit, Fitted};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// Largest span of tilts taken for radians: a quarter turn and 0.01 of rounding. The stiffest arm of Table I (10 %, K =
-/// 1) bends by 2.8° up to the largest thrust.
+/// Largest span of tilts taken for radians: a quarter turn and rounding. Table I's stiffest arm (10 %, K = 1) bends by
+/// 2.8°.
 const RADIANS: f64 = 1.58;
 /// Share of a rotor's largest thrust that the data must reach; below it hover is extrapolated.
 const REACH: f64 = 0.5;
@@ -48,7 +48,7 @@ fn reach(points: &[Point]) -> Option<(f64, f64)> {
 
 /// N.
 fn thrust_max() -> f64 {
-    // 8.3 as an `f32` has seven digits.
+    // Without the `f32`'s further digits.
     (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4
 }
 
@@ -82,7 +82,7 @@ pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
 
 /// Infill of the vehicle, %: the only one measured, or the stack's within those measured.
 pub fn infill(points: &[Point]) -> f64 {
-    // 6.9 as an `f32` has seven digits.
+    // Without the `f32`'s further digits.
     let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
     let (low, high) = span(points, |p| p.infill);
     default.clamp(low, high.max(low))
@@ -299,7 +299,6 @@ mod tests {
             assert!((believed.angle(t).to_degrees() - truth).abs() < 0.01, "{t}");
         }
         assert!((s.vehicle.arm_coefficients[0] - 4.0).abs() < 1e-4);
-        // The same lines on a board's console give the same parameters.
         let lines = console_lines(&text);
         let mut board = Params::default();
         for line in lines.lines().filter(|l| *l != "save") {
@@ -321,7 +320,6 @@ mod tests {
             assert!(board.get(name) == s.params.get(name), "{name}");
         }
         assert!(lines.ends_with("save\n"));
-        // An arm that falls with thrust is refused.
         let falling: Vec<Point> = points.iter().map(|p| Point { tilt: -p.tilt, ..*p }).collect();
         let f = fit(&falling, [2.4387, -0.1997, -0.162, 0.0151]).unwrap();
         assert!(

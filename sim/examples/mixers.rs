@@ -63,7 +63,6 @@ fn missions(configuration: Configuration, gain_k: f64, mixer: Variant) {
             reason = record.outcome.reason;
         }
     }
-    // A lost vehicle has no meaningful tracking.
     let [roll, pitch, yaw] = tracking.map(|rms| {
         if accomplished > 0 {
             format!("{rms:.2}°")

@@ -118,7 +118,7 @@ impl Rig {
         allocation: impl FnOnce(&Params) -> A + 'static,
     ) -> Self {
         let time = VirtualTime::new();
-        // Leaked, as in a flight: tasks borrow them as `'static`.
+        // Leaked: tasks borrow them as `'static`.
         let board: &'static Board = Box::leak(Box::new(board));
         let links: &'static Links = Box::leak(Box::new(Links::new(params)));
         time.spawn(sophie_tasks::imu::run(links, Port(board)));

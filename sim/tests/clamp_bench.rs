@@ -248,8 +248,7 @@ struct Outcome {
     released_in: f64,
 }
 
-/// Closes, stops the rotor, holds, disturbs, spools up and releases, with assertions; `None` if the arm reports
-/// insufficient force.
+/// Closes, stops the rotor, holds, disturbs, spools up, releases; `None` if the arm reports insufficient force.
 fn whole_run(infill: f64, diameter: f64, seed: u64) -> Option<Outcome> {
     whole_run_with(Params::default(), infill, diameter, seed)
 }
@@ -427,7 +426,6 @@ fn a_weak_servo_is_reported_and_never_asked_for_more_than_it_has() {
     let limit = ForceLimit::from_params(&params);
     assert!(limit.capped_by_servo && !ForceLimit::from_params(&Params::default()).capped_by_servo);
 
-    // The softest arm on the widest pipe is within its power.
     let mut b = weak(6.0, 0.35);
     b.close = true;
     assert!(b.run_until(ArmState::Holding, 8.0), "{:?}", b.grip);
@@ -458,7 +456,6 @@ fn a_shorted_sensor_holds_the_force() {
     b.run(5.0);
     assert!(b.grip.state == ArmState::Faulty && b.gripper.fault() == Some(GripFault::Sensor));
     assert!((b.tendon.tension() - tension).abs() < 3.0 && (b.load.pressure - pressure).abs() < 200.0);
-    // Release judged by the servo alone.
     b.close = false;
     assert!(b.run_until(ArmState::Free, 8.0));
     assert!(b.load.pressure == 0.0);

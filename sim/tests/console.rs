@@ -268,7 +268,6 @@ fn status_says_all_that_forbids_arming() {
     let mut bench = Bench::new(Params::default());
     let links = bench.links;
     let analog = FakeAnalog::default();
-    // A battery of 15.2 V, unloaded pressure sensors.
     analog.frame.set(AnalogFrame {
         battery_voltage: 1520,
         ..AnalogFrame::default()
@@ -383,7 +382,6 @@ fn without_a_commander_nothing_is_stored() {
         bench.types("save\r"),
         "save\nnot saved: the commander is silent\n> "
     );
-    // A commander that falls silent between question and answer.
     bench.links.status.send(
         Instant::now(),
         Status {
@@ -634,7 +632,6 @@ fn the_brown_out_level_is_set_on_purpose_after_what_it_does_was_said() {
     assert_eq!((bench.chip.level.get(), bench.chip.restarts.get()), (0, 0));
     assert_eq!(bench.types("brownout set\r"), "brownout set\nset; restarting\n> ");
     assert_eq!((bench.chip.level.get(), bench.chip.restarts.get()), (3, 1));
-    // Arming stays refused until the restart.
     assert!(bench.links.hardware().iter().eq([ArmingInhibit::Storing]));
 }
 

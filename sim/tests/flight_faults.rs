@@ -27,7 +27,6 @@ fn a_lost_sensor_stops_the_motors(answer: Answer) {
     v.run(400);
     assert_eq!(v.fed_over(200), 0, "the watchdog would have reset the board");
 
-    // After recovery nothing turns before a new arming.
     v.imu.0.answer.set(Answer::Sound);
     v.run(500);
     assert!(v.motors_stand() && v.mode() == Mode::Disarmed);

@@ -132,7 +132,7 @@ fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
         }
         let rolled = rig.plant.euler()[0].to_degrees();
         assert!((least..most).contains(&rolled), "{setpoint:?}: {rolled}");
-        // Back to level: the vehicle reverses at once and hardly overshoots.
+        // The vehicle reverses at once and hardly overshoots.
         let (mut farthest, mut swung) = (rolled, rolled);
         for _ in 0..3000 {
             rig.step(level);

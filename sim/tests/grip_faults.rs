@@ -357,7 +357,6 @@ fn all_tilts_stale_stop_all_servos_within_a_tenth_of_a_second() {
     let mut b = Bench::new();
     b.command = Some(CLOSE);
     b.run(1.0);
-    // The whole task is silent, without a message.
     let frozen = b.ms;
     let (time, servos, links) = (&b.time, &b.servos, b.links);
     for ms in frozen..frozen + 2000 {
@@ -439,7 +438,6 @@ fn a_clamp_loop_that_falls_silent_leaves_the_servos_where_they_are() {
     assert!(held[0] > RELEASE_US + 500.0);
     (300..800).for_each(|i| step(10 * i, None));
     assert_eq!(servos.now(), held);
-    // A NaN force commands no pull.
     (800..1100).for_each(|i| step(10 * i, Some(f32::NAN)));
     assert_eq!(servos.now(), [RELEASE_US; 4]);
 }

@@ -86,14 +86,12 @@ fn what_the_inertial_sensor_answers_instead_of_samples_is_named_while_calibratin
             (v.mode(), v.reason()),
             (Mode::Calibrating, Some(Reason::Check(reason)))
         );
-        // The new fault replaces the old.
         v.imu.0.answer.set(Answer::Errs(PortError::Corrupt));
         v.run(100);
         assert!(
             v.links.hardware().iter().eq([ArmingInhibit::ImuCorrupt]),
             "{error:?}"
         );
-        // After recovery it calibrates and arms.
         v.imu.0.answer.set(Answer::Sound);
         v.run(4000);
         assert!(v.links.hardware().is_empty());
@@ -180,7 +178,6 @@ fn each_arm_sensor_is_named_and_refuses_arming_until_it_answers() {
             for (other, tilt) in tilts.into_iter().enumerate() {
                 assert_eq!(tilt.is_some(), other != arm, "{answer:?} on arm {arm}: {other}");
             }
-            // Without and with the arm switch.
             assert_eq!(
                 (v.mode(), v.reason()),
                 (Mode::Disarmed, Some(Reason::Check(reason)))
@@ -311,7 +308,6 @@ fn what_breaks_in_flight_does_not_end_it() {
         );
         assert_eq!(overruns(&v), before, "{reasons:?}");
         assert_eq!(v.reason(), None, "{reasons:?}");
-        // After landing it is named and arming is refused.
         v.sticks = Some(Sticks::default());
         v.until(50, |v| v.mode() == Mode::Disarmed);
         v.run(11_000);

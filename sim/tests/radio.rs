@@ -180,7 +180,6 @@ fn an_empty_battery_ends_on_the_ground_before_the_voltage_collapses() {
             "{} V",
             first.battery_voltage
         );
-        // The pilot steers: it lands where it hovered.
         let last = record.samples.last().unwrap();
         let drift = (last.position[0] - first.position[0]).hypot(last.position[1] - first.position[1]);
         assert!(drift < 0.5, "{drift} m");

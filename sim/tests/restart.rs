@@ -209,7 +209,6 @@ fn a_start_off_the_pipe_is_as_ever_after_half_a_second_of_looking() {
         let (kept, _) = v.kept().unwrap();
         assert!(kept.grip_memory == GripMemory::Open && kept.gyro_bias.is_some());
     }
-    // The run before reported them open.
     let open = RetainedState {
         grip_memory: GripMemory::Open,
         ..held()
@@ -256,7 +255,6 @@ fn arms_found_closed_get_no_pulse_whatever_stood_in_memory() {
             v.kept().unwrap().0.grip_memory,
             GripMemory::HeldByGears(ArmChoice::Front)
         );
-        // The next reset retains them again.
         let mut again = Vehicle::start(StartCause::Watchdog, v.memory.copies(), [PRESSED, 0, PRESSED, 0]);
         again.run(1000);
         assert_eq!(again.status().0, Mode::Disarmed, "calibrated already");
@@ -350,7 +348,6 @@ fn when(record: &FlightRecord, text: &str, from: f64) -> f64 {
 fn a_reset_in_flight_stops_the_rotors_and_they_stay_stopped() {
     let record = flown("reset-in-flight");
     let reset = when(&record, "board reset", 0.0);
-    // The judge checks the motor commands every millisecond after it.
     assert!(
         record.outcome.reason.contains("crashed into the ground"),
         "{:?}",

@@ -149,7 +149,7 @@ fn noise_gives_no_sticks_and_the_pilot_is_heard_behind_it() {
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let (mut v, line) = on_line(sbus());
     for _ in 0..100_000 {
-        // Bursts with and without silence between, each with a frame's start: the worst case of noise.
+        // Bursts with a frame's start, with and without silence between: the worst noise.
         let mut noise: Vec<u8> = (0..25).map(|_| rng.random()).collect();
         noise[0] = 0x0F;
         line.put(&noise);

@@ -81,6 +81,7 @@ pub fn closing_thrust(p: &Printed) -> f64 {
     0.01 * p.text.clamp_throttle_percent * f64::from(Params::default().thrust_max)
 }
 
+/// The arm proved its grip and holds.
 pub fn holds(c: &Closed) -> bool {
     c.state == ArmState::Holding && c.closure.is_some()
 }

@@ -17,7 +17,6 @@ struct Tried {
 }
 
 fn servos() -> [Tried; 4] {
-    // A servo of its printed stall, with the stack's speed.
     let made = |stall: f64, range: f64| ServoSpec {
         stall: stall * KGCM,
         range,

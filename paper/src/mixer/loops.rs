@@ -45,7 +45,7 @@ fn one_step_loop(infill: f64, gain_k: f64, start: f32, steps: usize) -> Vec<f64>
     out
 }
 
-/// Range of rotor 1's thrust (N) under a constant small yaw demand: the mixer alone with its model of motor and arm.
+/// Range of rotor 1's thrust (N) under a constant small yaw demand, in the mixer's model of motor and arm.
 fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     let p = Params {
         gain_k: gain_k as f32,
@@ -118,7 +118,6 @@ pub fn show(s: &mut Section, p: &Printed, thrust: f64) {
     ));
     let bound = frozen_bound(f64::from(d.motor_tau), TAU * f64::from(d.notch_hz), ZETA);
     let k_cycles = hover.gain_of(bound);
-    // Onset in the mixer itself, by bisection.
     let k_found = root(1.0, 3.0, |k| mixer_swing(Variant::Frozen, k) - 0.1).unwrap_or(f64::NAN);
     s.text(format!(
         "Inverting at the angle that the arm really has (motor lag and bending mode known exactly) is no cure: a changed \

@@ -93,7 +93,6 @@ pub fn section(p: &Printed) -> Section {
     let angle = p.text.roll_deg.to_radians();
     let share = p.text.delta_thrust_share;
     printed::against_itself(&mut s, p);
-    // Hardness of the loops that gives the paper's ΔT/T at its middle infill, with its statics.
     let gain = hard_gain(angle, share);
     let flights = Flights::fly(p, gain);
     s.text(format!(

@@ -46,8 +46,8 @@ pub struct Moment {
     pub t: f64,
     /// True roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Roll and pitch aimed at, and the heading asked for, rad: the initial one plus every turn asked for since,
-    /// regardless of the controller.
+    /// Roll and pitch aimed at; heading asked for: the initial one plus every turn since, regardless of the controller;
+    /// rad.
     pub target: [f64; 3],
     /// True velocity, m/s, NED.
     pub velocity: DVec3,

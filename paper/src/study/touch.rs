@@ -38,9 +38,9 @@ const EASE: f64 = 0.5;
 /// Lean (rad) and depth below the touch height (m) at which the pilot sees it slide.
 const SEEN_LEAN: f64 = 0.5;
 const SEEN_DEPTH: f64 = 0.06;
-/// Depth below the touch height at which the vehicle is lost, m: the ground under the lowest pipe.
+/// Depth below the touch height of a lost vehicle, m: the ground under the lowest pipe.
 const LOST_DEPTH: f64 = 0.95;
-/// Height over that of the touch at which the vehicle is clear of the pipe, m.
+/// Height over the touch height of a vehicle clear of the pipe, m.
 const CLEAR: f64 = 0.4;
 /// Time on the pipe before the arms open, s.
 const STAY: f64 = 2.0;
@@ -211,7 +211,7 @@ impl Try {
         true
     }
 
-    /// Puts the vehicle over the pipe; returns the height of its centre of mass at the touch, m, NED.
+    /// Puts the vehicle over the pipe; returns the down coordinate of its centre of mass at the touch, m.
     fn put_over(&mut self, touch: &Touch) -> f64 {
         let world = &self.scenario.world;
         let [north, east] = world.pipe_position;
@@ -231,7 +231,7 @@ impl Try {
     }
 }
 
-/// Height of the centre of mass over the pipe's axis when the first point of belly or arms touches, m, NED.
+/// Centre of mass below the pipe's axis (negative above) when the first point of belly or arms touches, m.
 fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f64 {
     let belly = [-0.03, 0.03].map(|y| DVec3::new(0.0, y, BELLY_Z));
     let arms = (0..4).flat_map(|arm| STATIONS.map(|s| ArmSkin::new(arm).point(tilt[arm], s).0));

@@ -48,7 +48,7 @@ fn hover_shares_the_weight_and_lifts_it() {
 
 #[test]
 fn the_rigid_mixer_yaws_too_much_by_one_plus_c() {
-    // |C| about 4.1·... at K 7.75, ρ 6.9: the arms answer a yaw command in the same sense.
+    // C is about -3.9 at K 7.75, ρ 6.9: the arms answer a yaw command in the same sense.
     let w = Wrench { yaw: 0.01, ..HOVER };
     let (_, mix) = settled(Variant::Rigid, w);
     let p = Params::default();

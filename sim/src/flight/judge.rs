@@ -17,8 +17,8 @@ use crate::sensors::fsr::LARGEST_ERROR;
 const SLIP: f64 = 0.03;
 /// Largest true pressure on a closing or gripping arm, Pa: limit of tendons and skin.
 const PRESSURE_MAX: f64 = 1500.0;
-/// The same for bumps, Pa: an open arm that comes down on the pipe; a gripping arm after a reset that stopped the
-/// rotors, until the loops run again (the tension against their thrust presses the pipe).
+/// The same for bumps, Pa: an open arm that lands on the pipe; a gripping one after a reset, until the loops run again
+/// (its tension, no longer opposed by thrust, presses the pipe).
 const PRESSURE_BUMP: f64 = 3000.0;
 /// Allowed pressure error during spool-down and push, in tolerances: the body moves on its pads and the loop is slow.
 const DISTURBED: f64 = 2.0;
@@ -156,7 +156,7 @@ impl Judge {
     /// A perch that ends during a hold.
     fn let_go(&mut self, now: &Snapshot<'_, impl Aircraft>) -> Option<String> {
         let (t, plant, stack) = (now.t(), now.plant, now.stack);
-        // A perched vehicle holds without the radio too.
+        // Holds without the radio too.
         let holds = match now.step {
             Some((_, Step::Hold { .. })) => true,
             Some((_, Step::RadioOff { .. })) => self.hold_start.is_some() || stack.mode() == Mode::Perched,

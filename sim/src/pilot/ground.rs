@@ -129,7 +129,6 @@ impl Mission {
             }
             (Phase::Wait, _) => Progress::Going(StickTarget::default()),
             (_, Some(Mode::Disarmed)) => {
-                // Only now, after the gesture has disarmed.
                 self.arm_switch = false;
                 self.enter(Phase::Wait);
                 Progress::Going(StickTarget::default())

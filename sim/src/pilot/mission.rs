@@ -1,4 +1,4 @@
-//! State and manoeuvres that the steps of the mission share.
+//! What the steps of the mission share.
 
 use glam::DVec2;
 use sophie_control::mode::{Mode, Reason};

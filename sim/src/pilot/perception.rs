@@ -64,8 +64,8 @@ impl Perception {
     }
 }
 
-/// Prediction over the view's delay from the pilot's own sticks; without it a spot cannot be held to a few centimetres
-/// with a delay of 0.25 s.
+/// Predicts over the view's delay from the pilot's own sticks; without it a delay of 0.25 s prevents holding a spot to
+/// centimetres.
 #[derive(Clone, Debug)]
 pub struct Foresight {
     delay: f64,

@@ -40,7 +40,7 @@ fn a_hover_stays_within_15_cm_rms_in_light_gusts_and_steady_wind() {
             if out.events.contains(&StepEvent::Began(2)) {
                 (spot, began) = (toy.seen.position, toy.seen.t);
             }
-            // After the wind has been trimmed out.
+            // After the wind is trimmed out.
             if began > 0.0 && toy.seen.t > began + 15.0 {
                 let e = toy.seen.position - spot;
                 sum += e * e;
@@ -332,7 +332,7 @@ fn every_step_ends_on_a_failsafe_with_its_reason() {
                     .contains(&StepEvent::Began(index))
                     .then_some(toy.seen.t);
                 since = since.or(began);
-                // On the ground the rotors stop: the take-off's failsafe is one in the air.
+                // On the ground rotors just stop; the take-off's failsafe is one in the air.
                 let up = !matches!(step, Step::TakeOff { .. }) || toy.seen.position.z < -1.0;
                 let due = up && since.is_some_and(|since| toy.seen.t > since + 0.3)
                     || toy.deaf
@@ -351,7 +351,7 @@ fn every_step_ends_on_a_failsafe_with_its_reason() {
             let outcome = toy.pilot.outcome().cloned();
             let outcome = outcome.unwrap_or_else(|| panic!("{} goes on under {why}", step.name()));
             println!("{:12} {why:16} {took:5.1} s  {}", step.name(), outcome.reason);
-            // Steps that end on the ground may end well; a perch is kept and left only with a sound vehicle.
+            // A landing may end well; a perch is left only with a sound vehicle.
             let ends_well = matches!(step, Step::Land | Step::Disarm);
             assert!(
                 outcome.accomplished || outcome.reason.contains(why),

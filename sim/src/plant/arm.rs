@@ -56,8 +56,8 @@ pub struct ArmPrint {
 }
 
 impl ArmSpec {
-    /// Arm of infill `infill` (%), gain `gain_k` on Eq. 1's elastic term, compliance factor `gain` and tilt offset
-    /// `offset` (rad) against the nominal arm, damping ratio `zeta` in hover.
+    /// Arm of infill `infill` (%), gain `gain_k` on Eq. 1's elastic term, hover damping ratio `zeta`; against the
+    /// nominal arm compliance factor `gain`, tilt offset `offset` (rad).
     #[must_use]
     pub fn new(infill: f64, gain_k: f64, gain: f64, offset: f64, zeta: f64) -> Self {
         Self::of(&ArmPrint {
@@ -207,8 +207,8 @@ impl Arm {
             - self.outward() * (ARM_LENGTH * self.rate * self.rate)
     }
 
-    /// Sums the generalised force: thrust (N), moments of tendon and contact (N·m), spring, damping and, if the tip
-    /// mass is carried (`coupled`), its weight under `gravity` (m/s², body).
+    /// Sums the generalised force: thrust (N), external moments (N·m), spring, damping and, if `coupled`, the tip's
+    /// weight under `gravity` (m/s², body).
     pub fn load(&mut self, thrust: f64, moment: f64, gravity: DVec3, coupled: bool) {
         let load = self.spec.static_load(self.tilt);
         let weight = if coupled {
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn the_mode_is_at_five_hertz_in_hover() {
-        // Free swing about hover on a fixed level body; counts zero crossings.
+        // Counts zero crossings about hover, body fixed and level.
         let mut arm = Arm::new(
             0,
             ArmSpec {

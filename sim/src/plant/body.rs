@@ -299,7 +299,7 @@ mod tests {
             let h = pose.omega * (0.5 * STEP);
             pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
         }
-        // Angular momentum about the origin, body axes: rigid part and tips.
+        // Angular momentum about the origin, body axes.
         let mut momentum = body.inertia * pose.omega
             + body.mass * body.centre.cross(pose.attitude.conjugate() * pose.velocity);
         for arm in &arms {
@@ -331,7 +331,7 @@ mod tests {
         let body = Body::new(&BodySpec::default(), true);
         let omega = DVec3::new(1.0, 0.5, -0.7);
         let (pose, arms, end) = fly(0.0, DVec3::ZERO, 0.4, omega);
-        // About the centre of mass: less the centre's own momentum.
+        // About the centre of mass: less its own momentum.
         let centre = |pose: &Pose, arms: &[Arm; 4]| {
             let mut c = body.mass * body.centre;
             let mut p =

@@ -264,7 +264,7 @@ mod tests {
         let spec = ServoSpec::from(ServoProfile::Paper).measured(&params, 2);
         assert!((spec.release_us, spec.full_us) == (2330.0, 830.0) && (spec.frame - 3.003e-3).abs() < 1e-6);
         let mut t = Tendon::new(spec, TendonSpec::default());
-        // Half of 2330 to 830 µs is half the travel; the deadband holds in this sense of rotation too.
+        // Half of 2330 to 830 µs is half the travel.
         for (pulse, angle) in [(2330.0, 0.0), (1580.0, 2.355), (1581.5, 2.355), (830.0, 4.71)] {
             run(&mut t, pulse, -2.5, 1.0);
             assert!(

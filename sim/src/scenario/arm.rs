@@ -11,8 +11,8 @@ use super::read::{Result, Source, Value};
 use super::{Scenario, Vehicle};
 use crate::plant::{GRAVITY, arm_spec};
 
-/// Least slope of the tilt without thrust, rad/N (0.1 deg/N): at 0.02 the bending mode of the lightest vehicle is too
-/// fast for the plant's step of 0.5 ms.
+/// Least slope of the tilt without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast
+/// for the plant's step of 0.5 ms.
 const LEAST_RISE: f64 = 0.1 * DEGREE;
 /// Largest tilt of a free arm at zero or full thrust, rad: beyond it the rotor pushes inward more than up.
 const LARGEST_TILT: f64 = 90.0 * DEGREE;

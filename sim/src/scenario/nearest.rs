@@ -24,8 +24,8 @@ fn distance(a: &str, b: &str) -> usize {
     edits(name_a, name_b) + usize::from(table_a != table_b)
 }
 
-/// Edits (insert, delete, replace) from `a` to `b`; a unit added at the end counts one, a name too long for a typing
-/// error as many as a long one has letters.
+/// Edits (insert, delete, replace) from `a` to `b`; an added unit counts one, a name too long for a typing
+/// error the letters of the longer name.
 fn edits(a: &str, b: &str) -> usize {
     if b.strip_prefix(a).is_some_and(|rest| rest.starts_with('_')) {
         return 1;

@@ -78,8 +78,7 @@ mod tests {
     use super::super::synthetic;
     use super::*;
 
-    /// Roll setpoint steps by 0.8 rad at 20 s, followed with 0.1 s of lag and 0.05 rad of error; a gust tilts the
-    /// vehicle by 0.2 rad at 30 s.
+    /// Roll setpoint steps by 0.8 rad at 20 s, followed with 0.1 s lag and 0.05 rad error; a gust of 0.2 rad at 30 s.
     fn stepped() -> FlightRecord {
         let mut record = synthetic::record();
         for s in &mut record.samples {

@@ -42,7 +42,6 @@ fn write(record: &FlightRecord) -> mcap::McapResult<Vec<u8>> {
     file.message(drawing, 0.0, &scene::fixed(record))?;
     let (mut next_scene, mut next_event) = (0.0, 0);
     for sample in &record.samples {
-        // In order of time, as readers prefer.
         while let Some(event) = record.events.get(next_event).filter(|e| e.t <= sample.t) {
             file.message(events, event.t, &log_message(event.t, &event.text))?;
             next_event += 1;

@@ -120,7 +120,6 @@ fn scenes(record: &FlightRecord) -> String {
     if moments.is_empty() {
         return String::new();
     }
-    // Four side by side, not three and one.
     let class = if moments.len() == 4 {
         "scenes four"
     } else {

@@ -202,7 +202,6 @@ fn of_seconds(capture: &Capture) -> Set {
             execution: f64::from(task.over(|s| s.run).max) + RESOLUTION,
             period: 1e6 / task.rate().max(1e-3),
             jitter: 0.0,
-            // The bus wait is part of the first task's lateness.
             waited: match id.level() {
                 Level::Flight => first_wait(capture),
                 _ => 0.0,
@@ -310,7 +309,6 @@ mod tests {
             Some(15.0)
         );
         assert!((99_000..101_000).contains(&work.covered));
-        // A capture from within a flight is taken whole.
         assert_eq!(at_work(&work).tasks.first().unwrap().runs.len(), 99);
     }
 }

@@ -50,7 +50,7 @@ fn an_arm_bent_to_the_pipe_s_curvature_lies_on_it() {
 
 #[test]
 fn the_virtual_work_of_the_skin_is_consistent() {
-    // Power of the generalised forces = power of the point forces; only the arm moves.
+    // Power of generalised and point forces agree; only the arm moves.
     let pipe = Pipe {
         north: 0.0,
         half_length: 1.0,
@@ -113,7 +113,7 @@ fn beyond_the_friction_it_slides_with_coulomb_s_force() {
         );
     }
     assert!((touch.normal - 4.0).abs() < 1e-9 && (touch.force.y + 2.0).abs() < 1e-9);
-    // A surface never pulls: a fast departure cuts the damper off.
+    // A fast departure cuts the damper off.
     let motion = PointMotion {
         position,
         velocity: DVec3::new(0.0, 0.0, -1.0),

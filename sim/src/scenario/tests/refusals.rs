@@ -325,13 +325,12 @@ fn coefficients_that_give_no_arm_are_refused_with_their_key() {
         vehicle("arm_level_share = -0.5\nthrust_max_n = 20")
             .starts_with("perch.toml:2: vehicle.arm_level_share = -0.5")
     );
-    // The stack's arm model is checked too.
     let line = complaint("[params]\narm_a1 = -1\n");
     assert!(
         line.starts_with("perch.toml:2: params.arm_a1 = -1: allowed a tilt that rises without thrust"),
         "{line}"
     );
-    // The paper's arm is valid at every infill and gain of the command line.
+    // The paper's arm passes at every infill and gain.
     for infill in [4.0, 6.9, 10.0] {
         for gain_k in [1.0, 7.75, 10.0] {
             let overrides = Overrides {
