@@ -129,7 +129,7 @@ pub struct Tried {
     pub steady: f64,
 }
 
-/// Closes `arm` for at most `longest` s: until it has held with its rotor stopped for [`AFTER`], or the gripper has given
+/// Closes `arm` for at most `longest` s: until it has held with its rotor stopped for `AFTER`, or the gripper has given
 /// it up.
 #[must_use]
 pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {

@@ -10,14 +10,14 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
 use sophie_fakes::Flash;
-use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeImu, FakeLine, Part};
+use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeImu, FakeLine, FakeServos, Part};
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
 use sophie_tasks::ports::{
     AnalogFrame, Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError,
 };
-use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters};
+use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters, servos};
 
 /// A terminal's screen at 115,200 baud, or one that takes nothing.
 #[derive(Clone, Default)]
@@ -276,6 +276,7 @@ fn status_says_all_that_forbids_arming() {
     bench.time.spawn(estimator::run(links));
     bench.time.spawn(analog::run(links, analog));
     bench.time.spawn(clamp::run(links));
+    bench.time.spawn(servos::run(links, FakeServos::default()));
     bench.time.spawn(commander::run(links));
     let loaded = Loaded {
         unreadable: true,
@@ -318,6 +319,7 @@ fn status_says_all_that_forbids_arming() {
             TaskId::Imu | TaskId::Estimator => 1000,
             TaskId::Analog => 500,
             TaskId::Clamp | TaskId::Commander => 100,
+            TaskId::Servos => 50,
             _ => 0,
         };
         assert!(rate.abs_diff(expected) <= 1, "{} {rate}", task.name());

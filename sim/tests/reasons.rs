@@ -22,14 +22,17 @@ fn reason(text: &str) -> String {
 
 #[test]
 fn a_vehicle_too_weak_to_fly_is_told_by_its_thrust_to_weight() {
-    for (mass, thrust, ratio) in [(3.0, 7.7, "1.05"), (3.0, 7.5, "1.02"), (3.0, 7.0, "0.95")] {
+    // With the arms bent by full thrust: 2 % less than 4 T / W.
+    for (mass, thrust, ratio) in [(3.0, 7.7, "1.03"), (3.0, 7.5, "1.00"), (3.0, 7.0, "0.93")] {
         let line = reason(&format!(
             "{HOP}[vehicle]\nmass_kg = {mass}\nthrust_max_n = {thrust}\n"
         ));
         assert!(line.starts_with("take-off: "), "{line}");
-        assert!(line.contains(&format!("thrust to weight {ratio}")), "{line}");
-        assert!(line.contains(&format!("{:.1} N", 4.0 * thrust)), "{line}");
-        assert!(line.contains("throttle"), "{line}");
+        let row = format!("check: thrust to weight {ratio}, at least 1.3");
+        assert!(
+            line.contains(&row) && line.contains("check: hover throttle"),
+            "{line}"
+        );
     }
 }
 

@@ -112,7 +112,7 @@ impl TendonDrive {
         self.output(reel, held)
     }
 
-    /// One step of `dt` s towards the pulse `pulse_us` (µs), at [`BENCH_SPEED`] and as far as servos go.
+    /// One step of `dt` s towards the pulse `pulse_us` (µs), at `BENCH_SPEED` and as far as servos go.
     pub fn place(&mut self, reel: &Reel, pulse_us: f32, tilt: Option<f32>, dt: f32) -> Drive {
         let dt = math::clamp(dt, 0.0, 0.2);
         self.filter_tilt(tilt.filter(|t| t.abs() <= TILT_MAX), dt);

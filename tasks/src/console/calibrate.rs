@@ -191,7 +191,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             .await;
         self.out
             .line(format_args!(
-                "turn the board, or say in its file how it sits: 'mounting' in docs/boards.md"
+                "turn the board, or say in its file how it sits: 'mounting' in docs/porting.md"
             ))
             .await;
     }

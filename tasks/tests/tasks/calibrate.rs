@@ -364,7 +364,7 @@ fn the_mounting_is_found_by_tilting() {
             [Face::Belly, Face::Right, Face::Tail],
             &[
                 "nose is where the firmware has right, right side back, belly down",
-                "turn the board, or say in its file how it sits: 'mounting' in docs/boards.md",
+                "turn the board, or say in its file how it sits: 'mounting' in docs/porting.md",
             ],
         ),
         (

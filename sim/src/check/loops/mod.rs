@@ -1,7 +1,7 @@
 //! The control loops in hover, taken from what flies: no transfer function of plant or laws is written down here.
 //!
-//! A loop is opened between control and mixer. [`vehicle`] has the body rates that follow a moment (allocation, thrust
-//! curve and the plant with its motors and tip masses), [`laws`] the moment that follows a body rate (filter, attitude
+//! A loop is opened between control and mixer. `vehicle` has the body rates that follow a moment (allocation, thrust
+//! curve and the plant with its motors and tip masses), `laws` the moment that follows a body rate (filter, attitude
 //! and rate loop). Both are identified by an impulse of one step of 1 ms, and their product is the loop's gain
 //! L(e^{jωT}) at the frequency ω. [`margins`] reads its margins.
 
