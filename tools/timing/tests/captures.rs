@@ -34,7 +34,7 @@ fn a_flight_keeps_every_deadline() {
         capture
             .chain
             .iter()
-            .all(|c| (30..=60).contains(&c.min) && c.times.max <= 60)
+            .all(|c| (10..=20).contains(&c.min) && c.times.max <= 20)
     );
     let text = analyse(&capture, &Replay::default());
     assert!(text.contains("servos (each 20000 us) is above arms"), "{text}");
