@@ -110,7 +110,7 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
         let after = volts(user);
         (type_in(user, "list infill\r", "4 to 10 %"), before, after)
     };
-    let (flight, (listed, before, after)) = at_the_console(&firmware, 16.0, None, Some(telemetry), session);
+    let (flight, (listed, before, after)) = at_the_console(&firmware, 32.0, None, Some(telemetry), session);
     // CRSF frames, one of them with the mode, marked as one that does not arm.
     let mut telemetry = Vec::new();
     listener.read_to_end(&mut telemetry).unwrap();
@@ -153,7 +153,7 @@ fn the_brown_out_level_is_set(image: &Path, board: &str) {
         )
     };
     let (flight, (before, after, _)) =
-        at_the_console(&firmware, 8.0, Some(BoardFault::FactoryOptions), None, session);
+        at_the_console(&firmware, 24.0, Some(BoardFault::FactoryOptions), None, session);
     assert!(
         before.contains("brown-out level 0, expected 3"),
         "{board}: {before}"
@@ -207,7 +207,7 @@ fn a_motor_a_servo_live_numbers_and_the_self_test_are_tried_at_the_console() {
         type_in(user, "servo 1 pulse 900\r", "any key ends it");
         tested
     };
-    let (flight, tested) = at_the_console(&firmware, 14.0, None, None, session);
+    let (flight, tested) = at_the_console(&firmware, 40.0, None, None, session);
     // The radio alone is silent.
     assert!(tested.contains("\n1 of 17 failed"), "{tested}");
     assert!(tested.contains("\nFAIL  receiver           silent"), "{tested}");
