@@ -69,7 +69,7 @@ fn draw(random: &mut Uniform) -> String {
 }
 
 #[test]
-#[ignore = "flies a hundred missions"]
+#[ignore = "minutes of simulated flight: .ci/campaign flies it"]
 fn the_check_and_the_flights_agree_where_it_matters() {
     let mut random = Uniform(SEED);
     let texts: Vec<String> = (0..VEHICLES).map(|_| draw(&mut random)).collect();

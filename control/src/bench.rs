@@ -114,9 +114,6 @@ macro_rules! bench_refusals {
         pub enum BenchRefusal { $($(#[$doc])+ $name,)+ }
 
         impl BenchRefusal {
-            /// Every one, the most basic first.
-            pub const ALL: &'static [Self] = &[$(Self::$name),+];
-
             /// For the console.
             pub const fn text(self) -> &'static str {
                 match self { $(Self::$name => $text,)+ }
@@ -136,7 +133,7 @@ bench_refusals! {
     ArmsClosed = "arms closed: perch switch on and off opens them";
     /// Whether it hangs on its arms has not been found out.
     GripUnknown = "pressure sensors silent: whether the arms hold is not known";
-    /// Nobody has said that the propellers are off.
+    /// The builder has not confirmed that the propellers are off.
     PropellersOn = "say 'propellers off' first, once they are";
     /// The motors' path runs at the sensor's pace.
     ImuSilent = "inertial sensor silent: motors wait for it";

@@ -73,7 +73,7 @@ pub struct BenchArm {
     pub servo: ServoSpec,
     /// Time constant of the rotor, s.
     pub rotor_tau: f64,
-    /// What the stack believes.
+    /// Parameters of the stack, which may differ from the arm that is there.
     pub params: Params,
     /// Outer diameter of the pipe, m.
     pub diameter: f64,

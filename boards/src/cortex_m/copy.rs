@@ -1,7 +1,8 @@
 //! Copies of whole words, as the compiler calls them for every message that is longer than 64 bytes.
 //!
 //! What `compiler_builtins` has moves one word in five instructions; this moves eight in four. Its symbols are weak, so
-//! these take their place in the whole image. The rig compares every length (`hil/rig/tests/rig/t11_copies.rs`).
+//! these take their place in the whole image. The rig compares every count of words up to 32 and
+//! every rest of bytes (`hil/rig/tests/rig/t11_copies.rs`).
 
 use core::arch::global_asm;
 

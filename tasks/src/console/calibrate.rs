@@ -442,7 +442,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
     }
 }
 
-/// The value to a thousandth: no calibration is better, and nobody reads more.
+/// The value to a thousandth: no calibration is better.
 fn thousandths(value: f32) -> f32 {
     let half = if value < 0.0 { -0.5 } else { 0.5 };
     (value * 1000.0 + half) as i32 as f32 / 1000.0

@@ -11,7 +11,7 @@ use crate::ports::{PortError, SerialInput};
 
 /// Most keys that one look at them takes: a line that is full of noise must not hold its reader.
 const KEYS: usize = 256;
-/// Stands for a line that is broken, as Ctrl-C: no command goes on for it.
+/// Stands for a line that is broken, as Ctrl-C: every command ends with it.
 pub(super) const CANCEL: u8 = 0x03;
 
 /// A terminal's keyboard.

@@ -95,7 +95,7 @@ pub(super) fn wake(user: &mut TcpStream) {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     let (heard_at, telemetry) = terminal("--telemetry");
     let mut listener = TcpStream::connect((Ipv4Addr::LOCALHOST, heard_at)).unwrap();
@@ -177,7 +177,7 @@ fn the_brown_out_level_is_set(image: &Path, board: &str) {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn the_brown_out_level_of_a_new_chip_is_set_at_the_console() {
     the_brown_out_level_is_set(image(), "matek-h743");
 }

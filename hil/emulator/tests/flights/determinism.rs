@@ -26,7 +26,7 @@ fn one_seed_is_one_run_on_the_small_board() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn one_seed_is_one_run_on_the_reference_board() {
     repeats(|scenario| fly(scenario, 1.0, &[]));
 }

@@ -103,7 +103,7 @@ fn lands_without_data_ready(flight: &Flight) {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_cut_data_ready_line_is_named_and_the_vehicle_lands_on_timed_reads() {
     lands_without_data_ready(&with(CUT, AIRBORNE + 15.0));
 }
@@ -114,7 +114,7 @@ fn a_cut_data_ready_line_is_landed_with_on_the_small_board() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_data_ready_line_that_is_cut_from_the_start_refuses_arming_until_it_is_joined() {
     let flight = fly(&hover(22.0), 1.0, &[(0.0, CUT), (8.0, JOINED)]);
     let refused = told(&flight, 0.0, &format!("DISARMED: {LINE}"));
@@ -146,7 +146,7 @@ fn a_flipped_word_of_the_inertial_sensor_now_and_then_is_flown_through() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_silenced_arm_sensor_is_named_and_flown_without() {
     let troubles = [
         (AIRBORNE, Trouble::Board(BoardFault::ArmUnplugged(2, true))),
@@ -165,14 +165,14 @@ fn a_silent_receiver_ends_in_the_failsafe() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn flipped_bits_on_the_receivers_line_are_flown_through() {
     let flight = fly_small(&hop(), &[(AIRBORNE, Trouble::RadioBits(97))]);
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_sagging_battery_ends_in_the_failsafe() {
     let flight = with_small(Trouble::BatteryShare(0.75), AIRBORNE + 10.0);
     assert!(told(&flight, AIRBORNE, "battery").is_some(), "{}", log(&flight));
@@ -200,7 +200,7 @@ fn a_pulled_reset_pin_is_told_as_such() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_bus_whose_clock_is_held_keeps_the_background_only() {
     // 300 us per byte: reading one sensor takes 4 ms.
     let troubles = [(AIRBORNE, Trouble::Board(BoardFault::ClockHeld(0, 300)))];
@@ -269,7 +269,7 @@ fn overflows(task: &'static str, small: bool) {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_stack_that_overflows_stops_the_motors_and_is_told_at_the_next_start() {
     overflows("control", false);
 }
@@ -286,7 +286,7 @@ fn a_fault_within_a_fault_locks_up_and_ends_by_the_watchdog_with_the_motors_stop
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() {
     let troubles = [
         (AIRBORNE, Trouble::BatteryShare(0.4)),
@@ -317,7 +317,7 @@ fn a_shorted_pressure_sensor_speaks_before_the_arms_close() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_cut_pressure_sensor_proves_no_grip_and_the_rotors_keep_turning() {
     // In still air: the pilot touches at the first try.
     let mut scenario = Scenario {

@@ -34,7 +34,7 @@ fn answers_contact_in_time(flight: &Flight, seconds: usize) {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn the_image_perches_at_half_an_instruction_a_cycle() {
     let flight = fly(&scenario("perch-short.toml"), 0.5, &[]);
     assert!(
@@ -58,7 +58,7 @@ fn the_image_perches_at_half_an_instruction_a_cycle() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn the_small_board_perches() {
     let flight = fly_small(&scenario("perch-short.toml"), &[]);
     assert!(

@@ -22,7 +22,7 @@ fn perch(seconds: f64) -> Scenario {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn with_the_old_pads_the_perch_fails_by_the_arm_whose_sensor_reads_too_little() {
     let flight = fly(&perch(60.0), 1.0, &OLD_PADS);
     let closing = told(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));

@@ -47,7 +47,7 @@ fn the_small_board_flies_what_is_stored() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
     let scenario = start(|s| s.params.motor_protocol = MotorProtocol::Dshot600);
     let flight = fly(
@@ -80,7 +80,7 @@ fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn storage_that_is_corrupted_in_flight_speaks_after_the_next_reset() {
     let troubles = [
         (6.5, Trouble::Board(BoardFault::CorruptParameters)),

@@ -45,14 +45,14 @@ fn ends(protocol: MotorProtocol, interval: [f64; 2], last: f64) {
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_pulse_is_the_last_one_when_the_software_stands_still() {
     // At most 400 Hz; 100 Hz without mixes. A pulse under way ends, and none follows.
     ends(MotorProtocol::Pwm, [2500.0, 13_000.0], 0.0);
 }
 
 #[test]
-#[ignore = "campaign: minutes of emulated flight"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn so_is_a_short_pulse() {
     ends(MotorProtocol::Oneshot125, [900.0, 13_000.0], 0.0);
 }
