@@ -1,5 +1,8 @@
 //! The table of symptoms in docs/tuning.md is flown: `WRITE_DOCS=1 cargo test --test tuning` writes it.
 
+#[path = "common/printed.rs"]
+mod printed;
+
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -7,7 +10,6 @@ use sophie_sim::flight;
 use sophie_sim::record::{FlightRecord, SAMPLE_HZ, Sample, Silent};
 use sophie_sim::scenario::{Scenario, Step};
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/tuning.md");
 /// Height from which on the vehicle counts as in the air, m, and the time that is looked at from there, s.
 const AIRBORNE: f64 = 0.3;
 const WINDOW: usize = 10 * SAMPLE_HZ as usize;
@@ -162,17 +164,5 @@ fn the_symptoms_of_the_page_are_those_that_are_flown() {
     for case in &CASES {
         let _ = writeln!(table, "{}", row(case));
     }
-    let page = std::fs::read_to_string(PAGE).unwrap();
-    let (begin, end) = ("<!-- symptoms: begin -->\n", "<!-- symptoms: end -->");
-    let from = page.find(begin).unwrap() + begin.len();
-    let to = from + page[from..].find(end).unwrap();
-    if std::env::var_os("WRITE_DOCS").is_some() {
-        std::fs::write(PAGE, format!("{}{table}{}", &page[..from], &page[to..])).unwrap();
-    } else {
-        assert_eq!(
-            &page[from..to],
-            table,
-            "docs/tuning.md is old: WRITE_DOCS=1 cargo test --test tuning"
-        );
-    }
+    printed::holds("tuning", "symptoms", &table, "tuning");
 }

@@ -1,9 +1,11 @@
 //! The pads in docs/wiring.md are those of the boards' files: `WRITE_DOCS=1 cargo test --test wiring` writes the table.
 
+#[path = "common/printed.rs"]
+mod printed;
+
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/wiring.md");
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
 /// What hangs on the board, and the resources of its file that carry it.
@@ -136,17 +138,5 @@ fn the_pads_of_the_page_are_those_of_the_boards_files() {
         let cells = boards.each_ref().map(|(board, pins)| cell(board, pins, names));
         writeln!(table, "| {what} | {} |", cells.join(" | ")).unwrap();
     }
-    let page = std::fs::read_to_string(PAGE).unwrap();
-    let (begin, end) = ("<!-- pads: begin -->\n", "<!-- pads: end -->");
-    let from = page.find(begin).unwrap() + begin.len();
-    let to = from + page[from..].find(end).unwrap();
-    if std::env::var_os("WRITE_DOCS").is_some() {
-        std::fs::write(PAGE, format!("{}{table}{}", &page[..from], &page[to..])).unwrap();
-    } else {
-        assert_eq!(
-            &page[from..to],
-            table,
-            "docs/wiring.md is old: WRITE_DOCS=1 cargo test --test wiring"
-        );
-    }
+    printed::holds("wiring", "pads", &table, "wiring");
 }
