@@ -18,6 +18,10 @@ const THROTTLE: f64 = 0.3;
 const TILT_STEP: f64 = 1e-3;
 const DEEPEST: u32 = 2000;
 
+/// Share of the provable force that is kept for a touch beside the crown and for a sensor that reads low: the arm is tried
+/// centred and with a true sensor, and flights have taken up to 4.4 % more (docs/design-check.md).
+const RESERVE: f64 = 0.05;
+
 /// An arm that was tried.
 #[derive(Clone, Copy, Debug)]
 pub struct TriedArm {
@@ -68,9 +72,9 @@ fn bench(scenario: &Scenario, arm: usize) -> BenchArm {
 ///
 /// Value: the largest force that the gripper asks of the tendon while the arm holds the grip pressure and its rotor stops,
 /// N; of an arm that it gives up, what the static balance takes with the rotor turning, where that is more.
-/// Limit: the force below which the gripper's law proves a grip. A row passes only where that law says that the arm holds.
+/// Limit: the force below which the gripper's law proves a grip, less a reserve of 5 %. A row passes only where that law says that the arm holds.
 pub fn rows(scenario: &Scenario, tries: &[TriedArm]) -> Vec<Row> {
-    let limit = f64::from(Config::from_params(&scenario.params).provable());
+    let limit = (1.0 - RESERVE) * f64::from(Config::from_params(&scenario.params).provable());
     let row = |tried: &TriedArm| {
         let TriedArm { arm, tried } = *tried;
         let holds = tried.grip.state == ArmState::Holding;
@@ -166,5 +170,14 @@ mod tests {
         (s.params.infill, s.params.gain_k) = (8.0, 6.0);
         let stiff = rows(&s, &tries(&s));
         assert!(stiff.iter().all(|row| !row.pass), "{stiff:?}");
+        // Centred it would hold, with 156 of the 157 N that are proven; in flight it did not.
+        (s.vehicle.infill, s.vehicle.gain_k, s.world.pipe_diameter) = (8.337, 4.38, 0.28);
+        (s.params.infill, s.params.gain_k) = (8.337, 4.38);
+        let tried = tries(&s);
+        assert!(
+            tried.iter().all(|t| t.tried.grip.state == ArmState::Holding),
+            "{tried:?}"
+        );
+        assert!(rows(&s, &tried).iter().all(|row| !row.pass));
     }
 }
