@@ -1,5 +1,5 @@
-//! The pages: what they link to exists, what they name of the sources exists, all of them are in the handbook, and those
-//! that are read in one go are short.
+//! The pages: their links and the sources they name exist, the handbook lists all of them, and the short ones are
+//! short.
 
 mod pages;
 
@@ -11,7 +11,7 @@ use sophie_control::params::Params;
 
 /// Pages outside `docs/`.
 const OUTSIDE: [&str; 3] = ["README.md", "CONTRIBUTING.md", "hil/README.md"];
-/// Most words of a page that is read in under ten minutes, at 200 a minute.
+/// Most words of a page read in under ten minutes, at 200 a minute.
 const SHORT: usize = 2000;
 /// Most lines of the README.
 const README_LINES: usize = 90;
@@ -129,7 +129,7 @@ fn the_lights_of_the_pilots_page_are_those_of_the_firmware() {
 #[test]
 fn the_numbers_of_calibration_and_safety_follow_from_the_defaults() {
     let p = Params::DEFAULT;
-    // Half a kilogram on a pressure sensor with its divider; 132 g on its area; four cells.
+    // 0.5 kg on a pressure sensor with its divider; 132 g on its area; four cells.
     let conductance = p.fsr_gain * 4.9 * p.fsr_divider;
     let (volts, pascals) = (3.3 * conductance / (1.0 + conductance), 1.3 / p.fsr_area);
     let tendon = p.servo_torque_max / p.reel_radius;

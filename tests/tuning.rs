@@ -1,4 +1,4 @@
-//! The table of symptoms in docs/tuning.md is flown: `WRITE_DOCS=1 cargo test --test tuning` writes it.
+//! The table of symptoms in docs/tuning.md comes from flights: `WRITE_DOCS=1 cargo test --test tuning` writes it.
 
 #[path = "common/printed.rs"]
 mod printed;
@@ -10,15 +10,15 @@ use sophie_sim::flight;
 use sophie_sim::record::{FlightRecord, SAMPLE_HZ, Sample, Silent};
 use sophie_sim::scenario::{Scenario, Step};
 
-/// Height from which on the vehicle counts as in the air, m, and the time that is looked at from there, s.
+/// Height of a vehicle in the air, m, and the time evaluated from there, s.
 const AIRBORNE: f64 = 0.3;
 const WINDOW: usize = 10 * SAMPLE_HZ as usize;
-/// Frequencies that are looked for, Hz.
+/// Range of evaluated frequencies, Hz.
 const FROM: f64 = 0.25;
 const STEP: f64 = 0.25;
 const COUNT: u32 = 80;
 
-/// A vehicle with something wrong with it, and what the pilot sees of it.
+/// A misconfigured vehicle and the symptom.
 struct Case {
     what: &'static str,
     seen: &'static str,
@@ -81,7 +81,7 @@ const CASES: [Case; 10] = [
     },
 ];
 
-/// Size (root mean square) of a signal's swing, and the frequency that most of it has, Hz.
+/// RMS of a signal's swing, and its dominant frequency, Hz.
 struct Swing {
     size: f64,
     hz: f64,
@@ -108,7 +108,7 @@ fn swing(signal: &[f64]) -> Swing {
     }
 }
 
-/// Up, a hover, a roll either way, a hover, down.
+/// Flies up, a hover, a roll either way, a hover, down.
 fn flown(case: &Case) -> FlightRecord {
     let mut scenario = Scenario {
         steps: vec![

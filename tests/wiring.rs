@@ -1,4 +1,4 @@
-//! The pads in docs/wiring.md are those of the boards' files: `WRITE_DOCS=1 cargo test --test wiring` writes the table.
+//! The pads in docs/wiring.md are those of the board files: `WRITE_DOCS=1 cargo test --test wiring` writes the table.
 
 #[path = "common/printed.rs"]
 mod printed;
@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
-/// What hangs on the board, and the resources of its file that carry it.
+/// Signals and the resources of the board file that carry them.
 const SIGNALS: [(&str, &[&str]); 14] = [
     (
         "motors 1 to 4",
@@ -45,7 +45,7 @@ const SIGNALS: [(&str, &[&str]); 14] = [
     ("buzzer", &["lights.buzzer"]),
 ];
 
-/// How a board's maker names the pads of pins; elsewhere the pin's name is all that there is.
+/// The maker's name of a pin's pad; without one the pin's name stands.
 fn pad(board: &str, pin: &str) -> Option<&'static str> {
     Some(match (board, pin) {
         ("matek-h743", "PD12") => "S7",
@@ -94,7 +94,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
     })
 }
 
-/// The pins of a board's `assign_resources!`, by `group.name`.
+/// Pins of a board's `assign_resources!`, by `group.name`.
 fn pins(board: &str) -> BTreeMap<String, String> {
     let path = format!(
         "{}/boards/src/{}.rs",

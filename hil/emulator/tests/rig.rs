@@ -1,5 +1,5 @@
-//! A board's tests (`hil/rig`) on the emulated board: all pass on a sound rig, and each fails on a rig with the defect
-//! that it is there to find.
+//! The tests of `hil/rig` on the emulated board: all pass on a sound rig, and each fails with the defect that it tests
+//! for.
 
 #![allow(missing_docs)]
 
@@ -12,7 +12,7 @@ use sophie_emulator::emulator::rig::{Defect, read, run};
 use sophie_emulator::gaps;
 use sophie_emulator::suite::{self, Test};
 
-/// The image: the one that `SOPHIE_RIG_ELF` names, or a new one.
+/// The image that `SOPHIE_RIG_ELF` names, or a built one, and its tests.
 static IMAGE: LazyLock<(Firmware, Vec<Test>)> = LazyLock::new(|| {
     let path = std::env::var_os("SOPHIE_RIG_ELF").map_or_else(build, PathBuf::from);
     let image = read(&path).expect("the tests' image");
@@ -33,7 +33,7 @@ fn build() -> PathBuf {
     PathBuf::from(printed.lines().last().expect("the path of the ELF"))
 }
 
-/// Status and last words of the test called `name` on a rig with `defect`.
+/// Status and last words of the test `name` on a rig with `defect`.
 fn verdict(name: &str, defect: Defect) -> (Option<u32>, String) {
     let (image, tests) = &*IMAGE;
     let test = tests.iter().find(|test| test.name == name).expect(name);
@@ -49,7 +49,7 @@ fn verdict(name: &str, defect: Defect) -> (Option<u32>, String) {
     (ended.status, last)
 }
 
-/// The tests that a defect makes fail, each with a part of what it then says.
+/// A defect, the tests that it makes fail, and a part of each one's message.
 type Found = (Defect, &'static [(&'static str, &'static str)]);
 
 const TRIED: [Found; 8] = [
@@ -116,14 +116,14 @@ const TRIED: [Found; 8] = [
     ),
 ];
 
-/// What the image alone decides: nothing outside the chip can make them fail.
+/// Tests of the chip alone: no defect of the rig makes them fail.
 const WITHIN: [&str; 3] = [
     "t00_clock::the_core_runs_at_its_clock",
     "t00_clock::the_time_base_never_runs_back",
     "t11_copies::a_copy_is_exact_and_nothing_around_it_changes",
 ];
 
-/// Each test that is tried with `defect` passes on a sound rig and fails with it, saying what is wrong.
+/// Each test for `defect` passes on a sound rig and fails with it, with its message.
 fn found(defect: Defect) {
     for (name, words) in TRIED.iter().filter(|(d, _)| *d == defect).flat_map(|(_, f)| *f) {
         let (status, told) = verdict(name, Defect::None);
