@@ -1,4 +1,4 @@
-//! A chart as SVG: axes with ticks and units, curves, points, levels, maps.
+//! Charts as SVG: axes, curves, points, levels, maps.
 
 use super::model::{Axis, Chart, Look, Series};
 use sophie_report::scale::ticks;
@@ -9,10 +9,10 @@ const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 330.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
-/// Room above the field for labels of uprights.
+/// Room for labels of uprights.
 const TOP: f64 = 20.0;
 const BOTTOM: f64 = 44.0;
-/// Most points drawn of a curve: about two per pixel.
+/// Most points of a curve: about two per pixel.
 const POINTS: usize = 900;
 
 struct Frame {
@@ -72,7 +72,6 @@ fn limits(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64) -> (f64, 
     (low - margin * span, high + margin * span)
 }
 
-/// Ticks of an axis and their labels.
 fn marks(axis: &Axis, (low, high): (f64, f64), count: usize, digits: usize) -> Vec<(f64, String)> {
     if axis.names.is_empty() {
         return ticks(low, high, count)
@@ -87,7 +86,7 @@ fn marks(axis: &Axis, (low, high): (f64, f64), count: usize, digits: usize) -> V
         .collect()
 }
 
-/// The chart as SVG, with its legend as a list before it.
+/// SVG, with the legend as a list before it.
 pub fn draw(chart: &Chart) -> String {
     let f = Frame::of(chart);
     let mut svg = format!(
@@ -132,7 +131,7 @@ pub fn draw(chart: &Chart) -> String {
     for (at, word) in &chart.uprights {
         let x = f.px(*at);
         svg += &line(x, TOP, x, bottom, "level");
-        // Centred on the line, but within the drawing.
+        // Centred on the line, within the drawing.
         let half = 3.2 * word.chars().count() as f64;
         let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
         svg += &text(middle, TOP - 5.0, "small mid", word);

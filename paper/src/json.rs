@@ -14,7 +14,7 @@ pub fn json(sections: &[Section]) -> String {
         "version": env!("CARGO_PKG_VERSION"),
         "sections": sections.iter().map(section).collect::<Vec<_>>(),
     });
-    // Numbers, text and string keys only: serialisation cannot fail.
+    // Numbers, text and string keys only: cannot fail.
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 

@@ -11,20 +11,19 @@ const AT_ONCE: usize = 64;
 pub struct Sockets {
     /// Console, both ways.
     pub console: Option<Terminal>,
-    /// Board's output to its receiver; input is dropped, as the line is the pilot's.
+    /// Output to the receiver; input is dropped, as the pilot has the line.
     pub telemetry: Option<Terminal>,
 }
 
-/// A listener on the loopback interface with one connection, the latest.
+/// A loopback listener; the latest connection counts.
 pub struct Terminal {
     listener: TcpListener,
     user: Option<TcpStream>,
 }
 
 impl Terminal {
-    /// A listener on `port`, as requested by `option`.
-    ///
-    /// # Errors
+    /// A listener on `port`; errors name `option`.
+    /// \n # Errors
     /// One line: the port, and why it is unavailable.
     pub fn listen(option: &str, port: u16) -> Result<Self, String> {
         let refused = |e: std::io::Error| format!("{option} {port}: cannot listen on 127.0.0.1:{port}: {e}");
@@ -33,7 +32,7 @@ impl Terminal {
         Ok(Self { listener, user: None })
     }
 
-    /// Sends the board's `said` to the user; returns the user's input. Never waits.
+    /// Sends `said` and returns the user's input, without waiting.
     pub fn exchange(&mut self, said: &[u8]) -> Vec<u8> {
         if let Ok((user, _)) = self.listener.accept()
             && user.set_nonblocking(true).is_ok()

@@ -2,9 +2,8 @@
 
 use cortex_m::peripheral::{DWT, Peripherals};
 
-/// Starts the counter. Called once, before anything else takes the core's peripherals.
-///
-/// # Panics
+/// Starts the counter, before anything else takes the core's peripherals.
+/// \n # Panics
 /// When called later.
 pub fn start() {
     let Some(mut core) = Peripherals::take() else {

@@ -31,7 +31,7 @@ const MIXERS: [Compared; 5] = [
 /// Places in [`MIXERS`].
 pub const RIGID: usize = 0;
 pub const PAPER: usize = 1;
-/// Rigid mixer with its yaw gain over 1 - C_ψ: its loop is as fast as the flexible mixer's.
+/// Rigid mixer with its yaw gain over 1 - C_ψ, as fast as the flexible one.
 pub const FAIR: usize = 2;
 pub const FLEXIBLE: usize = 3;
 pub const SIGN_AWARE: usize = 4;
@@ -79,14 +79,14 @@ impl Job {
     }
 }
 
-/// RMS errors of a flight, degrees; `None` if the vehicle was lost.
+/// RMS errors of a flight, degrees; `None` if lost.
 pub struct Outcome {
     pub roll: Option<f64>,
     pub yaw: Option<f64>,
     lost: bool,
 }
 
-/// All flights: mismatched arms at all gains, modelled ones at the stack's.
+/// Mismatched arms at all gains, modelled ones at the stack's.
 pub struct Grid {
     jobs: Vec<Job>,
     outcomes: Vec<Outcome>,

@@ -10,7 +10,6 @@ use super::super::model::{Section, Table, num};
 use super::{mismatch, programme};
 
 const INFILLS: [f64; 3] = [5.0, 6.9, 10.0];
-/// Seeds 1 to this.
 const SEEDS: u64 = 4;
 
 struct Job {

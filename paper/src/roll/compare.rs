@@ -38,7 +38,7 @@ impl Row<'_> {
         }
     }
 
-    /// Δα_max, with the step's hardness from ΔT/T = `share`.
+    /// Δα_max; ΔT/T = `share` sets the step's hardness.
     fn delta_alpha(&self, share: f64) -> [Comparison; 3] {
         let fitted = self.flights.fitted;
         let command = format!("hardness of the step from ΔT/T = {share} at ρ 8 %, K from this column");
@@ -82,7 +82,7 @@ impl Row<'_> {
         ]
     }
 
-    /// What a softer command saves of φ + Δα.
+    /// Reduction of φ + Δα by a softer command.
     fn ratio(&self) -> [Comparison; 2] {
         let ratio = |what: &str, arms| {
             let of = |case| self.flights.found(case, self.row.infill_percent, arms);

@@ -1,4 +1,4 @@
-//! The control laws on flight-like inputs, folded by stage: bit-identical on every machine.
+//! Control laws on flight-like inputs, hashed by stage: bit-identical on every machine.
 
 use core::fmt::Arguments;
 
@@ -11,9 +11,8 @@ use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, Wrench};
 use sophie_mixers::{Mixer, Variant};
 
-/// Inputs per function of the maths module.
 const INPUTS: u32 = 4096;
-/// Control steps per mixer: 3 s of flight, after calibration at rest.
+/// Control steps per mixer: 3 s of flight after calibration.
 const STEPS: u32 = 3000;
 const REST: u32 = 3000;
 const READINGS: usize = 4;
@@ -111,7 +110,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     print(format_args!("{name} mixer: {mixed}"));
 }
 
-/// Setpoint of a step: mostly attitudes; also rates, the pipe and off it, a wrench.
+/// Setpoints: mostly attitudes; also rates, the pipe and off it, a wrench.
 fn setpoint(stretch: u32, noise: &mut Noise) -> Setpoint {
     let [roll, pitch, yaw_rate] = [0.5 * noise.unit(), 0.5 * noise.unit(), 0.5 * noise.unit()];
     let thrust = 18.0 + 16.0 * noise.unit();

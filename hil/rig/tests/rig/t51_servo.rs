@@ -1,4 +1,4 @@
-//! Servo pulses at the end of a jumper. The servos are unplugged.
+//! Servo pulses through a jumper. Servos unplugged.
 
 #[embedded_test::tests]
 mod tests {

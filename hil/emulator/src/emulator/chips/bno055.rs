@@ -35,7 +35,7 @@ mod reg {
 const MS: u64 = 1_000_000;
 /// Boot time from power-on and from a reset, ns.
 const BOOT: [u64; 2] = [400 * MS, 650 * MS];
-/// Into configuration mode, and out of it, ns.
+/// Into and out of configuration mode, ns.
 const SWITCH: [u64; 2] = [19 * MS, 7 * MS];
 /// Fusion period, ns.
 const FUSION: u64 = 10 * MS;
@@ -59,7 +59,6 @@ pub struct Bno055 {
     page: u8,
     pointer: u8,
     first: bool,
-    /// End of booting, ns.
     boots_at: u64,
     /// Next mode and its time, ns.
     switch: Option<(u8, u64)>,
@@ -108,7 +107,6 @@ impl Bno055 {
         self.registers[usize::from(reg::OPR_MODE)] & 0x0F
     }
 
-    /// Updates the registers to `now`.
     fn settle(&mut self, now: u64) {
         if let Some((mode, at)) = self.switch
             && at <= now
