@@ -26,9 +26,8 @@ pub fn rc_frame(sticks: &Sticks) -> Frame {
     channel_frame(&sticks.to_channels())
 }
 
-/// The frame of these 11-bit channel counts.
-///
-/// # Panics
+/// Frame of 11-bit channel counts.
+/// \n # Panics
 /// Never: 26 bytes fit.
 #[must_use]
 pub fn channel_frame(channels: &[u16; CHANNELS]) -> Frame {
@@ -130,7 +129,7 @@ mod tests {
             for byte in &bytes[..n] {
                 t.take(&[*byte]);
             }
-            // A broken start may swallow the next frame; the one after is decoded.
+            // A broken start may swallow the next frame.
             t.take(&bytes[..n]);
             t.take(&bytes[..n]);
             assert_eq!((t.mode, t.reason.as_str()), (Some(mode), reason));

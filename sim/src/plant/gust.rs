@@ -24,7 +24,7 @@ pub struct Gust {
 }
 
 impl Gust {
-    /// Gusts of `force_rms` N (world axes; half of it vertically) and `moment_rms` N·m (body axes).
+    /// `force_rms` in N (world axes; half of it vertically), `moment_rms` in N·m (body axes).
     #[must_use]
     pub fn new(force_rms: f64, moment_rms: f64, rng: Pcg64Mcg) -> Self {
         Self {

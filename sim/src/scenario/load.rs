@@ -12,13 +12,11 @@ use super::Scenario;
 use super::error::{Place, ScenarioError};
 use super::read::Source;
 
-/// Larger than any scenario; refuses devices and wrong files.
+/// Refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Settings of the command line, which override the file's.
-///
-/// Values must be within the ranges of [`keys`](super::keys). The stack's parameters follow them like the file's
-/// vehicle; the file's `[params]` overrides both.
+/// Command line settings, which override the file's; values are within the ranges of [`keys`](super::keys). The stack's
+/// parameters follow them like the file's vehicle, but for the file's `[params]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Infill, %.
@@ -52,9 +50,8 @@ impl Overrides {
 }
 
 impl Scenario {
-    /// Reads a scenario file; the default `name` is the file's.
-    ///
-    /// # Errors
+    /// Reads a file, whose name is the default `name`.
+    /// \n # Errors
     /// One line: file, line, key, value, what is allowed.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
@@ -97,9 +94,8 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Parses a scenario; `file` is its name for messages.
-    ///
-    /// # Errors
+    /// Parses a scenario; messages name `file`.
+    /// \n # Errors
     /// As [`Scenario::load`].
     pub fn parse(text: &str, file: &str, overrides: &Overrides) -> Result<Self, ScenarioError> {
         Source { file, text }.scenario(overrides)

@@ -32,7 +32,7 @@ pub struct BatteryInputs {
 }
 
 impl BatteryInputs {
-    /// The inputs of a board with errors drawn from `rng`.
+    /// Errors drawn from `rng`.
     pub fn new(rng: &mut impl Rng) -> Self {
         let mut within = |size: f64| Uniform::new(-size, size).map_or(0.0, |u| u.sample(rng));
         Self {
