@@ -1,13 +1,12 @@
-//! Tables that stand in a page of docs/ between two markers, and are printed by a test.
+//! Tables between two markers in a page of docs/, printed by a test.
 
 use std::fs;
 use std::path::Path;
 
-/// `docs/{name}.md` has `table` between the markers of `part`, or gets it when `WRITE_DOCS` is set; `test` is the test
-/// that writes it.
-///
-/// # Panics
-/// If the page has no such markers, or another table.
+/// Requires `table` between the markers of `part` in `docs/{name}.md`, or writes it if `WRITE_DOCS` is set; `test`
+/// writes it.
+/// \n # Panics
+/// If markers are missing or the table differs.
 pub fn holds(name: &str, part: &str, table: &str, test: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/{name}.md"));
     let page = fs::read_to_string(&path).unwrap();

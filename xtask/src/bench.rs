@@ -9,10 +9,10 @@ use crate::{Error, build};
 
 const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
-/// Printed before the emulator is built: its code generator takes long.
+/// Printed before the emulator's slow build.
 const FIRST_BUILD: &str = "building the emulated board: minutes the first time, seconds from then on";
 
-/// The emulator's options without a value, and those with one and its name.
+/// The emulator's options without a value, and those with one.
 const ALONE: [&str; 2] = ["--json", "--factory"];
 const WITH_VALUE: [(&str, &str); 5] = [
     ("--seed", "N"),
@@ -30,9 +30,8 @@ pub struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    /// Parses `words`, the arguments behind the verb, before the minutes of building; the emulator checks the values.
-    ///
-    /// # Errors
+    /// Parses `words` behind the verb, before the minutes of building; the emulator checks values.
+    /// \n # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("bench", words)?;
@@ -75,8 +74,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Builds and flies; returns the emulator's exit status.
-    ///
-    /// # Errors
+    /// \n # Errors
     /// The firmware does not build.
     pub fn fly(&self) -> Result<ExitCode, Error> {
         let (elf, _) = crate::firmware(self.board, self.variant)?;
@@ -88,7 +86,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The emulated board at the start of `words`, the arguments behind `verb`, and the other arguments.
+/// The emulated board that `words` behind `verb` begins with, and the rest.
 fn emulated<'w, 'a>(verb: &str, words: &'w [&'a str]) -> Result<(&'static Board, &'w [&'a str]), String> {
     let allowed = EMULATED.join(", ");
     let (name, rest) = match words {
@@ -104,14 +102,12 @@ fn emulated<'w, 'a>(verb: &str, words: &'w [&'a str]) -> Result<(&'static Board,
 /// A count of the control path's instructions.
 pub struct Chain<'a> {
     pub board: &'static Board,
-    /// Number of steps, if given.
     steps: Option<&'a str>,
 }
 
 impl<'a> Chain<'a> {
-    /// Parses `words`, the arguments behind the verb.
-    ///
-    /// # Errors
+    /// Parses `words` behind the verb.
+    /// \n # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("chain", words)?;
@@ -127,9 +123,8 @@ impl<'a> Chain<'a> {
         Ok(Self { board, steps })
     }
 
-    /// Builds, flies and prints the counts; returns the emulator's exit status.
-    ///
-    /// # Errors
+    /// Builds, flies, prints the counts; returns the emulator's exit status.
+    /// \n # Errors
     /// The firmware does not build.
     pub fn count(&self) -> Result<ExitCode, Error> {
         let (elf, _) = crate::firmware(self.board, Variant::Plain)?;
@@ -138,9 +133,8 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// Builds the emulator and runs its binary `name` with `arguments` and the caller's additions; returns its exit status.
-///
-/// # Errors
+/// Builds and runs the emulator's binary `name` with `arguments` and the caller's additions; returns its exit status.
+/// \n # Errors
 /// Cargo does not start.
 pub fn emulator<'a>(
     name: &str,
@@ -157,7 +151,7 @@ pub fn emulator<'a>(
     ))
 }
 
-/// Command to build and run the emulator's binary `name`, with cargo's progress on stderr.
+/// With cargo's progress on stderr.
 fn run(name: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // The emulator declares a newer Rust than it needs.
@@ -168,7 +162,7 @@ fn run(name: &str) -> Command {
         "--locked",
         "--ignore-rust-version",
     ]);
-    // Not from the workspace's folder: paths in the arguments are the caller's.
+    // Not from the workspace: paths in arguments are the caller's.
     command
         .arg("--manifest-path")
         .arg(build::root().join("Cargo.toml"));

@@ -18,10 +18,8 @@ pub const PROBE_RS: Tool = Tool {
     install: "see https://probe.rs/docs/getting-started/installation",
 };
 
-/// Writes a chip through its own USB loader.
-///
-/// A program instead of a crate (`dfu-libusb`, `dfu-nusb`): every system has it, users flash autopilots with it, and it
-/// handles the quirks of ST's loaders; a crate would add a USB library to every build of xtask.
+/// Writes a chip through its USB loader. A program instead of a crate (`dfu-libusb`, `dfu-nusb`): users have it from
+/// other autopilots, and it handles the quirks of ST's loaders; a crate would add a USB library to xtask.
 pub const DFU_UTIL: Tool = Tool {
     program: "dfu-util",
     install: "Debian, Ubuntu: apt-get install dfu-util; macOS: brew install dfu-util; else https://dfu-util.sourceforge.net",
@@ -34,10 +32,9 @@ impl Tool {
         command
     }
 
-    /// Writes a chip through its own USB loader.
-    ///
-    /// A program instead of a crate (`dfu-libusb`, `dfu-nusb`): every system has it, and it handles the quirks of ST's
-    /// loaders; a crate would add a USB library to every build of xtask.
+    /// Prints `command` and runs it.
+    /// \n # Errors
+    /// The program is not installed, or fails.
     pub fn run(&self, command: &mut Command) -> Result<(), Error> {
         eprintln!("{}", build::shown(command));
         let status = command.status().map_err(|e| self.missing(&e))?;
@@ -48,9 +45,8 @@ impl Tool {
         }
     }
 
-    /// Runs the command and returns its output.
-    ///
-    /// # Errors
+    /// Runs `command`; returns its output.
+    /// \n # Errors
     /// The program is not installed.
     pub fn ask(&self, command: &mut Command) -> Result<Output, Error> {
         let output = command.stdin(Stdio::null()).output();
@@ -65,9 +61,8 @@ impl Tool {
     }
 }
 
-/// Checks that a probe is plugged in.
-///
-/// # Errors
+/// Checks for a connected probe.
+/// \n # Errors
 /// probe-rs is not installed, or lists none.
 pub fn probe(board: &Board) -> Result<(), Error> {
     let listed = PROBE_RS.ask(&mut PROBE_RS.command(&["list"]))?;
@@ -82,7 +77,7 @@ pub fn probe(board: &Board) -> Result<(), Error> {
     .into())
 }
 
-/// `probe-rs list` numbers the probes: `[0]: STLink V3 -- …`.
+/// Probes are numbered: `[0]: STLink V3 -- …`.
 fn names_a_probe(listed: &str) -> bool {
     listed.lines().any(|line| line.trim_start().starts_with('['))
 }

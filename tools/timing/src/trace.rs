@@ -1,13 +1,12 @@
-//! The executors' events, as a firmware with the feature `trace` logs them.
-//!
-//! `trace task ADDRESS LEVEL NAME` names a task, `trace NUMBER: [bytes]` holds events from the NUMBERth since the start
-//! on, eight bytes each (format: `boards/src/cortex_m/trace.rs`), `trace lost COUNT` counts those lost by the board.
+//! Executor events of a firmware with the feature `trace`.
+//! \n `trace task ADDRESS LEVEL NAME` names a task; `trace NUMBER: [bytes]` holds events from the NUMBERth since the
+//! start, eight bytes each (format: `boards/src/cortex_m/trace.rs`); `trace lost COUNT` counts lost ones.
 
 use sophie_tasks::deadline::Level;
 
 use crate::live::Garbled;
 
-/// Bits of an address kept by an event.
+/// Address bits in an event.
 const ADDRESS: u32 = 0x000F_FFFC;
 
 /// What happened.
@@ -63,9 +62,8 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Takes a log line; true if it was of the trace.
-    ///
-    /// # Errors
+    /// Takes a line; true if it was of the trace.
+    /// \n # Errors
     /// A garbled trace line.
     pub fn take(&mut self, line: &str) -> Result<bool, Garbled> {
         let Some((_, rest)) = line.split_once("trace ") else {
@@ -182,7 +180,6 @@ mod tests {
             exception: 54,
         };
         assert_eq!(trace.events[0], expected);
-        // Across the wrap.
         assert_eq!(trace.events[1].at, expected.at + 3);
     }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Count;
 use crate::{Error, build};
 
-/// Permitted relative increase of a stage: compilers differ.
+/// Permitted relative increase: compilers differ.
 const TOLERANCE: f64 = 0.03;
 
 #[derive(Clone, Copy, Deserialize, Serialize)]
@@ -25,9 +25,8 @@ fn path() -> PathBuf {
     build::root().join("hil/qemu/cost/baseline.toml")
 }
 
-/// Compares with the baseline and reports decreases.
-///
-/// # Errors
+/// Compares with the baseline, reports decreases.
+/// \n # Errors
 /// Every increase, one per line.
 pub fn compare(counts: &[Count]) -> Result<(), Error> {
     let baseline: Baseline = toml::from_str(&fs::read_to_string(path())?)?;
