@@ -10,7 +10,6 @@ mod command;
 
 use self::command::{Temp, command, refused, sophie, text};
 
-/// Names of the directory's entries.
 fn names(temp: &Temp) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(&temp.0)
         .unwrap()
@@ -160,7 +159,7 @@ fn help_and_version_are_on_stdout() {
     }
 }
 
-/// Stdout of a command that succeeds without stderr.
+/// Requires success and empty stderr.
 fn shown(temp: &Temp, args: &[&str]) -> String {
     let output = sophie(temp, args);
     let complaints = text(&output.stderr);
@@ -209,7 +208,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     );
 }
 
-/// Everything under `path`, recursively.
+/// Recursively.
 fn below(path: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(path)
         .into_iter()

@@ -11,16 +11,15 @@ use sophie_control::params::Params;
 
 /// Pages outside `docs/`.
 const OUTSIDE: [&str; 3] = ["README.md", "CONTRIBUTING.md", "hil/README.md"];
-/// Most words of a page read in under ten minutes, at 200 a minute.
+/// Words read in ten minutes, at 200 a minute.
 const SHORT: usize = 2000;
-/// Most lines of the README.
 const README_LINES: usize = 90;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every page by its path from the root.
+/// By path from the root.
 fn all() -> BTreeMap<PathBuf, Page> {
     let docs = std::fs::read_dir(root().join("docs")).unwrap();
     let docs = docs.map(|entry| Path::new("docs").join(entry.unwrap().file_name()));

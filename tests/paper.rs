@@ -7,7 +7,6 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// A directory removed after its test.
 struct Temp(PathBuf);
 
 impl Temp {

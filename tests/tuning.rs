@@ -10,15 +10,14 @@ use sophie_sim::flight;
 use sophie_sim::record::{FlightRecord, SAMPLE_HZ, Sample, Silent};
 use sophie_sim::scenario::{Scenario, Step};
 
-/// Height of a vehicle in the air, m, and the time evaluated from there, s.
+/// Height, m, and evaluated time from there, s.
 const AIRBORNE: f64 = 0.3;
 const WINDOW: usize = 10 * SAMPLE_HZ as usize;
-/// Range of evaluated frequencies, Hz.
+/// Evaluated frequencies, Hz.
 const FROM: f64 = 0.25;
 const STEP: f64 = 0.25;
 const COUNT: u32 = 80;
 
-/// A misconfigured vehicle and the symptom.
 struct Case {
     what: &'static str,
     seen: &'static str,
@@ -108,7 +107,6 @@ fn swing(signal: &[f64]) -> Swing {
     }
 }
 
-/// Flies up, a hover, a roll either way, a hover, down.
 fn flown(case: &Case) -> FlightRecord {
     let mut scenario = Scenario {
         steps: vec![

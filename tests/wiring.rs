@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
-/// Signals and the resources of the board file that carry them.
+/// With the resources of the board file that carry them.
 const SIGNALS: [(&str, &[&str]); 14] = [
     (
         "motors 1 to 4",
@@ -94,7 +94,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
     })
 }
 
-/// Pins of a board's `assign_resources!`, by `group.name`.
+/// From `assign_resources!`, by `group.name`.
 fn pins(board: &str) -> BTreeMap<String, String> {
     let path = format!(
         "{}/boards/src/{}.rs",

@@ -43,7 +43,6 @@ pub fn identify(p: &Printed) -> Identified {
     }
 }
 
-/// The arm as flown, and the gains that the paper leaves open.
 struct Flown<'a> {
     printed: &'a Printed,
     k: f64,

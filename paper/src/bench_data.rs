@@ -1,10 +1,10 @@
 //! Thrust-bench data of soft arms: CSV.
-//! \n The first line names the columns, in any order: `infill_percent` (%), `thrust_n` (N), `tilt_deg` (degrees, tip up
+//!
+//! The first line names the columns, in any order: `infill_percent` (%), `thrust_n` (N), `tilt_deg` (degrees, tip up
 //! positive), optionally `power_ratio` (P/P0, default 1). Blank lines and text after `#` are skipped.
 
 use std::path::Path;
 
-/// Largest file, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 /// Fewest rows for a fit: three more than the unknowns of one infill.
 pub const MIN_ROWS: usize = 6;
@@ -54,7 +54,8 @@ pub fn load(path: &Path) -> Result<Vec<Point>, String> {
 }
 
 /// Parses the text of `file`.
-/// \n # Errors
+///
+/// # Errors
 /// See [`load`].
 pub fn parse(text: &str, file: &str) -> Result<Vec<Point>, String> {
     let content = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();

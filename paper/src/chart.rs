@@ -4,7 +4,7 @@ use super::model::{Axis, Chart, Look, Series};
 use sophie_report::scale::ticks;
 use sophie_report::svg::{Rect, escape, line, path, rect, short, text};
 
-/// Drawing size, px; scales with the page.
+/// px; scales with the page.
 const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 330.0;
 const LEFT: f64 = 62.0;
@@ -12,7 +12,7 @@ const RIGHT: f64 = 14.0;
 /// Room for labels of uprights.
 const TOP: f64 = 20.0;
 const BOTTOM: f64 = 44.0;
-/// Most points of a curve: about two per pixel.
+/// About two per pixel.
 const POINTS: usize = 900;
 
 struct Frame {

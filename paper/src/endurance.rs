@@ -20,7 +20,7 @@ const DRIVE: f64 = 0.78;
 /// Electronics, W (assumed), and usable share of the charge (usual practice).
 const ELECTRONICS: f64 = 6.0;
 const USABLE: f64 = 0.8;
-/// Nominal voltages of the flight battery (4S) and the servo battery (2S), V.
+/// 4S flight battery and 2S servo battery, V.
 const FLIGHT_VOLTAGE: f64 = 14.8;
 /// Ideal hover power, W: four discs, momentum theory, thrusts leaning by `tilt` rad.
 fn ideal_power(mass: f64, tilt: f64) -> f64 {
@@ -28,14 +28,14 @@ fn ideal_power(mass: f64, tilt: f64) -> f64 {
     4.0 * thrust * (thrust / (2.0 * AIR * PI * RADIUS * RADIUS)).sqrt()
 }
 
-/// The calibrated model: FT = η E / P(m), m = m0 + slope (ρ - ρ0).
+/// FT = η E / P(m), m = m0 + slope (ρ - ρ0).
 struct Fudge {
     efficiency: f64,
     /// kg per % of infill.
     slope: f64,
 }
 
-/// Least squares over rows of Table V by Gauss-Newton in ln FT: ln FT = ln η E - ln P(m).
+/// Gauss-Newton in ln FT over rows of Table V: ln FT = ln η E - ln P(m).
 fn fit(p: &Printed, energy: f64) -> Fudge {
     let rows: Vec<_> = p
         .table_5
@@ -67,10 +67,9 @@ fn fit(p: &Printed, energy: f64) -> Fudge {
     }
 }
 
-/// Flight time by both power models.
 struct Flight<'a> {
     printed: &'a Printed,
-    /// Battery energy, J.
+    /// J.
     energy: f64,
     fudge: Fudge,
 }
@@ -85,23 +84,23 @@ impl<'a> Flight<'a> {
         }
     }
 
-    /// Ideal power, W, with the mass of the calibrated model.
+    /// Ideal, W, with the calibrated mass.
     fn power(&self, infill: f64) -> f64 {
         let mass = self.printed.mass() + self.fudge.slope * (infill - self.printed.text.infill_percent);
         ideal_power(mass, 0.0)
     }
 
-    /// Flight time without losses, min.
+    /// Without losses, min.
     fn ideal(&self, infill: f64) -> f64 {
         self.energy / 60.0 / self.power(infill)
     }
 
-    /// Flight time of the calibrated model, min.
+    /// min.
     fn fitted(&self, infill: f64) -> f64 {
         self.fudge.efficiency * self.energy / 60.0 / self.power(infill)
     }
 
-    /// Flight time with usual losses on `share` of the charge, min.
+    /// With usual losses on `share` of the charge, min.
     fn honest(&self, infill: f64, share: f64) -> f64 {
         share * self.energy / 60.0 / (self.power(infill) / (FIGURE_OF_MERIT * DRIVE) + ELECTRONICS)
     }
@@ -157,7 +156,6 @@ fn power_of_hover(flight: &Flight<'_>) -> String {
     )
 }
 
-/// Table V by the model fitted to it.
 fn calibrated(flight: &Flight<'_>) -> Vec<Comparison> {
     let Flight {
         printed: p, fudge, ..
@@ -190,7 +188,7 @@ fn calibrated(flight: &Flight<'_>) -> Vec<Comparison> {
     p.table_5.iter().map(row).collect()
 }
 
-/// Table V by usual losses.
+/// With usual losses.
 fn predicted(flight: &Flight<'_>) -> Vec<Comparison> {
     let row = |row: &Endurance| Comparison {
         what: format!("flight time at ρ {} %, honest", row.infill_percent),
@@ -277,7 +275,6 @@ fn lean_at_four_percent(s: &mut Section, flight: &Flight<'_>) {
     ));
 }
 
-/// Table VI as printed, with Table V below it.
 fn printed_robots(p: &Printed) -> Table {
     let mut t = Table::new(
         "Table VI as printed; specific strength of Tables V and VI is quoted, not computed: it is a material test",
@@ -307,7 +304,6 @@ fn printed_robots(p: &Printed) -> Table {
     t
 }
 
-/// Table VI against Table V and the text.
 fn table_6(s: &mut Section, p: &Printed) {
     s.table(printed_robots(p));
     let (Some(sophie), Some(semi), Some(mhyro)) = (p.table_6.first(), p.table_6.get(1), p.table_6.get(2))

@@ -12,9 +12,9 @@ use sophie_sim::parallel;
 
 /// Compliance of arm 1 over a new arm's.
 const WORN: [f64; 6] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
-/// Averaging time of the on-board comparison, s.
+/// Of the on-board comparison, s.
 const WINDOW: f64 = 5.0;
-/// Hover of a flight, s.
+/// s.
 const SECONDS: f64 = 25.0;
 
 #[derive(Clone, Copy)]
@@ -134,7 +134,6 @@ impl Flights {
     }
 }
 
-/// Range of the rotors' mean thrusts, N.
 fn apart(f: &Flown) -> f64 {
     let thrusts: Vec<f64> = (0..4).map(|i| mean(&f.moments, |m| m.thrust[i])).collect();
     thrusts.iter().copied().fold(f64::MIN, f64::max) - thrusts.iter().copied().fold(f64::MAX, f64::min)
@@ -142,7 +141,7 @@ fn apart(f: &Flown) -> f64 {
 
 struct OnBoard {
     worn: f64,
-    /// True tilt less the model's.
+    /// Less the model's.
     truth: f64,
     learnt: f64,
     /// Spread of the windows' means.

@@ -1,17 +1,18 @@
 //! Least-squares fit of Eq. 1 to bench data, with confidence intervals.
-//! \n α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. All but C_P are linear; Gauss-Newton from a linear start takes a
+//!
+//! α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. All but C_P are linear; Gauss-Newton from a linear start takes a
 //! few steps. One infill cannot separate A1 and A2 (B1 and B2): A and B are fitted. C_P is fitted only where the power
 //! ratio varies. K is the gain that Table I would need, fitted on its own, with the residual of Table I's shape.
 
 use super::bench_data::Point;
 use super::least_squares::{quantile, solve};
 
-/// C_P is fitted if some power ratio is below this.
+/// C_P is fitted below this power ratio.
 const POWER_SEEN: f64 = 0.95;
-/// Assumed exponent: the middle of the paper's 1.6 to 1.8.
+/// Assumed: the middle of the paper's 1.6 to 1.8.
 const EXPONENT: f64 = 1.7;
 const STEPS: u32 = 30;
-/// Least difference between two infills, %.
+/// %.
 const INFILL_STEP: f64 = 0.2;
 
 /// A fitted value.
@@ -196,7 +197,8 @@ impl Solution {
 }
 
 /// Fits `points`, and the gain on `table_1`.
-/// \n # Errors
+///
+/// # Errors
 /// What the data lack, one line.
 pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
     let unknowns = Unknowns::of(points);
@@ -237,7 +239,7 @@ pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
     Ok(fit)
 }
 
-/// Gain on Table I, with its own offset.
+/// With its own offset.
 fn gain(points: &[Point], [a1, a2, b1, b2]: [f64; 4], exponent: f64) -> Option<(Fitted, f64)> {
     let shape = |p: &Point| {
         ((a1 + p.infill * a2) + (b1 + p.infill * b2) * p.thrust) * p.thrust * p.power.powf(exponent)
@@ -277,7 +279,7 @@ mod tests {
 
     const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 
-    /// Bench data of Table I with gain, offset and a fixed error pattern.
+    /// Table I with gain, offset and a fixed error pattern.
     fn bench(infills: &[f64], powers: &[f64], gain: f64, noise: f64) -> Vec<Point> {
         let mut points = vec![];
         for infill in infills {

@@ -7,9 +7,9 @@ use super::bench_data::Point;
 use super::fit::{Fit, Fitted};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// Largest span of tilts taken for radians: a quarter turn. Table I's stiffest arm (10 %, K = 1) bends by 2.8°.
+/// Tilts within this span may be radians: a quarter turn. Table I's stiffest arm (10 %, K = 1) bends by 2.8°.
 const RADIANS: f64 = 1.58;
-/// Share of a rotor's largest thrust that the data must reach, or hover is extrapolated.
+/// Share of a rotor's largest thrust below which hover is extrapolated.
 const REACH: f64 = 0.5;
 /// May be 0: an arm may be level at rest, and K is not written.
 const MAY_BE_NONE: [&str; 2] = ["α0", "K"];
@@ -24,7 +24,8 @@ fn span(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
 }
 
 /// Refuses tilts that cannot be degrees.
-/// \n # Errors
+///
+/// # Errors
 /// One line: the span and what is allowed.
 pub fn check_units(points: &[Point]) -> Result<(), String> {
     let ((low, high), (from, to)) = (span(points, |p| p.tilt), span(points, |p| p.thrust));
@@ -188,7 +189,8 @@ pub fn console_lines(text: &str) -> String {
 }
 
 /// Parameter file: a scenario with this arm in `[vehicle]` and `[params]`.
-/// \n # Errors
+///
+/// # Errors
 /// One line: a number outside the stack's range, and the range.
 pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, String> {
     let rho = infill(points);
@@ -230,7 +232,6 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
     Ok(text)
 }
 
-/// Hint for thrusts that end early, or empty.
 fn unit_hint(points: &[Point]) -> String {
     reach(points).map_or_else(String::new, |(most, _)| {
         format!(": thrust_n ends at {most:.2} N, as thrusts in kgf do (1 kgf is 9.81 N)")

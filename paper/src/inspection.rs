@@ -10,7 +10,7 @@ use super::clamp::{closing_thrust, mean_closing};
 use super::model::{Axis, Chart, Class, Comparison, Look, Series, Table, num};
 use super::printed::{Endurance, Printed};
 
-/// Pipe of the inspection times, m.
+/// m.
 const PIPE: f64 = 0.30;
 
 fn drawn(torque: f64) -> f64 {
@@ -34,7 +34,7 @@ struct Held<'a> {
     force: f64,
     /// Servo current for it, A.
     amps: f64,
-    /// Servo current implied by the printed time, A.
+    /// Implied by the printed time, A.
     meant: f64,
 }
 
@@ -59,7 +59,6 @@ impl<'a> Inspection<'a> {
         }
     }
 
-    /// Time until this many servos empty their battery, min.
     fn minutes(&self, held: &Held<'_>, arms: f64) -> f64 {
         60.0 * (self.printed.text.servo_battery_mah * 1e-3) / (arms * held.amps)
     }

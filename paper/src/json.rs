@@ -5,7 +5,6 @@ use serde_json::{Value, json};
 use super::model::{Axis, Block, Cell, Chart, Comparison, Section};
 use sophie_report::summary::tidy;
 
-/// Most points of a curve.
 const POINTS: usize = 300;
 
 /// The sections as JSON text, newline-terminated.

@@ -72,12 +72,11 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// Thrust per motor in Table II, N.
 fn nominal_thrust(p: &Printed) -> f64 {
     p.text.motor_thrust_g * 1e-3 * GRAVITY
 }
 
-/// Tip mass by Table II, kg: propulsion and a third of the arm.
+/// kg: propulsion and a third of the arm.
 fn tip_mass(p: &Printed) -> f64 {
     let arm_rod = p.table_2.first().map_or(0.0, |r| r.mass_g * 1e-3) / 3.0;
     let propulsion = p.table_2.iter().find(|r| r.equipment == "Propulsion");

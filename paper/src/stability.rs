@@ -15,7 +15,7 @@ use super::printed::Printed;
 use super::statics::{AtThrust, root};
 use sophie_sim::parallel;
 
-/// Step of the perturbation, N.
+/// N.
 const STEP: f64 = 0.05;
 /// Fig. 5: moment (N·m) and duration (s).
 const KICK: (f64, f64) = (0.02, 0.5);
@@ -187,7 +187,6 @@ fn reversal_map(s: &mut Section, hover: f64, k: f64) {
     );
 }
 
-/// Yaw authority, and the thrusts of its reversal.
 fn authority(c: Configuration, hover: f64, k: f64) -> Chart {
     let chi = f64::from(c.chi());
     let rhos: Vec<f64> = (0..=12).map(|i| 4.0 + 0.5 * f64::from(i)).collect();

@@ -38,7 +38,7 @@ impl AtThrust {
         self.sin + self.cos * self.follow
     }
 
-    /// 1 - d(T cos α)/dT: lift lost to the lean.
+    /// 1 - d(T cos α)/dT.
     fn lift_lost(&self) -> f64 {
         1.0 - (self.cos - self.sin * self.follow)
     }

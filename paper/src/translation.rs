@@ -14,7 +14,7 @@ use super::printed::Printed;
 use super::roll::sideways;
 use sophie_sim::parallel;
 
-/// Air drag of the plant, N·s/m; subtracted, so that only the equations differ.
+/// Of the plant, N·s/m; subtracted, so that only the equations differ.
 const DRAG: f64 = 0.3;
 
 /// Thrust along the body's -z, N.
@@ -38,7 +38,7 @@ fn printed(m: &Moment) -> DVec3 {
     )
 }
 
-/// Derived: thrusts along -z, their sideways part along body y, gravity.
+/// Thrusts along -z, their sideways part along body y, gravity.
 fn derived(m: &Moment, mass: f64) -> DVec3 {
     let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
     let (t, f) = (lift(m), sideways(m));
@@ -49,7 +49,7 @@ fn derived(m: &Moment, mass: f64) -> DVec3 {
     )
 }
 
-/// Rigid vehicle: thrust alone.
+/// Thrust alone.
 fn rigid(m: &Moment, mass: f64) -> DVec3 {
     let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
     let t = m.thrust.iter().sum::<f64>();
@@ -95,7 +95,6 @@ fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
 struct Rolled {
     coupled: bool,
     heading: f64,
-    /// With the reference force.
     truth: Vec<(Moment, DVec3)>,
 }
 
@@ -139,7 +138,7 @@ pub fn section(p: &Printed) -> Section {
 }
 
 impl Rolled {
-    /// RMS error (N) of an equation on an axis.
+    /// N.
     fn rms(&self, axis: usize, equation: impl Fn(&Moment) -> DVec3) -> f64 {
         let square = |(m, force): &(Moment, DVec3)| (equation(m)[axis] - force[axis]).powi(2);
         let sum = self.truth.iter().map(square).sum::<f64>();

@@ -31,7 +31,6 @@ fn hover(configuration: Configuration, gain_k: f64, mixer: Variant, gain: f32, m
     }
 }
 
-/// RMS of setpoint less truth in free flight, degrees.
 fn rms(samples: &[&Sample], axis: usize) -> f64 {
     let square = |s: &&Sample| {
         let error = s.attitude[axis] - s.attitude_setpoint[axis];

@@ -1,5 +1,6 @@
 //! The default mission over many seeds: number accomplished, and the others' reasons, as in docs/results.md.
-//! \n `cargo run --release -p sophie-sim --example seeds -- FIRST COUNT [RHO [GUST [ARMS]]]`: infill in %, gusts in N
+//!
+//! `cargo run --release -p sophie-sim --example seeds -- FIRST COUNT [RHO [GUST [ARMS]]]`: infill in %, gusts in N
 //! RMS, 4 arms or 2.
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]

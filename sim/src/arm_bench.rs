@@ -19,24 +19,24 @@ use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
 use crate::sensors::fsr::FsrSensor;
 
-/// Time at rest before closing, s.
+/// Before closing, s.
 const REST: f64 = 1.0;
-/// Fore-aft distance of the belly pads from the pipe's crown line, and their indentation, m: each carries a quarter of
-/// 10 N.
+/// Fore-aft distance of the belly pads from the pipe's crown line, and their indentation under a quarter of 10 N each,
+/// m.
 const PADS: (f64, f64) = (0.03, 0.6e-3);
-/// RMS of the arm sensor's noise, rad.
+/// RMS, rad.
 const TILT_NOISE: f64 = 0.004;
-/// Time constant of a [`Closing`]'s rotor, s, and friction of its pipe.
+/// Of a [`Closing`]: rotor, s, and pipe.
 const ROTOR_TAU: f64 = 0.05;
 const FRICTION: f64 = 0.6;
-/// Time over which the rotor of a holding arm stops, s, as on a perch.
+/// Stop of a holding arm's rotor, s, as on a perch.
 const SPOOL_TIME: f64 = 1.5;
-/// Time for which a tried arm holds with its rotor stopped, s, and gripper runs in half a second.
+/// Holding time after the rotor's stop, s, and gripper runs in half a second.
 const AFTER: f64 = 0.5;
 const STEADY_SAMPLES: usize = 50;
-/// Plant steps per sample of the pressure sensor, 500 Hz.
+/// 500 Hz, in plant steps.
 const FSR_STEPS: u64 = 4;
-/// Plant steps per run of the gripper, 100 Hz.
+/// 100 Hz, in plant steps.
 const GRIPPER_STEPS: u64 = 20;
 const BODY: Pose = Pose {
     position: DVec3::ZERO,
@@ -236,7 +236,7 @@ struct ArmBench {
     tendon: Tendon,
     skin: ArmSkin,
     sensor: FsrSensor,
-    /// Actual and asked thrust, N.
+    /// N.
     thrust: f64,
     thrust_asked: f64,
     /// Tilts delayed by the arm sensor, rad.
@@ -249,7 +249,6 @@ struct ArmBench {
     gripper: ArmGripper,
     drive: TendonDrive,
     rotor_tau: f64,
-    /// Plant steps per command to the servo.
     drive_steps: u64,
     /// Last outputs of the stack.
     pressure: Pressure,
@@ -293,8 +292,7 @@ impl ArmBench {
         }
     }
 
-    /// One step of the plant and the due parts of the stack; returns the true pressure at the sensor, Pa. The arm
-    /// closes after [`REST`]; once it holds, its rotor of `thrust` N stops.
+    /// Returns the true pressure, Pa. The arm closes after [`REST`]; once it holds, its rotor of `thrust` N stops.
     fn step(&mut self, step: u64, thrust: f64) -> f64 {
         let tilt = self.arm.tilt;
         let pressure = self.move_arm();
@@ -306,7 +304,7 @@ impl ArmBench {
         pressure
     }
 
-    /// Moves rotor, tendon and arm by one plant step; returns the true pressure at the sensor, Pa.
+    /// Returns the true pressure, Pa.
     fn move_arm(&mut self) -> f64 {
         let (alpha, rate) = (self.arm.tilt, self.arm.rate);
         self.thrust += (self.thrust_asked - self.thrust) * STEP / self.rotor_tau;
@@ -320,7 +318,7 @@ impl ArmBench {
         load.pressure
     }
 
-    /// Runs pressure filter and gripper when due; `pressure` (Pa) and `tilt` (rad) are true values.
+    /// Runs filter and gripper when due; `pressure` (Pa) and `tilt` (rad) are true.
     fn run_stack(&mut self, step: u64, close: bool, pressure: f64, tilt: f64) {
         if step.is_multiple_of(FSR_STEPS) {
             let counts = self.sensor.sample(pressure, 0.002, &mut self.rng);
@@ -354,7 +352,6 @@ impl ArmBench {
     }
 }
 
-/// The pipe under the body's belly pads.
 fn pipe(radius: f64, friction: f64) -> Pipe {
     Pipe {
         north: 0.0,

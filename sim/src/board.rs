@@ -1,5 +1,6 @@
 //! The simulated board: the tasks' ports, wired to the plant through its sensors.
-//! \n The plant steps by a millisecond, then the tasks run; their outputs act in the next one.
+//!
+//! The plant steps by a millisecond, then the tasks run; their outputs act in the next one.
 
 use std::cell::{Cell, RefCell};
 
@@ -22,11 +23,11 @@ use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::Imu;
 
-/// Buffer of a serial line: half a hardware ring of 512.
+/// Half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
-/// Time of one conversion of all analog inputs, µs.
+/// All analog inputs, µs.
 const CONVERSION_US: u64 = 30;
-/// Time to read an arm's sensor over I2C at 400 kHz, µs.
+/// One sensor over I2C at 400 kHz, µs.
 const ARM_READ_US: u64 = 400;
 
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
@@ -40,7 +41,7 @@ pub struct Board {
     sensors: RefCell<Sensors>,
     truth: Cell<AnalogTruth>,
     arm_gravity: Cell<PerArm<Vec3>>,
-    /// Sample rate of the inertial sensor, Hz.
+    /// Hz.
     imu_rate: f64,
     /// Memory that outlives a reset.
     pub memory: Cell<[Words; 2]>,

@@ -27,7 +27,8 @@ pub fn rc_frame(sticks: &Sticks) -> Frame {
 }
 
 /// Frame of 11-bit channel counts.
-/// \n # Panics
+///
+/// # Panics
 /// Never: 26 bytes fit.
 #[must_use]
 pub fn channel_frame(channels: &[u16; CHANNELS]) -> Frame {

@@ -16,9 +16,9 @@ use sophie_tasks::links::{Links, Setpoint};
 
 /// Unjudged take-off, s.
 const SETTLE: f64 = 5.0;
-/// Height of the hover, m.
+/// m.
 const HEIGHT: f64 = 3.0;
-/// Weight held by [`Rig::fly`] and its largest thrust, N.
+/// Held by [`Rig::fly`], and its largest thrust, N.
 const WEIGHT: f64 = 17.7;
 const THRUST_MAX: f64 = 30.0;
 /// Rest for the gyroscope's calibration, ms.
@@ -146,7 +146,8 @@ impl Rig {
     }
 
     /// Calibrates, climbs to 3 m under a simple height hold and follows `wish` for `seconds`.
-    /// \n # Panics
+    ///
+    /// # Panics
     /// If the gyroscope is not calibrated after 4 s of rest.
     pub fn fly(&mut self, seconds: f64, wish: impl Fn(f64) -> Maneuver) -> Errors {
         for _ in 0..REST_MS {
@@ -184,7 +185,7 @@ fn seeded(scenario: &Scenario) -> Pcg64Mcg {
 pub struct HeightHold {
     weight: f64,
     thrust_max: f64,
-    /// Integral of the height error, m s.
+    /// m s.
     sum: f64,
 }
 

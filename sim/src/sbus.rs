@@ -3,9 +3,9 @@
 use sophie_control::rc::CHANNELS;
 use sophie_drivers::sbus::{FRAME, Frame};
 
-/// Frame period, s: the slower usual one.
+/// s: the slower usual one.
 const PERIOD: f64 = 14e-3;
-/// Silence before a receiver reports failsafe, s (FrSky: about 1 s).
+/// Silence, s (FrSky: about 1 s).
 const FAILSAFE_AFTER: f64 = 0.9;
 
 /// Sends always after its first frame; flags report a lost transmitter.

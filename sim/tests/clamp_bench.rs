@@ -1,5 +1,6 @@
 //! One arm closes on a pipe, holds it while the rotor stops and the arm is disturbed, and releases it.
-//! \n The body is fixed, as on the paper's bench. Arm, tendon, servo, skin and pressure sensor are the plant's; fault
+//!
+//! The body is fixed, as on the paper's bench. Arm, tendon, servo, skin and pressure sensor are the plant's; fault
 //! watch, gripper and tendon drive the flight stack's, each at its rate. The tilt is 20 ms late with noise and offset;
 //! the thrust given to the loop is 5 % wrong.
 
@@ -38,7 +39,7 @@ struct Bench {
     tilts: VecDeque<f64>,
     tilt_offset: f64,
     steps: u64,
-    /// Servo frame period and time to the next frame, s.
+    /// Servo frame period and time to the next, s.
     frame: f64,
     to_frame: f64,
     /// Demanded and actual thrust, N.
@@ -207,7 +208,6 @@ impl Bench {
         }
     }
 
-    /// Whether the grip reaches `state` within `seconds`.
     fn run_until(&mut self, state: ArmState, seconds: f64) -> bool {
         for _ in 0..(seconds / STEP) as u64 {
             self.step();
@@ -218,7 +218,6 @@ impl Bench {
         false
     }
 
-    /// Ramps the demanded thrust within `seconds`.
     fn ramp_thrust(&mut self, thrust: f64, seconds: f64) {
         let steps = (seconds / STEP) as u64;
         let change = (thrust - self.asked) / steps as f64;

@@ -160,7 +160,7 @@ impl Bench {
         self
     }
 
-    /// A commander in `mode`, and in `then` from the save request on.
+    /// In `mode`, and in `then` from the save request on.
     fn commander(self, mode: Mode, then: Mode) -> Self {
         let links = self.links;
         self.time.spawn(async move {
@@ -195,7 +195,7 @@ impl Bench {
         self.time.run_until(self.ms * 1000);
     }
 
-    /// Types `text`; returns the new text on the screen.
+    /// Returns the new text on the screen.
     fn types(&mut self, text: &str) -> String {
         self.line.put(text.as_bytes());
         self.run(1500);
@@ -324,7 +324,6 @@ fn status_says_all_that_forbids_arming() {
     }
 }
 
-/// The answer to `save` after a change in `mode`.
 fn saves_in(mode: Mode, then: Mode) -> (String, Bench, FakeStorage) {
     let (bench, storage) = Bench::new(Params::default()).fake_storage(Ok(()));
     let mut bench = bench.commander(mode, then);

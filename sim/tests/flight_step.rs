@@ -28,7 +28,6 @@ struct Step {
     motors: PerArm<f64>,
 }
 
-/// The stack with its inputs recorded.
 struct Recorded {
     stack: Stack,
     tape: Vec<Step>,
@@ -51,7 +50,6 @@ fn send_late_readings(links: &Links) {
     links.arms.send(now, ArmAngles { tilt });
 }
 
-/// Control's inputs from its links.
 fn command(links: &Links) -> Command {
     let Some(message) = links.setpoint.latest() else {
         return Command::default();

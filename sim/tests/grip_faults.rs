@@ -22,7 +22,7 @@ const PRESSED: f32 = 0.2;
 const ARM_TIME: f32 = 0.03;
 /// A pin shorted to the supply, counts.
 const SHORTED: u16 = 4095;
-/// Servo pulse at release, µs.
+/// µs.
 const RELEASE_US: f32 = 550.0;
 const CLOSE: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 

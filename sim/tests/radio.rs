@@ -12,7 +12,7 @@ const STANDS: f64 = 0.05;
 
 const CRASH: f64 = 2.0;
 
-/// Flies a file with seeds 1 to 3; `look` checks each flight.
+/// Seeds 1 to 3.
 fn flights(file: &str, look: impl Fn(&FlightRecord)) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../tests/scenarios")
@@ -33,13 +33,11 @@ fn flights(file: &str, look: impl Fn(&FlightRecord)) {
     }
 }
 
-/// Start and end of a step, s.
 fn times(record: &FlightRecord, name: &str) -> (f64, f64) {
     let phase = record.phases.iter().find(|p| p.name == name).unwrap();
     (phase.start, phase.end)
 }
 
-/// Modes in order from `from` s on.
 fn modes(record: &FlightRecord, from: f64) -> Vec<Mode> {
     let mut modes: Vec<Mode> = after(record, from).map(|s| s.mode).collect();
     modes.dedup();

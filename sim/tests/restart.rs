@@ -55,7 +55,6 @@ struct Vehicle {
 }
 
 impl Vehicle {
-    /// Started for `cause` with retained `copies` and sensor `counts`.
     fn start(cause: StartCause, copies: [Words; 2], counts: [u16; 4]) -> Self {
         let time = VirtualTime::new();
         let start = Start::new(cause, &copies);
@@ -101,7 +100,6 @@ impl Vehicle {
         v
     }
 
-    /// Restarted by the watchdog.
     fn retained(retained: RetainedState, counts: [u16; 4]) -> Self {
         let copy = retained.to_words(7).expect("a sane one");
         Self::start(StartCause::Watchdog, [[0; WORDS], copy], counts)
@@ -335,7 +333,6 @@ fn flown(file: &str) -> FlightRecord {
     fly(&scenario, &mut Silent)
 }
 
-/// Time of the first event `text` after `from` s.
 fn when(record: &FlightRecord, text: &str, from: f64) -> f64 {
     let event = record.events.iter().find(|e| e.t >= from && e.text == text);
     event

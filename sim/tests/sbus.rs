@@ -16,7 +16,7 @@ use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario};
 use vehicle::Vehicle;
 
-/// Time between two frames, ms.
+/// ms.
 const FRAME_MS: u64 = 7;
 
 fn sbus() -> Params {
@@ -43,7 +43,6 @@ fn on_line(params: Params) -> (Vehicle, FakeLine) {
     (v, line)
 }
 
-/// Repeats `bytes` for `ms`.
 fn send(v: &mut Vehicle, line: &FakeLine, bytes: &[u8], ms: u64) {
     for _ in 0..ms / FRAME_MS {
         line.put(bytes);

@@ -5,7 +5,8 @@ use std::path::Path;
 
 /// Requires `table` between the markers of `part` in `docs/{name}.md`, or writes it if `WRITE_DOCS` is set; `test`
 /// writes it.
-/// \n # Panics
+///
+/// # Panics
 /// If markers are missing or the table differs.
 pub fn holds(name: &str, part: &str, table: &str, test: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/{name}.md"));

@@ -18,7 +18,8 @@ pub struct Backup<'a> {
 
 impl<'a> Backup<'a> {
     /// Parses `words` behind `verb`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(verb: &str, words: &[&'a str]) -> Result<Self, String> {
         let [name, rest @ ..] = words else {
@@ -62,7 +63,8 @@ impl<'a> Backup<'a> {
     }
 
     /// Reads the whole flash twice and keeps it if both are equal.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The file exists; no probe; probe-rs fails or reads nothing that could be restored.
     pub fn save(&self) -> Result<(), Error> {
         let path = self.path();
@@ -96,7 +98,8 @@ impl<'a> Backup<'a> {
     }
 
     /// Writes the file over the whole flash.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The file cannot be a backup of this board; no probe; probe-rs fails.
     pub fn restore(&self) -> Result<(), Error> {
         let path = self.path();
@@ -127,7 +130,8 @@ pub fn usual(board: &Board) -> PathBuf {
 }
 
 /// Checks that [`Backup::restore`] accepts the file.
-/// \n # Errors
+///
+/// # Errors
 /// What is wrong with it, and what is required.
 pub fn sound(board: &Board, path: &Path) -> Result<(), String> {
     let wanted = format!(

@@ -12,7 +12,7 @@ const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 /// Printed before the emulator's slow build.
 const FIRST_BUILD: &str = "building the emulated board: minutes the first time, seconds from then on";
 
-/// The emulator's options without a value, and those with one.
+/// Options of the emulator without a value, and with one.
 const ALONE: [&str; 2] = ["--json", "--factory"];
 const WITH_VALUE: [(&str, &str); 5] = [
     ("--seed", "N"),
@@ -25,13 +25,13 @@ const WITH_VALUE: [(&str, &str); 5] = [
 pub struct Bench<'a> {
     pub board: &'static Board,
     variant: Variant,
-    /// Passed to the emulator.
     rest: Vec<&'a str>,
 }
 
 impl<'a> Bench<'a> {
     /// Parses `words` behind the verb, before the minutes of building; the emulator checks values.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("bench", words)?;
@@ -74,7 +74,8 @@ impl<'a> Bench<'a> {
     }
 
     /// Builds and flies; returns the emulator's exit status.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The firmware does not build.
     pub fn fly(&self) -> Result<ExitCode, Error> {
         let (elf, _) = crate::firmware(self.board, self.variant)?;
@@ -107,7 +108,8 @@ pub struct Chain<'a> {
 
 impl<'a> Chain<'a> {
     /// Parses `words` behind the verb.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let (board, rest) = emulated("chain", words)?;
@@ -124,7 +126,8 @@ impl<'a> Chain<'a> {
     }
 
     /// Builds, flies, prints the counts; returns the emulator's exit status.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The firmware does not build.
     pub fn count(&self) -> Result<ExitCode, Error> {
         let (elf, _) = crate::firmware(self.board, Variant::Plain)?;
@@ -134,7 +137,8 @@ impl<'a> Chain<'a> {
 }
 
 /// Builds and runs the emulator's binary `name` with `arguments` and the caller's additions; returns its exit status.
-/// \n # Errors
+///
+/// # Errors
 /// Cargo does not start.
 pub fn emulator<'a>(
     name: &str,

@@ -10,7 +10,7 @@ use crate::Error;
 use crate::boards::Board;
 use crate::toolchain::{self, TARGET};
 
-/// Log buffer with trace: 2 ms of events and their frames, for a slow probe.
+/// 2 ms of events and their frames, for a slow probe.
 const TRACE_BUFFER: &str = "8192";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,8 @@ impl Variant {
     }
 
     /// The variant, checked for `board`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: the board has no such image.
     pub fn of(self, board: &Board) -> Result<Self, String> {
         if self == Self::DataCache && !board.data_cache_is_optional {
@@ -48,7 +49,8 @@ impl Variant {
 }
 
 /// Builds the firmware of `board`; returns its ELF.
-/// \n # Errors
+///
+/// # Errors
 /// No toolchain, or the build failed (with output).
 pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
     let (feature, variables): (_, &[_]) = match variant {
@@ -87,7 +89,8 @@ pub struct Recipe<'a> {
 }
 
 /// Builds an image of this workspace; returns its ELF.
-/// \n # Errors
+///
+/// # Errors
 /// No toolchain, or the build failed (with output).
 pub fn image(recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     image_in(root(), recipe)

@@ -12,7 +12,8 @@ use crate::{Error, build};
 const SHOWN: usize = 5;
 
 /// Builds the image for each core, runs it on both, compares.
-/// \n # Errors
+///
+/// # Errors
 /// No toolchain or QEMU, a failing image, or different logs.
 pub fn conformance() -> Result<(), Error> {
     let laws = output(cargo().args(["run", "--quiet", "--locked", "--package", "sophie-conformance"]))?;

@@ -1,5 +1,6 @@
 //! Flash of an image by crate, from its symbols.
-//! \n A function counts for the crate that its name begins with, a generic's instance for the instantiating one. Bytes
+//!
+//! A function counts for the crate that its name begins with, a generic's instance for the instantiating one. Bytes
 //! without a crate's name are listed apart: a column adds up to the image.
 
 use std::collections::BTreeMap;
@@ -11,7 +12,6 @@ use crate::sizes::Sizes;
 
 /// Crates below this on every board are summed, bytes.
 const SMALL: u64 = 2048;
-/// Constants without a crate's name.
 const NAMELESS: &str = "constants without a name";
 /// Bytes without a symbol or a crate.
 const REST: &str = "rest: vectors, assembly, C names, padding";
@@ -44,7 +44,6 @@ pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
     }
 }
 
-/// Assigns every byte of `section`.
 fn share(section: &Section, symbols: &[&Static], shares: &mut Shares) {
     let mut give = |owner: String, bytes: u64| {
         if bytes > 0 {

@@ -1,5 +1,6 @@
 //! Writes firmware through the chip's USB loader (ST's AN2606 and AN3156).
-//! \n `dfu-util` erases each sector that a file touches, and keeps no state between calls. So the image is written in
+//!
+//! `dfu-util` erases each sector that a file touches, and keeps no state between calls. So the image is written in
 //! stretches that share no sector: a flat file would erase the gaps (on the f405 the stored parameters), a file per
 //! segment the end of the previous one. The stretch with the vector table comes last: the loader starts the firmware at
 //! the address of the last call, and an interrupted transfer leaves the old table or none.
@@ -27,7 +28,8 @@ pub struct Stretch {
 }
 
 /// Writes `image` to the chip in its loader and starts it; `dry` only prints the commands.
-/// \n # Errors
+///
+/// # Errors
 /// The loader is out of reach, no such chip is in it, or dfu-util fails.
 pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
     let enter = enter(board)?;
@@ -65,7 +67,8 @@ pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
 }
 
 /// How to enter the chip's loader.
-/// \n # Errors
+///
+/// # Errors
 /// Why it is out of reach, and what to do.
 pub fn enter(board: &Board) -> Result<&'static str, Refused> {
     match board.usb_loader {
@@ -78,7 +81,8 @@ pub fn enter(board: &Board) -> Result<&'static str, Refused> {
 }
 
 /// Stretches of `loads` in writing order, the vector table's last.
-/// \n # Errors
+///
+/// # Errors
 /// A part lies outside the flash, or overlaps another.
 fn stretches(loads: &[Load], flash: &[Sectors]) -> Result<Vec<Stretch>, Error> {
     let mut sorted: Vec<_> = loads.iter().collect();
@@ -129,7 +133,7 @@ impl Stretch {
         self.start + self.bytes.len() as u64
     }
 
-    /// Pads with erased bytes up to `address`.
+    /// Pads with erased bytes.
     fn extend_to(&mut self, address: u64) {
         let length = address.saturating_sub(self.start) as usize;
         self.bytes.resize(length.max(self.bytes.len()), 0xFF);
@@ -188,7 +192,7 @@ fn chip(board: &Board, enter: &str) -> Result<(), Error> {
     }
 }
 
-/// Flash layouts of the chips that `dfu-util --list` shows.
+/// Layouts listed by `dfu-util --list`.
 fn found(listed: &str) -> Vec<String> {
     let field = |line: &str, name: &str| {
         let (_, rest) = line.split_once(&format!("{name}="))?;

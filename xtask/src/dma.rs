@@ -5,11 +5,12 @@ use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Fewest buffers of a board with motors, receiver and converter.
+/// Motors, receiver and converter.
 const FEWEST: usize = 3;
 
 /// Checks every buffer; returns their number.
-/// \n # Errors
+///
+/// # Errors
 /// A buffer out of DMA's reach; or too few, which means that names have changed.
 pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     let buffers: Vec<_> = image

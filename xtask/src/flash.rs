@@ -35,7 +35,8 @@ pub struct Flash<'a> {
 
 impl<'a> Flash<'a> {
     /// Parses `words` behind the verb.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let mut names = Vec::new();
@@ -95,7 +96,8 @@ impl<'a> Flash<'a> {
     }
 
     /// Builds or reads the image, checks it and flashes it.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// No backup, no way to the board, or a failure of the image's checks, probe, loader or a program.
     pub fn run(&self) -> Result<(), Error> {
         if self.by == By::Usb {

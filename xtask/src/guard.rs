@@ -5,11 +5,12 @@ use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Parts of the mangled name of the guard, which is never inlined.
+/// In its mangled name; never inlined.
 const GUARD: [&str; 2] = ["flash_ecc", "begin_guard"];
 
 /// Whether the image needs the guard.
-/// \n # Errors
+///
+/// # Errors
 /// It needs the guard and has none.
 pub fn check(board: &Board, image: &Image) -> Result<bool, Error> {
     let in_flash = image.symbols.contains_key("_params_start");

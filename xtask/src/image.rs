@@ -151,7 +151,8 @@ impl Image {
     }
 
     /// Address of the symbol `name`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// There is none.
     pub fn symbol(&self, name: &str) -> Result<u64, Error> {
         self.symbols

@@ -14,14 +14,14 @@ use crate::toolchain::{self, TARGET};
 use crate::{Error, build};
 
 const NAME: &str = "own-h743";
-/// The same board with a feature that names no chip: it must not build.
+/// Has a feature that names no chip: must not build.
 const CHIPLESS: &str = "chipless-h743";
 /// Version of the workspace, without the closing quote, and the copy's suffix.
 const VERSION: &str = concat!("version = \"", env!("CARGO_PKG_VERSION"));
 const OF_THE_COPY: &str = "-copy";
 const ORIGINAL: &str = "matek-h743";
 
-/// Changes of the copy's board file: old and new.
+/// In the board file: old and new.
 const CHANGES: [(&str, &str); 9] = [
     (
         "pub const NAME: &str = \"matek-h743\"",
@@ -109,7 +109,6 @@ pub fn own_board() -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes the files of docs/porting.md into the copy of the workspace.
 fn write(scratch: &Path) -> Result<(), Error> {
     let folder = scratch.join("boards");
     let mut file = fs::read_to_string(folder.join("src/matek_h743.rs"))?;
@@ -169,8 +168,7 @@ fn replace(text: &mut String, old: &str, new: &str) -> Result<(), Error> {
     Ok(())
 }
 
-/// Copies the workspace without build results and hidden files. Unchanged files keep their times, and so their build
-/// results.
+/// Leaves out build results and hidden files; unchanged files keep their times, and so their build results.
 fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {

@@ -6,7 +6,8 @@ use crate::{Error, dfu};
 
 /// Checks that flashing does not erase the parameters' sectors; returns their bytes, 0 where the board stores
 /// parameters elsewhere.
-/// \n # Errors
+///
+/// # Errors
 /// Part of the image lies there: its address.
 pub fn check(board: &Board, image: &Image) -> Result<u64, Error> {
     let (Ok(start), Ok(end)) = (image.symbol("_params_start"), image.symbol("_params_end")) else {
@@ -23,7 +24,6 @@ pub fn check(board: &Board, image: &Image) -> Result<u64, Error> {
     }
 }
 
-/// First part of the image that shares a sector with `start` to `end`.
 fn first_in<'a>(loads: &'a [Load], flash: &[Sectors], start: u64, end: u64) -> Option<&'a Load> {
     let erased = |address| dfu::sector(flash, address).unwrap_or((address, address + 1));
     loads.iter().filter(|load| load.size() > 0).find(|load| {

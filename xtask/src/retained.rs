@@ -7,7 +7,8 @@ use crate::image::Image;
 const SECTION: &str = ".retained";
 
 /// Checks the place of retained data; returns their bytes.
-/// \n # Errors
+///
+/// # Errors
 /// None, misplaced, or written by flashing.
 pub fn check(board: &Board, image: &Image) -> Result<u64, Error> {
     let section = image.sections.iter().find(|section| section.name == SECTION);

@@ -28,7 +28,8 @@ pub struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     /// Parses `words` behind the verb.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: what is wrong and what is allowed.
     pub fn parse(words: &[&'a str]) -> Result<Self, String> {
         let [name, rest @ ..] = words else {
@@ -66,7 +67,8 @@ impl<'a> Rig<'a> {
     }
 
     /// Builds and runs the tests; returns the runner's exit status.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The tests do not build, their image is wrong, or there is no probe.
     pub fn run(&self) -> Result<ExitCode, Error> {
         // The emulated board has every jumper.

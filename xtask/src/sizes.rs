@@ -9,12 +9,12 @@ use crate::boards::Board;
 use crate::image::Image;
 use crate::{Error, build};
 
-/// Most flash on any board, bytes.
+/// Bytes, any board.
 const FLASH_LIMIT: u64 = 400 * 1024;
-/// Most static RAM on any board, bytes.
+/// Static, bytes, any board.
 const RAM_LIMIT: u64 = 64 * 1024;
 
-/// Page with the ceilings, between two marks.
+/// With the ceilings, between two marks.
 const PAGE: &str = "docs/boards.md";
 const BEGIN: &str = "<!-- sizes: written by `cargo xtask sizes --tighten` -->";
 const END: &str = "<!-- sizes end -->";
@@ -30,7 +30,8 @@ pub struct Sizes {
 
 impl Sizes {
     /// Sizes of `image`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// It does not define its stack.
     pub fn of(image: &Image) -> Result<Self, Error> {
         let sum = |what: fn(&crate::image::Section) -> bool| {
@@ -62,7 +63,8 @@ pub fn print(rows: &[(&Board, Sizes)]) {
 
 /// Compares with the limits and `xtask/ceilings.toml`, and that with its table in `docs/boards.md`; `tighten` lowers
 /// the ceilings and writes the table.
-/// \n # Errors
+///
+/// # Errors
 /// What is too large or out of date, one per line.
 pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let path = build::root().join("xtask/ceilings.toml");

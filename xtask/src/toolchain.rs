@@ -18,7 +18,8 @@ pub struct Toolchain {
 }
 
 /// The available toolchain.
-/// \n # Errors
+///
+/// # Errors
 /// None: what to install.
 pub fn find() -> Result<Toolchain, Error> {
     let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".into());

@@ -33,7 +33,8 @@ impl Tool {
     }
 
     /// Prints `command` and runs it.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The program is not installed, or fails.
     pub fn run(&self, command: &mut Command) -> Result<(), Error> {
         eprintln!("{}", build::shown(command));
@@ -46,7 +47,8 @@ impl Tool {
     }
 
     /// Runs `command`; returns its output.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The program is not installed.
     pub fn ask(&self, command: &mut Command) -> Result<Output, Error> {
         let output = command.stdin(Stdio::null()).output();
@@ -62,7 +64,8 @@ impl Tool {
 }
 
 /// Checks for a connected probe.
-/// \n # Errors
+///
+/// # Errors
 /// probe-rs is not installed, or lists none.
 pub fn probe(board: &Board) -> Result<(), Error> {
     let listed = PROBE_RS.ask(&mut PROBE_RS.command(&["list"]))?;

@@ -4,16 +4,17 @@ use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Words before the interrupts: stack pointer and fifteen exceptions.
+/// Stack pointer and fifteen exceptions, words.
 const EXCEPTIONS: usize = 16;
 
 /// Vector table offset register (ARMv7-M, B3.2.5).
 const VTOR: u32 = 0xE000_ED08;
-/// Start-up code that must write it, bytes: before any possible exception.
+/// Bytes of start-up within which it must be written: before any possible exception.
 const AT_ONCE: u64 = 16;
 
 /// Returns how many interrupts have their own handler.
-/// \n # Errors
+///
+/// # Errors
 /// What is wrong with the table.
 pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     let table = &image.vectors;

@@ -29,7 +29,7 @@ use crate::terminal::Sockets;
 use crate::tilt::{TiltError, Tilts};
 use crate::wires::{BoardFault, Digest, Pins, Run, Wires};
 
-/// Height at which the arms hang free, m.
+/// Arms hang free from this height on, m.
 const AIRBORNE: f64 = 0.3;
 
 /// A vehicle with the emulated board.
@@ -368,7 +368,7 @@ impl Aircraft for Bench<'_> {
     }
 }
 
-/// Sticks of a radio frame; `None` for other frames.
+/// `None` for frames without sticks.
 fn sticks(protocol: RcProtocol, mut frame: &[u8]) -> Option<Sticks> {
     match protocol {
         RcProtocol::Crsf => match CrsfParser::default().next_packet(&mut frame) {
@@ -379,7 +379,7 @@ fn sticks(protocol: RcProtocol, mut frame: &[u8]) -> Option<Sticks> {
     }
 }
 
-/// SBUS words have even parity as the top bit.
+/// SBUS adds even parity as the top bit.
 fn on_line(protocol: RcProtocol, byte: u8) -> u16 {
     let parity = match protocol {
         RcProtocol::Crsf => 0,

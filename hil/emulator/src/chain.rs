@@ -27,7 +27,8 @@ pub struct Functions {
 
 impl Functions {
     /// The functions of the ELF in `bytes`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// Not an ELF file.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let file = object::File::parse(bytes).map_err(|e| format!("the image is no ELF file: {e}"))?;

@@ -1,5 +1,6 @@
 //! The same flight on host and chip, phase by phase.
-//! \n The attitude error is against the controller's target on the host, against the sticks on the chip, which does not
+//!
+//! The attitude error is against the controller's target on the host, against the sticks on the chip, which does not
 //! report its target. The chip's pins act a millisecond later, and its self-test shifts the pilot against the gusts.
 
 use serde_json::{Value, json};

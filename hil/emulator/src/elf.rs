@@ -34,7 +34,8 @@ pub struct Firmware {
 
 impl Firmware {
     /// Reads an image for `board`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: the file, the fault, the requirement.
     pub fn read(path: &Path, board: &'static EmulatedBoard) -> Result<Self, String> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
@@ -128,7 +129,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
     Ok(())
 }
 
-/// The task of the pool `symbol`: mangled names have each part's length before it.
+/// Task of the pool `symbol`: mangled names have each part's length before it.
 fn task(symbol: &str) -> Option<String> {
     let (_, rest) = symbol.strip_suffix("4POOL")?.rsplit_once("5tasks")?;
     let name = rest.trim_start_matches(|c: char| c.is_ascii_digit());

@@ -47,7 +47,6 @@ pub struct Esc {
     line: Line,
     decoder: Decoder,
     rose: Option<u64>,
-    /// First edge of the current frame.
     began: Option<u64>,
     command: f64,
     heard: Option<u64>,
@@ -127,7 +126,7 @@ impl Esc {
     }
 }
 
-/// DShot values below the throttle range stop the motor.
+/// Values below the throttle range stop the motor.
 fn throttle(value: u16) -> f64 {
     f64::from(value.saturating_sub(THROTTLE_MIN)) / f64::from(THROTTLE_MAX - THROTTLE_MIN)
 }
@@ -138,7 +137,7 @@ mod tests {
 
     use super::*;
 
-    /// Sends `bits` at `at`, 3333 ns each.
+    /// 3333 ns a bit.
     fn send(esc: &mut Esc, at: u64, bits: u16, count: u32) -> Option<u64> {
         let mut done = None;
         for n in 0..count {

@@ -38,7 +38,8 @@ impl Flight {
 }
 
 /// Flies `scenario` with `firmware` on a board as in `setup`; `logged` receives log lines.
-/// \n # Errors
+///
+/// # Errors
 /// One line: why the scenario cannot be flown, or the emulator failed.
 pub fn fly(
     firmware: &Firmware,

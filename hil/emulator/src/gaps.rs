@@ -21,7 +21,8 @@ struct Entry {
 }
 
 /// The gaps of `found` that no entry allows.
-/// \n # Errors
+///
+/// # Errors
 /// One line: the list cannot be read, or an entry has no reason.
 pub fn not_allowed(found: &[Gap]) -> Result<Vec<&Gap>, String> {
     judged(ALLOWED, found)

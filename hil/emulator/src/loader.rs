@@ -22,7 +22,8 @@ pub struct Loader {
 
 impl Firmware {
     /// Puts a loader before the firmware, whose vectors all lead to an endless loop.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: the image has no vector table.
     pub fn behind_a_loader(&mut self) -> Result<(), String> {
         let file = object::File::parse(&*self.bytes).map_err(|e| e.to_string())?;

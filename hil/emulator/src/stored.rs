@@ -53,7 +53,8 @@ impl<const WORD: usize, const SECTOR: usize> NorFlash for Sectors<WORD, SECTOR> 
 }
 
 /// The `length` bytes of a board's parameter sectors after a save of `params`.
-/// \n # Errors
+///
+/// # Errors
 /// One line: they do not fit.
 pub fn sectors(board: Kind, length: usize, params: &Params) -> Result<Vec<u8>, String> {
     match board {

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::elf::Firmware;
 
-/// Function that requests the command line.
+/// Requests the command line.
 const ASKING: &str = "__embedded_test_start";
 const SETUP: &str = "_embedded_test_setup";
 /// Section of test descriptions: function address and module.
@@ -35,7 +35,8 @@ struct Described {
 }
 
 /// The tests of `image`, by name.
-/// \n # Errors
+///
+/// # Errors
 /// One line: it has no tests, or other descriptions.
 pub fn tests(image: &Firmware) -> Result<Vec<Test>, String> {
     let file = parsed(&image.bytes)?;
@@ -80,7 +81,8 @@ pub fn tests(image: &Firmware) -> Result<Vec<Test>, String> {
 }
 
 /// `image` changed to run only `test`.
-/// \n # Errors
+///
+/// # Errors
 /// One line: the image lacks a function.
 pub fn entering(image: &Firmware, test: &Test) -> Result<Vec<u8>, String> {
     let file = parsed(&image.bytes)?;
@@ -151,7 +153,7 @@ fn file_offset(file: &object::File<'_>, address: u64) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// The literal that a load at `at` fetches (ARMv7-M, A7.7.44).
+    /// Literal fetched by a load at `at` (ARMv7-M, A7.7.44).
     fn loaded(code: &[u8], address: u64, at: usize) -> u32 {
         let half = u16::from_le_bytes([code[at], code[at + 1]]);
         assert_eq!(half >> 8, 0x48);

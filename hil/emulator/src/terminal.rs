@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 
-/// Bytes read per millisecond: more than the line carries.
+/// Bytes per millisecond: more than the line carries.
 const AT_ONCE: usize = 64;
 
 /// Lines on sockets.
@@ -23,7 +23,8 @@ pub struct Terminal {
 
 impl Terminal {
     /// A listener on `port`; errors name `option`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: the port, and why it is unavailable.
     pub fn listen(option: &str, port: u16) -> Result<Self, String> {
         let refused = |e: std::io::Error| format!("{option} {port}: cannot listen on 127.0.0.1:{port}: {e}");

@@ -12,7 +12,7 @@ use sophie_emulator::emulator::rig::{Defect, read, run};
 use sophie_emulator::gaps;
 use sophie_emulator::suite::{self, Test};
 
-/// The image that `SOPHIE_RIG_ELF` names, or a built one, and its tests.
+/// From `SOPHIE_RIG_ELF`, or built.
 static IMAGE: LazyLock<(Firmware, Vec<Test>)> = LazyLock::new(|| {
     let path = std::env::var_os("SOPHIE_RIG_ELF").map_or_else(build, PathBuf::from);
     let image = read(&path).expect("the tests' image");
@@ -33,7 +33,6 @@ fn build() -> PathBuf {
     PathBuf::from(printed.lines().last().expect("the path of the ELF"))
 }
 
-/// Status and last words of the test `name` on a rig with `defect`.
 fn verdict(name: &str, defect: Defect) -> (Option<u32>, String) {
     let (image, tests) = &*IMAGE;
     let test = tests.iter().find(|test| test.name == name).expect(name);
@@ -49,7 +48,7 @@ fn verdict(name: &str, defect: Defect) -> (Option<u32>, String) {
     (ended.status, last)
 }
 
-/// A defect, the tests that it makes fail, and a part of each one's message.
+/// Tests that fail with a defect, and part of their messages.
 type Found = (Defect, &'static [(&'static str, &'static str)]);
 
 const TRIED: [Found; 8] = [
@@ -116,14 +115,13 @@ const TRIED: [Found; 8] = [
     ),
 ];
 
-/// Tests of the chip alone: no defect of the rig makes them fail.
+/// Unaffected by any defect of the rig.
 const WITHIN: [&str; 3] = [
     "t00_clock::the_core_runs_at_its_clock",
     "t00_clock::the_time_base_never_runs_back",
     "t11_copies::a_copy_is_exact_and_nothing_around_it_changes",
 ];
 
-/// Each test for `defect` passes on a sound rig and fails with it, with its message.
 fn found(defect: Defect) {
     for (name, words) in TRIED.iter().filter(|(d, _)| *d == defect).flat_map(|(_, f)| *f) {
         let (status, told) = verdict(name, Defect::None);

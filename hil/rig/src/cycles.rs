@@ -3,7 +3,8 @@
 use cortex_m::peripheral::{DWT, Peripherals};
 
 /// Starts the counter, before anything else takes the core's peripherals.
-/// \n # Panics
+///
+/// # Panics
 /// When called later.
 pub fn start() {
     let Some(mut core) = Peripherals::take() else {

@@ -1,6 +1,7 @@
 //! Shared code of the tests on a real board, run by a probe. `tests/rig/` has the tests, `hil/README.md` the wiring.
 //! Empty on the host.
-//! \n The board crate is the firmware's: the tests use the drivers, pins and timers that fly. Each test starts from a
+//!
+//! The board crate is the firmware's: the tests use the drivers, pins and timers that fly. Each test starts from a
 //! reset. A missing jumper or part is logged as `ignored:` and the test passes; with the feature `wired` it fails.
 
 #![cfg_attr(target_os = "none", no_std)]

@@ -58,7 +58,8 @@ impl ResumableTest {
 }
 
 /// Takes the interrupted test and the reset cause. Called once, first.
-/// \n # Panics
+///
+/// # Panics
 /// If the watchdog interrupted a test that feeds it.
 pub fn begin() -> (ResumableTest, ResetCause) {
     cycles::start();

@@ -5,7 +5,8 @@ use core::fmt;
 use defmt::Display2Format;
 
 /// Reports that `what` is missing; the test then has no result.
-/// \n # Panics
+///
+/// # Panics
 /// With the feature `wired`.
 pub fn absent(what: fmt::Arguments<'_>) {
     if cfg!(feature = "wired") {

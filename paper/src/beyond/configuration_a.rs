@@ -63,7 +63,6 @@ fn headings(s: &mut Section, jobs: &[Job], flights: &[Flown], k: f64) {
     );
 }
 
-/// The right-half-plane zero.
 fn mechanism(s: &mut Section, p: &Printed, k: f64) {
     let hover = p.mass() * sophie_sim::plant::GRAVITY / 4.0;
     let at = AtThrust::new(p.text.infill_percent, k, hover);

@@ -38,7 +38,7 @@ pub const SIGN_AWARE: usize = 4;
 
 const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
 const GAINS: [f64; 5] = [1.0, 2.0, 3.5, 5.03, 7.75];
-/// Yaw error (° RMS) at which a map's shade is bad.
+/// Yaw error at which a map's shade is bad, ° RMS.
 const POOR: f64 = 6.0;
 
 const fn flown_in(configuration: Configuration) -> &'static [usize] {

@@ -18,7 +18,6 @@ struct Job {
     seed: u64,
 }
 
-/// RMS heading error, degrees; `None` if lost.
 fn yaw_error(job: &Job, k: f64) -> Option<f64> {
     let mut v = in_gusts(vehicle(Configuration::B, k, job.infill, Variant::Flexible));
     mismatch(&mut v);

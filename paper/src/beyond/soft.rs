@@ -19,9 +19,8 @@ struct Soft {
     infill: f64,
     zeta: f64,
     notch: bool,
-    /// Yaw rate gain, 1/s.
     yaw_gain: f32,
-    /// Thrust of level arms over the largest.
+    /// Over the largest thrust.
     level_share: f64,
 }
 
@@ -95,9 +94,7 @@ struct Outcome {
     /// RMS errors, degrees; `None` if lost.
     roll: Option<f64>,
     yaw: Option<f64>,
-    /// Largest arm tilt, degrees.
     tilt: f64,
-    /// Fastest sink, m/s.
     sink: f64,
     lost: Cell,
 }

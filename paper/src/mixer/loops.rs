@@ -16,7 +16,7 @@ use super::super::printed::Printed;
 use super::super::statics::{AtThrust, frozen_bound, root};
 
 const ZETA: f64 = 0.15;
-/// Initial yaw pattern of a loop, N.
+/// Yaw pattern, N.
 const START: f32 = 0.02;
 
 /// Yaw patterns (N) of T(k+1) = M(α(T(k)))⁻¹ w from hover with `start` N.
@@ -45,7 +45,7 @@ fn one_step_loop(infill: f64, gain_k: f64, start: f32, steps: usize) -> Vec<f64>
     out
 }
 
-/// Range of rotor 1's thrust (N) under a small yaw demand, in the mixer's model of motor and arm.
+/// Of rotor 1 (N), small yaw demand, in the mixer's model of motor and arm.
 fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     let p = Params {
         gain_k: gain_k as f32,
@@ -78,7 +78,7 @@ fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
 struct Hover {
     infill: f64,
     gain_k: f64,
-    /// Thrust per rotor, N.
+    /// N per rotor.
     thrust: f64,
 }
 
@@ -88,7 +88,6 @@ impl Hover {
         AtThrust::new(infill, gain_k, self.thrust).one_step(1.0)
     }
 
-    /// Gain K above which the multiplier exceeds `bound`.
     fn gain_of(&self, bound: f64) -> f64 {
         let over = |k: f64| self.multiplier(self.infill, k).abs() - bound;
         root(0.1, 9.0, over).unwrap_or(f64::NAN)

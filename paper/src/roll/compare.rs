@@ -20,7 +20,6 @@ pub fn with_flights(s: &mut Section, p: &Printed, flights: &Flights) {
     );
 }
 
-/// A row of Table III beside the flights of its infill.
 struct Row<'a> {
     row: &'a Roll,
     flights: &'a Flights,
@@ -68,7 +67,6 @@ impl Row<'_> {
         ]
     }
 
-    /// κ by the exact force.
     fn kappa(&self) -> [Comparison; 2] {
         let kappa = |what: &str, arms| {
             let found = self.flights.found(RIGID_HARD, self.row.infill_percent, arms);

@@ -127,7 +127,6 @@ impl Drawn<'_> {
         curves.collect()
     }
 
-    /// Mean tilts of left and right arms, flexible mixer.
     fn tilts(&self) -> Vec<Series> {
         let mut series = vec![];
         for (case, look, word) in [

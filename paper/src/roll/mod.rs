@@ -80,7 +80,6 @@ impl Flights {
         self.of(case, infill, arms).and_then(found)
     }
 
-    /// Largest Δα, degrees.
     fn bent(&self, case: usize, infill: f64, arms: Arms) -> f64 {
         let found = self.found(case, infill, arms);
         found.map_or(f64::NAN, |f| f.delta_alpha.to_degrees())

@@ -25,7 +25,7 @@ impl Studied {
     }
 }
 
-/// Yaw authority over k_q at which [`Studied::SignAware`] has none and all of it: in A it crosses zero during spool-up.
+/// Yaw authority over k_q at which [`Studied::SignAware`] has none and all: in A it crosses zero during spool-up.
 const FADE: (f32, f32) = (0.5, 1.2);
 
 /// The law of a [`Studied`] allocation.

@@ -11,19 +11,19 @@ use sophie_tasks::links::Setpoint;
 
 use super::allocation::Studied;
 
-/// Rest for the gyroscope's calibration, s.
+/// For the gyroscope's calibration, s.
 const REST: f64 = 4.0;
 /// From take-off to the experiment, s.
 pub const SETTLE: f64 = 6.0;
-/// Largest thrust of the height hold, N.
+/// Of the height hold, N.
 const THRUST_MAX: f64 = 40.0;
-/// Spool-up, s: yaw is gated, and the heading may slip.
+/// s: yaw is gated, and the heading may slip.
 const SPOOL_UP: f64 = 2.0;
 /// Roll or pitch of a lost vehicle, rad.
 const UPSET: f64 = 1.4;
-/// Heading error of a lost vehicle, rad.
+/// Heading error, rad.
 const SPUN: f64 = 1.05;
-/// Yaw rate of a lost vehicle, rad/s.
+/// Yaw rate, rad/s.
 const SPIN: f64 = 4.0;
 
 /// Demand and disturbance at a time of the experiment.

@@ -1,5 +1,6 @@
 //! Random touches of the pipe: beside the crown, leaning, drifting, cancelled at any time.
-//! \n The whole stack flies on a receiver's bytes. The vehicle hovers high up, is moved over the pipe while it leans
+//!
+//! The whole stack flies on a receiver's bytes. The vehicle hovers high up, is moved over the pipe while it leans
 //! (no sensor measures position), and sinks onto it. The mode logic continues, until a pilot who sees the vehicle leave
 //! the pipe climbs away.
 
@@ -18,14 +19,14 @@ use sophie_sim::plant::Plant;
 use sophie_sim::plant::contact::{ArmSkin, BELLY_Z, STATIONS};
 use sophie_sim::scenario::Scenario;
 
-/// Deadline of calibration and arming, s.
+/// s.
 const ARMED_BY: f64 = 12.0;
 /// Hover before the touch, and the lean at its end, s.
 const HOVER: f64 = 2.0;
 const LEANING: f64 = 0.8;
-/// Height of the hover, m.
+/// m.
 const HEIGHT: f64 = 12.0;
-/// Clearance over the pipe at the start, m.
+/// Over the pipe at the start, m.
 const CLEARANCE: f64 = 0.01;
 /// Time from there, s.
 const DURATION: f64 = 14.0;
@@ -34,14 +35,14 @@ const REACTION: f64 = 0.35;
 /// Throttle of the set-down, and its slew rate, 1/s.
 const SET_DOWN: f64 = 0.40;
 const EASE: f64 = 0.5;
-/// Lean (rad) and depth below the touch height (m) that the pilot sees as sliding.
+/// Lean (rad) and depth below the touch height (m) at which the pilot sees it slide.
 const SEEN_LEAN: f64 = 0.5;
 const SEEN_DEPTH: f64 = 0.06;
-/// Depth below the touch height of a lost vehicle, m: the ground under the lowest pipe.
+/// Below the touch height, m: the ground under the lowest pipe.
 const LOST_DEPTH: f64 = 0.95;
-/// Height over the touch height clear of the pipe, m.
+/// Over the touch height, m.
 const CLEAR: f64 = 0.4;
-/// Time on the pipe before the arms open, s.
+/// On the pipe before the arms open, s.
 const STAY: f64 = 2.0;
 const RELEASE: f64 = 0.25;
 
@@ -178,7 +179,6 @@ impl Try {
         self.plant.euler()[0]
     }
 
-    /// Throttle to climb at `rate` m/s.
     fn climb(&self, rate: f64) -> f32 {
         let hover =
             f64::from(self.scenario.params.mass) * 9.81 / (4.0 * f64::from(self.scenario.params.thrust_max));
@@ -208,7 +208,7 @@ impl Try {
         true
     }
 
-    /// Moves the vehicle over the pipe; returns its down coordinate at the touch, m.
+    /// Returns the down coordinate at the touch, m.
     fn put_over(&mut self, touch: &Touch) -> f64 {
         let world = &self.scenario.world;
         let [north, east] = world.pipe_position;

@@ -1,5 +1,6 @@
 //! Virtual time: embassy clock and executor of one flight, confined to its thread.
-//! \n The clock stands still while tasks run and jumps to the next alarm when all wait. It is thread-local behind the
+//!
+//! The clock stands still while tasks run and jumps to the next alarm when all wait. It is thread-local behind the
 //! process-wide embassy-time driver: flights in parallel threads are independent.
 
 use std::cell::{Cell, RefCell};
@@ -57,7 +58,7 @@ pub struct VirtualTime {
 }
 
 impl VirtualTime {
-    /// Clock at 0, no tasks; clears the thread's state of an earlier flight.
+    /// Clears the thread's state of an earlier flight.
     #[must_use]
     #[allow(
         clippy::new_without_default,

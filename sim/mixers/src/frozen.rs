@@ -9,10 +9,9 @@ use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
 use crate::law::{Law, Situation};
 
-/// Damping ratio of the arm mode in [`DynamicTilt`] (assumed).
+/// Arm mode of [`DynamicTilt`] (assumed).
 const ARM_DAMPING: f32 = 0.15;
 
-/// Motor lag and bending mode of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct DynamicTilt {
     motor: LowPass,

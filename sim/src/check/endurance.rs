@@ -9,9 +9,9 @@ use crate::plant::rotor::Rotor;
 use crate::plant::servo_power::{MG996R, endurance};
 use crate::scenario::{Scenario, Step};
 
-/// Time step, s.
+/// s.
 const STEP: f64 = 1.0;
-/// Longest time computed, s: three hours.
+/// s: three hours.
 const LONGEST: f64 = 10_800.0;
 const MINUTE: f64 = 60.0;
 

@@ -14,12 +14,12 @@ use crate::scenario::{Scenario, Step};
 
 /// Closing throttle of a mission that names none: a scenario file's default.
 const THROTTLE: f64 = 0.3;
-/// Tilt step in the search for an arm that presses on the pipe, rad, and the number of steps: down to -2 rad.
+/// Tilt step, rad, and number of steps in the search for an arm that presses on the pipe: down to -2 rad.
 const TILT_STEP: f64 = 1e-3;
 const DEEPEST: u32 = 2000;
 
-/// Share of the provable force in reserve: the arm is tried centred and with a true sensor, and flights have taken up
-/// to 4.4 % more (docs/design-check.md).
+/// Reserve of the provable force: arms are tried centred with a true sensor, and flights have taken up to 4.4 % more
+/// (docs/design-check.md).
 const RESERVE: f64 = 0.05;
 
 /// Result of an arm.

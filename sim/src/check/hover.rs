@@ -8,9 +8,9 @@ use crate::plant::contact::{ARM_LENGTH, ARM_X};
 use crate::plant::{GRAVITY, arm_spec};
 use crate::scenario::{Scenario, Vehicle};
 
-/// Bisections for the hover thrust: to 1e-6 of the largest.
+/// For the hover thrust: to 1e-6 of the largest.
 const HALVINGS: u32 = 20;
-/// Change of thrust for an arm's compliance, N.
+/// For an arm's compliance, N.
 const THRUST_STEP: f64 = 1e-3;
 /// Limit of the stack's small-angle sines, rad.
 const TILT_MAX: f64 = 0.7;
@@ -59,7 +59,7 @@ impl Built {
             .sum()
     }
 
-    /// Thrust of each rotor (N, at most `most`) that gives `lift` N, if any.
+    /// In N, at most `most`, if any suffices.
     fn thrust_of(&self, lift: f64, most: f64) -> Option<f64> {
         let (mut low, mut high) = (0.0, most);
         if self.lift(high) < lift {
@@ -111,7 +111,7 @@ impl Built {
         (softest / ARM_LENGTH / crate::plant::arm::TIP_MASS).sqrt() / std::f64::consts::TAU
     }
 
-    /// Arm tilts at `thrust` N, rad, limited to `TILT_MAX`.
+    /// rad, limited to `TILT_MAX`.
     fn tilt(&self, thrust: f64) -> PerArm<f32> {
         self.arms
             .map(|arm| arm.static_tilt(thrust).clamp(-TILT_MAX, TILT_MAX) as f32)

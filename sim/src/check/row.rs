@@ -103,7 +103,7 @@ impl Row {
     }
 }
 
-/// Three digits of a number, with its unit.
+/// Three digits.
 fn with_unit(value: f64, unit: &str) -> String {
     let number = match value.abs() {
         v if !v.is_finite() => "none".to_owned(),

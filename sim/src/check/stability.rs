@@ -4,10 +4,10 @@ use super::hover::Built;
 use super::loops::{AXES, Margins};
 use super::row::{Limit, Row};
 
-/// Required gain margin: inertias are known to 30 %, and 0.7 of one is 1.43 of the gain.
+/// Inertias are known to 30 %, and 0.7 of one is 1.43 of the gain.
 const GAIN_MARGIN: f64 = 1.0 / 0.7;
-/// Required phase margin, degrees: an ESC frame, bus and frame interval of 4 ms outside the model take 9 degrees at a
-/// crossover of 40 rad/s, a motor 30 % slower than stated as much again.
+/// Degrees: an ESC frame, bus and frame interval of 4 ms outside the model take 9 at a crossover of 40 rad/s, a motor
+/// 30 % slower than stated as much again.
 const PHASE_MARGIN: f64 = 18.0;
 const GAINS: [&str; 3] = ["rate_p", "rate_p", "rate_yaw_p"];
 /// Parameters that set the attitude's share in the gain.
@@ -53,10 +53,8 @@ pub fn rows(margins: &[Margins; 3], built: &Built) -> Vec<Row> {
     rows
 }
 
-/// Bending mode of the arms against the bandwidth of roll and pitch.
-///
-/// Value: √(k/m)/2π of the softest arm, body held, Hz. Above it the tips lag by half a turn, and a loop with that
-/// bandwidth shakes the body between them.
+/// √(k/m)/2π of the softest arm, body held, Hz, against the bandwidth of roll and pitch: above it the tips lag by half
+/// a turn, and a loop shakes the body between them.
 fn arm_mode(margins: &[Margins; 3], built: &Built) -> Row {
     let [roll, pitch, _] = margins;
     let bandwidth = roll.crossover.max(pitch.crossover) / std::f64::consts::TAU;

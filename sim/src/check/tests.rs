@@ -79,7 +79,7 @@ fn a_mission_without_a_pipe_has_no_rows_of_it() {
     );
 }
 
-/// A scenario with about half of the vehicle's and world's numbers and `params` parameters drawn from their ranges.
+/// Draws about half of the vehicle's and world's numbers and `params` parameters from their ranges.
 fn draw(rng: &mut Pcg64Mcg, params: f64) -> String {
     let mut text = String::new();
     for table in ["vehicle", "world"] {

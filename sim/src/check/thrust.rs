@@ -9,13 +9,13 @@ use crate::plant::contact::{ARM_LENGTH, ARM_X};
 use crate::plant::rotor::NOMINAL_VOLTAGE;
 use crate::scenario::Scenario;
 
-/// Share of the weight in reserve to stop sinking: 0.5 m/s² stops the failsafe's 0.8 m/s in 0.65 m.
+/// Thrust over weight in reserve: 0.5 m/s² stops the failsafe's 0.8 m/s in 0.65 m.
 const BRAKE: f64 = 0.05;
 /// Gusts beyond this many times their RMS occur once in hours.
 pub(super) const GUST_FACTOR: f64 = 3.0;
 /// Vertical share of the gust force, as in the plant.
 const VERTICAL: f64 = 0.5;
-/// Stick share beyond which the throttle has too little travel left to climb.
+/// Stick share beyond which too little travel is left to climb.
 const STICK_MOST: f64 = 0.85;
 
 /// Thrust to weight at the nominal voltage.
@@ -34,7 +34,6 @@ pub fn to_weight(scenario: &Scenario, built: &Built, perches: bool) -> Row {
         .advise("make it lighter, or fit stronger rotors")
 }
 
-/// Share of full thrust left at `battery_critical`.
 fn critical_share(scenario: &Scenario) -> f64 {
     let (rotor, critical) = (
         &scenario.vehicle.rotor,

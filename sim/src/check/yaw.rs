@@ -9,15 +9,15 @@ use super::row::{Limit, Row};
 use super::thrust::GUST_FACTOR;
 use crate::scenario::Scenario;
 
-/// Shares of hover thrust at which the yaw demand is evaluated.
+/// In shares of hover thrust.
 const NEAR_HOVER: [f64; 3] = [0.8, 1.0, 1.2];
-/// Evaluated thrusts between the yaw gate and the largest.
+/// Between the yaw gate and the largest thrust.
 const POINTS: u32 = 12;
-/// Share of the largest thrust up to which rotors have room for yaw.
+/// Share of the largest thrust up to which yaw has room.
 const TOP: f64 = 0.95;
-/// Evaluated yaw moment, N·m: a tenth of a newton a rotor on a stiff frame.
+/// N·m: a tenth of a newton a rotor on a stiff frame.
 const TRIED: f32 = 0.006;
-/// Step in which the mixer's model settles, s, far beyond its slowest filter; and the number of steps.
+/// Step of the mixer's model, s, far beyond its slowest filter, and number of steps.
 const SETTLE: f32 = 1e3;
 const SETTLE_STEPS: u32 = 4;
 /// Time to reach the fastest turn, s.
@@ -32,15 +32,15 @@ pub fn rows(scenario: &Scenario, built: &Built) -> Vec<Row> {
     ]
 }
 
-/// Rotor thrusts at which yaw is used, N: from the stack's gate to [`TOP`].
+/// Rotor thrusts that use yaw, N: from the stack's gate to [`TOP`].
 fn range(scenario: &Scenario) -> impl Iterator<Item = f64> {
     let low = f64::from(scenario.params.yaw_gate_thrust.max(scenario.params.thrust_idle));
     let high = (TOP * scenario.vehicle.rotor.thrust_max).max(low);
     (0..=POINTS).map(move |i| low + (high - low) * f64::from(i) / f64::from(POINTS))
 }
 
-/// Moment (N·m) from a demand of 1 N·m at `thrust` N a rotor with settled arms: the mixer's output through the plant's
-/// arms. 1 where the mixer knows the arms; negative where they reverse the demand.
+/// Moment (N·m) for a demand of 1 N·m at `thrust` N a rotor: the mixer's output through the plant's settled arms. 1
+/// where the mixer knows the arms; negative where they reverse the demand.
 fn given(scenario: &Scenario, built: &Built, thrust: f64) -> f64 {
     let change = yaw_thrusts(scenario, thrust);
     let effect = built.yaw_effect(thrust);
@@ -53,7 +53,7 @@ fn given(scenario: &Scenario, built: &Built, thrust: f64) -> f64 {
     moment.sum()
 }
 
-/// Thrust (N) that the mixer adds to each rotor for 1 N·m of yaw at a collective of `thrust` N a rotor.
+/// Thrust (N) added to each rotor for 1 N·m of yaw at a collective of `thrust` N a rotor.
 fn yaw_thrusts(scenario: &Scenario, thrust: f64) -> PerArm<f64> {
     let mut mixer = Mixer::new(scenario.mixer, scenario.vehicle.configuration, &scenario.params);
     let conditions = Conditions {
@@ -85,10 +85,8 @@ fn yaw_thrusts(scenario: &Scenario, thrust: f64) -> PerArm<f64> {
     std::array::from_fn(|i| f64::from(more[i] - less[i]) / f64::from(2.0 * TRIED))
 }
 
-/// Smallest share of a yaw demand given near hover.
-///
-/// Value: the smallest moment over demand from 0.8 to 1.2 of hover thrust; 1 where the mixer knows the arms. Limit:
-/// share of the stiff frame's authority at which the mixer fades yaw.
+/// Smallest moment over yaw demand from 0.8 to 1.2 of hover thrust; 1 where the mixer knows the arms. Limit: share of
+/// the stiff frame's authority at which the mixer fades yaw.
 fn share(scenario: &Scenario, built: &Built) -> Row {
     let most = TOP * scenario.vehicle.rotor.thrust_max;
     let shares = NEAR_HOVER.map(|share| given(scenario, built, (share * built.hover).min(most)));
@@ -97,10 +95,8 @@ fn share(scenario: &Scenario, built: &Built) -> Row {
         .advise("fit configuration B, stiffer arms or the flexible mixer, or state the arms as they are")
 }
 
-/// Largest stability derivative over the throttle range that uses yaw.
-///
-/// Value: C = 1 - y/k_q, y the yaw moment per newton of pattern with settled arms. 0 for stiff arms; above 1 a yaw
-/// command is reversed.
+/// Largest C = 1 - y/k_q over the throttle range that uses yaw, y the yaw moment per newton of pattern with settled
+/// arms. 0 for stiff arms; above 1 a command is reversed.
 fn derivative(scenario: &Scenario, built: &Built) -> Row {
     let worst = range(scenario)
         .map(|t| built.yaw_derivative(t))
@@ -109,8 +105,8 @@ fn derivative(scenario: &Scenario, built: &Built) -> Row {
         .advise("fit configuration B or stiffer arms, or raise yaw_gate_thrust: bending arms turn yaw round")
 }
 
-/// Yaw moment of the rotors in hover, N·m: the mixer's pattern up to `yaw_thrust_max` or the rotors' room, against
-/// gusts and the fastest turn within a second. 0 where the mixer gives up yaw.
+/// Yaw moment in hover, N·m: the mixer's pattern up to `yaw_thrust_max` or the rotors' room, against gusts and the
+/// fastest turn within a second. 0 where the mixer gives up yaw.
 fn authority(scenario: &Scenario, built: &Built) -> Row {
     let (p, v) = (&scenario.params, &scenario.vehicle);
     let pattern = yaw_thrusts(scenario, built.hover);

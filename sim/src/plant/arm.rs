@@ -1,5 +1,6 @@
 //! One soft arm as a rigid link on a virtual hinge at the centre line, with Eq. 1 as its spring.
-//! \n Eq. 1 gives the tilt at rest on a level bench, the arm's own weight included. Inverted, it is the spring: the
+//!
+//! Eq. 1 gives the tilt at rest on a level bench, the arm's own weight included. Inverted, it is the spring: the
 //! moment that holds the tilt α is L (T_s(α) - m g cos α), T_s the thrust with the static tilt α. Tangent stiffness and
 //! tip mass give the mode: 5 Hz in hover at ρ 6.9 %, K 7.75.
 
@@ -13,11 +14,11 @@ use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
 pub const TIP_MASS: f64 = 0.077;
 /// A1, A2, B1, B2 of Eq. 1 (paper, Table I).
 pub const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
-/// Thrust of the level arm, N: half of the paper's largest.
+/// N: half of the paper's largest.
 const LEVEL_THRUST: f64 = 4.15;
-/// Thrust at which the damping ratio holds, N: hover.
+/// N: the damping ratio holds here.
 const HOVER_THRUST: f64 = 4.425;
-/// Smallest compliance over that at rest, for large thrusts, where Eq. 1's parabola turns.
+/// Over the compliance at rest, for large thrusts, where Eq. 1's parabola turns.
 const LEAST_COMPLIANCE: f64 = 0.15;
 
 /// An arm as built.
@@ -32,7 +33,7 @@ pub struct ArmSpec {
     quadratic: f64,
     /// Thrust beyond which the spring is linear, N.
     knee: f64,
-    /// Damping, N·m·s/rad.
+    /// N·m·s/rad.
     damping: f64,
 }
 

@@ -1,13 +1,13 @@
 //! The flight battery: 4S lithium with a resistance.
 
-/// Charge when full, A·s: 1800 mAh (paper).
+/// A·s: 1800 mAh (paper).
 const CAPACITY: f64 = 1.8 * 3600.0;
-/// Resistance of pack and leads, Ω (assumed).
+/// Pack and leads, Ω (assumed).
 const RESISTANCE: f64 = 0.035;
 const CELLS: f64 = 4.0;
-/// Current of the electronics, A (assumed).
+/// A (assumed).
 const ELECTRONICS: f64 = 0.6;
-/// Open voltage per cell, V, per 10 % of charge from 0 (typical LiPo).
+/// V per cell, per 10 % of charge from 0 (typical LiPo).
 const OPEN_VOLTAGE: [f64; 11] = [3.27, 3.69, 3.73, 3.77, 3.80, 3.84, 3.87, 3.95, 4.02, 4.11, 4.20];
 
 /// The battery's state.

@@ -1,5 +1,6 @@
 //! Equations of motion of the body with four hinged tip masses.
-//! \n A tip slides along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
+//!
+//! A tip slides along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
 //! generalised force on its hinge to the body as -Q/L along n. The remaining 6×6 system is solved by 3×3 blocks; the
 //! tilts' accelerations follow one by one.
 
@@ -243,7 +244,7 @@ mod tests {
         }
     }
 
-    /// Flies free from drooping arms; returns the end and the angular momentum about the world origin.
+    /// Returns the end and the angular momentum about the world origin.
     fn fly(thrust: f64, moment: DVec3, seconds: f64, omega: DVec3) -> (Pose, [Arm; 4], DVec3) {
         run(arms(), thrust, |_| moment, seconds, omega)
     }

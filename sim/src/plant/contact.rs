@@ -1,5 +1,6 @@
 //! Contact with ground and pipe.
-//! \n Points in body axes (FRD, origin at the centre of mass): spring and damper along the normal, push only; a bristle
+//!
+//! Points in body axes (FRD, origin at the centre of mass): spring and damper along the normal, push only; a bristle
 //! along the surface that sticks up to Coulomb's limit. Loads are force and moment on the body (about its centre of
 //! mass, body axes) and moment on the arm's tilt α. Stiffnesses are those of soft printed parts (assumed), stable with
 //! semi-implicit steps of 0.5 ms.

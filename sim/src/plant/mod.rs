@@ -34,8 +34,7 @@ pub const GRAVITY: f64 = 9.806_65;
 const GROUND_FRICTION: f64 = 0.7;
 /// Linear air drag, N·s/m (assumed).
 pub const DRAG: f64 = 0.3;
-/// Distance of the origin from a surface beyond which no part can touch it, m: an arm's length, the depth of its hinge
-/// and a margin.
+/// Distance of the origin from a surface within which parts may touch it, m: arm, depth of its hinge and a margin.
 const NEAR: f64 = 0.25;
 
 /// Inputs from the flight stack.

@@ -1,5 +1,6 @@
 //! Servo, reel and tendon of one arm.
-//! \n A hobby servo winds a nylon thread along the arm's underside. The thread only pulls, and is slack until the reel
+//!
+//! A hobby servo winds a nylon thread along the arm's underside. The thread only pulls, and is slack until the reel
 //! has wound the length that the tilt frees. Numbers are the vehicle's; the flight stack's are parameters.
 
 use std::f64::consts::PI;
@@ -9,11 +10,11 @@ use sophie_control::tendon::{REFERENCE_TILT, Reel};
 
 use crate::scenario::ServoProfile;
 
-/// Deadband, µs (digital servos state 2 to 5; MG996R datasheet 5).
+/// µs (digital servos state 2 to 5; MG996R datasheet 5).
 const DEADBAND_US: f64 = 2.0;
-/// Pulse widths accepted, µs.
+/// µs.
 const PULSE_LIMITS_US: (f64, f64) = (450.0, 2550.0);
-/// Share of the stall torque that gear friction holds without pulses (assumed).
+/// Over the stall torque, without pulses (assumed).
 const GEAR_FRICTION: f64 = 0.35;
 
 /// A servo as built.

@@ -1,5 +1,6 @@
 //! Whether a scenario's numbers give arms for plant and stack model.
-//! \n Eq. 1 is a parabola in the thrust; the spring is its inverse, which needs a rising tilt, and the allocation
+//!
+//! Eq. 1 is a parabola in the thrust; the spring is its inverse, which needs a rising tilt, and the allocation
 //! divides by the slope.
 
 use toml::Spanned;
@@ -10,10 +11,10 @@ use super::read::{Result, Source, Value};
 use super::{Scenario, Vehicle};
 use crate::plant::{GRAVITY, arm_spec};
 
-/// Smallest slope without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast for the
-/// plant's step of 0.5 ms.
+/// Slope without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast for the plant's
+/// step of 0.5 ms.
 const LEAST_RISE: f64 = 0.1 * DEGREE;
-/// Largest tilt of a free arm at zero or full thrust, rad: beyond it the rotor pushes more inward than up.
+/// Of a free arm at zero or full thrust, rad: beyond it the rotor pushes more inward than up.
 const LARGEST_TILT: f64 = 90.0 * DEGREE;
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
@@ -38,7 +39,7 @@ struct Slope {
     linear: f64,
     /// Half of its change with thrust, rad/N².
     quadratic: f64,
-    /// Thrust of a rotor in hover, N.
+    /// N.
     hover: f64,
 }
 

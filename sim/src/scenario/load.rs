@@ -51,7 +51,8 @@ impl Overrides {
 
 impl Scenario {
     /// Reads a file, whose name is the default `name`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: file, line, key, value, what is allowed.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
@@ -95,7 +96,8 @@ impl Scenario {
     }
 
     /// Parses a scenario; messages name `file`.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// As [`Scenario::load`].
     pub fn parse(text: &str, file: &str, overrides: &Overrides) -> Result<Self, ScenarioError> {
         Source { file, text }.scenario(overrides)

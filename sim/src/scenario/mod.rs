@@ -1,5 +1,6 @@
 //! A mission: vehicle, world, pilot, steps, seed.
-//! \n Scenarios are TOML files with units in the keys; values here are SI. `tests/scenarios/mission.toml` has every key
+//!
+//! Scenarios are TOML files with units in the keys; values here are SI. `tests/scenarios/mission.toml` has every key
 //! with its default.
 
 mod arm;

@@ -17,7 +17,6 @@ pub(super) fn nearest<'a>(key: &str, candidates: impl Iterator<Item = &'a str>) 
         .collect()
 }
 
-/// Distance of the names, plus one for different tables.
 fn distance(a: &str, b: &str) -> usize {
     let split = |key| <str>::rsplit_once(key, '.').unwrap_or(("", key));
     let ((table_a, name_a), (table_b, name_b)) = (split(a), split(b));

@@ -11,13 +11,13 @@ use sophie_control::wrench::SIDE;
 
 /// Fusion steps per second (datasheet).
 pub const RATE_HZ: f64 = 100.0;
-/// Output latency, steps: 20 ms (assumed).
+/// Steps: 20 ms (assumed).
 const LATENCY: usize = 2;
-/// One count, m/s² (datasheet).
+/// m/s² (datasheet).
 const LSB: f64 = 0.01;
-/// Noise of the fused vector, m/s² (assumed).
+/// Of the fused vector, m/s² (assumed).
 const NOISE: f64 = 0.03;
-/// Largest mounting error, rad (assumed, 0.5°).
+/// Largest error, rad (assumed, 0.5°).
 const MOUNTING: f64 = 0.0087;
 /// Share of the acceleration that leaks into the vector, and its time constant, s (assumed).
 const LEAK: (f64, f64) = (0.1, 0.3);

@@ -1,16 +1,17 @@
 //! A force-sensing resistor under an arm's skin, with divider and converter.
-//! \n Interlink FSR 406 after datasheet and integration guide: no conductance below 0.1 N, then about proportional to
+//!
+//! Interlink FSR 406 after datasheet and integration guide: no conductance below 0.1 N, then about proportional to
 //! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep: in all the paper's error of about 50 N/m² at
 //! 950 N/m².
 
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
-/// Active area, m²: 38 mm square (datasheet).
+/// m²: 38 mm square (datasheet).
 const AREA: f64 = 0.038 * 0.038;
-/// Actuation force, N (datasheet).
+/// N (datasheet).
 const THRESHOLD: f64 = 0.1;
-/// Conductance at 1 N, S (guide, about 10 kΩ).
+/// S at 1 N (guide, about 10 kΩ).
 const GAIN: f64 = 1e-4;
 /// Largest gain error, calibrated in the arm (assumed; 6 % from the reel, datasheet).
 const PART_ERROR: f64 = 0.04;
@@ -20,11 +21,11 @@ const EXPONENT_MIN: f64 = 0.97;
 const HYSTERESIS: f64 = 0.015;
 /// RMS and time constant of the creep, s (assumed; datasheet below 5 % per decade of time).
 const CREEP: (f64, f64) = (0.008, 20.0);
-/// RMS noise over the conductance (assumed).
+/// RMS over the conductance (assumed).
 const NOISE: f64 = 0.004;
-/// Divider's resistor to ground, Ω, and its largest error.
+/// Resistor to ground, Ω, and its largest error.
 const DIVIDER: (f64, f64) = (10_000.0, 0.01);
-/// RMS converter noise, counts.
+/// RMS, counts.
 const ADC_NOISE: f64 = 1.2;
 
 /// Largest relative error of the pressure in the vehicle: limits of gain and divider, hysteresis, three times the

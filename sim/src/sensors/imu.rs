@@ -10,25 +10,24 @@ use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
 
-/// Default sample rate, Hz.
+/// Default, samples/s.
 const RATE_HZ: f64 = 4000.0;
-/// Gyro noise, rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
+/// rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
 const GYRO_NOISE: f64 = 2.8e-3 * (std::f64::consts::PI / 180.0) * 44.7;
-/// Accelerometer noise, m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
+/// m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
 const ACCEL_NOISE: f64 = 70e-6 * 9.806_65 * 44.7;
-/// Largest gyro bias, rad/s: ±0.5 dps (datasheet).
+/// Largest, rad/s: ±0.5 dps (datasheet).
 const GYRO_BIAS: f64 = 0.5 * (std::f64::consts::PI / 180.0);
-/// Largest accelerometer bias, m/s²: ±20 mg (datasheet).
+/// Largest, m/s²: ±20 mg (datasheet).
 const ACCEL_BIAS: f64 = 0.020 * 9.806_65;
-/// Largest error of the bench calibration, m/s²: a bench level to 0.25° (assumed).
+/// Largest, m/s²: a bench level to 0.25° (assumed).
 const BENCH_ERROR: f64 = 0.04;
-/// Vibration per rotor at 600 rad/s: rad/s and m/s² (assumed; soft arms isolate).
+/// Per rotor at 600 rad/s, rad/s and m/s² (assumed; soft arms isolate).
 const VIBRATION: (f64, f64) = (0.01, 0.25);
 
 /// The sensor with its errors.
 #[derive(Clone, Debug)]
 pub struct Imu {
-    /// Samples per second.
     rate: f64,
     /// Relative to 4 kHz: it grows with the band, half the rate.
     noise: f64,

@@ -2,11 +2,11 @@
 
 use sophie_sim::record::{FlightRecord, SAMPLE_HZ, Sample};
 
-/// Settling time of a resting setpoint, s: twice that of a roll of 25°.
+/// s: twice that of a roll of 25°.
 const SETTLE: f64 = 1.0;
-/// Largest change of a resting setpoint within it, rad: 2°, more than stick noise.
+/// Largest change of a resting setpoint meanwhile, rad: 2°, more than stick noise.
 const REST: f64 = 0.035;
-/// Thrust asked of a rotor from which the vehicle is flown, N, as in the steps' table.
+/// Thrust asked of a rotor in flight, N, as in the steps' table.
 const FLOWN: f64 = 1.0;
 
 const AXES: [&str; 2] = ["roll", "pitch"];

@@ -1,5 +1,6 @@
 //! `flight.mcap`: every sample, for Foxglove and PlotJuggler.
-//! \n Times are simulated nanoseconds from power-up. Frames are Foxglove's: `world` is north, west, up from take-off,
+//!
+//! Times are simulated nanoseconds from power-up. Frames are Foxglove's: `world` is north, west, up from take-off,
 //! `vehicle` forward, left, up.
 
 use std::collections::BTreeMap;
@@ -14,11 +15,12 @@ use super::summary::tidy;
 use super::units::deg;
 use super::{scene, schemas};
 
-/// Rate of the 3D scene, Hz; samples have their full rate.
+/// Hz; samples have their full rate.
 const SCENE_HZ: f64 = 20.0;
 
 /// The file's content.
-/// \n # Errors
+///
+/// # Errors
 /// The writer fails.
 pub fn mcap(record: &FlightRecord) -> Result<Vec<u8>, String> {
     write(record).map_err(|error| format!("flight.mcap: cannot be made: {error}"))

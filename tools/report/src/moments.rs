@@ -92,7 +92,6 @@ fn steepest(record: &FlightRecord, phase: &Phase) -> Option<usize> {
         .map(|(i, _)| i)
 }
 
-/// The last moment close over the pipe.
 fn lifted_off(record: &FlightRecord, phase: &Phase) -> Option<usize> {
     let close = record.scenario.world.pipe_top + 0.16;
     let near = during(record, phase)

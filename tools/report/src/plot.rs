@@ -7,7 +7,7 @@ use super::scale::{thin, tick_step, ticks};
 use super::svg::{Rect, line, path, rect, short, text};
 use super::time_axis::{LEFT, RIGHT, Span, WIDTH};
 
-/// Distance between two panels, px.
+/// px.
 const GAP: f64 = 22.0;
 
 /// One curve.

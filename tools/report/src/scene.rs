@@ -12,9 +12,9 @@ const ARM_X: f64 = 0.178;
 const HINGE_Z: f64 = 0.02;
 const ROTOR_RADIUS: f64 = 0.127;
 const ROTOR_LIFT: f64 = 0.05;
-/// Drawn pipe length, m.
+/// m, drawn.
 const PIPE_LENGTH: f64 = 2.0;
-/// Colours of the arms, as in the report.
+/// As in the report.
 const COLOURS: [[f64; 3]; 4] = [
     [0.0, 0.45, 0.70],
     [0.84, 0.37, 0.0],

@@ -8,13 +8,13 @@ use crate::capture::Capture;
 use crate::replay::{Replay, Task};
 use crate::rta::{Load, rate_monotonic_bound, response, utilisation};
 
-/// Interrupt that wakes a task, µs on the reference board: 400 instructions.
+/// Wakes a task; µs on the reference board: 400 instructions.
 const INTERRUPT: f64 = 1.0;
-/// Longest masked interrupts, µs on the reference board: encoding of the longest log line.
+/// Longest with interrupts masked, µs on the reference board: encoding of the longest log line.
 const BLOCKING: f64 = 5.0;
-/// A clock of whole µs shortens an execution by less, µs.
+/// A clock of whole µs shortens an execution by less.
 const RESOLUTION: f64 = 1.0;
-/// Periods without a wake after which a sample-driven task counts as paused.
+/// Periods without a wake of a paused, sample-driven task.
 const PAUSE: f64 = 10.0;
 /// Logs the trace; absent from the image that flies.
 const TRACER: &str = "trace";

@@ -34,7 +34,8 @@ pub struct Task {
 
 impl Capture {
     /// Reads a file; `elf` is its image, needed only for raw logs.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: what is wrong with the files and what is required.
     pub fn read(path: &Path, elf: Option<&Path>) -> Result<Self, String> {
         let messages = source::read(path, elf)?;

@@ -74,7 +74,8 @@ pub enum Line {
 }
 
 /// Parses a timing line, if it is one.
-/// \n # Errors
+///
+/// # Errors
 /// A garbled timing line.
 pub fn parse(line: &str) -> Option<Result<Line, Garbled>> {
     let (_, rest) = line.split_once("timing ")?;

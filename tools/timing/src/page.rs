@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::capture::Capture;
 use crate::replay::Replay;
 
-/// Browsers cannot show more in a timeline.
+/// Most that browsers show in a timeline.
 const POLLS: usize = 300_000;
 
 const STYLE: &str = include_str!("timeline.css");

@@ -1,7 +1,10 @@
 //! Response-time analysis: bounds for tasks under fixed priorities.
-//! \n Recurrence of Joseph and Pandya (1986) and Audsley et al. (1993) with release jitter (Tindell 1994):
-//! \n w = C + S + B + Σ ceil((w + J_k) / T_k) C_k over every k that may go first
-//! \n Tasks of one level do not preempt each other and have no order: each may go first and counts as more urgent,
+//!
+//! Recurrence of Joseph and Pandya (1986) and Audsley et al. (1993) with release jitter (Tindell 1994):
+//!
+//! w = C + S + B + Σ ceil((w + J_k) / T_k) C_k over every k that may go first
+//!
+//! Tasks of one level do not preempt each other and have no order: each may go first and counts as more urgent,
 //! which also bounds the wait for a running one. S is the task's wait for a bus, B the time for which lower levels mask
 //! interrupts.
 

@@ -14,7 +14,8 @@ pub struct Messages {
 }
 
 /// Reads `capture`; `elf` is its image, needed only for raw logs.
-/// \n # Errors
+///
+/// # Errors
 /// One line: what is wrong with either file and what is required.
 pub fn read(capture: &Path, elf: Option<&Path>) -> Result<Messages, String> {
     let bytes = load(capture)?;
@@ -65,7 +66,6 @@ fn text(bytes: &[u8]) -> Messages {
     Messages { lines, broken }
 }
 
-/// Without terminal colours.
 fn plain(line: &str) -> String {
     let mut plain = String::new();
     let mut rest = line;

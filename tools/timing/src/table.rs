@@ -7,7 +7,6 @@ use crate::live::{Contact, Quantiles};
 use crate::replay::{Replay, Task};
 use crate::stats::Sorted;
 
-/// Width of the longest bar.
 const BAR: usize = 40;
 
 /// The tables of a capture.

@@ -1,12 +1,13 @@
 //! Executor events of a firmware with the feature `trace`.
-//! \n `trace task ADDRESS LEVEL NAME` names a task; `trace NUMBER: [bytes]` holds events from the NUMBERth since the
+//!
+//! `trace task ADDRESS LEVEL NAME` names a task; `trace NUMBER: [bytes]` holds events from the NUMBERth since the
 //! start, eight bytes each (format: `boards/src/cortex_m/trace.rs`); `trace lost COUNT` counts lost ones.
 
 use sophie_tasks::deadline::Level;
 
 use crate::live::Garbled;
 
-/// Address bits in an event.
+/// Bits in an event.
 const ADDRESS: u32 = 0x000F_FFFC;
 
 /// What happened.
@@ -63,7 +64,8 @@ pub struct Trace {
 
 impl Trace {
     /// Takes a line; true if it was of the trace.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// A garbled trace line.
     pub fn take(&mut self, line: &str) -> Result<bool, Garbled> {
         let Some((_, rest)) = line.split_once("trace ") else {

@@ -26,7 +26,8 @@ fn path() -> PathBuf {
 }
 
 /// Compares with the baseline, reports decreases.
-/// \n # Errors
+///
+/// # Errors
 /// Every increase, one per line.
 pub fn compare(counts: &[Count]) -> Result<(), Error> {
     let baseline: Baseline = toml::from_str(&fs::read_to_string(path())?)?;

@@ -20,7 +20,7 @@ const STEPS: u32 = 1000;
 /// Bytes per access to the F405's flash; wait cycles at 168 MHz (RM0090 §3.5).
 const LINE: u64 = 16;
 const WAIT: u64 = 5;
-/// Bytes of an M7's instruction cache line.
+/// Bytes, M7.
 const CACHE_LINE: u64 = 32;
 
 #[derive(Default)]
@@ -36,7 +36,8 @@ struct Sum {
 }
 
 /// Single-steps the counting images; prints their flash reads and the bounds of an M4F.
-/// \n # Errors
+///
+/// # Errors
 /// No toolchain or QEMU, or an image did not reach the counted steps.
 pub fn cycles() -> Result<(), Error> {
     for core in &CORES {

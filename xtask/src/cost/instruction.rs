@@ -1,7 +1,7 @@
 //! Cycles of a Cortex-M4 (FPU) instruction by its encoding: ARM DDI 0439B, tables 3-1 and 7-1; encodings of ARMv7-M
 //! (DDI 0403E, A5), as far as they determine the time.
 
-/// Fewest and most cycles of a refill after a taken branch.
+/// Fewest and most cycles after a taken branch.
 const REFILL: [u32; 2] = [1, 3];
 
 #[derive(Clone, Copy, Debug, PartialEq)]

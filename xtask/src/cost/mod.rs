@@ -58,7 +58,8 @@ pub struct Count {
 }
 
 /// Builds and runs the image of each core, then acts as in `then`.
-/// \n # Errors
+///
+/// # Errors
 /// No toolchain or QEMU, different motor commands, or a costlier stage.
 pub fn cost(then: Then) -> Result<(), Error> {
     if then == Then::Cycles {

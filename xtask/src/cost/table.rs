@@ -9,7 +9,7 @@ use super::stages::{M4F_ALLOWANCE, SPREAD, STAGES, Stage};
 use super::{CORES, Count};
 use crate::{Error, build};
 
-/// Marks of the generated part of docs/cost.md.
+/// In docs/cost.md.
 const BEGIN: &str = "<!-- cargo xtask cost --tighten writes from here -->\n";
 const END: &str = "<!-- to here -->\n";
 
@@ -97,7 +97,8 @@ pub fn markdown(counts: &[Count]) -> String {
 }
 
 /// Writes the table into docs/cost.md.
-/// \n # Errors
+///
+/// # Errors
 /// The document or its marks are missing.
 pub fn write(counts: &[Count]) -> Result<(), Error> {
     let path = build::root().join("docs/cost.md");

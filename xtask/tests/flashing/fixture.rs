@@ -22,7 +22,6 @@ struct Section {
     kind: u32,
     flags: u32,
     address: u32,
-    /// Load address.
     loaded: u32,
     bytes: Vec<u8>,
     length: u32,

@@ -22,7 +22,7 @@ pub fn tests() -> Vec<Trial> {
     ]
 }
 
-/// Sectors erased: on the f405 the first, fourth and fifth, on the Matek the first.
+/// The f405's first, fourth and fifth sector, the Matek's first.
 const F405_ERASED: &[Range<usize>] = &[0x0800_0000..0x0800_4000, 0x0800_C000..0x0802_0000];
 #[allow(clippy::single_range_in_vec_init, reason = "one range, not its addresses")]
 const MATEK_ERASED: &[Range<usize>] = &[0x0800_0000..0x0802_0000];

@@ -1,6 +1,7 @@
 //! `chain BOARD ELF [STEPS]`: flies the image to a hover on the emulated board and counts instructions of STEPS control
 //! steps, by part and function (`cargo xtask chain BOARD`).
-//! \n Exit status: 0 when counted, 1 when the flight ended early, 2 for bad input.
+//!
+//! Exit status: 0 when counted, 1 when the flight ended early, 2 for bad input.
 
 use std::path::Path;
 use std::process::ExitCode;

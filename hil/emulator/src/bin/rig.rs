@@ -1,6 +1,7 @@
 //! `rig ELF [NAME...]`: runs a board's tests (`hil/rig`), or those with a NAME in theirs, on the emulated board with
 //! every jumper and part (`cargo xtask rig matek-h743 --emulated`).
-//! \n Exit status: 0 when every test passed, 1 when not, 2 for bad input.
+//!
+//! Exit status: 0 when every test passed, 1 when not, 2 for bad input.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -19,13 +19,13 @@ pub struct Wired<C> {
     pub(super) chip: C,
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
-    /// Additional dividers at the pressure sensors' pads.
     dividers: [f64; 4],
 }
 
 impl<C: Chip> Wired<C> {
     /// A board with `chip` wired as in `pads`, at `speed` instructions per clock cycle.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// The emulator cannot make it.
     pub fn new(mut chip: C, pads: &'static Pads, speed: f64) -> Result<Self, String> {
         chip.attach(pads);

@@ -18,7 +18,7 @@ const MEMORY: &[Region] = &[
     Region::flash("code", 0, 4 << 20),
     Region::ram("ram", 0x2000_0000, 4 << 20),
 ];
-/// Virtual time limit, ten times the usual.
+/// Ten times the usual virtual time.
 const LONGEST: VirtualNanos = VirtualNanos(10_000_000_000);
 const LINES: u16 = 32;
 
@@ -98,7 +98,8 @@ impl Driver<Machine> for Console {
 }
 
 /// Output of the image `elf` on the emulated core.
-/// \n # Errors
+///
+/// # Errors
 /// The image cannot be read or placed, does not end, or ends with a status other than 0.
 pub fn run(elf: &Path, kind: CoreKind) -> Result<String, Box<dyn std::error::Error>> {
     let cpu = Cpu::new("core", true, LINES, Endian::Little);

@@ -7,7 +7,7 @@ use rigless::emulator::{Access, AccessKind, Hit, Host, Watch};
 use crate::chain::{Counted, Functions, Step};
 use crate::elf::Firmware;
 
-/// Enable bit of the timer's first control register.
+/// In the timer's first control register.
 const ENABLE: u64 = 1;
 
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,8 @@ pub struct Counter {
 
 impl Counter {
     /// A counter for `firmware`, if anything is to be counted.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: what the image lacks.
     pub fn new(firmware: &Firmware, marks: Marks) -> Result<Option<Self>, String> {
         let Some(window) = firmware.count else {

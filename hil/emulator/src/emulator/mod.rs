@@ -1,5 +1,6 @@
 //! The emulated board, stepped by the millisecond; hides the emulator.
-//! \n The emulator's core has its own thread and calls back at each stop, where it waits for the next millisecond's
+//!
+//! The emulator's core has its own thread and calls back at each stop, where it waits for the next millisecond's
 //! [`Wires`]. The threads take turns, so a run is deterministic.
 
 mod board;
@@ -49,24 +50,24 @@ use crate::stored;
 use crate::wires::{BoardFault, Digest, Gap, Hung, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
-/// Port registers of both processors: first address and end (RM0433 table 8, RM0090 table 1).
+/// Port registers of both processors (RM0433 table 8, RM0090 table 1).
 const PORTS: [std::ops::Range<u64>; 2] = [0x5802_0000..0x5802_2C00, 0x4002_0000..0x4002_2C00];
-/// Time until every pin must be configured, ns: the arms' buses wait for their chips.
+/// All pins must be configured by then, ns: the arms' buses wait for their chips.
 const START_UP: u64 = 1000 * MS;
-/// Longest latency from data-ready to motor frame that is no lost sample: the sample period, ns.
+/// Longer latencies from data-ready to motor frame are lost samples, ns.
 const SAMPLE: u64 = 250_000;
 
-/// Corrupted flash holds each word's address with these bits flipped.
+/// Corrupted flash holds each word's address, xored.
 const NOISE: u64 = 0x5A5A_5A5A;
 
-/// Bytes of the task header in embassy-executor 0.10; state bits "spawned" and "queued to run".
+/// Bytes of the task header in embassy-executor 0.10; its states "spawned" and "queued to run".
 const HEADER: u64 = 64;
 const SPAWNED: u64 = 1;
 const QUEUED: u64 = 1 << 8;
 
-/// Code that overflows the stack: `push {r0-r7, lr}`, repeated.
+/// Overflows the stack: `push {r0-r7, lr}`, repeated.
 const RECURSION: u64 = 0xE7FD_B5FF;
-/// Code that locks the processor up: `cpsid f` (priority of a hard fault) and `udf`.
+/// Locks the processor up: `cpsid f` (priority of a hard fault) and `udf`.
 const LOCK_UP: u64 = 0xDE00_B671;
 /// Distance from the end of RAM, bytes: no image has statics there.
 const SPARE: u64 = 0x1000;
@@ -89,7 +90,8 @@ pub struct Emulator {
 
 impl Emulator {
     /// The board with `firmware`, powered, before its first instruction.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: why the emulator refuses.
     pub fn power_on(firmware: &Firmware, settings: Settings) -> Result<Self, String> {
         let image = Image::new(&firmware.path, firmware.bytes.clone(), None)
@@ -151,7 +153,8 @@ impl Emulator {
     }
 
     /// Runs a millisecond.
-    /// \n # Errors
+    ///
+    /// # Errors
     /// One line: why the processor stopped.
     pub fn advance(&mut self, wires: Wires) -> Result<Pins, String> {
         // A closed channel shows at the wait.
@@ -294,7 +297,6 @@ fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
     gaps
 }
 
-/// The world's end of the wires, called each millisecond.
 struct World {
     wires: Receiver<Wires>,
     pins: SyncSender<Pins>,
@@ -305,7 +307,6 @@ struct World {
     /// Required set-up of the receiver's port.
     receiver: serial::Setup,
     erases: BTreeMap<u64, u32>,
-    /// Flash writes with the data cache on.
     cached: u32,
     tasks: BTreeMap<String, u64>,
     /// Flash: first address and end.
@@ -313,18 +314,17 @@ struct World {
     spare: u64,
     /// Faults that the part cannot have.
     impossible: Vec<BoardFault>,
-    /// Supply down.
     dark: bool,
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
     high: PerArm<bool>,
-    /// Start of a standstill, ns.
+    /// ns.
     still: Option<u64>,
     hung: Option<Hung>,
     latency: Latency,
     digest: Digest,
-    /// Recent data-ready pulses, ns.
+    /// Recent data-ready, ns.
     pulses: Vec<u64>,
     outputs: Outputs,
     counter: Option<Counter>,
@@ -372,7 +372,7 @@ impl World {
         }
     }
 
-    /// Takes the motors' edges until `now`; `reset`: time of a reset within this millisecond.
+    /// Takes edges until `now`; `reset`: time of a reset within this millisecond.
     fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos, reset: u64) {
         let driven = board.motors_driven(now);
         for edge in board.motor_edges() {

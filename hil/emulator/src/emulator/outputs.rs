@@ -13,7 +13,6 @@ pub struct Outputs {
     /// Number of starts, with power-on, and time of the last, ns.
     starts: usize,
     since: u64,
-    /// Outputs not yet driven.
     open: usize,
     pub found: Vec<Output>,
 }

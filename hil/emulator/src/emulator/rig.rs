@@ -22,33 +22,32 @@ use crate::log::{Line, Log};
 use crate::suite::{self, Test};
 use crate::wires::Gap;
 
-/// Virtual time limit of a test.
+/// Virtual time.
 const LONGEST: u64 = 30_000 * MS;
 const SPEED: f64 = 1.0;
-/// Port registers: first address and end.
 const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
-/// Duration and period of stalls, ns: not in step with 1 kHz.
+/// Duration and period, ns: not in step with 1 kHz.
 const STALL: u64 = 600_000;
 const STALL_EVERY: u64 = 1_700_000;
 /// Wrong crystal, Hz, at which the chip still starts.
 const CRYSTAL: u64 = 6_000_000;
-/// Parameter flash: first address and end.
+/// Parameter flash.
 const PARAMETERS: std::ops::Range<u64> = 0x081C_0000..0x0820_0000;
-/// Half the supply, V, at every analog input.
+/// Half the supply, V.
 const HALF: f64 = 1.65;
 /// The same from resistors 20 % apart.
 const UNEQUAL: f64 = 1.5;
 /// Inertial samples per millisecond; 1 g in millionths.
 const SAMPLES: u64 = 4;
 const G: i32 = 1_000_000;
-/// Specific force at an arm's sensor, marking up, m/s².
+/// At an arm's sensor, marking up, m/s².
 const UP: [f64; 3] = [0.0, 0.0, 9.806_65];
 
 /// Jumpers: motor 1 to servo 3, servo 1 to servo 4, receiver output to input.
 static MOTOR: [At; 2] = [MATEK.motors.pins[0], MATEK.servos[2].pin];
 static SERVO: [At; 2] = [MATEK.servos[0].pin, MATEK.servos[3].pin];
 const RECEIVER: [At; 2] = [At(2, 6), At(2, 7)];
-/// Alternate function of the receiver's output.
+/// Of the receiver's output.
 const PORT_FUNCTION: u8 = 7;
 
 /// Defects of a rig.
@@ -86,14 +85,16 @@ pub struct Ended {
 }
 
 /// Reads the reference board's test image, the only rig here.
-/// \n # Errors
+///
+/// # Errors
 /// One line: what is wrong with the file.
 pub fn read(path: &Path) -> Result<Firmware, String> {
     Firmware::read(path, boards::find(MATEK.name)?)
 }
 
 /// Runs `test` from power-on on a rig with `defect`.
-/// \n # Errors
+///
+/// # Errors
 /// One line: why the emulator refuses.
 pub fn run(image: &Firmware, test: &Test, defect: Defect) -> Result<Ended, String> {
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
@@ -129,7 +130,6 @@ struct Rig {
     defect: Defect,
     next: u64,
     rtt: Rtt,
-    /// Log with times of reading.
     log: Vec<(u64, Vec<u8>)>,
     resets: usize,
     samples: u8,

@@ -7,7 +7,7 @@ use sophie_control::params::RcProtocol;
 
 use crate::boards::Kind;
 
-/// Tolerance of an asynchronous line's rate.
+/// Tolerated by an asynchronous line.
 const RATE_ERROR: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

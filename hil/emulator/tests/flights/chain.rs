@@ -4,9 +4,9 @@ use sophie_emulator::chain::Window;
 
 use super::*;
 
-/// Most instructions of a step from sensor transfer to motor frame.
+/// Most instructions of a step, from sensor transfer to motor frame.
 const MOST: u64 = 4780;
-/// The same on the F405, whose core lacks float minimum and selection.
+/// The F405's core lacks float minimum and selection.
 const MOST_SMALL: u64 = 5140;
 const STEPS: usize = 40;
 

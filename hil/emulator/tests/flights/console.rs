@@ -10,7 +10,7 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Types `command` and reads until `answer`; returns what was read.
+/// Returns what is read until `answer`.
 fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     user.write_all(command.as_bytes()).unwrap();
     let mut said = String::new();
@@ -23,7 +23,6 @@ fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     said
 }
 
-/// Battery voltage by `status`, once measured.
 fn volts(user: &mut TcpStream) -> f64 {
     loop {
         let said = type_in(user, "status\r", "up for");
@@ -43,8 +42,7 @@ pub(super) fn terminal(option: &'static str) -> (u16, Terminal) {
     (port, Terminal::listen(option, port).unwrap())
 }
 
-/// Runs `session` at the console of a disarmed board for at most `seconds` s of its time; returns the flight and the
-/// session's result.
+/// Runs `session` on a disarmed board for at most `seconds` s of its time.
 fn at_the_console<T: Send + 'static>(
     firmware: &Firmware,
     seconds: f64,
@@ -78,7 +76,7 @@ fn at_the_console<T: Send + 'static>(
     (flight, given)
 }
 
-/// Presses the key until the console answers: input before it starts is lost, as on a real line.
+/// Presses the key until answered: input before the console starts is lost.
 pub(super) fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
     // Long enough for a restart on a busy machine.

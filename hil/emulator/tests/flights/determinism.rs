@@ -9,7 +9,7 @@ fn start(seed: u64) -> Scenario {
     }
 }
 
-/// Requires equal runs, to the last edge, for equal seeds and others for other seeds.
+/// Requires equal runs, to the last edge, for equal seeds only.
 fn repeats(fly: impl Fn(&Scenario) -> Flight) {
     let [first, second, other] = [1, 1, 2].map(|seed| fly(&start(seed)));
     assert!(told(&first, 0.0, "FLIGHT").is_some(), "{}", log(&first));

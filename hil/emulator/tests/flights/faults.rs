@@ -5,12 +5,12 @@ use sophie_sim::sensors::fsr::FsrBreak;
 
 use super::*;
 
-/// A hover of at most `seconds` s with an airborne trouble, on the H743.
+/// On the H743, airborne when the trouble starts.
 fn with(trouble: Trouble, seconds: f64) -> Flight {
     sound_before(fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]))
 }
 
-/// The same on the F405.
+/// On the F405.
 fn with_small(trouble: Trouble, seconds: f64) -> Flight {
     sound_before(fly_small(&hover(seconds), &[(AIRBORNE, trouble)]))
 }

@@ -12,10 +12,10 @@ use super::script::{Key, Typed, differs, typed};
 use super::*;
 
 const PAGE: &str = "docs/first-hour.md";
-/// Time for which the transmitter is off, s: until after the page's last `save`.
+/// s: until after the page's last `save`.
 const RADIO_OFF: f64 = 22.0;
 const PROMPT: &str = "\r\n> ";
-/// Repetitions of `status`, some 25 ms each, until the battery is measured or the transmitter on.
+/// Repetitions of `status`, some 25 ms each.
 const TRIES: usize = 1000;
 
 #[test]
@@ -50,7 +50,7 @@ fn the_commands_of_the_page_have_the_answers_of_the_page_and_lead_to_the_first_h
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
-/// Types a command and compares the answer; repeats one that may take a while.
+/// Types a command and compares the answer; repeats one that takes time.
 fn type_in(user: &mut TcpStream, step: &Typed) {
     let mut last = String::new();
     let restarts = step.restarts();
@@ -72,7 +72,7 @@ fn type_in(user: &mut TcpStream, step: &Typed) {
     );
 }
 
-/// Types the command and its keys; returns what the board says until its prompt or restart.
+/// Types the command and its keys; returns the output until prompt or restart.
 fn heard(user: &mut TcpStream, step: &Typed) -> String {
     user.write_all(format!("{}\r", step.command).as_bytes()).unwrap();
     let mut said = String::new();
@@ -92,7 +92,7 @@ fn heard(user: &mut TcpStream, step: &Typed) -> String {
     said
 }
 
-/// Reads until `text` follows the first `from` bytes; returns where it ends, or `None` at a prompt.
+/// End of `text` after the first `from` bytes; `None` if a prompt comes first.
 fn until(user: &mut TcpStream, said: &mut String, from: usize, text: &str) -> Option<usize> {
     let mut bytes = [0; 64];
     loop {

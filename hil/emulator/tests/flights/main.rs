@@ -33,7 +33,7 @@ use sophie_emulator::terminal::Sockets;
 use sophie_sim::record::{Sample, Silent};
 use sophie_sim::scenario::{Overrides, Scenario, Step};
 
-/// Tasks of the flight level, which may never miss a deadline.
+/// May never miss a deadline.
 const FLIGHT_LEVEL: [&str; 5] = ["imu", "estimator", "control", "mixer", "motors"];
 
 fn root() -> &'static Path {
@@ -74,10 +74,9 @@ fn scenario(name: &str) -> Scenario {
     Scenario::load(&path, &Overrides::default()).unwrap()
 }
 
-/// Time by which a hover has been in the air for a second, s.
+/// A hover has been in the air for a second by then, s.
 const AIRBORNE: f64 = 7.5;
 
-/// A hover of at most `seconds` s.
 fn hover(seconds: f64) -> Scenario {
     Scenario {
         time_limit: seconds,
@@ -85,7 +84,7 @@ fn hover(seconds: f64) -> Scenario {
     }
 }
 
-/// The shortest flight that ends on the ground by itself, with 3 s in the air for a fault.
+/// The shortest flight with landing, 3 s in the air for a fault.
 fn hop() -> Scenario {
     Scenario {
         steps: vec![
@@ -99,13 +98,13 @@ fn hop() -> Scenario {
     }
 }
 
-/// Flies `scenario` on the H743 with `troubles`, each at its time in s.
+/// On the H743; `troubles` with times in s.
 fn fly(scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
     fly_image(&firmware, scenario, speed, troubles)
 }
 
-/// Flies `scenario` on the F405 with `troubles`, each at its time in s.
+/// On the F405.
 fn fly_small(scenario: &Scenario, troubles: &[(f64, Trouble)]) -> Flight {
     let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();
     fly_image(&firmware, scenario, 1.0, troubles)
@@ -127,13 +126,12 @@ fn fly_image(firmware: &Firmware, scenario: &Scenario, speed: f64, troubles: &[(
     .unwrap()
 }
 
-/// The log, for failed assertions.
 fn log(flight: &Flight) -> String {
     let lines = flight.board.lines.iter();
     lines.map(|line| format!("{line}\n")).collect()
 }
 
-/// Time (s) of the first line from `from` s on that contains `text`.
+/// Time (s) of the first line with `text` from `from` s on.
 fn told(flight: &Flight, from: f64, text: &str) -> Option<f64> {
     let lines = flight.board.lines.iter();
     let mut times = lines
@@ -147,12 +145,11 @@ fn samples(flight: &Flight, from: f64, to: f64) -> impl Iterator<Item = &Sample>
     all.filter(move |s| (from..to).contains(&s.t))
 }
 
-/// Whether every motor's pin says stop throughout; false if the flight ended before.
+/// False if the flight ended before.
 fn stopped(flight: &Flight, from: f64, to: f64) -> bool {
     samples(flight, from, to).count() > 5 && samples(flight, from, to).all(|s| s.thrust_asked == [0.0; 4])
 }
 
-/// Whether every motor's pin asks for thrust throughout.
 fn running(flight: &Flight, from: f64, to: f64) -> bool {
     samples(flight, from, to).all(|s| s.thrust_asked.iter().all(|t| *t > 0.0))
 }

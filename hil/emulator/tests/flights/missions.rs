@@ -4,7 +4,7 @@ use sophie_timing::live::{self, Contact, Line};
 
 use super::*;
 
-/// Each second's record of the chain from pressure to pulse.
+/// Each second's record of the pressure chain.
 fn contact(flight: &Flight) -> Vec<Contact> {
     let lines = flight.board.lines.iter();
     let read = lines.filter_map(|line| live::parse(&line.text));

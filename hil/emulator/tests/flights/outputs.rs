@@ -4,7 +4,6 @@ use sophie_emulator::wires::{BoardFault, Output};
 
 use super::*;
 
-/// Two seconds with a reset pulse after one.
 fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
     let flight = fly(&hover(2.2), &[(1.0, Trouble::Board(BoardFault::ResetPin))]);
     for output in &flight.board.run.outputs {
@@ -24,7 +23,6 @@ fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
     flight
 }
 
-/// Longest time until outputs with this prefix are driven, ms.
 fn longest_ms(outputs: &[Output], what: &str) -> f64 {
     let these = outputs.iter().filter(|output| output.what.starts_with(what));
     let times = these.flat_map(|output| output.after_us.iter().flatten());

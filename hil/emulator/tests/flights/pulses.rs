@@ -5,11 +5,10 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Time of the standstill, in the air; the flight ends before the watchdog's reset.
+/// In the air; the flight ends before the watchdog's reset.
 const STILL: f64 = AIRBORNE - 0.5;
 const END: f64 = STILL + 0.18;
 
-/// A hover until the standstill.
 fn hung(protocol: MotorProtocol, small: bool) -> Flight {
     let mut scenario = hover(END);
     scenario.params.motor_protocol = protocol;

@@ -3,7 +3,7 @@
 //! They stand in blocks marked `console`. A line that begins with `> ` is typed, the lines after it are the answer, in
 //! which `…` stands for any text within a line, and alone for any lines.
 
-/// Line of an answer at which any key is pressed; the command may print more before it than the page shows.
+/// A line at which any key is pressed; the command may print more before it than the page shows.
 const ANY_KEY: &str = "(any key)";
 
 #[derive(Clone, Debug, PartialEq)]
@@ -93,7 +93,6 @@ pub(super) fn differs(step: &Typed, said: &str) -> Option<String> {
     })
 }
 
-/// Whether the lines match the answer.
 fn fit(lines: &[&str], answer: &[String]) -> bool {
     let Some((pattern, rest)) = answer.split_first() else {
         return lines.is_empty();
@@ -106,7 +105,7 @@ fn fit(lines: &[&str], answer: &[String]) -> bool {
         .is_some_and(|(line, lines)| fits(line, pattern) && fit(lines, rest))
 }
 
-/// Whether the line matches the pattern; runs of blanks count as one.
+/// Runs of blanks count as one.
 fn fits(line: &str, pattern: &str) -> bool {
     let single = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let (line, pattern) = (single(line), single(pattern));

@@ -5,7 +5,7 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Boards and the logged state of their caches.
+/// With the logged state of their caches.
 const BOARDS: [(&str, [&str; 2]); 2] = [
     ("matek-h743", ["caches", "I+ D-"]),
     ("f405", ["flash acceleration", "prefetch+ I+ D+"]),
@@ -108,7 +108,7 @@ fn another_firmwares_parameters_are_named_with_what_to_do() {
     assert_eq!(look(&flight, "stored data of").read, "ArduPilot");
 }
 
-/// Requires a message and repeated resets with low motor pins.
+/// Requires a message and repeated resets, motor pins low.
 fn never_starts(board: &str, fault: BoardFault, message: &str, by: &str) {
     let flight = on_the_bench(board, 1.2, Some(fault));
     assert!(

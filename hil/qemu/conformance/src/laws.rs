@@ -12,12 +12,11 @@ use sophie_control::wrench::{Configuration, Wrench};
 use sophie_mixers::{Mixer, Variant};
 
 const INPUTS: u32 = 4096;
-/// Control steps per mixer: 3 s of flight after calibration.
+/// 3 s of flight after calibration.
 const STEPS: u32 = 3000;
 const REST: u32 = 3000;
 const READINGS: usize = 4;
 const RATE_HZ: f32 = 4000.0;
-/// Steps per kind of setpoint.
 const STRETCH: u32 = 250;
 
 type Function = fn(f32) -> f32;
@@ -59,7 +58,7 @@ fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
     print(format_args!("math atan2: {fold}"));
 }
 
-/// Sensor to motor command, open loop: noise around a swaying attitude.
+/// Open loop: noise around a swaying attitude.
 fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     let params = Params::default();
     let mut noise = Noise::new(3);

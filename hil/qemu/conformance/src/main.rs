@@ -1,7 +1,9 @@
 //! Logs how a Cortex-M core runs exceptions, floats and the control laws.
-//! \n The same ELF runs on QEMU and on the emulated core: equal logs verify that core. The host runs only the laws and
+//!
+//! The same ELF runs on QEMU and on the emulated core: equal logs verify that core. The host runs only the laws and
 //! prints the same lines: host tests of the laws then hold for the chip.
-//! \n A line is `<group>: <result>`; long results are hashed, short ones spelled out to locate a difference.
+//!
+//! A line is `<group>: <result>`; long results are hashed, short ones spelled out to locate a difference.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -40,7 +40,7 @@ pub fn gross<S, I>(work: fn(&mut S, &I), state: &mut S, input: &I) -> u32 {
     instructions(before.wrapping_sub(clock::now()))
 }
 
-/// Instructions between readings of the down-counter `ticks` apart: 128 ns each, 40 ns a tick.
+/// 128 ns an instruction, 40 ns a tick.
 const fn instructions(ticks: u32) -> u32 {
     (ticks * 5 + 8) / 16
 }

@@ -1,5 +1,6 @@
 //! Inputs of the control path that take every branch, equal on every machine.
-//! \n Half-second stretches: hover, gusts, hard turns, saturated rotors, low thrust with yaw given up, a sagging
+//!
+//! Half-second stretches: hover, gusts, hard turns, saturated rotors, low thrust with yaw given up, a sagging
 //! battery. Rates and sticks are held for a while, with noise. A few readings are NaN.
 
 use sophie_conformance::fold::Noise;
@@ -15,11 +16,10 @@ pub const READINGS: usize = 4;
 pub const REST: u32 = 2500;
 pub const FLIGHT: u32 = 12_000;
 const STRETCH: u32 = 500;
-/// Steps for which rate and sticks are held.
 const HOLD: u32 = 40;
-/// Step of ten with new sticks; the first four have arm readings.
+/// With arm readings in steps 0 to 3 of ten.
 const STICKS: usize = 5;
-/// One reading in this many is NaN.
+/// Readings per NaN.
 const BAD: u32 = 4001;
 
 #[derive(Clone, Copy)]

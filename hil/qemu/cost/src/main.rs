@@ -1,7 +1,9 @@
 //! Counts instructions per call of every stage of the control path on the target core.
-//! \n Under QEMU with `-icount shift=7` an instruction lasts 128 ns, 3.2 ticks of the board's timer: two readings give
+//!
+//! Under QEMU with `-icount shift=7` an instruction lasts 128 ns, 3.2 ticks of the board's timer: two readings give
 //! their number exactly, without the cycles of caches, flash or a division (fourteen).
-//! \n Every stage is a call on the output of the one before; then the whole step is counted on the same inputs and must
+//!
+//! Every stage is a call on the output of the one before; then the whole step is counted on the same inputs and must
 //! give the same motor commands. The host prints only those, for comparison.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]

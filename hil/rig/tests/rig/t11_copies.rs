@@ -4,9 +4,8 @@
 mod tests {
     use core::hint::black_box;
 
-    /// Words of the longest copy: three turns of its loop and every remainder.
+    /// Three turns of the longest copy's loop and every remainder.
     const WORDS: usize = 32;
-    /// Fill value around the copies.
     const UNTOUCHED: u8 = 0xA5;
 
     /// Aligned bytes between two guard words.

@@ -16,7 +16,7 @@ mod tests {
     /// Motor 1: stop, least throttle, patterns, full.
     const COMMANDS: [f32; 5] = [0.0, 0.001, 0.333, 0.667, 1.0];
 
-    /// The line during `command`, in cycles.
+    /// In cycles.
     async fn sent(motors: &mut sophie_boards::MotorsPort, command: f32) -> heapless::Vec<Pulse, MOST> {
         // Frame and lead-in of the slowest protocol take 120 µs. DMA sends the frame: interrupts may be off while the
         // line is read.

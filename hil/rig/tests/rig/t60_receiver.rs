@@ -10,10 +10,10 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::{SerialInput, SerialOutput};
 
-    /// Length of a frame with sixteen channels.
+    /// A frame with sixteen channels.
     const LENGTH: usize = 26;
     const FRAMES: u8 = 100;
-    /// Time limit; a frame takes 0.6 ms.
+    /// A frame takes 0.6 ms.
     const LONGEST: Duration = Duration::from_millis(10);
 
     fn frame(number: u8) -> [u8; LENGTH] {

@@ -23,7 +23,6 @@ async fn store(storage: &mut impl Storage, params: &Params) {
     );
 }
 
-/// A neighbour of `trim`, µs, within its range.
 fn next_to(trim: f32) -> f32 {
     if trim > 0.0 { trim - 1.0 } else { trim + 1.0 }
 }

@@ -11,10 +11,10 @@ use super::response::{Complex, Response, difference, quotient};
 
 /// Step of the laws, s.
 const DT: f32 = 1.0 / CONTROL_RATE_HZ;
-/// Rate (rad/s) and angle (rad) of the impulses, small enough to reach no limit.
+/// Impulses in rad/s and rad, small enough to reach no limit.
 const RATE: f32 = 0.1;
 const ANGLE: f32 = 0.01;
-/// Steps in which gyro filter and rate loop settle: 20 Hz and a notch at 1 Hz.
+/// Settling of gyro filter and rate loop: 20 Hz and a notch at 1 Hz.
 const FILTER_STEPS: usize = 500;
 const LOOP_STEPS: usize = 4000;
 const ALL_GIVEN: Feedback = Feedback {
@@ -67,7 +67,7 @@ impl Laws {
     }
 }
 
-/// The gyro filter as a board runs it: samples interpolated between two steps, each a sample late.
+/// As on a board: samples interpolated between two steps, each a sample late.
 fn filter(params: &Params) -> Response {
     let rate = params.imu_rate.number();
     let per_step = (rate / CONTROL_RATE_HZ).max(1.0) as usize;
@@ -96,8 +96,7 @@ fn filter(params: &Params) -> Response {
     Response::of(&answer)
 }
 
-/// Moments (N·m·s/rad) after an impulse of the measured rate or of the setpoint, about all axes at once: they are
-/// independent.
+/// Moments (N·m·s/rad) after an impulse of measured rate or setpoint, about all axes at once: they are independent.
 fn rate_loop(params: &Params, setpoint: bool) -> [Vec<f64>; 3] {
     let mut law = RateLoop::new(params, CONTROL_RATE_HZ);
     let mut answers: [Vec<f64>; 3] = Default::default();

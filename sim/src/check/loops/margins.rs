@@ -61,8 +61,8 @@ impl Margins {
     }
 }
 
-/// Number of integrators: slope of the gain at the lowest frequencies. Turn rate, angle and the rate loop's integral
-/// make three, fewer where a gain is 0.
+/// Slope of the gain at the lowest frequencies. Turn rate, angle and the rate loop's integral are integrators, fewer
+/// where a gain is 0.
 fn integrators(curve: &[(f64, Complex)]) -> u32 {
     let Some(((low, a), (high, b))) = curve.first().zip(curve.get(1)) else {
         return 0;

@@ -21,7 +21,7 @@ use crate::scenario::Scenario;
 
 /// Lowest frequency, rad/s: below every integral's corner.
 const LOWEST: f64 = 1e-3;
-/// Frequencies per decade: 3 % apart, which finds a margin to 1 %.
+/// 3 % apart, which finds a margin to 1 %.
 const PER_DECADE: f64 = 60.0;
 
 /// Margins about roll, pitch and yaw of the vehicle of `scenario` in hover.
@@ -44,7 +44,7 @@ pub fn margins(scenario: &Scenario) -> [Margins; 3] {
     })
 }
 
-/// Frequencies from [`LOWEST`] to half of the control rate, rad/s.
+/// From [`LOWEST`] to half the control rate, rad/s.
 fn frequencies() -> impl Iterator<Item = f64> {
     let top = std::f64::consts::PI * f64::from(CONTROL_RATE_HZ);
     let count = ((top / LOWEST).log10() * PER_DECADE) as i32;

@@ -24,7 +24,7 @@ pub struct Response {
     steps: Vec<f64>,
 }
 
-/// Share of the largest difference below which the tail is cut off.
+/// Share of the largest difference where the tail is cut off.
 const TAIL: f64 = 1e-6;
 
 impl Response {

@@ -21,27 +21,27 @@ use crate::scenario::{Scenario, World};
 /// Names of the axes.
 pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// Step of the laws, s, and plant steps in it.
+/// s, and plant steps in it.
 const DT: f64 = 1.0 / CONTROL_RATE_HZ as f64;
 const PLANT_STEPS: u32 = (DT / STEP) as u32;
-/// Steps in which rotors and arms settle in hover.
+/// Settling of rotors and arms in hover, steps.
 const TRIM_STEPS: u64 = 3000;
-/// Gains meanwhile, 1/s: just enough to hold an attitude, whatever gains are judged.
+/// Just enough to hold an attitude meanwhile, 1/s, whatever gains are judged.
 const GENTLE: [f32; 4] = [1.5, 3.0, 0.5, 1.0];
-/// Steps per reading of the arm sensors.
+/// Per reading of the arm sensors.
 const ARM_STEPS: u64 = 10;
-/// Largest share of full thrust accepted as hover: beyond it rotors cannot respond, and the thrust row reports it.
+/// Largest share of full thrust for hover: beyond it rotors cannot respond, and the thrust row reports it.
 const HOVER_SHARE: f64 = 0.9;
-/// Largest impulses, N·m for 1 ms: 0.7 N a rotor about roll and pitch, less than yaw's limit on a stiff frame; and the
-/// largest share of the rotors' room that they take.
+/// Largest impulses, N·m for 1 ms: 0.7 N a rotor about roll and pitch, less than yaw's limit on a stiff frame; and
+/// their largest share of the rotors' room.
 const PUSH: [f64; 3] = [0.5, 0.5, 0.05];
 const ROOM_SHARE: f64 = 0.2;
-/// Longest response, steps, and the share of its largest change below which it has ended.
+/// Longest response, steps, and the share of its largest change at which it ends.
 const LONGEST: usize = 5000;
 const ENDED: f64 = 1e-3;
-/// Steps for which it must stay below: two periods of the slowest arm mode, 1 Hz, fit in.
+/// Steps to stay below it: two periods of the slowest arm mode, 1 Hz, fit in.
 const QUIET: usize = 300;
-/// Position in hover, m, NED: off ground and pipe.
+/// m, NED: off ground and pipe.
 const PLACE: DVec3 = DVec3::new(0.0, 0.0, -1000.0);
 
 /// A vehicle that hovers in still air.

@@ -23,17 +23,17 @@ mod reg {
 
 /// Address bit of a read (§9.6).
 const READ: u8 = 0x80;
-/// PWR_MGMT0: gyroscope in low-noise mode, as sampling requires.
+/// PWR_MGMT0: low-noise mode, as sampling requires.
 const GYRO_ON: u8 = 0x0C;
-/// INT_SOURCE0: data-ready routed to INT1.
+/// INT_SOURCE0.
 const DATA_READY_ON_INT1: u8 = 0x08;
-/// Factory codes, gyroscope and accelerometer: the response to actuation.
+/// Factory codes of gyroscope and accelerometer: response to actuation.
 const CODES: [[u8; 3]; 2] = [[101, 97, 106], [118, 121, 109]];
-/// Response of code 1, counts at 250 °/s and 2 g full scale; each further code adds 1 %.
+/// Response of code 1, counts at 250 °/s and 2 g full scale; each code adds 1 %.
 const CODE_BASE: f64 = 2620.0;
-/// Counts per °/s and per g at the ranges of the test.
+/// Counts per °/s and per g during the test.
 const TEST_COUNTS: [f64; 2] = [32_768.0 / 250.0, 32_768.0 / 2.0];
-/// Queued samples: far more than a millisecond's.
+/// Far more than a millisecond's samples.
 const QUEUE: usize = 64;
 
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
@@ -131,7 +131,7 @@ impl Imu {
         self.inner.set_acceleration(ax, ay, az);
     }
 
-    /// Sample period, ns; `None` without data-ready.
+    /// ns; `None` without data-ready.
     fn period(&self) -> Option<u64> {
         let period = match self.rate_code & 0x0F {
             3 => 125_000,
@@ -185,7 +185,7 @@ impl Imu {
     }
 }
 
-/// Factory response, counts.
+/// Counts.
 fn response(code: u8) -> f64 {
     CODE_BASE * 1.01f64.powi(i32::from(code) - 1)
 }

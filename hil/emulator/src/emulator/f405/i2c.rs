@@ -11,7 +11,7 @@ use rigless::time::{EventId, VirtualNanos};
 #[derive(Debug)]
 pub struct DmaI2c {
     pub inner: I2c,
-    /// Register of the receiving DMA stream's remaining count.
+    /// Register of the DMA stream's remaining count.
     remaining: u64,
     ends: Vec<EventId>,
 }

@@ -4,7 +4,7 @@ use rigless::soc::st::tim::{Counter, Family, Kind, Part};
 use rigless::soc::stm32f427::generated::tim9::Register;
 use rigless::soc::stm32f427::peripherals::tim::{PART, Tim};
 
-/// Timer clock on the slow bus, Hz; the emulator's clock tree does not reach it.
+/// Clock on the slow bus, Hz; the emulator's clock tree does not reach the timer.
 const CLOCK: u64 = 84_000_000;
 /// Its bit in the slow bus's clock register.
 pub const ENABLED: u64 = 1 << 6;

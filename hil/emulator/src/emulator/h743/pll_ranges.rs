@@ -8,9 +8,9 @@ pub struct Settings {
     pub multipliers: [u64; 3],
 }
 
-/// Reference frequencies of the input ranges, MHz (RM0433 §8.7.12).
+/// Of the input ranges, MHz (RM0433 §8.7.12).
 const INPUTS: [[f64; 2]; 4] = [[1.0, 2.0], [2.0, 4.0], [4.0, 8.0], [8.0, 16.0]];
-/// Frequencies of the wide and medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
+/// Wide and medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
 const WIDE: [f64; 2] = [192.0, 836.0];
 const MEDIUM: [f64; 2] = [150.0, 420.0];
 

@@ -1,5 +1,6 @@
 //! Order of events in nesting, priorities, masks, tail-chaining, faults, sleep, and floats across interrupts.
-//! \n Events: an interrupt's number at its handler's start, the negative number at its end, from 1000 on a line of the
+//!
+//! Events: an interrupt's number at its handler's start, the negative number at its end, from 1000 on a line of the
 //! scenario.
 
 use core::arch::{asm, global_asm};
@@ -14,7 +15,7 @@ use cortex_m::register::{basepri, basepri_max, control};
 use cortex_m_rt::exception;
 
 const EVENTS: usize = 128;
-/// Interrupts and priorities; the machines use the upper four and three bits.
+/// The machines use the upper four and three bits.
 const PRIORITIES: [(u16, u8); 7] = [
     (1, 0x40),
     (2, 0x20),
@@ -27,7 +28,7 @@ const PRIORITIES: [(u16, u8); 7] = [
 
 static LOG: [AtomicI32; EVENTS] = [const { AtomicI32::new(0) }; EVENTS];
 static LENGTH: AtomicUsize = AtomicUsize::new(0);
-/// Interrupt that a handler pends once before its end; 0: none.
+/// Pended by a handler once before its end; 0: none.
 static CHAIN: [AtomicI32; 8] = [const { AtomicI32::new(0) }; 8];
 /// Status of the last usage fault, and their number.
 static FAULT_STATUS: AtomicU32 = AtomicU32::new(0);
@@ -50,7 +51,7 @@ fn event(number: i32) {
     }
 }
 
-/// Pends an interrupt, which has run on return if enabled.
+/// If enabled, it has run on return.
 fn pend(line: u16) {
     NVIC::pend(Line(line));
     dsb();
@@ -269,7 +270,7 @@ fn fault_mask(_: &mut cortex_m::Peripherals) {
     event(1008);
 }
 
-/// A supervisor call runs at once, PendSV last, though pended before.
+/// PendSV runs last, though pended first.
 fn supervisor_call(_: &mut cortex_m::Peripherals) {
     cortex_m::interrupt::disable();
     SCB::set_pendsv();

@@ -9,15 +9,14 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use cortex_m::asm::{dsb, isb};
 
-/// Guard below the stack: first address, and log2 of its bytes. QEMU's machines ignore accesses to unmapped memory, so
-/// memory protection replaces it.
+/// Guard below the stack: first address, log2 of its bytes. Replaces unmapped memory, which QEMU's machines ignore.
 const NOWHERE: u32 = 0x1FFF_F000;
 const NOWHERE_SIZE: u32 = 12;
-/// Memory protection on, also in fault handlers, only in defined regions (ARMv7-M, B3.5).
+/// On, also in fault handlers, only in defined regions (ARMv7-M, B3.5).
 const PROTECTED: u32 = 0b111;
 /// Stack bytes left to the handler.
 const HANDLER: usize = 8192;
-/// Words of an exception frame; places of return address and program status.
+/// Words of an exception frame; index of return address and program status.
 const FRAME: usize = 8;
 const PC: usize = 6;
 const STATUS: usize = 7;

@@ -6,8 +6,7 @@ use cortex_m::register::fpscr::{self, Fpscr};
 
 use sophie_conformance::fold::{Fold, Noise};
 
-/// Critical operands: zeros, subnormals, ends of the range, infinities, quiet and signalling NaNs, rounding halves,
-/// ends of the integers.
+/// Zeros, subnormals, ends of the range, infinities, quiet and signalling NaNs, rounding halves, ends of the integers.
 const AWKWARD: [u32; 32] = [
     0x0000_0000, // 0
     0x8000_0000, // -0
@@ -207,7 +206,6 @@ fn modes(print: &mut dyn FnMut(Arguments<'_>), name: &str, operation: Operation,
     }
 }
 
-/// Result and flags of one operation in `mode`.
 #[inline(never)]
 fn at(mode: u32, operation: Operation, [a, b, c]: [u32; 3]) -> (u32, u32) {
     // SAFETY: any mode is allowed; until `run` restores it no other floating-point arithmetic is done.
