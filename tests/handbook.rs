@@ -1,5 +1,4 @@
-//! The pages: their links and the sources they name exist, the handbook lists all of them, and the short ones are
-//! short.
+//! Links and names of sources in the pages exist, the handbook lists every page, and short pages are short.
 
 mod pages;
 

@@ -1,5 +1,5 @@
 //! `sophie paper` and `sophie fit-arm`: calibrated numbers within 3 %, predicted ones with the paper's signs and
-//! orders, wrong input refused in one line.
+//! orders, refusals in one line.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -9,7 +9,7 @@ use super::printed::{Printed, Roll, Table1};
 /// %.
 pub const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
 
-/// Literal linear (°/N) and quadratic (°/N²) coefficients of Eq. 1 at an infill (%).
+/// Literal coefficients of Eq. 1 at an infill (%): linear (°/N), quadratic (°/N²).
 pub fn literal(t: &Table1, infill: f64) -> (f64, f64) {
     (t.a1 + infill * t.a2, t.b1 + infill * t.b2)
 }
@@ -23,7 +23,7 @@ pub struct Identified {
     pub sum: f64,
 }
 
-/// Least squares of Δα = X ((A1 + ρA2) + (B1 + ρB2) S) over Table III: linear in X and X S.
+/// Least squares of Δα = X ((A1 + ρA2) + (B1 + ρB2) S) over Table III, linear in X and X S.
 pub fn identify(p: &Printed) -> Identified {
     let (mut aa, mut ab, mut bb, mut ay, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for row in &p.table_3 {

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 const MAX_BYTES: u64 = 16 << 20;
-/// Fewest rows for a fit: three more than the unknowns of one infill.
+/// Three more than the unknowns of one infill.
 pub const MIN_ROWS: usize = 6;
 
 /// A measured point.

@@ -1,8 +1,8 @@
 //! Least-squares fit of Eq. 1 to bench data, with confidence intervals.
 //!
 //! α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. All but C_P are linear; Gauss-Newton from a linear start takes a
-//! few steps. One infill cannot separate A1 and A2 (B1 and B2): A and B are fitted. C_P is fitted only where the power
-//! ratio varies. K is the gain that Table I would need, fitted on its own, with the residual of Table I's shape.
+//! few steps. One infill cannot separate A1 and A2 (B1 and B2): A and B are fitted; C_P only where the power ratio
+//! varies. K is the gain that Table I would need, fitted on its own, with the residual of Table I's shape.
 
 use super::bench_data::Point;
 use super::least_squares::{quantile, solve};

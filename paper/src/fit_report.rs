@@ -78,7 +78,7 @@ pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
     lines
 }
 
-/// Infill of the vehicle, %: the only measured one, or the stack's within the measured.
+/// Vehicle's infill, %: the only measured one, or the stack's within the measured.
 pub fn infill(points: &[Point]) -> f64 {
     let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
     let (low, high) = span(points, |p| p.infill);

@@ -1,5 +1,5 @@
-//! Every table and figure of the paper, computed and flown with this stack beside the printed numbers. One file per
-//! section; printed numbers are in `printed.toml`, with table and row.
+//! Every table and figure of the paper, computed and flown beside the printed numbers (`printed.toml`). One file per
+//! section.
 
 mod arm;
 pub mod bench_data;

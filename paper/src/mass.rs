@@ -13,8 +13,8 @@ const BOX: [f64; 3] = [0.40, 0.12, 0.06];
 const BATTERY_LENGTH: f64 = 0.15;
 const SERVO_SIDE: f64 = 0.05;
 
-/// Moments of inertia: roll, pitch, yaw, kg·m², from Table II: arms as rods from the centre line to the rotor,
-/// propulsion as points at their ends.
+/// Roll, pitch, yaw, kg·m², from Table II: arms as rods from the centre line to the rotor, propulsion as points at
+/// their ends.
 pub fn inertia(p: &Printed, d: f64, b: f64) -> [f64; 3] {
     let m = |name: &str| {
         let row = p.table_2.iter().find(|r| r.equipment == name);

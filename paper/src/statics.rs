@@ -74,7 +74,7 @@ impl AtThrust {
     }
 }
 
-/// Smallest multiplier at which the frozen inverse limit-cycles, by Routh: with motor lag τ (s) and arm mode ω (rad/s),
+/// Smallest multiplier with a limit cycle of the frozen inverse, by Routh: with motor lag τ (s) and arm mode ω (rad/s),
 /// ζ the loop (τs + 1)(s² + 2ζωs + ω²) + m ω² is unstable from (1 + 2ζωτ)(2ζω + ω²τ) = τω²(1 + m) on.
 pub fn frozen_bound(tau: f64, omega: f64, zeta: f64) -> f64 {
     let damping = 2.0 * zeta * omega;

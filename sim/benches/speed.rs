@@ -1,5 +1,5 @@
-//! Simulated seconds per wall second, stack and plant on one core: `cargo bench -p sophie-sim` prints median and spread
-//! of several default missions.
+//! Simulated seconds per wall second, stack and plant on one core: median and spread of several default missions
+//! (`cargo bench -p sophie-sim`).
 
 #![allow(clippy::print_stdout, reason = "the figure is what it is for")]
 

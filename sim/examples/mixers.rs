@@ -1,5 +1,5 @@
-//! Tracking of each allocation: hover in gusts with matched and mismatched arms over the yaw gain, and whole missions,
-//! as in docs/results.md: `cargo run --release -p sophie-sim --example mixers`.
+//! Tracking of each allocation in docs/results.md: hover in gusts with matched and mismatched arms over the yaw gain,
+//! and whole missions (`cargo run --release -p sophie-sim --example mixers`).
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 

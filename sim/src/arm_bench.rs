@@ -1,5 +1,5 @@
-//! One arm closes on a pipe, as on the paper's test bench: body fixed, the rest the plant's; gripper and tendon drive
-//! are the flight stack's, each at its rate.
+//! One arm closes on a pipe, as on the paper's test bench: body fixed, gripper and tendon drive the flight stack's, the
+//! rest the plant's.
 
 use std::collections::VecDeque;
 
@@ -54,7 +54,7 @@ pub struct Closing {
     pub diameter: f64,
     /// The servo fitted; the stack's parameters match it.
     pub servo: ServoSpec,
-    /// Thrust of the arm's rotor while it closes, N.
+    /// Of the arm's rotor while it closes, N.
     pub thrust: f64,
     /// Time from the start of the closing, s.
     pub seconds: f64,
@@ -62,7 +62,7 @@ pub struct Closing {
     pub seed: u64,
 }
 
-/// An arm before a pipe, with the stack's parameters.
+/// An arm before a pipe.
 #[derive(Clone, Debug)]
 pub struct BenchArm {
     /// Index, 0 to 3.
@@ -73,18 +73,18 @@ pub struct BenchArm {
     pub servo: ServoSpec,
     /// Time constant of the rotor, s.
     pub rotor_tau: f64,
-    /// Parameters of the stack, which may differ from the true arm.
+    /// May differ from the true arm.
     pub params: Params,
     /// Outer diameter of the pipe, m.
     pub diameter: f64,
     /// Friction of the pipe.
     pub friction: f64,
-    /// Thrust of the arm's rotor while it closes, N.
+    /// Of the arm's rotor while it closes, N.
     pub thrust: f64,
 }
 
 impl BenchArm {
-    /// Whether `other` closes as this arm does: arm, servo, reel and sensor scale are equal.
+    /// Whether arm, servo, reel and sensor scale are equal.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         let reel = |arm: &Self| Reel::from_params(&arm.params, arm.arm);
@@ -123,14 +123,13 @@ impl From<&Closing> for BenchArm {
 pub struct Tried {
     /// Final state and fault.
     pub grip: ArmGrip,
-    /// Largest force asked of the tendon while the arm held, N; over the whole run if it never held.
+    /// Largest force asked of the tendon while holding, N; over the whole run if it never held.
     pub asked: f64,
-    /// Mean torque of the servo over the last half second, N·m.
+    /// Mean servo torque over the last half second, N·m.
     pub steady: f64,
 }
 
-/// Closes `arm` for at most `longest` s: ends when it has held with its rotor stopped for `AFTER`, or the gripper gives
-/// up.
+/// Closes `arm` until it has held with its rotor stopped for `AFTER`, the gripper gives up, or `longest` s have passed.
 #[must_use]
 pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
     let mut bench = ArmBench::new(arm, 1);
@@ -184,7 +183,7 @@ pub struct BenchSample {
 pub struct Closed {
     /// Samples every 10 ms.
     pub samples: Vec<BenchSample>,
-    /// Time until the pressure stays within its tolerance, s; `None` if the grip is not proven.
+    /// Until the pressure stays within tolerance, s; `None` without proof of grip.
     pub closure: Option<f64>,
     /// Mean torque over the last second, rotor stopped, N·m.
     pub steady: f64,
@@ -194,7 +193,7 @@ pub struct Closed {
     pub state: ArmState,
 }
 
-/// Closes one arm; once it holds, its rotor stops within 1.5 s, as on a perch.
+/// Closes one arm; once it holds, its rotor stops within 1.5 s.
 #[must_use]
 pub fn close(what: &Closing) -> Closed {
     let mut bench = ArmBench::new(&what.into(), what.seed);

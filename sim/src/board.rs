@@ -1,6 +1,5 @@
-//! The simulated board: the tasks' ports, wired to the plant through its sensors.
-//!
-//! The plant steps by a millisecond, then the tasks run; their outputs act in the next one.
+//! The simulated board: the tasks' ports, wired to the plant through its sensors. The plant steps by a millisecond,
+//! then the tasks run; their outputs act in the next one.
 
 use std::cell::{Cell, RefCell};
 

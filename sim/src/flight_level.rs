@@ -68,7 +68,7 @@ pub struct Rig {
     ms: u64,
 }
 
-/// The default vehicle with these settings; the stack's parameters match gain and infill.
+/// The stack's parameters match gain and infill.
 pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Variant) -> Scenario {
     let mut s = Scenario::default_mission();
     s.vehicle.gain_k = gain_k;
@@ -145,7 +145,7 @@ impl Rig {
         self.time.run_until(self.ms * 1000);
     }
 
-    /// Calibrates, climbs to 3 m under a simple height hold and follows `wish` for `seconds`.
+    /// Calibrates, climbs to 3 m and follows `wish` for `seconds`.
     ///
     /// # Panics
     /// If the gyroscope is not calibrated after 4 s of rest.

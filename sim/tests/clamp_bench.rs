@@ -1,8 +1,8 @@
-//! One arm closes on a pipe, holds it while the rotor stops and the arm is disturbed, and releases it.
+//! One arm closes on a pipe, holds it while the rotor stops and the arm is disturbed, and releases it, as on the
+//! paper's bench.
 //!
-//! The body is fixed, as on the paper's bench. Arm, tendon, servo, skin and pressure sensor are the plant's; fault
-//! watch, gripper and tendon drive the flight stack's, each at its rate. The tilt is 20 ms late with noise and offset;
-//! the thrust given to the loop is 5 % wrong.
+//! Arm, tendon, servo, skin and pressure sensor are the plant's; fault watch, gripper and tendon drive the flight
+//! stack's. The tilt is 20 ms late with noise and offset; the thrust given to the loop is 5 % wrong.
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! Broken, missing or wrong sensors: displayed, arming inhibited until they recover, flights continued where possible.
+//! Broken, missing or wrong sensors: displayed, arming inhibited meanwhile, flights continued where possible.
 
 mod vehicle;
 

@@ -1,5 +1,5 @@
-//! The conformance image on QEMU and on the emulated core, whose logs must be equal. The laws' lines must also equal
-//! the host's, so that its tests hold for the chip.
+//! The conformance image on QEMU and on the emulated core: equal logs, and the laws' lines equal to the host's, so that
+//! its tests hold for the chip.
 
 use std::ffi::OsStr;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Flash of an image by crate, from its symbols.
 //!
 //! A function counts for the crate that its name begins with, a generic's instance for the instantiating one. Bytes
-//! without a crate's name are listed apart: a column adds up to the image.
+//! without a crate are listed apart.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,7 @@
 //! The custom board of docs/porting.md: a copy of the reference board in a scratch folder, built and checked.
 //!
-//! Such a board touches only the files named there, shared code selects by chip, and it may have what no board here
-//! has: motors on two timers in another order, a pin that switches the sensors' supply. Its firmware fits no real
-//! board.
+//! It touches only the files named there, uses shared code by chip, and has what no board here has: motors on two
+//! timers in another order, a pin that switches the sensors' supply. It fits no real board.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -64,7 +63,7 @@ const CHANGES: [(&str, &str); 9] = [
     ),
 ];
 
-/// Builds and checks the copy, and checks that one without chip is refused.
+/// Builds and checks the copy, and that one without chip is refused.
 ///
 /// # Errors
 /// The copy does not build, its image is wrong, or a board that names no chip builds.

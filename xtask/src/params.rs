@@ -4,8 +4,7 @@ use crate::boards::{Board, Sectors};
 use crate::image::{Image, Load};
 use crate::{Error, dfu};
 
-/// Checks that flashing does not erase the parameters' sectors; returns their bytes, 0 where the board stores
-/// parameters elsewhere.
+/// Checks that flashing does not erase the parameters' sectors; returns their bytes, 0 if stored elsewhere.
 ///
 /// # Errors
 /// Part of the image lies there: its address.

@@ -61,7 +61,7 @@ pub fn print(rows: &[(&Board, Sizes)]) {
     println!("| limit | {FLASH_LIMIT} | {RAM_LIMIT} | |");
 }
 
-/// Compares with the limits and `xtask/ceilings.toml`, and that with its table in `docs/boards.md`; `tighten` lowers
+/// Compares sizes with limits and `xtask/ceilings.toml`, and that with its table in `docs/boards.md`; `tighten` lowers
 /// the ceilings and writes the table.
 ///
 /// # Errors

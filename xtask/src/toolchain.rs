@@ -1,5 +1,5 @@
-//! Finds a toolchain for the boards: the target's library from rustup, or offline a compiler with the library's source:
-//! Debian's packages `rustc-web` and `rust-web-src`.
+//! Finds a toolchain for the boards: the target's library from rustup, or offline Debian's packages `rustc-web` and
+//! `rust-web-src`, with the library's source.
 
 use std::env;
 use std::ffi::OsString;

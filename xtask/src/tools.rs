@@ -18,8 +18,8 @@ pub const PROBE_RS: Tool = Tool {
     install: "see https://probe.rs/docs/getting-started/installation",
 };
 
-/// Writes a chip through its USB loader. A program instead of a crate (`dfu-libusb`, `dfu-nusb`): users have it from
-/// other autopilots, and it handles the quirks of ST's loaders; a crate would add a USB library to xtask.
+/// Writes a chip through its USB loader. A program instead of a crate (`dfu-libusb`, `dfu-nusb`), which would add a USB
+/// library to xtask: users have it from other autopilots, and it handles the quirks of ST's loaders.
 pub const DFU_UTIL: Tool = Tool {
     program: "dfu-util",
     install: "Debian, Ubuntu: apt-get install dfu-util; macOS: brew install dfu-util; else https://dfu-util.sourceforge.net",

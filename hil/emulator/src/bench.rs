@@ -1,4 +1,4 @@
-//! The emulated board as the aircraft of a flight, seen through pins, telemetry and log.
+//! The emulated board as the aircraft of a flight.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -111,8 +111,8 @@ pub struct Setup {
 }
 
 impl<'a> Bench<'a> {
-    /// A vehicle whose board runs `firmware` as in `setup`, with the parameters of `scenario` and a calibrated
-    /// accelerometer; `rng` draws the sensors' errors, `logged` receives log lines.
+    /// Runs `firmware` as in `setup` with the parameters of `scenario` and a calibrated accelerometer; `rng` draws the
+    /// sensors' errors, `logged` receives log lines.
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,

@@ -1,5 +1,5 @@
-//! Instructions of the control path on the flashed image, by symbol, which shows the share outside the laws. Inlined
-//! functions count where they were inlined: a task's own share includes its links and records.
+//! Instructions of the control path on the flashed image, by symbol. Inlined functions count where they were inlined: a
+//! task's own share includes its links and records.
 
 mod groups;
 
@@ -85,13 +85,13 @@ pub type Counts = BTreeMap<usize, u64>;
 /// A counted step.
 #[derive(Clone, Debug, Default)]
 pub struct Step {
-    /// From the data-ready handler to that of the transfer's end.
+    /// From data-ready handler to transfer-end handler.
     pub reading: Counts,
-    /// From there to the start of the motor frame.
+    /// From there to the motor frame.
     pub acting: Counts,
-    /// The core's instruction count at the end of the transfer.
+    /// Instruction count at the end of the transfer.
     pub received: u64,
-    /// The core's count from there to the frame: the sum of `acting`.
+    /// From there to the frame: the sum of `acting`.
     pub passed: u64,
 }
 
@@ -122,7 +122,7 @@ impl Share {
 }
 
 impl Counted {
-    /// From the end of the transfer to the frame.
+    /// From transfer to frame.
     #[must_use]
     pub fn acting(&self) -> Share {
         Share::of(self.steps.iter().map(|step| step.passed))

@@ -12,7 +12,7 @@ const SILENCE: u64 = 250_000_000;
 pub enum Line {
     /// DShot, kbit/s.
     DShot(u32),
-    /// Pulses of this many µs (stop) to twice as many.
+    /// From this many µs (stop) to twice as many.
     Pulse(u32),
 }
 
@@ -37,7 +37,7 @@ pub struct EscStats {
     pub frames: u64,
     /// Invalid frames or pulses.
     pub bad: u64,
-    /// Shortest and longest time between frames, ns, from the second on.
+    /// Shortest and longest between frames, ns.
     pub interval: Option<[u64; 2]>,
 }
 

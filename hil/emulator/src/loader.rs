@@ -1,4 +1,4 @@
-//! A loader that jumps to the firmware with its own vector table active, like the chip's USB loader.
+//! A loader that jumps to the firmware with its own vector table active, as the chip's USB loader does.
 
 use object::{Object, ObjectSection};
 

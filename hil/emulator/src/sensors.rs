@@ -38,7 +38,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Draws errors in the order of [`sophie_sim::board::Board::configured`]: one seed, one vehicle.
+    /// Draws errors in the order of [`sophie_sim::board::Board::configured`]: equal seeds, equal vehicles.
     #[must_use]
     pub fn new(params: &Params, rng: &mut Pcg64Mcg) -> Self {
         let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
@@ -68,7 +68,7 @@ impl Sensors {
         }
     }
 
-    /// Steps the plant by a millisecond and sets the sensors' `wires`.
+    /// Steps the plant by a millisecond and sets `wires`.
     pub fn step(&mut self, plant: &mut Plant, actuators: &sophie_sim::plant::Actuators, wires: &mut Wires) {
         for _ in 0..STEPS_PER_MS {
             let (rate, force) = (plant.pose().omega, plant.specific_force());

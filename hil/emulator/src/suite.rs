@@ -1,5 +1,5 @@
-//! The image of a board's tests (`hil/rig`). A probe answers its request for a command line with a test's address; here
-//! calls of the setup and of the test replace the start of the requesting function.
+//! The image of a board's tests (`hil/rig`). Instead of a probe that answers with a test's address, calls of setup and
+//! test replace the start of the requesting function.
 
 use std::collections::BTreeMap;
 

@@ -57,8 +57,8 @@ impl Tilts {
         self.model.tilt().map(f64::from)
     }
 
-    /// Adds a millisecond with commanded thrusts (N), gravity at the arms' sensors (arm axes) and body roll (rad);
-    /// `flies`: the arms hang free.
+    /// Adds a millisecond: commanded thrusts (N), gravity at the arms' sensors (arm axes), body roll (rad); `flies`:
+    /// arms hang free.
     pub fn step(&mut self, thrusts: &PerArm<f32>, arms: &PerArm<[f64; 3]>, body_roll: f64, flies: bool) {
         self.model.step(thrusts, 1e-3);
         for ((measured, [_, y, z]), side) in self.measured.iter_mut().zip(arms).zip(SIDE) {

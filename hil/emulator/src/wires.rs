@@ -10,13 +10,13 @@ use crate::esc::EscStats;
 /// Inputs to the board for the next millisecond.
 #[derive(Clone, Debug, Default)]
 pub struct Wires {
-    /// Inertial samples, evenly spread: body rate (rad/s), specific force (m/s²), body axes.
+    /// Evenly spread samples: body rate (rad/s), specific force (m/s²), body axes.
     pub imu: Vec<([f64; 3], [f64; 3])>,
     /// Gravity at each arm's sensor, m/s², arm axes (forward, right, down).
     pub arms: PerArm<[f64; 3]>,
     /// Pads of pressure 1 to 4 (V), battery voltage (V) and current (A).
     pub analog: [f64; 6],
-    /// Words from the receiver; parity, if any, is the top bit.
+    /// Parity, if any, is the top bit.
     pub receiver: Vec<u16>,
     /// Bytes typed at the console.
     pub console: Vec<u8>,
@@ -33,25 +33,25 @@ pub enum BoardFault {
     DataReadyCut(bool),
     /// Bits flipped in the inertial sensor's next word.
     ImuWord(u8),
-    /// A divider of 1 to n at pressure sensor 0 to 3.
+    /// Divider of 1 to n at pressure sensor 0 to 3.
     PadDivider(usize, u32),
     /// Sensor of arm 0 to 3 unplugged (true) or plugged in.
     ArmUnplugged(usize, bool),
-    /// Arm bus 0 or 1: chips stretch the clock by this many µs after each byte; 0: none.
+    /// Arm bus 0 or 1: clock stretched by this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
     /// The processor's supply fails (false) or returns.
     Supply(bool),
-    /// The task of this name (`src/firmware/tasks.rs`) hangs in its await.
+    /// The task (name in `src/firmware/tasks.rs`) hangs in its await.
     TaskHung(&'static str),
     /// The task recurses endlessly at its next run.
     StackOverflow(&'static str),
-    /// The task faults at its next run at hard fault priority: the processor locks up (ARMv7-M B1.5.15).
+    /// The task faults at hard fault priority: the processor locks up (ARMv7-M B1.5.15).
     LockUp(&'static str),
     /// Parameter flash overwritten, as by foreign firmware.
     CorruptParameters,
     /// Parameter flash begins as ArduPilot leaves it.
     ForeignParameters,
-    /// New chip's option bytes: no brown-out level. Before the first instruction only.
+    /// As of a new chip: no brown-out level. Before the first instruction only.
     FactoryOptions,
     /// A processor of the first revision.
     FirstRevision,
@@ -59,7 +59,7 @@ pub enum BoardFault {
     NoCrystal,
     /// Core PLL never locks. Before the first instruction only.
     NoPll,
-    /// Processor halted (true) or running; only the watchdog is left.
+    /// Processor halted (true) or running; the watchdog runs.
     Hang(bool),
     /// A pulse on the reset pin.
     ResetPin,
@@ -89,13 +89,13 @@ pub struct Pins {
 /// Results of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// What the emulator could not do or found wrong.
+    /// What the emulator lacked or found wrong.
     pub gaps: Vec<Gap>,
     /// Instructions executed.
     pub instructions: u64,
     /// Input of each motor controller.
     pub escs: PerArm<EscStats>,
-    /// Data-ready to first edge of the motor frame, µs.
+    /// Data-ready to motor frame, µs.
     pub latency_us: Latency,
     /// The motors' pins at the processor's last standstill.
     pub hung: Option<Hung>,
@@ -120,7 +120,7 @@ pub struct Output {
     pub pin: String,
     /// Pulled up until the firmware drives it.
     pub pulled_up: bool,
-    /// Time from each start until driven, µs; `None`: never.
+    /// From each start until driven, µs; `None`: never.
     pub after_us: Vec<Option<f64>>,
 }
 

@@ -1,5 +1,4 @@
-//! The tests of `hil/rig` on the emulated board: all pass on a sound rig, and each fails with the defect that it tests
-//! for.
+//! The tests of `hil/rig` on the emulated board: each passes on a sound rig and fails with its defect.
 
 #![allow(missing_docs)]
 

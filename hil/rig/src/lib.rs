@@ -1,8 +1,8 @@
 //! Shared code of the tests on a real board, run by a probe. `tests/rig/` has the tests, `hil/README.md` the wiring.
 //! Empty on the host.
 //!
-//! The board crate is the firmware's: the tests use the drivers, pins and timers that fly. Each test starts from a
-//! reset. A missing jumper or part is logged as `ignored:` and the test passes; with the feature `wired` it fails.
+//! The tests use the firmware's board crate: drivers, pins and timers that fly. Each starts from a reset. A missing
+//! jumper or part is logged as `ignored:` and passes; with the feature `wired` it fails.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(target_os = "none")]

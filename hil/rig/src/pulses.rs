@@ -17,8 +17,8 @@ pub struct Pulse {
     pub high: u32,
 }
 
-/// Whole pulses on `pad` in the next `us` µs, at most [`MOST`]. Does not yield; without interrupts an edge's error is
-/// one loop, some ten cycles.
+/// Whole pulses on `pad` in the next `us` µs, at most [`MOST`]. Does not yield; without interrupts the error of an edge
+/// is some ten cycles.
 pub fn record(pad: Pad, us: u32) -> Vec<Pulse, MOST> {
     let length = us * (WIRING.core_hz / 1_000_000);
     let mut pulses = Vec::new();

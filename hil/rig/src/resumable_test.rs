@@ -1,5 +1,5 @@
-//! State of a test across its reset, in retained memory. The probe names the test only before the first part: the
-//! second starts from the tests' setup and reports its own result.
+//! A test's state across its reset, in retained memory. The probe names the test only before the first part: the second
+//! starts from the tests' setup and reports its own result.
 
 use core::cell::RefCell;
 

@@ -20,7 +20,7 @@ pub fn passed() -> ! {
     semihosting::process::exit(0)
 }
 
-/// Ends the test at a panic or fault, without a reset: the motors stop and the probe gets the verdict.
+/// Ends the test at a panic or fault, without reset: the motors stop, the probe gets the verdict.
 pub fn end_of_run(message: fmt::Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
     sophie_boards::stop_motors();

@@ -31,7 +31,7 @@ const MIXERS: [Compared; 5] = [
 /// Places in [`MIXERS`].
 pub const RIGID: usize = 0;
 pub const PAPER: usize = 1;
-/// Rigid mixer with its yaw gain over 1 - C_ψ, as fast as the flexible one.
+/// Rigid mixer, yaw gain over 1 - C_ψ: as fast as the flexible one.
 pub const FAIR: usize = 2;
 pub const FLEXIBLE: usize = 3;
 pub const SIGN_AWARE: usize = 4;
@@ -128,7 +128,7 @@ impl Grid {
         at.and_then(|i| self.outcomes.get(i))
     }
 
-    /// Flights of the map that a mixer survives, in words.
+    /// Flights that a mixer survives, in words.
     pub fn kept(&self, configuration: Configuration, mixer: usize) -> String {
         let of = |j: &Job| j.configuration == configuration && j.mixer == mixer && j.mismatched;
         let flights = || self.jobs.iter().zip(&self.outcomes).filter(|(j, _)| of(j));

@@ -20,7 +20,7 @@ pub const SECONDS: f64 = 3.0;
 /// The roll command.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Command {
-    /// A step with this rate gain (1/s), attitude gain 12 1/s, no prefilter: hard as the paper's.
+    /// Step with this rate gain (1/s), attitude gain 12 1/s, no prefilter: hard as the paper's.
     Hard(f64),
     /// The stack's own gains and prefilter.
     Soft,
@@ -123,7 +123,7 @@ pub fn sideways(m: &Moment) -> f64 {
     (0..4).map(|i| side(i) * m.thrust[i] * m.tilt[i].sin()).sum()
 }
 
-/// Rate gain (1/s) of a step that reaches ΔT/T = `share` at ρ 8 %, massless arms.
+/// Rate gain (1/s) for ΔT/T = `share` at ρ 8 %, massless arms.
 pub fn hard_gain(angle: f64, share: f64) -> f64 {
     let reached = |gain: f64| {
         let job = Job {
@@ -146,7 +146,7 @@ pub fn hard_gain(angle: f64, share: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Damping ratio of massless arms at which the hard step gives the printed Δα_max at ρ 8 %.
+/// Damping ratio of massless arms for the printed Δα_max of the hard step at ρ 8 %.
 pub fn fitted_damping(p: &Printed, angle: f64, command: Command) -> f64 {
     let printed = p
         .table_3

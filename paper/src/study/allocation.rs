@@ -11,10 +11,10 @@ use sophie_sim::mixers::{Law, Situation, WithLimits};
 /// An allocation for study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Studied {
-    /// Algorithm 1 with sideways thrust in its yaw row: inverts the effectiveness at α of the last step's thrust.
+    /// Algorithm 1 with sideways thrust in its yaw row: inverse effectiveness at α of the last step's thrust.
     Verbatim,
-    /// Quasi-static Jacobian with either sign of its yaw row, as configuration A needs; yaw is given up only where its
-    /// authority is small.
+    /// Quasi-static Jacobian with either sign of its yaw row, as configuration A needs; gives up yaw only at small
+    /// authority.
     SignAware,
 }
 

@@ -1,5 +1,5 @@
 //! Experiments outside missions: setpoints straight into the control loops, and the plant's response to a small change
-//! of thrust. Tasks, laws and plant are those that fly, without pilot and commander.
+//! of thrust. Tasks, laws and plant are those that fly.
 
 pub mod allocation;
 pub mod perturbation;

@@ -1,5 +1,4 @@
-//! The plant's response to a small change of thrust: moments at given thrusts with settled arms, from the plant's
-//! parts, without the flight stack's formulas.
+//! The plant's moments after a small change of thrust with settled arms, from its parts alone.
 
 use glam::{DQuat, DVec3};
 use sophie_control::wrench::PerArm;
@@ -27,7 +26,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Force along -z (N), moments about x, y, z (N·m) at `thrusts` (N) with settled arms.
+    /// Force along -z (N) and moments (N·m) at `thrusts` (N) with settled arms.
     #[must_use]
     pub fn wrench(&self, thrusts: PerArm<f64>) -> [f64; 4] {
         let spec = BodySpec::default();

@@ -46,7 +46,7 @@ pub struct Moment {
     pub t: f64,
     /// True roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Target roll and pitch; heading: the initial one plus every turn since, regardless of the controller; rad.
+    /// Roll, pitch and heading, rad; heading is the initial one plus every turn since, regardless of the controller.
     pub target: [f64; 3],
     /// True velocity, m/s, NED.
     pub velocity: DVec3,
@@ -115,8 +115,8 @@ fn aimed_heading(rig: &Rig) -> f64 {
     rig.plant.euler()[2] + target.map_or(0.0, |v| f64::from(v.value.ahead))
 }
 
-/// Hovers `scenario`'s vehicle at 3 m under a simple height hold, then follows `wish` for `seconds`, without the
-/// scenario's steps; `studied` replaces its mixer. Deterministic to the bit.
+/// Hovers `scenario`'s vehicle at 3 m, then follows `wish` for `seconds` instead of its steps; `studied` replaces the
+/// mixer. Deterministic to the bit.
 pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: impl Fn(f64) -> Wish) -> Flown {
     let mut rig = rig(scenario, studied);
     for _ in 0..(REST * 1e3) as usize {

@@ -1,8 +1,7 @@
 //! Random touches of the pipe: beside the crown, leaning, drifting, cancelled at any time.
 //!
-//! The whole stack flies on a receiver's bytes. The vehicle hovers high up, is moved over the pipe while it leans
-//! (no sensor measures position), and sinks onto it. The mode logic continues, until a pilot who sees the vehicle leave
-//! the pipe climbs away.
+//! The whole stack flies on a receiver's bytes. The vehicle hovers, is moved over the pipe while it leans (no sensor
+//! measures position), and sinks onto it. A pilot who sees it leave the pipe climbs away.
 
 use std::collections::VecDeque;
 

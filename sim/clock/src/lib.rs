@@ -1,7 +1,7 @@
 //! Virtual time: embassy clock and executor of one flight, confined to its thread.
 //!
 //! The clock stands still while tasks run and jumps to the next alarm when all wait. It is thread-local behind the
-//! process-wide embassy-time driver: flights in parallel threads are independent.
+//! process-wide embassy-time driver: parallel flights are independent.
 
 use std::cell::{Cell, RefCell};
 use std::future::Future;

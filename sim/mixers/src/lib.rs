@@ -1,5 +1,5 @@
-//! Allocations of `--mixer` and scenario files: three for study, and the one that flies. Each [`Law`] splits a wrench
-//! into patterns of thrust; [`WithLimits`] adds limits of rotors and yaw and the flexible allocation's tilt model.
+//! Allocations of `--mixer` and scenario files: three for study, one that flies. Each [`Law`] splits a wrench into
+//! patterns of thrust; [`WithLimits`] adds limits and the flexible allocation's tilt model.
 
 #![no_std]
 
@@ -23,7 +23,7 @@ use sophie_control::wrench::{Configuration, PerArm, Wrench};
 pub enum Variant {
     /// Rigid arms.
     Rigid,
-    /// Algorithm 1 with the printed matrix, its singular yaw row corrected: tilt only in the thrust row.
+    /// Algorithm 1 with the printed matrix, its singular yaw row corrected; tilt only in the thrust row.
     Paper,
     /// Inverse effectiveness at the frozen arm angle; limit-cycles.
     Frozen,

@@ -1,4 +1,4 @@
-//! Check rows of the batteries: times of hover and of holding, from the plant's batteries and rotors.
+//! Check rows of the batteries: times of hover and of holding.
 
 use super::grip::TriedArm;
 use super::hover::Built;
@@ -15,10 +15,10 @@ const STEP: f64 = 1.0;
 const LONGEST: f64 = 10_800.0;
 const MINUTE: f64 = 60.0;
 
-/// Time of hover from the battery's charge until the failsafe lands.
+/// Time of hover until the failsafe lands.
 ///
-/// Value: time until the voltage under the current of four hovering rotors falls to `battery_critical`, min; 0 for a
-/// battery at that voltage. Limit: the mission's least time in the air.
+/// Value: min until the voltage under the current of four hovering rotors falls to `battery_critical`. Limit: the
+/// mission's least time in the air.
 pub fn flight(scenario: &Scenario, built: &Built) -> Row {
     let v = &scenario.vehicle;
     let rotor = Rotor::turning(0, f64::from(v.configuration.chi()), v.rotor, built.hover);
@@ -62,8 +62,8 @@ fn in_the_air(scenario: &Scenario) -> f64 {
 
 /// Time for which the servos' battery holds the grip.
 ///
-/// Value: charge over the currents of the closed arms' servos at their holding torque, min. Limit: the mission's time
-/// on the pipe. Servos without load draw their idle current.
+/// Value: charge over the closed arms' servo currents at their holding torque, min. Limit: the mission's time on the
+/// pipe.
 pub fn inspection(scenario: &Scenario, tries: &[TriedArm]) -> Row {
     let current: f64 = tries.iter().map(|arm| MG996R.at(arm.tried.steady)).sum();
     let held: f64 = scenario

@@ -70,9 +70,9 @@ fn bench(scenario: &Scenario, arm: usize) -> BenchArm {
 
 /// Force of each arm's grip against the gripper's limit.
 ///
-/// Value: the largest force asked of the tendon while the arm holds the grip pressure and its rotor stops, N; for an
-/// arm given up, the static balance with the rotor turning if that is more. Limit: the largest force with which the
-/// gripper proves a grip, less a reserve of 5 %. A row passes only if the gripper holds the arm.
+/// Value: the largest force asked of the tendon while holding the grip pressure and stopping the rotor, N; for an arm
+/// given up, the static balance with the rotor turning if that is more. Limit: the largest force of a proven grip, less
+/// 5 %. Passes only if the gripper holds the arm.
 pub fn rows(scenario: &Scenario, tries: &[TriedArm]) -> Vec<Row> {
     let limit = (1.0 - RESERVE) * f64::from(Config::from_params(&scenario.params).provable());
     let row = |tried: &TriedArm| {
@@ -106,8 +106,8 @@ fn advice(tried: &Tried) -> String {
     format!("{why}: fit softer arms or a stronger servo, or choose a larger pipe")
 }
 
-/// Tendon force (N) that holds `arm` at the pressure `target` (Pa) on the scenario's pipe, body level on its crown,
-/// rotor at `thrust` (N): static balance of rotor, spring, skin and tendon.
+/// Tendon force (N) that holds `arm` at the pressure `target` (Pa), body level on the crown, rotor at `thrust` (N):
+/// static balance of rotor, spring, skin and tendon.
 pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Option<f64> {
     let radius = 0.5 * scenario.world.pipe_diameter;
     let pipe = Pipe {

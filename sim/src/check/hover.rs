@@ -23,7 +23,7 @@ pub struct Built {
     chi: f64,
     /// Weight, N.
     pub weight: f64,
-    /// Thrust of a rotor in hover, N; of level arms if full thrust cannot carry the vehicle.
+    /// Of a rotor in hover, N; with level arms if full thrust cannot carry the vehicle.
     pub hover: f64,
 }
 
@@ -76,8 +76,8 @@ impl Built {
         Some(high)
     }
 
-    /// Yaw moment per newton of differential thrust with settled arms, m, from the stack's effectiveness on the plant's
-    /// arms; positive in the direction that the configuration expects, k_q for stiff arms.
+    /// Yaw moment per newton of differential thrust with settled arms, m, from the stack's effectiveness; positive as
+    /// the configuration expects, k_q for stiff arms.
     #[must_use]
     pub fn yaw_effect(&self, thrust: f64) -> PerArm<f64> {
         let tilt = self.tilt(thrust);
@@ -90,8 +90,7 @@ impl Built {
             .map(|y| self.chi * f64::from(y))
     }
 
-    /// Stability derivative of yaw, C = 1 - y / k_q: below 0 bending arms amplify a yaw command, above 1 they reverse
-    /// it.
+    /// C = 1 - y / k_q: below 0 bending arms amplify a yaw command, above 1 they reverse it.
     #[must_use]
     pub fn yaw_derivative(&self, thrust: f64) -> f64 {
         let effect = self.yaw_effect(thrust);
@@ -99,8 +98,8 @@ impl Built {
         1.0 - mean / f64::from(self.geometry.drag.abs())
     }
 
-    /// Lowest bending mode of an arm in hover with the body held, Hz: √(k/m)/2π, k = dT/dα / L the tangent stiffness at
-    /// the tip, N/m, m the tip's mass.
+    /// Lowest bending mode in hover, body held, Hz: √(k/m)/2π, k = dT/dα / L the tangent stiffness at the tip, N/m, m
+    /// its mass.
     #[must_use]
     pub fn arm_mode(&self) -> f64 {
         let slope = |arm: &ArmSpec| {

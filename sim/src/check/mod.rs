@@ -1,7 +1,5 @@
-//! Whether a vehicle can fly its mission: its properties against what the mission needs.
-//!
-//! Everything is computed from the scenario by the plant's parts and the laws that fly, with no number written down
-//! twice. `docs/design-check.md` explains each row.
+//! Whether a vehicle can fly its mission: what it has against what the mission needs, computed by the plant's parts and
+//! the laws that fly. `docs/design-check.md` explains each row.
 
 mod endurance;
 mod grip;

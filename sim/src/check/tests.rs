@@ -1,4 +1,4 @@
-//! The check as a whole: what flies passes, what cannot is refused with the right reason, and no scenario panics.
+//! The whole check: what flies passes, what cannot is refused with its reason, nothing panics.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;

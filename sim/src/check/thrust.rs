@@ -20,10 +20,10 @@ const STICK_MOST: f64 = 0.85;
 
 /// Thrust to weight at the nominal voltage.
 ///
-/// Value: Σ T cos α(T) / W, all rotors at their largest thrust, arms bent by it. Limit: the larger of two needs. The
-/// failsafe lands at `battery_critical`, where a rotor gives the share s of its thrust (plant), and must stop sinking
-/// and meet gusts: (1 + brake + gusts) / s. The escape from a pipe (only where the mission touches one) lifts with 1.35
-/// of the weight at a lean of 8 degrees, battery full: 1.35 / cos 8°.
+/// Value: Σ T cos α(T) / W, all rotors at their largest thrust. Limit: the larger of two. The failsafe lands at
+/// `battery_critical`, where a rotor gives the share s of its thrust (plant), and must stop sinking and meet gusts: (1
+/// + brake + gusts) / s. The escape from a pipe lifts with 1.35 of the weight at a lean of 8 degrees, battery full:
+/// 1.35 / cos 8°.
 pub fn to_weight(scenario: &Scenario, built: &Built, perches: bool) -> Row {
     let rotor = &scenario.vehicle.rotor;
     let ratio = built.lift(rotor.thrust_max) / built.weight;
@@ -51,8 +51,8 @@ fn gusts(scenario: &Scenario) -> f64 {
 
 /// Share of the throttle stick in hover.
 ///
-/// Value: T / T_max, T a rotor's thrust in hover, T_max the stack's parameter: collective is proportional to the stick.
-/// Without arm tilt W / (4 T_max).
+/// Value: T / T_max, T a rotor's thrust, T_max the parameter: collective is proportional to the stick. Without tilt W /
+/// (4 T_max).
 pub fn hover_throttle(scenario: &Scenario, built: &Built) -> Row {
     let throttle = built.hover / f64::from(scenario.params.thrust_max);
     Row::new(
@@ -64,10 +64,10 @@ pub fn hover_throttle(scenario: &Scenario, built: &Built) -> Row {
     .advise("make it lighter, fit stronger rotors, or set thrust_max to what they give")
 }
 
-/// Weight left on the pipe at the lowest throttle at which the arms open.
+/// Weight left on the pipe at the lowest throttle that opens the arms.
 ///
-/// Value: W - 4 T, N, T from the stack's [`release_thrust`]. Below [`RESTING_FORCE`] the stack does not detect resting,
-/// and the vehicle lifts off with closed arms.
+/// Value: W - 4 T, N, T from [`release_thrust`]. Below [`RESTING_FORCE`] resting is not detected, and the vehicle lifts
+/// off with closed arms.
 pub fn release(scenario: &Scenario, built: &Built) -> Row {
     let left = built.weight - f64::from(release_thrust(&scenario.params));
     Row::new(

@@ -7,7 +7,7 @@ use crate::scenario::Scenario;
 
 /// Steady wind force against which the vehicle keeps place and height.
 ///
-/// Value: W tan θ, N, θ the largest lean within the stick's limit and L cos θ >= W. Limit: three times the RMS of the
+/// Value: W tan θ, N, θ the largest lean with L cos θ >= W within the stick's limit. Limit: three times the RMS of the
 /// gusts' horizontal force on both axes. By the plant's drag of 0.3 N s/m a wind of v pushes with 0.3 v.
 pub fn row(scenario: &Scenario, built: &Built) -> Row {
     let lift = built.lift(scenario.vehicle.rotor.thrust_max);

@@ -1,8 +1,8 @@
 //! One soft arm as a rigid link on a virtual hinge at the centre line, with Eq. 1 as its spring.
 //!
-//! Eq. 1 gives the tilt at rest on a level bench, the arm's own weight included. Inverted, it is the spring: the
-//! moment that holds the tilt α is L (T_s(α) - m g cos α), T_s the thrust with the static tilt α. Tangent stiffness and
-//! tip mass give the mode: 5 Hz in hover at ρ 6.9 %, K 7.75.
+//! Eq. 1 gives the tilt at rest on a level bench, the arm's weight included. Inverted, it is the spring: the moment
+//! that holds the tilt α is L (T_s(α) - m g cos α), T_s the thrust with the static tilt α. With the tip mass its mode
+//! is 5 Hz in hover at ρ 6.9 %, K 7.75.
 
 use glam::DVec3;
 use sophie_control::wrench::{FORE, SIDE};
@@ -10,7 +10,7 @@ use sophie_control::wrench::{FORE, SIDE};
 use super::GRAVITY;
 use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
 
-/// Tip mass: motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
+/// Motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
 /// A1, A2, B1, B2 of Eq. 1 (paper, Table I).
 pub const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
@@ -55,8 +55,8 @@ pub struct ArmPrint {
 }
 
 impl ArmSpec {
-    /// Arm of `infill` (%), gain `gain_k` on Eq. 1's elastic term and damping ratio `zeta` in hover; compliance factor
-    /// `gain` and tilt `offset` (rad) against the nominal arm.
+    /// Infill in %, gain K, damping ratio `zeta` in hover; compliance factor `gain` and tilt `offset` (rad) against the
+    /// nominal arm.
     #[must_use]
     pub fn new(infill: f64, gain_k: f64, gain: f64, offset: f64, zeta: f64) -> Self {
         Self::of(&ArmPrint {
@@ -101,7 +101,7 @@ impl ArmSpec {
         }
     }
 
-    /// The arm with α0 set so that the nominal one is level at `thrust` N.
+    /// Sets α0 so that the nominal arm is level at `thrust` N.
     #[must_use]
     pub fn level_at(self, thrust: f64) -> Self {
         Self {
@@ -118,8 +118,8 @@ impl ArmSpec {
         self.offset + (self.linear + self.quadratic * curved) * curved + slope * (thrust - curved)
     }
 
-    /// Thrust (N) with the static tilt `tilt` (rad). Linear below 0 N and beyond the knee (outside Eq. 1's
-    /// measurements; assumed).
+    /// Thrust (N) with this static tilt (rad). Linear below 0 N and beyond the knee (outside Eq. 1's measurements;
+    /// assumed).
     #[must_use]
     pub fn static_load(&self, tilt: f64) -> f64 {
         let e = tilt - self.offset;
@@ -207,7 +207,7 @@ impl Arm {
     }
 
     /// Sums the generalised force: thrust (N), external moments (N·m), spring, damping, and if `coupled` the tip's
-    /// weight under `gravity` (m/s², body).
+    /// weight (`gravity` m/s², body).
     pub fn load(&mut self, thrust: f64, moment: f64, gravity: DVec3, coupled: bool) {
         let load = self.spec.static_load(self.tilt);
         let weight = if coupled {

@@ -1,8 +1,8 @@
 //! Equations of motion of the body with four hinged tip masses.
 //!
 //! A tip slides along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
-//! generalised force on its hinge to the body as -Q/L along n. The remaining 6×6 system is solved by 3×3 blocks; the
-//! tilts' accelerations follow one by one.
+//! generalised force on its hinge as -Q/L along n. The remaining 6×6 system is solved by 3×3 blocks, then each tilt's
+//! acceleration.
 
 use glam::{DMat3, DVec3};
 
@@ -75,8 +75,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// `coupled` gives the arms their tip masses, otherwise all mass is the body's. The whole vehicle's centre of mass
-    /// with level arms is the origin.
+    /// `coupled` gives the arms their tip masses, otherwise the body has all mass. The vehicle's centre of mass with
+    /// level arms is the origin.
     #[must_use]
     pub fn new(spec: &BodySpec, coupled: bool) -> Self {
         let whole = DVec3::from_array(spec.inertia);

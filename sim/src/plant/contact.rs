@@ -1,17 +1,16 @@
 //! Contact with ground and pipe.
 //!
 //! Points in body axes (FRD, origin at the centre of mass): spring and damper along the normal, push only; a bristle
-//! along the surface that sticks up to Coulomb's limit. Loads are force and moment on the body (about its centre of
-//! mass, body axes) and moment on the arm's tilt α. Stiffnesses are those of soft printed parts (assumed), stable with
-//! semi-implicit steps of 0.5 ms.
+//! along the surface that sticks up to Coulomb's limit. Loads are force and moment on the body, body axes, and moment
+//! on the arm's tilt α. Stiffnesses are those of soft printed parts (assumed), stable with semi-implicit steps of 0.5
+//! ms.
 
 use glam::{DQuat, DVec2, DVec3};
 use sophie_control::wrench::{FORE, SIDE};
 
 /// Belly pads below the centre of mass, m, body z (assumed).
 pub const BELLY_Z: f64 = 0.04;
-/// Arms' underside at the root, m, body z: 5 mm above the belly pads (assumed), about the pads' indentation beside a
-/// crown.
+/// Arms' underside at the root, m, body z: 5 mm above the belly pads (assumed), about their indentation beside a crown.
 pub const UNDERSIDE_Z: f64 = 0.035;
 /// Arms' neutral line at the hinge, m, body z (assumed).
 pub const HINGE_Z: f64 = 0.02;
@@ -288,8 +287,8 @@ impl ArmSkin {
         }
     }
 
-    /// Body position (m) of the point `s` m along the underside at tilt `alpha` rad, and its derivative by α (m/rad).
-    /// The underside is an arc of constant curvature, level at its root, at α at its end.
+    /// Body position (m) of the point `s` m along the underside at tilt `alpha` rad, and its derivative by α (m/rad),
+    /// on an arc of constant curvature, level at its root, at α at its end.
     pub fn point(&self, alpha: f64, s: f64) -> (DVec3, DVec3) {
         let u = alpha * s / ARM_LENGTH;
         let (y, z, dy, dz) = if u.abs() < 1e-3 {
@@ -317,7 +316,7 @@ impl ArmSkin {
         )
     }
 
-    /// Advances by `dt` s at tilt `alpha` rad and its rate, rad/s.
+    /// Advances by `dt` s at tilt (rad) and rate (rad/s).
     pub fn step(&mut self, dt: f64, alpha: f64, alpha_rate: f64, pose: &Pose, pipe: &Pipe) -> SkinLoad {
         let mut load = SkinLoad::default();
         let mut stations = self.stations;

@@ -1,8 +1,8 @@
-//! The vehicle and its world in `f64`: six degrees of freedom, four soft arms with their tip masses, rotors, battery,
+//! The vehicle and its world in `f64`: six degrees of freedom, four soft arms with tip masses, rotors, battery,
 //! tendons, contacts.
 //!
-//! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 30 Hz. Body axes FRD, world NED. From the
-//! flight stack it uses only constants that describe the same hardware.
+//! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 30 Hz. Body axes FRD, world NED. Shares
+//! with the flight stack only constants of the hardware.
 
 pub mod arm;
 pub mod battery;
@@ -91,7 +91,7 @@ pub fn arm_spec(vehicle: &Vehicle, arm: usize) -> ArmSpec {
 }
 
 impl Plant {
-    /// The vehicle of `scenario` at rest on the ground at the origin, nose to the north.
+    /// At rest on the ground at the origin, nose north.
     #[must_use]
     pub fn new(scenario: &Scenario, rng: Pcg64Mcg) -> Self {
         let (v, w) = (&scenario.vehicle, &scenario.world);
@@ -201,8 +201,7 @@ impl Plant {
         pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
     }
 
-    /// Puts the vehicle at `position` (m, NED) with `velocity` (m/s, NED), keeping attitude and arms, unseen by its
-    /// sensors. For studies.
+    /// Moves the vehicle to `position` (m, NED) with `velocity` (m/s, NED), unseen by its sensors. For studies.
     pub fn place(&mut self, position: DVec3, velocity: DVec3) {
         self.state.pose.position = position;
         self.state.pose.velocity = velocity;

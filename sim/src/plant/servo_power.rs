@@ -1,4 +1,4 @@
-//! Power of the tendon servos from their own battery while they hold.
+//! Power of the tendon servos from their battery while they hold.
 
 /// Charge of the servos' battery, A·s: 2S 1200 mAh (paper).
 pub const CAPACITY: f64 = 1.2 * 3600.0;
@@ -14,7 +14,7 @@ pub struct ServoCurrent {
     pub idle: f64,
 }
 
-/// MG996R at 6 V (datasheet: 11 kgcm), the only servo whose currents are known.
+/// At 6 V (datasheet: 11 kgcm), the only servo with known currents.
 pub const MG996R: ServoCurrent = ServoCurrent {
     stall: 11.0 * 0.098_066_5,
     at_stall: 2.5,

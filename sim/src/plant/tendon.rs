@@ -1,7 +1,7 @@
 //! Servo, reel and tendon of one arm.
 //!
-//! A hobby servo winds a nylon thread along the arm's underside. The thread only pulls, and is slack until the reel
-//! has wound the length that the tilt frees. Numbers are the vehicle's; the flight stack's are parameters.
+//! The servo winds a nylon thread along the arm's underside, which only pulls, and is slack until the reel has wound
+//! the length that the tilt frees. Numbers are the vehicle's; the flight stack's are parameters.
 
 use std::f64::consts::PI;
 
@@ -132,8 +132,7 @@ impl Tendon {
     }
 
     /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) at tilt `alpha` rad; returns the moment on the tilt,
-    /// N·m (never positive: the tendon pulls the tip down). Without pulses gear friction holds 35 % of the stall torque
-    /// and slips beyond.
+    /// N·m (never positive). Without pulses gear friction holds 35 % of the stall torque and slips beyond.
     pub fn step(&mut self, dt: f64, pulse_us: f64, alpha: f64) -> f64 {
         self.to_next_frame -= dt;
         if self.to_next_frame <= 0.0 {

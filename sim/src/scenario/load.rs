@@ -15,8 +15,8 @@ use super::read::Source;
 /// Refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Command line settings, which override the file's; values are within the ranges of [`keys`](super::keys). The stack's
-/// parameters follow them like the file's vehicle, but for the file's `[params]`.
+/// Command line settings, within the ranges of [`keys`](super::keys), override the file's vehicle; the stack's
+/// parameters follow, but for the file's `[params]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Infill, %.

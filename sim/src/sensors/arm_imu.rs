@@ -46,8 +46,8 @@ impl ArmImu {
         }
     }
 
-    /// One fusion step at tilt `tilt` rad, body at `attitude` under `specific_force` (m/s², body); returns the delayed
-    /// gravity vector, m/s², arm axes.
+    /// A fusion step at tilt `tilt` rad, body at `attitude` under `specific_force` (m/s², body); returns delayed
+    /// gravity, m/s², arm axes.
     pub fn sample(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3) -> Vec3 {
         let down = attitude.conjugate() * DVec3::new(0.0, 0.0, 9.806_65);
         let motion = -specific_force - down;

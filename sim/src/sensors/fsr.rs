@@ -28,9 +28,8 @@ const DIVIDER: (f64, f64) = (10_000.0, 0.01);
 /// RMS, counts.
 const ADC_NOISE: f64 = 1.2;
 
-/// Largest relative error of the pressure in the vehicle: limits of gain and divider, hysteresis, three times the
-/// creep's RMS, and 1 % by the exponent at the grip pressure. Their sum is 9.9 %, 94 Pa at 950 Pa; the paper's 50 Pa
-/// may be typical or largest.
+/// Largest relative error of the pressure: limits of gain and divider, hysteresis, three times the creep's RMS, and 1 %
+/// by the exponent at the grip pressure. Sum 9.9 %, 94 Pa at 950 Pa; the paper's 50 Pa may be typical or largest.
 pub const LARGEST_ERROR: f64 = PART_ERROR + DIVIDER.1 + HYSTERESIS + 3.0 * CREEP.0 + 0.01;
 
 /// A fault of a sensor.

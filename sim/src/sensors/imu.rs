@@ -75,8 +75,8 @@ impl Imu {
             }))
     }
 
-    /// A sample of body rate (rad/s) and specific force (m/s²) with rotors at `rotors` rad/s, a sample late as from the
-    /// part's filter.
+    /// Body rate (rad/s) and specific force (m/s²) with rotors at `rotors` rad/s, a sample late as from the part's
+    /// filter.
     pub fn sample(&mut self, rate: DVec3, specific_force: DVec3, rotors: &[f64; 4]) -> ImuReading {
         let (mut shake_gyro, mut shake_accel) = (DVec3::ZERO, DVec3::ZERO);
         for (i, (phase, speed)) in self.phase.iter_mut().zip(rotors).enumerate() {

@@ -4,9 +4,8 @@
 //!
 //! w = C + S + B + Σ ceil((w + J_k) / T_k) C_k over every k that may go first
 //!
-//! Tasks of one level do not preempt each other and have no order: each may go first and counts as more urgent,
-//! which also bounds the wait for a running one. S is the task's wait for a bus, B the time for which lower levels mask
-//! interrupts.
+//! Tasks of one level do not preempt each other and have no order: each counts as more urgent, which also bounds the
+//! wait for a running one. S is the task's wait for a bus, B the time for which lower levels mask interrupts.
 
 /// A task or an interrupt; times in µs.
 #[derive(Clone, Debug, PartialEq)]

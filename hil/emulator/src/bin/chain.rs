@@ -1,5 +1,5 @@
-//! `chain BOARD ELF [STEPS]`: flies the image to a hover on the emulated board and counts instructions of STEPS control
-//! steps, by part and function (`cargo xtask chain BOARD`).
+//! `chain BOARD ELF [STEPS]`: hovers the image on the emulated board and counts instructions of STEPS control steps, by
+//! part and function (`cargo xtask chain BOARD`).
 //!
 //! Exit status: 0 when counted, 1 when the flight ended early, 2 for bad input.
 

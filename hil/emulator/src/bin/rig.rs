@@ -1,5 +1,5 @@
-//! `rig ELF [NAME...]`: runs a board's tests (`hil/rig`), or those with a NAME in theirs, on the emulated board with
-//! every jumper and part (`cargo xtask rig matek-h743 --emulated`).
+//! `rig ELF [NAME...]`: runs a board's tests (`hil/rig`), or those with NAME in theirs, on the emulated board (`cargo
+//! xtask rig matek-h743 --emulated`).
 //!
 //! Exit status: 0 when every test passed, 1 when not, 2 for bad input.
 

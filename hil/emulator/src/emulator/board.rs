@@ -81,7 +81,7 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// Makes the chips of an arm bus stretch the clock by `us` µs after each byte; false if the emulator cannot.
+    /// Stretches an arm bus's clock by `us` µs after each byte; false if the emulator cannot.
     pub fn hold_clock(&mut self, bus: usize, us: u32) -> bool {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
@@ -155,7 +155,7 @@ impl<C: Chip> Wired<C> {
             .map(|pin| self.chip.function(now, pin) == Some(motors.function))
     }
 
-    /// High time and period of each servo's pulse, ns; `None` without pulses.
+    /// High time and period, ns, if any.
     pub fn servo_pulses(&mut self, now: VirtualNanos) -> [Option<(u64, u64)>; 4] {
         self.pads.servos.map(|servo| {
             let driven = self.chip.function(now, servo.pin) == Some(servo.function);
@@ -168,12 +168,12 @@ impl<C: Chip> Wired<C> {
         self.pads.signals.map(|pin| self.chip.is_high(now, pin))
     }
 
-    /// The first words that ArduPilot leaves in this board's parameter sectors.
+    /// First words of the parameter sectors as ArduPilot leaves them.
     pub fn foreign(&self) -> &'static [u64] {
         self.pads.foreign
     }
 
-    /// Pins with a wrong function, and the receiver's port if not set to `receiver`.
+    /// Pins with a wrong function, and a receiver port other than `receiver`.
     pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let port = self.chip.serial_setup(self.pads.receiver);

@@ -1,5 +1,5 @@
-//! The bench's interface to a processor. The emulator has a type per part for the same interfaces;
-//! [`same_on_this_part!`] implements them for each.
+//! The bench's interface to a processor. The emulator has a type per part; [`same_on_this_part!`] implements the common
+//! methods.
 
 use std::fmt::Debug;
 
@@ -29,7 +29,7 @@ pub enum Clock {
     Pll,
 }
 
-/// Crystal ready bit of the clock control register (RM0090 §7.3.1, RM0433 §8.7.2).
+/// In the clock control register (RM0090 §7.3.1, RM0433 §8.7.2).
 pub const CRYSTAL_READY: u64 = 1 << 17;
 /// Core PLL locked bit, in the same register.
 pub const PLL_LOCKED: u64 = 1 << 25;

@@ -3,7 +3,7 @@
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::time::{EventId, VirtualNanos};
 
-/// Delays ends of bytes by the time that a chip stretches the clock.
+/// Delays ends of bytes while a chip stretches the clock.
 #[derive(Debug)]
 pub struct ClockStretch<D> {
     pub inner: D,

@@ -1,6 +1,5 @@
 //! Counts the control path's instructions: from data-ready to the end of the sensor's transfer, and from there to the
-//! start of the motor frame. Every instruction is watched meanwhile and known by its address, independent of the
-//! emulator's code generator.
+//! motor frame. Every instruction is watched by address, independent of the emulator's code generator.
 
 use rigless::emulator::{Access, AccessKind, Hit, Host, Watch};
 
@@ -72,7 +71,7 @@ impl Counter {
         }))
     }
 
-    /// Starts watching at millisecond `ms`, and stops after the wanted steps.
+    /// Starts at millisecond `ms`, stops after the wanted steps.
     pub fn on_millisecond(&mut self, ms: u64, host: &mut dyn Host) {
         let wanted = ms >= self.from_ms && self.counted.steps.len() < self.wanted;
         if wanted == self.watching {

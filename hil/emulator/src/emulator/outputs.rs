@@ -7,7 +7,7 @@ use super::board::Wired;
 use super::chip::Chip;
 use crate::wires::Output;
 
-/// The outputs, checked at each write to a port's register.
+/// Checked at each write to a port's register.
 #[derive(Debug, Default)]
 pub struct Outputs {
     /// Number of starts, with power-on, and time of the last, ns.

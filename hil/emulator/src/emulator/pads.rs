@@ -1,8 +1,8 @@
-//! Pads of a board: which processor pin is wired to what.
+//! Which processor pin is wired to what.
 
 use std::fmt::{self, Display, Formatter};
 
-/// A processor pin: port (0 is A) and number.
+/// Port (0 is A) and number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct At(pub usize, pub u8);
 
@@ -12,7 +12,7 @@ impl Display for At {
     }
 }
 
-/// Four pins of one timer and their alternate function.
+/// Four pins of one timer.
 #[derive(Clone, Copy, Debug)]
 pub struct TimerPins {
     /// Pins of channels 1 to 4.
@@ -53,7 +53,7 @@ pub struct AnalogPad {
     pub pin: At,
     /// ADC channel.
     pub channel: u8,
-    /// Voltage at the pad over voltage at the pin: 1 without a divider.
+    /// Voltage at the pad over the pin's: 1 without divider.
     pub divider: f64,
 }
 
@@ -63,7 +63,7 @@ impl AnalogPad {
         Self::divided(pin, channel, 1.0)
     }
 
-    /// A pad with a divider of 1:`divider` before the pin.
+    /// With a divider of 1:`divider` before the pin.
     pub const fn divided(pin: At, channel: u8, divider: f64) -> Self {
         Self {
             pin,
@@ -72,18 +72,18 @@ impl AnalogPad {
         }
     }
 
-    /// Whole millivolts at the pin (the emulator's unit, 1.2 counts of 12 bits) for `volts` at the pad.
+    /// Millivolts at the pin (the emulator's unit, 1.2 counts of 12 bits) for `volts` at the pad.
     pub fn millivolts(&self, volts: f64) -> u32 {
         (volts / self.divider * 1e3).round().max(0.0) as u32
     }
 }
 
-/// Connections of a board's pads as in `docs/wiring.md`. Interfaces have the emulator's numbers.
+/// Pads as in `docs/wiring.md`, interfaces numbered as in the emulator.
 #[derive(Debug)]
 pub struct Pads {
     /// Name of the board.
     pub name: &'static str,
-    /// First words of the parameter sectors as ArduPilot leaves them (AP_FlashStorage: state and signature).
+    /// First words of the parameter sectors after ArduPilot (AP_FlashStorage: state and signature).
     pub foreign: &'static [u64],
     /// Name of the emulator's chip.
     pub part: &'static str,
@@ -91,23 +91,23 @@ pub struct Pads {
     pub crystal: u64,
     /// SPI interface of the inertial sensor.
     pub imu: usize,
-    /// Port, as the emulator names it, and pin of the sensor's chip select.
+    /// Emulator's port name and pin of its chip select.
     pub imu_select: (&'static str, u8),
     /// Data-ready pin of the sensor.
     pub imu_ready: At,
-    /// Maps body axes (forward, right, down) to the sensor's axes.
+    /// From body axes (forward, right, down) to the sensor's.
     pub imu_axes: fn([f64; 3]) -> [f64; 3],
-    /// Bus and address of the arms' sensors 1 to 4.
+    /// Bus and address, arms 1 to 4.
     pub arms: [(usize, u8); 4],
     /// Pads of pressure 1 to 4.
     pub pressure: [AnalogPad; 4],
     /// Pad of the battery voltage.
     pub battery: AnalogPad,
-    /// Pin of the battery's current sensor, scaled in amperes per volt.
+    /// Current sensor, scaled in amperes per volt.
     pub current: AnalogPad,
     /// Serial port of the receiver.
     pub receiver: usize,
-    /// Output to the receiver and its alternate function; unused with SBUS.
+    /// With its alternate function; unused with SBUS.
     pub receiver_out: (At, u8),
     /// Serial port of the console.
     pub console: usize,
@@ -115,18 +115,16 @@ pub struct Pads {
     pub motors: TimerPins,
     /// Pins of servos 1 to 4.
     pub servos: [ServoPin; 4],
-    /// Bus pins with their alternate functions. The emulator's interfaces work without pins, so a flight would not show
-    /// a missing one.
+    /// With alternate functions. The emulator's interfaces work without pins: a flight would not show a missing one.
     pub buses: &'static [(At, u8)],
-    /// Lines that idle high: I2C by pull-ups, the receiver's line by the receiver.
+    /// Idle high: I2C by pull-ups, the receiver's line by the receiver.
     pub resting_high: &'static [At],
     /// State light, fault light, buzzer.
     pub signals: [At; 3],
 }
 
 impl Pads {
-    /// ADC channels and millivolts at their pins, for volts at the pads of pressure 1 to 4, battery voltage (V) and
-    /// current (A).
+    /// ADC channels and millivolts for volts at the pads of pressure 1 to 4, battery voltage (V) and current (A).
     pub fn analog(&self, values: [f64; 6]) -> impl Iterator<Item = (u8, u32)> {
         let inputs = self.pressure.into_iter().chain([self.battery, self.current]);
         inputs
@@ -134,7 +132,7 @@ impl Pads {
             .map(|(pad, volts)| (pad.channel, pad.millivolts(volts)))
     }
 
-    /// Pins that need an alternate function, with its number; `answers`: the receiver's output is used.
+    /// Pins with their alternate functions; `answers`: the receiver's output is used.
     pub fn functions(&self, answers: bool) -> impl Iterator<Item = (At, u8)> {
         let motors = self.motors.pins.map(|pin| (pin, self.motors.function));
         let servos = self.servos.map(|servo| (servo.pin, servo.function));

@@ -1,5 +1,4 @@
-//! Settings of a serial port, read from its registers: the emulator carries words at any rate, without levels or
-//! polarity.
+//! Settings of a serial port from its registers: the emulator carries words at any rate and polarity.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -40,8 +39,8 @@ impl Setup {
         }
     }
 
-    /// Settings in `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz; both parts have the same fields (RM0090
-    /// §30.6, RM0433 §48.8), but the F4 lacks bit 16 of `CR2`.
+    /// From `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz. The parts share the fields (RM0090 §30.6, RM0433
+    /// §48.8), but the F4 lacks bit 16 of `CR2`.
     pub fn in_registers(clock: f64, brr: u64, cr1: u64, cr2: u64) -> Self {
         let oversampled_by_8 = cr1 >> 15 & 1 == 1;
         Self {

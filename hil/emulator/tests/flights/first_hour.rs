@@ -1,4 +1,4 @@
-//! The commands of the first-hour page, typed at the emulated board's console and their answers compared.
+//! Types the commands of the first-hour page at the emulated board's console and compares the answers.
 
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};

@@ -1,8 +1,7 @@
-//! Flights of the firmware images on the emulated boards.
+//! Flights of the firmware images on the emulated boards. What they share is tested on one; flights of the F405 take
+//! half the time.
 //!
-//! What the boards share is tested on one of them; flights of the F405 take half the time.
-//!
-//! The images are named by `SOPHIE_ELF` (matek-h743) and `SOPHIE_ELF_F405`, or built.
+//! Images are named by `SOPHIE_ELF` (matek-h743) and `SOPHIE_ELF_F405`, or built.
 
 #![allow(missing_docs)]
 

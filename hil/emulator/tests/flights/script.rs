@@ -1,7 +1,5 @@
-//! Console sessions of a page: typed commands and their answers.
-//!
-//! They stand in blocks marked `console`. A line that begins with `> ` is typed, the lines after it are the answer, in
-//! which `…` stands for any text within a line, and alone for any lines.
+//! Console sessions of a page: blocks marked `console`, in which a line after `> ` is typed and the lines below are the
+//! answer. `…` stands for any text within a line, and alone for any lines.
 
 /// A line at which any key is pressed; the command may print more before it than the page shows.
 const ANY_KEY: &str = "(any key)";
@@ -48,8 +46,8 @@ impl Typed {
             .is_some_and(|line| line.ends_with("restarting"))
     }
 
-    /// Keys of the answer in order: the one after a question, Enter where asked for, any key where one ends the
-    /// command, and [`ANY_KEY`].
+    /// Keys in order: the one after a question, Enter where asked for, any key where one ends the command or at
+    /// [`ANY_KEY`].
     pub fn keys(&self) -> impl Iterator<Item = Key<'_>> {
         let before = std::iter::once("").chain(self.answer.iter().map(String::as_str));
         before

@@ -1,7 +1,7 @@
 //! Logs how a Cortex-M core runs exceptions, floats and the control laws.
 //!
-//! The same ELF runs on QEMU and on the emulated core: equal logs verify that core. The host runs only the laws and
-//! prints the same lines: host tests of the laws then hold for the chip.
+//! Equal logs of one ELF on QEMU and on the emulated core verify that core. The host runs the laws alone: with equal
+//! lines, host tests hold for the chip.
 //!
 //! A line is `<group>: <result>`; long results are hashed, short ones spelled out to locate a difference.
 

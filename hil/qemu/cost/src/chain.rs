@@ -1,6 +1,5 @@
-//! The flight step from raw readings to motor commands: its stages, its laws, and the whole. Each is a function that is
-//! not inlined, with inputs and outputs in memory. The stages are those of [`FlightChain`]; laws run on their own
-//! copies.
+//! The flight step's stages, its laws, and the whole: functions that are not inlined, with inputs and outputs in
+//! memory. The stages are those of [`FlightChain`]; laws run on their own copies.
 
 use core::hint::black_box;
 
@@ -112,7 +111,7 @@ pub fn aim(l: &mut Laws, i: &Inputs) {
     l.attitude.aim(i.sticks);
 }
 
-/// Rates from the attitude, and the logged target. With yaw given up, the heading follows.
+/// Rates, and the logged target. With yaw given up, the heading follows.
 #[inline(never)]
 pub fn attitude(l: &mut Laws, _: &Inputs) {
     let a = &l.flow.attitude;

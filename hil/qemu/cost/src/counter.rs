@@ -28,8 +28,8 @@ impl Tally {
     }
 }
 
-/// Instructions of one run of `work`, with those of the call and of reading the counter. Not inlined and called with
-/// several functions: all are called alike.
+/// Instructions of `work`, the call and reading the counter. Not inlined and called with several functions: all are
+/// called alike.
 #[inline(never)]
 pub fn gross<S, I>(work: fn(&mut S, &I), state: &mut S, input: &I) -> u32 {
     let before = clock::now();
@@ -73,7 +73,7 @@ mod clock {
         unsafe { VALUE.read_volatile() }
     }
 
-    /// Executes 2 `rounds` instructions, `rounds` > 0, and one to load that number.
+    /// Executes 2 `rounds` instructions (`rounds` > 0) and one to load it.
     #[inline(never)]
     pub fn known_loop(_: &mut (), rounds: &u32) {
         // SAFETY: counts its own register down to zero.

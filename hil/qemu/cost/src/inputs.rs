@@ -1,7 +1,6 @@
-//! Inputs of the control path that take every branch, equal on every machine.
-//!
-//! Half-second stretches: hover, gusts, hard turns, saturated rotors, low thrust with yaw given up, a sagging
-//! battery. Rates and sticks are held for a while, with noise. A few readings are NaN.
+//! Inputs of the control path that take every branch, equal on every machine: half-second stretches of hover, gusts,
+//! hard turns, saturated rotors, low thrust with yaw given up, a sagging battery. Rates and sticks are held for a
+//! while, with noise. A few readings are NaN.
 
 use sophie_conformance::fold::Noise;
 use sophie_control::attitude::AttitudeSetpoint;

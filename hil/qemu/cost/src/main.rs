@@ -3,8 +3,8 @@
 //! Under QEMU with `-icount shift=7` an instruction lasts 128 ns, 3.2 ticks of the board's timer: two readings give
 //! their number exactly, without the cycles of caches, flash or a division (fourteen).
 //!
-//! Every stage is a call on the output of the one before; then the whole step is counted on the same inputs and must
-//! give the same motor commands. The host prints only those, for comparison.
+//! Every stage is called on the previous output; the whole step, counted on the same inputs, must give the same motor
+//! commands. The host prints only those.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

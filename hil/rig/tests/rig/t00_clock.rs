@@ -1,5 +1,5 @@
-//! Core clock against time base, which divide one crystal separately, and time base against itself. A wrong crystal
-//! shows only against the inertial sensor's (`t20_imu`) and the watchdog's oscillator (`t70_watchdog`).
+//! Core clock against time base, divided from one crystal, and time base against itself. A wrong crystal shows only
+//! against the inertial sensor (`t20_imu`) and the watchdog (`t70_watchdog`).
 
 #[embedded_test::tests]
 mod tests {

@@ -1,5 +1,5 @@
-//! The watchdog resets an unfed board within the supervisor's limits, and retained memory survives. Its clock has no
-//! crystal: a factor of two in the board's clocks would show.
+//! The watchdog resets an unfed board in time, and retained memory survives. Its clock has no crystal: a factor of two
+//! in the board's clocks would show.
 
 use core::ops::RangeInclusive;
 

@@ -56,8 +56,8 @@ impl Laws {
         }
     }
 
-    /// Moment over rate about `axis` at `angle` rad a step, N·m·s/rad: F (C_r + C_s p T / (1 - z⁻¹)), the angle being
-    /// the sum of the rates.
+    /// Moment over rate about `axis` at `angle` rad a step, N·m·s/rad: F (C_r + C_s p T / (1 - z⁻¹)), since the angle
+    /// sums the rates.
     #[must_use]
     pub fn at(&self, axis: usize, angle: f64) -> Complex {
         let law = &self.axes[axis];

@@ -7,21 +7,21 @@ use std::f64::consts::{PI, TAU};
 /// Margins of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
-    /// Factor by which the gain may rise or fall before the loop oscillates, the nearer of both; below 1 for a loop
-    /// that oscillates: the share of its gain at which it would not.
+    /// Factor by which the gain may rise or fall, the nearer of both; below 1 for an oscillating loop: the share of its
+    /// gain at which it is stable.
     pub gain: f64,
-    /// Phase that may be lost before it oscillates, rad; negative if it does.
+    /// Loss of phase at which it oscillates, rad; negative if it does.
     pub phase: f64,
     /// Highest frequency at which the gain is 1, rad/s (bandwidth); 0 if there is none.
     pub crossover: f64,
 }
 
 impl Margins {
-    /// Margins of the loop with the gains `curve` over rising frequencies (rad/s).
+    /// Margins from the gains `curve` over rising frequencies (rad/s).
     ///
-    /// The closed loop divides by 1 + L. With a factor 1 - z⁻¹ for each integrator of L all poles of F = (1 + L)(1 -
-    /// z⁻¹)ⁿ are inside the unit circle, so F turns about 0 as often as the closed loop has poles outside: by π for
-    /// each along half of the circle, from a real number to another. A loop is stable if F does not turn.
+    /// The closed loop divides by 1 + L. With a factor 1 - z⁻¹ for each of L's n integrators all poles of F = (1 + L)(1
+    /// - z⁻¹)ⁿ are inside the unit circle, so along half of it, from a real number to another, F turns about 0 by π for
+    /// each pole of the closed loop outside. A loop is stable if F does not turn.
     #[must_use]
     pub fn of(curve: &[(f64, Complex)]) -> Self {
         let stable = turned(curve).abs() < PI;

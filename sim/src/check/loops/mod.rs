@@ -1,9 +1,8 @@
-//! The control loops in hover, identified from the code that flies, without transfer functions.
+//! The control loops in hover, identified from the code that flies.
 //!
 //! A loop is opened between control and mixer. `vehicle` has the response of body rates to a moment (allocation, thrust
-//! curve, plant with motors and tip masses), `laws` that of the moment to a body rate (filter, attitude and rate loop).
-//! Each is identified by an impulse of one step of 1 ms; their product is the loop's gain L(e^{jωT}) at the frequency
-//! ω, from which [`margins`] are read.
+//! curve, plant), `laws` that of the moment to a body rate (filter, attitude and rate loop). Each is identified by an
+//! impulse of one step of 1 ms; their product is the loop's gain L(e^{jωT}), which gives the [`margins`].
 
 mod laws;
 mod margins;

@@ -11,14 +11,14 @@ pub fn quotient(a: Complex, b: Complex) -> Complex {
     a.rotate(Complex::new(b.x, -b.y)) / b.length_squared()
 }
 
-/// 1 - z⁻¹ on the unit circle at `angle` (rad a step): the reciprocal of a sum over all steps.
+/// 1 - z⁻¹ at `angle` rad a step: the reciprocal of a sum over all steps.
 #[must_use]
 pub fn difference(angle: f64) -> Complex {
     Complex::new(1.0, 0.0) - Complex::from_angle(-angle)
 }
 
-/// A linear response, stored as the differences of its answer to an impulse: where the answer settles at a value other
-/// than 0 (turn rate after a push, integrals), its differences still end.
+/// A linear response, stored as differences of its impulse answer, which end even where the answer settles at a value
+/// other than 0 (turn rate after a push, integrals).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     steps: Vec<f64>,
@@ -28,7 +28,7 @@ pub struct Response {
 const TAIL: f64 = 1e-6;
 
 impl Response {
-    /// From the `answer` (one value a step) to an impulse of 1 in the first step.
+    /// `answer`: one value a step after an impulse of 1 in the first.
     #[must_use]
     pub fn of(answer: &[f64]) -> Self {
         let mut last = 0.0;

@@ -57,7 +57,7 @@ pub struct Hovering {
 }
 
 impl Hovering {
-    /// The vehicle of `scenario`, held level with gentle gains until arms and rotors have settled.
+    /// Held level with gentle gains until arms and rotors have settled.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let calm = Scenario {
@@ -155,8 +155,8 @@ impl Hovering {
         self.plant.place(PLACE, DVec3::ZERO);
     }
 
-    /// Body rate about `axis` (0 to 2) after 1 N·m in one step, rad/(s·N·m): half the difference of two opposite
-    /// pushes, which cancels their common drift.
+    /// Body rate about `axis` (0 to 2) after 1 N·m in one step, rad/(s·N·m): half the difference of opposite pushes,
+    /// which cancels common drift.
     #[must_use]
     pub fn response(&self, axis: usize) -> Response {
         let push = PUSH[axis] * self.push;

@@ -28,7 +28,7 @@ mod reg {
     pub const SYS_TRIGGER: u8 = 0x3F;
     pub const AXIS_MAP_CONFIG: u8 = 0x41;
     pub const AXIS_MAP_SIGN: u8 = 0x42;
-    /// Registers writable only in configuration mode, except mode and trigger.
+    /// Writable only in configuration mode, except mode and trigger.
     pub const SETTINGS: core::ops::RangeInclusive<u8> = 0x3B..=0x6A;
 }
 

@@ -1,6 +1,5 @@
-//! The emulator's I2C interface, without acknowledge for the last byte of a DMA read. On the part the DMA controller
-//! signals that byte (RM0090 §27.3.7, bit LAST); without it the emulator reads on, and the next transfer finds one byte
-//! too many.
+//! The emulator's I2C interface, without acknowledge for the last byte of a DMA read. The part's DMA controller signals
+//! that byte (RM0090 §27.3.7, bit LAST); otherwise the emulator reads one byte too many.
 
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::soc::Width;

@@ -1,6 +1,6 @@
 //! Checks an I2C's times against fast mode: the emulator's chips answer at any.
 
-/// Times of a `TIMINGR` at a kernel clock of `hz` that breach fast mode (UM10204 table 10, by RM0433 §47.4.5).
+/// Times of a `TIMINGR` at `hz` that breach fast mode (UM10204 table 10, by RM0433 §47.4.5).
 pub fn wrong(timing: u64, hz: f64) -> Option<String> {
     let field = |shift: u32, bits: u32| (timing >> shift & ((1 << bits) - 1)) as f64;
     let cycle = 1e9 / hz;

@@ -14,7 +14,7 @@ const INPUTS: [[f64; 2]; 4] = [[1.0, 2.0], [2.0, 4.0], [4.0, 8.0], [8.0, 16.0]];
 const WIDE: [f64; 2] = [192.0, 836.0];
 const MEDIUM: [f64; 2] = [150.0, 420.0];
 
-/// The first enabled PLL outside its range, with a source of `hz`.
+/// The first enabled PLL outside its range, sourced with `hz`.
 pub fn wrong(settings: &Settings, hz: f64) -> Option<String> {
     (0..3).find_map(|nth| one(settings, nth, hz * 1e-6).map(|what| format!("PLL{}: {what}", nth + 1)))
 }

@@ -1,5 +1,5 @@
-//! Ends of runs: stack overflow, unmapped address, a fault during a fault's report. Uses the flight handlers
-//! (`sophie-fault`), which continue with the next line instead of a restart.
+//! Ends of runs: stack overflow, unmapped address, a fault during a fault's report. The flight handlers
+//! (`sophie-fault`) continue with the next line instead of a restart.
 
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments, Write};
@@ -120,7 +120,7 @@ pub fn go_on() -> ! {
     }
 }
 
-/// Prints a line per scenario, then calls `done`; cannot return, as the handler overwrites the top of the stack.
+/// Prints a line per scenario, then calls `done`; cannot return: the handler overwrites the top of the stack.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) -> ! {
     let room = black_box([0u8; HANDLER]);
     try_all(print, done);
