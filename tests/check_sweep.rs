@@ -92,7 +92,6 @@ fn the_check_and_the_flights_agree_where_it_matters() {
     println!("                flew  failed");
     println!("check passes   {pass_flew:5} {pass_failed:7}");
     println!("check refuses  {refused_flew:5} {refused_failed:7}");
-    // Vehicles that pass but fail to fly are what the check must prevent.
     assert!(
         10 * pass_failed <= pass_flew,
         "{pass_failed} of {} fail",

@@ -223,7 +223,7 @@ fn below(path: &Path) -> Vec<PathBuf> {
 #[test]
 fn an_interrupted_run_leaves_nothing_behind() {
     let temp = Temp::new("interrupt");
-    // Most of an hour on the pipe, outlasting the signal on a busy machine too.
+    // Outlasts the signal on a busy machine.
     let long = b"steps = [{ do = 'arm' }, { do = 'take-off' }, { do = 'fly-to-pipe' }, { do = 'touch' }, { do = 'clamp' }, \
                  { do = 'perch' }, { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }, \
                  { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }]\ntime_limit_s = 3000\n";
@@ -242,7 +242,7 @@ fn an_interrupted_run_leaves_nothing_behind() {
         while first.trim().is_empty() {
             assert!(lines.read_line(&mut first).unwrap() > 0, "{args:?} said nothing");
         }
-        // SIGTERM, as background jobs of a script ignore Ctrl-C's SIGINT.
+        // Background jobs of a script ignore SIGINT.
         let status = Command::new("kill")
             .args(["-TERM", &child.id().to_string()])
             .status()
@@ -340,7 +340,6 @@ fn a_reader_that_leaves_does_not_stop_the_flight() {
     BufReader::new(child.stdout.take().unwrap())
         .read_line(&mut first)
         .unwrap();
-    // The reader is dropped: further writes meet a closed pipe.
     let output = child.wait_with_output().unwrap();
     assert!(first.starts_with("hop: "), "{first}");
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));

@@ -179,7 +179,7 @@ fn signs(r: &Value) {
             "{c} {closed} {plant}"
         );
     }
-    // The printed matrix and Algorithm 1's senses are singular, the text's are not.
+    // Printed matrix and Algorithm 1's senses are singular, the text's are not.
     let ranks = column(r, "mixer", "Mixer matrices", 2);
     let ranks: Vec<f64> = ranks.iter().filter_map(Value::as_f64).collect();
     assert_eq!(ranks, [3.0, 3.0, 4.0, 4.0, 4.0, 3.0]);
@@ -207,7 +207,6 @@ fn signs(r: &Value) {
             && (bent("fitted arms", 10) / 16.8 - 1.0).abs() < 0.1
     );
     assert!(bent("arms with tip mass", 8) < bent("fitted arms", 8));
-    // Table IV: time and force rise together.
     assert!(here(r, "table4", "correlation of t and U") > 0.8);
     // Eqs. 5 to 7: derived far better than printed (heading 0, sideways).
     let (printed, derived) = (column(r, "eq5", "Error", 3), column(r, "eq5", "Error", 4));
@@ -217,7 +216,6 @@ fn signs(r: &Value) {
     assert!(honest(6) > honest(8) && honest(8) > honest(10) && honest(6) < 0.6 * 15.8);
     let held = |infill: u32| here(r, "table5", &format!("inspection time, four arms, ρ {infill} %"));
     assert!(held(4) > held(6) && held(6) > held(8) && held(8) > held(10));
-    // Section V-C: the learnt bias grows with wear.
     let bias: Vec<f64> = column(r, "fatigue", "What the comparison", 2)
         .iter()
         .map(|v| v.as_f64().unwrap())

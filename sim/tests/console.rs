@@ -355,7 +355,6 @@ fn nothing_is_stored_or_restarted_while_rotors_may_turn() {
             assert_eq!(bench.chip.restarts.get(), 0, "{mode:?}");
         }
     }
-    // Armed before the commander received the request.
     let (answer, bench, storage) = saves_in(Mode::Disarmed, Mode::Armed);
     assert_eq!(answer, "save\nnot saved while ARMED: disarm first\n> ");
     assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
@@ -505,7 +504,6 @@ fn a_line_of_noise_does_nothing_and_starves_nobody() {
     bench.run(12_000);
     assert_eq!(turns.get(), 10_000);
     assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
-    // The noise may have ended within a line.
     let _ = bench.types("\r");
     assert_eq!(bench.types("changes\r"), "changes\nno changes\n> ");
 }

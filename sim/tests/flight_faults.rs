@@ -16,7 +16,6 @@ use vehicle::Vehicle;
 fn a_lost_sensor_stops_the_motors(answer: Answer) {
     let mut v = Vehicle::flying();
     v.imu.0.answer.set(answer);
-    // The present sample still arrives; 10 ms later the motors stop.
     let stopped = v.until(30, Vehicle::motors_stand);
     assert!((5..=12).contains(&stopped), "{answer:?}: {stopped} ms");
     assert!(v.links.attitude.fresh().is_none());

@@ -132,7 +132,6 @@ fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
         }
         let rolled = rig.plant.euler()[0].to_degrees();
         assert!((least..most).contains(&rolled), "{setpoint:?}: {rolled}");
-        // The vehicle reverses at once and hardly overshoots.
         let (mut farthest, mut swung) = (rolled, rolled);
         for _ in 0..3000 {
             rig.step(level);

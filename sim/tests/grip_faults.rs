@@ -42,7 +42,6 @@ struct Arm {
 
 impl Arm {
     fn step(&mut self, pulse: f32, reel: &Reel, p: &Params, dt: f32) {
-        // Without a pulse no pull.
         let angle = if pulse > 0.0 {
             reel.angle_of(pulse).max(0.0)
         } else {
@@ -294,7 +293,6 @@ fn a_shorted_sensor_freezes_its_arm_and_no_other() {
     b.run(3.0);
     assert!((b.forces()[2] - before).abs() < 1.0, "{before} {:?}", b.forces());
     assert!(!b.grip().proven && b.state(0) == ArmState::Holding);
-    // Sound again, but latched until release.
     b.arms[2].pin = None;
     b.run(1.0);
     assert_eq!(b.state(2), ArmState::Faulty);
@@ -380,7 +378,6 @@ fn an_arm_whose_pressure_does_not_rise_any_more_stops_and_says_so() {
     let grip = b.grip();
     assert_eq!(b.state(0), ArmState::Faulty, "{grip:?}");
     assert_eq!(grip.arms[0].fault, Some(GripFault::Ceiling));
-    // Little more than a sound arm: the others hold.
     assert!(grip.arms[0].force < grip.arms[1].force + 30.0, "{grip:?}");
     assert!((1..4).all(|arm| b.state(arm) == ArmState::Holding) && !grip.proven);
 }

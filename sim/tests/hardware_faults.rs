@@ -143,7 +143,6 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
             }
         }
         assert_eq!((changes, before), (1, true), "{error:?}");
-        // Every gap was shorter than the limit: the flight continues.
         assert!(v.motors_run() && v.mode() == Mode::Flight && v.reason().is_none());
         let healed = v.until(300, |v| !holds(v, reason));
         assert!((70..=100).contains(&healed), "{error:?}: {healed} ms");
@@ -228,7 +227,6 @@ fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
         );
         assert!(!tries_to_arm(&mut v), "{answer:?}");
         if answer == Answer::Hangs {
-            // Permanent: watchdog reset.
             assert_eq!(v.fed_over(500), 0);
             continue;
         }

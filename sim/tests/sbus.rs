@@ -147,7 +147,6 @@ fn noise_gives_no_sticks_and_the_pilot_is_heard_behind_it() {
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let (mut v, line) = on_line(sbus());
     for _ in 0..100_000 {
-        // Bursts with a frame's start, with and without silence between.
         let mut noise: Vec<u8> = (0..25).map(|_| rng.random()).collect();
         noise[0] = 0x0F;
         line.put(&noise);

@@ -73,7 +73,6 @@ impl Symbols {
             if symbol.kind() == SymbolKind::Text {
                 symbols.functions.push(Static {
                     name: name.into(),
-                    // Without the Thumb bit.
                     address: symbol.address() & !1,
                     size: symbol.size(),
                 });

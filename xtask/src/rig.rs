@@ -71,7 +71,6 @@ impl<'a> Rig<'a> {
     /// # Errors
     /// The tests do not build, their image is wrong, or there is no probe.
     pub fn run(&self) -> Result<ExitCode, Error> {
-        // The emulated board has every jumper.
         let wired = self.wired || self.on == Where::Emulated;
         let cached = self.variant == Variant::DataCache;
         let features = format!(

@@ -75,7 +75,6 @@ impl Sensors {
             plant.step(actuators);
             let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
             for k in 1..=self.samples {
-                // The sensor samples faster than the plant steps: interpolates.
                 let share = f64::from(k) / f64::from(self.samples);
                 let rotors = plant.rotor_speed();
                 let reading = self

@@ -84,7 +84,6 @@ mod tests {
         }
         assert_eq!(tilts.error.mean(), None);
         let model = tilts.modelled()[0];
-        // Rolled by 0.2; the left arm 0.1 above the model, the right one at it.
         let at = |angle: f64| [0.0, 9.8 * angle.sin(), 9.8 * angle.cos()];
         let arms = SIDE.map(|side| {
             let above = if side > 0.0 { 0.1 } else { 0.0 };

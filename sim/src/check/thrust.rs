@@ -105,7 +105,7 @@ mod tests {
             s.params.battery_critical = 14.8;
         };
         assert!((row(calm, false).limit.value() - 1.05).abs() < 1e-6);
-        // On a pipe the escape needs more: 1.35 / cos 8° = 1.363.
+        // Escape: 1.35 / cos 8° = 1.363.
         assert!((row(calm, true).limit.value() - 1.363).abs() < 1e-3);
     }
 

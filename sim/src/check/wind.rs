@@ -37,7 +37,6 @@ mod tests {
         let built = Built::of(&s);
         let weak = row(&s, &built).value;
         let lift = built.lift(8.3);
-        // Pythagoras: the lift beyond the weight.
         assert!(
             (weak - (lift * lift - built.weight * built.weight).sqrt()).abs() < 0.05,
             "{weak}"

@@ -153,7 +153,6 @@ mod tests {
         assert!(given_by(Variant::Rigid, a, 7.75) < -1.0);
         let literal = given_by(Variant::Rigid, a, 1.0);
         assert!((0.3..0.7).contains(&literal), "{literal}");
-        // In A the flexible mixer gives up yaw rather than reverse it.
         s.vehicle.configuration = a;
         let built = Built::of(&s);
         assert!(!authority(&s, &built).pass && !share(&s, &built).pass && !derivative(&s, &built).pass);

@@ -315,14 +315,12 @@ mod tests {
         for arm in &arms {
             assert!((arm.tilt - expected).abs() < 1e-4, "{} {expected}", arm.tilt);
         }
-        // Falls while the arms rise, then keeps its speed.
         assert!(pose.velocity.x.abs() < 1e-9 && pose.velocity.y.abs() < 1e-9);
         assert!(pose.omega.length() < 1e-9);
     }
 
     #[test]
     fn free_fall_turns_no_arm_and_keeps_angular_momentum() {
-        // Without thrust, gravity has no moment about the centre of mass.
         let (_, _, start) = fly(0.0, DVec3::ZERO, 0.0, DVec3::new(1.0, 0.5, -0.7));
         let body = Body::new(&BodySpec::default(), true);
         let omega = DVec3::new(1.0, 0.5, -0.7);

@@ -44,7 +44,6 @@ pub fn draw(record: &FlightRecord, moment: &KeyMoment<'_>) -> String {
         "",
     );
     svg += &view.pipe(record);
-    // Front arms are far.
     for arm in [0, 2] {
         svg += &view.arm(arm, "far");
     }

@@ -129,7 +129,6 @@ mod tests {
     #[test]
     fn bytes_are_no_text() {
         assert!(is_text("0.1 INFO µs\n".as_bytes()));
-        // Cut within a character.
         assert!(is_text(&"0.1 µ".as_bytes()[..5]));
         assert!(!is_text(&[0x00, 0x12, 0xff]));
     }

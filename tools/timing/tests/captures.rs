@@ -28,7 +28,6 @@ fn a_flight_keeps_every_deadline() {
     assert!(capture.tasks.iter().all(|t| t.missed() == 0));
     let mixer = capture.tasks.iter().find(|t| t.name == "mixer").unwrap();
     assert!((mixer.rate() - 1000.0).abs() < 1.0, "{}", mixer.rate());
-    // As docs/timing.md states.
     assert!(
         capture
             .chain

@@ -79,7 +79,6 @@ pub fn cost(then: Then) -> Result<(), Error> {
         counts.extend(run.counts);
         commands.extend(run.commands);
     }
-    // Otherwise something else was counted.
     if commands.windows(2).any(|pair| pair.first() != pair.last()) {
         return Err(format!("the motor commands differ: {}", commands.join(", ")).into());
     }

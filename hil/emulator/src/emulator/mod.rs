@@ -157,7 +157,6 @@ impl Emulator {
     /// # Errors
     /// One line: why the processor stopped.
     pub fn advance(&mut self, wires: Wires) -> Result<Pins, String> {
-        // A closed channel shows at the wait.
         if let Some(sender) = &self.wires {
             let _ = sender.send(wires);
         }
@@ -205,7 +204,6 @@ fn run<C: Chip>(
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
     let board = Wired::new(chip, pads, speed)?;
     let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
-    // The first stop is at power-on, for the first wires.
     session.run_until(VirtualNanos(1));
     let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| told(&e))?;
     let (at, instructions) = finished
@@ -381,7 +379,6 @@ impl World {
             if edge.at >= reset {
                 self.started();
             }
-            // The timer does not drive the pin.
             if !driven[edge.channel] {
                 continue;
             }
@@ -584,7 +581,6 @@ impl<C: Chip> Driver<Wired<C>> for World {
             session.board_mut().power_up(stop.at);
         }
         let pins = self.read(session, stop.at, host);
-        // Closed at the end of the run.
         self.pins.send(pins).ok()?;
         let wires = self.wires.recv().ok()?;
         self.write(session, stop, wires, host);

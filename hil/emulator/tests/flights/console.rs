@@ -79,7 +79,7 @@ fn at_the_console<T: Send + 'static>(
 /// Presses the key until answered: input before the console starts is lost.
 pub(super) fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
-    // Long enough for a restart on a busy machine.
+    // Covers a restart on a busy machine.
     user.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
     while matches!(user.read(&mut bytes), Ok(count) if count > 0) {}
     loop {
@@ -103,7 +103,6 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
         type_in(user, "set infill 8\r", "in force after save");
         type_in(user, "set battery_divider 22\r", "in force after save");
         type_in(user, "save\r", "saved; restarting");
-        // Input during the restart is lost.
         wake(user);
         let after = volts(user);
         (type_in(user, "list infill\r", "4 to 10 %"), before, after)
@@ -160,7 +159,6 @@ fn the_brown_out_level_is_set(image: &Path, board: &str) {
         after.contains("brown-out level 3, expected 3"),
         "{board}: {after}"
     );
-    // Inhibited before, then not.
     let refused = told(&flight, 0.0, "arming blocked: brown-out level not set");
     assert!(refused.is_some(), "{board}: {}", log(&flight));
     let [(ms, _)] = &flight.board.resets[..] else {
@@ -207,7 +205,6 @@ fn a_motor_a_servo_live_numbers_and_the_self_test_are_tried_at_the_console() {
         tested
     };
     let (flight, tested) = at_the_console(&firmware, 40.0, None, None, session);
-    // Only the radio is silent.
     assert!(tested.contains("\n1 of 17 failed"), "{tested}");
     assert!(tested.contains("\nFAIL  receiver           silent"), "{tested}");
     // Frames at the pins: one motor for two seconds, the others none.

@@ -94,7 +94,7 @@ fn lands_without_data_ready(flight: &Flight) {
     for task in FLIGHT_LEVEL {
         assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(flight));
     }
-    // 87 us with the line; polling adds a quarter of a period of 250 us and the status' transfer.
+    // 87 us with the line; polling adds a quarter of 250 us and the status' transfer.
     let latency = flight.board.run.latency_us;
     assert!(latency.worst < 170.0, "{latency:?}");
     assert!(flight.board.resets.is_empty(), "{:?}", flight.board.resets);
@@ -257,7 +257,7 @@ fn overflows(task: &'static str, small: bool) {
         "{}",
         log(&flight)
     );
-    // The emulator lists but allows accesses to unmapped memory: the fault comes when a return address is read there.
+    // The emulator allows accesses to unmapped memory: the fault comes when a return address is read there.
     let bottom = if small { 0x1000_0000 } else { 0x2000_0000 };
     let below = |gap: &&sophie_emulator::wires::Gap| {
         let at = u64::from_str_radix(gap.at.trim_start_matches("0x"), 16).unwrap_or_default();

@@ -59,7 +59,6 @@ fn type_in(user: &mut TcpStream, step: &Typed) {
         last = heard(user, step);
         if differs(step, &last).is_none() {
             if restarts {
-                // Input during the restart is lost.
                 wake(user);
             }
             return;

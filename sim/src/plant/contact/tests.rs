@@ -109,7 +109,6 @@ fn beyond_the_friction_it_slides_with_coulomb_s_force() {
         );
     }
     assert!((touch.normal - 4.0).abs() < 1e-9 && (touch.force.y + 2.0).abs() < 1e-9);
-    // A fast departure cuts the damper off.
     let motion = PointMotion {
         position,
         velocity: DVec3::new(0.0, 0.0, -1.0),

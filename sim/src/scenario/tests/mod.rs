@@ -153,7 +153,6 @@ fn every_number_takes_its_bounds_and_nothing_beyond() {
             } else {
                 format!("[{table}]\n")
             };
-            // Room for the largest pipe.
             let room = if name == "pipe_diameter_m" {
                 "pipe_top_m = 5\n"
             } else {

@@ -108,7 +108,7 @@ fn SysTick() {
 }
 
 global_asm!(
-    // Spoils caller-saved float registers, saves the others as a compiler would.
+    // Spoils caller-saved float registers.
     ".syntax unified",
     ".thumb_func",
     ".global conformance_spoil_floats",
@@ -300,7 +300,6 @@ fn floats(_: &mut cortex_m::Peripherals) {
     };
     let alone = sum(false);
     let interrupted = sum(true);
-    // Logs only the number of a hundred handlers' events.
     let events = LENGTH.swap(0, Relaxed);
     event(events as i32);
     event(alone.to_bits() as i32);
@@ -354,7 +353,6 @@ fn usage_faults(core: &mut cortex_m::Peripherals) {
 }
 
 fn sleep(core: &mut cortex_m::Peripherals) {
-    // An event before the wait ends it at once.
     sev();
     wfe();
     event(1030);
