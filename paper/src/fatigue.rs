@@ -12,7 +12,7 @@ use sophie_sim::parallel;
 
 /// Compliance of arm 1 over a new arm's.
 const WORN: [f64; 6] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
-/// Of the on-board comparison, s.
+/// Averaging time of the on-board comparison, s.
 const WINDOW: f64 = 5.0;
 /// s.
 const SECONDS: f64 = 25.0;
@@ -141,7 +141,7 @@ fn apart(f: &Flown) -> f64 {
 
 struct OnBoard {
     worn: f64,
-    /// Less the model's.
+    /// True tilt less the model's.
     truth: f64,
     learnt: f64,
     /// Spread of the windows' means.

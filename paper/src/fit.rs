@@ -12,7 +12,7 @@ const POWER_SEEN: f64 = 0.95;
 /// Assumed: the middle of the paper's 1.6 to 1.8.
 const EXPONENT: f64 = 1.7;
 const STEPS: u32 = 30;
-/// %.
+/// Smallest difference between two infills, %.
 const INFILL_STEP: f64 = 0.2;
 
 /// A fitted value.
@@ -84,7 +84,7 @@ impl Unknowns {
         }
     }
 
-    /// α0, A (A2), B (B2).
+    /// Number of linear unknowns: α0, A (A2), B (B2).
     const fn linear(self) -> usize {
         if self.several { 5 } else { 3 }
     }
@@ -239,7 +239,7 @@ pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
     Ok(fit)
 }
 
-/// With its own offset.
+/// Best gain on Table I, with its own offset.
 fn gain(points: &[Point], [a1, a2, b1, b2]: [f64; 4], exponent: f64) -> Option<(Fitted, f64)> {
     let shape = |p: &Point| {
         ((a1 + p.infill * a2) + (b1 + p.infill * b2) * p.thrust) * p.thrust * p.power.powf(exponent)

@@ -15,7 +15,7 @@ use super::printed::Printed;
 use super::statics::{AtThrust, root};
 use sophie_sim::parallel;
 
-/// N.
+/// Perturbation, N.
 const STEP: f64 = 0.05;
 /// Fig. 5: moment (N·m) and duration (s).
 const KICK: (f64, f64) = (0.02, 0.5);

@@ -24,7 +24,7 @@ const REST: f64 = 1.0;
 /// Fore-aft distance of the belly pads from the pipe's crown line, and their indentation under a quarter of 10 N each,
 /// m.
 const PADS: (f64, f64) = (0.03, 0.6e-3);
-/// RMS, rad.
+/// RMS of the arm sensor, rad.
 const TILT_NOISE: f64 = 0.004;
 /// Of a [`Closing`]: rotor, s, and pipe.
 const ROTOR_TAU: f64 = 0.05;
@@ -34,9 +34,9 @@ const SPOOL_TIME: f64 = 1.5;
 /// Holding time after the rotor's stop, s, and gripper runs in half a second.
 const AFTER: f64 = 0.5;
 const STEADY_SAMPLES: usize = 50;
-/// 500 Hz, in plant steps.
+/// Plant steps per sample, 500 Hz.
 const FSR_STEPS: u64 = 4;
-/// 100 Hz, in plant steps.
+/// Plant steps per run, 100 Hz.
 const GRIPPER_STEPS: u64 = 20;
 const BODY: Pose = Pose {
     position: DVec3::ZERO,

@@ -3,7 +3,7 @@
 use sophie_control::rc::CHANNELS;
 use sophie_drivers::sbus::{FRAME, Frame};
 
-/// s: the slower usual one.
+/// Frame period, s: the slower usual one.
 const PERIOD: f64 = 14e-3;
 /// Silence, s (FrSky: about 1 s).
 const FAILSAFE_AFTER: f64 = 0.9;

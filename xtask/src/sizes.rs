@@ -9,9 +9,9 @@ use crate::boards::Board;
 use crate::image::Image;
 use crate::{Error, build};
 
-/// Bytes, any board.
+/// Of any board, bytes.
 const FLASH_LIMIT: u64 = 400 * 1024;
-/// Static, bytes, any board.
+/// Static, of any board, bytes.
 const RAM_LIMIT: u64 = 64 * 1024;
 
 /// With the ceilings, between two marks.

@@ -21,7 +21,7 @@ pub struct Loader {
 }
 
 impl Firmware {
-    /// Puts a loader before the firmware, whose vectors all lead to an endless loop.
+    /// Puts a loader, whose vectors all lead to an endless loop, before the firmware.
     ///
     /// # Errors
     /// One line: the image has no vector table.

@@ -10,7 +10,7 @@ use crate::wires::BoardFault;
 pub enum Trouble {
     /// At the board.
     Board(BoardFault),
-    /// Lead of an arm's pressure sensor (0 to 3) broken, shorted, or mended.
+    /// Lead of an arm's pressure sensor (0 to 3) broken, shorted to its neighbour, or mended.
     Fsr(usize, Option<FsrBreak>),
     /// The receiver is silent (true) or sends.
     RadioSilent(bool),

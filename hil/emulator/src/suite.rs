@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::elf::Firmware;
 
-/// Requests the command line.
+/// Function that requests the command line.
 const ASKING: &str = "__embedded_test_start";
 const SETUP: &str = "_embedded_test_setup";
 /// Section of test descriptions: function address and module.

@@ -20,7 +20,7 @@ struct Soft {
     zeta: f64,
     notch: bool,
     yaw_gain: f32,
-    /// Over the largest thrust.
+    /// Thrust of level arms over the largest.
     level_share: f64,
 }
 

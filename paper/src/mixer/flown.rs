@@ -9,7 +9,7 @@ use sophie_sim::parallel;
 use super::super::flights::{curve, error, in_gusts, lost_when, named, or_lost, swing, vehicle};
 use super::super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// s.
+/// Shown time, s.
 const WINDOW: f64 = 3.0;
 
 struct Flies {

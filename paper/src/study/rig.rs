@@ -15,15 +15,15 @@ use super::allocation::Studied;
 const REST: f64 = 4.0;
 /// From take-off to the experiment, s.
 pub const SETTLE: f64 = 6.0;
-/// Of the height hold, N.
+/// Limit of the height hold, N.
 const THRUST_MAX: f64 = 40.0;
 /// s: yaw is gated, and the heading may slip.
 const SPOOL_UP: f64 = 2.0;
 /// Roll or pitch of a lost vehicle, rad.
 const UPSET: f64 = 1.4;
-/// Heading error, rad.
+/// Heading error of a lost vehicle, rad.
 const SPUN: f64 = 1.05;
-/// Yaw rate, rad/s.
+/// Yaw rate of a lost vehicle, rad/s.
 const SPIN: f64 = 4.0;
 
 /// Demand and disturbance at a time of the experiment.
@@ -31,7 +31,7 @@ const SPIN: f64 = 4.0;
 pub struct Wish {
     /// Roll, rad.
     pub roll: f64,
-    /// Yaw rate, rad/s.
+    /// Yaw rate of a lost vehicle, rad/s.
     pub yaw_rate: f64,
     /// External moment, N·m, body.
     pub moment: DVec3,

@@ -39,7 +39,7 @@ const SEEN_LEAN: f64 = 0.5;
 const SEEN_DEPTH: f64 = 0.06;
 /// Below the touch height, m: the ground under the lowest pipe.
 const LOST_DEPTH: f64 = 0.95;
-/// Over the touch height, m.
+/// Height over the touch height clear of the pipe, m.
 const CLEAR: f64 = 0.4;
 /// On the pipe before the arms open, s.
 const STAY: f64 = 2.0;
@@ -78,7 +78,7 @@ impl Touch {
         let mut within = |from: f64, to: f64| from + (to - from) * rng.random::<f64>();
         let diameter = within(0.2, 0.4);
         Self {
-            // Would miss a thinner pipe.
+            // Within the width of a thinner pipe.
             offset: within(-0.15, 0.15).clamp(-0.48 * diameter, 0.48 * diameter),
             lean: within(-25.0, 25.0).to_radians(),
             sink: within(0.05, 0.4),

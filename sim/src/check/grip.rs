@@ -22,12 +22,12 @@ const DEEPEST: u32 = 2000;
 /// (docs/design-check.md).
 const RESERVE: f64 = 0.05;
 
-/// Result of an arm.
+/// An arm that was tried.
 #[derive(Clone, Copy, Debug)]
 pub struct TriedArm {
     /// Index, 0 to 3.
     pub arm: usize,
-    /// Result.
+    /// Its result.
     pub tried: Tried,
 }
 

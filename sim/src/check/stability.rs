@@ -53,8 +53,8 @@ pub fn rows(margins: &[Margins; 3], built: &Built) -> Vec<Row> {
     rows
 }
 
-/// √(k/m)/2π of the softest arm, body held, Hz, against the bandwidth of roll and pitch: above it the tips lag by half
-/// a turn, and a loop shakes the body between them.
+/// √(k/m)/2π of the softest arm, body held, Hz, against the bandwidth of roll and pitch: beyond the mode the
+/// tips lag by half a turn, and a loop of more bandwidth shakes the body between them.
 fn arm_mode(margins: &[Margins; 3], built: &Built) -> Row {
     let [roll, pitch, _] = margins;
     let bandwidth = roll.crossover.max(pitch.crossover) / std::f64::consts::TAU;

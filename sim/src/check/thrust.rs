@@ -9,7 +9,7 @@ use crate::plant::contact::{ARM_LENGTH, ARM_X};
 use crate::plant::rotor::NOMINAL_VOLTAGE;
 use crate::scenario::Scenario;
 
-/// Thrust over weight in reserve: 0.5 m/s² stops the failsafe's 0.8 m/s in 0.65 m.
+/// Share of the weight in reserve to stop sinking: 0.5 m/s² stops the failsafe's 0.8 m/s in 0.65 m.
 const BRAKE: f64 = 0.05;
 /// Gusts beyond this many times their RMS occur once in hours.
 pub(super) const GUST_FACTOR: f64 = 3.0;
@@ -21,8 +21,8 @@ const STICK_MOST: f64 = 0.85;
 /// Thrust to weight at the nominal voltage.
 ///
 /// Value: Σ T cos α(T) / W, all rotors at their largest thrust. Limit: the larger of two. The failsafe lands at
-/// `battery_critical`, where a rotor gives the share s of its thrust (plant), and must stop sinking and meet gusts: (1
-/// + brake + gusts) / s. The escape from a pipe lifts with 1.35 of the weight at a lean of 8 degrees, battery full:
+/// `battery_critical`, where a rotor gives the share s of its thrust (plant), and must stop sinking and meet gusts:
+/// (1 + brake + gusts) / s. The escape from a pipe lifts with 1.35 of the weight at a lean of 8 degrees, battery full:
 /// 1.35 / cos 8°.
 pub fn to_weight(scenario: &Scenario, built: &Built, perches: bool) -> Row {
     let rotor = &scenario.vehicle.rotor;
@@ -51,8 +51,8 @@ fn gusts(scenario: &Scenario) -> f64 {
 
 /// Share of the throttle stick in hover.
 ///
-/// Value: T / T_max, T a rotor's thrust, T_max the parameter: collective is proportional to the stick. Without tilt W /
-/// (4 T_max).
+/// Value: T / T_max, T a rotor's thrust, T_max the parameter: collective is proportional to the stick. Without
+/// tilt W / (4 T_max).
 pub fn hover_throttle(scenario: &Scenario, built: &Built) -> Row {
     let throttle = built.hover / f64::from(scenario.params.thrust_max);
     Row::new(

@@ -9,7 +9,7 @@ use super::row::{Limit, Row};
 use super::thrust::GUST_FACTOR;
 use crate::scenario::Scenario;
 
-/// In shares of hover thrust.
+/// Evaluated thrusts in shares of hover thrust.
 const NEAR_HOVER: [f64; 3] = [0.8, 1.0, 1.2];
 /// Between the yaw gate and the largest thrust.
 const POINTS: u32 = 12;

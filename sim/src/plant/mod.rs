@@ -201,7 +201,8 @@ impl Plant {
         pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
     }
 
-    /// Moves the vehicle to `position` (m, NED) with `velocity` (m/s, NED), unseen by its sensors. For studies.
+    /// Moves the vehicle to `position` (m, NED) with `velocity` (m/s, NED), keeping attitude and arms, unseen by its
+    /// sensors. For studies.
     pub fn place(&mut self, position: DVec3, velocity: DVec3) {
         self.state.pose.position = position;
         self.state.pose.velocity = velocity;

@@ -35,9 +35,9 @@ pub enum ScenarioError {
     },
     /// No such key.
     UnknownKey {
-        /// Place.
+        /// Where it is.
         at: Place,
-        /// With its table.
+        /// The key with its table.
         key: String,
         /// As given.
         value: String,
@@ -48,16 +48,16 @@ pub enum ScenarioError {
     MissingKey {
         /// Where it should be.
         at: Place,
-        /// With its table.
+        /// The key with its table.
         key: String,
         /// What it may be.
         allowed: String,
     },
     /// Wrong type, unknown choice or out of range.
     BadValue {
-        /// Place.
+        /// Where it is.
         at: Place,
-        /// With its table.
+        /// The key with its table.
         key: String,
         /// As written.
         value: String,
@@ -66,7 +66,7 @@ pub enum ScenarioError {
     },
     /// A step that is impossible after the steps before it.
     StepOrder {
-        /// Place.
+        /// Where it is.
         at: Place,
         /// Such as `steps[3]`.
         key: String,

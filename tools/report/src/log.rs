@@ -21,7 +21,7 @@ const SCENE_HZ: f64 = 20.0;
 /// The file's content.
 ///
 /// # Errors
-/// The writer fails.
+/// If the writer fails.
 pub fn mcap(record: &FlightRecord) -> Result<Vec<u8>, String> {
     write(record).map_err(|error| format!("flight.mcap: cannot be made: {error}"))
 }

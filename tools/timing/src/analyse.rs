@@ -14,7 +14,7 @@ const INTERRUPT: f64 = 1.0;
 const BLOCKING: f64 = 5.0;
 /// A clock of whole µs shortens an execution by less.
 const RESOLUTION: f64 = 1.0;
-/// Periods without a wake of a paused, sample-driven task.
+/// Periods without a wake after which a sample-driven task counts as paused.
 const PAUSE: f64 = 10.0;
 /// Logs the trace; absent from the image that flies.
 const TRACER: &str = "trace";

@@ -17,7 +17,7 @@ pub struct Poll {
     pub task: usize,
     /// Wake, µs.
     pub ready: u64,
-    /// Exception of the wake; 0: a task of thread mode.
+    /// Exception of the wake; 0: another task of thread mode.
     pub waker: u16,
     /// Start, µs.
     pub begin: u64,

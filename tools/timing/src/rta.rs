@@ -24,7 +24,7 @@ pub struct Load {
     pub waited: f64,
 }
 
-/// Iterations until no bound is assumed.
+/// Iterations after which no bound is assumed to exist.
 const ROUNDS: usize = 10_000;
 
 /// Largest response of `loads[index]`, µs after release, with `blocking` from below; `None` beyond the period, after

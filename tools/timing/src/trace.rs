@@ -7,7 +7,7 @@ use sophie_tasks::deadline::Level;
 
 use crate::live::Garbled;
 
-/// Bits in an event.
+/// Address bits in an event.
 const ADDRESS: u32 = 0x000F_FFFC;
 
 /// What happened.

@@ -8,7 +8,7 @@ const REFILL: [u32; 2] = [1, 3];
 pub struct Instruction {
     /// Length, 2 or 4 bytes.
     pub bytes: u64,
-    /// Fewest and most cycles without a branch.
+    /// Fewest and most cycles if no branch is taken.
     pub cycles: [u32; 2],
     /// Reads a constant between instructions, thus from flash.
     pub constant: bool,

@@ -317,7 +317,7 @@ struct World {
     servos: PerArm<f64>,
     resets: usize,
     high: PerArm<bool>,
-    /// ns.
+    /// Start of a standstill, ns.
     still: Option<u64>,
     hung: Option<Hung>,
     latency: Latency,

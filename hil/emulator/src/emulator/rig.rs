@@ -22,7 +22,7 @@ use crate::log::{Line, Log};
 use crate::suite::{self, Test};
 use crate::wires::Gap;
 
-/// Virtual time.
+/// Virtual time limit.
 const LONGEST: u64 = 30_000 * MS;
 const SPEED: f64 = 1.0;
 const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
@@ -47,7 +47,7 @@ const UP: [f64; 3] = [0.0, 0.0, 9.806_65];
 static MOTOR: [At; 2] = [MATEK.motors.pins[0], MATEK.servos[2].pin];
 static SERVO: [At; 2] = [MATEK.servos[0].pin, MATEK.servos[3].pin];
 const RECEIVER: [At; 2] = [At(2, 6), At(2, 7)];
-/// Of the receiver's output.
+/// Alternate function of the receiver's output.
 const PORT_FUNCTION: u8 = 7;
 
 /// Defects of a rig.

@@ -6,7 +6,7 @@ use sophie_control::params::RcProtocol;
 
 use crate::boards::Kind;
 
-/// Tolerated by an asynchronous line.
+/// Tolerance of an asynchronous line.
 const RATE_ERROR: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

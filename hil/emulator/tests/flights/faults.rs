@@ -325,7 +325,7 @@ fn a_cut_pressure_sensor_proves_no_grip_and_the_rotors_keep_turning() {
     (scenario.world.gust_force, scenario.world.gust_moment) = (0.0, 0.0);
     let flight = fly_small(&scenario, &[(20.0, Trouble::Fsr(1, Some(FsrBreak::Open)))]);
     let closing = told(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
-    // A sound grip is proven within four seconds.
+    // A sound grip is proven after four seconds.
     for never in ["grip proven", "PERCHED"] {
         assert_eq!(told(&flight, closing, never), None, "{}", log(&flight));
     }

@@ -18,7 +18,7 @@ const STRETCH: u32 = 500;
 const HOLD: u32 = 40;
 /// With arm readings in steps 0 to 3 of ten.
 const STICKS: usize = 5;
-/// Readings per NaN.
+/// One reading in this many is NaN.
 const BAD: u32 = 4001;
 
 #[derive(Clone, Copy)]

@@ -19,9 +19,9 @@ pub struct Margins {
 impl Margins {
     /// Margins from the gains `curve` over rising frequencies (rad/s).
     ///
-    /// The closed loop divides by 1 + L. With a factor 1 - z⁻¹ for each of L's n integrators all poles of F = (1 + L)(1
-    /// - z⁻¹)ⁿ are inside the unit circle, so along half of it, from a real number to another, F turns about 0 by π for
-    /// each pole of the closed loop outside. A loop is stable if F does not turn.
+    /// The closed loop divides by 1 + L. With a factor 1 - z⁻¹ for each of L's n integrators all poles of
+    /// F = (1 + L)(1 - z⁻¹)ⁿ are inside the unit circle, so along half of it, from a real number to another, F turns
+    /// about 0 by π for each pole of the closed loop outside. A loop is stable if F does not turn.
     #[must_use]
     pub fn of(curve: &[(f64, Complex)]) -> Self {
         let stable = turned(curve).abs() < PI;

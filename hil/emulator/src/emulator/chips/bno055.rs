@@ -60,7 +60,7 @@ pub struct Bno055 {
     pointer: u8,
     first: bool,
     boots_at: u64,
-    /// With its time, ns.
+    /// Next mode and its time, ns.
     switch: Option<(u8, u64)>,
     /// ns.
     since: u64,

@@ -7,7 +7,7 @@ pub fn wrong(timing: u64, hz: f64) -> Option<String> {
     let tick = (field(28, 4) + 1.0) * cycle;
     let (low, high) = ((field(0, 8) + 1.0) * tick, (field(8, 8) + 1.0) * tick);
     let limits = [
-        // Edges: 300 ns at most, then 100 ns.
+        // Slowest edge, 300 ns, plus 100 ns.
         ("data set-up", (field(20, 4) + 1.0) * tick, 400.0, f64::INFINITY),
         // Plus analog filter and synchroniser: 50 to 260 ns, 3 to 4 cycles.
         (
