@@ -223,7 +223,7 @@ fn below(path: &Path) -> Vec<PathBuf> {
 #[test]
 fn an_interrupted_run_leaves_nothing_behind() {
     let temp = Temp::new("interrupt");
-    // Outlasts the signal on a busy machine.
+    // The flight outlasts the signal on a busy machine.
     let long = b"steps = [{ do = 'arm' }, { do = 'take-off' }, { do = 'fly-to-pipe' }, { do = 'touch' }, { do = 'clamp' }, \
                  { do = 'perch' }, { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }, \
                  { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }]\ntime_limit_s = 3000\n";

@@ -2,8 +2,8 @@
 //!
 //! `dfu-util` erases each sector that a file touches, without memory of earlier calls. So the image is written in
 //! stretches that share no sector: a flat file would erase the gaps (on the f405 the stored parameters), a file per
-//! segment the end of the previous one. The vector table's stretch comes last: the loader starts the firmware at the
-//! last address, and an interrupted transfer leaves the old table or none.
+//! segment the end of the previous one. The vector table's stretch comes last: the loader starts the firmware at
+//! the address of the last call, and an interrupted transfer leaves the old table or none.
 
 use std::fs;
 use std::path::PathBuf;

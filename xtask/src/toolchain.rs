@@ -51,7 +51,7 @@ fn debian(rustc: &str) -> Option<Toolchain> {
     if !sysroot.join("lib/rustlib/src/rust/library/core").is_dir() {
         return None;
     }
-    // Debian's compiler lacks the target's linker.
+    // Debian's compiler lacks the target's linker; every rustup toolchain has one.
     let host = ask(rustc, &["-vV"])?
         .lines()
         .find_map(|l| l.strip_prefix("host: ").map(str::to_string))?;

@@ -15,9 +15,9 @@ use super::model::Section;
 use super::printed::Printed;
 use grid::{FAIR, FLEXIBLE, Grid, Job, PAPER, RIGID, SIGN_AWARE};
 
-/// Compliance of real arms over the model's (assumed).
+/// Compliance of real arms over the model's.
 const ARM_GAIN: [f64; 4] = [1.15, 0.85, 0.9, 1.1];
-/// Tilt of real arms less the model's, degrees (assumed).
+/// Tilt of real arms less the model's, degrees.
 const ARM_OFFSET: [f64; 4] = [3.0, -3.0, 2.0, -2.0];
 
 fn mismatch(s: &mut Scenario) {

@@ -45,7 +45,7 @@ fn one_step_loop(infill: f64, gain_k: f64, start: f32, steps: usize) -> Vec<f64>
     out
 }
 
-/// Of rotor 1 (N), small yaw demand, in the mixer's model of motor and arm.
+/// Range of rotor 1's thrust (N) under a small yaw demand, in the mixer's model of motor and arm.
 fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     let p = Params {
         gain_k: gain_k as f32,

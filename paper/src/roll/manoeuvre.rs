@@ -12,7 +12,7 @@ use super::super::printed::Printed;
 
 /// Time of each held roll, s.
 pub const HELD: f64 = 1.2;
-/// s; Δα has shown by then.
+/// Time of the turn, s: a vehicle lost later has shown its Δα.
 const TURN: f64 = 0.5;
 /// The whole manoeuvre, s.
 pub const SECONDS: f64 = 3.0;

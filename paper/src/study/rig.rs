@@ -31,7 +31,7 @@ const SPIN: f64 = 4.0;
 pub struct Wish {
     /// Roll, rad.
     pub roll: f64,
-    /// Yaw rate of a lost vehicle, rad/s.
+    /// Yaw rate, rad/s.
     pub yaw_rate: f64,
     /// External moment, N·m, body.
     pub moment: DVec3,

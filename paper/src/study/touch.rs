@@ -227,7 +227,7 @@ impl Try {
     }
 }
 
-/// Distance of the centre of mass below the pipe's axis at the first contact of belly or arms, m.
+/// Distance of the centre of mass below the pipe's axis (negative above) at the first contact of belly or arms, m.
 fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f64 {
     let belly = [-0.03, 0.03].map(|y| DVec3::new(0.0, y, BELLY_Z));
     let arms = (0..4).flat_map(|arm| STATIONS.map(|s| ArmSkin::new(arm).point(tilt[arm], s).0));

@@ -143,7 +143,7 @@ impl<const WRITE: usize, const PAGE: usize> NorFlash for Flash<WRITE, PAGE> {
                 return Err(FlashError);
             }
             let at = start + i * WRITE;
-            // Half of the word was written.
+            // A cut write programs half of the bits.
             let cut = cells.cut_at == Some(cells.steps);
             cells.steps += 1;
             if WRITE > 8 && cells.written[at / WRITE] {

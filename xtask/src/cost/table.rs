@@ -9,7 +9,7 @@ use super::stages::{M4F_ALLOWANCE, SPREAD, STAGES, Stage};
 use super::{CORES, Count};
 use crate::{Error, build};
 
-/// In docs/cost.md.
+/// Marks in docs/cost.md.
 const BEGIN: &str = "<!-- cargo xtask cost --tighten writes from here -->\n";
 const END: &str = "<!-- to here -->\n";
 

@@ -16,7 +16,7 @@ pub const REST: u32 = 2500;
 pub const FLIGHT: u32 = 12_000;
 const STRETCH: u32 = 500;
 const HOLD: u32 = 40;
-/// With arm readings in steps 0 to 3 of ten.
+/// Step of ten with new sticks; arms are read in the first four.
 const STICKS: usize = 5;
 /// One reading in this many is NaN.
 const BAD: u32 = 4001;

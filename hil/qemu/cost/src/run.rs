@@ -43,7 +43,7 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     print(format_args!("commands-whole {again}"));
 }
 
-/// Instructions of counting and calling.
+/// Instructions of counting and calling; panics if the counter is wrong.
 fn overhead() -> u32 {
     let nothing = gross(chain::nothing, &mut (), &0);
     for rounds in 1..1000 {

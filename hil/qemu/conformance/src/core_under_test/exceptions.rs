@@ -1,7 +1,7 @@
 //! Order of events in nesting, priorities, masks, tail-chaining, faults, sleep, and floats across interrupts.
 //!
-//! Events: an interrupt's number at its handler's start, the negative number at its end, from 1000 on a line of the
-//! scenario.
+//! Events: an interrupt's number at its handler's start, the negative number at its end; numbers from 1000 on are
+//! lines of the scenario.
 
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments};
