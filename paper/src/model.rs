@@ -138,7 +138,7 @@ pub enum Look {
 /// One series of a chart.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Name in the legend; may be empty.
+    /// In the legend; may be empty.
     pub name: String,
     /// Colour, 0 to 7.
     pub colour: usize,
@@ -263,11 +263,11 @@ pub enum Block {
 /// A section of the results.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// Short name for links and JSON.
+    /// For links and JSON.
     pub id: &'static str,
     /// Heading.
     pub title: &'static str,
-    /// Result in a sentence or two.
+    /// In a sentence or two.
     pub finding: String,
     /// Parts.
     pub blocks: Vec<Block>,

@@ -50,13 +50,13 @@ const BODY: Pose = Pose {
 pub struct Closing {
     /// Infill of the arm, %.
     pub infill: f64,
-    /// Outer diameter of the pipe, m.
+    /// Outer, m.
     pub diameter: f64,
     /// The servo fitted; the stack's parameters match it.
     pub servo: ServoSpec,
     /// Of the arm's rotor while it closes, N.
     pub thrust: f64,
-    /// Time from the start of the closing, s.
+    /// From the start of closing, s.
     pub seconds: f64,
     /// Seed of the sensors' noise.
     pub seed: u64,
@@ -71,11 +71,11 @@ pub struct BenchArm {
     pub spec: ArmSpec,
     /// The servo fitted.
     pub servo: ServoSpec,
-    /// Time constant of the rotor, s.
+    /// s.
     pub rotor_tau: f64,
     /// May differ from the true arm.
     pub params: Params,
-    /// Outer diameter of the pipe, m.
+    /// Outer, m.
     pub diameter: f64,
     /// Friction of the pipe.
     pub friction: f64,
@@ -168,11 +168,11 @@ pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
 /// A sample of the closing.
 #[derive(Clone, Copy, Debug)]
 pub struct BenchSample {
-    /// Time since the closing began, s.
+    /// From the start of closing, s.
     pub t: f64,
-    /// True pressure at the sensor, Pa.
+    /// True, at the sensor, Pa.
     pub pressure: f64,
-    /// True torque of the servo, N·m.
+    /// True, of the servo, N·m.
     pub torque: f64,
     /// Tilt of the arm, rad.
     pub tilt: f64,

@@ -18,15 +18,15 @@ pub struct FlightRecord {
     pub phases: Vec<Phase>,
     /// In order of time.
     pub events: Vec<Event>,
-    /// Chosen arms of each proven grip.
+    /// Chosen arms of proven grips.
     pub grip: Vec<Grip>,
     /// Simulated time, s.
     pub sim_seconds: f64,
-    /// Wall time that the simulation took, s.
+    /// Wall time, s.
     pub wall_seconds: f64,
     /// Missed deadlines, all tasks.
     pub overruns: u32,
-    /// Digest of all samples, bit for bit.
+    /// Of all samples, bit for bit.
     pub digest: u64,
 }
 
@@ -61,23 +61,23 @@ pub struct Sample {
     pub attitude_setpoint: [f64; 3],
     /// True angular rate, rad/s, body.
     pub rate: [f64; 3],
-    /// True tilt of each arm, rad.
+    /// True, rad.
     pub tilt: PerArm<f64>,
-    /// Tilt by the arm's sensor, rad; NaN if none.
+    /// By the arm's sensor, rad; NaN if none.
     pub tilt_measured: PerArm<f64>,
-    /// Tilt by the mixer's model, rad.
+    /// By the mixer's model, rad.
     pub tilt_model: PerArm<f64>,
-    /// True thrust of each rotor, N.
+    /// True, N.
     pub thrust: PerArm<f64>,
-    /// Thrust asked of each rotor, N.
+    /// N.
     pub thrust_asked: PerArm<f64>,
-    /// True tension of each tendon, N.
+    /// True, N.
     pub tension: PerArm<f64>,
-    /// Tension asked of each tendon, N.
+    /// N.
     pub tension_asked: PerArm<f64>,
-    /// True contact pressure at each sensor, Pa.
+    /// True, at the sensor, Pa.
     pub pressure: PerArm<f64>,
-    /// Measured contact pressure, Pa; NaN if not fresh.
+    /// Pa; NaN if not fresh.
     pub pressure_measured: PerArm<f64>,
     /// Battery voltage under load, V.
     pub battery_voltage: f64,
@@ -90,7 +90,7 @@ pub struct Sample {
 /// A flown step of the mission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
-    /// Name of the step, such as `take-off`.
+    /// Such as `take-off`.
     pub name: String,
     /// Start, s.
     pub start: f64,
@@ -102,9 +102,9 @@ pub struct Phase {
     pub worst_attitude_error: f64,
     /// Largest tilt of any arm, rad, signed.
     pub worst_tilt: f64,
-    /// Share of the time with saturated rotors, 0..1.
+    /// Share of the time, 0..1.
     pub saturation: f64,
-    /// Battery voltage at the end, V.
+    /// At the end, V.
     pub battery_voltage: f64,
     /// Missed deadlines during the step.
     pub overruns: u32,
@@ -124,11 +124,11 @@ pub struct Event {
 pub struct Grip {
     /// Arm, 1 to 4.
     pub arm: u8,
-    /// Measured pressure at the proof, Pa.
+    /// At the proof, Pa.
     pub pressure: f64,
-    /// True pressure at the proof, Pa.
+    /// At the proof, Pa.
     pub pressure_true: f64,
-    /// Servo torque at the proof, N·m.
+    /// Of the servo at the proof, N·m.
     pub torque: f64,
     /// Time from start of closing to pressure within tolerance, s.
     pub closure: f64,

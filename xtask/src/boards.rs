@@ -1,6 +1,6 @@
 //! Board data for builds and checks.
 
-/// First address of the flash, all chips.
+/// All chips.
 pub const FLASH: u64 = 0x0800_0000;
 
 /// Consecutive equal sectors.

@@ -64,7 +64,7 @@ pub struct Bench<'a> {
     /// Log lines.
     pub lines: Vec<Line>,
     raw: Vec<u8>,
-    /// Processor resets: time (ms since power-on) and cause.
+    /// Time (ms since power-on) and cause.
     pub resets: Vec<(f64, String)>,
 }
 
@@ -80,23 +80,23 @@ struct Watched {
     voltage: f64,
 }
 
-/// Results of a bench after its run.
+/// Results of a run.
 pub struct Finished {
     /// The emulator's record.
     pub run: Run,
-    /// Missed deadlines by task, as last logged.
+    /// By task, as last logged.
     pub overruns: BTreeMap<String, u32>,
     /// Digest of all log lines with their times.
     pub log_digest: u64,
-    /// Measured minus modelled arm tilt in flight.
+    /// Arm tilt in flight, measured less modelled.
     pub tilt_error: TiltError,
     /// Log lines.
     pub lines: Vec<Line>,
     /// The log as written by the firmware.
     pub log: Vec<u8>,
-    /// Processor resets: time (ms since power-on) and cause.
+    /// Time (ms since power-on) and cause.
     pub resets: Vec<(f64, String)>,
-    /// Parts of the log that could not be decoded.
+    /// Parts that could not be decoded.
     pub malformed: u32,
 }
 

@@ -57,7 +57,7 @@ impl Functions {
             .map(|(begin, ..)| *begin)
     }
 
-    /// Every possible address of an instruction.
+    /// Every possible address.
     pub fn halfwords(&self) -> impl Iterator<Item = u64> {
         self.all
             .iter()

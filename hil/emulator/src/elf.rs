@@ -16,19 +16,19 @@ pub struct Firmware {
     pub path: PathBuf,
     /// Contents of the file.
     pub bytes: Vec<u8>,
-    /// Address of the log's control block.
+    /// Address of the control block.
     pub rtt: u64,
-    /// Parameter flash: first address and end.
+    /// First address and end.
     pub params: (u64, u64),
-    /// Task addresses, by the names in `src/firmware/tasks.rs`.
+    /// Addresses, by names in `src/firmware/tasks.rs`.
     pub tasks: BTreeMap<String, u64>,
     /// Format of the log.
     pub table: Table,
     /// Target board.
     pub board: &'static EmulatedBoard,
-    /// Loader that runs before it; `None`: none.
+    /// Runs before it.
     pub loader: Option<Loader>,
-    /// Steps with counted instructions; `None`: none.
+    /// Steps with counted instructions.
     pub count: Option<Window>,
 }
 

@@ -12,7 +12,7 @@ pub enum Trouble {
     Board(BoardFault),
     /// Lead of an arm's pressure sensor (0 to 3) broken, shorted to its neighbour, or mended.
     Fsr(usize, Option<FsrBreak>),
-    /// The receiver is silent (true) or sends.
+    /// Silent (true) or sending.
     RadioSilent(bool),
     /// Bit errors in one of this many bytes from the receiver; 0: none.
     RadioBits(u32),
@@ -42,7 +42,7 @@ impl Plan {
         }
     }
 
-    /// Applies what is due at `ms`.
+    /// Applies troubles due at `ms`.
     pub fn apply(&mut self, ms: u64, sensors: &mut Sensors, faults: &mut Vec<BoardFault>) {
         while let Some((at, trouble)) = self.troubles.get(self.next)
             && *at <= ms

@@ -31,7 +31,7 @@ pub struct Sensors {
     rng: Pcg64Mcg,
     arm_clock: f64,
     gravity: PerArm<Vec3>,
-    /// 12-bit counts at the pressure sensors' pins.
+    /// 12 bits.
     pub pressure_counts: PerArm<u16>,
     /// Factor on the battery voltage; 1: intact.
     pub battery_share: f64,

@@ -18,7 +18,7 @@ const VERSION: (&str, u8) = ("EMBEDDED_TEST_VERSION", 1);
 /// A test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Test {
-    /// Module and function, as a probe shows it.
+    /// Module and function.
     pub name: String,
     /// Passes only by a panic.
     pub should_panic: bool,

@@ -7,7 +7,7 @@ use sophie_control::wrench::PerArm;
 use crate::chain::Counted;
 use crate::esc::EscStats;
 
-/// Inputs to the board for the next millisecond.
+/// Inputs for the next millisecond.
 #[derive(Clone, Debug, Default)]
 pub struct Wires {
     /// Evenly spread samples: body rate (rad/s), specific force (m/s²), body axes.
@@ -20,7 +20,7 @@ pub struct Wires {
     pub receiver: Vec<u16>,
     /// Bytes typed at the console.
     pub console: Vec<u8>,
-    /// Faults and repairs in this millisecond.
+    /// In this millisecond.
     pub faults: Vec<BoardFault>,
 }
 
@@ -31,7 +31,7 @@ pub enum BoardFault {
     ImuUnplugged(bool),
     /// Data-ready of the inertial sensor cut (true) or joined; its bus works.
     DataReadyCut(bool),
-    /// Bits flipped in the inertial sensor's next word.
+    /// Bits flipped in its next word.
     ImuWord(u8),
     /// Divider of 1 to n at pressure sensor 0 to 3.
     PadDivider(usize, u32),
@@ -39,7 +39,7 @@ pub enum BoardFault {
     ArmUnplugged(usize, bool),
     /// Arm bus 0 or 1: clock stretched by this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
-    /// The processor's supply fails (false) or returns.
+    /// Fails (false) or returns.
     Supply(bool),
     /// The task (name in `src/firmware/tasks.rs`) hangs in its await.
     TaskHung(&'static str),
@@ -61,16 +61,16 @@ pub enum BoardFault {
     NoPll,
     /// Processor halted (true) or running; the watchdog runs.
     Hang(bool),
-    /// A pulse on the reset pin.
+    /// A pulse.
     ResetPin,
 }
 
-/// The board's outputs in the last millisecond.
+/// Outputs in the last millisecond.
 #[derive(Clone, Debug, Default)]
 pub struct Pins {
     /// Time since power-on, ms.
     pub ms: u64,
-    /// Motor commands as decoded by the controllers, 0..1.
+    /// As decoded by the controllers, 0..1.
     pub motors: PerArm<f64>,
     /// Servo pulses, µs; 0: none.
     pub servos: PerArm<f64>,
@@ -82,7 +82,7 @@ pub struct Pins {
     pub log: Vec<u8>,
     /// State light, fault light and buzzer.
     pub signals: [bool; 3],
-    /// Processor resets: time (ns since power-on) and cause.
+    /// Time (ns since power-on) and cause.
     pub resets: Vec<(u64, String)>,
 }
 
@@ -99,11 +99,11 @@ pub struct Run {
     pub latency_us: Latency,
     /// The motors' pins at the processor's last standstill.
     pub hung: Option<Hung>,
-    /// Erases per flash sector, by first address.
+    /// Per sector, by first address.
     pub erases: BTreeMap<u64, u32>,
     /// The outputs around resets.
     pub outputs: Vec<Output>,
-    /// Servo pulses at the end, µs; 0: none.
+    /// At the end, µs; 0: none.
     pub servos: PerArm<f64>,
     /// Digest of motor edges, servo pulses and telemetry.
     pub pins_digest: u64,

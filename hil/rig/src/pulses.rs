@@ -5,10 +5,10 @@ use heapless::Vec;
 use crate::cycles;
 use sophie_boards::{Pad, WIRING};
 
-/// Most pulses of a recording: two DShot frames.
+/// Two DShot frames.
 pub const MOST: usize = 32;
 
-/// A pulse on a pad, in core cycles.
+/// In core cycles.
 #[derive(Clone, Copy, defmt::Format)]
 pub struct Pulse {
     /// Rising edge, from the start of the recording.

@@ -31,7 +31,7 @@ impl OnBench {
         holds(&self.closed)
     }
 
-    /// Steady force, kgcm; `None` if the arm does not hold.
+    /// Steady force, kgcm; NaN if the arm does not hold.
     pub fn held_force(&self) -> f64 {
         if self.holds() {
             kgcm(self.closed.steady)

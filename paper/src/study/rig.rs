@@ -52,9 +52,9 @@ pub struct Moment {
     pub velocity: DVec3,
     /// True body rates, rad/s.
     pub rate: DVec3,
-    /// True tilt of each arm, rad.
+    /// rad.
     pub tilt: PerArm<f64>,
-    /// Tilt by the arm's sensor, rad; NaN if none.
+    /// By the arm's sensor, rad; NaN if none.
     pub tilt_measured: PerArm<f64>,
     /// Arm bias learnt by the mixer, rad.
     pub bias: PerArm<f64>,

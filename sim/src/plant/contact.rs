@@ -32,14 +32,14 @@ pub struct Pose {
     pub position: DVec3,
     /// Body to world.
     pub attitude: DQuat,
-    /// Velocity of the centre of mass, NED, m/s.
+    /// Of the centre of mass, NED, m/s.
     pub velocity: DVec3,
     /// Angular rate, body, rad/s.
     pub omega: DVec3,
 }
 
 impl Pose {
-    /// World position of the body point `r`.
+    /// World position of `r`, body.
     pub fn point(&self, r: DVec3) -> DVec3 {
         self.position + self.attitude * r
     }
@@ -49,7 +49,7 @@ impl Pose {
         self.velocity + self.attitude * (self.omega.cross(r) + relative)
     }
 
-    /// A world vector in body axes.
+    /// World to body axes.
     pub fn to_body(&self, world: DVec3) -> DVec3 {
         self.attitude.conjugate() * world
     }

@@ -226,7 +226,7 @@ impl Plant {
         ]
     }
 
-    /// Specific force at the body's origin, m/s², body.
+    /// At the body's origin, m/s², body.
     #[must_use]
     pub fn specific_force(&self) -> DVec3 {
         self.specific_force
@@ -256,7 +256,7 @@ impl Plant {
         self.limbs.each_ref().map(|l| l.tendon.tension())
     }
 
-    /// Contact pressure at each arm's sensor, Pa.
+    /// Contact pressure at the sensors, Pa.
     #[must_use]
     pub fn pressure(&self) -> PerArm<f64> {
         self.limbs.each_ref().map(|l| l.pressure)

@@ -24,9 +24,9 @@ pub struct ServoSpec {
     pub stall: f64,
     /// No-load speed, rad/s.
     pub slew: f64,
-    /// Travel from `release_us` to `full_us`, rad.
+    /// From `release_us` to `full_us`, rad.
     pub range: f64,
-    /// Pulse of the release position, µs.
+    /// Release position, µs.
     pub release_us: f64,
     /// Pulse after the travel `range`, µs; below `release_us` for a reversed servo.
     pub full_us: f64,
@@ -78,9 +78,9 @@ impl From<ServoProfile> for ServoSpec {
 /// Reel and tendon as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonSpec {
-    /// Radius of the reel, m (assumed).
+    /// m (assumed).
     pub reel_radius: f64,
-    /// Tendon from the arm's neutral line, m (assumed).
+    /// From the arm's neutral line, m (assumed).
     pub lever: f64,
     /// Along the tendon, N/m: 1 mm nylon, 0.25 m, E 2.5 GPa (derived, 30 %).
     pub stiffness: f64,
@@ -166,7 +166,7 @@ impl Tendon {
         self.tension
     }
 
-    /// Torque on the servo's shaft, N·m.
+    /// On the servo's shaft, N·m.
     pub fn servo_torque(&self) -> f64 {
         self.tension * self.spec.reel_radius
     }

@@ -10,7 +10,7 @@ use super::{Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
-    /// Name with its table, such as `vehicle.infill`.
+    /// With its table, such as `vehicle.infill`.
     pub name: &'static str,
     /// What it takes.
     pub kind: Kind,
@@ -41,7 +41,7 @@ pub struct Range {
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// Unit for messages; may be empty.
+    /// For messages; may be empty.
     pub unit: &'static str,
     /// SI value of one unit.
     pub si: f64,
@@ -68,7 +68,7 @@ impl Range {
         (value >= self.min && value <= self.max).then_some(value * self.si)
     }
 
-    /// The range for messages: `4 to 10 %`.
+    /// For messages: `4 to 10 %`.
     pub fn allowed(&self) -> String {
         format!("{} to {} {}", self.min, self.max, self.unit)
             .trim_end()

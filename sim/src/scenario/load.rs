@@ -21,7 +21,7 @@ const MAX_BYTES: u64 = 1 << 20;
 pub struct Overrides {
     /// Infill, %.
     pub infill: Option<f64>,
-    /// Gain on the elastic term of Eq. 1.
+    /// On Eq. 1's elastic term.
     pub gain_k: Option<f64>,
     /// Sense of rotation.
     pub configuration: Option<Configuration>,

@@ -60,7 +60,7 @@ pub struct Scenario {
 pub struct Vehicle {
     /// Arm infill, %.
     pub infill: f64,
-    /// Gain on the elastic term of Eq. 1.
+    /// On Eq. 1's elastic term.
     pub gain_k: f64,
     /// Configuration of the rotors' senses.
     pub configuration: Configuration,
@@ -74,7 +74,7 @@ pub struct Vehicle {
     pub arm_offset: PerArm<f64>,
     /// Arms carry tip masses (true) or follow thrust alone, as in the paper's statics (false).
     pub coupled_arms: bool,
-    /// Damping ratio of the bending mode in hover.
+    /// Of the bending mode in hover.
     pub arm_damping: f64,
     /// Battery charge at power-up, 0..1.
     pub battery_charge: f64,
@@ -98,17 +98,17 @@ pub enum ServoProfile {
 /// Air and pipe. Origin: the take-off point, on the ground, nose north.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// RMS gust force per axis, N.
+    /// RMS per axis, N.
     pub gust_force: f64,
-    /// RMS gust moment per axis, N·m.
+    /// RMS per axis, N·m.
     pub gust_moment: f64,
-    /// Outer diameter of the pipe, m.
+    /// Outer, m.
     pub pipe_diameter: f64,
     /// North and east of the perch spot, m; the pipe runs north-south.
     pub pipe_position: [f64; 2],
-    /// Height of the pipe's top, m.
+    /// Height, m.
     pub pipe_top: f64,
-    /// Coefficient of friction, vehicle on pipe.
+    /// Coefficient, vehicle on pipe.
     pub pipe_friction: f64,
 }
 
@@ -117,9 +117,9 @@ pub struct World {
 pub struct Pilot {
     /// Reaction delay, s.
     pub delay: f64,
-    /// Bandwidth of the pilot's sticks, Hz.
+    /// Of the sticks, Hz.
     pub bandwidth: f64,
-    /// RMS error of the seen position, m.
+    /// RMS, m.
     pub eye_noise: f64,
 }
 
@@ -128,7 +128,7 @@ pub struct Pilot {
 pub enum Step {
     /// Wait for calibration, arm with switch and stick gesture.
     Arm,
-    /// Climb to a height over the ground.
+    /// Climb to a height.
     TakeOff {
         /// m.
         height: f64,

@@ -32,9 +32,9 @@ pub struct Poll {
 pub struct Run {
     /// Wake, µs.
     pub ready: u64,
-    /// Start of its first poll, µs.
+    /// Of the first poll, µs.
     pub begin: u64,
-    /// End of its last poll, µs.
+    /// Of the last poll, µs.
     pub end: u64,
     /// Processor time, µs.
     pub execution: u64,
@@ -49,7 +49,7 @@ pub struct Run {
 pub struct Task {
     /// Name, or address.
     pub name: String,
-    /// Level; `None` if it was never named.
+    /// `None` if never named.
     pub level: Option<Level>,
     /// Its runs, in order.
     pub runs: Vec<Run>,
@@ -77,7 +77,7 @@ pub struct Replay {
     pub preemptions: BTreeMap<(usize, usize), Preemption>,
     /// Count of wakes by exception.
     pub wakes: BTreeMap<u16, u32>,
-    /// Time covered by the events, µs.
+    /// By the events, µs.
     pub covered: u64,
     /// Time without any executor, µs.
     pub idle: u64,

@@ -69,7 +69,7 @@ impl<C: Chip> Wired<C> {
         self.chip.flip_imu_word(self.pads.imu, mask);
     }
 
-    /// The sensor of arm `arm`, 0 to 3.
+    /// Sensor of arm 0 to 3.
     pub fn arm(&mut self, arm: usize) -> Option<&mut Bno055> {
         let (bus, _) = *self.pads.arms.get(arm)?;
         self.chip.arm(bus, arm % 2)
@@ -108,7 +108,7 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// Devices at the board's outputs, and their pins.
+    /// Devices and their pins.
     pub fn outputs(&self) -> Vec<(String, At)> {
         let (port, pin) = self.pads.imu_select;
         let select = At(usize::from(port.as_bytes()[port.len() - 1] - b'A'), pin);
@@ -147,7 +147,7 @@ impl<C: Chip> Wired<C> {
         self.chip.motor_edges()
     }
 
-    /// True where the timer drives the motor's pin.
+    /// Whether the timer drives the motor's pin.
     pub fn motors_driven(&mut self, now: VirtualNanos) -> [bool; 4] {
         let motors = self.pads.motors;
         motors

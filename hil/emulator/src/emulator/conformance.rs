@@ -25,9 +25,9 @@ const LINES: u16 = 32;
 /// A Cortex-M core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoreKind {
-    /// Cortex-M4 with FPv4 in single precision.
+    /// FPv4, single precision.
     M4F,
-    /// Cortex-M7 with FPv5 in double precision.
+    /// FPv5, double precision.
     M7,
 }
 

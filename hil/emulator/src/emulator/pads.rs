@@ -15,7 +15,7 @@ impl Display for At {
 /// Four pins of one timer.
 #[derive(Clone, Copy, Debug)]
 pub struct TimerPins {
-    /// Pins of channels 1 to 4.
+    /// Channels 1 to 4.
     pub pins: [At; 4],
     /// Number of the alternate function.
     pub function: u8,
@@ -30,7 +30,7 @@ pub struct ServoPin {
     pub function: u8,
     /// Name of the timer.
     pub timer: &'static str,
-    /// Channel of the timer, 1 to 4.
+    /// 1 to 4.
     pub channel: u8,
 }
 
@@ -46,7 +46,7 @@ impl ServoPin {
     }
 }
 
-/// A pad connected to the ADC.
+/// A pad of the ADC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalogPad {
     /// Processor pin.
@@ -99,7 +99,7 @@ pub struct Pads {
     pub imu_axes: fn([f64; 3]) -> [f64; 3],
     /// Bus and address, arms 1 to 4.
     pub arms: [(usize, u8); 4],
-    /// Pads of pressure 1 to 4.
+    /// 1 to 4.
     pub pressure: [AnalogPad; 4],
     /// Pad of the battery voltage.
     pub battery: AnalogPad,
@@ -113,7 +113,7 @@ pub struct Pads {
     pub console: usize,
     /// Motor pins.
     pub motors: TimerPins,
-    /// Pins of servos 1 to 4.
+    /// 1 to 4.
     pub servos: [ServoPin; 4],
     /// With alternate functions. The emulator's interfaces work without pins: a flight would not show a missing one.
     pub buses: &'static [(At, u8)],

@@ -9,9 +9,9 @@ use sophie_control::math::GRAVITY;
 use sophie_control::setpoint::Setpoint;
 use sophie_control::vector::Vec3;
 
-/// Inertial readings per control step: 4 kHz.
+/// 4 kHz.
 pub const READINGS: usize = 4;
-/// Steps at rest, in which the estimator calibrates.
+/// The estimator calibrates.
 pub const REST: u32 = 2500;
 pub const FLIGHT: u32 = 12_000;
 const STRETCH: u32 = 500;

@@ -72,7 +72,7 @@ pub struct Bno055 {
 store!(Bno055);
 
 impl Bno055 {
-    /// A chip powered at time 0.
+    /// Powered at time 0.
     pub fn new(address: u8) -> Self {
         let mut chip = Self {
             address,

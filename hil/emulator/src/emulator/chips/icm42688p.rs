@@ -38,7 +38,7 @@ const QUEUE: usize = 64;
 
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Sample {
-    /// Start of validity, ns of emulated time.
+    /// Start of validity, ns.
     pub at: u64,
     /// Angular rate, thousandths of °/s.
     pub rate: [i32; 3],
@@ -49,11 +49,11 @@ pub struct Sample {
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Imu {
     inner: Icm42688p,
-    /// Data-ready pulses that arrived since power-on.
+    /// Since power-on.
     pub pulses: u64,
     /// Line cut: the part samples, no pulse arrives.
     pub line_cut: bool,
-    /// Ready times of samples not yet read, ns.
+    /// Ready times of unread samples, ns.
     pub pulsed: Vec<u64>,
     samples: VecDeque<Sample>,
     now: Sample,
