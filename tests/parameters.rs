@@ -34,5 +34,5 @@ fn page() -> String {
 
 #[test]
 fn the_page_is_the_table() {
-    sophie_pages::is("parameters", &page(), "--test parameters");
+    sophie_pages::is("parameters.md", &page(), "--test parameters");
 }

@@ -6,7 +6,7 @@ use std::{env, fs};
 /// Set in the environment, it has the tests write the pages instead of comparing them.
 const WRITE: &str = "WRITE_DOCS";
 
-/// `docs/{name}.md` is `text`, or becomes it when `WRITE_DOCS` is set; `test` are the arguments of `cargo test` that run
+/// `docs/{name}` is `text`, or becomes it when `WRITE_DOCS` is set; `test` are the arguments of `cargo test` that run
 /// the test.
 ///
 /// # Panics
@@ -19,7 +19,7 @@ pub fn is(name: &str, text: &str, test: &str) {
     }
     assert!(
         fs::read_to_string(&path).unwrap_or_default() == text,
-        "docs/{name}.md is not what the code prints: {WRITE}=1 cargo test {test}"
+        "docs/{name} is not what the code prints: {WRITE}=1 cargo test {test}"
     );
 }
 
@@ -28,17 +28,17 @@ pub fn is(name: &str, text: &str, test: &str) {
 /// # Panics
 /// If the page lacks a marker, or has another text.
 pub fn hold(name: &str, parts: &[(&str, String)], test: &str) {
-    let path = page(name);
+    let path = page(&format!("{name}.md"));
     let found = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let printed = parts.iter().fold(found, |page, (part, text)| {
         replaced(&page, part, text)
             .unwrap_or_else(|| panic!("docs/{name}.md: no `<!-- {part}: begin -->` with its end"))
     });
-    is(name, &printed, test);
+    is(&format!("{name}.md"), &printed, test);
 }
 
 fn page(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("../../docs/{name}.md"))
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("../../docs/{name}"))
 }
 
 /// `page` with `text` between the markers of `part`, or `None` without them.

@@ -1,7 +1,6 @@
 //! `docs/modes.md` is printed from the code.
 
 extern crate std;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::string::{String, ToString};
 use std::vec::Vec;
@@ -25,26 +24,6 @@ fn notice(row: &Transition) -> String {
         Notice::ShowOf(_) => "(the cause)".to_string(),
         Notice::Lasting(reason) => std::format!("{}, as long as it lasts", reason.text()),
     }
-}
-
-fn diagram() -> String {
-    let mut edges = BTreeMap::<(usize, usize), Vec<String>>::new();
-    let place = |mode| Mode::ALL.into_iter().position(|m| m == mode).unwrap();
-    for (i, row) in TRANSITIONS.iter().enumerate() {
-        let Origin::In(modes) = row.from else { continue };
-        for &from in modes {
-            if from != row.to.mode() {
-                let rows = edges.entry((place(from), place(row.to.mode()))).or_default();
-                rows.push((i + 1).to_string());
-            }
-        }
-    }
-    let mut text = String::from("```mermaid\nstateDiagram-v2\n    [*] --> CALIBRATING\n");
-    for ((from, to), rows) in edges {
-        let (from, to) = (Mode::ALL[from].name(), Mode::ALL[to].name());
-        writeln!(text, "    {from} --> {to}: {}", rows.join(" ")).unwrap();
-    }
-    text + "```\n"
 }
 
 fn transitions() -> String {
@@ -86,7 +65,6 @@ fn reasons() -> String {
 #[test]
 fn the_page_of_the_modes_is_what_the_code_prints() {
     let parts = [
-        ("diagram", diagram()),
         ("transitions", transitions()),
         ("reasons", reasons()),
         ("checks", checks()),

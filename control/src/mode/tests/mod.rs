@@ -2,6 +2,7 @@
 //! ([`mission`]), and everything that does.
 
 mod bench;
+mod diagram;
 mod docs;
 mod hand_over;
 mod leaving;
