@@ -1,15 +1,15 @@
 //! Gripper controller: contact pressure in, tendon force out.
 //!
-//! [`Gripper::step`] is called at 100 Hz by the task `clamp`, with the measured step (s). Forces are along the tendon
-//! (N), pressures on the sensor (Pa), tilts positive with the arm's tip up (rad). A late step delays the control by as
-//! much; 200 ms without a step hold the servos, and with them the grip.
+//! The task `clamp` calls [`Gripper::step`] at 100 Hz. Forces are along the tendon (N), pressures on the sensor (Pa),
+//! tilts positive with the tip up (rad). A late step delays the control by as much; 200 ms without a step hold the
+//! servos, and with them the grip.
 //!
-//! Each arm is bent down at a steady speed, its force rising with its stiffness, until its sensor feels a touch. The
-//! force is then set to the tendon's tension, which lags while the arm moves, and a PID leads the pressure along a
-//! reference that approaches the target from below. On release the force falls at a limited rate.
+//! Each arm bends down at a steady speed until its sensor feels a touch. The force is then set to the tendon's tension,
+//! which lags while the arm moves, and a PID leads the pressure along a reference that approaches the target from
+//! below. On release the force falls at a limited rate.
 //!
-//! There are two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T meets the moment arm_d T
-//! with which the rotor's thrust bends the arm off the pipe, so that the pressure hardly moves when the rotors stop.
+//! There are two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T balances the moment arm_d T
+//! by which the rotor's thrust bends the arm off the pipe, so that the pressure hardly moves when the rotors stop.
 //!
 //! | word | meaning |
 //! |---|---|

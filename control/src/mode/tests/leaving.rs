@@ -1,4 +1,4 @@
-//! Escapes, their start, course and end; arms that do not let go.
+//! Escapes: start, course and end; arms that do not let go.
 
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;
