@@ -1,8 +1,7 @@
-//! Receiver: bytes in, the pilot's input out.
+//! Receiver: decodes bytes to the pilot's sticks.
 //!
-//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. A frame that is broken or has invalid
-//! channels is counted and dropped, so that the link turns stale; likewise when the receiver reports a lost transmitter
-//! or the line has the other protocol.
+//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. A broken frame or one with invalid channels
+//! is counted and dropped, so that the link turns stale; likewise with a lost transmitter or the wrong protocol.
 
 use embassy_time::{Duration, Instant, Timer};
 
@@ -10,7 +9,7 @@ use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
 use crate::ports::{RcDecoder, SerialInput};
 
-/// Bytes taken at once: two of the longest frames.
+/// Bytes per read: two of the longest frames.
 const BUFFER: usize = 128;
 /// Deadline of decoding, from the bytes' arrival.
 const DEADLINE: Duration = TaskId::Rc.deadline();

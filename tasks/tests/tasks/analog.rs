@@ -137,7 +137,7 @@ fn a_sensor_whose_range_ends_below_the_grip_is_reported_from_the_start() {
         ..Params::default()
     };
     let (mut rig, port) = (Rig::with(params), FakeAnalog::default());
-    // 1000 counts are 223.8 Pa bare (x = 0.2442); behind 1:2 x is 0.4884, 661.1 Pa; with a half of the range 0.1221, 96.3 Pa.
+    // 1000 counts are 223.8 Pa bare (x = 0.2442), 661.1 Pa behind 1:2 (0.4884), 96.3 Pa with half the range (0.1221).
     port.frame.set(AnalogFrame {
         fsr: [1000; 4],
         ..FRAME
