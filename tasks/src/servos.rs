@@ -32,7 +32,6 @@ pub fn period(hz: f32) -> Duration {
 ///
 /// A miss makes a tendon's force lag by at most 0.3 N for each ms, as the clamp's rate limit is 300 N/s. From 20 N (67
 /// ms) on its integral waits, and the grip closes later.
-/// it by 300 N/s at most. From 20 N (67 ms) on its integral waits, and the grip takes longer to close.
 pub fn chain_deadline(frame: Duration) -> Duration {
     let in_phase = FRAME_AT + TaskId::Analog.period();
     let (frame_us, clamp_us) = (frame.as_micros().max(1), TaskId::Clamp.period().as_micros());

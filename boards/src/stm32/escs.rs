@@ -204,7 +204,6 @@ where
     ///
     /// Order: stop counter and stream, write rows, arm stream, enable request, start counter. If the request were
     /// enabled first, an update before the stream is armed would be lost, and the frame's first bit with it.
-    /// bit.
     async fn send_frame(&mut self, bit: BitTiming, time: Duration, commands: PerArm<f32>) -> Instant {
         // Ends an abandoned frame.
         self.stop_frame();
