@@ -13,7 +13,6 @@ const MAPS: &str = "memory";
 const FAMILIES: [&str; 3] = ["f4", "f7", "h7"];
 
 struct Selection {
-    /// The board's memory map, named like its feature.
     map: PathBuf,
     /// Chip family, one of [`FAMILIES`].
     family: &'static str,

@@ -28,7 +28,7 @@ pub struct AttitudeSetpoint {
     pub roll: f32,
     /// Pitch, rad, nose up positive; limited to ±π/2.
     pub pitch: f32,
-    /// Yaw rate, rad/s, clockwise seen from above positive; limited to ± the parameter `yaw_slew`.
+    /// Yaw rate, rad/s, clockwise from above positive; limited to ±`yaw_slew`.
     pub yaw_rate: f32,
 }
 

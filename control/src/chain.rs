@@ -55,7 +55,6 @@ pub struct FlightChain<A = Flexible> {
     pub mixing: Mixing<A>,
     /// Messages between them.
     pub flow: Flow,
-    /// Feedback of the last mix.
     feedback: Feedback,
 }
 

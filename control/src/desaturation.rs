@@ -53,7 +53,7 @@ pub struct Patterns {
 /// divisions stay finite.
 const LEAST_SHIFT: f32 = 0.02;
 
-/// A share as fraction of room and need: one division at the end serves all bounds.
+/// A share as fraction: one division at the end serves all bounds.
 #[derive(Clone, Copy)]
 struct Share {
     room: f32,
@@ -98,8 +98,7 @@ impl Share {
     }
 }
 
-/// Thrusts within [`low`, `high`] N nearest to the demand, and the shares given. Constant time: no branch depends on
-/// the demand.
+/// Thrusts within [`low`, `high`] N nearest to the demand, and the shares given. No branch depends on the demand.
 #[inline(always)]
 pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let bounds = |collective: f32, shift: f32, roll_pitch: f32| {
@@ -115,8 +114,8 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let (b1, b2) = (bounds(c1, s1, r1), bounds(c2, s2, r2));
     let (b3, b4) = (bounds(c3, s3, r3), bounds(c4, s4, r4));
 
-    // Roll and pitch: the largest share for which some collective fits all four rotors: every lower bound on the shift
-    // is under every other rotor's upper one.
+    // Roll and pitch: the largest share for which one collective fits all four rotors, each lower bound on the shift
+    // below every other rotor's upper one.
     let share = Share::ALL
         .agreed(&b1, &b2)
         .agreed(&b1, &b3)

@@ -39,7 +39,7 @@ impl Geometry {
         Self::new(p.arm_d, p.arm_b, configuration.chi() * p.torque_ratio)
     }
 
-    /// The geometry with configuration B's drag sign: its yaw moments are these times the sign of this drag.
+    /// With configuration B's drag sign: its yaw moments are these times the sign of this drag.
     pub fn as_b(&self) -> Self {
         if self.drag < 0.0 {
             Self {

@@ -165,7 +165,6 @@ impl Estimator {
         let still =
             limit(gyro, REST_RATE) && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
         if !still {
-            // Motion stays out of the mean.
             self.rest_time = 0.0;
             return;
         }

@@ -133,7 +133,7 @@ impl HoldProof {
         self.proven
     }
 
-    /// Time from the start of closing until the pressure stayed within its tolerance, s; `None` without proof.
+    /// Closure time, s; `None` without proof.
     pub fn closure(&self) -> Option<f32> {
         self.proven.then_some(self.entered)
     }

@@ -57,7 +57,7 @@ pub struct ArmOutput {
 pub struct GripperOutput {
     /// Per arm.
     pub arms: PerArm<ArmOutput>,
-    /// Every chosen arm (at least one) holds, and all were within the tolerance at once for the dwell time.
+    /// All chosen arms (at least one) hold, and were within the tolerance together for the dwell time.
     pub proven: bool,
     /// Every arm is free.
     pub released: bool,
@@ -67,7 +67,7 @@ pub struct GripperOutput {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gripper {
     arms: PerArm<ArmGripper>,
-    /// Time for which all chosen arms have been within the tolerance at once, s.
+    /// Time of all chosen arms within the tolerance, s.
     together: f32,
     proven: bool,
 }

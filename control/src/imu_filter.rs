@@ -155,7 +155,7 @@ mod tests {
         assert!((newest.accel - (good.accel - bias)).norm() < 1e-3, "{newest:?}");
     }
 
-    /// Gain and delay (s) of the gyro's filter at `hz`, at its 1 kHz output, with samples at `rate_hz`.
+    /// Gain and delay (s) of the gyro's filter at `hz`, at its 1 kHz output.
     fn response(hz: f64, rate_hz: f64) -> (f64, f64) {
         let mut f = ImuFilter::new(90.0, rate_hz as f32);
         let per_output = (rate_hz / 1000.0) as usize;

@@ -133,7 +133,7 @@ impl Mode {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
 
-    /// The rotors stand still. In all other modes they may turn, and the general failsafe transitions apply.
+    /// The rotors stand still. In all other modes they may turn, and the transitions that stop everything apply.
     pub const fn rotors_stand(self) -> bool {
         matches!(self, Self::Calibrating | Self::Disarmed | Self::Perched)
     }

@@ -41,7 +41,6 @@ pub struct RateLoop {
     p: Vec3,
     i: Vec3,
     d: Vec3,
-    /// Rate of the last step.
     last: Vec3,
     started: bool,
     d_rate: f32,

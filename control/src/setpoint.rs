@@ -78,7 +78,7 @@ impl Setpoint {
         }
     }
 
-    /// True when every number is finite. Tests their sum, so it is also false if that overflows.
+    /// True if the sum of all numbers, and so each, is finite.
     pub fn is_finite(self) -> bool {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,

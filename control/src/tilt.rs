@@ -132,7 +132,7 @@ impl TiltModel {
         self.each(|arm| arm.bias)
     }
 
-    /// By reference: mapping by value would copy the arms.
+    /// By reference: by value would copy the arms.
     #[inline(always)]
     fn each(&self, what: impl Fn(&Arm) -> f32) -> PerArm<f32> {
         let [first, second, third, fourth] = &self.arms;

@@ -63,7 +63,7 @@ impl Vec3 {
         Self::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// True if every component is finite. Tests the sum, so false if it overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.x + self.y + self.z).is_finite()
@@ -209,7 +209,7 @@ impl Quat {
         )
     }
 
-    /// True if every component is finite. Tests the sum, so false if it overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.w + self.x + self.y + self.z).is_finite()

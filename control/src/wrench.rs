@@ -24,7 +24,7 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// True if every component is finite. Tests the sum, so false if it overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.thrust + self.roll + self.pitch + self.yaw).is_finite()

@@ -22,7 +22,6 @@ const TO_CONFIG: Duration = Duration::from_millis(19);
 const FROM_CONFIG: Duration = Duration::from_millis(7 + 10);
 /// First and longest pause after a failure.
 const PAUSE: [Duration; 2] = [Duration::from_millis(20), Duration::from_secs(1)];
-/// Consecutive failed readings before the chip counts as lost.
 const FAILURES_MAX: u8 = 3;
 /// Time limit for the fusion to start or to recover.
 const FUSION_LIMIT: Duration = Duration::from_secs(2);
@@ -49,7 +48,6 @@ mod reg {
 pub const CHIP_ID: u8 = 0xA0;
 /// The other register page.
 const OTHER_PAGE: u8 = 1;
-/// System reset.
 const RST_SYS: u8 = 0x20;
 /// m/s², °/s, degrees, °C; Android's pitch sense, the reset value.
 const UNITS: u8 = 0x80;
@@ -277,7 +275,6 @@ impl Bno055 {
         }
     }
 
-    /// Reads gravity and its status in one burst.
     async fn reading(&mut self, bus: &mut impl I2c, since: Instant) -> Result<Vec3, PortError> {
         match self
             .read::<16>(bus, reg::GRV_DATA_X_LSB)

@@ -25,7 +25,6 @@ pub struct Decoder {
     state: RcState,
     /// Time of the last report of 0 % uplink quality.
     lost: Option<Instant>,
-    /// Time of the last read or failure.
     last: Option<Instant>,
     unfinished: bool,
 }
@@ -88,7 +87,6 @@ impl RcDecoder for Decoder {
                     // Frames just before the report may be repetitions.
                     news &= self.lost.is_none();
                 }
-                // Well formed, but unused.
                 Ok(_) => (),
                 Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
             }

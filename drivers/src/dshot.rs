@@ -112,11 +112,10 @@ pub struct BitTiming {
 }
 
 impl BitTiming {
-    /// Fewest counts per bit: below, pulses are off by more than 2 % of the bit.
+    /// Fewest counts per bit, for pulses within 2 % of the bit.
     pub const PERIOD_MIN: u32 = 24;
 
-    /// Values nearest to `speed` at `timer_hz`; `None` where a bit has fewer than [`Self::PERIOD_MIN`] counts or more
-    /// than 16 bits hold.
+    /// Values nearest to `speed` at `timer_hz`; `None` below [`Self::PERIOD_MIN`] counts or beyond 16 bits.
     pub const fn new(timer_hz: u32, speed: Speed) -> Option<Self> {
         let rate = speed.bits_per_second();
         let period = (timer_hz + rate / 2) / rate;

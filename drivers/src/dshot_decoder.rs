@@ -16,7 +16,6 @@ pub enum LineError {
 /// Decoder of one line, in any unit of time.
 #[derive(Clone, Copy, Debug)]
 pub struct Decoder {
-    /// Nominal bit length.
     bit: u32,
     bits: u16,
     count: usize,
@@ -95,7 +94,6 @@ mod tests {
     use super::*;
     use crate::dshot::{BURST, BitTiming, MOTORS, Speed, fill_burst};
 
-    /// Plays one motor's burst from `start`; returns the decoder's results.
     fn play(
         decoder: &mut Decoder,
         buffer: &[u16],

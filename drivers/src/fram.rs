@@ -17,7 +17,6 @@ use crate::fault::{Fault, report};
 pub const CAPACITY: u32 = 32 * 1024;
 /// Emulated page; the store rotates over eight.
 pub const PAGE: usize = 4096;
-/// Most data bytes of one transfer.
 const CHUNK: usize = 64;
 const HEAD: usize = 3;
 

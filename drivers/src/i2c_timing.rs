@@ -79,7 +79,7 @@ const fn longer(a: u64, b: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Fields at the kernel clocks of the Matek H743 and CUAV V5; evaluated at compile time, unlike a board's.
+    /// At the kernel clocks of the Matek H743 and CUAV V5, evaluated at compile time.
     const MATEK: Option<I2cTiming> = I2cTiming::fast_mode(100_000_000);
     const CUAV: Option<I2cTiming> = I2cTiming::fast_mode(54_000_000);
 

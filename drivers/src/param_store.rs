@@ -44,7 +44,7 @@ struct Found {
 }
 
 impl Found {
-    /// True if a save of `params` over `defaults` would leave exactly this.
+    /// True if a save of `params` over `defaults` would change nothing.
     fn holds(&self, params: &Params, defaults: &Params) -> bool {
         let same = match &self.set {
             Some(set) => set.refused == 0 && !set.renamed && set.over(defaults) == *params,

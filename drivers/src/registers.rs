@@ -7,7 +7,6 @@ use crate::fault::Fault;
 
 /// Read bit of the address byte (DS-000347 §9.6, DS-000143).
 const READ: u8 = 0x80;
-/// Longest burst read, bytes.
 const BURST: usize = 15;
 
 /// A required register value.

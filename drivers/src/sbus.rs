@@ -24,7 +24,6 @@ use sophie_tasks::ports::RcDecoder;
 pub const FRAME: usize = 25;
 const HEADER: u8 = 0x0F;
 const CHANNEL_BITS: u32 = 11;
-/// Defined flags.
 const FLAGS: u8 = 0x0F;
 /// Twelve bits.
 const BYTE: Duration = Duration::from_micros(120);
@@ -231,9 +230,7 @@ impl Parser {
 pub struct Decoder {
     parser: Parser,
     state: RcState,
-    /// Consecutive frames without garbage.
     in_a_row: u8,
-    /// Time of the last read or failure.
     last: Option<Instant>,
 }
 

@@ -32,7 +32,7 @@ const WATCHED: usize = 6;
 const GARBLED_MAX: u8 = 4;
 /// Consecutive dropped waits before a reset of a part whose registers are right.
 const SILENCES_MAX: u8 = 2;
-/// Longest polling without a sample before a reset: two periods at the slowest rate, below the caller's time-out.
+/// Longest polling without a sample: two periods at the slowest rate, below the caller's time-out.
 const NOT_READY_MAX: Duration = Duration::from_millis(2);
 /// Factor on `stuck_after` for the accelerometer, slower on some parts.
 const ACCEL_PATIENCE: u16 = 4;
@@ -68,8 +68,8 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Checks every 100 ms; stuck after 16 equal samples, which noise excludes at every rate (two occur at 1 kHz, with
-    /// noise below one count).
+    /// Checks every 100 ms; stuck after 16 equal samples, which noise excludes (two occur at 1 kHz, with noise below
+    /// one count).
     pub const fn at(rate_hz: f32) -> Self {
         Self {
             check_every: (rate_hz * 0.1) as u16,
@@ -165,7 +165,6 @@ enum State {
 struct Repeats {
     last: Option<[i16; 3]>,
     count: u16,
-    /// The value has changed at least once.
     alive: bool,
 }
 
@@ -280,7 +279,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         self.bring_up().await?;
         loop {
             self.next_raw().await?;
-            // A part may still hang after its reset: samples are discarded until they change.
+            // A part may still hang after its reset.
             if self.gyro.alive || self.chip.watch().stuck_after == 0 {
                 return Ok(());
             }
@@ -315,7 +314,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         let raw = self.raw;
         let watch = self.chip.watch();
         let accel_limit = watch.stuck_after.saturating_mul(ACCEL_PATIENCE);
-        // No short circuit: each keeps its own count.
+        // No short circuit: each counts.
         let gyro_stuck = self.gyro.too_many(raw.gyro, watch.stuck_after);
         if self.accel.too_many(raw.accel, accel_limit) || gyro_stuck {
             return Err(Fault::Stuck);
@@ -335,7 +334,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         while let Some(due) = self.line.due() {
             let in_time = Timer::at(due);
             if let Either::First(_) = select(self.data_ready.next(), in_time).await {
-                // A pulse does not make the polls more frequent.
+                // A pulse does not speed up the polls.
                 announced = true;
                 until(due).await;
             }
@@ -354,7 +353,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
-    /// Brings the part to running from any state.
     async fn bring_up(&mut self) -> Result<(), Fault> {
         loop {
             match self.state {
@@ -441,7 +439,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Compares identity, scale and rate registers with the configuration.
     async fn check(&mut self) -> Result<(), Fault> {
         self.identify().await?;
         let read: [u8; WATCHED] = self.registers.read(C::WATCH_FROM).await?;
@@ -507,7 +504,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(codes)
     }
 
-    /// Records a result; a failure schedules a reset after a pause.
+    /// A failure schedules a reset after a pause.
     fn note<T>(&mut self, result: Result<T, Fault>) -> Result<T, Fault> {
         let Err(fault) = &result else { return result };
         let first = self.last_fault != Some(*fault);

@@ -41,7 +41,6 @@ struct Read {
     gap: u64,
 }
 
-/// Reads for `ms` as the imu task does.
 async fn read_for(driver: &mut impl Imu, ms: u64) -> Read {
     let end = Instant::now() + Duration::from_millis(ms);
     let (mut read, mut last) = (Read::default(), Instant::now().as_micros());

@@ -281,7 +281,7 @@ fn full_set(params: &Params) -> Vec<u8> {
     item
 }
 
-/// Stores `saves` sets of [`FULL`] records, reads each back; returns the erases.
+/// Stores and reads back `saves` sets of [`FULL`] records; returns the erases.
 fn keeps_full_sets<const W: usize, const P: usize>(saves: usize) -> usize {
     let flash = Flash::<W, P>::blank(2);
     for i in 0..saves {

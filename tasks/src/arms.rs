@@ -81,7 +81,6 @@ pub fn fits(p: &Params) -> PerArm<ArmFit> {
     })
 }
 
-/// True for a vector that can be gravity, m/s².
 fn plausible(gravity: &Vec3) -> bool {
     gravity.is_finite() && (5.0..15.0).contains(&gravity.norm())
 }

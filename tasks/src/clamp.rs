@@ -74,7 +74,8 @@ pub async fn run(links: &Links) -> ! {
     }
 }
 
-/// Initial loops. Those of closed arms continue, and their servos get pulses for where they stand; all others wait for a command.
+/// Initial loops. Those of closed arms continue, and their servos get pulses for where they stand; all others wait for
+/// a command.
 fn begin(links: &Links) -> Gripper {
     match links.start.retained {
         Some(RetainedState {
@@ -94,7 +95,6 @@ fn begin(links: &Links) -> Gripper {
     }
 }
 
-/// Input of each arm, with the fresh pressures `contact`.
 fn inputs(links: &Links, close: PerArm<bool>, contact: Option<Stamped<Contact>>) -> PerArm<ArmInput> {
     let mut inputs = close.map(|close| ArmInput {
         close,

@@ -9,7 +9,7 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::waitqueue::MultiWakerRegistration;
 
-/// The mutex of every link: tasks of different priority share it.
+/// Mutex of every link, shared by tasks of different priority.
 pub type Raw = CriticalSectionRawMutex;
 
 /// Most receivers of one link.

@@ -69,7 +69,6 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     }
 }
 
-/// One tendon: its reel and the drive of its servo.
 struct Tendon {
     reel: Reel,
     drive: TendonDrive,
@@ -114,7 +113,6 @@ impl Tendons {
         Self { arms, begun: false }
     }
 
-    /// One step of `dt` s by the newest order, with the fresh tilts (rad).
     fn step(&mut self, newest: &Newest<TendonOrder>, tilts: PerArm<Option<f32>>, dt: f32) -> PerArm<Drive> {
         let mut output = [Drive::default(); 4];
         let placed = match newest {
@@ -170,7 +168,6 @@ impl Tendons {
 /// is both. Conversions overtaken by a newer one and forces that follow from no pressure are not measured.
 struct ChainWatch {
     deadline: Duration,
-    /// Last conversion answered.
     last: Option<Instant>,
 }
 

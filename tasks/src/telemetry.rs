@@ -22,7 +22,6 @@ use crate::ports::SerialOutput;
 
 const CYCLE: u8 = 10;
 const BATTERY_SLOT: u8 = 9;
-/// Longest text of a flight-mode frame.
 const TEXT: usize = 59;
 
 type Frame = heapless::Vec<u8, 64>;
@@ -73,7 +72,6 @@ fn scheduled(links: &Links, status: Status, slot: u8) -> Option<Frame> {
     }
 }
 
-/// The mode's name, with any reason after a colon.
 fn mode_text(status: Status) -> String<TEXT> {
     let Status {
         mode,
@@ -96,7 +94,7 @@ fn mode_text(status: Status) -> String<TEXT> {
     text
 }
 
-/// Splits the text of a flight-mode frame into mode and reason, as a display does.
+/// Splits the text of a flight-mode frame into mode and reason.
 pub fn parse_mode_text(text: &str) -> Option<(Mode, &str)> {
     let (name, reason) = text.split_once(": ").unwrap_or((text, ""));
     Some((Mode::from_name(name)?, reason))

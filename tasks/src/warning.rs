@@ -2,7 +2,7 @@
 
 use crate::start::StartCause;
 
-/// A warning, shown beside the mode when there is no reason to show.
+/// A warning, shown beside the mode when there is no reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warning {
     /// An arm's measured tilt is farther from its model than the correction reaches.

@@ -70,7 +70,6 @@ struct Block {
     faults: u32,
     length: u32,
     text: [u32; WORDS],
-    /// Sum of all preceding words.
     sum: u32,
 }
 

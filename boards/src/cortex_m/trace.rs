@@ -32,7 +32,6 @@ enum Kind {
 
 static RING: [[AtomicU32; 2]; EVENTS as usize] =
     [const { [const { AtomicU32::new(0) }; 2] }; EVENTS as usize];
-/// Events since the start.
 static WRITTEN: AtomicU32 = AtomicU32::new(0);
 static READ: AtomicU32 = AtomicU32::new(0);
 static LOST: AtomicU32 = AtomicU32::new(0);
@@ -90,7 +89,7 @@ pub fn lost() -> u32 {
     LOST.load(Relaxed)
 }
 
-/// The thread mode executor polled since it was idle; interrupts wake it mostly without work.
+/// The thread mode executor polled since it was idle: interrupts mostly wake it without work.
 static POLLED: AtomicBool = AtomicBool::new(false);
 
 // SAFETY (all seven): symbols declared by embassy-executor, each defined once with its signature.

@@ -46,7 +46,6 @@ enum Timing {
 /// Speed controllers on channels of a 16-bit timer.
 pub struct EscTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
     timer: low_level::Timer<'static, T>,
-    /// Channel of each motor on this timer.
     channels: PerArm<Option<Channel>>,
     motors: [usize; dshot::MOTORS],
     /// Kept to own the pins.
@@ -158,7 +157,6 @@ where
         self
     }
 
-    /// Each used channel with its motor's value.
     fn on_channels<V: Copy>(
         &self,
         motors: PerArm<V>,

@@ -177,7 +177,7 @@ impl<P> ErrorType for ArmBus<P> {
 
 impl<P: BusParts> embedded_hal_async::i2c::I2c for ArmBus<P> {
     async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
-        // Taken out: a dropped transfer makes the next one rebuild the bus.
+        // Taken out: after a dropped transfer the next one rebuilds the bus.
         let mut bus = match self.bus.take() {
             Some(bus) => bus,
             None => self.rebuilt().await.ok_or(Error::Bus)?,

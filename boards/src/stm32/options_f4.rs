@@ -55,7 +55,6 @@ pub fn set_brown_out() -> bool {
     done && brown_out_level() == 3
 }
 
-/// Waits until the flash is idle; false on time-out.
 fn ready() -> bool {
     let start = Instant::now();
     while FLASH.sr().read().bsy() {

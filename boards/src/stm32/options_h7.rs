@@ -51,7 +51,6 @@ pub fn set_brown_out() -> bool {
     done && !FLASH.optsr_cur().read().optchangeerr() && brown_out_level() == 3
 }
 
-/// Waits until the option bytes are idle; false on time-out.
 fn ready() -> bool {
     let start = Instant::now();
     while FLASH.optsr_cur().read().opt_busy() {

@@ -20,7 +20,6 @@ pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Conf
 /// A bus with its only chip's select line.
 pub struct Selected<B> {
     bus: B,
-    /// Low during transfers.
     select: Output<'static>,
 }
 

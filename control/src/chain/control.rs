@@ -20,7 +20,7 @@ const RESTING_SHARE: f32 = 0.4;
 pub struct Command {
     /// Wanted motion of the rotors; [`Setpoint::Stop`] replaces a stale one.
     pub setpoint: Setpoint,
-    /// Its time, µs. Each time is aimed at once: aiming takes as long as half a step.
+    /// Its time, µs. Each is aimed at only once, which takes as long as half a step.
     pub at_us: u64,
 }
 

@@ -16,7 +16,7 @@ pub struct ImuReading {
 }
 
 impl ImuReading {
-    /// True when every component is finite. Tests their sum, so it is also false if that overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         (self.gyro + self.accel).is_finite()

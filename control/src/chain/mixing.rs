@@ -23,7 +23,7 @@ pub struct ArmReading {
 /// Inputs besides the demand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surroundings {
-    /// Last measured battery voltage over nominal, of any age: still the best guess. `None` means nominal.
+    /// Last battery voltage over nominal, of any age; `None` means nominal.
     pub battery_ratio: Option<f32>,
     /// Last reading of the arms' sensors, `None` for each that is too old; readings already taken may be left out.
     pub arms: Option<ArmReading>,
@@ -57,8 +57,8 @@ impl<A: Allocation> Mixing<A> {
         at_us > self.readings.seen_us
     }
 
-    /// Writes the commands for `demand`, whose sample was ready at `at_us` µs, into `out`: a message this long is
-    /// costly to copy.
+    /// Writes the commands for `demand`, whose sample was ready at `at_us` µs, into `out`: so long a message is costly
+    /// to copy.
     #[inline(always)]
     pub fn step(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings, out: &mut MixOutput) {
         A::step_mixing(self, at_us, demand, surroundings, out);
@@ -125,7 +125,6 @@ fn on_bench(out: &mut MixOutput, spin: &Spin) {
     out.commands = spin.commands();
 }
 
-/// Readings of the arms' sensors yet to be used.
 #[derive(Clone, Copy, Debug, Default)]
 struct Readings {
     /// Time of the last readings taken, µs.

@@ -17,7 +17,7 @@ const REGAIN_RATE_MAX: f32 = 30.0;
 const LAG_STUCK: f32 = 8.0;
 /// Time at the force limit until the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
-/// Time for which pressure and tilt must be known after a restart, s: ten servo frames of 20 ms.
+/// Time of known pressure and tilt after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
 /// Time without a tilt until the arm is faulty, s; its servo is held at once.
 const TILT_MISSING_MAX: f32 = 0.5;
@@ -32,7 +32,7 @@ pub(super) enum Phase {
     Free,
     /// Bending down without touch.
     Approach,
-    /// After a restart, with the time for which all inputs are known, s: the servo stays.
+    /// After a restart, servo held, with the time of known inputs, s.
     Resume(f32),
     /// Touched: the pressure is controlled.
     Grip(PressureLoop),
@@ -117,7 +117,6 @@ impl ArmGripper {
         matches!(self.phase, Phase::Resume(_))
     }
 
-    /// The arm has been free for its dwell time.
     pub(super) fn is_free(&self, sensed: Pressure) -> bool {
         self.phase == Phase::Free && self.free.proven(sensed.known().is_some())
     }
@@ -271,7 +270,6 @@ impl ArmGripper {
         }
     }
 
-    /// A touching arm's pressure must rise with its force.
     fn watch_ceiling(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.bend_watch = None;
         let sample = CeilingSample {

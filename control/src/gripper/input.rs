@@ -94,7 +94,6 @@ impl InputFilters {
     }
 }
 
-/// Complete input of the pressure loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Contact {
     /// Contact pressure, Pa.

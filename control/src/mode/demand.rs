@@ -58,7 +58,7 @@ pub struct Collective {
 }
 
 impl Collective {
-    /// Begins a new state: its collective starts at the last one and is reached after `time` s (> 0).
+    /// Begins a new state: the collective moves from the last one to the state's own within `time` s (> 0).
     pub fn hand_over(&mut self, time: f32) {
         self.pending = Some(time);
     }

@@ -49,7 +49,6 @@ pub struct Escaping {
     from: Option<f32>,
     /// Climb rate since the escape began, m/s.
     climb: f32,
-    /// The tendons are paying out.
     opening: bool,
 }
 
@@ -80,7 +79,6 @@ impl Escaping {
         context.since >= ramp + CLEAR_TIME && free
     }
 
-    /// The closed arms are overdue.
     fn late(&self, context: &Context) -> bool {
         self.grip_memory.arms().is_some() && context.since >= FREE_MAX
     }

@@ -8,8 +8,7 @@ use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::params::Params;
 
-/// Least throttle at which the arms open, so that some of the weight is carried when they let go; held while they open
-/// or close again, regardless of the stick.
+/// Least throttle at which the arms open, to carry some weight when they let go; held while they open or close again.
 pub const RELEASE_THROTTLE_MIN: f32 = 0.2;
 /// Time that every arm must be free before flight, s.
 pub const FREE_TIME: f32 = 0.3;

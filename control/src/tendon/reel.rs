@@ -14,7 +14,6 @@ pub const SPAN_MIN_US: f32 = 200.0;
 /// Tilt at which the tendon of a released servo is just taut, rad: 23°, beyond flight, so that a flying arm never pulls
 /// it (built so; assumed).
 pub const REFERENCE_TILT: f32 = 0.4;
-/// Largest trim of a servo, µs.
 const TRIM_MAX_US: f32 = 50.0;
 /// Share of the servo's speed used, so that it follows the commanded angle.
 const SPEED_SHARE: f32 = 0.9;

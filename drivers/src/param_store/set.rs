@@ -52,7 +52,6 @@ impl Set {
         }
     }
 
-    /// The values read, over `defaults`.
     pub(super) fn over(&self, defaults: &Params) -> Params {
         let mut params = *defaults;
         for (at, row) in Params::TABLE.iter().enumerate() {

@@ -24,7 +24,6 @@ struct World {
     command: Option<ClampCommand>,
     pressure: PerArm<f32>,
     fault: PerArm<bool>,
-    /// Arms whose tilt is known.
     seen: PerArm<bool>,
     contact: bool,
     mix: MixOutput,

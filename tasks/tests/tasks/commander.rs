@@ -101,7 +101,6 @@ impl Bench {
         self.rig.links.status.fresh().unwrap().warning
     }
 
-    /// Makes the arming gesture for 1.2 s.
     fn arms(&mut self) -> bool {
         self.world.sticks.arm_switch = true;
         self.world.sticks.yaw = 1.0;
@@ -191,7 +190,6 @@ fn a_flight_level_that_stays_late_stays_refused() {
             assert_eq!(bench.inhibits(), [ArmingInhibit::Overruns], "{} ms", 50 * i);
         }
     }
-    // Misses in flight have no effect.
     let mut bench = Bench::flying();
     bench.late(TaskId::Control, 1000);
     bench.run(2000);

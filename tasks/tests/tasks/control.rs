@@ -98,7 +98,6 @@ fn near(a: f32, b: f32) -> bool {
 fn a_setpoint_silent_for_50_ms_stops_the_rotors() {
     let mut bench = Bench::new();
     bench.run(1, LEVEL);
-    // 1 to 50 ms old.
     for age in 1..60 {
         let (links, at) = (bench.rig.links, Instant::now());
         bench.speak(links, at);
@@ -143,7 +142,7 @@ fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given()
         near(wrench.roll, 0.189) && wrench.pitch == 0.0 && wrench.thrust == 10.0,
         "{wrench:?}"
     );
-    // Nothing is given by a mixer that is silent, gave nothing, or reported more than 10 ms ago.
+    // Nothing is given by a mixer that is silent, gave nothing, or is older than 10 ms.
     let nothing = MixOutput {
         given: Given {
             roll_pitch: 0.0,

@@ -52,7 +52,6 @@ impl Woken {
     }
 }
 
-/// Polls once as the task `of`.
 fn poll_as<F: Future>(of: &Arc<Woken>, future: F) -> Poll<F::Output> {
     pin!(future).poll(&mut Context::from_waker(&Waker::from(of.clone())))
 }

@@ -55,7 +55,6 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     links.attitude.send(now, attitude);
 }
 
-/// State found after a reset.
 fn found(memory: &FakeMemory) -> Start {
     Start::new(StartCause::Watchdog, &memory.copies())
 }

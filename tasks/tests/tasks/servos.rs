@@ -14,7 +14,6 @@ use sophie_tasks::timing::Quantity;
 use crate::rig::Rig;
 use sophie_fakes::FakeServos;
 
-/// Tilt of a closed arm, rad.
 const CLOSED: f32 = -1.2;
 
 fn started(start: Start) -> (Rig, FakeServos) {

@@ -59,7 +59,7 @@ fn arming_is_refused_with_a_reason_that_can_be_read() {
     r.sticks().arms = ArmChoice::Front;
     r.run(0.1);
     assert!(r.out.inhibits.is_empty(), "a sensor that nobody needs");
-    // A rear sensor's range, then a front one's: arms 2 and 4 are the rear ones.
+    // Arms 2 and 4 are the rear ones.
     r.inputs.hardware = ArmingInhibits::NONE
         .with(ArmingInhibit::FsrRange2)
         .with(ArmingInhibit::FsrRange4);
@@ -390,7 +390,6 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     }
     assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
-    // The line is back, the wish stands.
     r.line_silent(false);
     r.expect(0.1, Mode::Releasing);
     // Spooling up with closed arms: back onto the grip until the switch is turned again.
