@@ -36,8 +36,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Board and chip of this build. Boards are named like their memory maps; chips are features `stm32…`.
 ///
-/// # Errors One line: no board or chip, several, or a family without shared code; a motor or servo on a pin that the
-/// chip pulls up.
+/// # Errors
+/// One line: no board or chip, several, or a family without shared code; a motor or servo on a pin that the chip pulls
+/// up.
 fn selection() -> Result<Selection, String> {
     let boards = boards().map_err(|error| format!("boards/{MAPS}: {error}"))?;
     let feature = |name: &str| format!("CARGO_FEATURE_{}", name.to_uppercase().replace('-', "_"));

@@ -10,7 +10,8 @@ const DEBUG_PORT: [&str; 5] = ["PA13", "PA14", "PA15", "PB3", "PB4"];
 /// Checks that a board's table (`assign_resources!`) has `motor_1` to `motor_4` and `servo_1` to `servo_4`, none on a
 /// debug port pin.
 ///
-/// # Errors One line: the field, its pin, and the pins not allowed.
+/// # Errors
+/// One line: the field, its pin, and the pins not allowed.
 pub fn check(table: &str) -> Result<(), String> {
     for output in ["motor", "servo"] {
         for number in 1..=4 {

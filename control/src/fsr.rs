@@ -79,6 +79,7 @@ impl FsrScale {
         self.pressure_of(f32::from(counts))
     }
 
+    /// Largest readable pressure, Pa.
     pub fn largest(&self) -> f32 {
         self.pressure_of(self.most)
     }
@@ -105,7 +106,8 @@ pub struct Fsr {
 impl Fsr {
     /// Takes one conversion, `dt` s after the last; returns the pressure, Pa.
     ///
-    /// # Errors The fault, until the counts have been plausible for 0.2 s.
+    /// # Errors
+    /// The fault, until the counts have been plausible for 0.2 s.
     pub fn step(&mut self, scale: &FsrScale, counts: u16, dt: f32) -> Result<f32, FsrFault> {
         let now = match f32::from(counts) {
             c if c <= scale.most => None,

@@ -103,7 +103,8 @@ pub struct ChannelError {
 impl Sticks {
     /// Decodes a frame.
     ///
-    /// # Errors A used channel outside the accepted range; the frame must be dropped.
+    /// # Errors
+    /// A used channel outside the accepted range; the frame must be dropped.
     pub fn from_channels(channels: &[u16; CHANNELS]) -> Result<Self, ChannelError> {
         for (channel, &raw) in (1..).zip(channels.iter().take(USED)) {
             if !RAW_VALID.contains(&raw) {

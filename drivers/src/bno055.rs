@@ -182,8 +182,8 @@ impl Bno055 {
 
     /// Advances the chip one step, or reads gravity in the axes of its mounting, m/s²; (0, 0, 9.8) when level.
     ///
-    /// # Errors `Absent` while the chip is missing, not ready or not calibrated; `Timeout` and `Corrupt` for a failed
-    /// reading.
+    /// # Errors
+    /// `Absent` while the chip is missing, not ready or not calibrated; `Timeout` and `Corrupt` for a failed reading.
     pub async fn gravity(&mut self, bus: &mut impl I2c) -> Result<Vec3, PortError> {
         let now = Instant::now();
         match self.state {

@@ -35,7 +35,8 @@ impl Decoder {
 
     /// Adds a pulse that rose at `rise` and lasted `high`; returns a completed frame.
     ///
-    /// # Errors A pulse of invalid length, a truncated frame, a wrong checksum. The decoder then restarts.
+    /// # Errors
+    /// A pulse of invalid length, a truncated frame, a wrong checksum. The decoder then restarts.
     pub fn pulse(&mut self, rise: u64, high: u32) -> Option<Result<Frame, LineError>> {
         let gap = self.last_rise.replace(rise).map(|last| rise.saturating_sub(last));
         // A rise more than 1.5 bits after the last starts a frame.

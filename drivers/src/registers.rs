@@ -77,7 +77,8 @@ impl<S: SpiDevice> Registers<S> {
 
     /// Reads `N` registers of the selected bank from `first`.
     ///
-    /// # Errors [`Fault::Bus`].
+    /// # Errors
+    /// [`Fault::Bus`].
     pub async fn read<const N: usize>(&mut self, first: u8) -> Result<[u8; N], Fault> {
         const { assert!(N <= BURST, "the burst is longer than the buffer") };
         self.buffer.fill(0);
@@ -119,7 +120,8 @@ impl<S: SpiDevice> Registers<S> {
 
     /// Writes `settings` in order, keeping the bits outside their masks, and selects bank 0.
     ///
-    /// # Errors [`Fault::Bus`].
+    /// # Errors
+    /// [`Fault::Bus`].
     pub async fn apply(&mut self, settings: &[Setting]) -> Result<(), Fault> {
         let mut selected = None;
         for setting in settings {

@@ -113,8 +113,8 @@ impl Frame {
 
     /// The pilot's sticks.
     ///
-    /// # Errors A frame that the receiver made up, or a channel out of range: the caller drops it, so the link turns
-    /// stale.
+    /// # Errors
+    /// A frame that the receiver made up, or a channel out of range: the caller drops it, so the link turns stale.
     pub fn sticks(&self) -> Result<Sticks, SbusError> {
         if self.failsafe {
             return Err(SbusError::Failsafe);
@@ -172,7 +172,8 @@ impl Parser {
 
     /// Next frame or report of garbage in `bytes`, which is advanced; `None` at its end.
     ///
-    /// # Errors [`SbusError::Garbage`], once for each run of discarded bytes.
+    /// # Errors
+    /// [`SbusError::Garbage`], once for each run of discarded bytes.
     pub fn next_frame(&mut self, bytes: &mut &[u8]) -> Option<Result<Frame, SbusError>> {
         loop {
             let (&byte, rest) = bytes.split_first()?;

@@ -74,7 +74,8 @@ pub struct SelfTest {
 
 /// Judges a part.
 ///
-/// # Errors The first axis with a wrong response, or whose gyroscope is too far from zero at rest.
+/// # Errors
+/// The first axis with a wrong response, or whose gyroscope is too far from zero at rest.
 pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
     for (axis, rest) in (0u8..).zip(m.gyro.rest) {
         let limit = limits.gyro_offset_dps * COUNTS_PER_DPS;

@@ -239,7 +239,8 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     /// Resets, identifies, configures and verifies the part, and waits for valid samples: about 50 ms (ICM-42688-P) or
     /// 190 ms (ICM-20689).
     ///
-    /// # Errors The part's fault. The driver still serves as a port, which retries.
+    /// # Errors
+    /// The part's fault. The driver still serves as a port, which retries.
     pub async fn init(&mut self) -> Result<(), Fault> {
         let result = self.bring_up().await;
         self.note(result)
@@ -248,7 +249,8 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     /// Actuates both sensors and compares their response with the factory codes; about 1.5 s, vehicle at rest. Then
     /// resets and configures the part in any case.
     ///
-    /// # Errors The first axis that fails, or a fault of the part.
+    /// # Errors
+    /// The first axis that fails, or a fault of the part.
     pub async fn self_test(&mut self) -> Result<SelfTest, Fault> {
         let verdict = match self.bring_up().await {
             Ok(()) => self.actuate().await,

@@ -6,6 +6,7 @@ use embassy_stm32::pac::{DBGMCU, FLASH};
 /// Its prefetch must stay off (STM32F405 errata, "ART accelerator prefetch").
 const REVISION_A: u16 = 0x1000;
 
+/// Prefetch is usable.
 pub fn has_prefetch() -> bool {
     DBGMCU.idcode().read().rev_id() != REVISION_A
 }

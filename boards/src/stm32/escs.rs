@@ -253,7 +253,8 @@ where
 {
     /// Both timers with their motors.
     ///
-    /// # Panics If a motor is on none or both: such a board never starts, so the bench finds it.
+    /// # Panics
+    /// If a motor is on none or both: such a board never starts, so the bench finds it.
     pub fn new(first: EscTimer<T, D, I>, second: EscTimer<U, E, J>) -> Self {
         for (a, b) in first.channels.iter().zip(&second.channels) {
             assert!(a.is_some() != b.is_some(), "each motor is on one timer");
@@ -272,7 +273,8 @@ impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
 
 /// Timer values for a protocol at `clock_hz`.
 ///
-/// # Panics If the clock cannot make the protocol: such a board never starts, so the bench finds it.
+/// # Panics
+/// If the clock cannot make the protocol: such a board never starts, so the bench finds it.
 fn timing(protocol: EscProtocol, clock_hz: u32) -> Timing {
     let found = match protocol {
         EscProtocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(|bit| {

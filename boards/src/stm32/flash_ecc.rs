@@ -37,7 +37,8 @@ pub fn forget_errors() {
 ///
 /// Never inlined: `cargo xtask` finds the guard in an image by its name.
 ///
-/// # Safety FAULTMASK raises the following code to hard fault priority: no interrupt runs until [`end_guard`].
+/// # Safety
+/// FAULTMASK raises the following code to hard fault priority: no interrupt runs until [`end_guard`].
 #[inline(never)]
 unsafe fn begin_guard() {
     // SAFETY: the core's own register; the bit has no effect below hard fault priority.

@@ -108,7 +108,8 @@ timed!(I2C4);
 /// Sets fast-mode times instead of embassy-stm32's, whose upper bits do not fit the register. Called while no transfer
 /// runs.
 ///
-/// # Panics If the clock cannot make them: such a board never starts, so the bench finds it.
+/// # Panics
+/// If the clock cannot make them: such a board never starts, so the bench finds it.
 #[cfg(any(family = "f7", family = "h7"))]
 pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
     let clock = embassy_stm32::rcc::frequency::<T>().0;

@@ -65,7 +65,8 @@ impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
     /// Servos on these pins, without pulses, at `servo_frame_rate`. The pins determine the channels, in any order; two
     /// of one channel do not build.
     ///
-    /// # Panics As [`timer_with_frames`].
+    /// # Panics
+    /// As [`timer_with_frames`].
     pub fn new<C1: TimerChannel, C2: TimerChannel, C3: TimerChannel, C4: TimerChannel>(
         first: Peri<'static, A>,
         one_two: (

@@ -17,7 +17,8 @@ const SERVOS: [Channel; 4] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel:
 
 /// `timer` with frames at `servo_frame_rate`, starting at [`servos::FRAME_AT`] of the board's clock.
 ///
-/// # Panics If the timer's clock cannot make the frames: such a board never starts, so the bench finds it.
+/// # Panics
+/// If the timer's clock cannot make the frames: such a board never starts, so the bench finds it.
 pub(super) fn timer_with_frames<T: GeneralInstance4Channel>(
     timer: Peri<'static, T>,
     params: &Params,
@@ -45,7 +46,8 @@ pub struct ServoTimer<T: GeneralInstance4Channel> {
 impl<T: GeneralInstance4Channel> ServoTimer<T> {
     /// Servos on these pins, without pulses, at `servo_frame_rate`.
     ///
-    /// # Panics As [`timer_with_frames`].
+    /// # Panics
+    /// As [`timer_with_frames`].
     pub fn new(
         timer: Peri<'static, T>,
         (one, two, three, four): (

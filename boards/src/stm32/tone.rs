@@ -23,7 +23,8 @@ pub struct Tone<T: GeneralInstance4Channel> {
 impl<T: GeneralInstance4Channel> Tone<T> {
     /// The sounder on `pin`, silent.
     ///
-    /// # Panics If the clock cannot make the tone: such a board never starts, so the bench finds it.
+    /// # Panics
+    /// If the clock cannot make the tone: such a board never starts, so the bench finds it.
     pub fn new(timer: Peri<'static, T>, pin: Peri<'static, impl TimerPin<T, Ch1>>) -> Self {
         let Some(timing) = PwmTiming::new(rcc::frequency::<T>().0, WAVE_US) else {
             panic!("the sounder's timer cannot make waves of {WAVE_US} us")

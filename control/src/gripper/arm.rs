@@ -109,6 +109,7 @@ impl ArmGripper {
         }
     }
 
+    /// Present fault.
     pub fn fault(&self) -> Option<GripFault> {
         self.fault
     }
