@@ -9,7 +9,7 @@ pub enum GripFault {
     Sensor,
     /// The arm met something that its sensor does not feel; stays until release.
     Unfelt,
-    /// The pressure did not follow the force up to that of a grip: the sensor cannot read it; stays until release.
+    /// The pressure stayed below that of a grip while the force rose: the sensor cannot read it; stays until release.
     Ceiling,
     /// Tilt missing; ends with it.
     Tilt,

@@ -1,15 +1,15 @@
 //! Gripper controller: contact pressure in, tendon force out.
 //!
 //! The task `clamp` calls [`Gripper::step`] at 100 Hz. Forces are along the tendon (N), pressures on the sensor (Pa),
-//! tilts positive with the tip up (rad). A late step delays the control by as much; 200 ms without a step hold the
-//! servos, and with them the grip.
+//! tilts positive with the tip up (rad). A late step delays the control; 200 ms without a step hold the servos, and
+//! with them the grip.
 //!
-//! Each arm bends down at a steady speed until its sensor feels a touch. The force is then set to the tendon's tension,
-//! which lags while the arm moves, and a PID leads the pressure along a reference that approaches the target from
-//! below. On release the force falls at a limited rate.
+//! Each arm bends down steadily until its sensor feels a touch. The force is then set to the tendon's tension, which
+//! lags while the arm moves, and a PID leads the pressure along a reference that approaches the target from below. On
+//! release the force falls at a limited rate.
 //!
-//! There are two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T balances the moment arm_d T
-//! by which the rotor's thrust bends the arm off the pipe, so that the pressure hardly moves when the rotors stop.
+//! Two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T balances the moment arm_d T by which
+//! the rotor's thrust bends the arm off the pipe, so that the pressure hardly moves when the rotors stop.
 //!
 //! | word | meaning |
 //! |---|---|
@@ -73,7 +73,7 @@ pub struct Gripper {
 }
 
 impl Gripper {
-    /// Resumes the loops of closed arms (those with a force) after a restart; see [`ArmGripper::resume`].
+    /// Resumes the loops of closed arms (those with a force) after a restart.
     pub fn resume(force: PerArm<f32>, fault: PerArm<Option<GripFault>>) -> Self {
         let mut arms = [ArmGripper::default(); 4];
         for ((arm, force), fault) in arms.iter_mut().zip(force).zip(fault) {
@@ -104,7 +104,7 @@ impl Gripper {
             within &= !input.close || (grip.pressure - cfg.demand.pressure).abs() <= cfg.demand.tolerance;
             out.released &= arm.is_free(input.pressure);
         }
-        // A proven grip is doubted arm by arm only: a push moves the pressures without loosening it.
+        // A proven grip is doubted by arm only: a push moves the pressures without loosening it.
         self.together = if within {
             math::clamp(self.together + dt, 0.0, 10.0)
         } else {

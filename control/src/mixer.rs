@@ -19,11 +19,11 @@ use crate::wrench::{PerArm, Wrench};
 /// Result of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mix {
-    /// Thrust of each rotor, N, from idle to the largest that the battery allows.
+    /// Thrust of each rotor, N, within the idle and the battery's limit.
     pub thrusts: PerArm<f32>,
     /// Shares given.
     pub given: Given,
-    /// Yaw authority is unreliable: yaw was given up, its integrator is to be reset.
+    /// Yaw was given up for lack of authority; its integrator is to be reset.
     pub yaw_gated: bool,
 }
 
@@ -70,7 +70,7 @@ pub trait Allocation {
         mix
     }
 
-    /// One step of the `mixing` that owns this allocation; see [`Mixing::step`].
+    /// One step of the `mixing` that owns this allocation.
     ///
     /// Generic code is built with its caller, on a board for size. The flying allocation repeats this method without
     /// inlining, to build it with this crate, for speed.

@@ -1,8 +1,8 @@
 //! The vehicle's modes, and the inputs and outputs of the mode logic, stepped at 100 Hz.
 //!
-//! Each mode has a file with its state (`behaviour::Behaviour`); `context` holds what outlives a state. `transitions`
-//! is the table of transitions in order of priority, with conditions in `guards` and entry functions in `entries`;
-//! `docs/modes.md` shows it.
+//! Each mode has a file with its state (`behaviour::Behaviour`); `context` holds what outlives it. `transitions` is the
+//! table of transitions by priority, with conditions in `guards` and entry functions in `entries`; `docs/modes.md`
+//! shows it.
 
 mod armed;
 mod behaviour;
@@ -176,8 +176,8 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Drops every message with a non-finite value, as if stale: NaN must not stay in a filter or in the attitude held
-    /// on the pipe. An arm switch that is off still stops the rotors.
+    /// Drops messages with a non-finite value, as if stale: NaN must not stay in a filter or in the attitude held on
+    /// the pipe. An arm switch that is off still stops the rotors.
     fn finite(self) -> Self {
         let sane = |m: &Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
         let steady = |s: &Sticks| (s.roll + s.pitch + s.yaw + s.throttle).is_finite();

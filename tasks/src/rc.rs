@@ -1,7 +1,7 @@
 //! Receiver: decodes bytes to the pilot's sticks.
 //!
-//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. A broken frame or one with invalid channels
-//! is counted and dropped, so that the link turns stale; likewise with a lost transmitter or the wrong protocol.
+//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. Broken frames and invalid channels are
+//! counted and dropped, so that the link turns stale, as with a lost transmitter or the wrong protocol.
 
 use embassy_time::{Duration, Instant, Timer};
 
@@ -11,9 +11,9 @@ use crate::ports::{RcDecoder, SerialInput};
 
 /// Bytes per read: two of the longest frames.
 const BUFFER: usize = 128;
-/// Deadline of decoding, from the bytes' arrival.
+/// From the bytes' arrival.
 const DEADLINE: Duration = TaskId::Rc.deadline();
-/// Pause after a line error or an empty read, so that a dead line cannot take the processor.
+/// Pause after an error or an empty read: a dead line must not take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
 
 /// Decodes frames; never returns.

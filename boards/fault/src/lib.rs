@@ -1,12 +1,12 @@
 //! End of a run on a Cortex-M: stops the motors, keeps the message, resets the chip.
 //!
-//! After a fault nothing can be trusted; a reset is the fastest way to *commanded* stops, since the motor task's first
-//! frame is zeros. The next start logs the message.
+//! After a fault nothing can be trusted. A reset is the fastest way to *commanded* stops, as the motor task's first
+//! frame is zeros; the next start logs the message.
 //!
-//! A second fault resets at once. Within a hard fault handler it locks the processor up, with the motors' pins already
-//! low, and the watchdog resets the chip; the next start then finds the text kept before the message was made.
+//! A second fault resets at once. In a hard fault handler it locks the processor up, with the motors' pins already low,
+//! until the watchdog resets the chip; the next start then finds the text kept before the message was made.
 //!
-//! Independent of chip and board, so an image for QEMU runs the same code. Empty on the host.
+//! The same for every chip and board, so an image for QEMU runs it too. Empty on the host.
 
 #![no_std]
 #![cfg(target_os = "none")]
@@ -60,7 +60,8 @@ pub fn end_of_run(message: Arguments<'_>) -> ! {
     sophie_end_of_run(message)
 }
 
-/// Defines the end of an image's run after a fault or panic: a function `fn(fmt::Arguments<'_>) -> !`. Once per image.
+/// Defines a function `fn(fmt::Arguments<'_>) -> !` as the end of an image's run after a fault or panic. Once per
+/// image.
 #[macro_export]
 macro_rules! ends_with {
     ($end:path) => {

@@ -2,9 +2,9 @@
 
 use cortex_m::peripheral::{MPU, Peripherals, SCB};
 
-/// Protection regions with base, memory type and access (ARMv7-M B3.5.8, B3.5.9): the default map (B3.1) without access
-/// to external memories, speculative reads included, and without caching of data memories. The background map
-/// (privileged code only) would serve for the rest, but the emulator checks it at each access.
+/// Protection regions: base, memory type and access (ARMv7-M B3.5.8, B3.5.9). The default map (B3.1) without access to
+/// external memories, even speculative, and without caching of data memories. The background map (privileged code only)
+/// would serve for the rest, but the emulator checks it at each access.
 const MAP: [(u32, u32); 4] = [
     // All addresses but the eighths below 0x6000_0000 and from 0xE000_0000 on.
     (0, NEVER_EXECUTED | 0x87 << 8 | SIZE_4_GB | ENABLED),
@@ -29,7 +29,7 @@ const ENABLED: u32 = 1;
 const ON: u32 = 1 << 2 | 1;
 
 /// Enables the instruction cache, and with `data` the data cache, for reads from flash; blocks speculative reads of
-/// external memories, where a controller that is not set up may stall the core. Called once, at the start.
+/// external memories, where a controller not set up may stall the core. Called once, at the start.
 pub fn enable_caches(data: bool) {
     // SAFETY: nothing else uses the core's cache control and memory protection, and nothing else runs yet.
     let mut core = unsafe { Peripherals::steal() };

@@ -1,5 +1,5 @@
-//! The F4's flash accelerator. embassy-stm32 0.6 switches it off when it sets the wait states: five at each branch and
-//! constant cost a third to a half of the speed.
+//! The F4's flash accelerator, which embassy-stm32 0.6 switches off when it sets the wait states: five at each branch
+//! and constant cost a third to a half of the speed.
 
 use embassy_stm32::pac::{DBGMCU, FLASH};
 

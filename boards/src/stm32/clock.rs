@@ -31,9 +31,8 @@ pub fn micros() -> u64 {
     }
 }
 
-/// Sets the outputs' first levels, starts the watchdog, then the clocks of `config`. `timer` is embassy-time's. A
-/// crystal that does not start or a PLL that does not lock ends in a watchdog reset, and the next start reports which.
-/// Called once.
+/// Sets the outputs' first levels, starts the watchdog, then the clocks of `config`; `timer` is embassy-time's. If the
+/// crystal or a PLL fails, the watchdog resets, and the next start reports which. Called once.
 pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals {
     first_levels();
     watchdog::start();
@@ -56,8 +55,7 @@ pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals 
     peripherals
 }
 
-/// Starts the crystal of `mhz` MHz before embassy-stm32, which would not report a failure. The watchdog bounds the
-/// wait.
+/// Starts the crystal before embassy-stm32, which would not report a failure. The watchdog bounds the wait.
 fn start_crystal(mhz: u32) {
     retained::leave(format_args!("the {mhz} MHz crystal does not start"));
     RCC.cr().modify(|w| w.set_hseon(true));

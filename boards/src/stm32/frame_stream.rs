@@ -1,9 +1,9 @@
-//! The DMA stream of a motor frame. The HAL sets it up once; each later frame writes three registers: flags, length,
-//! enable. A full set-up by the HAL is 150 instructions between mix and frame.
+//! The DMA stream of a motor frame. The HAL sets it up once, which takes 150 instructions; each later frame writes
+//! three registers: flags, length, enable.
 //!
-//! The end of a frame is timed by the clock, since its length is known; the stream's interrupt is not used. The stream
-//! then still has rows of zeros to move, so that no timer request is left over: it would be served when the next frame
-//! is armed and shift that frame a bit early.
+//! The clock times the end of a frame instead of the stream's interrupt. The stream then still has rows of zeros to
+//! move, so that no timer request is left over: served when the next frame is armed, it would shift that frame a bit
+//! early.
 
 use core::sync::atomic::{Ordering, fence};
 

@@ -20,11 +20,11 @@ const SHORT: (Pr, u16) = (Pr::DIVIDE_BY4, 2399);
 /// 1.6 s on the F4 (16 KiB).
 const LONG: (Pr, u16) = (Pr::DIVIDE_BY256, 0xFFF);
 
-/// Starts the watchdog with its reset values (longest count, smallest prescaler): 0.35 to 0.96 s, for the start-up.
-/// [`Dog`]'s first feed sets its period.
+/// Starts the watchdog with its reset values (longest count, smallest prescaler): 0.35 to 0.96 s, until [`Dog`]'s first
+/// feed sets the period.
 ///
-/// In a development image a debugger that halts the core halts the watchdog too; in a flight image it does not: a
-/// halted core stops the motors' frames, and the watchdog then resets the chip.
+/// A debugger that halts the core also halts the watchdog in a development image only. In a flight image a halted core
+/// stops the motors' frames, and the watchdog resets the chip.
 pub fn start() {
     #[cfg(feature = "trace")]
     stop_with_core();

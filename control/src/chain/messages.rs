@@ -63,7 +63,7 @@ pub enum Demand {
     Spin(Spin),
     /// A wrench, yaw included.
     Wrench(Wrench),
-    /// A wrench on the pipe: yaw is given up, and the arms' sensors correct nothing, since the arms do not hang free.
+    /// A wrench on the pipe: yaw is given up, and the arms, not hanging free, are not corrected by their sensors.
     Resting(Wrench),
 }
 

@@ -1,15 +1,15 @@
 //! Detects an arm without touch that does not bend as its tension rises.
 //!
-//! An obstacle that the sensor does not feel (a cable, the wrong side of a pipe) stops the arm: the tension rises, the
-//! tilt does not fall, and the controller would wind to the force limit.
+//! An obstacle that the sensor does not feel (a cable, the wrong side of a pipe) stops the arm, and the controller
+//! would wind to the force limit.
 
 use super::Config;
 use crate::filter::LowPass;
 
 /// Tension rise over which an arm without touch must bend, N.
 const WINDOW: f32 = 8.0;
-/// Least tension of the watch, N: below, the tendon may be slack, knotted 1 mm too long (8 N) with the tilt wrong by
-/// 0.03 rad (6 N).
+/// Least tension of the watch, N: below, the tendon may be slack, knotted 1 mm too long (8 N) with the tilt off by 0.03
+/// rad (6 N).
 const TENSION_MIN: f32 = 20.0;
 /// Least share of the expected bending: 1 for a free arm within its model, 0.4 for the stiffest on a pipe's skin, 0.2
 /// for a soft one.
@@ -56,8 +56,8 @@ impl BendWatch {
         }
     }
 
-    /// One step of `dt` s; if the tension rose by the window but the tilt hardly fell, returns the force before the
-    /// rise, N.
+    /// One step of `dt` s; returns the force before the rise, N, if the tension rose by the window but the tilt hardly
+    /// fell.
     pub fn step(&mut self, cfg: &Config, sample: BendSample, dt: f32) -> Option<f32> {
         let tilt = self.tilt.step(sample.tilt, CUTOFF, dt);
         let tension = self.tension.step(sample.tension, CUTOFF, dt);

@@ -1,6 +1,6 @@
 //! Detects a pressure that does not rise with the tension, until a sensor has read the grip pressure.
 //!
-//! With an undeclared divider a reading ends far below the grip pressure, and the loop would wind to the force limit.
+//! Behind an undeclared divider a reading ends far below the grip pressure, and the loop would wind to the force limit.
 //! Only a rise too slow to reach the grip pressure within the limit counts: no arm that could have held is stopped.
 
 use super::Config;

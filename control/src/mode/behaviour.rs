@@ -8,10 +8,10 @@ use crate::grip_memory::GripMemory;
 
 /// One state with its fields.
 pub trait Behaviour {
-    /// Called before the transitions: updates what their guards read of this state.
+    /// Before the transitions: updates what their guards read.
     fn observe(&mut self, _step: &mut Step<'_>) {}
 
-    /// Called when no transition applies.
+    /// When no transition applies.
     fn advance(&mut self, _step: &mut Step<'_>) {}
 
     /// Grip to retain over a reset: closed from the first step of closing until every arm is proven free.

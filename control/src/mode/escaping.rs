@@ -1,8 +1,8 @@
 //! Leaves the pipe by itself: after an abandoned closing, a growing lean, or a release that nothing carries.
 //!
-//! The rotors lift more than the weight, nearly level, while the tendons pay out. A capped throttle would let a vehicle
-//! with sound rotors fall, and so would the pilot's, set for resting on the pipe. The collective is therefore set here
-//! until the throttle stick reaches hover; if it never moves, the failsafe lands the vehicle.
+//! The rotors lift more than the weight, nearly level, while the tendons pay out. A capped throttle would let a sound
+//! vehicle fall, and so would the pilot's, set for resting on the pipe. The collective is therefore set here until the
+//! throttle stick reaches hover; if it never moves, the failsafe lands the vehicle.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -22,16 +22,16 @@ const CLIMB_GAIN: f32 = 0.7;
 const CLIMB_RATE: f32 = 0.5;
 /// Rise time of the collective on a slide, s: the lean grows e-fold in 0.16 s.
 pub const SLIDE_RAMP: f32 = 0.15;
-/// On a standing vehicle it rises later and slower, s: the rotors pull at the tendons with 7 times their thrust, and
+/// On a standing vehicle it rises later and slower, s: the rotors pull at the tendons with 7 times their thrust, so
 /// tendons at their limit must pay out first.
 const STAND_DELAY: f32 = 0.25;
 const STAND_RAMP: f32 = 0.5;
-/// Time after the rise until the vehicle is clear of the pipe, s; the sticks do not steer before.
+/// Time after the rise until the vehicle is clear of the pipe and the sticks steer, s.
 const CLEAR_TIME: f32 = 0.65;
-/// Largest lean kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, and a
-/// lean across the crown throws it under the pipe.
+/// Largest lean kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, a lean
+/// across the crown throws it under the pipe.
 pub const AWAY_LEAN: f32 = deg(8.0);
-/// Time for opening arms to come free, s. Later ones are stuck, and the rotors must not pull at them.
+/// Time for opening arms to come free, s. The rotors must not pull at later ones, which are stuck.
 pub const FREE_MAX: f32 = 5.0;
 /// Time for the pilot to take the throttle over, s.
 pub const TAKE_OVER_TIME: f32 = 7.0;
@@ -41,7 +41,6 @@ pub const TAKE_OVER_SHARE: f32 = 0.9;
 /// See [`super::Mode::Escaping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Escaping {
-    /// What the tendons still hold: closed until every arm is proven free.
     grip_memory: GripMemory,
     /// Roll held until the vehicle is clear, rad.
     roll: f32,
@@ -53,8 +52,8 @@ pub struct Escaping {
 }
 
 impl Escaping {
-    /// Leaves the pipe with the arms of `grip_memory` closed or closing; the collective rises slowly from `from` N, or
-    /// at once without it.
+    /// Leaves the pipe with the arms of `grip_memory`; the collective rises slowly from `from` N, or at once without
+    /// it.
     pub fn leaving(inputs: &Inputs, grip_memory: GripMemory, from: Option<f32>) -> Self {
         let lean = inputs.motion.map_or(0.0, |m| m.q.to_euler().0);
         Self {
@@ -71,7 +70,7 @@ impl Escaping {
         self.late(context) && context.support.force() < -HINT_FORCE
     }
 
-    /// The arms are free, and there was time to leave the pipe. A vehicle that nothing pulls down flies, whatever an
+    /// The arms are free, and there was time to leave the pipe. If nothing pulls it down, the vehicle flies whatever an
     /// arm's sensors read.
     pub fn clear(&self, context: &Context) -> bool {
         let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
@@ -120,7 +119,6 @@ impl Behaviour for Escaping {
         }
     }
 
-    /// Nearly level and climbing until clear; then steered by the pilot.
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         let clear = self.clear(context);
         let wanted = if clear { 0.0 } else { CLIMB_RATE };

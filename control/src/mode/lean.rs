@@ -10,8 +10,8 @@ const TOUCH_LEAN: f32 = deg(13.0);
 const LEVELLING_RATE: f32 = 0.2;
 /// Lean too large for closing arms, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
 const HOPELESS_LEAN: f32 = deg(25.0);
-/// Lean (rad) and rate (rad/s) of a growing lean. A touch 30 mm beside the crown drifts to 14 to 18° before it sits,
-/// and is held.
+/// Lean (rad) and rate (rad/s) of a growing lean. A touch 30 mm beside the crown drifts to 14 to 18° before it sits and
+/// is held.
 const GROWING_LEAN: f32 = deg(18.0);
 const GROWING_RATE: f32 = 0.3;
 /// Time that these must last, s: three steps.

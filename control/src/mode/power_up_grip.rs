@@ -1,11 +1,11 @@
 //! Power-up grip check: whether the arms are closed on something at power-up.
 //!
-//! Retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them: no
-//! pulse is sent before the pressure sensors have been read.
+//! Retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them:
+//! none is sent before the pressure sensors have been read.
 //!
 //! Pressed arms are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
-//! rotors carry the vehicle. A pulse needs an angle, and tilt and pressure give it only to 0.2 rad or 20 N (1 mm of
-//! thread, 0.03 rad of tilt, unknown stiffness of the skin): a third of a grip's force might be lost.
+//! rotors carry the vehicle. A pulse needs an angle, known by tilt and pressure only to 0.2 rad or 20 N (1 mm of
+//! thread, 0.03 rad of tilt, unknown stiffness of the skin): it might lose a third of a grip's force.
 
 use super::Inputs;
 use crate::grip_memory::GripMemory;
@@ -31,8 +31,8 @@ pub struct PowerUpGripCheck {
 }
 
 impl PowerUpGripCheck {
-    /// Adds `dt` s of each arm's pressure (Pa; `None`: unknown); returns the arms above `least` Pa on average.
-    /// Undecided while no sensor answers.
+    /// Adds `dt` s of each arm's pressure (Pa; `None`: unknown); returns the arms above `least` Pa on average, or
+    /// `None` while undecided.
     fn step(&mut self, pressure: PerArm<Option<f32>>, least: f32, dt: f32) -> Option<PerArm<bool>> {
         if pressure.iter().all(Option::is_none) {
             return None;

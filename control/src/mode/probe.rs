@@ -12,7 +12,6 @@ const PROBE_RATE: f32 = 0.5;
 pub struct Probe(f32);
 
 impl Probe {
-    /// Reduces thrust while something seems to carry a vehicle in the failsafe, else restores it.
     pub fn step(&mut self, failsafe: bool, support: &Support, dt: f32) {
         let hint = failsafe && support.force() > HINT_FORCE;
         let rate = match (hint, support.resting()) {

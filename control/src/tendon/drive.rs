@@ -1,5 +1,4 @@
-//! Drive of one tendon, stepped at the servo frame rate: servo angle for force and tilt, and an estimate of the
-//! tension.
+//! Drive of one tendon, at the servo frame rate: servo angle for force and tilt, and an estimate of the tension.
 
 use super::Reel;
 use crate::bench::{PULSE_MAX_US, PULSE_MIN_US};
@@ -44,7 +43,7 @@ pub struct TendonDrive {
     tilt: Option<CascadedLowPass>,
     /// Cut-off at the last step, rad/s.
     cutoff: f32,
-    /// A bench pulse, perhaps beyond the travel, moved the servo; it is not yet back at release.
+    /// Moved by a bench pulse, perhaps beyond the travel, and not yet back at release.
     placed: bool,
 }
 
@@ -65,7 +64,7 @@ impl TendonDrive {
         }
     }
 
-    /// The drive with its servo at `angle` (rad from release), as the last run left it.
+    /// Resumes with the servo at `angle` (rad from release), as the last run left it.
     pub fn resume(self, angle: f32) -> Self {
         Self {
             angle: math::clamp(angle, 0.0, ANGLE_MAX),
@@ -73,8 +72,8 @@ impl TendonDrive {
         }
     }
 
-    /// Assumes the servo where its tendon is just taut at `tilt` (rad; `None`: at release). For paying out a tendon
-    /// found wound at power-up: from there it moves at the drive's speed, not the servo's.
+    /// Assumes the servo where its tendon is just taut at `tilt` (rad; `None`: at release), to pay out a tendon found
+    /// wound at power-up: from there it moves at the drive's speed, not the servo's.
     pub fn seed_from_tilt(&mut self, reel: &Reel, tilt: Option<f32>) {
         self.angle = tilt
             .filter(|t| t.abs() <= TILT_MAX)
@@ -87,9 +86,7 @@ impl TendonDrive {
     }
 
     /// One step of `dt` s towards `force` (N) at the arm's measured tilt (rad). A force of 0 or not finite pays out to
-    /// release.
-    ///
-    /// Without a tilt the servo is held, except for paying out, which needs none.
+    /// release; otherwise a missing tilt holds the servo.
     pub fn step(&mut self, reel: &Reel, force: f32, tilt: Option<f32>, dt: f32) -> Drive {
         let dt = math::clamp(dt, 0.0, 0.2);
         let force = math::clamp(force, 0.0, reel.limit.asked);
@@ -161,8 +158,7 @@ impl TendonDrive {
         }
     }
 
-    /// Tension at the present tilt: the filtered tilt extrapolated over its lag and age, exact for an evenly moving
-    /// arm.
+    /// Tension at the present tilt: the filtered one extrapolated over its lag and age, exact for an evenly moving arm.
     fn tension(&self, reel: &Reel) -> f32 {
         self.tilt.map_or(0.0, |tilt| {
             let now = tilt.value() + tilt.lead() * (2.0 + reel.tilt_age * self.cutoff);

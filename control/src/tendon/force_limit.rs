@@ -17,8 +17,7 @@ const ASKED_SHARE_MIN: f32 = 0.5;
 pub struct ForceLimit {
     /// Force never exceeded, N.
     pub force: f32,
-    /// Largest force that the clamp loop may demand, N: the tendon is wound by the measured tilt, whose error adds to
-    /// its force.
+    /// Largest force that the clamp loop may demand, N: the error of the measured tilt adds to the tendon's force.
     pub asked: f32,
     /// Limited by the servo's stall torque, not by `servo_torque_max`; reported at start-up.
     pub capped_by_servo: bool,

@@ -37,7 +37,7 @@ pub struct Reel {
     range: f32,
     /// Release pulse with trim, µs.
     release_us: f32,
-    /// From release to full pulse, µs; negative for a mirrored servo.
+    /// From release to full pulse, µs; negative if mirrored.
     span_us: f32,
     /// Age of the tilt when the pulse acts, s.
     pub(super) tilt_age: f32,
@@ -45,10 +45,8 @@ pub struct Reel {
 }
 
 impl Reel {
-    /// The parts of arm `servo` (0..=3).
-    ///
-    /// A full pulse closer to the release pulse than [`SPAN_MIN_US`] is moved to that distance, on its side where there
-    /// is room: the travel is never zero.
+    /// The parts of arm `servo` (0..=3). A full pulse closer to the release pulse than [`SPAN_MIN_US`] is moved to that
+    /// distance, on its side where there is room.
     pub fn from_params(p: &Params, servo: usize) -> Self {
         let [trim, release, full, slew] = match servo {
             0 => [p.servo_trim_1, p.servo_release_1, p.servo_full_1, p.servo_slew_1],
@@ -95,8 +93,8 @@ impl Reel {
         self.release_us + self.span_us * math::clamp(angle / self.range, 0.0, 1.0)
     }
 
-    /// Like [`Self::pulse`], beyond the configured travel up to the limits of servos: for the bench, where the travel
-    /// is found.
+    /// Like [`Self::pulse`], beyond the configured travel up to the limits of servos: for finding the travel on the
+    /// bench.
     pub fn pulse_beyond(&self, angle: f32) -> f32 {
         let pulse = self.release_us + self.span_us * (angle / self.range);
         math::clamp(pulse, bench::PULSE_MIN_US, bench::PULSE_MAX_US)
@@ -114,7 +112,6 @@ impl Reel {
     }
 }
 
-/// The full pulse, at least [`SPAN_MIN_US`] from the release pulse, µs.
 fn enforce_min_span(release: f32, full: f32) -> f32 {
     let span = full - release;
     if span.abs() >= SPAN_MIN_US {
