@@ -44,8 +44,6 @@ pub static BOARDS: [EmulatedBoard; 2] = [
     },
 ];
 
-/// The board `name`.
-///
 /// # Errors
 /// One line: the name, and the permitted ones.
 pub fn find(name: &str) -> Result<&'static EmulatedBoard, String> {

@@ -1,6 +1,5 @@
-//! Instructions of the control path on the flashed image, by symbol: names the share of everything around the laws.
-//!
-//! Inlined functions count where they were inlined: a task's own share includes its links and records.
+//! Instructions of the control path on the flashed image, by symbol, which shows the share outside the laws. Inlined
+//! functions count where they were inlined: a task's own share includes its links and records.
 
 mod groups;
 
@@ -23,7 +22,6 @@ pub struct Window {
 /// Functions of the image by address.
 #[derive(Debug, Default)]
 pub struct Functions {
-    /// First address, end, and name.
     all: Vec<(u64, u64, String)>,
 }
 
@@ -31,7 +29,7 @@ impl Functions {
     /// The functions of the ELF in `bytes`.
     ///
     /// # Errors
-    /// One line: no ELF file.
+    /// Not an ELF file.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let file = object::File::parse(bytes).map_err(|e| format!("the image is no ELF file: {e}"))?;
         let functions = file
@@ -124,13 +122,13 @@ impl Share {
 }
 
 impl Counted {
-    /// From the end of the transfer to the frame, by the core's count.
+    /// From the end of the transfer to the frame.
     #[must_use]
     pub fn acting(&self) -> Share {
         Share::of(self.steps.iter().map(|step| step.passed))
     }
 
-    /// Tables: from the end of the transfer to the frame by part and function, and before it by part.
+    /// Tables by part and function after the transfer, by part before.
     #[must_use]
     pub fn tables(&self, functions: &Functions) -> String {
         let mut text = format!("{} steps, instructions of each\n\n", self.steps.len());

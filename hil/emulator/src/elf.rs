@@ -36,7 +36,7 @@ impl Firmware {
     /// Reads an image for `board`.
     ///
     /// # Errors
-    /// One line: the file, what is wrong, and what is required.
+    /// One line: the file, the fault, the requirement.
     pub fn read(path: &Path, board: &'static EmulatedBoard) -> Result<Self, String> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
         let wrong = |what: String| format!("{}: {what}", path.display());
@@ -108,7 +108,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
             board.chip
         ));
     }
-    // The name in the first log line: other boards' images also start at this address.
+    // By the name in the first log line, as other boards' images share the address.
     let named = |name: &[u8]| {
         let mut data = file
             .sections()
@@ -129,7 +129,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
     Ok(())
 }
 
-/// The task whose pool is named `symbol`: a mangled name has its length before each part.
+/// Task of the pool `symbol`: mangled names have each part's length before it.
 fn task(symbol: &str) -> Option<String> {
     let (_, rest) = symbol.strip_suffix("4POOL")?.rsplit_once("5tasks")?;
     let name = rest.trim_start_matches(|c: char| c.is_ascii_digit());

@@ -5,7 +5,7 @@ use defmt_decoder::{DecodeError, StreamDecoder, Table};
 /// A line of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Emulated time of reading, ms: at most one after it was written.
+    /// Time of reading, ms: at most one after writing.
     pub ms: u64,
     /// The firmware's time stamp.
     pub stamp: String,

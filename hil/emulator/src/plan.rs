@@ -10,17 +10,17 @@ use crate::wires::BoardFault;
 pub enum Trouble {
     /// At the board.
     Board(BoardFault),
-    /// Lead of an arm's pressure sensor (0 to 3) broken, shorted to its neighbour, or mended.
+    /// Lead of an arm's pressure sensor (0 to 3) broken, shorted, or mended.
     Fsr(usize, Option<FsrBreak>),
     /// The receiver is silent (true) or sends.
     RadioSilent(bool),
-    /// Bits flipped in one of this many bytes from the receiver; 0: none.
+    /// Bit errors in one of this many bytes from the receiver; 0: none.
     RadioBits(u32),
     /// Share of the battery voltage at its divider.
     BatteryShare(f64),
 }
 
-/// Troubles with their times, and the state of the radio's line.
+/// Troubles with their times, and the radio line's state.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     troubles: Vec<(u64, Trouble)>,
@@ -31,7 +31,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// A plan of these troubles, with times in ms since power-on.
+    /// `troubles` have times in ms since power-on.
     #[must_use]
     pub fn new(troubles: impl IntoIterator<Item = (u64, Trouble)>) -> Self {
         let mut troubles: Vec<_> = troubles.into_iter().collect();

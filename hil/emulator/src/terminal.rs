@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 
-/// Bytes read per millisecond: more than the line carries.
+/// Bytes per millisecond: more than the line carries.
 const AT_ONCE: usize = 64;
 
 /// Lines on sockets.
@@ -11,18 +11,18 @@ const AT_ONCE: usize = 64;
 pub struct Sockets {
     /// Console, both ways.
     pub console: Option<Terminal>,
-    /// Board's output to its receiver; input is dropped, as the line is the pilot's.
+    /// Output to the receiver; input is dropped, as the pilot has the line.
     pub telemetry: Option<Terminal>,
 }
 
-/// A listener on the loopback interface with one connection, the latest.
+/// A loopback listener; the latest connection counts.
 pub struct Terminal {
     listener: TcpListener,
     user: Option<TcpStream>,
 }
 
 impl Terminal {
-    /// A listener on `port`, as requested by `option`.
+    /// A listener on `port`; errors name `option`.
     ///
     /// # Errors
     /// One line: the port, and why it is unavailable.
@@ -33,7 +33,7 @@ impl Terminal {
         Ok(Self { listener, user: None })
     }
 
-    /// Sends the board's `said` to the user; returns the user's input. Never waits.
+    /// Sends `said` and returns the user's input, without waiting.
     pub fn exchange(&mut self, said: &[u8]) -> Vec<u8> {
         if let Ok((user, _)) = self.listener.accept()
             && user.set_nonblocking(true).is_ok()

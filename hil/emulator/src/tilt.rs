@@ -1,4 +1,4 @@
-//! Measured arm tilt against the mixer's static model, from the motors' pins.
+//! Measured arm tilt against the mixer's static model.
 
 use sophie_control::params::Params;
 use sophie_control::tilt::TiltModel;
@@ -57,8 +57,8 @@ impl Tilts {
         self.model.tilt().map(f64::from)
     }
 
-    /// Adds a millisecond with the commanded thrusts (N), gravity at each arm's sensor (arm axes) and the body's roll
-    /// (rad); `flies`: the arms hang free.
+    /// Adds a millisecond with commanded thrusts (N), gravity at the arms' sensors (arm axes) and body roll (rad);
+    /// `flies`: the arms hang free.
     pub fn step(&mut self, thrusts: &PerArm<f32>, arms: &PerArm<[f64; 3]>, body_roll: f64, flies: bool) {
         self.model.step(thrusts, 1e-3);
         for ((measured, [_, y, z]), side) in self.measured.iter_mut().zip(arms).zip(SIDE) {

@@ -1,4 +1,4 @@
-//! Pulses on a pad, timed by the core's cycle counter.
+//! Pulses on a pad, timed by the cycle counter.
 
 use heapless::Vec;
 
@@ -17,14 +17,14 @@ pub struct Pulse {
     pub high: u32,
 }
 
-/// Whole pulses on `pad` during the next `us` µs, at most [`MOST`]. Does not yield; without interrupts an edge's error
-/// is a turn of the loop, some ten cycles.
+/// Whole pulses on `pad` in the next `us` µs, at most [`MOST`]. Does not yield; without interrupts an edge's error is
+/// one loop, some ten cycles.
 pub fn record(pad: Pad, us: u32) -> Vec<Pulse, MOST> {
     let length = us * (WIRING.core_hz / 1_000_000);
     let mut pulses = Vec::new();
     let start = cycles::now();
     let mut was_high = pad.is_high();
-    // A pulse under way at the start has no rise.
+    // A pulse that has already begun is skipped.
     let mut rise = None;
     loop {
         let high = pad.is_high();

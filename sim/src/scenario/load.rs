@@ -12,13 +12,11 @@ use super::Scenario;
 use super::error::{Place, ScenarioError};
 use super::read::Source;
 
-/// Larger than any scenario; refuses devices and wrong files.
+/// Refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Settings of the command line, which override the file's.
-///
-/// Values must be within the ranges of [`keys`](super::keys). The stack's parameters follow them like the file's
-/// vehicle; the file's `[params]` overrides both.
+/// Command line settings, which override the file's; values are within the ranges of [`keys`](super::keys). The stack's
+/// parameters follow them like the file's vehicle, but for the file's `[params]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Infill, %.
@@ -52,7 +50,7 @@ impl Overrides {
 }
 
 impl Scenario {
-    /// Reads a scenario file; the default `name` is the file's.
+    /// Reads a file, whose name is the default `name`.
     ///
     /// # Errors
     /// One line: file, line, key, value, what is allowed.
@@ -97,7 +95,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Parses a scenario; `file` is its name for messages.
+    /// Parses a scenario; messages name `file`.
     ///
     /// # Errors
     /// As [`Scenario::load`].

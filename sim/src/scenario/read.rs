@@ -1,7 +1,5 @@
-//! From a scenario's text to a [`Scenario`].
-//!
-//! The document is read against the tables in [`keys`](super::keys) and [`steps`](super::steps), not through derived
-//! structs: every message must name key, value and what is allowed.
+//! Reads a [`Scenario`] against the tables in [`keys`](super::keys) and [`steps`](super::steps), not through derived
+//! structs: messages must name key, value and what is allowed.
 
 use core::ops::Range as Span;
 
@@ -19,7 +17,7 @@ use crate::plant::tendon::ServoSpec;
 pub(super) type Result<T> = core::result::Result<T, ScenarioError>;
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
-/// A text with its name, for messages.
+/// A text and its name in messages.
 pub(super) struct Source<'a> {
     pub file: &'a str,
     pub text: &'a str,
@@ -163,7 +161,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// A number in its range, as SI.
+    /// A number within `range`, in SI.
     pub(super) fn number(&self, key: &str, value: &Value<'_>, range: &Range) -> Result<f64> {
         let si = as_number(value).and_then(|v| range.to_si(v));
         si.ok_or_else(|| self.bad(key, value, range.allowed()))
@@ -197,7 +195,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// A pipe must leave room below it, whichever of its keys is set.
+    /// Requires room below the pipe.
     fn pipe_clear_of_the_ground(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         let lowest = scenario.world.pipe_diameter + 0.2;
         if scenario.world.pipe_top >= lowest {
@@ -220,7 +218,7 @@ pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Optio
     content.get_ref().as_table()
 }
 
-/// The stack's parameters follow the vehicle unless the file sets them.
+/// The stack's parameters follow the vehicle unless the file has them.
 fn believe_the_vehicle(scenario: &mut Scenario) {
     let Scenario { params, vehicle, .. } = scenario;
     params.infill = vehicle.infill as f32;
@@ -242,7 +240,7 @@ fn believe_the_vehicle(scenario: &mut Scenario) {
     params.servo_range = servo.range as f32;
 }
 
-/// Entries in the file's order: the first mistake is reported.
+/// In the file's order: the first mistake is reported.
 pub(super) fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usize>, &'t Value<'i>)> {
     let mut entries: Vec<_> = table
         .iter()

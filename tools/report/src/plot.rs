@@ -1,4 +1,4 @@
-//! Panels of curves over a common time axis, with a band of modes and steps below.
+//! Panels of curves over a common time axis, with modes and steps below.
 
 use sophie_sim::record::FlightRecord;
 
@@ -7,7 +7,7 @@ use super::scale::{thin, tick_step, ticks};
 use super::svg::{Rect, line, path, rect, short, text};
 use super::time_axis::{LEFT, RIGHT, Span, WIDTH};
 
-/// Distance between two panels, px.
+/// px.
 const GAP: f64 = 22.0;
 
 /// One curve.
@@ -32,7 +32,7 @@ pub struct Panel<'a> {
     pub levels: Vec<f64>,
     /// Values to include.
     pub include: Vec<f64>,
-    /// Smallest span of the axis: noise must not fill a panel.
+    /// Smallest span: noise must not fill a panel.
     pub span: f64,
     /// Times marked at the top of the panel.
     pub marks: Vec<(f64, f64)>,

@@ -4,7 +4,7 @@ use sophie_sim::record::FlightRecord;
 
 use super::time_axis::Span;
 
-/// Columns of a thinned curve: about two per pixel.
+/// About two per pixel.
 const COLUMNS: usize = 460;
 
 /// Smallest and largest value per column, in their order.

@@ -19,7 +19,6 @@ pub struct Wired<C> {
     pub(super) chip: C,
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
-    /// Additional dividers at the pressure sensors' pads.
     dividers: [f64; 4],
 }
 
@@ -51,7 +50,7 @@ impl<C: Chip> Wired<C> {
         self.chip.imu(self.pads.imu)
     }
 
-    /// Turns a vector from body axes into the inertial sensor's.
+    /// Converts from body axes to the inertial sensor's.
     pub fn on_imu(&self, vector: [f64; 3]) -> [f64; 3] {
         (self.pads.imu_axes)(vector)
     }
@@ -82,7 +81,7 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// Makes the chips on an arm bus hold the clock for `us` µs after each byte; false where the emulator cannot.
+    /// Makes the chips of an arm bus stretch the clock by `us` µs after each byte; false if the emulator cannot.
     pub fn hold_clock(&mut self, bus: usize, us: u32) -> bool {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
@@ -102,7 +101,7 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// Puts a divider of 1:`divider` before the pin of pressure sensor `sensor`, 0 to 3.
+    /// Adds a divider of 1:`divider` before the pin of pressure sensor `sensor`, 0 to 3.
     pub fn divide(&mut self, sensor: usize, divider: u32) {
         if let Some(own) = self.dividers.get_mut(sensor) {
             *own = f64::from(divider.max(1));
@@ -174,7 +173,7 @@ impl<C: Chip> Wired<C> {
         self.pads.foreign
     }
 
-    /// Pins with a wrong function, and a receiver's port that differs from `receiver`.
+    /// Pins with a wrong function, and the receiver's port if not set to `receiver`.
     pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let port = self.chip.serial_setup(self.pads.receiver);
@@ -221,7 +220,7 @@ impl<C: Chip> Board for Wired<C> {
     }
 }
 
-// No snapshot of a run is taken.
+// Runs take no snapshots.
 impl<C> Store for Wired<C> {
     fn store(&self, _: &mut Writer) -> Result<(), Error> {
         Err(Error::Failed)

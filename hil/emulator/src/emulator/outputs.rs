@@ -10,10 +10,9 @@ use crate::wires::Output;
 /// The outputs, checked at each write to a port's register.
 #[derive(Debug, Default)]
 pub struct Outputs {
-    /// Starts of the processor, including power-on, and time of the last, ns.
+    /// Number of starts, with power-on, and time of the last, ns.
     starts: usize,
     since: u64,
-    /// Outputs not yet driven.
     open: usize,
     pub found: Vec<Output>,
 }
