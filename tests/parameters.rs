@@ -1,11 +1,9 @@
-//! docs/parameters.md, written by `WRITE_DOCS=1 cargo test --test parameters`.
+//! docs/parameters.md is printed from the table.
 
 use std::fmt::Write;
 
 use sophie_control::params::{Params, RENAMED};
 use sophie_tasks::parameters::Allowed;
-
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/parameters.md");
 
 fn page() -> String {
     let mut page = String::from(
@@ -36,13 +34,5 @@ fn page() -> String {
 
 #[test]
 fn the_page_is_the_table() {
-    let wanted = page();
-    if std::env::var_os("WRITE_DOCS").is_some() {
-        std::fs::write(PAGE, &wanted).unwrap();
-    }
-    let found = std::fs::read_to_string(PAGE).unwrap_or_default();
-    assert!(
-        found == wanted,
-        "docs/parameters.md is old: WRITE_DOCS=1 cargo test --test parameters"
-    );
+    sophie_pages::is("parameters.md", &page(), "--test parameters");
 }

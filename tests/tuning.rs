@@ -1,7 +1,4 @@
-//! The table of symptoms in docs/tuning.md comes from flights: `WRITE_DOCS=1 cargo test --test tuning` writes it.
-
-#[path = "common/printed.rs"]
-mod printed;
+//! The table of symptoms in docs/tuning.md is flown.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -10,14 +7,15 @@ use sophie_sim::flight;
 use sophie_sim::record::{FlightRecord, SAMPLE_HZ, Sample, Silent};
 use sophie_sim::scenario::{Scenario, Step};
 
-/// Height, m, and evaluated time from there, s.
+/// Height from which on the vehicle counts as in the air, m, and the time that is looked at from there, s.
 const AIRBORNE: f64 = 0.3;
 const WINDOW: usize = 10 * SAMPLE_HZ as usize;
-/// Evaluated frequencies, Hz.
+/// Frequencies that are looked for, Hz.
 const FROM: f64 = 0.25;
 const STEP: f64 = 0.25;
 const COUNT: u32 = 80;
 
+/// A vehicle with something wrong with it, and what the pilot sees of it.
 struct Case {
     what: &'static str,
     seen: &'static str,
@@ -80,7 +78,7 @@ const CASES: [Case; 10] = [
     },
 ];
 
-/// RMS of a signal's swing, and its dominant frequency, Hz.
+/// Size (root mean square) of a signal's swing, and the frequency that most of it has, Hz.
 struct Swing {
     size: f64,
     hz: f64,
@@ -107,6 +105,7 @@ fn swing(signal: &[f64]) -> Swing {
     }
 }
 
+/// Up, a hover, a roll either way, a hover, down.
 fn flown(case: &Case) -> FlightRecord {
     let mut scenario = Scenario {
         steps: vec![
@@ -162,5 +161,5 @@ fn the_symptoms_of_the_page_are_those_that_are_flown() {
     for case in &CASES {
         let _ = writeln!(table, "{}", row(case));
     }
-    printed::holds("tuning", "symptoms", &table, "tuning");
+    sophie_pages::hold("tuning", &[("symptoms", table)], "--test tuning");
 }

@@ -1,14 +1,11 @@
-//! The pads in docs/wiring.md are those of the board files: `WRITE_DOCS=1 cargo test --test wiring` writes the table.
-
-#[path = "common/printed.rs"]
-mod printed;
+//! The pads in docs/wiring.md are those of the boards' files.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
-/// With the resources of the board file that carry them.
+/// What hangs on the board, and the resources of its file that carry it.
 const SIGNALS: [(&str, &[&str]); 14] = [
     (
         "motors 1 to 4",
@@ -45,7 +42,7 @@ const SIGNALS: [(&str, &[&str]); 14] = [
     ("buzzer", &["lights.buzzer"]),
 ];
 
-/// The maker's name of a pin's pad; without one the pin's name stands.
+/// How a board's maker names the pads of pins; elsewhere the pin's name is all that there is.
 fn pad(board: &str, pin: &str) -> Option<&'static str> {
     Some(match (board, pin) {
         ("matek-h743", "PD12") => "S7",
@@ -94,7 +91,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
     })
 }
 
-/// From `assign_resources!`, by `group.name`.
+/// The pins of a board's `assign_resources!`, by `group.name`.
 fn pins(board: &str) -> BTreeMap<String, String> {
     let path = format!(
         "{}/boards/src/{}.rs",
@@ -138,5 +135,5 @@ fn the_pads_of_the_page_are_those_of_the_boards_files() {
         let cells = boards.each_ref().map(|(board, pins)| cell(board, pins, names));
         writeln!(table, "| {what} | {} |", cells.join(" | ")).unwrap();
     }
-    printed::holds("wiring", "pads", &table, "wiring");
+    sophie_pages::hold("wiring", &[("pads", table)], "--test wiring");
 }

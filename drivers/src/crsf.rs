@@ -1,9 +1,9 @@
 //! CRSF at 420 kbaud: TBS Crossfire, ExpressLRS.
 //!
-//! A receiver without its transmitter may repeat the last channels. At an uplink quality of 0 % in its link statistics
-//! no sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a
-//! quality above 0 %, or after 1 s without statistics, as for a receiver that sends none. The receiver should be set to
-//! send nothing without a link ("no pulses").
+//! A receiver without its transmitter may repeat the last channels. At 0 % uplink quality in its link statistics no
+//! sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a quality
+//! above 0 %, or after 1 s without statistics, as for a receiver that sends none. The receiver should be set to send
+//! nothing without a link ("no pulses").
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
@@ -11,23 +11,21 @@ use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
 use uf_crsf::{CrsfParser, Packet};
 
-/// Age at which link statistics expire. Receivers report at 5 to 10 Hz.
+/// Age at which link statistics expire; receivers report at 5 to 10 Hz.
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
-/// Time of a byte on the line: ten bits at 420 kbaud.
+/// Ten bits at 420 kbaud.
 const BYTE: Duration = Duration::from_micros(24);
-/// Line pause that ends a frame: twice the time of the longest, 64 bytes. Otherwise an unfinished frame would be
-/// published as new with the bytes of a link that returns.
+/// Line pause that ends a frame: twice the longest, 64 bytes. Otherwise the bytes of a returning link would complete an
+/// old frame.
 const SILENCE: Duration = Duration::from_millis(3);
 
-/// Decodes frames from a stream in pieces of any length.
+/// Decodes frames from a stream, in pieces of any length.
 pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
-    /// Time of the last report of 0 % uplink quality; `None` while the radio is not known to be lost.
+    /// Time of the last report of 0 % uplink quality.
     lost: Option<Instant>,
-    /// Time of the last read or failure.
     last: Option<Instant>,
-    /// The last bytes belong to an unfinished frame.
     unfinished: bool,
 }
 
@@ -59,7 +57,7 @@ impl Decoder {
 
 impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        // A read ends with its last byte: these bytes began their length earlier.
+        // A read ends with its last byte.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let before = self.last.replace(at);
         let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
@@ -89,7 +87,6 @@ impl RcDecoder for Decoder {
                     // Frames just before the report may be repetitions.
                     news &= self.lost.is_none();
                 }
-                // Device information and the like: well formed, but unused.
                 Ok(_) => (),
                 Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
             }
@@ -169,7 +166,7 @@ mod tests {
         );
         assert_eq!(published(&mut d, &throttle(0.5), 20), Some(50));
         assert_eq!(published(&mut d, &statistics(0), 30), None);
-        // The last frame repeated, the loss reported at 5 Hz, longer than any silence.
+        // The last frame repeated, the loss reported at 5 Hz, beyond any silence.
         for ms in (40..3000).step_by(20) {
             if ms % 200 == 0 {
                 assert_eq!(published(&mut d, &statistics(0), ms), None, "{ms}");
@@ -181,7 +178,7 @@ mod tests {
             "counted all the same: {:?}",
             d.state
         );
-        // 1 % is a link; the channels are those of the first frame after it.
+        // 1 % is a link, with the channels of the first frame after it.
         assert_eq!(published(&mut d, &throttle(0.6), 3000), None);
         assert_eq!(published(&mut d, &statistics(1), 3010), None);
         assert_eq!(published(&mut d, &throttle(0.7), 3020), Some(70));
@@ -204,12 +201,12 @@ mod tests {
     fn what_came_before_a_silence_is_never_published_after_it() {
         for later in [4, 20, 1000, 60_000] {
             for length in 2..=62 {
-                // A frame start announcing `length` bytes, the rest lost, then a pilot's frame.
+                // A start announcing `length` bytes, the rest lost, then a pilot's frame.
                 let (mut d, mut missing) = (Decoder::new(), usize::from(length) + 2);
                 let read = [std::vec![0xC8, length], throttle(0.9)].concat();
                 let seen = published(&mut d, &read, 1000);
                 missing = missing.saturating_sub(read.len());
-                // Enough bytes to end the false frame, then the pilot's present one.
+                // Enough bytes to end the false frame, then a pilot's frame.
                 assert_eq!(
                     published(&mut d, &std::vec![0; missing], 1000 + later),
                     None,

@@ -1,5 +1,4 @@
-//! Verdict on the self-test of an InvenSense part: the sensors are actuated electrically, and their response is
-//! compared with the factory's.
+//! Verdict on the self-test of an InvenSense part, whose sensors are actuated electrically.
 //!
 //! Procedure and limits are those of TDK's ICM-426xx driver and of application note AN-000029 (older register map): 200
 //! samples averaged at rest and actuated, at 250 °/s and 2 g.
@@ -92,7 +91,7 @@ pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
     })
 }
 
-/// Judges one sensor; `absolute`: limits, counts, without factory codes.
+/// Judges one sensor; `absolute`: limits without factory codes, counts.
 fn sensor(
     sensor: Sensor,
     measured: &Response,
@@ -130,7 +129,7 @@ fn sensor(
     Ok(percents)
 }
 
-/// Factory response, counts at the test's range.
+/// Counts at the test's range.
 fn factory_response(code: u8) -> f32 {
     (1..code).fold(CODE_BASE, |counts, _| counts * 1.01)
 }

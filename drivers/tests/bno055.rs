@@ -1,4 +1,4 @@
-//! The arm sensors' driver with fake chips.
+//! The arm sensors' driver on fake chips.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -49,7 +49,6 @@ async fn round(arms: &mut ArmBuses<Bus, Bus>) -> [Call; 4] {
     calls.try_into().ok().unwrap()
 }
 
-/// Rounds at 100 Hz for `time`; returns the last.
 async fn rounds(arms: &mut ArmBuses<Bus, Bus>, time: Duration) -> [Call; 4] {
     let end = Instant::now() + time;
     loop {
@@ -76,7 +75,7 @@ fn four_chips_come_up_in_a_second_and_a_half_without_a_long_call() {
             Timer::after_millis(10).await;
         }
         let took = (Instant::now() - start).as_millis();
-        // The chips boot for 650 ms at power-on and after their reset.
+        // The chips boot for 650 ms after power-on and after their reset.
         assert!(took < 2200, "{took} ms");
         assert!(worst < Duration::from_millis(3), "{} µs", worst.as_micros());
         for chip in &chips {
@@ -115,15 +114,14 @@ fn a_chip_left_on_its_second_page_is_found() {
     run(async {
         let (mut arms, chips) = arms([Config::default(); 4]);
         Timer::after_millis(700).await;
-        // A processor-only reset leaves chips in any mode: configuration, fusion.
+        // A processor-only reset leaves chips in any mode.
         chips[0].borrow_mut().pages[0][0x07] = 1;
         chips[1].borrow_mut().pages[0][0x07] = 1;
         chips[1].borrow_mut().pages[0][0x3D] = 0x08;
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls.iter().all(|c| c.result.is_ok()), "{:?}", arms.last_fault(0));
         assert!((0..4).all(|arm| arms.last_fault(arm).is_none()));
-        // A bus glitch changes the page of a chip that gives readings, one that boots, and one that enters
-        // configuration mode.
+        // A bus glitch changes the page of a chip that gives readings, boots, or enters configuration mode.
         for wait in [0, 725, 735] {
             chips[2].borrow_mut().pages[0][0x07] = 1;
             rounds(&mut arms, Duration::from_millis(wait)).await;
@@ -173,7 +171,7 @@ fn gravity_points_down_in_the_arm_s_axes() {
             let g = call.result.unwrap();
             assert!((g - Vec3::new(0.0, 0.0, 9.81)).norm() < 1e-3, "{g:?}");
         }
-        // Right side down by 30°: gravity leans to body +y, so specific force leans to body -y.
+        // Right side down by 30°: gravity leans to body +y, specific force to body -y.
         let (side, height) = (490, 850);
         chips[0].borrow_mut().gravity = [0, side, height]; // y is left
         chips[1].borrow_mut().gravity = [side, 0, height]; // x is left

@@ -1,4 +1,4 @@
-//! The ICM-42688-P driver with a fake part.
+//! The ICM-42688-P driver on a fake part.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -42,7 +42,6 @@ async fn read(driver: &mut Driver) -> Option<Result<ImuReading, PortError>> {
     Some(batch.map(|b| b[0]))
 }
 
-/// Reads for `time`; returns samples, errors, and the last sample's time.
 async fn read_for(driver: &mut Driver, time: Duration) -> (u32, Vec<PortError>, Instant) {
     let end = Instant::now() + time;
     let (mut good, mut errors, mut last) = (0, Vec::new(), Instant::from_ticks(0));
@@ -246,7 +245,7 @@ fn a_part_that_appears_late_is_taken_up_by_the_task() {
             errors.iter().all(|&e| e == PortError::Absent) && !errors.is_empty(),
             "{errors:?}"
         );
-        // A missing part causes no busy loop.
+        // No busy loop.
         assert!(
             part.borrow().transactions.len() < 100,
             "{}",
@@ -294,7 +293,7 @@ fn every_failure_in_flight_is_noticed_within_5_ms_and_got_over() {
                     found: 0xFF,
                 },
             };
-            // A frozen part answers its resets, so it ends without samples.
+            // A frozen part answers its resets.
             assert!(
                 driver.last_fault() == Some(expected) || failure == Failure::Frozen,
                 "{failure:?}: {:?}",
@@ -501,7 +500,7 @@ fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
             driver.init().await.unwrap();
             part.borrow_mut().transactions.clear();
             read_for(&mut driver, Duration::from_secs(1)).await;
-            // A check reads the identity, 2 bytes, and six registers.
+            // A check reads identity (2 bytes) and six registers.
             let looks = part.borrow().transactions.iter().filter(|&&n| n == 7).count();
             assert!((9..=10).contains(&looks), "{looks} at {rate} Hz");
         });

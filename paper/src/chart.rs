@@ -1,18 +1,18 @@
-//! Charts as SVG: axes, curves, points, levels, maps.
+//! A chart as SVG: axes with ticks and units, curves, points, levels, maps.
 
 use super::model::{Axis, Chart, Look, Series};
 use sophie_report::scale::ticks;
 use sophie_report::svg::{Rect, escape, line, path, rect, short, text};
 
-/// px; scales with the page.
+/// Drawing size, px; scales with the page.
 const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 330.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
-/// Room for labels of uprights.
+/// Room above the field for labels of uprights.
 const TOP: f64 = 20.0;
 const BOTTOM: f64 = 44.0;
-/// About two per pixel.
+/// Most points drawn of a curve: about two per pixel.
 const POINTS: usize = 900;
 
 struct Frame {
@@ -72,6 +72,7 @@ fn limits(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64) -> (f64, 
     (low - margin * span, high + margin * span)
 }
 
+/// Ticks of an axis and their labels.
 fn marks(axis: &Axis, (low, high): (f64, f64), count: usize, digits: usize) -> Vec<(f64, String)> {
     if axis.names.is_empty() {
         return ticks(low, high, count)
@@ -86,7 +87,7 @@ fn marks(axis: &Axis, (low, high): (f64, f64), count: usize, digits: usize) -> V
         .collect()
 }
 
-/// SVG, with the legend as a list before it.
+/// The chart as SVG, with its legend as a list before it.
 pub fn draw(chart: &Chart) -> String {
     let f = Frame::of(chart);
     let mut svg = format!(
@@ -110,32 +111,8 @@ pub fn draw(chart: &Chart) -> String {
     for tile in &chart.tiles {
         svg += &tile_svg(&f, tile);
     }
-    for (x, name) in marks(&chart.x, f.x, 8, 3) {
-        let class = if x == 0.0 { "grid zero" } else { "grid" };
-        if chart.tiles.is_empty() {
-            svg += &line(f.px(x), TOP, f.px(x), bottom, class);
-        }
-        svg += &text(f.px(x), bottom + 16.0, "tick mid", &name);
-    }
-    for (y, name) in marks(&chart.y, f.y, 6, 4) {
-        let class = if y == 0.0 { "grid zero" } else { "grid" };
-        if chart.tiles.is_empty() {
-            svg += &line(left, f.py(y), right, f.py(y), class);
-        }
-        svg += &text(left - 7.0, f.py(y) + 4.0, "tick end", &name);
-    }
-    for (level, word) in &chart.levels {
-        svg += &line(left, f.py(*level), right, f.py(*level), "level");
-        svg += &text(right - 5.0, f.py(*level) - 4.0, "small end halo", word);
-    }
-    for (at, word) in &chart.uprights {
-        let x = f.px(*at);
-        svg += &line(x, TOP, x, bottom, "level");
-        // Centred on the line, within the drawing.
-        let half = 3.2 * word.chars().count() as f64;
-        let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
-        svg += &text(middle, TOP - 5.0, "small mid", word);
-    }
+    svg += &grid(&f, chart);
+    svg += &guides(&f, chart);
     // The paper's values on top.
     let printed = |s: &&Series| s.look == Look::Printed;
     for series in chart
@@ -154,6 +131,46 @@ pub fn draw(chart: &Chart) -> String {
         escape(&chart.y.title)
     );
     format!("<h4>{}</h4>{}{svg}", escape(&chart.title), legend(chart))
+}
+
+/// Gridlines, where no tiles cover them, and the axes' values.
+fn grid(f: &Frame, chart: &Chart) -> String {
+    let (left, right, bottom) = (LEFT, WIDTH - RIGHT, HEIGHT - BOTTOM);
+    let mut svg = String::new();
+    for (x, name) in marks(&chart.x, f.x, 8, 3) {
+        let class = if x == 0.0 { "grid zero" } else { "grid" };
+        if chart.tiles.is_empty() {
+            svg += &line(f.px(x), TOP, f.px(x), bottom, class);
+        }
+        svg += &text(f.px(x), bottom + 16.0, "tick mid", &name);
+    }
+    for (y, name) in marks(&chart.y, f.y, 6, 4) {
+        let class = if y == 0.0 { "grid zero" } else { "grid" };
+        if chart.tiles.is_empty() {
+            svg += &line(left, f.py(y), right, f.py(y), class);
+        }
+        svg += &text(left - 7.0, f.py(y) + 4.0, "tick end", &name);
+    }
+    svg
+}
+
+/// Levels and uprights with their words.
+fn guides(f: &Frame, chart: &Chart) -> String {
+    let (left, right, bottom) = (LEFT, WIDTH - RIGHT, HEIGHT - BOTTOM);
+    let mut svg = String::new();
+    for (level, word) in &chart.levels {
+        svg += &line(left, f.py(*level), right, f.py(*level), "level");
+        svg += &text(right - 5.0, f.py(*level) - 4.0, "small end halo", word);
+    }
+    for (at, word) in &chart.uprights {
+        let x = f.px(*at);
+        svg += &line(x, TOP, x, bottom, "level");
+        // Centred on the line, but within the drawing.
+        let half = 3.2 * word.chars().count() as f64;
+        let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
+        svg += &text(middle, TOP - 5.0, "small mid", word);
+    }
+    svg
 }
 
 fn tile_svg(f: &Frame, tile: &super::model::Tile) -> String {

@@ -40,7 +40,7 @@ impl Chip for ThisChip {
     }
 
     async fn set_brown_out(&mut self) -> Result<(), NotSet> {
-        // May stall the processor beyond the watchdog's normal time-out. Only while disarmed.
+        // May stall the processor beyond the normal time-out; only while disarmed.
         watchdog::be_patient(true).await;
         let set = options::set_brown_out();
         watchdog::be_patient(false).await;

@@ -1,5 +1,5 @@
-//! Pins at fixed levels: from the first instructions on, those of the motors and of whatever a floating line would
-//! move, sound or switch; also switches of supplies and other chips.
+//! Pins at fixed levels: from the first instructions, those of the motors and of whatever a floating line would move,
+//! sound or switch; also switches of supplies and other chips.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Speed};
@@ -9,7 +9,7 @@ use embassy_stm32::pac::gpio::vals::Moder;
 
 const PORTS: u32 = 0xFF;
 
-/// Holds `pin` at `level` permanently: leaked, since a dropped pin floats.
+/// Holds `pin` at `level` permanently: a dropped pin would float.
 pub fn hold(pin: Peri<'static, AnyPin>, level: Level) {
     core::mem::forget(Output::new(pin, level, Speed::Low));
 }
@@ -27,7 +27,6 @@ pub fn drive(port: Gpio, pins: &[usize], level: Level) {
     }
 }
 
-/// Enables every port's clock, off before the start.
 fn clock_ports() {
     let bus = pac::RCC;
     #[cfg(family = "h7")]
@@ -35,6 +34,6 @@ fn clock_ports() {
     #[cfg(not(family = "h7"))]
     let clocks = bus.ahb1enr();
     clocks.modify(|w| w.0 |= PORTS);
-    // The clock is there two cycles after the write (RM0090 §7.2.14, RM0433 §8.5.10): this read takes them.
+    // The clock runs two cycles after the write (RM0090 §7.2.14, RM0433 §8.5.10), which this read takes.
     let _ = clocks.read();
 }

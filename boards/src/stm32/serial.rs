@@ -36,7 +36,7 @@ fn receiver_config(protocol: RcProtocol) -> Config {
             config.baudrate = 100_000;
             config.parity = Parity::ParityEven;
             config.stop_bits = StopBits::STOP2;
-            // The F4's ports cannot invert: the board's inverter makes the line idle high.
+            // The F4 cannot invert: the board's inverter makes the line idle high.
             #[cfg(family = "f4")]
             {
                 config.rx_pull = Pull::Up;
@@ -51,7 +51,7 @@ fn receiver_config(protocol: RcProtocol) -> Config {
     config
 }
 
-/// The receiver's line for the parameter `rc_protocol`.
+/// The receiver's line for `rc_protocol`.
 #[expect(clippy::too_many_arguments, reason = "the parts of one port of the board")]
 pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     uart: Peri<'static, T>,
@@ -85,7 +85,7 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     )
 }
 
-/// Console line: 115,200 baud, 8N1, moved by the processor, since DMA streams are scarce.
+/// Console line: 115,200 baud, 8N1, without DMA, whose streams are scarce.
 pub fn console_lines<T: Instance>(
     uart: Peri<'static, T>,
     rx: Peri<'static, impl RxPin<T>>,
@@ -101,7 +101,7 @@ pub fn console_lines<T: Instance>(
     (ConsoleInput(rx), ConsoleOutput(tx))
 }
 
-/// Every rate above is within every port's range: a refusal means wrong clocks of the board, which shows on the bench.
+/// All rates are within every port's range: a refusal means wrong clocks, found on the bench.
 fn accepted<U>(port: Result<U, ConfigError>) -> U {
     match port {
         Ok(port) => port,
@@ -109,7 +109,7 @@ fn accepted<U>(port: Result<U, ConfigError>) -> U {
     }
 }
 
-/// Receiver input: a ring filled by DMA, read when the line falls idle at the end of a frame.
+/// Receiver input: a ring filled by DMA, read when the line falls idle after a frame.
 pub struct ReceiverLine(RingBufferedUartRx<'static>);
 
 impl SerialInput for ReceiverLine {
@@ -119,7 +119,7 @@ impl SerialInput for ReceiverLine {
     }
 }
 
-/// Output to the receiver; none where it does not listen.
+/// Output to the receiver, if it listens.
 pub struct TelemetryLine(Option<UartTx<'static, Async>>);
 
 impl SerialOutput for TelemetryLine {

@@ -1,4 +1,4 @@
-//! The controller's numbers.
+//! Configuration of the gripper.
 
 use crate::deflection::ArmModel;
 use crate::grip::GripDemand;
@@ -6,7 +6,7 @@ use crate::math;
 use crate::params::Params;
 use crate::tendon::ForceLimit;
 
-/// The controller's numbers, derived from the parameters.
+/// Gains, rates and limits, derived from the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Gains of the pressure loop, N/Pa, N/(Pa s) and N s/Pa.
@@ -19,7 +19,7 @@ pub struct Config {
     pub(super) release_rate: f32,
     /// Largest force, N.
     pub(super) limit: f32,
-    /// Tendon force that a rotor's thrust takes, N/N.
+    /// Tendon force that a rotor's thrust relieves, N/N.
     pub(super) per_thrust: f32,
     /// Tilt that a free arm loses for tendon force, rad/N.
     pub(super) bend_per_force: f32,
@@ -27,7 +27,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// The controller that the parameters describe.
+    /// Configuration from the parameters.
     pub fn from_params(p: &Params) -> Self {
         // The tendon's moment h F bends like the thrust F h/d; below level thrust the arm is linear.
         let compliance = math::clamp(ArmModel::from_params(p).slope(0.0), 1e-3, 10.0);
