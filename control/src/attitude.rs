@@ -1,7 +1,7 @@
 //! Attitude control, 1 kHz: a P loop on the shortest turn to the wanted tilt, a leashed heading for yaw.
 //!
-//! The tilt target is the direction of down in body axes, independent of the heading: a yaw error cannot turn roll into
-//! pitch. The heading itself is never computed; its change per step moves the leash.
+//! The tilt target is the direction of down in body axes: a yaw error cannot turn roll into pitch. The heading is never
+//! computed; its change per step moves the leash.
 //!
 //! A setpoint becomes a direction at the sticks' rate, so that a step needs no sine. One that is not finite keeps the
 //! tilt target and stops the turn in yaw.

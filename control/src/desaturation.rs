@@ -49,7 +49,7 @@ pub struct Patterns {
     pub yaw: PerArm<f32>,
 }
 
-/// Least thrust of a rotor per newton of collective: a rotor beyond the collective's reach cannot bound the shift, and
+/// Least thrust of a rotor per newton of collective: one beyond the collective's reach cannot bound the shift, and
 /// divisions stay finite.
 const LEAST_SHIFT: f32 = 0.02;
 

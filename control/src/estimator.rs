@@ -1,7 +1,7 @@
 //! Attitude estimator, 1 kHz: quaternion integration, a slow pull towards the accelerometer's vertical, gyro bias.
 //!
 //! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (default time constant 10 s) and
-//! fades when the specific force is not 1 g. There is no compass: heading is integrated.
+//! fades when the specific force is not 1 g. Without a compass, heading is integrated.
 
 use crate::chain::{Attitude, ImuSample};
 use crate::math::{self, GRAVITY};
@@ -13,7 +13,7 @@ pub const CALIBRATION_TIME: f32 = 2.0;
 /// Rate above which the vehicle is moving, rad/s: above any part's bias.
 const REST_RATE: f32 = 0.15;
 /// Departure from the running mean above which the vehicle is moving, rad/s: on soft arms it rocks in the wind by half
-/// of this, which the mean removes.
+/// of this.
 const REST_DEVIATION: f32 = 0.08;
 /// Specific force error at which the accelerometer's pull has faded out, share of gravity.
 const ACCEL_FADE: f32 = 0.15;
@@ -55,7 +55,7 @@ impl Estimator {
     }
 
     /// Resumes after a restart with the known gyro bias (rad/s). The attitude comes from the accelerometer over
-    /// [`RESUME_TIME`], in any motion; heading restarts at 0.
+    /// [`RESUME_TIME`], also in motion; heading restarts at 0.
     pub fn resume(p: &Params, bias: Vec3) -> Self {
         Self {
             known_bias: bias

@@ -1,7 +1,7 @@
 //! First-order low pass and biquads.
 //!
 //! Stepped at their owners' rates, 50 Hz to 4 kHz. Low passes take the measured step (s); biquads are made for one
-//! sampling rate, and a missed sample shifts their cut-off for as long.
+//! sampling rate: a missed sample briefly shifts their cut-off.
 
 use crate::math;
 

@@ -1,7 +1,7 @@
 //! Grip and release detector, 100 Hz: whether an arm holds the pipe or is free of it.
 //!
 //! Stepped by the [gripper](crate::gripper), pressures in Pa, forces along the tendon in N. A late step delays a proof,
-//! and the rotors' stop, by as much.
+//! and the rotors' stop.
 
 use crate::grip_fault::GripFault;
 use crate::math;
@@ -54,8 +54,8 @@ pub enum ArmState {
     Releasing,
 }
 
-/// Tolerance factor beyond which a proven grip is doubted: the rotors' stop and pushes disturb the pressure without
-/// loosening the grip.
+/// Tolerance factor beyond which a proven grip is doubted: the rotors' stop and pushes disturb the pressure, not the
+/// grip.
 const DOUBT_FACTOR: f32 = 4.0;
 /// Largest share of the force limit for a proof.
 const FORCE_SHARE_MAX: f32 = 0.98;

@@ -5,11 +5,11 @@
 //! with them the grip.
 //!
 //! Each arm bends down steadily until its sensor feels a touch. The force is then set to the tendon's tension, which
-//! lags while the arm moves, and a PID leads the pressure along a reference that approaches the target from below. On
-//! release the force falls at a limited rate.
+//! lags in motion, and a PID leads the pressure along a reference that approaches the target from below. On release the
+//! force falls at a limited rate.
 //!
 //! Two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T balances the moment arm_d T by which
-//! the rotor's thrust bends the arm off the pipe, so that the pressure hardly moves when the rotors stop.
+//! the rotor's thrust bends the arm off the pipe, so the pressure hardly moves when the rotors stop.
 //!
 //! | word | meaning |
 //! |---|---|

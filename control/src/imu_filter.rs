@@ -70,7 +70,7 @@ impl ImuFilter {
     }
 
     /// Filters the finite readings of a batch, oldest first, less `accel_bias` (m/s²) of specific force. Writes the
-    /// newest output into `newest`; returns the count of finite readings.
+    /// newest output into `newest`; returns the finite count.
     #[inline(always)]
     pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u32 {
         if !self.started {

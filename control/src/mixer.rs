@@ -73,7 +73,7 @@ pub trait Allocation {
     /// One step of the `mixing` that owns this allocation.
     ///
     /// Generic code is built with its caller, on a board for size. The flying allocation repeats this method without
-    /// inlining, to build it with this crate, for speed.
+    /// inlining, to build it with this crate for speed.
     #[inline(always)]
     fn step_mixing(
         mixing: &mut Mixing<Self>,

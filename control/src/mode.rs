@@ -1,8 +1,8 @@
 //! The vehicle's modes, and the inputs and outputs of the mode logic, stepped at 100 Hz.
 //!
 //! Each mode has a file with its state (`behaviour::Behaviour`); `context` holds what outlives it. `transitions` is the
-//! table of transitions by priority, with conditions in `guards` and entry functions in `entries`; `docs/modes.md`
-//! shows it.
+//! table of transitions by priority, shown in `docs/modes.md`, with conditions in `guards` and entry functions in
+//! `entries`.
 
 mod armed;
 mod behaviour;

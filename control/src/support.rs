@@ -1,7 +1,7 @@
 //! Evidence from the inertial sensor that something carries the vehicle.
 //!
 //! The mode logic calls [`Support::step`] at 100 Hz. Forces are along the body's thrust axis (N). A missed step delays
-//! the evidence by as much; 50 ms without an inertial sample end it.
+//! the evidence; 50 ms without an inertial sample end it.
 //!
 //! In free air, mass times specific force along the thrust axis is the thrust; on the ground or the pipe it is about
 //! the weight, whatever the thrust. The difference is the support:
@@ -151,8 +151,8 @@ impl Support {
         self.full.time() >= GROUNDED_TIME
     }
 
-    /// Sink rate, m/s, downwards positive, within ±10 m/s: decaying integral of the accelerometer, which damps a
-    /// descent but does not measure its speed.
+    /// Sink rate, m/s, downwards positive, within ±10 m/s: decaying integral of the accelerometer, good for damping a
+    /// descent, not for its speed.
     pub fn sink(&self) -> f32 {
         self.sink
     }

@@ -3,8 +3,8 @@
 //! [`TiltModel::step`] runs at 1 kHz (N, s); the sensors' tilts come at 100 Hz (rad, tip up positive). A missed reading
 //! keeps the bias.
 //!
-//! The sensor only moves the bias, which corrects the model for this arm: in the allocation its noise and latency would
-//! cost more than its angle brings.
+//! The sensor only moves the bias, which corrects the model: in the allocation its noise and latency would cost more
+//! than its angle brings.
 
 use core::f32::consts::TAU;
 

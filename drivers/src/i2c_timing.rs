@@ -1,8 +1,8 @@
 //! Fast-mode times (400 kHz) of an STM32 I2C with a register `TIMINGR` (F7, H7), from its kernel clock (RM0433 §47.4.5
 //! and §47.4.9, RM0410 §33.4.5 and §33.4.9; times of UM10204 table 10).
 //!
-//! At 100 MHz embassy-stm32 0.6 computes fields too large for the register and loses their upper bits: data would
-//! change 20 ns before the clock's edge instead of the required 100 ns, from the slowest data edge.
+//! At 100 MHz embassy-stm32 0.6 loses the upper bits of fields too large for the register: data would change 20 ns
+//! before the clock's edge instead of the required 100 ns, from the slowest data edge.
 
 /// Slowest edge, ns: largest pull-up and capacitance.
 const EDGE_NS: u64 = 300;

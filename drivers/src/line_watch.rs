@@ -1,13 +1,13 @@
 //! Decides whether a data-ready line is reliable, or samples are polled instead.
 //!
 //! A silent line is used again once its pulses and the part's status have agreed for a time that doubles with each
-//! silence, so that a loose contact does not toggle the driver. A lasting or repeated silence is reported, a single
-//! short one is not.
+//! silence: a loose contact must not toggle the driver. Lasting or repeated silences are reported, a single short one
+//! is not.
 
 use embassy_time::{Duration, Instant};
 
-/// Polling time until the line is reported as silent: one short silence, ending within the first `BACK_AFTER`, is no
-/// reason to land.
+/// Polling time until the line is reported as silent: one short silence, within the first `BACK_AFTER`, is no reason to
+/// land.
 pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
 /// First and longest time of agreement before the line is used again.
 const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];
@@ -40,7 +40,7 @@ struct Clock {
 
 impl Clock {
     /// Schedules the next poll `time` after the due one, so that processing does not lengthen the period; after a stall
-    /// from `now`, to avoid a burst.
+    /// from `now`, against a burst.
     fn go_on(&mut self, now: Instant, time: Duration) {
         let late = now.saturating_duration_since(self.due) > time;
         self.due = if late { now } else { self.due } + time;

@@ -1,5 +1,5 @@
-//! Registers of an InvenSense SPI part: address byte with a read bit, address increment in bursts, and on some parts
-//! banks behind a select register.
+//! Registers of an InvenSense SPI part: address byte with a read bit, address increment in bursts, on some parts banks
+//! behind a select register.
 
 use embedded_hal_async::spi::SpiDevice;
 

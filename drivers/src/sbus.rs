@@ -9,7 +9,7 @@
 //!
 //! Counts are those of CRSF: 172 and 1811 at the stick's ends, 992 at its centre.
 //!
-//! There is no checksum. A frame must begin after silence or right after another frame; after garbage on an unbroken
+//! Without a checksum, a frame must begin after silence or right after another frame; after garbage on an unbroken
 //! stream, the first frame found only locates the second. Sticks are accepted from the third consecutive frame: random
 //! bytes after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
 //!
@@ -133,7 +133,7 @@ const fn is_end(byte: u8) -> bool {
 /// Finds frames in a stream of bytes, in pieces of any length.
 ///
 /// [`Parser::silence`] must be called wherever the line was idle (4 ms or more after each frame): constant data can
-/// look like frames at a wrong offset.
+/// look like misplaced frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Parser {
     bytes: [u8; FRAME],

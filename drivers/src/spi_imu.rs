@@ -1,14 +1,13 @@
-//! InvenSense inertial sensors on SPI with a data-ready line; a [`Chip`] gives registers and bits. Detects a part that
-//! is silent, garbled, stuck, or has lost its configuration.
+//! InvenSense inertial sensors on SPI with a data-ready line; a [`Chip`] gives registers and bits. Detects a silent,
+//! garbled or stuck part and a lost configuration.
 //!
-//! If the line is silent while the part answers and its registers are right, the driver polls the part's status, so no
-//! sample counts twice. The first comes 0.4 ms after detection (1.2 ms at 1 kHz), later ones up to a quarter period and
-//! one transfer after they are ready, stamped with the time of their request. [`line_watch`](crate::line_watch) decides
-//! when to use the line again.
+//! If the line is silent though the part answers correctly, the driver polls the part's status, so no sample counts
+//! twice. The first comes 0.4 ms after detection (1.2 ms at 1 kHz), later ones up to a quarter period and one transfer
+//! after they are ready, stamped with the time of their request. [`line_watch`](crate::line_watch) decides when to use
+//! the line again.
 //!
-//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms); the next call resumes and
-//! treats it as a silence. Failures are followed by a pause (1 ms, doubling to 128 ms), so a dead part costs no
-//! processor time.
+//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms), which the next call treats as
+//! a silence. Failures are followed by a pause (1 ms, doubling to 128 ms), so a dead part costs no processor time.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
@@ -247,7 +246,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     }
 
     /// Actuates both sensors and compares their response with the factory codes; about 1.5 s, vehicle at rest. Then
-    /// resets and configures the part in any case.
+    /// always resets and configures the part.
     ///
     /// # Errors
     /// The first axis that fails, or a fault of the part.

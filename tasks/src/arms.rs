@@ -2,7 +2,7 @@
 //!
 //! Runs in the background: the sensors stretch the I2C clock and nothing in flight waits for them. A round of four must
 //! end within its period. A sensor silent for a second is reported against arming; one that never answers costs only
-//! its own reading. Each tilt carries the time at which its own sensor was asked.
+//! its own reading. Each tilt carries the time of its own request.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::arming::ArmingInhibit;
@@ -19,8 +19,8 @@ use crate::silence::SilenceWatch;
 
 /// Time without a reading until a sensor counts as silent.
 pub const SILENCE: Duration = Duration::from_secs(1);
-/// Time from power-up before a sensor can count as silent. A BNO055 answers after 650 ms; its driver, with growing
-/// pauses, finds it by 1.3 s, then resets and configures it in 0.75 s.
+/// Time from power-up before a sensor can count as silent. A BNO055 answers after 650 ms; its driver finds it by 1.3 s,
+/// then resets and configures it in 0.75 s.
 pub const START: Duration = Duration::from_millis(2500);
 /// Limit of one reading. The driver bounds each transfer to 3 ms, a few in a call.
 const READING: Duration = Duration::from_millis(20);

@@ -69,8 +69,8 @@ pub struct Tick {
 
 /// Loop of a periodic task.
 ///
-/// embassy's `Ticker` fires every missed tick at once after a stall: a burst of steps without time between them. This
-/// one drops missed periods, counts them as overruns, and keeps the phase.
+/// embassy's `Ticker` fires every missed tick at once after a stall: a burst of steps without time between. This one
+/// counts missed periods as overruns and keeps the phase.
 pub struct FixedRate<'a> {
     links: &'a Links,
     task: TaskId,
@@ -88,7 +88,7 @@ impl<'a> FixedRate<'a> {
     }
 
     /// A loop of `period` whose work must end within `deadline` of its release. Periods begin at the task's phase of
-    /// the board's clock: a reader runs after the writer, whatever the order of spawning.
+    /// the board's clock: readers run after writers, whatever the order of spawning.
     pub fn new(links: &'a Links, task: TaskId, period: Duration, deadline: Duration) -> Self {
         Self {
             links,

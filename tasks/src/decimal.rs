@@ -1,5 +1,5 @@
-//! Decimal numbers, read and shown. The library's exact conversions take 20 KB of flash; parameters have at most seven
-//! digits, for which one rounded division is exact as well.
+//! Decimal numbers, read and shown. The library's exact conversions take 20 KB of flash; for a parameter's seven digits
+//! at most one rounded division is exact as well.
 
 use core::fmt;
 

@@ -1,8 +1,8 @@
 //! State retained over a reset: the grip on the pipe, and what would otherwise need calibration at rest.
 //!
 //! A reset (watchdog, fault, command, pin) keeps memory that start-up does not touch. Two copies there are written by
-//! turns, each with sequence number and checksum: a reset during a write leaves the other whole. After power-on the
-//! noise fails the checksum.
+//! turns, with sequence number and checksum: a reset during a write leaves the other whole. After power-on the noise
+//! fails the checksum.
 
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;

@@ -1,9 +1,9 @@
 //! Drives the tendon servos: converts forces to pulses and publishes the estimated tension.
 //!
 //! Runs at the servos' frame rate (`servo_frame_rate`, 50 to 333 Hz). There are no pulses until the first force: on the
-//! pipe at power-up the gears hold, and nothing moves before the clamp loop has an order. After a restart the drives
-//! continue from the retained angles. Stale forces leave the servos where they are; so does a missing tilt, unless its
-//! arm is to be released.
+//! pipe at power-up the gears hold until the clamp loop has an order. After a restart the drives continue from the
+//! retained angles. Stale forces leave the servos where they are; so does a missing tilt, unless its arm is to be
+//! released.
 //!
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
 
@@ -18,7 +18,7 @@ use crate::ports::Servos;
 use crate::timing::Run;
 
 /// Start of the servos' frames by the board's clock: after the task has written the pulse widths, which take effect
-/// with the next frame. A port with its own frames starts them then.
+/// then. A port with its own frames starts them there.
 pub const FRAME_AT: Duration = Duration::from_micros(1500);
 
 /// Frame period at `hz` frames a second.
@@ -164,8 +164,8 @@ impl Tendons {
 
 /// Measures from the conversion of pressures to the pulse that answers them, once for each such conversion.
 ///
-/// Lateness runs until the pulse widths are written, execution from there until the first such pulse begins, response
-/// is both. Conversions overtaken by a newer one and forces that follow from no pressure are not measured.
+/// Lateness runs until the pulse widths are written, execution until the first such pulse begins, response is both.
+/// Conversions overtaken by a newer one and forces without pressure are not measured.
 struct ChainWatch {
     deadline: Duration,
     last: Option<Instant>,

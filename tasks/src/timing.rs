@@ -1,8 +1,8 @@
 //! Timing of a task: totals since power-up, and histograms since they were last taken.
 //!
 //! Times are whole microseconds, the clock's resolution. Lateness is from release to start, execution from start to
-//! end, response from release to end. Execution includes preemption and waits on a bus; the executor trace
-//! (docs/timing.md) separates them.
+//! end, response from release to end. Execution includes preemption and bus waits, which the executor trace
+//! (docs/timing.md) separates.
 
 use embassy_time::{Duration, Instant};
 
@@ -54,7 +54,7 @@ pub enum Quantity {
 /// Everything recorded of one task.
 ///
 /// A run of the flight level is noted at its end, and settled into totals and histograms once the motor frame is out:
-/// noting takes a quarter of the instructions. Reading or noting again settles first, so none is lost.
+/// noting takes a quarter of the instructions. Reading or noting again settles first.
 #[derive(Debug)]
 pub struct Record {
     /// Since power-up, without the noted run.

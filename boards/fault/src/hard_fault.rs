@@ -1,7 +1,7 @@
 //! Hard fault handler: unmapped addresses, undefined instructions, stack overflow.
 //!
-//! It does not use the old stack: after an overflow that would fault again at the highest priority, locking the
-//! processor up without a message and with the motors unchanged.
+//! It does not use the old stack: after an overflow that would fault again, locking the processor up without a message
+//! and with the motors unchanged.
 
 use core::arch::naked_asm;
 

@@ -1,5 +1,5 @@
-//! Memory retained over a reset: the count of starts, the end of the last run, and two copies of the state from which
-//! the tasks resume (`sophie_tasks::retained_state`).
+//! Memory retained over a reset: the count of starts, the end of the last run, and two copies of the tasks' state
+//! (`sophie_tasks::retained_state`).
 //!
 //! Only these functions access it: the linker places nothing else there, no DMA points at it, and the stack lies at the
 //! bottom of another memory, where an overflow faults. A fault handler writes only the message, so it may interrupt the

@@ -23,7 +23,7 @@ static EDGES: AtomicU32 = AtomicU32::new(0);
 static LINE: AtomicU32 = AtomicU32::new(0);
 static WAITING: AtomicWaker = AtomicWaker::new();
 
-/// Stamps and acknowledges the interrupt. Bound before the HAL's handler, which would disable the line and now finds
+/// Stamps and acknowledges the interrupt. Bound before the HAL's handler, which would disable the line, and leaves it
 /// nothing to do.
 pub struct ReadyStamp;
 

@@ -1,9 +1,8 @@
 //! The DMA stream of a motor frame. The HAL sets it up once, which takes 150 instructions; each later frame writes
 //! three registers: flags, length, enable.
 //!
-//! The clock times the end of a frame instead of the stream's interrupt. The stream then still has rows of zeros to
-//! move, so that no timer request is left over: served when the next frame is armed, it would shift that frame a bit
-//! early.
+//! The clock times the end of a frame, not the stream's interrupt. The stream still has rows of zeros to move then, so
+//! that no timer request is left over to shift the next frame a bit early.
 
 use core::sync::atomic::{Ordering, fence};
 

@@ -28,7 +28,7 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
     }
 
     /// Shifts the frames so that one in each `frame` begins at `phase` of the board's clock. Called before the outputs
-    /// start: it would change a running pulse.
+    /// start, lest a pulse change.
     pub fn put_frames_at(&mut self, timing: &PwmTiming, frame: Duration, phase: Duration) {
         critical_section::with(|_| {
             let now = Instant::now();
@@ -60,8 +60,8 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         registers.ccr(channel.index()).write(|w| w.set_ccr(counts as u16));
     }
 
-    /// Start of the next frame, to the microsecond, when the last set pulses take effect; one frame late if a frame
-    /// begins between setting and this call.
+    /// Start of the next frame, to the microsecond, when the last set pulses take effect; late by one if a frame begins
+    /// between setting and this call.
     pub fn next_frame(&self, timing: &PwmTiming) -> Instant {
         let passed = self.timer.regs_gp16().cnt().read().cnt();
         Instant::now() + Duration::from_micros(timing.left_us(u32::from(passed)).into())

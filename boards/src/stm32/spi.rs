@@ -27,8 +27,8 @@ impl<B> Selected<B> {
     /// The chip on `bus` with the line `select`.
     ///
     /// The select edges are slow, some tens of nanoseconds, within the time before the first clock: the Matek's select
-    /// (PC13 to PC15, on the backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743
-    /// datasheet, pin table).
+    /// (PC13 to PC15, backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743 datasheet, pin
+    /// table).
     pub fn new(bus: B, select: Peri<'static, impl Pin>) -> Self {
         Self {
             bus,

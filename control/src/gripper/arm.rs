@@ -229,8 +229,8 @@ impl ArmGripper {
         self.ceiling_watch.pause();
     }
 
-    /// After a restart: once the tension by the new attitude, which may shift every tilt by 0.02 rad, is known for
-    /// [`RESUME_TIME`], seeds the force from it. The old force would make the servo jump.
+    /// After a restart: seeds the force from the tension by the new attitude, which may shift every tilt by 0.02 rad,
+    /// once known for [`RESUME_TIME`]. The old force would make the servo jump.
     fn take_over(&mut self, cfg: &Config, contact: &Contact, seen: f32) {
         if seen < RESUME_TIME {
             self.phase = Phase::Resume(seen);
@@ -283,7 +283,7 @@ impl ArmGripper {
         }
     }
 
-    /// An arm without touch must bend as the force rises; otherwise the force returns to its value before the rise.
+    /// An arm without touch must bend as the force rises; otherwise the force returns to its value before.
     fn watch_bending(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.ceiling_watch.pause();
         let start = BendWatch::new(contact.tilt, contact.tension);

@@ -32,8 +32,8 @@ impl PressureLoop {
     /// Bumpless start: output `force` N, with `transient` N in it, at the contact's pressure, which becomes the
     /// reference.
     ///
-    /// The transient is what the tendon lacked while the arm moved and its tilt came late. With the arm now standing
-    /// still, the tilt catches up, and the same reel position means the smaller force.
+    /// The transient is what the tendon lacked while the arm moved and its tilt came late. As the tilt catches up on
+    /// the standing arm, the same reel position means the smaller force.
     pub fn new(contact: &Contact, force: f32, transient: f32) -> Self {
         let base = force - transient - contact.feed_forward;
         Self {

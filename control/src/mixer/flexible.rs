@@ -1,7 +1,7 @@
 //! The allocation that flies: the wrench inverted through the quasi-static Jacobian about the low-passed thrusts.
 //!
 //! Inverting the effectiveness at the frozen arm angle is wrong even with the true angle: a thrust changed for yaw soon
-//! bends its arm and yaws |C| times more, and an inverse that follows the angle makes this a limit cycle.
+//! bends its arm and yaws |C| times more, and an inverse that follows the angle makes a limit cycle.
 
 #[cfg(test)]
 mod tests;
@@ -81,7 +81,7 @@ impl Flexible {
         let [t1, t2, t3, t4] = thrusts;
         let (c1, c2, c3, c4) = (t1 + c1, t2 + c2, t3 + c3, t4 + c4);
         // The collective continues from the last thrusts. Where yaw is given up nothing corrects their share of the yaw
-        // pattern, so it is removed here; it contributes nothing to thrust, roll and pitch.
+        // pattern, so it is removed; it does not affect thrust, roll and pitch.
         let left = (0.25 - 0.25 * fade) * (c1 - c2 - c3 + c4);
         let patterns = Patterns {
             collective: [c1 - left, c2 + left, c3 + left, c4 - left],

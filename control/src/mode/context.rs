@@ -15,7 +15,7 @@ use crate::params::Params;
 use crate::rc::Sticks;
 use crate::support::{Felt, Support};
 
-/// Time constant of learning gravity at rest, s, and bounds of the result, m/s²: a part's bias of some 40 mg.
+/// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
 const GRAVITY_BOUNDS: (f32, f32) = (9.4, 10.2);
 /// Display time of a reason, s.
@@ -159,7 +159,7 @@ impl Context {
             .arms()
             .unwrap_or(i.sticks.unwrap_or_default().arms)
             .mask();
-        // Opening arms still pull at the pipe, and rotors would pull at them: only proven-free arms count as free.
+        // Opening arms still pull at the pipe, and so would rotors at them: only proven-free arms count as free.
         let arms_closed = match grip_memory {
             GripMemory::Open => !i.grip.is_some_and(|grip| grip.released),
             GripMemory::Controlled(_) | GripMemory::HeldByGears(_) => !self.grasps(i, grip_memory),
@@ -188,8 +188,8 @@ impl Context {
             .filter(|(_, chosen)| !chosen)
             .fold(inhibits, |all, (range, _)| all.without(range));
         if grip_memory.arms().is_some() {
-            // Armed on the pipe, the rotors stay stopped. There the perch switch is on, and turning it off opens the
-            // arms; a broken supply cannot be repaired there.
+            // Armed on the pipe, the rotors stay stopped. There the perch switch is on, and off opens the arms; a
+            // broken supply cannot be repaired there.
             inhibits
                 .without(ArmingInhibit::PerchSwitchOn)
                 .without(ArmingInhibit::BrownOut)
@@ -198,8 +198,8 @@ impl Context {
         }
     }
 
-    /// The arms of `grip_memory` hold something. Arms held by the gears alone need only some pressure: a weak servo has
-    /// yielded to what its friction carries, and still holds.
+    /// The arms of `grip_memory` hold something. Arms held by the gears need only some pressure: a weak servo has
+    /// yielded to what its friction carries.
     pub fn grasps(&self, i: &Inputs, grip_memory: GripMemory) -> bool {
         match grip_memory {
             GripMemory::Controlled(arms) => held(i.grip, arms, &self.params),

@@ -1,8 +1,8 @@
 //! Leaves the pipe by itself: after an abandoned closing, a growing lean, or a release that nothing carries.
 //!
 //! The rotors lift more than the weight, nearly level, while the tendons pay out. A capped throttle would let a sound
-//! vehicle fall, and so would the pilot's, set for resting on the pipe. The collective is therefore set here until the
-//! throttle stick reaches hover; if it never moves, the failsafe lands the vehicle.
+//! vehicle fall, and so would the pilot's, set for resting on the pipe: the collective is set here until the throttle
+//! stick reaches hover. If it never moves, the failsafe lands the vehicle.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -70,8 +70,8 @@ impl Escaping {
         self.late(context) && context.support.force() < -HINT_FORCE
     }
 
-    /// The arms are free, and there was time to leave the pipe. If nothing pulls it down, the vehicle flies whatever an
-    /// arm's sensors read.
+    /// The arms are free, and there was time to leave the pipe. Unless pulled down, the vehicle flies whatever an arm's
+    /// sensors read.
     pub fn clear(&self, context: &Context) -> bool {
         let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
         let free = self.grip_memory == GripMemory::Open || self.late(context);

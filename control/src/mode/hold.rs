@@ -15,8 +15,8 @@ const LEVEL_RATE: f32 = 0.2;
 const FOLLOW_TIME: f32 = 0.2;
 /// Share of the collective below which only the grip holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
-/// Share of the grip pressure above which an arm holds, though outside the tolerance: in spool-down the load moves from
-/// the rotors onto the arms.
+/// Share of the grip pressure above which an arm holds outside the tolerance: in spool-down the load moves from the
+/// rotors onto the arms.
 const HELD_SHARE: f32 = 0.6;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// Levels the roll by one step. On the crown of a pipe, an unstable seat, a held lean would grow as the rotors
+    /// Levels the roll by one step: on the crown of a pipe, an unstable seat, a held lean would grow as the rotors
     /// return the weight. Pitch stays: it is the pipe's slope.
     pub fn levelled(self, dt: f32) -> Self {
         Self {
@@ -85,8 +85,8 @@ impl Spool {
         }
     }
 
-    /// Setpoint at a full collective of `thrust` N. In the last part of the ramp the rotors only lift: at little thrust
-    /// a moment would come from single rotors and stop with a jolt.
+    /// Setpoint at a full collective of `thrust` N. At the end of the ramp the rotors only lift: at little thrust a
+    /// moment would come from single rotors and stop with a jolt.
     pub fn rotors(self, hold: Hold, thrust: f32) -> Setpoint {
         let thrust = self.share * thrust;
         if self.down && self.share < LIFT_SHARE {

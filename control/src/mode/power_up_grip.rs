@@ -4,8 +4,8 @@
 //! none is sent before the pressure sensors have been read.
 //!
 //! Pressed arms are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
-//! rotors carry the vehicle. A pulse needs an angle, known by tilt and pressure only to 0.2 rad or 20 N (1 mm of
-//! thread, 0.03 rad of tilt, unknown stiffness of the skin): it might lose a third of a grip's force.
+//! rotors carry the vehicle. A pulse needs an angle, known only to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of tilt,
+//! unknown stiffness of the skin): it might lose a third of a grip's force.
 
 use super::Inputs;
 use crate::grip_memory::GripMemory;

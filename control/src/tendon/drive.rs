@@ -72,8 +72,8 @@ impl TendonDrive {
         }
     }
 
-    /// Assumes the servo where its tendon is just taut at `tilt` (rad; `None`: at release), to pay out a tendon found
-    /// wound at power-up: from there it moves at the drive's speed, not the servo's.
+    /// Assumes the servo where its tendon is just taut at `tilt` (rad; `None`: at release). A tendon found wound at
+    /// power-up is then paid out at the drive's speed, not the servo's.
     pub fn seed_from_tilt(&mut self, reel: &Reel, tilt: Option<f32>) {
         self.angle = tilt
             .filter(|t| t.abs() <= TILT_MAX)

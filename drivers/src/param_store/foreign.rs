@@ -11,8 +11,8 @@ const ARDUPILOT_FRAM: [u8; 4] = [0x50, 0x41, 6, 0];
 const BETAFLIGHT: u8 = 0xBE;
 /// Mark of PX4's parameters in flash.
 const PX4_FLASH: [u8; 4] = [0xC3, 0x3C, 0x55, 0xAA];
-/// Types of the first entry, 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a BSON document with
-/// names in capitals.
+/// First entry's types, 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a BSON document with names in
+/// capitals.
 const BSON_TYPES: [u8; 2] = [0x01, 0x10];
 
 /// Owner of a page beginning with `head`; `None` for a blank, own or unknown page.

@@ -59,8 +59,8 @@ impl<'a, F: NorFlash> ReadOnly<'a, F> {
         self.all_ones(self.range.clone(), buffer).await
     }
 
-    /// True if nothing is written behind the item read last, the newest valid one; data there are a newer item, cut
-    /// short or damaged.
+    /// True if nothing is written behind the item read last, the newest valid one; data there are a newer, damaged
+    /// item.
     pub(super) async fn blank_behind_last_read(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
         let (end, start) = (self.end, self.range.start);
         let page = start + end.saturating_sub(start + 1) / Self::PAGE * Self::PAGE;

@@ -58,8 +58,8 @@ impl Bench {
         }
     }
 
-    /// Runs for `ms`, a multiple of 100, with the least runs of every task but `other`, whose runs per 100 ms are
-    /// given; returns the feeds of the last 100 ms.
+    /// Runs for `ms`, a multiple of 100, with the least runs of every task but `other` (runs per 100 ms); returns the
+    /// feeds of the last 100 ms.
     fn run(&mut self, ms: u64, other: Option<(TaskId, u32)>) -> usize {
         let (calibrated, attitude, mix) = (self.calibrated, self.attitude, self.mix);
         let mut burst = self.ms;
