@@ -100,7 +100,7 @@ impl AttitudeLoop {
         }
     }
 
-    /// Bumpless restart: until the next setpoint the target is the attitude `q` (unit, body to world).
+    /// Bumpless restart: the target is `q` (unit, body to world) until the next setpoint.
     pub fn reset(&mut self, q: Quat) {
         let down = q.down_in_body();
         self.wanted = down;
@@ -126,7 +126,7 @@ impl AttitudeLoop {
         self.wanted_yaw_rate = math::clamp_abs(yaw_rate, self.yaw_rate_max);
     }
 
-    /// Sets the wanted heading to that of `q` (unit, body to world), while yaw is given up.
+    /// Takes the heading of `q` (unit, body to world) as the wanted one while yaw is given up.
     #[inline]
     pub fn capture_heading(&mut self, q: Quat) {
         self.heading = Heading::of(q);

@@ -7,7 +7,7 @@ use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
 
-/// Cut-off of the voltage, rad/s (2 Hz): slower than a manoeuvre's sag, faster than the discharge.
+/// Cut-off of the voltage, rad/s (2 Hz): between a manoeuvre's sag and the discharge.
 const VOLTAGE_CUTOFF: f32 = 12.6;
 /// Cut-off of the current, rad/s (2 Hz).
 const CURRENT_CUTOFF: f32 = 12.6;

@@ -5,12 +5,12 @@
 use crate::math;
 use crate::wrench::PerArm;
 
-/// Part of a demand that the rotors can give.
+/// Feasible part of a demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
     /// Share of the roll and pitch moments, 0..1.
     pub roll_pitch: f32,
-    /// Collective thrust added (positive) or removed to keep roll and pitch, N.
+    /// Collective added (positive) or removed to keep roll and pitch, N.
     pub thrust_shift: f32,
     /// Share of the yaw moment, 0..1.
     pub yaw: f32,

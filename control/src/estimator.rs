@@ -15,13 +15,13 @@ const REST_RATE: f32 = 0.15;
 /// Departure from the running mean above which the vehicle is moving, rad/s: on soft arms it rocks in the wind by half
 /// of this.
 const REST_DEVIATION: f32 = 0.08;
-/// Specific force error at which the accelerometer's pull has faded out, share of gravity.
+/// Specific force error at which the pull has faded out, share of gravity.
 const ACCEL_FADE: f32 = 0.15;
 /// Largest gyro bias accepted, rad/s.
 const BIAS_MAX: f32 = 0.1;
-/// Averaging time of the attitude from the accelerometer when the gyro's bias is known, s: a pipe sways.
+/// Averaging time of the accelerometer's attitude with a known gyro bias, s: a pipe sways.
 pub const RESUME_TIME: f32 = 0.5;
-/// Largest specific force error that still counts as gravity then, share of gravity.
+/// Largest specific force error of gravity then, share of gravity.
 const RESUME_ERROR: f32 = 0.3;
 
 /// Attitude estimator.
@@ -143,7 +143,7 @@ impl Estimator {
         self.q = if q.is_finite() { q } else { self.q };
     }
 
-    /// Collects rest; motion restarts it. With a known bias, upright and not falling is enough.
+    /// Collects rest, which motion restarts. With a known bias, not falling is enough.
     #[cold]
     #[inline(never)]
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
@@ -183,7 +183,7 @@ impl Estimator {
         }
     }
 
-    /// Starts with this gyro bias and the attitude of the collected specific force.
+    /// Starts with the attitude of the collected specific force.
     fn start(&mut self, bias: Vec3) {
         self.bias = bias;
         let up = self.rest_accel;

@@ -75,7 +75,7 @@ impl CascadedLowPass {
         self.second.value()
     }
 
-    /// First less second output: change of an evenly moving input within one time constant.
+    /// First less second output: an even input's change in one time constant.
     pub fn lead(&self) -> f32 {
         self.first.value() - self.second.value()
     }

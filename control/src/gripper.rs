@@ -38,7 +38,7 @@ use crate::grip_fault::GripFault;
 use crate::math;
 use crate::wrench::PerArm;
 
-/// Pressure that counts as touching, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
+/// Pressure of a touch, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
 const TOUCH_PRESSURE: f32 = 100.0;
 /// Least force of a closed arm, N: at 0 the servo would pay out to its release position.
 const FORCE_MIN: f32 = 1.0;

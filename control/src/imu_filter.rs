@@ -57,7 +57,7 @@ pub struct ImuFilter {
 }
 
 impl ImuFilter {
-    /// Cut-off of the accelerometer, Hz: it only corrects slowly and proves support.
+    /// Cut-off of the accelerometer, Hz: for slow correction and support.
     pub const ACCEL_CUTOFF: f32 = 30.0;
 
     /// For samples at `rate_hz`, with the gyro's cut-off `gyro_hz`.

@@ -211,7 +211,7 @@ pub struct Outputs {
     pub tendons: ClampCommand,
     /// Grip state, retained across a reset.
     pub grip_memory: GripMemory,
-    /// Why arming is refused, the failsafe acts or the last state was left; `None` when nothing is wrong.
+    /// Why arming is refused, the failsafe acts or the last state was left; `None` if nothing is wrong.
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub inhibits: ArmingInhibits,

@@ -21,17 +21,17 @@ pub const LEAVING_FORCE: f32 = 1.5;
 pub const HINT_FORCE: f32 = 1.8;
 /// Time that the support must last, s.
 pub const RESTING_TIME: f32 = 0.3;
-/// Share of the weight that counts as grounded, rotors stopped or idle.
+/// Share of the weight of a grounded vehicle, rotors stopped or idle.
 const GROUNDED_SHARE: f32 = 0.7;
 /// Time that it must last, s.
 pub const GROUNDED_TIME: f32 = 0.5;
-/// Largest body rate at which the evidence counts, rad/s.
+/// Largest body rate for evidence, rad/s.
 const RATE_MAX: f32 = 0.7;
 /// Cut-off of the support's low-pass filter, Hz.
 const CUTOFF: f32 = 5.0;
-/// Silence of the inertial sensor that resets the evidence, s.
+/// Sensor silence that resets the evidence, s.
 const SILENCE_MAX: f32 = 0.05;
-/// Decay time of the sink rate, s: bounds the integral of an accelerometer's bias.
+/// Decay time of the sink rate, s: bounds an integrated bias.
 const SINK_MEMORY: f32 = 20.0;
 /// Largest sink rate accepted, m/s.
 const SINK_MAX: f32 = 10.0;
@@ -136,7 +136,7 @@ impl Support {
         self.mass * GRAVITY
     }
 
-    /// Force carried by anything but the rotors, N, low-passed; negative if something pulls down.
+    /// Force not from the rotors, N, low-passed; negative if pulling down.
     pub fn force(&self) -> f32 {
         self.force
     }
@@ -146,7 +146,7 @@ impl Support {
         self.resting
     }
 
-    /// True once nearly all of the weight has been carried for [`GROUNDED_TIME`] without tumbling.
+    /// True once nearly all of the weight was carried for [`GROUNDED_TIME`] without tumbling.
     pub fn grounded(&self) -> bool {
         self.full.time() >= GROUNDED_TIME
     }

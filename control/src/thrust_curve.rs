@@ -16,7 +16,7 @@ pub struct ThrustCurve {
 
 /// Least voltage ratio compensated.
 const LEAST_RATIO: f32 = 0.5;
-/// Keeps the root of a purely quadratic curve, a divisor, from 0: 1e-6 of the command.
+/// Keeps the root of a quadratic curve, a divisor, from 0: 1e-6 of the command.
 const LEAST_SQUARE: f32 = 1e-12;
 
 impl ThrustCurve {

@@ -63,7 +63,7 @@ impl TiltModel {
         }
     }
 
-    /// One step of `dt` s with the last commanded thrusts (N); a non-finite one changes nothing.
+    /// One step of `dt` s with the last thrusts (N); non-finite ones change nothing.
     #[inline(always)]
     pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
         if !commanded.iter().sum::<f32>().is_finite() {
@@ -139,7 +139,7 @@ impl TiltModel {
         [what(first), what(second), what(third), what(fourth)]
     }
 
-    /// A flying arm is outside the model's range; its last valid tilt is held.
+    /// A flying arm is outside the model's range: its last valid tilt is held.
     pub const fn fault(&self) -> bool {
         self.fault
     }

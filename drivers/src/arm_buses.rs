@@ -36,7 +36,7 @@ impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
         Self { left, right, chips }
     }
 
-    /// Last calibration of arm `arm` (0..=3); `None` while it gives no readings.
+    /// Last calibration of arm `arm` (0..=3); `None` without readings.
     pub fn calibration(&self, arm: usize) -> Option<Calibration> {
         self.chips
             .get(arm)

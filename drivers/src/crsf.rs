@@ -15,15 +15,14 @@ use uf_crsf::{CrsfParser, Packet};
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
 /// Ten bits at 420 kbaud.
 const BYTE: Duration = Duration::from_micros(24);
-/// Line pause that ends a frame: twice the longest, 64 bytes. Otherwise the bytes of a returning link would complete an
-/// old frame.
+/// Line pause that ends a frame: twice the longest, 64 bytes. A returning link must not complete an old frame.
 const SILENCE: Duration = Duration::from_millis(3);
 
 /// Decodes frames from a stream, in pieces of any length.
 pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
-    /// Time of the last report of 0 % uplink quality.
+    /// Last report of 0 % uplink quality.
     lost: Option<Instant>,
     last: Option<Instant>,
     unfinished: bool,
@@ -84,7 +83,7 @@ impl RcDecoder for Decoder {
                 },
                 Ok(Packet::LinkStatistics(link)) => {
                     self.lost = (link.uplink_link_quality == 0).then_some(at);
-                    // Frames just before the report may be repetitions.
+                    // Earlier frames may be repetitions.
                     news &= self.lost.is_none();
                 }
                 Ok(_) => (),

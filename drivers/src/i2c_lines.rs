@@ -59,7 +59,7 @@ async fn stop<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) {
     release(data).await;
 }
 
-/// Releases the clock and waits for a stretching chip; false if it never rises.
+/// Releases the clock; false if it never rises.
 async fn rises<L: InputPin + OutputPin>(clock: &mut L) -> bool {
     for _ in 0..STRETCH {
         release(clock).await;

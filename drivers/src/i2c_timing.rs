@@ -17,7 +17,7 @@ const LOW_NS: u64 = 1300;
 const HIGH_NS: u64 = 600;
 /// Shortest clock period, ns: 400 kHz.
 const PERIOD_NS: u64 = 2500;
-/// Fewest kernel clock cycles to detect both edges of the own clock.
+/// Kernel clock cycles to detect both edges of the own clock.
 const SYNC: u64 = 4;
 
 /// Times are cycles times this, rounded at the end.

@@ -66,7 +66,7 @@ pub enum AccelRange {
     G16 = 3,
 }
 
-/// Gyroscope filter, which sets its rate: DLPF_CFG, CONFIG bits 2:0.
+/// Gyroscope filter and rate: DLPF_CFG, CONFIG bits 2:0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum GyroFilter {

@@ -9,14 +9,14 @@ use embassy_time::{Duration, Instant};
 /// Polling time until the line is reported as silent: one short silence, within the first `BACK_AFTER`, is no reason to
 /// land.
 pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
-/// First and longest time of agreement before the line is used again.
+/// First and longest agreement before the line is used again.
 const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];
 /// Time on the line that clears earlier silences.
 const FORGOTTEN_AFTER: Duration = Duration::from_secs(10);
 /// Poll period times rate, µs·Hz: 1.5 % shorter than the part's, whose clock, locked to the gyroscope, is off by about
 /// 1 %. Hardly any sample is missed, and the filters' rate holds within 2 %.
 const PERIOD_BY_RATE: f32 = 0.985e6;
-/// Fraction of the period until a missing sample is requested again; bounds its lateness.
+/// Fraction of the period before a missing sample is requested again.
 const AGAIN: u32 = 4;
 
 /// Line state.
@@ -32,7 +32,7 @@ struct Clock {
     since: Instant,
     due: Instant,
     period: Duration,
-    /// Samples with a pulse minus those without, at least 0, and the count that clears the line.
+    /// Samples with a pulse less those without, >= 0, and the count that clears the line.
     agreeing: u32,
     sound: u32,
     reported: bool,

@@ -105,7 +105,7 @@ impl<F: NorFlash> ParamStore<F> {
         }
     }
 
-    /// Owner of a page with another firmware's data.
+    /// Foreign owner of a page.
     async fn foreign(&mut self) -> Option<&'static str> {
         self.config::<&mut F>()?;
         let mut page = self.range.start;
@@ -129,7 +129,7 @@ impl<F: NorFlash> ParamStore<F> {
         map.store_item(buffer, &(), &Set::of(*params, self.defaults))
             .await
             .map_err(|e| match e {
-                // A full log makes room for one set by itself; otherwise its flash does not hold the marks.
+                // A full log makes room by itself; otherwise its flash does not hold the marks.
                 Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
                 _ => StorageError::Broken,
             })
@@ -167,7 +167,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
         if found.holds(params, self.defaults) {
             return Ok(());
         }
-        // Appending keeps the old set, if readable, until the new one is complete.
+        // Appending keeps a readable old set until the new one is complete.
         if found.set.is_some() || !found.damaged {
             match self.append(params, &mut buffer).await {
                 Ok(()) if self.find(&mut buffer).await.holds(params, self.defaults) => return Ok(()),

@@ -16,7 +16,7 @@ pub struct Setting {
     pub bank: u8,
     /// Address in the bank.
     pub register: u8,
-    /// Relevant bits; the others keep their value.
+    /// Relevant bits; others stay.
     pub mask: u8,
     /// Value of those bits.
     pub value: u8,

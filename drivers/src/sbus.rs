@@ -41,7 +41,7 @@ pub struct Frame {
     pub channel_17: bool,
     /// Channel 18, a switch.
     pub channel_18: bool,
-    /// The receiver missed this frame and repeats the last.
+    /// The last frame repeated for a missed one.
     pub frame_lost: bool,
     /// The transmitter is lost: the channels are failsafe values.
     pub failsafe: bool,
@@ -52,7 +52,7 @@ pub struct Frame {
 pub enum SbusError {
     /// No frame.
     Garbage,
-    /// A repeated old frame.
+    /// Repeated frame.
     FrameLost,
     /// Transmitter lost.
     Failsafe,
@@ -138,7 +138,7 @@ const fn is_end(byte: u8) -> bool {
 pub struct Parser {
     bytes: [u8; FRAME],
     count: usize,
-    /// The frame began after silence or a whole frame.
+    /// Began after silence or a whole frame.
     aligned: bool,
 }
 
@@ -281,7 +281,7 @@ impl RcDecoder for Decoder {
                     news = true;
                 }
                 Ok(_) => (),
-                // Frames just before the report may be repetitions.
+                // Earlier frames may be repetitions.
                 Err(SbusError::Failsafe | SbusError::FrameLost) => news = false,
                 Err(_) => {
                     news = false;

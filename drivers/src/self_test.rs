@@ -62,7 +62,7 @@ pub struct Measured {
     pub accel: Response,
 }
 
-/// Responses of a part that passed, % of the factory's (of the least allowed if it has none).
+/// Responses of a passed part, % of the factory's, or of the least allowed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SelfTest {
@@ -103,7 +103,7 @@ fn sensor(
         actuated,
         codes,
     } = measured;
-    // With one code missing, the maker regards none as programmed.
+    // By the maker, one missing code means none.
     let coded = codes.iter().all(|&c| c != 0);
     let [least, greatest] = absolute;
     let mut percents = [0; 3];

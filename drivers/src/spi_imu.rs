@@ -27,9 +27,9 @@ use crate::self_test::{Limits, Measured, SAMPLES, SelfTest, Stage, judge};
 /// Bytes of one sample: accelerometer, gyroscope, temperature.
 const SAMPLE: usize = 14;
 const WATCHED: usize = 6;
-/// Consecutive garbled samples before a reset.
+/// Garbled samples in a row before a reset.
 const GARBLED_MAX: u8 = 4;
-/// Consecutive dropped waits before a reset of a part whose registers are right.
+/// Dropped waits in a row before a reset of a part with right registers.
 const SILENCES_MAX: u8 = 2;
 /// Longest polling without a sample: two periods at the slowest rate, below the caller's time-out.
 const NOT_READY_MAX: Duration = Duration::from_millis(2);
@@ -96,7 +96,7 @@ pub trait Chip {
     const BANK_SELECT: Option<u8>;
     /// First of the 14 data registers.
     const DATA: u8;
-    /// First of the six bank 0 registers that are checked in flight.
+    /// First of six registers checked in flight, bank 0.
     const WATCH_FROM: u8;
     /// Status bit of a new sample, cleared by reading it.
     const SAMPLE_READY: Setting;
@@ -106,7 +106,7 @@ pub trait Chip {
     const RESET: &'static [Setting];
     /// Duration of a reset.
     const RESET_TIME: Duration;
-    /// A register content that only a reset leaves.
+    /// Content left only by a reset.
     const AFTER_RESET: Setting;
     /// Makes the registers writable.
     const WAKE: &'static [Setting];
@@ -114,18 +114,18 @@ pub trait Chip {
     const WAKE_TIME: Duration;
     /// Switches both sensors on; written last.
     const POWER: Setting;
-    /// Time from power to samples within specification.
+    /// Time from power to valid samples.
     const START_UP: Duration;
-    /// Bank and first register of the gyroscope's factory self-test codes.
+    /// Bank and first register of the gyroscope's self-test codes.
     const GYRO_CODES: (u8, u8);
-    /// Bank and first register of the accelerometer's factory self-test codes.
+    /// Bank and first register of the accelerometer's.
     const ACCEL_CODES: (u8, u8);
     /// Limits of the self-test.
     const SELF_TEST: Limits;
 
-    /// Configuration to write before power is switched on.
+    /// Configuration before power-on.
     fn settings(&self) -> Settings;
-    /// Configuration of a self-test stage, written over [`Chip::settings`].
+    /// Configuration of a self-test stage, over [`Chip::settings`].
     fn self_test_settings(stage: Stage) -> Settings;
     /// Settling time of a self-test stage.
     fn self_test_time(stage: Stage) -> Duration;
@@ -360,7 +360,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                 State::Running => return Ok(()),
                 State::Down(at) => {
                     until(at).await;
-                    // A dropped transfer may have left another bank selected.
+                    // Another bank may be selected after a dropped transfer.
                     self.registers.select(0).await?;
                     self.registers.apply(C::RESET).await?;
                     self.state = State::Resetting(Instant::now() + C::RESET_TIME);
@@ -384,7 +384,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                     self.registers.select(0).await?;
                     self.registers.apply(&settings).await?;
                     self.registers.verify(&settings).await?;
-                    // A call dropped after the switch does not configure again.
                     self.state = State::Powering(Instant::now() + POWER_QUIET);
                     self.registers.apply(&[C::POWER]).await?;
                 }

@@ -17,7 +17,7 @@ use crate::links::{Contact, Links};
 use crate::ports::Analog;
 use crate::silence::SilenceWatch;
 
-/// Time without a conversion until the inputs count as silent.
+/// Time without a conversion before a report.
 pub const SILENCE: Duration = Duration::from_millis(100);
 const BATTERY_EVERY: u8 = 5;
 
@@ -45,7 +45,7 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
                 Either::First(result) => result,
                 Either::Second(()) => {
                     watch.look(links, Instant::now());
-                    // A conversion that never ends holds its task; the supervisor detects that.
+                    // A hung conversion holds its task; the supervisor detects that.
                     conversion.await
                 }
             }

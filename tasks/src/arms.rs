@@ -17,12 +17,12 @@ use crate::links::{ArmAngles, Links, Stamped};
 use crate::ports::ArmImus;
 use crate::silence::SilenceWatch;
 
-/// Time without a reading until a sensor counts as silent.
+/// Time without a reading before a report.
 pub const SILENCE: Duration = Duration::from_secs(1);
 /// Time from power-up before a sensor can count as silent. A BNO055 answers after 650 ms; its driver finds it by 1.3 s,
 /// then resets and configures it in 0.75 s.
 pub const START: Duration = Duration::from_millis(2500);
-/// Limit of one reading. The driver bounds each transfer to 3 ms, a few in a call.
+/// Limit of one reading, a few transfers of at most 3 ms.
 const READING: Duration = Duration::from_millis(20);
 const REASONS: PerArm<ArmingInhibit> = [
     ArmingInhibit::ArmSensor1,

@@ -7,7 +7,7 @@ pub use crate::schedule::{Level, TaskId};
 use crate::timing::Run;
 pub use crate::timing::Timing;
 
-/// Records a run of an event-driven task, released when its input was measured, from `started` to now.
+/// Records a run of an event-driven task, released by its input's measurement, from `started` to now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
     record_run_until(links, task, released, started, Instant::now(), deadline);
 }
@@ -48,7 +48,7 @@ pub fn record_run_until(
     );
 }
 
-/// First instant from `now` at `phase` plus a whole number of periods of the board's clock.
+/// First instant from `now` at `phase` of the board's clock's periods.
 pub fn begins_next(now: Instant, period: Duration, phase: Duration) -> Instant {
     let period = period.as_ticks().max(1);
     let passed = (now.as_ticks() % period + period - phase.as_ticks() % period) % period;

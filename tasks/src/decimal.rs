@@ -3,7 +3,7 @@
 
 use core::fmt;
 
-/// Largest whole number shown, exact in the 24 bits of an `f32`: seven digits, or eight below 1.6777216e7.
+/// Largest whole number shown, exact in an `f32`: seven digits, or eight below 1.6777216e7.
 const UNITS_MAX: u64 = 1 << 24;
 /// 32 bits hold them.
 const DIGITS_READ: u32 = 9;

@@ -35,10 +35,10 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                     .unwrap_or([0.0; 4]);
                 let commands = commands.map(|c| if c.is_finite() { c } else { 0.0 });
                 let began = write(&mut port, commands, started).await;
-                // A frame that never began is late by the whole wait.
+                // An unsent frame is late by the whole wait.
                 let began = began.unwrap_or_else(Instant::now);
                 record_run_until(links, TaskId::Motors, message.at, started, began, DEADLINE);
-                // The frame is out: time to add what the earlier stages noted.
+                // The frame is out: adds what the earlier stages noted.
                 links.settle();
             }
             Err(_) => {

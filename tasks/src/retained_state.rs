@@ -37,12 +37,12 @@ pub struct RetainedState {
     pub force: PerArm<f32>,
     /// Latched fault of each closed arm.
     pub fault: PerArm<Option<GripFault>>,
-    /// Gyro bias, rad/s, at most 0.1 on each axis; `None` before the first calibration at rest.
+    /// Gyro bias, rad/s, within ±0.1; `None` before calibration.
     pub gyro_bias: Option<Vec3>,
 }
 
 impl RetainedState {
-    /// Words of one copy; `None` with a grip not yet checked or an invalid value.
+    /// Words of one copy; `None` with an unchecked grip or an invalid value.
     pub fn to_words(&self, sequence: u32) -> Option<Words> {
         let (grip_memory, arms) = match self.grip_memory {
             GripMemory::Unknown => return None,

@@ -26,7 +26,7 @@ impl<R: Retain> RetainedStore<R> {
         }
     }
 
-    /// Keeps the present state, once the commander knows whether the arms are closed.
+    /// Keeps the present state, once the commander knows the arms.
     pub fn keep(&mut self, links: &Links) {
         if let Some(grip_memory) = links.grip_memory.fresh() {
             self.retained.grip_memory = grip_memory;

@@ -179,7 +179,7 @@ impl ChainWatch {
         }
     }
 
-    /// The pulse widths of `order` were written at `written`, their first pulse begins at `began`.
+    /// The pulse widths of `order` were written at `written` and begin at `began`.
     fn answered(&mut self, links: &Links, order: &Stamped<TendonOrder>, written: Instant, began: Instant) {
         if !matches!(order.value, TendonOrder::Measured(_)) || self.last == Some(order.at) {
             return;

@@ -28,7 +28,7 @@ pub static ENDING: AtomicBool = AtomicBool::new(false);
 
 /// A board's part in the end of a run. Called with interrupts off, from any handler, at any stack depth.
 pub trait Machine {
-    /// Drives the motors' pins low by plain register accesses, which cannot fault.
+    /// Drives the motors' pins low by register accesses that cannot fault.
     fn stop_motors();
 
     /// Keeps `message` for the next start. May fault while formatting it.
@@ -38,7 +38,7 @@ pub trait Machine {
     fn reset() -> !;
 }
 
-/// Stops the motors, keeps `message` for the next start and restarts the machine `M`.
+/// Stops the motors, keeps `message` for the next start, restarts `M`.
 pub fn stop_and_restart<M: Machine>(message: Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
     // Nothing before this can fault.

@@ -22,7 +22,7 @@ pub enum ResetCause {
     BrownOut,
     /// Watchdog not fed.
     Watchdog,
-    /// Requested by the firmware: after a fault, or on command.
+    /// By the firmware: after a fault or on command.
     Software,
     /// Reset pin: button or probe.
     Pin,
@@ -44,14 +44,14 @@ impl ResetCause {
 }
 
 const LONGEST: usize = 240;
-/// Message of the fault that ended the last run.
+/// Fault message that ended the last run.
 pub type LastWords = String<LONGEST>;
 
 /// State at start-up.
 pub struct Kept {
     /// Starts since power-on, including this one.
     pub starts: u32,
-    /// Starts since power-on after a fault or watchdog reset.
+    /// Of these, after a fault or watchdog reset.
     pub faults: u32,
     /// Message of the last run's fault.
     pub last_words: Option<LastWords>,
@@ -164,7 +164,7 @@ fn store(mut block: Block) {
 
 /// Takes the last run's state, counts this start and clears the message. Called once, before any task.
 pub fn start(cause: ResetCause) -> (Kept, Memory) {
-    // After power-on the block is noise and fails the memory's error correction.
+    // Noise fails the memory's error correction.
     let lost = matches!(cause, ResetCause::PowerOn | ResetCause::BrownOut);
     let mut block = if lost { Block::EMPTY } else { load() };
     if !block.is_whole() && !lost {

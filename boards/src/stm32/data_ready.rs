@@ -45,13 +45,13 @@ pub struct ReadyLine {
 impl ReadyLine {
     /// The line on pin `number` of its port, read by `input`.
     pub fn new(mut input: ExtiInput<'static, Async>, number: u8) -> Self {
-        // An abandoned wait leaves edge and port configured, and the line disabled.
+        // Leaves edge and port configured, the line disabled.
         let _ = pin!(input.wait_for_rising_edge()).poll(&mut Context::from_waker(Waker::noop()));
         LINE.store(1 << number, Ordering::Relaxed);
         Self { _input: input }
     }
 
-    /// Enables the line if it is not: at first, and after an edge between the two handlers.
+    /// Enables a disabled line: at first, and after an edge between the handlers.
     fn enable() {
         let line = LINE.load(Ordering::Relaxed);
         if EXTI.imr(0).read().0 & line == 0 {

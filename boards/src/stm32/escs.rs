@@ -141,7 +141,7 @@ where
         self.timer.set_output_compare_preload(channel, true);
         self.timer.set_compare_value(channel, 0.into());
         self.timer.enable_channel(channel, true);
-        // Loads prescaler, period and compare values before the pin becomes the timer's.
+        // Loads all values before the pin becomes the timer's.
         self.timer.generate_update_event();
         self.timer.enable_outputs();
         let function = pin.af_num();
@@ -180,7 +180,7 @@ where
         // The pins rise with the first line and the pulse is timed from the last: less than 0.5 µs.
         critical_section::with(|_| {
             registers.egr().write(|w| w.set_ug(true));
-            // In force from the end of the period, when the counter stops at zero: the pins stay low.
+            // In force when the counter stops at zero: the pins stay low.
             for (channel, _) in self.on_channels(commands) {
                 self.timer.set_compare_value(channel, 0.into());
             }
@@ -206,7 +206,7 @@ where
         // Ends an abandoned frame.
         self.stop_frame();
         self.timer.reset();
-        // In channel order, as the timer takes them. A channel without a motor has no pin.
+        // In channel order. A channel without a motor has no pin.
         let frame = |motor| {
             commands
                 .get(motor)
@@ -220,7 +220,7 @@ where
         self.timer.enable_update_dma(true);
         self.timer.start();
         let began = Instant::now();
-        // A stream that stalls is not waited for; the next frame sets it up again.
+        // Not waiting for a stalled stream: the next frame sets it up.
         Timer::at(began + time).await;
         self.stop_frame();
         began

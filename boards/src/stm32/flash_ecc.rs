@@ -9,7 +9,7 @@ use embassy_stm32::pac;
 
 /// Core configuration and control register (ARMv7-M, B3.2.8).
 const CCR: *mut u32 = 0xE000_ED14 as *mut u32;
-/// Handlers at hard fault priority or above ignore data bus faults.
+/// Data bus faults are ignored at hard fault priority.
 const BFHFNMIGN: u32 = 1 << 8;
 
 /// Parameter bank: the second.

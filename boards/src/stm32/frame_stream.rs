@@ -11,7 +11,7 @@ use embassy_stm32::pac::dma::regs::{Cr, Ixr, Ndtr};
 use embassy_stm32::pac::dma::{Dma, St};
 use embassy_stm32::{pac, peripherals};
 
-/// Polls of a disabled stream until it stops: it finishes its current beat, a few bus cycles.
+/// Polls of a disabled stream, which finishes its beat: a few bus cycles.
 const LOOKS: u32 = 100;
 
 /// Location of a stream's registers.
@@ -36,7 +36,7 @@ streams! {
     DMA2: DMA2_CH0 0 DMA2_CH1 1 DMA2_CH2 2 DMA2_CH3 3 DMA2_CH4 4 DMA2_CH5 5 DMA2_CH6 6 DMA2_CH7 7;
 }
 
-/// A stream that moves the same memory to the same register each time.
+/// A stream from one memory to one register.
 pub struct Stream {
     controller: Dma,
     registers: St,

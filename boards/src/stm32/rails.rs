@@ -34,6 +34,6 @@ fn clock_ports() {
     #[cfg(not(family = "h7"))]
     let clocks = bus.ahb1enr();
     clocks.modify(|w| w.0 |= PORTS);
-    // The clock runs two cycles after the write (RM0090 §7.2.14, RM0433 §8.5.10), which this read takes.
+    // Two cycles until the clock runs (RM0090 §7.2.14, RM0433 §8.5.10).
     let _ = clocks.read();
 }

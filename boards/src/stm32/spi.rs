@@ -9,7 +9,7 @@ use embassy_time::Timer;
 use embedded_hal_async::spi::{ErrorType, Operation, SpiBus, SpiDevice};
 use sophie_drivers::spi_clock;
 
-/// Mode 3, which every chip here accepts, and the fastest clock of bus `T` up to `most_hz`.
+/// Mode 3, fit for every chip here, and the fastest clock of bus `T` up to `most_hz`.
 pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Config {
     let mut config = Config::default();
     config.mode = MODE_3;

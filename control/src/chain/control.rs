@@ -12,7 +12,7 @@ use crate::setpoint::Setpoint;
 use crate::vector::Vec3;
 use crate::wrench::Wrench;
 
-/// Largest share of a rotor's thrust that roll and pitch may each add or take on the pipe.
+/// Largest share of a rotor's thrust for roll and for pitch on the pipe.
 const RESTING_SHARE: f32 = 0.4;
 
 /// A setpoint and its time.

@@ -16,7 +16,7 @@ use crate::wrench::PerArm;
 pub struct ArmReading {
     /// Time of measurement, µs.
     pub at_us: u64,
-    /// Tilt of each arm, rad, tip up positive; `None` where the sensor gave nothing.
+    /// Tilt of each arm, rad, tip up positive; `None` without reading.
     pub tilt: PerArm<Option<f32>>,
 }
 
@@ -117,7 +117,7 @@ impl<A: Allocation> Mixing<A> {
     }
 }
 
-/// One motor instead of four idling ones. Kept out of the flight path for its speed.
+/// One motor instead of four idling ones, out of the flight path.
 #[cold]
 #[inline(never)]
 fn on_bench(out: &mut MixOutput, spin: &Spin) {
@@ -148,7 +148,7 @@ impl Readings {
         }
     }
 
-    /// Corrects one arm a step: all four at once would lengthen that step.
+    /// Corrects one arm a step, to keep steps equal.
     #[inline(always)]
     fn correct_one(&mut self, model: &mut TiltModel) {
         let Some(reading) = self.tilt.get(self.arm) else {

@@ -35,7 +35,7 @@ impl CeilingWatch {
         (self.tension, self.from) = (None, None);
     }
 
-    /// One step of `dt` s; true if tension and force rose by the window without the pressure.
+    /// One step of `dt` s; true if tension and force rose without the pressure.
     pub fn step(&mut self, cfg: &Config, sample: CeilingSample, dt: f32) -> bool {
         self.shown |= sample.pressure >= cfg.demand.pressure - cfg.demand.tolerance;
         if self.shown {

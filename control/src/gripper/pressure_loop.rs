@@ -12,7 +12,7 @@ const REFERENCE_TAU: f32 = 0.25;
 const DERIVATIVE_CUTOFF: f32 = 40.0;
 /// Lag of the tendon above which the integral waits, N.
 pub(super) const LAG_MAX: f32 = 20.0;
-/// Cut-off of the fallback force for a touch lost for good, rad/s.
+/// Cut-off of the fallback force after a lost touch, rad/s.
 const MEAN_FORCE_CUTOFF: f32 = 3.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

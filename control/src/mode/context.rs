@@ -97,7 +97,7 @@ impl Context {
         }
     }
 
-    /// Takes in the inputs; `at_rest`: the rotors stand, so gravity may be learnt.
+    /// Takes in the inputs; learns gravity `at_rest`.
     pub fn observe(&mut self, i: &Inputs, at_rest: bool, dt: f32) {
         self.since = clamp(self.since + dt, 0.0, 1e6);
         self.note.1 -= dt;
@@ -114,7 +114,7 @@ impl Context {
         }
         let down = i.motion.map_or(-self.gravity, |m| m.q.rotate(m.accel).z);
         if at_rest && i.motion.is_some() {
-            // Gravity as measured at rest: the accelerometer's bias would otherwise add up in the sink rate.
+            // Measured at rest: the bias would add up in the sink rate.
             let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
             self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
         }

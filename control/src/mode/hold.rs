@@ -7,11 +7,11 @@ use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::Wrench;
 
-/// Ramp time of the collective between the pilot's throttle and 0, s.
+/// Ramp time between the pilot's collective and 0, s.
 pub const SPOOL_TIME: f32 = 1.5;
 /// Rate of levelling a lean at contact, rad/s.
 const LEVEL_RATE: f32 = 0.2;
-/// Time constant with which the held attitude follows the present one in spool-down, s.
+/// Time constant of the held attitude following the present one, s.
 const FOLLOW_TIME: f32 = 0.2;
 /// Share of the collective below which only the grip holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
@@ -25,7 +25,7 @@ pub struct Hold {
     pub roll: f32,
     /// Held pitch, rad.
     pub pitch: f32,
-    /// Arms chosen at contact; the switch is ignored until they are free.
+    /// Chosen at contact; the switch is ignored until they are free.
     pub arms: ArmChoice,
 }
 
@@ -39,7 +39,7 @@ impl Hold {
         }
     }
 
-    /// Follows the present attitude by one step: the rotors need not hold what the grip holds, nor stop with a jolt.
+    /// Follows the present attitude by one step: the grip holds it, and the rotors must not stop with a jolt.
     pub fn following(self, i: &Inputs, dt: f32) -> Self {
         let Some(motion) = i.motion else {
             return self;

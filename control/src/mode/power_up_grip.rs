@@ -58,7 +58,7 @@ fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Opt
 }
 
 impl PowerUpGripCheck {
-    /// Decides once, at rest, whether the arms were closed at power-up.
+    /// Decides once, at rest.
     pub fn decide(&mut self, grip_memory: GripMemory, i: &Inputs, p: &Params, dt: f32) -> GripMemory {
         let (GripMemory::Unknown, Some(grip)) = (grip_memory, i.grip) else {
             return grip_memory;

@@ -30,7 +30,7 @@ pub(super) fn owner(head: &[u8; HEAD]) -> Option<&'static str> {
     }
 }
 
-/// Start of a PX4 parameter's name, such as `SYS_AUTOSTART`: three characters or more.
+/// Start of a PX4 parameter's name such as `SYS_AUTOSTART`, three characters or more.
 fn capitals(name: &[u8]) -> bool {
     let length = name.iter().position(|byte| *byte == 0).unwrap_or(name.len());
     let letter = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || *byte == b'_';

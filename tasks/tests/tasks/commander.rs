@@ -65,7 +65,7 @@ fn running(thrust: f32, tilt: f32) -> MixOutput {
 }
 
 impl Bench {
-    /// Disarmed on the ground, without inhibits.
+    /// On the ground, without inhibits.
     fn starting(params: Params, cause: StartCause) -> Self {
         let start = Start { cause, ..Start::COLD };
         let rig = Rig::starting(params, start);
