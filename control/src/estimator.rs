@@ -241,7 +241,7 @@ mod tests {
     fn a_known_bias_needs_no_rest_but_gravity() {
         let bias = Vec3::new(0.02, -0.05, 0.01);
         let mut e = Estimator::resume(&Params::default(), bias);
-        // Falls, is shaken by a landing, then sways on a pipe at 1 Hz by 0.1 rad/s.
+        // Falls, lands, then sways on a pipe at 1 Hz by 0.1 rad/s.
         for _ in 0..1000 {
             e.step(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -0.5), 1e-3);
         }
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn a_wrong_tilt_is_pulled_in_the_right_direction_in_ten_seconds() {
         let mut e = calibrated(Vec3::ZERO, at_rest(0.3, 0.0));
-        // Levelled, unnoticed by the estimator.
+        // Levelled unnoticed.
         for _ in 0..10_000 {
             e.step(Vec3::ZERO, at_rest(0.0, 0.0), 1e-3);
         }

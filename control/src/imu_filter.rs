@@ -161,7 +161,7 @@ mod tests {
         let per_output = (rate_hz / 1000.0) as usize;
         let turn = core::f64::consts::TAU * hz;
         let (mut in_phase, mut quadrature, mut n) = (0.0, 0.0, 0);
-        // Two seconds; the second, a whole number of turns, is measured.
+        // The second second, a whole number of turns, is measured.
         for i in 1..=(2.0 * rate_hz) as usize {
             let t = i as f64 / rate_hz;
             let x = f64::sin(turn * t) as f32;
@@ -193,7 +193,7 @@ mod tests {
                     "{hz} Hz at {rate} Hz: delay {d} s, {delay} s"
                 );
             }
-            // Nothing aliases from beyond half of the output's rate.
+            // Nothing aliases.
             if rate > 1000.0 {
                 assert!(response(900.0, rate).0 < 0.02, "{rate} Hz");
             }

@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn whether_it_learns_is_up_to_the_thrust_that_the_arm_has_felt() {
-        // Spooling up: a flying command, the arm still hangs.
+        // Spooling up, the arm still hangs.
         let mut t = settled(0.25);
         while t.thrusts()[0] < LEARN_THRUST + 0.2 {
             t.step(&[6.0; 4], 1e-3);
@@ -222,7 +222,7 @@ mod tests {
         assert!(t.arms[0].lagged.value() < LEARN_THRUST);
         correct(&mut t, [0.1; 4]);
         assert!(t.bias() == [0.0; 4], "{:?}", t.bias());
-        // Spooling down: an idle command, the arm still bent.
+        // Spooling down, the arm still bent.
         let mut t = settled(6.0);
         while t.thrusts()[0] > LEARN_THRUST - 0.2 {
             t.step(&[0.25; 4], 1e-3);

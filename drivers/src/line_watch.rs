@@ -159,11 +159,10 @@ mod tests {
         let back = run(&mut line, 0, 1000 * MS, |_| true);
         assert!((50 * MS..53 * MS).contains(&back), "{back}");
         assert!(!line.reported(), "one short silence is nothing");
-        // A third of the pulses falls outside the polls: the line returns, later.
+        // A third of the pulses falls outside the polls.
         line.silent(at(20_000 * MS), 4000.0);
         let back = run(&mut line, 20_000 * MS, 21_000 * MS, |us| us % 750 != 0) - 20_000 * MS;
         assert!((140 * MS..160 * MS).contains(&back), "{back}");
-        // Pulses unrelated to the samples.
         line.silent(at(40_000 * MS), 4000.0);
         let back = run(&mut line, 40_000 * MS, 45_000 * MS, |us| us % 500 == 0);
         assert_eq!(back, 45_000 * MS);

@@ -108,11 +108,10 @@ fn before_calibration_the_flight_level_may_be_silent_and_the_others_may_not() {
         bench.calibrated = false;
         let fed = bench.run(4000, Some((task, 0)));
         assert_eq!(fed, if place < 5 { 10 } else { 0 }, "{task:?}");
-        // No excuse once calibrated,
         bench.calibrated = true;
         bench.run(200, Some((task, 0)));
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
-        // even if no longer calibrated.
+        // Once calibrated, no excuse.
         bench.calibrated = false;
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
     }
