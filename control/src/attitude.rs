@@ -1,10 +1,10 @@
 //! Attitude control, 1 kHz: a P loop on the shortest turn to the wanted tilt, a leashed heading for yaw.
 //!
 //! The tilt target is the direction of down in body axes: a yaw error cannot turn roll into pitch. The heading is never
-//! computed; its change per step moves the leash.
+//! computed; its changes move the leash.
 //!
-//! A setpoint becomes a direction at the sticks' rate, so that a step needs no sine. One that is not finite keeps the
-//! tilt target and stops the turn in yaw.
+//! A setpoint becomes a direction at the sticks' rate, to save each step a sine. One that is not finite keeps the tilt
+//! target and stops the turn in yaw.
 
 use core::f32::consts::TAU;
 

@@ -1,6 +1,6 @@
 //! Flight battery from voltage and current.
 //!
-//! The task `analog` calls [`Monitor::step`] at 100 Hz (V, A, s). After a missed reading thrusts are compensated for
+//! [`Monitor::step`] runs at 100 Hz in the task `analog` (V, A, s). After a missed reading thrusts are compensated for
 //! the last voltage; it is stale after 500 ms.
 
 use crate::filter::LowPass;

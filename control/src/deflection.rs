@@ -1,6 +1,6 @@
 //! Static deflection of a soft arm under its rotor's thrust: Eq. 1 of the paper.
 //!
-//! Stateless: the tilt model evaluates it at 1 kHz, the gripper its compliance once at start-up.
+//! Evaluated at 1 kHz by the tilt model, once at start-up by the gripper.
 //!
 //! α = α0 + K ((A1 + ρ A2) T + (B1 + ρ B2) T²) (P/P0)^C_P, in degrees, ρ in %, T in N.
 //!

@@ -1,6 +1,6 @@
 //! Saturated rotors give up yaw first, then thrust, roll and pitch last.
 //!
-//! Runs at 1 kHz, on thrusts in N.
+//! 1 kHz, thrusts in N.
 
 use crate::math;
 use crate::wrench::PerArm;

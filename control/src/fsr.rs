@@ -5,7 +5,7 @@
 //!
 //! The resistor R hangs between supply and pad, a fixed R_d between pad and ground. The pad has the share x = R_d /
 //! (R_d + R) of the supply, so the conductance is x / ((1 - x) R_d). It is proportional to the force (Interlink
-//! integration guide), whose pressure acts on the sensor's area. With full scale at the share s, x = s counts / full
+//! integration guide); pressure is force over the sensor's area. With full scale at the share s, x = s counts / full
 //! scale; on a bare pad s is 1. A pin that sees only a part s of x reads at most s / ((1 - s) R_d): 692 Pa for a half,
 //! 69 Pa for an eleventh. An open lead reads as no pressure; only the gripper, which knows its pull, detects it
 //! ([`crate::grip_fault::GripFault::Unfelt`]).

@@ -1,6 +1,6 @@
 //! Gripper controller: contact pressure in, tendon force out.
 //!
-//! The task `clamp` calls [`Gripper::step`] at 100 Hz. Forces are along the tendon (N), pressures on the sensor (Pa),
+//! [`Gripper::step`] runs at 100 Hz in the task `clamp`. Forces are along the tendon (N), pressures on the sensor (Pa),
 //! tilts positive with the tip up (rad). A late step delays the control; 200 ms without a step hold the servos, and
 //! with them the grip.
 //!

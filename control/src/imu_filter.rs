@@ -1,6 +1,6 @@
 //! Low-passes the inertial sensor at its own rate and decimates to the control rate.
 //!
-//! The task `imu` calls [`ImuFilter::batch`] at 1 kHz with the samples of the last millisecond (4 kHz, or the part's
+//! [`ImuFilter::batch`] runs at 1 kHz in the task `imu` with the samples of the last millisecond (4 kHz, or the part's
 //! nearest rate; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
 
 use crate::chain::ImuReading;

@@ -1,6 +1,6 @@
 //! Allocation of a wrench to four rotors whose arms bend, recomputed at 1 kHz.
 //!
-//! [`Flexible`] flies. The mixer task takes any [`Allocation`]; the simulator flies others, made of the same parts:
+//! [`Flexible`] flies. The mixer task takes any [`Allocation`]; the simulator flies others of the same parts:
 //! [`Limits`] of rotors and yaw, and the [`Split`] of a wrench.
 
 mod flexible;

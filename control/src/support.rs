@@ -1,10 +1,10 @@
 //! Evidence from the inertial sensor that something carries the vehicle.
 //!
-//! The mode logic calls [`Support::step`] at 100 Hz. Forces are along the body's thrust axis (N). A missed step delays
-//! the evidence; 50 ms without an inertial sample end it.
+//! [`Support::step`] runs at 100 Hz in the mode logic. Forces are along the body's thrust axis (N). A missed step
+//! delays the evidence; 50 ms without an inertial sample end it.
 //!
 //! In free air, mass times specific force along the thrust axis is the thrust; on the ground or the pipe it is about
-//! the weight, whatever the thrust. The difference is the support:
+//! the weight. The difference is the support:
 //!
 //!   support = -m f_z - Σ T_i cos α_i
 //!

@@ -1,4 +1,4 @@
-//! Motor command for a thrust (N) at the battery's voltage, for each rotor at 1 kHz; the voltage comes at 100 Hz.
+//! Motor command for a thrust (N) at the battery's voltage, 1 kHz; the voltage comes at 100 Hz.
 
 use crate::math;
 use crate::params::Params;

@@ -1,6 +1,6 @@
 //! Tilt of each arm: Eq. 1 at the low-passed thrust, plus a slow bias from the arm's own sensor.
 //!
-//! [`TiltModel::step`] runs at 1 kHz (N, s); the sensors' tilts come at 100 Hz (rad, tip up positive). A missed reading
+//! [`TiltModel::step`] runs at 1 kHz (N, s), [`TiltModel::correct`] at 100 Hz (rad, tip up positive). A missed reading
 //! keeps the bias.
 //!
 //! The sensor only moves the bias, which corrects the model: in the allocation its noise and latency would cost more

@@ -2,7 +2,7 @@
 //!
 //! The chip takes 650 ms from reset, 19 ms into and 7 ms out of configuration mode, stretches the clock and may reset
 //! itself. A call therefore does one step of a few time-limited accesses and returns [`PortError::Absent`] until the
-//! chip is ready. Failures are followed by a pause, doubling up to 1 s.
+//! chip is ready. Failures cause a pause, doubling up to 1 s.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_hal_async::i2c::I2c;

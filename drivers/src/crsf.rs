@@ -2,8 +2,8 @@
 //!
 //! A receiver without its transmitter may repeat the last channels. At 0 % uplink quality in its link statistics no
 //! sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a quality
-//! above 0 %, or after 1 s without statistics, which some receivers never send. Receivers should be set to send nothing
-//! without a link ("no pulses").
+//! above 0 %, or after 1 s without statistics, which some receivers never send. Receivers should be set to "no pulses"
+//! without a link.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;

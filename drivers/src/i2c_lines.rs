@@ -1,7 +1,7 @@
 //! Frees an I2C bus whose data line a chip holds low.
 //!
 //! A chip that loses its master within a byte, by a reset or noise, holds its bit, which blocks start conditions. Nine
-//! clocks take the rest of any byte, and a stop ends the transfer (UM10204, §3.1.16).
+//! clocks take the rest of any byte, a stop ends the transfer (UM10204, §3.1.16).
 
 use embassy_time::Timer;
 use embedded_hal::digital::{InputPin, OutputPin};

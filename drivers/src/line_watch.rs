@@ -1,8 +1,7 @@
 //! Decides whether a data-ready line is reliable, or samples are polled instead.
 //!
 //! A silent line is used again once its pulses and the part's status have agreed for a time that doubles with each
-//! silence: a loose contact must not toggle the driver. Lasting or repeated silences are reported, a single short one
-//! is not.
+//! silence: a loose contact must not toggle the driver. A single short silence is not reported.
 
 use embassy_time::{Duration, Instant};
 

@@ -1,8 +1,8 @@
 //! Parameters in flash or FRAM.
 //!
-//! One item of a `sequential_storage` map holds the whole set: a save cut short by power loss leaves the old or the new
-//! set. An item is a tag and eight bytes per parameter that differs from the board's default: FNV-1a hash of its name,
-//! bits of its value. Other firmware reads the parameters that it knows, also by former names.
+//! One item of a `sequential_storage` map holds the whole set: a save cut short leaves the old or the new set. An item
+//! is a tag and eight bytes per parameter that differs from the board's default: FNV-1a hash of its name, bits of its
+//! value. Other firmware reads the parameters that it knows, also by former names.
 //!
 //! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
 //! start-up could outlast the watchdog.

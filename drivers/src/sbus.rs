@@ -10,10 +10,10 @@
 //! Counts are those of CRSF: 172 and 1811 at the stick's ends, 992 at its centre.
 //!
 //! Without a checksum, a frame must begin after silence or right after another frame; after garbage on an unbroken
-//! stream, the first frame found only locates the second. Sticks are accepted from the third consecutive frame: random
-//! bytes after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
+//! stream, the first frame only locates the second. Sticks are accepted from the third frame in a row: random bytes
+//! after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
 //!
-//! Frames flagged as lost transmitter or repetition publish no sticks: the link turns stale and the failsafe acts.
+//! Frames with a lost transmitter or a repetition publish no sticks: the link turns stale and the failsafe acts.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::{CHANNELS, ChannelError, Sticks};

@@ -1,7 +1,7 @@
 //! Verdict on the self-test of an InvenSense part, whose sensors are actuated electrically.
 //!
-//! Procedure and limits are those of TDK's ICM-426xx driver and of application note AN-000029 (older register map): 200
-//! samples averaged at rest and actuated, at 250 °/s and 2 g.
+//! Procedure and limits of TDK's ICM-426xx driver and of application note AN-000029 (older register map): 200 samples
+//! averaged at rest and actuated, at 250 °/s and 2 g.
 
 use crate::fault::{Fault, Sensor};
 

@@ -3,8 +3,7 @@
 //!
 //! If the line is silent though the part answers correctly, the driver polls the part's status, so no sample counts
 //! twice. The first comes 0.4 ms after detection (1.2 ms at 1 kHz), later ones up to a quarter period and one transfer
-//! after they are ready, stamped with the time of their request. [`line_watch`](crate::line_watch) decides when to use
-//! the line again.
+//! late, stamped with their request. [`line_watch`](crate::line_watch) decides when to use the line again.
 //!
 //! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms), which the next call treats as
 //! a silence. Failures are followed by a pause (1 ms, doubling to 128 ms), so a dead part costs no processor time.

@@ -1,8 +1,8 @@
 //! Reads the arms' inertial sensors at 100 Hz: tilt of each arm against the body.
 //!
 //! Runs in the background: the sensors stretch the I2C clock and nothing in flight waits for them. A round of four must
-//! end within its period. A sensor silent for a second is reported against arming; one that never answers costs only
-//! its own reading. Each tilt carries the time of its own request.
+//! end within its period. A sensor silent for a second is reported against arming, and costs only its own reading. Each
+//! tilt carries the time of its own request.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::arming::ArmingInhibit;

@@ -1,4 +1,4 @@
-//! State retained over a reset: the grip on the pipe, and what would otherwise need calibration at rest.
+//! State retained over a reset: the grip on the pipe, and what else would need calibration at rest.
 //!
 //! A reset (watchdog, fault, command, pin) keeps memory that start-up does not touch. Two copies there are written by
 //! turns, with sequence number and checksum: a reset during a write leaves the other whole. After power-on the noise

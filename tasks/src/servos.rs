@@ -1,9 +1,8 @@
 //! Drives the tendon servos: converts forces to pulses and publishes the estimated tension.
 //!
 //! Runs at the servos' frame rate (`servo_frame_rate`, 50 to 333 Hz). There are no pulses until the first force: on the
-//! pipe at power-up the gears hold until the clamp loop has an order. After a restart the drives continue from the
-//! retained angles. Stale forces leave the servos where they are; so does a missing tilt, unless its arm is to be
-//! released.
+//! pipe at power-up the gears hold. After a restart the drives continue from the retained angles. Stale forces leave
+//! the servos where they are; so does a missing tilt, unless its arm is to be released.
 //!
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
 

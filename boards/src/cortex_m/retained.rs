@@ -2,8 +2,8 @@
 //! (`sophie_tasks::retained_state`).
 //!
 //! Only these functions access it: the linker places nothing else there, no DMA points at it, and the stack lies at the
-//! bottom of another memory, where an overflow faults. A fault handler writes only the message, so it may interrupt the
-//! writing of a copy.
+//! bottom of another memory, where an overflow faults. A fault handler writes only the message, so it may interrupt a
+//! copy.
 
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};

@@ -1,6 +1,6 @@
-//! Power-up grip check: whether the arms are closed on something at power-up.
+//! Power-up grip check: whether the arms are closed on something.
 //!
-//! Retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them:
+//! The retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them:
 //! none is sent before the pressure sensors have been read.
 //!
 //! Pressed arms are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the

@@ -1,4 +1,4 @@
-//! The watchdog is fed only while everything runs that flying needs.
+//! The watchdog is fed only while every task needed for flight runs.
 
 use embassy_time::{Duration, Instant};
 use sophie_tasks::deadline::TaskId;
