@@ -1,8 +1,7 @@
 //! Samples contact pressures at 500 Hz and the battery in every fifth run, from one converter.
 //!
-//! A conversion must end before the next; messages carry the time of its beginning. A failing converter publishes
-//! nothing, so its links go stale; after 100 ms arming is refused, and from the start if a sensor cannot read the grip
-//! pressure.
+//! A conversion must end before the next; messages carry the time of its beginning. A failing converter's links go
+//! stale; after 100 ms arming is refused, and from the start if a sensor cannot read the grip pressure.
 
 use core::pin::pin;
 

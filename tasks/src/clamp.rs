@@ -10,8 +10,8 @@
 //! - thrusts: the motors have stopped by then, so the feed-forward is zero;
 //! - tension: the demanded force counts as given, and nothing is proven free.
 //!
-//! No force is sent before one is known: at power-up the arms may be closed, held by the servos' gears until a pulse
-//! opens them.
+//! No force is sent before one is known: at power-up closed arms are held by the servos' gears until a pulse opens
+//! them.
 
 use crate::retained_state::RetainedState;
 use embassy_time::Instant;

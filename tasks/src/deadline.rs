@@ -1,4 +1,4 @@
-//! Fixed rates and deadlines: misses are counted, and never made up for by a burst.
+//! Fixed rates and deadlines: misses are counted, not made up for by a burst.
 
 use embassy_time::{Duration, Instant, Timer};
 
@@ -7,7 +7,7 @@ pub use crate::schedule::{Level, TaskId};
 use crate::timing::Run;
 pub use crate::timing::Timing;
 
-/// Records a run of an event-driven task, released by its input's measurement, from `started` to now.
+/// Records a run of an event-driven task, released by its input's measurement, until now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
     record_run_until(links, task, released, started, Instant::now(), deadline);
 }
@@ -88,7 +88,7 @@ impl<'a> FixedRate<'a> {
     }
 
     /// A loop of `period` whose work must end within `deadline` of its release. Periods begin at the task's phase of
-    /// the board's clock: readers run after writers, whatever the order of spawning.
+    /// the board's clock: readers run after writers, however spawned.
     pub fn new(links: &'a Links, task: TaskId, period: Duration, deadline: Duration) -> Self {
         Self {
             links,

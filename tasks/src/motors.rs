@@ -21,8 +21,7 @@ pub async fn run(links: &Links, mut port: impl Motors) {
         return;
     };
     loop {
-        // `fresh` beside the timeout: a mix computed from an old sample must not spin a motor. Only the commands are
-        // copied.
+        // `fresh` beside the timeout: a mix from an old sample must not spin a motor.
         let next = mix.changed_to(|mix| Stamped {
             at: mix.at,
             value: mix.value.commands,

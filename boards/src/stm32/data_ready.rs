@@ -1,6 +1,6 @@
 //! Data-ready line of the inertial sensor, stamped in its interrupt: a late task does not move the sample's time.
 //!
-//! The line stays enabled between samples. The HAL would set it up for each wait, 80 instructions between sample and
+//! The line stays enabled between samples: the HAL's set-up for each wait would add 80 instructions between sample and
 //! motor frame.
 
 use core::future::{Future, poll_fn};
@@ -23,8 +23,7 @@ static EDGES: AtomicU32 = AtomicU32::new(0);
 static LINE: AtomicU32 = AtomicU32::new(0);
 static WAITING: AtomicWaker = AtomicWaker::new();
 
-/// Stamps and acknowledges the interrupt. Bound before the HAL's handler, which would disable the line, and leaves it
-/// nothing to do.
+/// Stamps and acknowledges the interrupt. Bound before the HAL's handler, which would disable the line.
 pub struct ReadyStamp;
 
 impl<I: Interrupt> Handler<I> for ReadyStamp {

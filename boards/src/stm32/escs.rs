@@ -1,4 +1,4 @@
-//! The motors' speed controllers, by DShot frames or pulses, on channels of one timer in any order, or of two.
+//! The motors' speed controllers, by DShot frames or pulses, on any channels of one or two timers.
 //!
 //! Each command starts one frame or pulse, which ends with the pins low: in zeros, or by the timer's stop. Without
 //! software there is none, and the controllers stop the motors.
@@ -133,7 +133,7 @@ where
         }
     }
 
-    /// Adds motor `index`, 0 to 3, on its pin, which stays low until the first command.
+    /// Adds motor `index`, 0 to 3, on its pin, low until the first command.
     pub fn motor<C: TimerChannel>(mut self, index: usize, pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
         let channel = C::CHANNEL;
         self.timer
@@ -166,7 +166,7 @@ where
     }
 
     /// Starts one pulse on all motors. A command within the last pulse's period is dropped, so that it neither cuts nor
-    /// lengthens the pulse; the next one is newer.
+    /// lengthens the pulse; the next is newer.
     fn shoot(&mut self, pulse: EscPulse, t: PwmTiming, commands: PerArm<f32>) {
         let registers = self.timer.regs_core();
         // In one-pulse mode the counter stops by itself.
@@ -177,7 +177,7 @@ where
             let counts = pulse.compare(&t, command);
             self.timer.set_compare_value(channel, (counts as u16).into());
         }
-        // The pins rise with the first line and the pulse is timed from the last: less than 0.5 µs.
+        // Pins rise with the first line, the pulse is timed from the last: less than 0.5 µs.
         critical_section::with(|_| {
             registers.egr().write(|w| w.set_ug(true));
             // In force when the counter stops at zero: the pins stay low.

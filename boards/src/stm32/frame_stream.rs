@@ -82,7 +82,7 @@ impl Stream {
         }
     }
 
-    /// Makes the stream wait for requests. It fetches the first values at once: they must already be in memory.
+    /// Makes the stream wait for requests. It fetches the first values at once.
     #[inline]
     pub fn arm(&self) {
         let (register, flags) = self.flags;
