@@ -35,7 +35,7 @@ static RING: [[AtomicU32; 2]; EVENTS as usize] =
 static WRITTEN: AtomicU32 = AtomicU32::new(0);
 static READ: AtomicU32 = AtomicU32::new(0);
 static LOST: AtomicU32 = AtomicU32::new(0);
-/// The clock runs; not to be read before.
+/// Set once the clock runs: it must not be read before.
 static ON: AtomicBool = AtomicBool::new(false);
 
 /// Starts recording. The clock must run.

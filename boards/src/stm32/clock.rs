@@ -12,7 +12,7 @@ use crate::cortex_m::retained;
 
 const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
 
-/// embassy-time's clock counts; not to be read before.
+/// Set once embassy-time's clock runs: it must not be read before.
 static COUNTING: AtomicBool = AtomicBool::new(false);
 
 static BUS: AtomicU32 = AtomicU32::new(0);
