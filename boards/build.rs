@@ -94,7 +94,7 @@ fn boards() -> io::Result<Vec<String>> {
 }
 
 /// Passes the board's map to the linker (included by memory.x at the workspace root, which is found first) and the
-/// family to the compiler. The search path applies to whatever links this crate.
+/// family to the compiler. The search path applies to all that links this crate.
 fn apply(selection: &Selection) -> io::Result<()> {
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     fs::copy(&selection.map, out.join("board.x"))?;

@@ -2,8 +2,8 @@
 //!
 //! A board is one file: clocks, pins, DMA streams and timers, claimed with `assign_resources`, and `Board`'s ports.
 //! Several boards share `stm32`, all share `cortex_m`; both depend on the chip's family, never on the board. The build
-//! script picks the memory map in `memory/`. `sophie-fault` ends a run. On the host there is only the check of a
-//! board's pins (`output_pins`).
+//! script picks the memory map in `memory/`. `sophie-fault` ends a run. The host only has the check of a board's pins
+//! (`output_pins`).
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg_attr(

@@ -1,7 +1,7 @@
 //! Pins for motors and servos: none of the debug port, which the chip pulls or drives from reset on.
 //!
 //! Some servos take a pulled-up input for an endless pulse, and a reset may happen on the pipe. The build script checks
-//! its board's table, the tests all of them.
+//! its board's table, the tests all.
 
 /// Debug port pins at reset: SWDIO, JTDI and NJTRST with a pull-up, SWCLK with a pull-down, JTDO (RM0090 §8.3.2, RM0410
 /// §6.3.2, RM0433 §11.3.2).

@@ -1,10 +1,10 @@
 //! Attitude control, 1 kHz: a P loop on the shortest turn to the wanted tilt, a leashed heading for yaw.
 //!
-//! The tilt target is the direction of down in body axes, independent of the heading: a yaw error cannot turn roll into
-//! pitch. The heading itself is never computed; its change per step moves the leash.
+//! The tilt target is the direction of down in body axes: a yaw error cannot turn roll into pitch. The heading is never
+//! computed; its changes move the leash.
 //!
-//! A setpoint becomes a direction at the sticks' rate, so that a step needs no sine. One that is not finite keeps the
-//! tilt target and stops the turn in yaw.
+//! A setpoint becomes a direction at the sticks' rate, to save each step a sine. One that is not finite keeps the tilt
+//! target and stops the turn in yaw.
 
 use core::f32::consts::TAU;
 
@@ -100,7 +100,7 @@ impl AttitudeLoop {
         }
     }
 
-    /// Bumpless restart: until the next setpoint the target is the attitude `q` (unit, body to world).
+    /// Bumpless restart: the target is `q` (unit, body to world) until the next setpoint.
     pub fn reset(&mut self, q: Quat) {
         let down = q.down_in_body();
         self.wanted = down;
@@ -126,7 +126,7 @@ impl AttitudeLoop {
         self.wanted_yaw_rate = math::clamp_abs(yaw_rate, self.yaw_rate_max);
     }
 
-    /// Sets the wanted heading to that of `q` (unit, body to world), while yaw is given up.
+    /// Takes the heading of `q` (unit, body to world) as the wanted one while yaw is given up.
     #[inline]
     pub fn capture_heading(&mut self, q: Quat) {
         self.heading = Heading::of(q);

@@ -1,13 +1,13 @@
 //! Flight battery from voltage and current.
 //!
-//! The task `analog` calls [`Monitor::step`] at 100 Hz (V, A, s). After a missed reading thrusts are compensated for
+//! [`Monitor::step`] runs at 100 Hz in the task `analog` (V, A, s). After a missed reading thrusts are compensated for
 //! the last voltage; it is stale after 500 ms.
 
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
 
-/// Cut-off of the voltage, rad/s (2 Hz): slower than a manoeuvre's sag, faster than the discharge.
+/// Cut-off of the voltage, rad/s (2 Hz): between a manoeuvre's sag and the discharge.
 const VOLTAGE_CUTOFF: f32 = 12.6;
 /// Cut-off of the current, rad/s (2 Hz).
 const CURRENT_CUTOFF: f32 = 12.6;

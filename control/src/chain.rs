@@ -2,7 +2,7 @@
 //!
 //! Four stages with their own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] the demand,
 //! [`Mixing`] the commands. On the vehicle each belongs to a task, joined by links; instruction counts, QEMU and
-//! replays run them in the same order as one [`FlightChain`], with identical bits for a recorded mission.
+//! replays run them as one [`FlightChain`], with identical bits for a recorded mission.
 
 mod control;
 mod messages;

@@ -1,12 +1,12 @@
 //! Static deflection of a soft arm under its rotor's thrust: Eq. 1 of the paper.
 //!
-//! Stateless: the tilt model evaluates it at 1 kHz, the gripper its compliance once at start-up.
+//! Evaluated at 1 kHz by the tilt model, once at start-up by the gripper.
 //!
 //! α = α0 + K ((A1 + ρ A2) T + (B1 + ρ B2) T²) (P/P0)^C_P, in degrees, ρ in %, T in N.
 //!
 //! K is added: the literal equation (K = 1) gives a fifth of the tilts of the paper's Table III. α0 makes the arm level
-//! at half throttle, as the paper's text demands. The battery's factor stays 1 in flight, where thrusts are already
-//! compensated; only the printed [`Algorithm1`] uses it.
+//! at half throttle, as the paper's text demands. The battery's factor stays 1 in flight, where thrusts are compensated
+//! already; only the printed [`Algorithm1`] uses it.
 
 use crate::math;
 use crate::params::Params;

@@ -1,16 +1,16 @@
 //! Saturated rotors give up yaw first, then thrust, roll and pitch last.
 //!
-//! Runs at 1 kHz, on thrusts in N.
+//! 1 kHz, thrusts in N.
 
 use crate::math;
 use crate::wrench::PerArm;
 
-/// Part of a demand that the rotors can give.
+/// Feasible part of a demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
     /// Share of the roll and pitch moments, 0..1.
     pub roll_pitch: f32,
-    /// Collective thrust added (positive) or removed to keep roll and pitch, N.
+    /// Collective added (positive) or removed to keep roll and pitch, N.
     pub thrust_shift: f32,
     /// Share of the yaw moment, 0..1.
     pub yaw: f32,
@@ -49,7 +49,7 @@ pub struct Patterns {
     pub yaw: PerArm<f32>,
 }
 
-/// Least thrust of a rotor per newton of collective: a rotor beyond the collective's reach cannot bound the shift, and
+/// Least thrust of a rotor per newton of collective: one beyond the collective's reach cannot bound the shift, and
 /// divisions stay finite.
 const LEAST_SHIFT: f32 = 0.02;
 

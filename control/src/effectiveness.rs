@@ -2,9 +2,9 @@
 //!
 //! Evaluated at 1 kHz; body axes FRD, thrusts in N, tilts in rad with the tip up.
 //!
-//! A rotor at (±b, ∓d) tilted by α leans its thrust inward by α. With the arm hinged at the centre line the thrust
-//! stays perpendicular to it: the roll lever is d at any tilt, the pitch lever acts on T cos α, and the yaw moment is
-//! the sideways part T sin α at ±b plus the rotor's drag ±k_q T.
+//! A rotor at (±b, ∓d) tilted by α leans its thrust inward by α, perpendicular to the arm hinged at the centre line:
+//! the roll lever is d at any tilt, the pitch lever acts on T cos α, and the yaw moment is the sideways part T sin α at
+//! ±b plus the rotor's drag ±k_q T.
 
 use crate::math;
 use crate::params::Params;
@@ -159,7 +159,7 @@ impl Load {
 
 /// Closed-form inverse of an effectiveness.
 ///
-/// Lift and pitch rows share their entries and give each pair's lift; a 2×2 system then splits the pairs.
+/// Lift and pitch rows give each pair's lift; a 2×2 system then splits the pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inverse {
     inv_lift_3: f32,

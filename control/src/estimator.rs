@@ -1,7 +1,7 @@
 //! Attitude estimator, 1 kHz: quaternion integration, a slow pull towards the accelerometer's vertical, gyro bias.
 //!
 //! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (default time constant 10 s) and
-//! fades when the specific force is not 1 g. There is no compass: heading is integrated.
+//! fades when the specific force is not 1 g. Without a compass, heading is integrated.
 
 use crate::chain::{Attitude, ImuSample};
 use crate::math::{self, GRAVITY};
@@ -12,16 +12,15 @@ use crate::vector::{Quat, Vec3};
 pub const CALIBRATION_TIME: f32 = 2.0;
 /// Rate above which the vehicle is moving, rad/s: above any part's bias.
 const REST_RATE: f32 = 0.15;
-/// Departure from the running mean above which the vehicle is moving, rad/s: on soft arms it rocks in the wind by half
-/// of this, which the mean removes.
+/// Departure from the running mean in motion, rad/s: on soft arms the wind rocks the vehicle by half of this.
 const REST_DEVIATION: f32 = 0.08;
-/// Specific force error at which the accelerometer's pull has faded out, share of gravity.
+/// Specific force error at which the pull has faded out, share of gravity.
 const ACCEL_FADE: f32 = 0.15;
 /// Largest gyro bias accepted, rad/s.
 const BIAS_MAX: f32 = 0.1;
-/// Averaging time of the attitude from the accelerometer when the gyro's bias is known, s: a pipe sways.
+/// Averaging time of the accelerometer's attitude with a known gyro bias, s: a pipe sways.
 pub const RESUME_TIME: f32 = 0.5;
-/// Largest specific force error that still counts as gravity then, share of gravity.
+/// Largest specific force error of gravity then, share of gravity.
 const RESUME_ERROR: f32 = 0.3;
 
 /// Attitude estimator.
@@ -54,8 +53,8 @@ impl Estimator {
         }
     }
 
-    /// Resumes after a restart with the known gyro bias (rad/s). The attitude comes from the accelerometer over
-    /// [`RESUME_TIME`], in any motion; heading restarts at 0.
+    /// Resumes after a restart with the gyro bias (rad/s). The attitude comes from the accelerometer over
+    /// [`RESUME_TIME`], also in motion; heading restarts at 0.
     pub fn resume(p: &Params, bias: Vec3) -> Self {
         Self {
             known_bias: bias
@@ -80,7 +79,7 @@ impl Estimator {
         self.bias
     }
 
-    /// One step, its result written to `attitude`: a message this long is costly to copy.
+    /// One step; writes the result into `attitude`, as so long a message is costly to copy.
     // Not inlined: its caller is built for size.
     #[inline(never)]
     pub fn estimate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
@@ -95,7 +94,7 @@ impl Estimator {
         };
     }
 
-    /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); returns the rate without bias.
+    /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); returns the unbiased rate.
     #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
         if !self.calibrated {
@@ -103,9 +102,9 @@ impl Estimator {
             return Vec3::ZERO;
         }
         let rate = gyro - self.bias;
-        // Measured down (minus the specific force) against estimated down.
+        // Measured down (minus specific force) against estimated down.
         let norm2 = accel.norm_squared();
-        // Not finite without any force: weight and the check below handle both.
+        // Not finite without force: weight and the check below handle both.
         let inv = math::inv_sqrt_normal(norm2);
         let excess = norm2 * inv * (1.0 / GRAVITY) - 1.0;
         let weight = 1.0 - excess.abs() * (1.0 / ACCEL_FADE);
@@ -143,7 +142,7 @@ impl Estimator {
         self.q = if q.is_finite() { q } else { self.q };
     }
 
-    /// Collects rest; motion restarts it. With a known bias, upright and not falling is enough.
+    /// Collects rest, which motion restarts. With a known bias, not falling is enough.
     #[cold]
     #[inline(never)]
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
@@ -183,7 +182,7 @@ impl Estimator {
         }
     }
 
-    /// Starts with this gyro bias and the attitude of the collected specific force.
+    /// Starts with the attitude of the collected specific force.
     fn start(&mut self, bias: Vec3) {
         self.bias = bias;
         let up = self.rest_accel;
@@ -241,7 +240,7 @@ mod tests {
     fn a_known_bias_needs_no_rest_but_gravity() {
         let bias = Vec3::new(0.02, -0.05, 0.01);
         let mut e = Estimator::resume(&Params::default(), bias);
-        // Falls, is shaken by a landing, then sways on a pipe at 1 Hz by 0.1 rad/s.
+        // Falls, lands, then sways on a pipe at 1 Hz by 0.1 rad/s.
         for _ in 0..1000 {
             e.step(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -0.5), 1e-3);
         }
@@ -291,7 +290,7 @@ mod tests {
     #[test]
     fn a_wrong_tilt_is_pulled_in_the_right_direction_in_ten_seconds() {
         let mut e = calibrated(Vec3::ZERO, at_rest(0.3, 0.0));
-        // Levelled, unnoticed by the estimator.
+        // Levelled unnoticed.
         for _ in 0..10_000 {
             e.step(Vec3::ZERO, at_rest(0.0, 0.0), 1e-3);
         }
@@ -301,8 +300,8 @@ mod tests {
 
     #[test]
     fn the_pull_towards_the_vertical_fades_with_what_is_not_gravity() {
-        // Estimated level, truly rolled by 0.1 rad: at 0.1 1/s this is 0.01 rad in a second, half of that at 1.075 or
-        // 0.925 g, and nothing from 15 % on.
+        // Estimated level, truly rolled by 0.1 rad: at 0.1 1/s 0.01 rad in a second, half of that at 1.075 or 0.925 g,
+        // nothing from 15 % on.
         for (g, pulled) in [
             (1.0, 0.0095),
             (1.075, 0.0049),
@@ -316,7 +315,7 @@ mod tests {
                 e.step(Vec3::ZERO, at_rest(0.1, 0.0) * g, 1e-3);
             }
             let q = e.attitude();
-            // Twice the vector part: micromath's arc tangent is too coarse here.
+            // Twice the vector part: micromath's arc tangent is too coarse.
             assert!((2.0 * q.x - pulled).abs() < 2e-4, "{g}: {}", 2.0 * q.x);
             assert!(q.y.abs() < 1e-5 && q.z.abs() < 1e-5, "{g}: {q:?}");
             // 0.002 1/s² of an error of 0.095 rad on average: a bias of -0.0002 rad/s in a second.

@@ -1,7 +1,7 @@
 //! First-order low pass and biquads.
 //!
 //! Stepped at their owners' rates, 50 Hz to 4 kHz. Low passes take the measured step (s); biquads are made for one
-//! sampling rate, and a missed sample shifts their cut-off for as long.
+//! sampling rate: a missed sample briefly shifts their cut-off.
 
 use crate::math;
 
@@ -75,7 +75,7 @@ impl CascadedLowPass {
         self.second.value()
     }
 
-    /// First less second output: change of an evenly moving input within one time constant.
+    /// First less second output: an even input's change in one time constant.
     pub fn lead(&self) -> f32 {
         self.first.value() - self.second.value()
     }

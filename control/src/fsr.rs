@@ -1,14 +1,14 @@
 //! Contact pressure from the counts of a force-sensing resistor's divider.
 //!
-//! The task `analog` calls [`Fsr::step`] for every sensor at 500 Hz. A missed conversion keeps the last pressure; after
-//! 20 ms the gripper holds that arm's force.
+//! [`Fsr::step`] runs for every sensor at 500 Hz in the task `analog`. A missed conversion keeps the last pressure;
+//! after 20 ms the gripper holds that arm's force.
 //!
 //! The resistor R hangs between supply and pad, a fixed R_d between pad and ground. The pad has the share x = R_d /
 //! (R_d + R) of the supply, so the conductance is x / ((1 - x) R_d). It is proportional to the force (Interlink
-//! integration guide); force over the sensor's area is the pressure. With full scale at the share s, x = s counts /
-//! full scale; on a bare pad s is 1. A pin that sees only a part s of x reads at most s / ((1 - s) R_d): 692 Pa for a
-//! half, 69 Pa for an eleventh. An unloaded sensor conducts nothing, so an open lead reads as no pressure; only the
-//! gripper, which knows its pull, detects that ([`crate::grip_fault::GripFault::Unfelt`]).
+//! integration guide); pressure is force over the sensor's area. With full scale at the share s, x = s counts / full
+//! scale; on a bare pad s is 1. A pin that sees only a part s of x reads at most s / ((1 - s) R_d): 692 Pa for a half,
+//! 69 Pa for an eleventh. An open lead reads as no pressure; only the gripper, which knows its pull, detects it
+//! ([`crate::grip_fault::GripFault::Unfelt`]).
 
 use crate::math;
 use crate::params::Params;
@@ -17,17 +17,17 @@ use crate::wrench::PerArm;
 /// Full scale of the 12-bit converter.
 pub const FULL_SCALE: f32 = 4095.0;
 
-/// Counts of a bare pad above which the sensor is shorted: below 240 Ω with a 10 kΩ divider, 40 N on the sensor.
+/// Counts of a shorted sensor on a bare pad: below 240 Ω with a 10 kΩ divider, 40 N on the sensor.
 const SHORT_COUNTS: f32 = 4000.0;
-/// Readable range over the grip pressure: a grip overshoots and is pushed.
+/// Range over the grip pressure: a grip overshoots and is pushed.
 const RANGE_MARGIN: f32 = 1.2;
-/// Time of plausible counts that clears a fault, s.
+/// Plausible time that clears a fault, s.
 const RECOVERY_TIME: f32 = 0.2;
 
 /// Fault of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FsrFault {
-    /// Conducts more than the largest force would cause, or than its pad can show.
+    /// Conducts more than under the largest force, or than its pad can show.
     Short,
     /// More counts than the converter's full scale.
     Converter,
@@ -60,7 +60,7 @@ impl FsrScale {
             zero,
             divider: p.fsr_divider,
             full: FULL_SCALE / scale,
-            // A pin that sees only part of the range saturates first.
+            // Such a pin saturates first.
             most: if scale > 1.0 {
                 SHORT_COUNTS / scale
             } else {
@@ -74,7 +74,7 @@ impl FsrScale {
         [0, 1, 2, 3].map(|arm| Self::from_params(p, arm))
     }
 
-    /// Pressure, Pa, for `counts`, limited to what a sound sensor gives.
+    /// Pressure, Pa, for `counts`, limited to a sound sensor's.
     pub fn pressure(&self, counts: u16) -> f32 {
         self.pressure_of(f32::from(counts))
     }
@@ -84,7 +84,7 @@ impl FsrScale {
         self.pressure_of(self.most)
     }
 
-    /// The grip pressure of the parameters can be read, with a fifth to spare.
+    /// The grip pressure can be read, with a fifth to spare.
     pub fn reaches_grip(&self, p: &Params) -> bool {
         self.largest() >= RANGE_MARGIN * p.grip_pressure
     }

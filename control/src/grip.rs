@@ -1,7 +1,7 @@
 //! Grip and release detector, 100 Hz: whether an arm holds the pipe or is free of it.
 //!
 //! Stepped by the [gripper](crate::gripper), pressures in Pa, forces along the tendon in N. A late step delays a proof,
-//! and the rotors' stop, by as much.
+//! and the rotors' stop.
 
 use crate::grip_fault::GripFault;
 use crate::math;
@@ -28,7 +28,7 @@ pub struct ArmGrip {
     pub pressure: f32,
     /// Tendon force, N.
     pub force: f32,
-    /// Time from the start of closing until the pressure stayed within its tolerance, s.
+    /// Time from closing until the pressure stayed within tolerance, s.
     pub closure: Option<f32>,
     /// Cause of [`ArmState::Faulty`].
     pub fault: Option<GripFault>,
@@ -44,7 +44,7 @@ pub enum ArmState {
     Closing,
     /// Pressure rising.
     Touching,
-    /// Pressure within its tolerance for the dwell time, force below the limit.
+    /// Pressure within tolerance for the dwell time, force below the limit.
     Holding,
     /// Force limit reached before the pressure.
     ForceLimited,
@@ -54,14 +54,14 @@ pub enum ArmState {
     Releasing,
 }
 
-/// Tolerance factor beyond which a proven grip is doubted: the rotors' stop and pushes disturb the pressure without
-/// loosening the grip.
+/// Tolerance factor beyond which a proven grip is doubted: the rotors' stop and pushes disturb the pressure, not the
+/// grip.
 const DOUBT_FACTOR: f32 = 4.0;
 /// Largest share of the force limit for a proof.
 const FORCE_SHARE_MAX: f32 = 0.98;
 /// Time for which an arm must look free, s.
 const FREE_DWELL: f32 = 0.1;
-/// With a failed sensor, s: only the servo shows it, and the arm needs time to spring back.
+/// With a failed sensor, s: the arm needs time to spring back.
 const FREE_DWELL_BLIND: f32 = 1.0;
 
 /// Demands of a proof.
@@ -165,7 +165,7 @@ impl FreeProof {
         self.proven(pressure.is_some())
     }
 
-    /// True if the arm was free for its dwell time, with a `measured` pressure or without.
+    /// True if the arm was free for its dwell time, longer without a `measured` pressure.
     pub fn proven(&self, measured: bool) -> bool {
         self.free_for >= if measured { FREE_DWELL } else { FREE_DWELL_BLIND }
     }

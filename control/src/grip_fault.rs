@@ -7,7 +7,7 @@ pub enum GripFault {
     Stale,
     /// The pressure sensor failed; stays until release.
     Sensor,
-    /// The arm met something that its sensor does not feel; stays until release.
+    /// An obstacle that the sensor does not feel; stays until release.
     Unfelt,
     /// The pressure stayed below that of a grip while the force rose: the sensor cannot read it; stays until release.
     Ceiling,

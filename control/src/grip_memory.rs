@@ -13,9 +13,9 @@ pub enum GripMemory {
     Unknown,
     /// Open, or opening on the pilot's wish.
     Open,
-    /// Closed, closing, or not yet proven free: the clamp loops hold these arms.
+    /// Closed, closing, or not proven free: the clamp loops hold these arms.
     Controlled(ArmChoice),
-    /// Found pressed at power-up, servo positions unknown: the gears hold these arms.
+    /// Found pressed at power-up, servo angles unknown: the gears hold these arms.
     HeldByGears(ArmChoice),
 }
 

@@ -1,15 +1,15 @@
 //! Gripper controller: contact pressure in, tendon force out.
 //!
-//! The task `clamp` calls [`Gripper::step`] at 100 Hz. Forces are along the tendon (N), pressures on the sensor (Pa),
+//! [`Gripper::step`] runs at 100 Hz in the task `clamp`. Forces are along the tendon (N), pressures on the sensor (Pa),
 //! tilts positive with the tip up (rad). A late step delays the control; 200 ms without a step hold the servos, and
 //! with them the grip.
 //!
 //! Each arm bends down steadily until its sensor feels a touch. The force is then set to the tendon's tension, which
-//! lags while the arm moves, and a PID leads the pressure along a reference that approaches the target from below. On
-//! release the force falls at a limited rate.
+//! lags in motion, and a PID leads the pressure along a reference that approaches the target from below. On release the
+//! force falls at a limited rate.
 //!
 //! Two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T balances the moment arm_d T by which
-//! the rotor's thrust bends the arm off the pipe, so that the pressure hardly moves when the rotors stop.
+//! the rotor's thrust bends the arm off the pipe, so the pressure hardly moves when the rotors stop.
 //!
 //! | word | meaning |
 //! |---|---|
@@ -38,7 +38,7 @@ use crate::grip_fault::GripFault;
 use crate::math;
 use crate::wrench::PerArm;
 
-/// Pressure that counts as touching, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
+/// Pressure of a touch, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
 const TOUCH_PRESSURE: f32 = 100.0;
 /// Least force of a closed arm, N: at 0 the servo would pay out to its release position.
 const FORCE_MIN: f32 = 1.0;

@@ -1,6 +1,6 @@
 //! Low-passes the inertial sensor at its own rate and decimates to the control rate.
 //!
-//! The task `imu` calls [`ImuFilter::batch`] at 1 kHz with the samples of the last millisecond (4 kHz, or the part's
+//! [`ImuFilter::batch`] runs at 1 kHz in the task `imu` with the samples of the last millisecond (4 kHz, or the part's
 //! nearest rate; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
 
 use crate::chain::ImuReading;
@@ -57,7 +57,7 @@ pub struct ImuFilter {
 }
 
 impl ImuFilter {
-    /// Cut-off of the accelerometer, Hz: it only corrects slowly and proves support.
+    /// Cut-off of the accelerometer, Hz: for slow correction and support.
     pub const ACCEL_CUTOFF: f32 = 30.0;
 
     /// For samples at `rate_hz`, with the gyro's cut-off `gyro_hz`.
@@ -70,7 +70,7 @@ impl ImuFilter {
     }
 
     /// Filters the finite readings of a batch, oldest first, less `accel_bias` (m/s²) of specific force. Writes the
-    /// newest output into `newest`; returns the count of finite readings.
+    /// newest output into `newest`; returns the finite count.
     #[inline(always)]
     pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u32 {
         if !self.started {
@@ -161,7 +161,7 @@ mod tests {
         let per_output = (rate_hz / 1000.0) as usize;
         let turn = core::f64::consts::TAU * hz;
         let (mut in_phase, mut quadrature, mut n) = (0.0, 0.0, 0);
-        // Two seconds; the second, a whole number of turns, is measured.
+        // The second second, a whole number of turns, is measured.
         for i in 1..=(2.0 * rate_hz) as usize {
             let t = i as f64 / rate_hz;
             let x = f64::sin(turn * t) as f32;
@@ -193,7 +193,7 @@ mod tests {
                     "{hz} Hz at {rate} Hz: delay {d} s, {delay} s"
                 );
             }
-            // Nothing aliases from beyond half of the output's rate.
+            // Nothing aliases.
             if rate > 1000.0 {
                 assert!(response(900.0, rate).0 < 0.02, "{rate} Hz");
             }

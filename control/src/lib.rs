@@ -1,9 +1,9 @@
 //! Control laws of the SOPHIE flight stack.
 //!
 //! Pure functions and small structs: no I/O, async, allocation or hardware. Units are SI, except the infill ratio in
-//! percent, as in the paper's coefficients. Body frame FRD (x forward, y right, z down), world frame NED, quaternions
-//! w-first; rotors and arms in the paper's order: 1 front-left, 2 rear-left, 3 front-right, 4 rear-right. An arm's tilt
-//! is positive with the tip up, thrust leaning inward.
+//! percent, as in the paper. Body frame FRD (x forward, y right, z down), world frame NED, quaternions w-first; rotors
+//! and arms in the paper's order: 1 front-left, 2 rear-left, 3 front-right, 4 rear-right. An arm's tilt is positive
+//! with the tip up, thrust leaning inward.
 
 #![no_std]
 #![deny(

@@ -2,7 +2,7 @@
 //!
 //! With `std` in scope `x.sin()` differs between host and board, so the laws call these by path. `sin`, `cos` and
 //! `atan2` are micromath's (absolute errors 1.1e-3, 1.1e-3 and 2.8e-3 rad), for occasional use; steps use branch-free
-//! sines of limited range. The roots are own ones: micromath's are off by up to 6 %.
+//! sines of limited range. Micromath's roots would be off by up to 6 %.
 
 use micromath::F32Ext;
 

@@ -1,6 +1,6 @@
 //! Allocation of a wrench to four rotors whose arms bend, recomputed at 1 kHz.
 //!
-//! [`Flexible`] flies. The mixer task takes any [`Allocation`]; the simulator flies others, made of the same parts:
+//! [`Flexible`] flies. The mixer task takes any [`Allocation`]; the simulator flies others of the same parts:
 //! [`Limits`] of rotors and yaw, and the [`Split`] of a wrench.
 
 mod flexible;
@@ -40,13 +40,13 @@ pub struct Conditions {
 
 /// Turns wrenches into thrusts at the arms' modelled tilt.
 pub trait Allocation {
-    /// Thrusts for the wrench `w` (N, N·m) at the present tilt. A wrench that is not finite gives idle.
+    /// Thrusts for the wrench `w` (N, N·m) at the present tilt; idle if `w` is not finite.
     fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix;
 
     /// Rotors at idle.
     fn at_idle(&self) -> Mix;
 
-    /// Steps the models of arms and motors by `dt` s with the thrusts (N) sent.
+    /// Steps the models of arms and motors by `dt` s with the sent thrusts (N).
     fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32);
 
     /// The arms' modelled tilt.
@@ -73,7 +73,7 @@ pub trait Allocation {
     /// One step of the `mixing` that owns this allocation.
     ///
     /// Generic code is built with its caller, on a board for size. The flying allocation repeats this method without
-    /// inlining, to build it with this crate, for speed.
+    /// inlining, to be built with this crate for speed.
     #[inline(always)]
     fn step_mixing(
         mixing: &mut Mixing<Self>,

@@ -1,8 +1,8 @@
 //! The vehicle's modes, and the inputs and outputs of the mode logic, stepped at 100 Hz.
 //!
 //! Each mode has a file with its state (`behaviour::Behaviour`); `context` holds what outlives it. `transitions` is the
-//! table of transitions by priority, with conditions in `guards` and entry functions in `entries`; `docs/modes.md`
-//! shows it.
+//! table of transitions by priority, shown in `docs/modes.md`, with conditions in `guards` and entry functions in
+//! `entries`.
 
 mod armed;
 mod behaviour;
@@ -48,7 +48,7 @@ use crate::setpoint::{ClampCommand, Setpoint};
 use crate::vector::{Quat, Vec3};
 use crate::wrench::PerArm;
 
-/// Declares the modes in mission order: name, file of its state, number in records, name on displays.
+/// Declares the modes in mission order: name, file, number in records, name on displays.
 macro_rules! modes {
     ($($(#[$doc:meta])+ $name:ident in $file:ident = $number:literal, $text:literal;)+) => {
         /// Mode of the vehicle; only the commander changes it.
@@ -83,7 +83,7 @@ macro_rules! modes {
             }
         }
 
-        /// Entry function of a state: previous state, this step, reason.
+        /// Entry function: previous state, this step, reason.
         #[derive(Clone, Copy, Debug)]
         #[expect(dead_code, reason = "no transition leads to the mode of the start")]
         enum Entry { $($name(fn(&State, &mut Step<'_>, Option<Reason>) -> $file::$name),)+ }
@@ -133,13 +133,13 @@ impl Mode {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
 
-    /// The rotors stand still. In all other modes they may turn, and the transitions that stop everything apply.
+    /// The rotors stand still. In other modes the transitions that stop everything apply.
     pub const fn rotors_stand(self) -> bool {
         matches!(self, Self::Calibrating | Self::Disarmed | Self::Perched)
     }
 }
 
-/// Estimated motion, as the mode logic needs it.
+/// Estimated motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// Body to world.
@@ -159,7 +159,7 @@ pub struct Inputs {
     pub sticks: Option<Sticks>,
     /// Motion of the body.
     pub motion: Option<Motion>,
-    /// Demanded thrust of the rotors along body -z, Σ T cos α, N; 0 when stopped.
+    /// Demanded thrust along body -z, Σ T cos α, N; 0 when stopped.
     pub lift: f32,
     /// The grip.
     pub grip: Option<GripState>,
@@ -171,13 +171,13 @@ pub struct Inputs {
     pub late: bool,
     /// Arming inhibits of drivers, storage and start-up.
     pub hardware: ArmingInhibits,
-    /// Request of a builder at the console.
+    /// Request at the console.
     pub bench: Option<BenchRequest>,
 }
 
 impl Inputs {
-    /// Drops messages with a non-finite value, as if stale: NaN must not stay in a filter or in the attitude held on
-    /// the pipe. An arm switch that is off still stops the rotors.
+    /// Drops messages with a non-finite value: NaN must not stay in a filter or in the attitude held on the pipe. An
+    /// arm switch that is off still stops the rotors.
     fn finite(self) -> Self {
         let sane = |m: &Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
         let steady = |s: &Sticks| (s.roll + s.pitch + s.yaw + s.throttle).is_finite();
@@ -203,18 +203,18 @@ impl Inputs {
 /// Outputs of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
-    /// State of the vehicle.
+    /// Mode.
     pub mode: Mode,
-    /// Setpoint of the rotors.
+    /// Rotors.
     pub rotors: Setpoint,
-    /// Command to the tendons.
+    /// Tendons.
     pub tendons: ClampCommand,
-    /// Grip state, retained across a reset.
+    /// Grip to retain across a reset.
     pub grip_memory: GripMemory,
-    /// Why arming is refused, the failsafe acts or the last state was left; `None` when nothing is wrong.
+    /// Why arming is refused, the failsafe acts or the last state was left; `None` if nothing is wrong.
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub inhibits: ArmingInhibits,
-    /// Result of the newest order of the bench.
+    /// Answer to the newest bench order.
     pub bench: BenchAnswer,
 }

@@ -15,7 +15,7 @@ const INTEGRAL_MAX: Vec3 = Vec3::new(15.0, 15.0, 3.0);
 /// Share of a demand below which it counts as not given.
 const GIVEN: f32 = 0.999;
 
-/// Part of the last demand that the mixer gave.
+/// Given part of the last demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feedback {
     /// Share of roll and pitch, 0..1.
@@ -89,7 +89,7 @@ impl RateLoop {
         let slope = (rate - self.last) * per_second;
         self.last = rate;
         self.started = true;
-        // A non-finite slope makes the moment non-finite, which resets everything.
+        // A non-finite slope makes the moment so, which resets everything.
         let gain = LowPass::gain(self.d_rate, dt);
         let [dx, dy, dz] = &mut self.derivative;
         let slope = Vec3::new(

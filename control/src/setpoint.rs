@@ -13,9 +13,9 @@ pub enum Setpoint {
     Stop,
     /// Idle, controllers reset.
     Idle,
-    /// One motor turns on the bench, the others are stopped, controllers reset.
+    /// One motor on the bench, the others stopped, controllers reset.
     Spin(Spin),
-    /// Hold roll and pitch, turn at a yaw rate, with a collective thrust.
+    /// Held roll and pitch, yaw rate, collective thrust.
     Angle {
         /// Roll, rad.
         roll: f32,
@@ -26,7 +26,7 @@ pub enum Setpoint {
         /// Collective thrust, N.
         thrust: f32,
     },
-    /// Turn at body rates with a collective thrust.
+    /// Body rates with a collective thrust.
     Rate {
         /// Body rates, rad/s.
         rate: Vec3,
@@ -49,7 +49,7 @@ pub enum Setpoint {
         /// Collective thrust, N.
         thrust: f32,
     },
-    /// On the pipe: hold roll and pitch without integral action, give yaw up.
+    /// On the pipe: held roll and pitch without integral action, no yaw.
     Resting {
         /// Roll, rad.
         roll: f32,
@@ -109,7 +109,7 @@ pub enum ClampCommand {
     /// Slack, servos at their release position.
     #[default]
     Release,
-    /// Close these arms to the grip pressure and hold it.
+    /// Close these arms to the grip pressure.
     Close {
         /// Which arms.
         arms: ArmChoice,
@@ -122,7 +122,7 @@ pub enum ClampCommand {
 
 #[cfg(test)]
 impl Setpoint {
-    /// Its numbers, 0 where it has fewer than four; for checks independent of [`Self::is_finite`].
+    /// Its numbers, 0 where missing; independent of [`Self::is_finite`].
     pub(crate) fn numbers(self) -> [f32; 4] {
         match self {
             Self::Stop | Self::Idle => [0.0; 4],
@@ -150,7 +150,7 @@ impl Setpoint {
 mod tests {
     use super::*;
 
-    /// Each kind with numbers, and how many of the first three it uses; the fourth is the thrust.
+    /// Each kind with numbers, and how many of the first three it uses; then the thrust.
     fn kinds([a, b, c, thrust]: [f32; 4]) -> [(Setpoint, usize); 5] {
         let angle = Setpoint::Angle {
             roll: a,

@@ -1,10 +1,10 @@
 //! Evidence from the inertial sensor that something carries the vehicle.
 //!
-//! The mode logic calls [`Support::step`] at 100 Hz. Forces are along the body's thrust axis (N). A missed step delays
-//! the evidence by as much; 50 ms without an inertial sample end it.
+//! [`Support::step`] runs at 100 Hz in the mode logic. Forces are along the body's thrust axis (N). A missed step
+//! delays the evidence; 50 ms without an inertial sample end it.
 //!
 //! In free air, mass times specific force along the thrust axis is the thrust; on the ground or the pipe it is about
-//! the weight, whatever the thrust. The difference is the support:
+//! the weight. The difference is the support:
 //!
 //!   support = -m f_z - Σ T_i cos α_i
 //!
@@ -21,17 +21,17 @@ pub const LEAVING_FORCE: f32 = 1.5;
 pub const HINT_FORCE: f32 = 1.8;
 /// Time that the support must last, s.
 pub const RESTING_TIME: f32 = 0.3;
-/// Share of the weight that counts as grounded, rotors stopped or idle.
+/// Share of the weight of a grounded vehicle, rotors stopped or idle.
 const GROUNDED_SHARE: f32 = 0.7;
 /// Time that it must last, s.
 pub const GROUNDED_TIME: f32 = 0.5;
-/// Largest body rate at which the evidence counts, rad/s.
+/// Largest body rate for evidence, rad/s.
 const RATE_MAX: f32 = 0.7;
 /// Cut-off of the support's low-pass filter, Hz.
 const CUTOFF: f32 = 5.0;
-/// Silence of the inertial sensor that resets the evidence, s.
+/// Sensor silence that resets the evidence, s.
 const SILENCE_MAX: f32 = 0.05;
-/// Decay time of the sink rate, s: bounds the integral of an accelerometer's bias.
+/// Decay time of the sink rate, s: bounds an integrated bias.
 const SINK_MEMORY: f32 = 20.0;
 /// Largest sink rate accepted, m/s.
 const SINK_MAX: f32 = 10.0;
@@ -136,7 +136,7 @@ impl Support {
         self.mass * GRAVITY
     }
 
-    /// Force carried by anything but the rotors, N, low-passed; negative if something pulls down.
+    /// Force not from the rotors, N, low-passed; negative if pulling down.
     pub fn force(&self) -> f32 {
         self.force
     }
@@ -146,13 +146,13 @@ impl Support {
         self.resting
     }
 
-    /// True once nearly all of the weight has been carried for [`GROUNDED_TIME`] without tumbling.
+    /// True once nearly all of the weight was carried for [`GROUNDED_TIME`] without tumbling.
     pub fn grounded(&self) -> bool {
         self.full.time() >= GROUNDED_TIME
     }
 
-    /// Sink rate, m/s, downwards positive, within ±10 m/s: decaying integral of the accelerometer, which damps a
-    /// descent but does not measure its speed.
+    /// Sink rate, m/s, downwards positive, within ±10 m/s: decaying integral of the accelerometer, good for damping a
+    /// descent, not for its speed.
     pub fn sink(&self) -> f32 {
         self.sink
     }

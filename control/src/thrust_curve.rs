@@ -1,4 +1,4 @@
-//! Motor command for a thrust (N) at the battery's voltage, for each rotor at 1 kHz; the voltage comes at 100 Hz.
+//! Motor command for a thrust (N) at the battery's voltage, 1 kHz; the voltage comes at 100 Hz.
 
 use crate::math;
 use crate::params::Params;
@@ -16,7 +16,7 @@ pub struct ThrustCurve {
 
 /// Least voltage ratio compensated.
 const LEAST_RATIO: f32 = 0.5;
-/// Keeps the root of a purely quadratic curve, a divisor, from 0: 1e-6 of the command.
+/// Keeps the root of a quadratic curve, a divisor, from 0: 1e-6 of the command.
 const LEAST_SQUARE: f32 = 1e-12;
 
 impl ThrustCurve {

@@ -1,10 +1,10 @@
 //! Tilt of each arm: Eq. 1 at the low-passed thrust, plus a slow bias from the arm's own sensor.
 //!
-//! [`TiltModel::step`] runs at 1 kHz (N, s); the sensors' tilts come at 100 Hz (rad, tip up positive). A missed reading
+//! [`TiltModel::step`] runs at 1 kHz (N, s), [`TiltModel::correct`] at 100 Hz (rad, tip up positive). A missed reading
 //! keeps the bias.
 //!
-//! The sensor only moves the bias, which corrects the model for this arm: in the allocation its noise and latency would
-//! cost more than its angle brings.
+//! The sensor only moves the bias, which corrects the model: in the allocation its noise and latency would cost more
+//! than its angle brings.
 
 use core::f32::consts::TAU;
 
@@ -63,7 +63,7 @@ impl TiltModel {
         }
     }
 
-    /// One step of `dt` s with the last commanded thrusts (N); a non-finite one changes nothing.
+    /// One step of `dt` s with the last thrusts (N); non-finite ones change nothing.
     #[inline(always)]
     pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
         if !commanded.iter().sum::<f32>().is_finite() {
@@ -139,7 +139,7 @@ impl TiltModel {
         [what(first), what(second), what(third), what(fourth)]
     }
 
-    /// A flying arm is outside the model's range; its last valid tilt is held.
+    /// A flying arm is outside the model's range: its last valid tilt is held.
     pub const fn fault(&self) -> bool {
         self.fault
     }
@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn whether_it_learns_is_up_to_the_thrust_that_the_arm_has_felt() {
-        // Spooling up: a flying command, the arm still hangs.
+        // Spooling up, the arm still hangs.
         let mut t = settled(0.25);
         while t.thrusts()[0] < LEARN_THRUST + 0.2 {
             t.step(&[6.0; 4], 1e-3);
@@ -222,7 +222,7 @@ mod tests {
         assert!(t.arms[0].lagged.value() < LEARN_THRUST);
         correct(&mut t, [0.1; 4]);
         assert!(t.bias() == [0.0; 4], "{:?}", t.bias());
-        // Spooling down: an idle command, the arm still bent.
+        // Spooling down, the arm still bent.
         let mut t = settled(6.0);
         while t.thrusts()[0] > LEARN_THRUST - 0.2 {
             t.step(&[0.25; 4], 1e-3);

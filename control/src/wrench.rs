@@ -19,7 +19,7 @@ pub struct Wrench {
     pub roll: f32,
     /// Moment about y, nose up positive, N·m.
     pub pitch: f32,
-    /// Moment about z, clockwise seen from above positive, N·m.
+    /// Moment about z, clockwise from above positive, N·m.
     pub yaw: f32,
 }
 
@@ -34,9 +34,9 @@ impl Wrench {
 /// Sense of rotation of the rotors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Configuration {
-    /// Rotors 1 and 4 clockwise seen from above: yaw is mechanically unstable with soft arms.
+    /// Rotors 1 and 4 clockwise from above: yaw is unstable with soft arms.
     A,
-    /// Rotors 1 and 4 counter-clockwise seen from above: the paper's choice.
+    /// Rotors 1 and 4 counter-clockwise from above, as in the paper.
     #[default]
     B,
 }

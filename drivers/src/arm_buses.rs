@@ -15,8 +15,8 @@ use sophie_tasks::ports::{ArmImus, PortError};
 use crate::bno055::{Address, Bno055, Calibration, Config};
 use crate::fault::Fault;
 
-/// The arm sensors, two each on bus `I1` (left) and `I2` (right), at 400 kHz. A bus driver that busy-waits should time
-/// a stretched clock out after 2 to 3 ms.
+/// The arm sensors, two each on bus `I1` (left) and `I2` (right), at 400 kHz. A busy-waiting bus driver should time a
+/// stretched clock out after 2 to 3 ms.
 pub struct ArmBuses<I1, I2> {
     left: I1,
     right: I2,
@@ -36,7 +36,7 @@ impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
         Self { left, right, chips }
     }
 
-    /// Last calibration of arm `arm` (0..=3); `None` while it gives no readings.
+    /// Last calibration of arm `arm` (0..=3); `None` without readings.
     pub fn calibration(&self, arm: usize) -> Option<Calibration> {
         self.chips
             .get(arm)

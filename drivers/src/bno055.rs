@@ -1,8 +1,8 @@
 //! Bosch BNO055 on I2C: the fused gravity vector at an arm's tip. Sections are those of BST-BNO055-DS000 rev. 1.4.
 //!
 //! The chip takes 650 ms from reset, 19 ms into and 7 ms out of configuration mode, stretches the clock and may reset
-//! itself. A call therefore does one step of a few time-limited register accesses and returns [`PortError::Absent`]
-//! until the chip is ready. After a failure it pauses, doubling up to 1 s.
+//! itself. A call therefore does one step of a few time-limited accesses and returns [`PortError::Absent`] until the
+//! chip is ready. Failures cause a pause, doubling up to 1 s.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_hal_async::i2c::I2c;
@@ -71,7 +71,7 @@ pub enum Address {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fusion {
-    /// Accelerometer and gyroscope: the motor's magnets beside an arm would disturb a compass.
+    /// Without a compass, which the motor's magnets would disturb.
     #[default]
     ImuPlus = 0x08,
     /// With the magnetometer.
@@ -260,7 +260,7 @@ impl Bno055 {
     /// Finds the chip on either page; writes only if the page is a BNO055's.
     async fn identify(&self, bus: &mut impl I2c) -> Result<(), Lost> {
         let [mut found] = self.read(bus, reg::CHIP_ID).await?;
-        // A processor-only reset or a bus glitch can leave the other page selected.
+        // After a processor-only reset or a bus glitch.
         if found != CHIP_ID && self.read(bus, reg::PAGE_ID).await? == [OTHER_PAGE] {
             self.write(bus, reg::PAGE_ID, 0).await?;
             [found] = self.read(bus, reg::CHIP_ID).await?;
@@ -291,7 +291,7 @@ impl Bno055 {
             Ok(None) => Err(PortError::Absent),
             Err(lost) => {
                 self.failures = self.failures.saturating_add(1);
-                // A chip that left its mode does not return by itself.
+                // A chip does not return to its mode by itself.
                 let left = matches!(lost, Lost::Fault(Fault::Configuration { .. } | Fault::Silent));
                 if left || self.failures >= FAILURES_MAX {
                     self.lose(lost);

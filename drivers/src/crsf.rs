@@ -2,8 +2,8 @@
 //!
 //! A receiver without its transmitter may repeat the last channels. At 0 % uplink quality in its link statistics no
 //! sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a quality
-//! above 0 %, or after 1 s without statistics, as for a receiver that sends none. The receiver should be set to send
-//! nothing without a link ("no pulses").
+//! above 0 %, or after 1 s without statistics, which some receivers never send. Receivers should be set to "no pulses"
+//! without a link.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
@@ -15,15 +15,14 @@ use uf_crsf::{CrsfParser, Packet};
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
 /// Ten bits at 420 kbaud.
 const BYTE: Duration = Duration::from_micros(24);
-/// Line pause that ends a frame: twice the longest, 64 bytes. Otherwise the bytes of a returning link would complete an
-/// old frame.
+/// Line pause that ends a frame: twice the longest, 64 bytes. A returning link must not complete an old frame.
 const SILENCE: Duration = Duration::from_millis(3);
 
 /// Decodes frames from a stream, in pieces of any length.
 pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
-    /// Time of the last report of 0 % uplink quality.
+    /// Last report of 0 % uplink quality.
     lost: Option<Instant>,
     last: Option<Instant>,
     unfinished: bool,
@@ -84,7 +83,7 @@ impl RcDecoder for Decoder {
                 },
                 Ok(Packet::LinkStatistics(link)) => {
                     self.lost = (link.uplink_link_quality == 0).then_some(at);
-                    // Frames just before the report may be repetitions.
+                    // Earlier frames may be repetitions.
                     news &= self.lost.is_none();
                 }
                 Ok(_) => (),
@@ -166,7 +165,7 @@ mod tests {
         );
         assert_eq!(published(&mut d, &throttle(0.5), 20), Some(50));
         assert_eq!(published(&mut d, &statistics(0), 30), None);
-        // The last frame repeated, the loss reported at 5 Hz, beyond any silence.
+        // The last frame repeated, the loss reported at 5 Hz.
         for ms in (40..3000).step_by(20) {
             if ms % 200 == 0 {
                 assert_eq!(published(&mut d, &statistics(0), ms), None, "{ms}");
@@ -178,7 +177,7 @@ mod tests {
             "counted all the same: {:?}",
             d.state
         );
-        // 1 % is a link, with the channels of the first frame after it.
+        // 1 % is a link.
         assert_eq!(published(&mut d, &throttle(0.6), 3000), None);
         assert_eq!(published(&mut d, &statistics(1), 3010), None);
         assert_eq!(published(&mut d, &throttle(0.7), 3020), Some(70));
@@ -201,12 +200,11 @@ mod tests {
     fn what_came_before_a_silence_is_never_published_after_it() {
         for later in [4, 20, 1000, 60_000] {
             for length in 2..=62 {
-                // A start announcing `length` bytes, the rest lost, then a pilot's frame.
+                // A start announcing `length` bytes, then a pilot's frame.
                 let (mut d, mut missing) = (Decoder::new(), usize::from(length) + 2);
                 let read = [std::vec![0xC8, length], throttle(0.9)].concat();
                 let seen = published(&mut d, &read, 1000);
                 missing = missing.saturating_sub(read.len());
-                // Enough bytes to end the false frame, then a pilot's frame.
                 assert_eq!(
                     published(&mut d, &std::vec![0; missing], 1000 + later),
                     None,
@@ -229,7 +227,7 @@ mod tests {
         let _ = published(&mut d, first, 1000);
         assert_eq!(published(&mut d, rest, 1002), Some(30));
         assert_eq!(d.state.errors, 0);
-        // Silence after a whole frame is no error; a read counts from its first byte.
+        // Silence after a whole frame is no error.
         assert_eq!(published(&mut d, &bytes.repeat(4), 1006), Some(30));
         let _ = published(&mut d, first, 2000);
         assert_eq!((d.state.frames, d.state.errors), (5, 0));

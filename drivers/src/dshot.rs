@@ -140,8 +140,7 @@ impl BitTiming {
     }
 }
 
-/// Fills `buffer` with one burst: a row per bit with the four motors in channel order, then rows of zeros, so that the
-/// lines rest low.
+/// Fills `buffer` with one burst: a row per bit with the four motors in channel order, then rows of zeros to rest low.
 ///
 /// `N` is [`BURST`] or longer by whole rows, where the timer runs on briefly after the last bit.
 pub fn fill_burst<const N: usize>(buffer: &mut [u16; N], frames: PerArm<Frame>, timing: BitTiming) {
@@ -158,8 +157,8 @@ pub fn fill_burst<const N: usize>(buffer: &mut [u16; N], frames: PerArm<Frame>, 
     rest.fill([0; MOTORS]);
 }
 
-/// Rows of four frames' bits, two in each word. One product per pair replaces a choice per motor, as this delays the
-/// first edge. Not inlined, to stay fast in a caller optimised for size.
+/// Rows of four frames' bits, two in each word. One product per pair replaces a choice per motor, to advance the first
+/// edge. Not inlined, to stay fast in a caller optimised for size.
 #[inline(never)]
 fn fill_bits(rows: &mut [[u16; MOTORS]], pairs: [u32; 2], timing: BitTiming) {
     const BOTH: u32 = 1 << 16 | 1;

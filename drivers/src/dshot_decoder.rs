@@ -141,7 +141,7 @@ mod tests {
         fill_burst(&mut good, [frame; 4], t);
         let mut decoder = Decoder::new(u32::from(t.period));
 
-        // Cut after ten bits: detected at the next frame's first pulse.
+        // Cut after ten bits, detected at the next frame.
         assert!(play(&mut decoder, &good[..40], 0, t, 0).is_empty());
         let next = play(&mut decoder, &good, 0, t, 168_000);
         assert_eq!(next, [Err(LineError::Short(10)), Ok(frame)]);
@@ -156,7 +156,6 @@ mod tests {
         let heard = play(&mut decoder, &flipped, 0, t, 336_000);
         assert_eq!(heard, [Err(LineError::Checksum(frame.bits() ^ 1 << 12))]);
 
-        // A line that never falls.
         assert_eq!(decoder.pulse(504_000, 560), Some(Err(LineError::Pulse(1000))));
         let _ = play(&mut decoder, &good[..8], 0, t, 672_000);
         assert_eq!(decoder.silence(), Some(LineError::Short(2)));

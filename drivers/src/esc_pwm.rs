@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn a_full_pulse_ends_before_its_period_and_the_period_before_a_command_of_1_khz() {
-        // The third command after a standard pulse, the next after a short one.
+        // The third command after a standard pulse.
         for (protocol, high, commands) in [
             (EscPulse::Standard, 2000.0, 2..3),
             (EscPulse::OneShot125, 250.0, 0..1),

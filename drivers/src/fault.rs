@@ -24,7 +24,7 @@ pub enum Fault {
         /// Value read.
         found: u8,
     },
-    /// A register not written, or lost by a brown-out of the part.
+    /// A register not written, or lost in a brown-out.
     Configuration {
         /// Bank.
         bank: u8,
@@ -37,7 +37,7 @@ pub enum Fault {
     },
     /// No sample, by line or status, with right registers.
     Silent,
-    /// A sample of all zeros or ones, or the mark of "no sample yet".
+    /// All zeros or ones, or the mark of "no sample yet".
     Garbled,
     /// A repeated sample: a real sensor has noise.
     Stuck,
@@ -47,7 +47,7 @@ pub enum Fault {
         sensor: Sensor,
         /// Axis of the part: 0 x, 1 y, 2 z.
         axis: u8,
-        /// Response, % of the expected one (of the least allowed without a factory value).
+        /// Response, % of the factory's, or of the least allowed.
         percent: u16,
     },
     /// Gyroscope offset at rest too large: bad part, or motion.

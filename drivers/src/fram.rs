@@ -35,7 +35,7 @@ const RAMTRON_PARTS: [u8; 2] = [0x22, 0x23];
 const FUJITSU: [u8; 2] = [0x04, 0x7F];
 /// MB85RS256TY, MB85RS256B, MB85RS512T.
 const FUJITSU_PARTS: [[u8; 2]; 3] = [[0x25, 0x03], [0x05, 0x09], [0x26, 0x03]];
-/// Write protection in the status register: pin enable and both block bits.
+/// Write protection: pin enable and both block bits.
 const PROTECTION: u8 = 0x8C;
 
 /// Failure of a read or write.
@@ -232,7 +232,7 @@ fn identify(answer: [u8; 9]) -> Result<(), Fault> {
     agree(&RAMTRON_PARTS, &[product])
 }
 
-/// Slice of `buffer` for `length` data bytes after opcode and address.
+/// Room for `length` data bytes after opcode and address.
 fn head(buffer: &mut [u8; HEAD + CHUNK], opcode: u8, at: u32, length: usize) -> Option<&mut [u8]> {
     let [high, low] = u16::try_from(at).ok()?.to_be_bytes();
     let transfer = buffer.get_mut(..HEAD + length)?;

@@ -1,7 +1,7 @@
 //! Frees an I2C bus whose data line a chip holds low.
 //!
-//! A chip that loses its master within a byte, by a reset or noise, holds its present bit, which blocks start
-//! conditions. Nine clocks take the rest of any byte, and a stop ends the transfer (UM10204, §3.1.16).
+//! A chip that loses its master within a byte, by a reset or noise, holds its bit, which blocks start conditions. Nine
+//! clocks take the rest of any byte, a stop ends the transfer (UM10204, §3.1.16).
 
 use embassy_time::Timer;
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -59,7 +59,7 @@ async fn stop<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) {
     release(data).await;
 }
 
-/// Releases the clock and waits for a stretching chip; false if it never rises.
+/// Releases the clock; false if it never rises.
 async fn rises<L: InputPin + OutputPin>(clock: &mut L) -> bool {
     for _ in 0..STRETCH {
         release(clock).await;

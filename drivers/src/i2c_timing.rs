@@ -1,8 +1,8 @@
 //! Fast-mode times (400 kHz) of an STM32 I2C with a register `TIMINGR` (F7, H7), from its kernel clock (RM0433 §47.4.5
 //! and §47.4.9, RM0410 §33.4.5 and §33.4.9; times of UM10204 table 10).
 //!
-//! At 100 MHz embassy-stm32 0.6 computes fields too large for the register and loses their upper bits: data would
-//! change 20 ns before the clock's edge instead of the required 100 ns, from the slowest data edge.
+//! At 100 MHz embassy-stm32 0.6 loses the upper bits of fields too large for the register: data would change 20 ns
+//! before the clock's edge instead of the required 100 ns, from the slowest data edge.
 
 /// Slowest edge, ns: largest pull-up and capacitance.
 const EDGE_NS: u64 = 300;
@@ -17,7 +17,7 @@ const LOW_NS: u64 = 1300;
 const HIGH_NS: u64 = 600;
 /// Shortest clock period, ns: 400 kHz.
 const PERIOD_NS: u64 = 2500;
-/// Fewest kernel clock cycles to detect both edges of the own clock.
+/// Kernel clock cycles to detect both edges of the own clock.
 const SYNC: u64 = 4;
 
 /// Times are cycles times this, rounded at the end.

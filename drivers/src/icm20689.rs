@@ -1,8 +1,8 @@
 //! TDK ICM-20689 on SPI, up to 8 MHz, mode 0 or 3. Register names and values are those of DS-000143.
 //!
-//! The gyroscope samples at 8 kHz behind its 250 Hz filter (0.97 ms delay); every second sample is read: 4 kHz. Other
-//! rates read another fraction: the part's own 1 kHz would delay by 2.9 ms. The accelerometer runs at 1 kHz, so its
-//! samples repeat.
+//! The gyroscope samples at 8 kHz behind its 250 Hz filter (0.97 ms delay); every second sample is read. Other rates
+//! read another fraction: the part's own 1 kHz would delay by 2.9 ms. The accelerometer runs at 1 kHz, so its samples
+//! repeat.
 
 use embassy_time::Duration;
 use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
@@ -66,7 +66,7 @@ pub enum AccelRange {
     G16 = 3,
 }
 
-/// Gyroscope filter, which sets its rate: DLPF_CFG, CONFIG bits 2:0.
+/// Gyroscope filter and rate: DLPF_CFG, CONFIG bits 2:0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum GyroFilter {

@@ -1,7 +1,7 @@
 //! TDK ICM-42688-P on SPI, up to 24 MHz, mode 0 or 3. Sections are those of DS-000347 rev. 1.8.
 //!
 //! Samples at 1, 2, 4 (default) or 8 kHz, one burst per data-ready pulse, with wide filters: the imu task filters. From
-//! 2 kHz the rate alone fixes the UI filter's bandwidth (§5.5: 1048 Hz at 4 kHz); only its order can be chosen.
+//! 2 kHz the rate fixes the UI filter's bandwidth (§5.5: 1048 Hz at 4 kHz); only its order can be chosen.
 
 use embassy_time::Duration;
 use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};

@@ -1,22 +1,21 @@
 //! Decides whether a data-ready line is reliable, or samples are polled instead.
 //!
 //! A silent line is used again once its pulses and the part's status have agreed for a time that doubles with each
-//! silence, so that a loose contact does not toggle the driver. A lasting or repeated silence is reported, a single
-//! short one is not.
+//! silence: a loose contact must not toggle the driver. A single short silence is not reported.
 
 use embassy_time::{Duration, Instant};
 
-/// Polling time until the line is reported as silent: one short silence, ending within the first `BACK_AFTER`, is no
-/// reason to land.
+/// Polling time until the line is reported as silent: one short silence, within the first `BACK_AFTER`, is no reason to
+/// land.
 pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
-/// First and longest time of agreement before the line is used again.
+/// First and longest agreement before the line is used again.
 const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];
 /// Time on the line that clears earlier silences.
 const FORGOTTEN_AFTER: Duration = Duration::from_secs(10);
 /// Poll period times rate, µs·Hz: 1.5 % shorter than the part's, whose clock, locked to the gyroscope, is off by about
 /// 1 %. Hardly any sample is missed, and the filters' rate holds within 2 %.
 const PERIOD_BY_RATE: f32 = 0.985e6;
-/// Fraction of the period until a missing sample is requested again; bounds its lateness.
+/// Fraction of the period before a missing sample is requested again.
 const AGAIN: u32 = 4;
 
 /// Line state.
@@ -32,7 +31,7 @@ struct Clock {
     since: Instant,
     due: Instant,
     period: Duration,
-    /// Samples with a pulse minus those without, at least 0, and the count that clears the line.
+    /// Samples with a pulse less those without, >= 0, and the count that clears the line.
     agreeing: u32,
     sound: u32,
     reported: bool,
@@ -40,7 +39,7 @@ struct Clock {
 
 impl Clock {
     /// Schedules the next poll `time` after the due one, so that processing does not lengthen the period; after a stall
-    /// from `now`, to avoid a burst.
+    /// from `now`, against a burst.
     fn go_on(&mut self, now: Instant, time: Duration) {
         let late = now.saturating_duration_since(self.due) > time;
         self.due = if late { now } else { self.due } + time;
@@ -159,11 +158,10 @@ mod tests {
         let back = run(&mut line, 0, 1000 * MS, |_| true);
         assert!((50 * MS..53 * MS).contains(&back), "{back}");
         assert!(!line.reported(), "one short silence is nothing");
-        // A third of the pulses falls outside the polls: the line returns, later.
+        // A third of the pulses falls outside the polls.
         line.silent(at(20_000 * MS), 4000.0);
         let back = run(&mut line, 20_000 * MS, 21_000 * MS, |us| us % 750 != 0) - 20_000 * MS;
         assert!((140 * MS..160 * MS).contains(&back), "{back}");
-        // Pulses unrelated to the samples.
         line.silent(at(40_000 * MS), 4000.0);
         let back = run(&mut line, 40_000 * MS, 45_000 * MS, |us| us % 500 == 0);
         assert_eq!(back, 45_000 * MS);

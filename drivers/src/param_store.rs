@@ -1,8 +1,8 @@
 //! Parameters in flash or FRAM.
 //!
-//! One item of a `sequential_storage` map holds the whole set: a save cut short by power loss leaves the old or the new
-//! set. An item is a tag and eight bytes per parameter that differs from the board's default: FNV-1a hash of its name,
-//! bits of its value. Other firmware reads the parameters that it knows, also by former names.
+//! One item of a `sequential_storage` map holds the whole set: a save cut short leaves the old or the new set. An item
+//! is a tag and eight bytes per parameter that differs from the board's default: FNV-1a hash of its name, bits of its
+//! value. Other firmware reads the parameters that it knows, also by former names.
 //!
 //! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
 //! start-up could outlast the watchdog.
@@ -105,7 +105,7 @@ impl<F: NorFlash> ParamStore<F> {
         }
     }
 
-    /// Owner of a page with another firmware's data.
+    /// Foreign owner of a page.
     async fn foreign(&mut self) -> Option<&'static str> {
         self.config::<&mut F>()?;
         let mut page = self.range.start;
@@ -129,7 +129,7 @@ impl<F: NorFlash> ParamStore<F> {
         map.store_item(buffer, &(), &Set::of(*params, self.defaults))
             .await
             .map_err(|e| match e {
-                // A full log makes room for one set by itself; otherwise its flash does not hold the marks.
+                // A full log makes room by itself; otherwise its flash does not hold the marks.
                 Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
                 _ => StorageError::Broken,
             })
@@ -167,7 +167,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
         if found.holds(params, self.defaults) {
             return Ok(());
         }
-        // Appending keeps the old set, if readable, until the new one is complete.
+        // Appending keeps a readable old set until the new one is complete.
         if found.set.is_some() || !found.damaged {
             match self.append(params, &mut buffer).await {
                 Ok(()) if self.find(&mut buffer).await.holds(params, self.defaults) => return Ok(()),

@@ -18,8 +18,8 @@ impl PwmTiming {
     const REST: u32 = 2;
 
     /// Finest values of a 16-bit timer at `clock_hz` for frames of exactly `frame_us` µs; `None` if the timer cannot.
-    /// Exact frames keep their phase to the board's clock: an error of 1e-7 shifts them by 0.4 ms an hour. If exactness
-    /// costs more than twice the finest count, the finest wins.
+    /// Exact frames keep their phase to the board's clock: an error of 1e-7 shifts them by 0.4 ms an hour. The finest
+    /// values win if exactness costs more than twice the count.
     pub fn new(clock_hz: u32, frame_us: u32) -> Option<Self> {
         // Unit: a millionth of a clock; a count is `MICRO` times the divider.
         const MICRO: u64 = 1_000_000;

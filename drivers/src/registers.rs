@@ -1,5 +1,5 @@
-//! Registers of an InvenSense SPI part: address byte with a read bit, address increment in bursts, and on some parts
-//! banks behind a select register.
+//! Registers of an InvenSense SPI part: address byte with a read bit, address increment in bursts, on some parts banks
+//! behind a select register.
 
 use embedded_hal_async::spi::SpiDevice;
 
@@ -16,7 +16,7 @@ pub struct Setting {
     pub bank: u8,
     /// Address in the bank.
     pub register: u8,
-    /// Relevant bits; the others keep their value.
+    /// Relevant bits; others stay.
     pub mask: u8,
     /// Value of those bits.
     pub value: u8,

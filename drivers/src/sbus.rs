@@ -9,11 +9,11 @@
 //!
 //! Counts are those of CRSF: 172 and 1811 at the stick's ends, 992 at its centre.
 //!
-//! There is no checksum. A frame must begin after silence or right after another frame; after garbage on an unbroken
-//! stream, the first frame found only locates the second. Sticks are accepted from the third consecutive frame: random
-//! bytes after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
+//! Without a checksum, a frame must begin after silence or right after another frame; after garbage on an unbroken
+//! stream, the first frame only locates the second. Sticks are accepted from the third frame in a row: random bytes
+//! after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
 //!
-//! Frames flagged as lost transmitter or repetition publish no sticks: the link turns stale and the failsafe acts.
+//! Frames with a lost transmitter or a repetition publish no sticks: the link turns stale and the failsafe acts.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::{CHANNELS, ChannelError, Sticks};
@@ -41,7 +41,7 @@ pub struct Frame {
     pub channel_17: bool,
     /// Channel 18, a switch.
     pub channel_18: bool,
-    /// The receiver missed this frame and repeats the last.
+    /// The last frame repeated for a missed one.
     pub frame_lost: bool,
     /// The transmitter is lost: the channels are failsafe values.
     pub failsafe: bool,
@@ -52,7 +52,7 @@ pub struct Frame {
 pub enum SbusError {
     /// No frame.
     Garbage,
-    /// A repeated old frame.
+    /// Repeated frame.
     FrameLost,
     /// Transmitter lost.
     Failsafe,
@@ -133,12 +133,12 @@ const fn is_end(byte: u8) -> bool {
 /// Finds frames in a stream of bytes, in pieces of any length.
 ///
 /// [`Parser::silence`] must be called wherever the line was idle (4 ms or more after each frame): constant data can
-/// look like frames at a wrong offset.
+/// look like misplaced frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Parser {
     bytes: [u8; FRAME],
     count: usize,
-    /// The frame began after silence or a whole frame.
+    /// Began after silence or a whole frame.
     aligned: bool,
 }
 
@@ -281,7 +281,7 @@ impl RcDecoder for Decoder {
                     news = true;
                 }
                 Ok(_) => (),
-                // Frames just before the report may be repetitions.
+                // Earlier frames may be repetitions.
                 Err(SbusError::Failsafe | SbusError::FrameLost) => news = false,
                 Err(_) => {
                     news = false;

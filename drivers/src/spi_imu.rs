@@ -1,14 +1,12 @@
-//! InvenSense inertial sensors on SPI with a data-ready line; a [`Chip`] gives registers and bits. Detects a part that
-//! is silent, garbled, stuck, or has lost its configuration.
+//! InvenSense inertial sensors on SPI with a data-ready line; a [`Chip`] gives registers and bits. Detects a silent,
+//! garbled or stuck part and a lost configuration.
 //!
-//! If the line is silent while the part answers and its registers are right, the driver polls the part's status, so no
-//! sample counts twice. The first comes 0.4 ms after detection (1.2 ms at 1 kHz), later ones up to a quarter period and
-//! one transfer after they are ready, stamped with the time of their request. [`line_watch`](crate::line_watch) decides
-//! when to use the line again.
+//! If the line is silent though the part answers correctly, the driver polls the part's status, so no sample counts
+//! twice. The first comes 0.4 ms after detection (1.2 ms at 1 kHz), later ones up to a quarter period and one transfer
+//! late, stamped with their request. [`line_watch`](crate::line_watch) decides when to use the line again.
 //!
-//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms); the next call resumes and
-//! treats it as a silence. Failures are followed by a pause (1 ms, doubling to 128 ms), so a dead part costs no
-//! processor time.
+//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms), which the next call treats as
+//! a silence. Failures are followed by a pause (1 ms, doubling to 128 ms), so a dead part costs no processor time.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
@@ -28,9 +26,9 @@ use crate::self_test::{Limits, Measured, SAMPLES, SelfTest, Stage, judge};
 /// Bytes of one sample: accelerometer, gyroscope, temperature.
 const SAMPLE: usize = 14;
 const WATCHED: usize = 6;
-/// Consecutive garbled samples before a reset.
+/// Garbled samples in a row before a reset.
 const GARBLED_MAX: u8 = 4;
-/// Consecutive dropped waits before a reset of a part whose registers are right.
+/// Dropped waits in a row before a reset of a part with right registers.
 const SILENCES_MAX: u8 = 2;
 /// Longest polling without a sample: two periods at the slowest rate, below the caller's time-out.
 const NOT_READY_MAX: Duration = Duration::from_millis(2);
@@ -97,7 +95,7 @@ pub trait Chip {
     const BANK_SELECT: Option<u8>;
     /// First of the 14 data registers.
     const DATA: u8;
-    /// First of the six bank 0 registers that are checked in flight.
+    /// First of six registers checked in flight, bank 0.
     const WATCH_FROM: u8;
     /// Status bit of a new sample, cleared by reading it.
     const SAMPLE_READY: Setting;
@@ -107,7 +105,7 @@ pub trait Chip {
     const RESET: &'static [Setting];
     /// Duration of a reset.
     const RESET_TIME: Duration;
-    /// A register content that only a reset leaves.
+    /// Content left only by a reset.
     const AFTER_RESET: Setting;
     /// Makes the registers writable.
     const WAKE: &'static [Setting];
@@ -115,18 +113,18 @@ pub trait Chip {
     const WAKE_TIME: Duration;
     /// Switches both sensors on; written last.
     const POWER: Setting;
-    /// Time from power to samples within specification.
+    /// Time from power to valid samples.
     const START_UP: Duration;
-    /// Bank and first register of the gyroscope's factory self-test codes.
+    /// Bank and first register of the gyroscope's self-test codes.
     const GYRO_CODES: (u8, u8);
-    /// Bank and first register of the accelerometer's factory self-test codes.
+    /// Bank and first register of the accelerometer's.
     const ACCEL_CODES: (u8, u8);
     /// Limits of the self-test.
     const SELF_TEST: Limits;
 
-    /// Configuration to write before power is switched on.
+    /// Configuration before power-on.
     fn settings(&self) -> Settings;
-    /// Configuration of a self-test stage, written over [`Chip::settings`].
+    /// Configuration of a self-test stage, over [`Chip::settings`].
     fn self_test_settings(stage: Stage) -> Settings;
     /// Settling time of a self-test stage.
     fn self_test_time(stage: Stage) -> Duration;
@@ -247,7 +245,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
     }
 
     /// Actuates both sensors and compares their response with the factory codes; about 1.5 s, vehicle at rest. Then
-    /// resets and configures the part in any case.
+    /// always resets and configures the part.
     ///
     /// # Errors
     /// The first axis that fails, or a fault of the part.
@@ -361,7 +359,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                 State::Running => return Ok(()),
                 State::Down(at) => {
                     until(at).await;
-                    // A dropped transfer may have left another bank selected.
+                    // Another bank may be selected after a dropped transfer.
                     self.registers.select(0).await?;
                     self.registers.apply(C::RESET).await?;
                     self.state = State::Resetting(Instant::now() + C::RESET_TIME);
@@ -385,7 +383,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                     self.registers.select(0).await?;
                     self.registers.apply(&settings).await?;
                     self.registers.verify(&settings).await?;
-                    // A call dropped after the switch does not configure again.
                     self.state = State::Powering(Instant::now() + POWER_QUIET);
                     self.registers.apply(&[C::POWER]).await?;
                 }

@@ -75,7 +75,7 @@ fn four_chips_come_up_in_a_second_and_a_half_without_a_long_call() {
             Timer::after_millis(10).await;
         }
         let took = (Instant::now() - start).as_millis();
-        // The chips boot for 650 ms after power-on and after their reset.
+        // 650 ms of boot after power-on and reset.
         assert!(took < 2200, "{took} ms");
         assert!(worst < Duration::from_millis(3), "{} µs", worst.as_micros());
         for chip in &chips {
@@ -121,7 +121,7 @@ fn a_chip_left_on_its_second_page_is_found() {
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls.iter().all(|c| c.result.is_ok()), "{:?}", arms.last_fault(0));
         assert!((0..4).all(|arm| arms.last_fault(arm).is_none()));
-        // A bus glitch changes the page of a chip that gives readings, boots, or enters configuration mode.
+        // A glitch changes the page in readings, boot, or configuration mode.
         for wait in [0, 725, 735] {
             chips[2].borrow_mut().pages[0][0x07] = 1;
             rounds(&mut arms, Duration::from_millis(wait)).await;
@@ -239,7 +239,7 @@ fn a_chip_that_resets_itself_is_noticed_at_once_and_set_up_again() {
     run(async {
         let (mut arms, chips) = arms([Config::default(); 4]);
         rounds(&mut arms, Duration::from_secs(2)).await;
-        // Back from a brown-out before the next read.
+        // Back from a brown-out.
         chips[3].borrow_mut().pages[0][0x3D] = 0x00;
         let calls = round(&mut arms).await;
         assert_eq!(calls[3].result, Err(PortError::Corrupt));
@@ -332,7 +332,7 @@ fn an_arm_that_does_not_exist_is_absent() {
 
 #[test]
 fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
-    // The chips' power-up before, with and after the processor's.
+    // Power-up of the chips.
     for late_ms in [0, 100, 300, 600] {
         run(async move {
             let (port, chips) = arms([Config::default(); 4]);

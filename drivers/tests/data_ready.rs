@@ -71,7 +71,7 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
     part.borrow_mut().failure = Failure::LineCut;
     let writes = part.borrow().writes.len();
 
-    // 3 ms until the wait is dropped, a check of the part, a new sample.
+    // 3 ms until the wait is dropped, a check, a new sample.
     let first = read_for(&mut driver, 190).await;
     assert!(first.errors.is_empty(), "{case}: {first:?}");
     assert!(first.gap < 3100 + each + each / 4, "{case}: {} us", first.gap);
@@ -90,7 +90,7 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
     let share = samples.len() as f64 / f64::from(rate);
     assert!((0.98..1.02).contains(&share), "{case}: {share}");
     assert!(samples.windows(2).all(|pair| pair[0] < pair[1]), "{case}: twice");
-    // At most a quarter of a period and a transfer late, or read while it became ready.
+    // At most a quarter of a period and a transfer late.
     for (stamp, sample) in timed.stamps.iter().zip(&samples) {
         let late = stamp.cast_signed() - (sample * period).cast_signed();
         // With several samples per read: the newest.
@@ -141,7 +141,7 @@ fn a_cut_line_is_done_without_and_used_again_once_it_is_joined() {
             cut_and_joined(driver, part, skew).await;
         });
     }
-    // At 8 kHz every sample counts, and some are read.
+    // At 8 kHz every sample counts.
     for (rate, skew) in [(1000.0, 0), (4000.0, 1), (8000.0, -1)] {
         run(async move {
             let (driver, part) = pair(Kind::Icm20689, icm20689::Config::from_params(&at_rate(rate)));
@@ -235,7 +235,7 @@ fn a_loose_contact_is_reported_and_samples_come_throughout() {
                 reported.push(nth);
             }
         }
-        // One or two silences are not reported; then the line must agree for longer each time.
+        // One or two silences are not reported; then agreement takes longer each time.
         assert!(
             matches!(reported[..], [1 | 2, ..]) && reported.len() >= 6,
             "{reported:?}"

@@ -126,7 +126,7 @@ fn another_chip_or_none_is_named() {
         assert_eq!(first_read(&chip), Err(FramFault::Chip(fault)));
         assert_eq!(fault.what(), "no answer");
     }
-    // Another maker, a part of half the size, one with three-byte addresses; the same for Fujitsu.
+    // Another maker, half the size, three-byte addresses.
     let ramtron = Chip::new().borrow().identity;
     let fujitsu = [0x04, 0x7F, 0x25, 0x03, 0, 0, 0, 0, 0];
     for (identity, index, expected, found) in [
@@ -219,7 +219,7 @@ fn it_keeps_parameters_and_a_missing_one_is_a_broken_storage() {
         );
         assert_eq!(again, Params::default());
     }
-    // Reading back detects a part that ignores writes; it keeps its contents.
+    // Reading back detects a part that ignores writes.
     chip.borrow_mut().answer = Answer::Deaf;
     let (_, saved, again) = store(&chip, Params::default());
     assert_eq!((saved, again), (Err(StorageError::Broken), params));

@@ -124,7 +124,7 @@ fn every_choice_reaches_its_register() {
 fn samples_come_at_4_khz_in_body_axes_one_burst_each() {
     run(async {
         let part = Part::new(Kind::Icm42688p);
-        // Marking up, x to the right: the part's x is body y, its y is body x.
+        // The part's x is body y, its y is body x.
         let mounting = Mounting::top_up(Heading::Right);
         let mut driver = Driver::new(
             Bus(part.clone()),
@@ -156,7 +156,7 @@ fn samples_come_at_4_khz_in_body_axes_one_burst_each() {
             (3999..=4001).contains(&good) && errors.is_empty(),
             "{good} {errors:?}"
         );
-        // Besides samples: ten checks of identity and configuration.
+        // Besides samples: ten checks.
         assert_eq!(part.borrow().transactions.len() as u32, 2 + good + 2 * 10);
     });
 }
@@ -412,7 +412,7 @@ fn a_call_dropped_at_any_moment_leaves_nothing_half_done() {
         for after in (0..60_000).step_by(37) {
             let (mut driver, part) = pair(Config::default());
             let _ = with_timeout(Duration::from_micros(after), driver.init()).await;
-            // Dropped just before switch-on, it finds the sensors off and restarts.
+            // Dropped just before switch-on, it restarts.
             if driver.init().await.is_err() {
                 driver.init().await.unwrap();
             }
@@ -500,7 +500,7 @@ fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
             driver.init().await.unwrap();
             part.borrow_mut().transactions.clear();
             read_for(&mut driver, Duration::from_secs(1)).await;
-            // A check reads identity (2 bytes) and six registers.
+            // A check reads six registers in 7 bytes.
             let looks = part.borrow().transactions.iter().filter(|&&n| n == 7).count();
             assert!((9..=10).contains(&looks), "{looks} at {rate} Hz");
         });

@@ -1,8 +1,7 @@
 //! Samples contact pressures at 500 Hz and the battery in every fifth run, from one converter.
 //!
-//! A conversion must end before the next. Messages carry the time at which the conversion began. A failing converter
-//! publishes nothing, so its links go stale; after 100 ms arming is refused, and from the start if a sensor cannot read
-//! the grip pressure.
+//! A conversion must end before the next; messages carry the time of its beginning. A failing converter's links go
+//! stale; after 100 ms arming is refused, and from the start if a sensor cannot read the grip pressure.
 
 use core::pin::pin;
 
@@ -17,7 +16,7 @@ use crate::links::{Contact, Links};
 use crate::ports::Analog;
 use crate::silence::SilenceWatch;
 
-/// Time without a conversion until the inputs count as silent.
+/// Time without a conversion before a report.
 pub const SILENCE: Duration = Duration::from_millis(100);
 const BATTERY_EVERY: u8 = 5;
 
@@ -45,7 +44,7 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
                 Either::First(result) => result,
                 Either::Second(()) => {
                     watch.look(links, Instant::now());
-                    // A conversion that never ends holds its task; the supervisor detects that.
+                    // A hung conversion holds its task; the supervisor detects that.
                     conversion.await
                 }
             }

@@ -1,8 +1,8 @@
 //! Reads the arms' inertial sensors at 100 Hz: tilt of each arm against the body.
 //!
 //! Runs in the background: the sensors stretch the I2C clock and nothing in flight waits for them. A round of four must
-//! end within its period. A sensor silent for a second is reported against arming; one that never answers costs only
-//! its own reading. Each tilt carries the time at which its own sensor was asked.
+//! end within its period. A sensor silent for a second is reported against arming, and costs only its own reading. Each
+//! tilt carries the time of its own request.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::arming::ArmingInhibit;
@@ -17,12 +17,12 @@ use crate::links::{ArmAngles, Links, Stamped};
 use crate::ports::ArmImus;
 use crate::silence::SilenceWatch;
 
-/// Time without a reading until a sensor counts as silent.
+/// Time without a reading before a report.
 pub const SILENCE: Duration = Duration::from_secs(1);
-/// Time from power-up before a sensor can count as silent. A BNO055 answers after 650 ms; its driver, with growing
-/// pauses, finds it by 1.3 s, then resets and configures it in 0.75 s.
+/// Time from power-up before silence counts. A BNO055 answers after 650 ms; its driver finds it by 1.3 s, then resets
+/// and configures it in 0.75 s.
 pub const START: Duration = Duration::from_millis(2500);
-/// Limit of one reading. The driver bounds each transfer to 3 ms, a few in a call.
+/// Limit of one reading, a few transfers of at most 3 ms.
 const READING: Duration = Duration::from_millis(20);
 const REASONS: PerArm<ArmingInhibit> = [
     ArmingInhibit::ArmSensor1,
@@ -85,11 +85,11 @@ fn plausible(gravity: &Vec3) -> bool {
     gravity.is_finite() && (5.0..15.0).contains(&gravity.norm())
 }
 
-/// Tilt (rad, tip up) of an arm on side `side` that measures `gravity` (m/s², its axes) on a body at attitude `q`.
-/// `None` for a vector that cannot be gravity.
+/// Tilt (rad, tip up) of an arm on side `side` that measures `gravity` (m/s², its axes) on a body at `q`; `None` if
+/// that cannot be gravity.
 ///
-/// A left arm whose tip rises turns about +x, a right arm about -x: the angle between both gravity directions in the
-/// y-z plane.
+/// A left arm whose tip rises turns about +x, a right arm about -x: the angle between the gravity directions in the y-z
+/// plane.
 fn arm_tilt(q: Quat, gravity: Vec3, side: f32) -> Option<f32> {
     /// Least share of gravity in the y-z plane for a valid direction.
     const LEAST: f32 = 0.3;

@@ -1,7 +1,7 @@
 //! The gripper's task, 100 Hz: closes the arms on the pipe and lets them go.
 //!
-//! A step ends before the next. Its forces and judgement carry the time at which its pressures were converted, or that
-//! of its command where no pressure is fresh. When an input is stale by its link's limit:
+//! A step ends before the next. Forces and judgement carry the time at which the pressures were converted, or of the
+//! command without fresh pressure. When an input is stale by its link's limit:
 //!
 //! - command: no step is made and nothing is sent, so that forces and judgement age: the servos stay, the grip is
 //!   unknown. Loops and forces are held for the next command; before the first, those of the run before the restart;
@@ -10,8 +10,8 @@
 //! - thrusts: the motors have stopped by then, so the feed-forward is zero;
 //! - tension: the demanded force counts as given, and nothing is proven free.
 //!
-//! No force is sent before one is known: at power-up the arms may be closed, and the servos' gears hold them until a
-//! pulse opens them.
+//! No force is sent before one is known: at power-up closed arms are held by the servos' gears until a pulse opens
+//! them.
 
 use crate::retained_state::RetainedState;
 use embassy_time::Instant;
@@ -74,8 +74,7 @@ pub async fn run(links: &Links) -> ! {
     }
 }
 
-/// Initial loops. Those of closed arms continue, and their servos get pulses for where they stand; all others wait for
-/// a command.
+/// Initial loops. Those of closed arms continue, their servos pulsed where they stand; all others wait for a command.
 fn begin(links: &Links) -> Gripper {
     match links.start.retained {
         Some(RetainedState {

@@ -14,7 +14,7 @@ use crate::warning::Warning;
 /// Smallest infill flown in the paper, %.
 const INFILL_FLOWN: f32 = 6.0;
 const LATE_WINDOW: Duration = Duration::from_secs(1);
-/// Misses of the flight level in that window above which it is late: 1 % of one task's runs.
+/// Allowed misses of the flight level in that window: 1 % of one task's runs.
 const LATE_MAX: u32 = 10;
 
 /// Steps the mode logic; never returns.
@@ -104,7 +104,7 @@ fn lift(mix: &MixOutput) -> f32 {
         .sum()
 }
 
-/// Missed deadlines of the flight level in the last window; too many forbid arming.
+/// Missed deadlines of the flight level; too many forbid arming.
 struct Lateness {
     window_start: Instant,
     count_at_start: u32,

@@ -1,4 +1,4 @@
-//! Fixed rates and deadlines: misses are counted, and never made up for by a burst.
+//! Fixed rates and deadlines: misses are counted, not made up for by a burst.
 
 use embassy_time::{Duration, Instant, Timer};
 
@@ -7,7 +7,7 @@ pub use crate::schedule::{Level, TaskId};
 use crate::timing::Run;
 pub use crate::timing::Timing;
 
-/// Records a run of an event-driven task, released when its input was measured, from `started` to now.
+/// Records a run of an event-driven task, released by its input's measurement, until now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
     record_run_until(links, task, released, started, Instant::now(), deadline);
 }
@@ -48,7 +48,7 @@ pub fn record_run_until(
     );
 }
 
-/// First instant from `now` at `phase` plus a whole number of periods of the board's clock.
+/// First instant from `now` at `phase` of the board's clock's periods.
 pub fn begins_next(now: Instant, period: Duration, phase: Duration) -> Instant {
     let period = period.as_ticks().max(1);
     let passed = (now.as_ticks() % period + period - phase.as_ticks() % period) % period;
@@ -69,8 +69,8 @@ pub struct Tick {
 
 /// Loop of a periodic task.
 ///
-/// embassy's `Ticker` fires every missed tick at once after a stall: a burst of steps without time between them. This
-/// one drops missed periods, counts them as overruns, and keeps the phase.
+/// embassy's `Ticker` fires every missed tick at once after a stall: a burst of steps without time between. This one
+/// counts missed periods as overruns and keeps the phase.
 pub struct FixedRate<'a> {
     links: &'a Links,
     task: TaskId,
@@ -88,7 +88,7 @@ impl<'a> FixedRate<'a> {
     }
 
     /// A loop of `period` whose work must end within `deadline` of its release. Periods begin at the task's phase of
-    /// the board's clock: a reader runs after the writer, whatever the order of spawning.
+    /// the board's clock: readers run after writers, however spawned.
     pub fn new(links: &'a Links, task: TaskId, period: Duration, deadline: Duration) -> Self {
         Self {
             links,

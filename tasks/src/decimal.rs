@@ -1,9 +1,9 @@
-//! Decimal numbers, read and shown. The library's exact conversions take 20 KB of flash; parameters have at most seven
-//! digits, for which one rounded division is exact as well.
+//! Decimal numbers, read and shown. The library's exact conversions take 20 KB of flash; for a parameter's seven digits
+//! at most one rounded division is exact as well.
 
 use core::fmt;
 
-/// Largest whole number shown, exact in the 24 bits of an `f32`: seven digits, or eight below 1.6777216e7.
+/// Largest whole number shown, exact in an `f32`: seven digits, or eight below 1.6777216e7.
 const UNITS_MAX: u64 = 1 << 24;
 /// 32 bits hold them.
 const DIGITS_READ: u32 = 9;

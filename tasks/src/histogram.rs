@@ -1,8 +1,7 @@
 //! Times on a logarithmic scale, in a fixed number of buckets.
 //!
 //! Each microsecond below 8 µs has a bucket, every octave above has four: a quantile is never too small, and less than
-//! a quarter too large. Smallest and largest are exact. Adding takes the same few instructions for any time, without
-//! division.
+//! a quarter too large. Smallest and largest are exact. Adding takes a few instructions, without division.
 
 /// Buckets: up to 65.5 ms, the last for all beyond.
 pub const BUCKETS: usize = 60;

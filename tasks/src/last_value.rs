@@ -1,5 +1,5 @@
-//! Newest value for readers at every level. They look at it in place: only what they need is copied under the lock,
-//! which masks interrupts.
+//! Newest value for readers at every level, looked at in place: only what they need is copied under the lock, which
+//! masks interrupts.
 
 use core::cell::RefCell;
 use core::future::poll_fn;
@@ -15,8 +15,8 @@ pub type Raw = CriticalSectionRawMutex;
 /// Most receivers of one link.
 pub const RECEIVERS: usize = 8;
 
-/// A value and the wakers of its receivers. A function called on the value in place must not use the same `LastValue`,
-/// which is locked and looks empty.
+/// A value and the wakers of its receivers. Within a function on the value in place, the same `LastValue` is locked and
+/// looks empty.
 pub struct LastValue<T> {
     state: Mutex<Raw, RefCell<State<T>>>,
 }

@@ -21,7 +21,7 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
     loop {
         let message = demand.changed().await;
         let started = Instant::now();
-        // Copied only while new: nine steps of ten do not use it.
+        // Copied only while new, once in ten steps.
         let new = links.arms.look(|angles| mixing.awaits(angles.at.as_micros()));
         let angles = new.filter(|new| *new).and_then(|_| links.arms.latest());
         let arms = angles.map(|angles| ArmReading {

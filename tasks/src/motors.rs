@@ -11,7 +11,7 @@ use sophie_control::wrench::PerArm;
 
 /// Time from data-ready to the frame.
 pub const DEADLINE: Duration = TaskId::Motors.deadline();
-/// Time-out of a frame: ten times the slowest protocol's.
+/// Time-out of a frame; the slowest, of DShot150, takes 0.107 ms.
 pub const FRAME_LIMIT: Duration = Duration::from_millis(3);
 
 /// Drives the motors; returns, motors stopped, only if the link has no receiver left.
@@ -21,8 +21,7 @@ pub async fn run(links: &Links, mut port: impl Motors) {
         return;
     };
     loop {
-        // `fresh` beside the timeout: a mix computed from an old sample must not spin a motor. Only the commands are
-        // copied.
+        // `fresh` beside the timeout: a mix from an old sample must not spin a motor.
         let next = mix.changed_to(|mix| Stamped {
             at: mix.at,
             value: mix.value.commands,
@@ -35,10 +34,10 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                     .unwrap_or([0.0; 4]);
                 let commands = commands.map(|c| if c.is_finite() { c } else { 0.0 });
                 let began = write(&mut port, commands, started).await;
-                // A frame that never began is late by the whole wait.
+                // An unsent frame is late by the whole wait.
                 let began = began.unwrap_or_else(Instant::now);
                 record_run_until(links, TaskId::Motors, message.at, started, began, DEADLINE);
-                // The frame is out: time to add what the earlier stages noted.
+                // The frame is out: adds what the earlier stages noted.
                 links.settle();
             }
             Err(_) => {

@@ -9,14 +9,14 @@ use crate::decimal::{self, Decimal};
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
 
-/// Parameters to fly with, and the result of reading them. Called once, before [`Links::new`].
+/// Parameters in force and the result of reading them. Called once, before [`Links::new`].
 pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
     let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
     (params, loaded)
 }
 
-/// Refuses arming if the storage could not be read. Refused values do not matter: their defaults are sound.
+/// Refuses arming if the storage is unreadable. Refused values have sound defaults.
 pub fn report(links: &Links, loaded: Loaded) {
     let foreign = loaded.foreign.is_some();
     links.report(ArmingInhibit::StorageUnreadable, loaded.unreadable && !foreign);

@@ -1,7 +1,7 @@
 //! Receiver: decodes bytes to the pilot's sticks.
 //!
-//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. Broken frames and invalid channels are
-//! counted and dropped, so that the link turns stale, as with a lost transmitter or the wrong protocol.
+//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. Invalid frames are counted and dropped;
+//! then, and with a lost transmitter or the wrong protocol, the link turns stale.
 
 use embassy_time::{Duration, Instant, Timer};
 

@@ -1,8 +1,8 @@
-//! State retained over a reset: the grip on the pipe, and what would otherwise need calibration at rest.
+//! State retained over a reset: the grip on the pipe, and what else would need calibration at rest.
 //!
 //! A reset (watchdog, fault, command, pin) keeps memory that start-up does not touch. Two copies there are written by
-//! turns, each with sequence number and checksum: a reset during a write leaves the other whole. After power-on the
-//! noise fails the checksum.
+//! turns, with sequence number and checksum: a reset during a write leaves the other whole. After power-on the noise
+//! fails the checksum.
 
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
@@ -37,12 +37,12 @@ pub struct RetainedState {
     pub force: PerArm<f32>,
     /// Latched fault of each closed arm.
     pub fault: PerArm<Option<GripFault>>,
-    /// Gyro bias, rad/s, at most 0.1 on each axis; `None` before the first calibration at rest.
+    /// Gyro bias, rad/s, within ±0.1; `None` before calibration.
     pub gyro_bias: Option<Vec3>,
 }
 
 impl RetainedState {
-    /// Words of one copy; `None` with a grip not yet checked or an invalid value.
+    /// Words of one copy; `None` with an unchecked grip or an invalid value.
     pub fn to_words(&self, sequence: u32) -> Option<Words> {
         let (grip_memory, arms) = match self.grip_memory {
             GripMemory::Unknown => return None,

@@ -1,7 +1,7 @@
 //! Writes the retained state for the supervisor, 100 Hz.
 //!
-//! It is at most 30 ms old (a servo's frame and a run), in which a winding servo turns 0.2 rad and a holding one not at
-//! all. A stale or missing message changes nothing.
+//! It is at most 30 ms old (a servo's frame and a run), in which a winding servo turns 0.2 rad. A stale or missing
+//! message changes nothing.
 
 use crate::retained_state::RetainedState;
 use sophie_control::wrench::PerArm;
@@ -26,7 +26,7 @@ impl<R: Retain> RetainedStore<R> {
         }
     }
 
-    /// Keeps the present state, once the commander knows whether the arms are closed.
+    /// Keeps the present state, once the commander knows the arms.
     pub fn keep(&mut self, links: &Links) {
         if let Some(grip_memory) = links.grip_memory.fresh() {
             self.retained.grip_memory = grip_memory;

@@ -1,9 +1,8 @@
 //! Drives the tendon servos: converts forces to pulses and publishes the estimated tension.
 //!
-//! Runs at the servos' frame rate (`servo_frame_rate`, 50 to 333 Hz). There are no pulses until the first force: on the
-//! pipe at power-up the gears hold, and nothing moves before the clamp loop has an order. After a restart the drives
-//! continue from the retained angles. Stale forces leave the servos where they are; so does a missing tilt, unless its
-//! arm is to be released.
+//! Runs at the servos' frame rate (`servo_frame_rate`, 50 to 333 Hz), without pulses until the first force: on the pipe
+//! at power-up the gears hold. After a restart the drives continue from the retained angles. Stale forces hold the
+//! servos; so does a missing tilt, unless its arm is to be released.
 //!
 //! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
 
@@ -17,8 +16,8 @@ use crate::links::{Links, Newest, Stamped, TendonForce, TendonOrder};
 use crate::ports::Servos;
 use crate::timing::Run;
 
-/// Start of the servos' frames by the board's clock: after the task has written the pulse widths, which take effect
-/// with the next frame. A port with its own frames starts them then.
+/// Start of the servos' frames by the board's clock, also of a port's own: after the task has written the pulse widths,
+/// which take effect then.
 pub const FRAME_AT: Duration = Duration::from_micros(1500);
 
 /// Frame period at `hz` frames a second.
@@ -26,12 +25,12 @@ pub fn period(hz: f32) -> Duration {
     Duration::from_micros((1e6 / hz + 0.5) as u64)
 }
 
-/// Longest time from the conversion of pressures to the start of the pulse that answers them: up to the frame of the
-/// clamp's step, and 2 ms for a conversion the clamp just missed. Frames out of the clamp's phase (all but 50, 100 and
-/// 200 Hz) are up to one frame later.
+/// Longest time from the conversion of pressures to the pulse that answers them: up to the frame of the clamp's step,
+/// and 2 ms for a conversion it just missed. Frames out of the clamp's phase (all but 50, 100 and 200 Hz) are up to one
+/// frame later.
 ///
-/// A miss makes a tendon's force lag by at most 0.3 N for each ms, as the clamp's rate limit is 300 N/s. From 20 N (67
-/// ms) on its integral waits, and the grip closes later.
+/// A miss makes a tendon's force lag by at most 0.3 N per ms, as the clamp's rate limit is 300 N/s. From 20 N (67 ms)
+/// its integral waits, and the grip closes later.
 pub fn chain_deadline(frame: Duration) -> Duration {
     let in_phase = FRAME_AT + TaskId::Analog.period();
     let (frame_us, clamp_us) = (frame.as_micros().max(1), TaskId::Clamp.period().as_micros());
@@ -100,7 +99,7 @@ impl Tendons {
             reel,
             drive: TendonDrive::new(),
         });
-        // Arms held by their gears: the angle of a servo without pulses is unknown.
+        // Without pulses the angle is unknown.
         let known = links
             .start
             .retained
@@ -162,10 +161,10 @@ impl Tendons {
     }
 }
 
-/// Measures from the conversion of pressures to the pulse that answers them, once for each such conversion.
+/// Measures from the conversion of pressures to the pulse that answers them.
 ///
-/// Lateness runs until the pulse widths are written, execution from there until the first such pulse begins, response
-/// is both. Conversions overtaken by a newer one and forces that follow from no pressure are not measured.
+/// Lateness runs until the pulse widths are written, execution until their first pulse begins, response is both.
+/// Overtaken conversions and forces without pressure are not measured.
 struct ChainWatch {
     deadline: Duration,
     last: Option<Instant>,
@@ -179,7 +178,7 @@ impl ChainWatch {
         }
     }
 
-    /// The pulse widths of `order` were written at `written`, their first pulse begins at `began`.
+    /// The pulse widths of `order` were written at `written` and begin at `began`.
     fn answered(&mut self, links: &Links, order: &Stamped<TendonOrder>, written: Instant, began: Instant) {
         if !matches!(order.value, TendonOrder::Measured(_)) || self.last == Some(order.at) {
             return;

@@ -1,8 +1,8 @@
 //! Supervisor: feeds the watchdog only while every task needed for flight runs, and keeps the retained state.
 //!
-//! A flight level that never yields starves it. After a window of 100 ms in which a task has made less than half of its
-//! runs, or with a stale flight level after calibration, it stops feeding. After 200 to 500 ms the watchdog resets the
-//! board, which starts disarmed with the grip as it was. [`crate::schedule`] declares the watched tasks.
+//! It stops feeding after a window of 100 ms in which a task has made less than half of its runs, or with a stale
+//! flight level after calibration; a flight level that never yields starves it. After 200 to 560 ms the watchdog then
+//! resets the board, which starts disarmed with the grip as it was. [`crate::schedule`] declares the watched tasks.
 
 use embassy_time::{Duration, Instant};
 

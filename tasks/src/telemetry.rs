@@ -1,5 +1,5 @@
-//! Telemetry to the pilot's transmitter over the receiver's serial line. One frame a run, so that the slow downlink
-//! never queues; SBUS has none.
+//! Telemetry to the pilot's transmitter over the receiver's line. One frame a run, so that the slow downlink never
+//! queues; SBUS has none.
 //!
 //! | frame | type | rate |
 //! |---|---|---|

@@ -1,8 +1,8 @@
 //! Timing of a task: totals since power-up, and histograms since they were last taken.
 //!
-//! Times are whole microseconds, the clock's resolution. Lateness is from release to start, execution from start to
-//! end, response from release to end. Execution includes preemption and waits on a bus; the executor trace
-//! (docs/timing.md) separates them.
+//! Times are whole microseconds, the clock's resolution: lateness from release to start, execution from start to end,
+//! response from release to end. Execution includes preemption and bus waits, separated by the executor trace
+//! (docs/timing.md).
 
 use embassy_time::{Duration, Instant};
 
@@ -54,7 +54,7 @@ pub enum Quantity {
 /// Everything recorded of one task.
 ///
 /// A run of the flight level is noted at its end, and settled into totals and histograms once the motor frame is out:
-/// noting takes a quarter of the instructions. Reading or noting again settles first, so none is lost.
+/// noting takes a quarter of the instructions.
 #[derive(Debug)]
 pub struct Record {
     /// Since power-up, without the noted run.
@@ -129,7 +129,7 @@ impl Record {
         missed > 0
     }
 
-    /// Takes the histogram of `quantity`, which starts empty again.
+    /// Takes the histogram of `quantity`, which restarts.
     pub fn take(&mut self, quantity: Quantity) -> Histogram {
         self.settle();
         let histogram = match quantity {

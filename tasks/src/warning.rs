@@ -5,7 +5,7 @@ use crate::start::StartCause;
 /// A warning, shown beside the mode when there is no reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warning {
-    /// An arm's measured tilt is farther from its model than the correction reaches.
+    /// An arm's tilt is beyond its model's correction.
     ArmTilt,
     /// Cause of an unusual start of the board.
     Restarted(StartCause),
@@ -26,7 +26,7 @@ impl Warning {
         Self::InfillLow,
     ];
 
-    /// Text on the pilot's display; empty where there is nothing to warn of.
+    /// Text on the pilot's display; empty without cause.
     pub const fn text(self) -> &'static str {
         match self {
             Self::ArmTilt => "arm tilt beyond its model",

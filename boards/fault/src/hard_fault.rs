@@ -1,7 +1,7 @@
 //! Hard fault handler: unmapped addresses, undefined instructions, stack overflow.
 //!
-//! It does not use the old stack: after an overflow that would fault again at the highest priority, locking the
-//! processor up without a message and with the motors unchanged.
+//! It does not use the old stack: after an overflow that would fault again, locking the processor up without a message
+//! and with the motors unchanged.
 
 use core::arch::naked_asm;
 
@@ -25,7 +25,7 @@ const BUS_ADDRESS: u32 = 1 << 15;
 #[allow(non_snake_case, reason = "the name that the vector table wants")]
 unsafe extern "C" fn HardFault() -> ! {
     naked_asm!(
-        // Cancels the float state's pending save to the old stack (FPCCR.LSPACT).
+        // Cancels a pending save of floats to the old stack (FPCCR.LSPACT).
         "movw r3, #0xEF34",
         "movt r3, #0xE000",
         "ldr r2, [r3]",

@@ -1,10 +1,10 @@
 //! End of a run on a Cortex-M: stops the motors, keeps the message, resets the chip.
 //!
-//! After a fault nothing can be trusted. A reset is the fastest way to *commanded* stops, as the motor task's first
-//! frame is zeros; the next start logs the message.
+//! After a fault nothing can be trusted. A reset leads fastest to *commanded* stops, the motor task's first frame; the
+//! next start logs the message.
 //!
 //! A second fault resets at once. In a hard fault handler it locks the processor up, with the motors' pins already low,
-//! until the watchdog resets the chip; the next start then finds the text kept before the message was made.
+//! until the watchdog resets the chip; the next start then finds a substitute text.
 //!
 //! The same for every chip and board, so an image for QEMU runs it too. Empty on the host.
 
@@ -28,7 +28,7 @@ pub static ENDING: AtomicBool = AtomicBool::new(false);
 
 /// A board's part in the end of a run. Called with interrupts off, from any handler, at any stack depth.
 pub trait Machine {
-    /// Drives the motors' pins low by plain register accesses, which cannot fault.
+    /// Drives the motors' pins low by register accesses that cannot fault.
     fn stop_motors();
 
     /// Keeps `message` for the next start. May fault while formatting it.
@@ -38,7 +38,7 @@ pub trait Machine {
     fn reset() -> !;
 }
 
-/// Stops the motors, keeps `message` for the next start and restarts the machine `M`.
+/// Stops the motors, keeps `message` for the next start, restarts `M`.
 pub fn stop_and_restart<M: Machine>(message: Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
     // Nothing before this can fault.

@@ -14,7 +14,7 @@ const MAP: [(u32, u32); 4] = [
 ];
 /// Flash and instruction memory.
 const CODE: u32 = 0x0000_0000;
-/// Tightly coupled memory (no cache) and memories that DMA reaches.
+/// Tightly coupled memory (uncached) and DMA's memories.
 const DATA: u32 = 0x2000_0000;
 const PERIPHERALS: u32 = 0x4000_0000;
 const NEVER_EXECUTED: u32 = 1 << 28;
@@ -25,7 +25,7 @@ const DEVICE: u32 = NEVER_EXECUTED | 1 << 16;
 const SIZE_4_GB: u32 = 31 << 1;
 const SIZE_512_MB: u32 = 28 << 1;
 const ENABLED: u32 = 1;
-/// Protection on; default map outside the regions, in system space.
+/// Protection on, default map elsewhere.
 const ON: u32 = 1 << 2 | 1;
 
 /// Enables the instruction cache, and with `data` the data cache, for reads from flash; blocks speculative reads of
@@ -56,7 +56,7 @@ fn protect(mpu: &MPU) {
     cortex_m::asm::isb();
 }
 
-/// Drops cached data of `length` bytes at `address`, changed behind the cache.
+/// Drops cached data that changed behind the cache.
 pub fn forget_cached(address: usize, length: usize) {
     if SCB::dcache_enabled() {
         // SAFETY: cache control is the core's own, and dropping cached flash loses no write: flash is never written

@@ -1,7 +1,7 @@
 //! Word copies, which the compiler calls for every message longer than 64 bytes.
 //!
 //! They replace the weak symbols of `compiler_builtins`: eight words in four instructions instead of one in five. The
-//! rig compares every count of words up to 32 with every rest of bytes (`hil/rig/tests/rig/t11_copies.rs`).
+//! rig compares all counts up to 32 words with every rest of bytes (`hil/rig/tests/rig/t11_copies.rs`).
 
 use core::arch::global_asm;
 

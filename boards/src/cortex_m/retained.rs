@@ -1,9 +1,9 @@
-//! Memory retained over a reset: the count of starts, the end of the last run, and two copies of the state from which
-//! the tasks resume (`sophie_tasks::retained_state`).
+//! Memory retained over a reset: the count of starts, the end of the last run, and two copies of the tasks' state
+//! (`sophie_tasks::retained_state`).
 //!
 //! Only these functions access it: the linker places nothing else there, no DMA points at it, and the stack lies at the
-//! bottom of another memory, where an overflow faults. A fault handler writes only the message, so it may interrupt the
-//! writing of a copy.
+//! bottom of another memory, where an overflow faults. A fault handler writes only the message, so it may interrupt a
+//! copy.
 
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
@@ -22,7 +22,7 @@ pub enum ResetCause {
     BrownOut,
     /// Watchdog not fed.
     Watchdog,
-    /// Requested by the firmware: after a fault, or on command.
+    /// By the firmware: after a fault or on command.
     Software,
     /// Reset pin: button or probe.
     Pin,
@@ -44,14 +44,14 @@ impl ResetCause {
 }
 
 const LONGEST: usize = 240;
-/// Message of the fault that ended the last run.
+/// Fault message that ended the last run.
 pub type LastWords = String<LONGEST>;
 
 /// State at start-up.
 pub struct Kept {
     /// Starts since power-on, including this one.
     pub starts: u32,
-    /// Starts since power-on after a fault or watchdog reset.
+    /// Of these, after a fault or watchdog reset.
     pub faults: u32,
     /// Message of the last run's fault.
     pub last_words: Option<LastWords>,
@@ -164,7 +164,7 @@ fn store(mut block: Block) {
 
 /// Takes the last run's state, counts this start and clears the message. Called once, before any task.
 pub fn start(cause: ResetCause) -> (Kept, Memory) {
-    // After power-on the block is noise and fails the memory's error correction.
+    // Noise fails the memory's error correction.
     let lost = matches!(cause, ResetCause::PowerOn | ResetCause::BrownOut);
     let mut block = if lost { Block::EMPTY } else { load() };
     if !block.is_whole() && !lost {

@@ -11,7 +11,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 use cortex_m::peripheral::SCB;
 use embassy_time::Instant;
 
-/// Capacity, a power of two: 20 ms of a flight, longer than the background ever stalls.
+/// Capacity, a power of two: 20 ms of a flight, beyond any stall of the background.
 pub const EVENTS: u32 = 1024;
 /// Address bits of an event, and their shift.
 const ADDRESS: u32 = 0x000F_FFFC;
@@ -35,7 +35,7 @@ static RING: [[AtomicU32; 2]; EVENTS as usize] =
 static WRITTEN: AtomicU32 = AtomicU32::new(0);
 static READ: AtomicU32 = AtomicU32::new(0);
 static LOST: AtomicU32 = AtomicU32::new(0);
-/// The clock runs; its registers must not be read before.
+/// Set once the clock runs: it must not be read before.
 static ON: AtomicBool = AtomicBool::new(false);
 
 /// Starts recording. The clock must run.
@@ -71,7 +71,7 @@ pub fn drain(events: &mut [[u32; 2]]) -> usize {
     let mut count = 0;
     for slot in events {
         let read = READ.load(Relaxed);
-        // Entries before `WRITTEN` are complete: it is written last, in a critical section.
+        // Complete up to `WRITTEN`, set last in a critical section.
         if read == WRITTEN.load(Relaxed) {
             break;
         }

@@ -1,4 +1,4 @@
-//! Single scans on the converter of the F4 and F7. embassy-stm32 0.6 only has a free-running ring there, with thousands
+//! Single scans on the converter of the F4 and F7: embassy-stm32 0.6 only has a free-running ring there, with thousands
 //! of interrupts a second for 500 readings.
 
 use embassy_stm32::Peri;

@@ -1,4 +1,4 @@
-//! From reset to running clocks. Outputs and watchdog come first, so that nothing spins or hangs while crystal and PLLs
+//! From reset to running clocks. Outputs and watchdog come first: nothing may spin or hang while crystal and PLLs
 //! start.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -12,7 +12,7 @@ use crate::cortex_m::retained;
 
 const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
 
-/// embassy-time's clock counts; its registers must not be read before.
+/// Set once embassy-time's clock runs: it must not be read before.
 static COUNTING: AtomicBool = AtomicBool::new(false);
 
 static BUS: AtomicU32 = AtomicU32::new(0);
@@ -43,8 +43,8 @@ pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals 
     let peripherals = critical_section::with(|_| {
         let peripherals = embassy_stm32::init(config);
         // embassy-stm32 loads the timer by an update event while counter and compare values are zero, which raises the
-        // compare flags. Their interrupt would count a half turn of 65.5 ms too many; then, between each half turn and
-        // its interrupt, the time would be 65.5 ms early.
+        // compare flags. Their interrupt would count a half turn of 65.5 ms too many; from then on, between each half
+        // turn and its interrupt, the time would be 65.5 ms early.
         timer.sr().write_value(SrGp16(0));
         peripherals
     });

@@ -1,6 +1,6 @@
 //! Data-ready line of the inertial sensor, stamped in its interrupt: a late task does not move the sample's time.
 //!
-//! The line stays enabled between samples. The HAL would set it up for each wait, 80 instructions between sample and
+//! The line stays enabled between samples: the HAL's set-up for each wait would add 80 instructions between sample and
 //! motor frame.
 
 use core::future::{Future, poll_fn};
@@ -23,8 +23,7 @@ static EDGES: AtomicU32 = AtomicU32::new(0);
 static LINE: AtomicU32 = AtomicU32::new(0);
 static WAITING: AtomicWaker = AtomicWaker::new();
 
-/// Stamps and acknowledges the interrupt. Bound before the HAL's handler, which would disable the line and now finds
-/// nothing to do.
+/// Stamps and acknowledges the interrupt. Bound before the HAL's handler, which would disable the line.
 pub struct ReadyStamp;
 
 impl<I: Interrupt> Handler<I> for ReadyStamp {
@@ -45,13 +44,13 @@ pub struct ReadyLine {
 impl ReadyLine {
     /// The line on pin `number` of its port, read by `input`.
     pub fn new(mut input: ExtiInput<'static, Async>, number: u8) -> Self {
-        // An abandoned wait leaves edge and port configured, and the line disabled.
+        // Leaves edge and port configured, the line disabled.
         let _ = pin!(input.wait_for_rising_edge()).poll(&mut Context::from_waker(Waker::noop()));
         LINE.store(1 << number, Ordering::Relaxed);
         Self { _input: input }
     }
 
-    /// Enables the line if it is not: at first, and after an edge between the two handlers.
+    /// Enables a disabled line: at first, and after an edge between the handlers.
     fn enable() {
         let line = LINE.load(Ordering::Relaxed);
         if EXTI.imr(0).read().0 & line == 0 {

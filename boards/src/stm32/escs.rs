@@ -1,7 +1,7 @@
-//! The motors' speed controllers, by DShot frames or pulses, on channels of one timer in any order, or of two.
+//! The motors' speed controllers, by DShot frames or pulses, on any channels of one or two timers.
 //!
-//! Each command starts one frame or pulse, which ends by itself with the pins low; without software there is none, and
-//! the controllers stop the motors. A DShot frame ends in rows of zeros; the timer stops after a pulse.
+//! Each command starts one frame or pulse, which ends with the pins low: in zeros, or by the timer's stop. Without
+//! software there is none, and the controllers stop the motors.
 
 use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
@@ -26,10 +26,10 @@ use super::frame_stream::{FrameStream, Stream};
 const NO_MOTOR: usize = usize::MAX;
 
 /// Rows of compare values in a frame: one a bit, and two of zeros. The first of these is in force once the second has
-/// been moved, so the pins are low after the last row.
+/// been moved: the pins end low.
 const FRAME_ROWS: usize = dshot::BITS + 2;
-/// Rows given to DMA. The timer is stopped in the zeros after the frame: they last as long as a frame of the fastest
-/// protocol, longer than any task of the level delays this one.
+/// Rows given to DMA. The timer is stopped in the zeros after the frame, which last as long as a frame of the fastest
+/// protocol: longer than any task of the level delays this one.
 const ROWS: usize = 2 * FRAME_ROWS;
 type EscBurst = Aligned<[u16; ROWS * dshot::MOTORS]>;
 
@@ -133,7 +133,7 @@ where
         }
     }
 
-    /// Adds motor `index`, 0 to 3, on its pin, which stays low until the first command.
+    /// Adds motor `index`, 0 to 3, on its pin, low until the first command.
     pub fn motor<C: TimerChannel>(mut self, index: usize, pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
         let channel = C::CHANNEL;
         self.timer
@@ -141,7 +141,7 @@ where
         self.timer.set_output_compare_preload(channel, true);
         self.timer.set_compare_value(channel, 0.into());
         self.timer.enable_channel(channel, true);
-        // Loads prescaler, period and compare values before the pin becomes the timer's.
+        // Loads all values before the pin becomes the timer's.
         self.timer.generate_update_event();
         self.timer.enable_outputs();
         let function = pin.af_num();
@@ -165,8 +165,8 @@ where
         pairs.filter_map(|(channel, value)| Some((channel?, value)))
     }
 
-    /// Starts one pulse on all motors. A command before the last pulse's period has ended is dropped, so that it
-    /// neither cuts nor lengthens the pulse; the next one is newer.
+    /// Starts one pulse on all motors. A command within the last pulse's period is dropped, so that it neither cuts nor
+    /// lengthens the pulse; the next is newer.
     fn shoot(&mut self, pulse: EscPulse, t: PwmTiming, commands: PerArm<f32>) {
         let registers = self.timer.regs_core();
         // In one-pulse mode the counter stops by itself.
@@ -177,10 +177,10 @@ where
             let counts = pulse.compare(&t, command);
             self.timer.set_compare_value(channel, (counts as u16).into());
         }
-        // The pins rise with the first line and the pulse is timed from the last: less than 0.5 µs.
+        // Pins rise with the first line, the pulse is timed from the last: less than 0.5 µs.
         critical_section::with(|_| {
             registers.egr().write(|w| w.set_ug(true));
-            // In force from the end of the period, when the counter stops at zero: the pins stay low.
+            // In force when the counter stops at zero: the pins stay low.
             for (channel, _) in self.on_channels(commands) {
                 self.timer.set_compare_value(channel, 0.into());
             }
@@ -200,13 +200,13 @@ where
 
     /// Sends one frame to all motors; returns its start once it is over.
     ///
-    /// Order: stop counter and stream, write rows, arm stream, enable request, start counter. If the request were
-    /// enabled first, an update before the stream is armed would be lost, and the frame's first bit with it.
+    /// Order: stop counter and stream, write rows, arm stream, enable request, start counter. An update between
+    /// enabling and arming would be lost, and the frame's first bit with it.
     async fn send_frame(&mut self, bit: BitTiming, time: Duration, commands: PerArm<f32>) -> Instant {
         // Ends an abandoned frame.
         self.stop_frame();
         self.timer.reset();
-        // In channel order, as the timer takes them. A channel without a motor has no pin.
+        // In channel order. A channel without a motor has no pin.
         let frame = |motor| {
             commands
                 .get(motor)
@@ -220,7 +220,7 @@ where
         self.timer.enable_update_dma(true);
         self.timer.start();
         let began = Instant::now();
-        // A stream that stalls is not waited for; the next frame sets it up again.
+        // Not waiting for a stalled stream: the next frame sets it up.
         Timer::at(began + time).await;
         self.stop_frame();
         began

@@ -1,7 +1,7 @@
 //! The chip's flash for parameters, placed by the memory map (`_params_start`, `_params_end`).
 //!
-//! Erasing and writing block for up to a few seconds: on the H7, which runs from its other bank, only the background,
-//! on the F4 everything. A restart follows.
+//! Erasing and writing block for up to a few seconds: on the H7, running from its other bank, only the background, on
+//! the F4 everything. A restart follows.
 
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Error, FLASH_BASE, Flash, WRITE_SIZE};

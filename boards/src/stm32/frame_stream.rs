@@ -1,9 +1,8 @@
 //! The DMA stream of a motor frame. The HAL sets it up once, which takes 150 instructions; each later frame writes
 //! three registers: flags, length, enable.
 //!
-//! The clock times the end of a frame instead of the stream's interrupt. The stream then still has rows of zeros to
-//! move, so that no timer request is left over: served when the next frame is armed, it would shift that frame a bit
-//! early.
+//! The clock times the end of a frame, not the stream's interrupt. The stream still has rows of zeros to move then, so
+//! that no timer request is left over to shift the next frame a bit early.
 
 use core::sync::atomic::{Ordering, fence};
 
@@ -12,7 +11,7 @@ use embassy_stm32::pac::dma::regs::{Cr, Ixr, Ndtr};
 use embassy_stm32::pac::dma::{Dma, St};
 use embassy_stm32::{pac, peripherals};
 
-/// Polls of a disabled stream until it stops: it finishes its current beat, a few bus cycles.
+/// Polls of a disabled stream, which finishes its beat: a few bus cycles.
 const LOOKS: u32 = 100;
 
 /// Location of a stream's registers.
@@ -37,7 +36,7 @@ streams! {
     DMA2: DMA2_CH0 0 DMA2_CH1 1 DMA2_CH2 2 DMA2_CH3 3 DMA2_CH4 4 DMA2_CH5 5 DMA2_CH6 6 DMA2_CH7 7;
 }
 
-/// A stream that moves the same memory to the same register each time.
+/// A stream from one memory to one register.
 pub struct Stream {
     controller: Dma,
     registers: St,
@@ -83,7 +82,7 @@ impl Stream {
         }
     }
 
-    /// Makes the stream wait for requests. It fetches the first values at once: they must already be in memory.
+    /// Makes the stream wait for requests. It fetches the first values at once.
     #[inline]
     pub fn arm(&self) {
         let (register, flags) = self.flags;

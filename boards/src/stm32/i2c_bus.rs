@@ -76,7 +76,7 @@ pub(crate) use i2c_bus;
 pub fn i2c_config() -> Config {
     let mut config = Config::default();
     config.frequency = Hertz(400_000);
-    // The driver busy-waits this long on a stretched clock: for the background only.
+    // Busy-waited on a stretched clock: for the background only.
     config.timeout = Duration::from_millis(3);
     config
 }
@@ -184,7 +184,7 @@ impl<P: BusParts> embedded_hal_async::i2c::I2c for ArmBus<P> {
             None => self.rebuilt().await.ok_or(Error::Bus)?,
         };
         let result = bus.transaction(address, operations).await;
-        // A NACK leaves the bus in order; other errors may not.
+        // Other errors may leave the bus in disorder.
         if matches!(result, Ok(()) | Err(Error::Nack)) {
             self.bus = Some(bus);
         }

@@ -8,7 +8,7 @@ use embassy_time::{Duration, Instant};
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_tasks::deadline::begins_next;
 
-/// A running timer, outputs low until set. Channels without a pin are left alone.
+/// A running timer, outputs low until set; channels without a pin are untouched.
 pub struct PulseTimer<T: GeneralInstance4Channel> {
     timer: Timer<'static, T>,
 }
@@ -28,7 +28,7 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
     }
 
     /// Shifts the frames so that one in each `frame` begins at `phase` of the board's clock. Called before the outputs
-    /// start: it would change a running pulse.
+    /// start, as it would change a pulse.
     pub fn put_frames_at(&mut self, timing: &PwmTiming, frame: Duration, phase: Duration) {
         critical_section::with(|_| {
             let now = Instant::now();
@@ -39,7 +39,7 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         });
     }
 
-    /// Makes `pin` its channel's output for the life of the returned value.
+    /// Makes `pin` its channel's output while the returned value lives.
     pub fn output<C: TimerChannel>(&mut self, pin: Peri<'static, impl TimerPin<T, C>>) -> Flex<'static> {
         let channel = C::CHANNEL;
         self.set(channel, 0);
@@ -60,8 +60,8 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         registers.ccr(channel.index()).write(|w| w.set_ccr(counts as u16));
     }
 
-    /// Start of the next frame, to the microsecond, when the last set pulses take effect; one frame late if a frame
-    /// begins between setting and this call.
+    /// Start of the next frame, to the microsecond, when the last set pulses take effect; late by one if a frame begins
+    /// between setting and this call.
     pub fn next_frame(&self, timing: &PwmTiming) -> Instant {
         let passed = self.timer.regs_gp16().cnt().read().cnt();
         Instant::now() + Duration::from_micros(timing.left_us(u32::from(passed)).into())

@@ -1,5 +1,5 @@
-//! Pins at fixed levels: from the first instructions, those of the motors and of whatever a floating line would move,
-//! sound or switch; also switches of supplies and other chips.
+//! Pins at fixed levels: from the first instructions those of the motors and of whatever a floating line would move,
+//! sound or switch; also switches of supplies and chips.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Speed};
@@ -14,8 +14,8 @@ pub fn hold(pin: Peri<'static, AnyPin>, level: Level) {
     core::mem::forget(Output::new(pin, level, Speed::Low));
 }
 
-/// Makes pins of a port outputs at `level`, whatever drove them: the first step of a start, before the clocks run, and
-/// for the motors the last step of a fault handler.
+/// Makes pins of a port outputs at `level`, whatever drove them: a start's first step, before the clocks run, and for
+/// the motors a fault handler's last.
 pub fn drive(port: Gpio, pins: &[usize], level: Level) {
     clock_ports();
     for &pin in pins {
@@ -34,6 +34,6 @@ fn clock_ports() {
     #[cfg(not(family = "h7"))]
     let clocks = bus.ahb1enr();
     clocks.modify(|w| w.0 |= PORTS);
-    // The clock runs two cycles after the write (RM0090 §7.2.14, RM0433 §8.5.10), which this read takes.
+    // Two cycles until the clock runs (RM0090 §7.2.14, RM0433 §8.5.10).
     let _ = clocks.read();
 }

@@ -18,7 +18,7 @@ use super::Aligned;
 
 /// Time-out of a frame; the longest telemetry frame takes 1.6 ms at 420 kbaud.
 const LONGEST_FRAME: Duration = Duration::from_millis(20);
-/// Time-out of a line; the longest takes 20 ms at 115,200 baud, behind a buffer of the same length.
+/// Time-out of a line; the longest takes 20 ms at 115,200 baud, behind as long a buffer.
 const LONGEST_LINE: Duration = Duration::from_millis(200);
 
 static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(Aligned([0; 512]));
@@ -85,7 +85,7 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     )
 }
 
-/// Console line: 115,200 baud, 8N1, without DMA, whose streams are scarce.
+/// Console line: 115,200 baud, 8N1; DMA streams are scarce.
 pub fn console_lines<T: Instance>(
     uart: Peri<'static, T>,
     rx: Peri<'static, impl RxPin<T>>,
@@ -101,7 +101,7 @@ pub fn console_lines<T: Instance>(
     (ConsoleInput(rx), ConsoleOutput(tx))
 }
 
-/// All rates are within every port's range: a refusal means wrong clocks, found on the bench.
+/// All rates are in range: a refusal means wrong clocks, found on the bench.
 fn accepted<U>(port: Result<U, ConfigError>) -> U {
     match port {
         Ok(port) => port,
@@ -109,12 +109,12 @@ fn accepted<U>(port: Result<U, ConfigError>) -> U {
     }
 }
 
-/// Receiver input: a ring filled by DMA, read when the line falls idle after a frame.
+/// Receiver input: a DMA ring, read when the line idles after a frame.
 pub struct ReceiverLine(RingBufferedUartRx<'static>);
 
 impl SerialInput for ReceiverLine {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
-        // Framing, noise and overrun errors stop the ring; the next call restarts it.
+        // Line errors stop the ring; the next call restarts it.
         self.0.read(buffer).await.map_err(|_| PortError::Corrupt)
     }
 }

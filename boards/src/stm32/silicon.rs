@@ -1,5 +1,5 @@
-//! Start-up checks of the chip: what no datasheet of the board states, and traces of a failed start, another chip
-//! revision or another firmware's option bytes.
+//! Start-up checks of the chip: what the board's datasheets do not state, and traces of a failed start, another chip
+//! revision or foreign option bytes.
 
 use core::fmt::{self, Write};
 

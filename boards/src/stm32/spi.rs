@@ -9,7 +9,7 @@ use embassy_time::Timer;
 use embedded_hal_async::spi::{ErrorType, Operation, SpiBus, SpiDevice};
 use sophie_drivers::spi_clock;
 
-/// Mode 3, which every chip here accepts, and the fastest clock of bus `T` up to `most_hz`.
+/// Mode 3, fit for every chip here, and the fastest clock of bus `T` up to `most_hz`.
 pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Config {
     let mut config = Config::default();
     config.mode = MODE_3;
@@ -27,8 +27,8 @@ impl<B> Selected<B> {
     /// The chip on `bus` with the line `select`.
     ///
     /// The select edges are slow, some tens of nanoseconds, within the time before the first clock: the Matek's select
-    /// (PC13 to PC15, on the backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743
-    /// datasheet, pin table).
+    /// (PC13 to PC15, backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743 datasheet, pin
+    /// table).
     pub fn new(bus: B, select: Peri<'static, impl Pin>) -> Self {
         Self {
             bus,

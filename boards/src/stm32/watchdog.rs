@@ -66,7 +66,7 @@ pub async fn be_patient(patient: bool) {
         IWDG.pr().write(|w| w.set_pr(prescaler));
         IWDG.rlr().write(|w| w.set_rl(reload));
     });
-    // The values reach the watchdog's clock in 0.2 ms and apply from the next feed.
+    // In 0.2 ms the values reach the watchdog's clock, for the next feed.
     for _ in 0..20 {
         Timer::after_micros(100).await;
         let status = IWDG.sr().read();

@@ -12,7 +12,7 @@ use crate::setpoint::Setpoint;
 use crate::vector::Vec3;
 use crate::wrench::Wrench;
 
-/// Largest share of a rotor's thrust that roll and pitch may each add or take on the pipe.
+/// Largest share of a rotor's thrust for roll and for pitch on the pipe.
 const RESTING_SHARE: f32 = 0.4;
 
 /// A setpoint and its time.
@@ -145,7 +145,7 @@ impl Control {
         }
     }
 
-    /// Resets a loop on activation, at the present attitude: its state is stale.
+    /// Resets a loop on activation: its state is stale.
     #[cold]
     fn change_to(&mut self, kind: Kind, a: &Attitude) {
         if kind.turns() && !self.kind.turns() {
@@ -153,7 +153,7 @@ impl Control {
             self.aimed = None;
         }
         let lasts = kind.integrates() && self.kind.integrates();
-        // On the pipe the integrals wind up against it; in the air they would throw the vehicle to that side.
+        // Integrals wound up against the pipe would throw the vehicle in the air.
         if !lasts || kind == Kind::Escape {
             self.rate.reset();
         }
@@ -171,7 +171,7 @@ impl Control {
     }
 
     /// Limits moments in proportion to the thrust, so that spooling-down rotors stop alike: their difference vanishes
-    /// faster than the tendons can follow.
+    /// faster than the tendons follow.
     #[inline(always)]
     fn while_resting(&self, moment: Vec3, thrust: f32) -> Wrench {
         let [roll_max, pitch_max] = self.levers.map(|lever| RESTING_SHARE * thrust * lever);

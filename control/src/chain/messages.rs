@@ -30,7 +30,7 @@ pub struct ImuSample {
     pub gyro: Vec3,
     /// Newest specific force, m/s², body, low-passed.
     pub accel: Vec3,
-    /// Time since the last sample, s, limited to a plausible range.
+    /// Time since the last sample, s, limited.
     pub dt: f32,
 }
 
@@ -45,7 +45,7 @@ pub struct Attitude {
     pub accel: Vec3,
     /// Estimated gyro bias, rad/s.
     pub gyro_bias: Vec3,
-    /// True once calibration at rest has ended.
+    /// Calibration at rest has ended.
     pub calibrated: bool,
     /// Time since the last estimate, s.
     pub dt: f32,
@@ -63,7 +63,7 @@ pub enum Demand {
     Spin(Spin),
     /// A wrench, yaw included.
     Wrench(Wrench),
-    /// A wrench on the pipe: yaw is given up, and the arms, not hanging free, are not corrected by their sensors.
+    /// A wrench on the pipe: yaw is given up, and sensors do not correct arms that do not hang free.
     Resting(Wrench),
 }
 
@@ -78,13 +78,13 @@ pub struct MixOutput {
     pub commands: PerArm<f32>,
     /// Share given of the demanded yaw, thrust (relative to the range left) and roll/pitch, 0..1.
     pub given: Given,
-    /// Yaw is given up because the arms' tilt leaves no authority.
+    /// Yaw is given up: the arms' tilt leaves no authority.
     pub yaw_gated: bool,
     /// Estimated tilt of each arm, rad.
     pub tilt: PerArm<f32>,
     /// Tilt bias of each arm, rad.
     pub tilt_bias: PerArm<f32>,
-    /// An arm's model is out of its range of validity.
+    /// An arm is outside its model's range.
     pub tilt_fault: bool,
 }
 

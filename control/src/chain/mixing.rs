@@ -16,7 +16,7 @@ use crate::wrench::PerArm;
 pub struct ArmReading {
     /// Time of measurement, µs.
     pub at_us: u64,
-    /// Tilt of each arm, rad, tip up positive; `None` where the sensor gave nothing.
+    /// Tilt of each arm, rad, tip up positive; `None` without reading.
     pub tilt: PerArm<Option<f32>>,
 }
 
@@ -25,7 +25,7 @@ pub struct ArmReading {
 pub struct Surroundings {
     /// Last battery voltage over nominal, of any age; `None` means nominal.
     pub battery_ratio: Option<f32>,
-    /// Last reading of the arms' sensors, `None` for each that is too old; readings already taken may be left out.
+    /// Last reading of the arms' sensors, `None` where too old; taken readings may be omitted.
     pub arms: Option<ArmReading>,
 }
 
@@ -57,8 +57,8 @@ impl<A: Allocation> Mixing<A> {
         at_us > self.readings.seen_us
     }
 
-    /// Writes the commands for `demand`, whose sample was ready at `at_us` µs, into `out`: so long a message is costly
-    /// to copy.
+    /// Writes the commands for `demand`, whose sample was ready at `at_us` µs, into `out`, as so long a message is
+    /// costly to copy.
     #[inline(always)]
     pub fn step(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings, out: &mut MixOutput) {
         A::step_mixing(self, at_us, demand, surroundings, out);
@@ -117,7 +117,7 @@ impl<A: Allocation> Mixing<A> {
     }
 }
 
-/// One motor instead of four idling ones. Kept out of the flight path for its speed.
+/// One motor instead of four idling ones, out of the flight path.
 #[cold]
 #[inline(never)]
 fn on_bench(out: &mut MixOutput, spin: &Spin) {
@@ -148,7 +148,7 @@ impl Readings {
         }
     }
 
-    /// Corrects one arm a step: all four at once would lengthen that step.
+    /// Corrects one arm a step, to keep steps equal.
     #[inline(always)]
     fn correct_one(&mut self, model: &mut TiltModel) {
         let Some(reading) = self.tilt.get(self.arm) else {

@@ -11,15 +11,15 @@ use crate::math;
 
 /// Largest force rate of a touching arm, N/s.
 const FORCE_RATE_MAX: f32 = 300.0;
-/// Largest force rise of an arm that lost touch, N/s: slow enough for the bend watch.
+/// Largest force rise after a lost touch, N/s: slow enough for the bend watch.
 const REGAIN_RATE_MAX: f32 = 30.0;
-/// Lasting lag (N) of a servo at the end of its travel or strength.
+/// Lag of a servo at the end of its travel or strength, N.
 const LAG_STUCK: f32 = 8.0;
-/// Time at the force limit until the arm counts as limited, s.
+/// Time at the force limit before the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
 /// Time of known pressure and tilt after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
-/// Time without a tilt until the arm is faulty, s; its servo is held at once.
+/// Time without a tilt until a fault, s; the servo is held at once.
 const TILT_MISSING_MAX: f32 = 0.5;
 /// A fall between these shares of the grip pressure within one step of 10 ms means a broken sensor lead: an arm's modes
 /// are below 30 Hz.
@@ -173,7 +173,7 @@ impl ArmGripper {
         } else {
             self.watch_bending(cfg, &contact, dt);
         }
-        // A servo at the end of its travel or at stall counts as a force limit.
+        // A servo at its end or stall counts as a force limit.
         let stuck = matches!(self.phase, Phase::Grip(_)) && self.force - contact.tension > LAG_STUCK;
         let limited = self.force >= cfg.demand.force || stuck;
         self.at_limit = if limited {
@@ -194,7 +194,7 @@ impl ArmGripper {
         match measured.sensed {
             _ if latched => self.fault,
             Pressure::Faulty => Some(GripFault::Sensor),
-            // An unloaded sensor reads as an open one, but no arm lets go within one step.
+            // An unloaded sensor reads as open, but no arm lets go in one step.
             Pressure::Known(_) if vanished => Some(GripFault::Sensor),
             Pressure::Stale => Some(GripFault::Stale),
             Pressure::Known(_) if measured.pressure.is_none() || measured.thrust.is_none() => {
@@ -218,7 +218,7 @@ impl ArmGripper {
         })
     }
 
-    /// Holds the force; the loop restarts from it without wind-up or kick.
+    /// Holds the force, from which the loop restarts bumplessly.
     fn pause(&mut self) {
         match self.phase {
             Phase::Grip(_) => self.phase = Phase::Approach,
@@ -229,8 +229,8 @@ impl ArmGripper {
         self.ceiling_watch.pause();
     }
 
-    /// After a restart: once the tension by the new attitude, which may shift every tilt by 0.02 rad, is known for
-    /// [`RESUME_TIME`], seeds the force from it. The old force would make the servo jump.
+    /// After a restart: seeds the force from the tension by the new attitude, which may shift every tilt by 0.02 rad,
+    /// once known for [`RESUME_TIME`]. The old force would make the servo jump.
     fn take_over(&mut self, cfg: &Config, contact: &Contact, seen: f32) {
         if seen < RESUME_TIME {
             self.phase = Phase::Resume(seen);
@@ -283,7 +283,7 @@ impl ArmGripper {
         }
     }
 
-    /// An arm without touch must bend as the force rises; otherwise the force returns to its value before the rise.
+    /// An arm without touch must bend as the force rises; otherwise the force returns to its value before.
     fn watch_bending(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.ceiling_watch.pause();
         let start = BendWatch::new(contact.tilt, contact.tension);

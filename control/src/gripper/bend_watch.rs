@@ -48,7 +48,7 @@ impl BendWatch {
         }
     }
 
-    /// For an arm that starts under tension: at first its tilt lags and the tension seems to rise.
+    /// For an arm that starts under tension: its late tilt looks like a rise.
     pub fn of_a_start(tilt: f32, tension: f32) -> Self {
         Self {
             wait: START_TIME,

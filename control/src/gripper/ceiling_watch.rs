@@ -1,7 +1,7 @@
 //! Detects a pressure that does not rise with the tension, until a sensor has read the grip pressure.
 //!
 //! Behind an undeclared divider a reading ends far below the grip pressure, and the loop would wind to the force limit.
-//! Only a rise too slow to reach the grip pressure within the limit counts: no arm that could have held is stopped.
+//! Only a rise too slow to reach the grip pressure within the limit counts: an arm that could have held is not stopped.
 
 use super::Config;
 use crate::filter::LowPass;
@@ -35,7 +35,7 @@ impl CeilingWatch {
         (self.tension, self.from) = (None, None);
     }
 
-    /// One step of `dt` s; true if tension and force rose by the window without the pressure.
+    /// One step of `dt` s; true if tension and force rose without the pressure.
     pub fn step(&mut self, cfg: &Config, sample: CeilingSample, dt: f32) -> bool {
         self.shown |= sample.pressure >= cfg.demand.pressure - cfg.demand.tolerance;
         if self.shown {

@@ -45,7 +45,7 @@ pub struct ArmInput {
     pub tilt: Option<f32>,
 }
 
-/// Bounded input, pressure and thrust low-passed; `None` where missing or not finite.
+/// Bounded, pressure and thrust low-passed; `None` where missing or not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Measured {
     /// Unfiltered pressure.

@@ -12,7 +12,7 @@ const REFERENCE_TAU: f32 = 0.25;
 const DERIVATIVE_CUTOFF: f32 = 40.0;
 /// Lag of the tendon above which the integral waits, N.
 pub(super) const LAG_MAX: f32 = 20.0;
-/// Cut-off of the fallback force for a touch lost for good, rad/s.
+/// Cut-off of the fallback force after a lost touch, rad/s.
 const MEAN_FORCE_CUTOFF: f32 = 3.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +32,8 @@ impl PressureLoop {
     /// Bumpless start: output `force` N, with `transient` N in it, at the contact's pressure, which becomes the
     /// reference.
     ///
-    /// The transient is what the tendon lacked while the arm moved and its tilt came late. With the arm now standing
-    /// still, the tilt catches up, and the same reel position means the smaller force.
+    /// The transient is what the tendon lacked while the arm moved and its tilt came late. As the tilt catches up on
+    /// the standing arm, the same reel position means the smaller force.
     pub fn new(contact: &Contact, force: f32, transient: f32) -> Self {
         let base = force - transient - contact.feed_forward;
         Self {

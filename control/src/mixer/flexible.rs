@@ -1,7 +1,7 @@
 //! The allocation that flies: the wrench inverted through the quasi-static Jacobian about the low-passed thrusts.
 //!
 //! Inverting the effectiveness at the frozen arm angle is wrong even with the true angle: a thrust changed for yaw soon
-//! bends its arm and yaws |C| times more, and an inverse that follows the angle makes this a limit cycle.
+//! bends its arm and yaws |C| times more, and an inverse that follows the angle makes a limit cycle.
 
 #[cfg(test)]
 mod tests;
@@ -22,7 +22,7 @@ pub const YAW_FLOOR: f32 = 0.35;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flexible {
     geometry: Geometry,
-    /// The geometry as in configuration B, and the sign between the two.
+    /// Geometry of configuration B, and the sign towards it.
     as_b: Geometry,
     chi: f32,
     tilt: TiltModel,
@@ -52,15 +52,15 @@ impl Flexible {
     #[inline(always)]
     fn quasi_static(&self, wrench: &Wrench, yaw_usable: bool) -> Split {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
-        // In A yaw acts the other way: it is allocated as in B, with the moment reversed.
+        // In A yaw acts the other way: allocated as in B, with the moment reversed.
         let geometry = self.as_b;
         let w = Wrench {
             yaw: self.chi * wrench.yaw,
             ..*wrench
         };
         let mut e = Effectiveness::quasi_static(&geometry, &tilt, &self.tilt.follow());
-        // Yaw fades with its quasi-static gain, and no entry may pass zero: the inverse of a vanishing entry would be a
-        // kick, and a reversed authority is unreliable.
+        // Yaw fades with its quasi-static gain, and no entry may pass zero: the inverse of a vanishing entry is a kick,
+        // a reversed authority unreliable.
         let [y1, y2, y3, y4] = e.yaw;
         let authority = 0.25 * (y1 + y2 + y3 + y4);
         let least = self.yaw_floor;
@@ -80,8 +80,8 @@ impl Flexible {
         });
         let [t1, t2, t3, t4] = thrusts;
         let (c1, c2, c3, c4) = (t1 + c1, t2 + c2, t3 + c3, t4 + c4);
-        // The collective continues from the last thrusts. Where yaw is given up nothing corrects their share of the yaw
-        // pattern, so it is removed here; it contributes nothing to thrust, roll and pitch.
+        // The collective continues from the last thrusts, without their share of the yaw pattern where yaw is given up:
+        // nothing else corrects it, and thrust, roll and pitch are unaffected.
         let left = (0.25 - 0.25 * fade) * (c1 - c2 - c3 + c4);
         let patterns = Patterns {
             collective: [c1 - left, c2 + left, c3 + left, c4 - left],
@@ -101,7 +101,7 @@ impl Flexible {
 }
 
 impl Allocation for Flexible {
-    // Not inlined: in a caller built for size its loops are not unrolled and cost twice as much.
+    // Not inlined: in a caller built for size its loops would cost twice as much.
     #[inline(never)]
     fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {

@@ -72,7 +72,7 @@ impl Limits {
         }
     }
 
-    /// Share of a yaw pattern within one rotor's allowance, at most `fade`.
+    /// Share of a yaw pattern within a rotor's allowance, at most `fade`.
     #[inline(always)]
     fn yaw_share(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
         let larger = |a: f32, b: f32| if a > b { a } else { b };

@@ -5,7 +5,7 @@ use crate::effectiveness::{Geometry, Inverse, Load};
 use crate::math;
 use crate::wrench::{FORE, PerArm, SIDE, Wrench, YAW};
 
-/// Patterns of a wrench, and the authority of its yaw.
+/// Patterns of a wrench and its yaw's authority.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
     /// Thrusts of collective, roll and pitch, and yaw, N.
@@ -14,7 +14,7 @@ pub struct Split {
     pub fade: f32,
 }
 
-/// Moments of `w` as patterns, with the thrusts per newton of collective; without the collective itself.
+/// Moments of `w` as patterns, with the thrusts per newton of collective but without it.
 #[inline(always)]
 pub fn moment_patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
     // Adding -0 leaves the other number, without an instruction.

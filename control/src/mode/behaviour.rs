@@ -1,4 +1,4 @@
-//! Interface of a state: what it watches, what rotors and tendons do in it, what the pilot reads.
+//! Interface of a state: transitions, rotors, tendons, display.
 
 use super::context::{Context, Step};
 use super::demand::HAND_OVER_TIME;
@@ -14,7 +14,7 @@ pub trait Behaviour {
     /// When no transition applies.
     fn advance(&mut self, _step: &mut Step<'_>) {}
 
-    /// Grip to retain over a reset: closed from the first step of closing until every arm is proven free.
+    /// Grip to retain: closed from the first step of closing until every arm is proven free.
     fn grip_memory(&self) -> GripMemory {
         GripMemory::Open
     }

@@ -7,11 +7,11 @@ use super::{Inputs, Reason, Setpoint};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 
-/// Time from the end of the ramp until the rotors stand still, s: six motor time constants.
+/// Time from the ramp's end to standing rotors, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
 /// Time allowed without proof after the rotors have stopped, s.
 const PROOF_TIME: f32 = 3.0;
-/// Time of a chosen arm at its force limit, or faulty, that ends the closing, s.
+/// Time of an arm at its force limit, or faulty, that ends the closing, s.
 pub const HOPELESS_TIME: f32 = 1.0;
 /// Time beyond `clamp_timeout` for spooling down and proof, s.
 const SPOOL_ALLOWANCE: f32 = 10.0;
@@ -44,7 +44,7 @@ impl Clamping {
         }
     }
 
-    /// Reason to keep holding arms closed in spite of a doubt.
+    /// Reason to keep arms closed despite a doubt.
     pub fn must_stay(&self, step: &Step<'_>) -> Option<Reason> {
         if !self.holds(step) {
             None
@@ -116,7 +116,7 @@ impl Behaviour for Clamping {
             step.context.note(Some(Reason::GripLostSpooling));
         }
         if spool.still >= STOP_TIME + PROOF_TIME {
-            // Held but not proven: carries part of the weight again until proven.
+            // Held, not proven: carries some weight until proven.
             spool = Spool::at(0.0);
         }
         self.spool = spool;

@@ -15,7 +15,7 @@ use crate::params::Params;
 use crate::rc::Sticks;
 use crate::support::{Felt, Support};
 
-/// Time constant of learning gravity at rest, s, and bounds of the result, m/s²: a part's bias of some 40 mg.
+/// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
 const GRAVITY_BOUNDS: (f32, f32) = (9.4, 10.2);
 /// Display time of a reason, s.
@@ -97,7 +97,7 @@ impl Context {
         }
     }
 
-    /// Takes in the inputs; `at_rest`: the rotors stand, so gravity may be learnt.
+    /// Takes in the inputs; learns gravity `at_rest`.
     pub fn observe(&mut self, i: &Inputs, at_rest: bool, dt: f32) {
         self.since = clamp(self.since + dt, 0.0, 1e6);
         self.note.1 -= dt;
@@ -114,7 +114,7 @@ impl Context {
         }
         let down = i.motion.map_or(-self.gravity, |m| m.q.rotate(m.accel).z);
         if at_rest && i.motion.is_some() {
-            // Gravity as measured at rest: the accelerometer's bias would otherwise add up in the sink rate.
+            // Measured at rest: the bias would add up in the sink rate.
             let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
             self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
         }
@@ -159,7 +159,7 @@ impl Context {
             .arms()
             .unwrap_or(i.sticks.unwrap_or_default().arms)
             .mask();
-        // Opening arms still pull at the pipe, and rotors would pull at them: only proven-free arms count as free.
+        // Opening arms still pull at the pipe, and rotors would at them: only proven-free arms are free.
         let arms_closed = match grip_memory {
             GripMemory::Open => !i.grip.is_some_and(|grip| grip.released),
             GripMemory::Controlled(_) | GripMemory::HeldByGears(_) => !self.grasps(i, grip_memory),
@@ -181,15 +181,15 @@ impl Context {
             arms_closed,
         }
         .inhibits(&self.params);
-        // The sensor range of unused arms does not matter.
+        // Sensor ranges of unused arms do not matter.
         let inhibits = ArmingInhibit::FSR_RANGE
             .into_iter()
             .zip(chosen)
             .filter(|(_, chosen)| !chosen)
             .fold(inhibits, |all, (range, _)| all.without(range));
         if grip_memory.arms().is_some() {
-            // Armed on the pipe, the rotors stay stopped. There the perch switch is on, and turning it off opens the
-            // arms; a broken supply cannot be repaired there.
+            // Armed on the pipe, the rotors stay stopped. The perch switch is on there, and off opens the arms; a
+            // broken supply cannot be repaired.
             inhibits
                 .without(ArmingInhibit::PerchSwitchOn)
                 .without(ArmingInhibit::BrownOut)
@@ -198,8 +198,8 @@ impl Context {
         }
     }
 
-    /// The arms of `grip_memory` hold something. Arms held by the gears alone need only some pressure: a weak servo has
-    /// yielded to what its friction carries, and still holds.
+    /// The arms of `grip_memory` hold something. For the gears some pressure is enough: a weak servo yields to what its
+    /// friction carries.
     pub fn grasps(&self, i: &Inputs, grip_memory: GripMemory) -> bool {
         match grip_memory {
             GripMemory::Controlled(arms) => held(i.grip, arms, &self.params),
@@ -211,7 +211,7 @@ impl Context {
         }
     }
 
-    /// Grip of a vehicle at rest. A person who holds it opens the arms by the perch switch, on and off again.
+    /// Grip of a vehicle at rest: the perch switch, on and off again, opens the arms.
     pub fn after_switch(&self, sticks: Option<Sticks>, grip_memory: GripMemory) -> GripMemory {
         let off = sticks.is_some_and(|s| !s.perch_switch);
         if grip_memory.arms().is_some() && off && self.perch_switch.seen_on {

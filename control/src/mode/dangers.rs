@@ -15,7 +15,7 @@ use crate::math::deg;
 use crate::params::Params;
 use crate::support::Held;
 
-/// Silence of the inertial sensor that stops the rotors for good, s; control has stopped them already.
+/// Sensor silence that stops the rotors for good, s; control has already.
 pub const IMU_LOST_TIME: f32 = 0.05;
 /// Tilt beyond which the vehicle has tipped over, rad.
 pub const TIPPED_TILT: f32 = deg(100.0);
@@ -62,7 +62,7 @@ impl Dangers {
         self.line_silent
     }
 
-    /// Reason to land under the pilot's sticks and not to leave a pipe, by priority.
+    /// Reason to land under the sticks, or not to leave a pipe, by priority.
     pub fn landing(&self) -> Option<Reason> {
         if self.battery_critical() {
             Some(Reason::BatteryCritical)

@@ -1,4 +1,4 @@
-//! From sticks to a demand on the rotors, without a step in the collective and never out of range.
+//! From sticks to a demand, without a step in the collective and never out of range.
 
 use super::Setpoint;
 use crate::math::{clamp, clamp_abs};
@@ -46,9 +46,9 @@ fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
 /// Hand-over of the collective between states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Collective {
-    /// Collective of the last step, N; `None` while the rotors are stopped or idle.
+    /// Last collective, N; `None` while the rotors are stopped or idle.
     last: Option<f32>,
-    /// Remaining difference to the previous state, N, and the time left for it, s.
+    /// Remaining difference to the previous state, N, and time for it, s.
     offset: f32,
     left: f32,
     /// Duration of a hand-over to begin, s.
@@ -63,12 +63,12 @@ impl Collective {
         self.pending = Some(time);
     }
 
-    /// Collective of the last step, N; 0 while the rotors are stopped or idle.
+    /// Last collective, N; 0 while the rotors are stopped or idle.
     pub fn now(&self) -> f32 {
         self.last.unwrap_or(0.0)
     }
 
-    /// The demand as sent: handed over, limited to what four rotors give, stopped if not finite.
+    /// The demand handed over, limited to four rotors, stopped if not finite.
     pub fn finish(&mut self, wish: Setpoint, p: &Params, dt: f32) -> Setpoint {
         let begins = self.pending.take();
         if matches!(wish, Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_)) || !wish.is_finite() {

@@ -7,7 +7,7 @@ use crate::rc::{StickMode, Sticks};
 
 /// Target sink rate, m/s.
 const SINK_RATE: f32 = 0.8;
-/// Share of the weight removed to start sinking, restored as the sink rate is reached.
+/// Share of the weight removed to start sinking, until the sink rate.
 const SINK_SHARE: f32 = 0.15;
 
 /// Level and sinking, at the roll, pitch and yaw rate of `steer`.

@@ -1,8 +1,8 @@
 //! Leaves the pipe by itself: after an abandoned closing, a growing lean, or a release that nothing carries.
 //!
 //! The rotors lift more than the weight, nearly level, while the tendons pay out. A capped throttle would let a sound
-//! vehicle fall, and so would the pilot's, set for resting on the pipe. The collective is therefore set here until the
-//! throttle stick reaches hover; if it never moves, the failsafe lands the vehicle.
+//! vehicle fall, and so would the pilot's, set for resting: the collective is set here until the throttle stick reaches
+//! hover. If it never moves, the failsafe lands the vehicle.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -16,26 +16,26 @@ use crate::support::HINT_FORCE;
 pub const LIFT_SHARE: f32 = 1.35;
 /// Least collective, share of the weight.
 const LEAST_SHARE: f32 = 0.9;
-/// Share of the weight for each m/s of missing climb rate.
+/// Share of the weight per m/s of missing climb rate.
 const CLIMB_GAIN: f32 = 0.7;
-/// Climb rate aimed at until the vehicle is clear, m/s; then the height is kept.
+/// Climb rate until the vehicle is clear, m/s.
 const CLIMB_RATE: f32 = 0.5;
 /// Rise time of the collective on a slide, s: the lean grows e-fold in 0.16 s.
 pub const SLIDE_RAMP: f32 = 0.15;
-/// On a standing vehicle it rises later and slower, s: the rotors pull at the tendons with 7 times their thrust, so
-/// tendons at their limit must pay out first.
+/// Later and slower for a standing vehicle, s: the rotors pull at the tendons with 7 times their thrust, so tendons at
+/// their limit must pay out first.
 const STAND_DELAY: f32 = 0.25;
 const STAND_RAMP: f32 = 0.5;
-/// Time after the rise until the vehicle is clear of the pipe and the sticks steer, s.
+/// Time after the rise until the vehicle is clear and the sticks steer, s.
 const CLEAR_TIME: f32 = 0.65;
-/// Largest lean kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, a lean
+/// Largest lean away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, a lean
 /// across the crown throws it under the pipe.
 pub const AWAY_LEAN: f32 = deg(8.0);
-/// Time for opening arms to come free, s. The rotors must not pull at later ones, which are stuck.
+/// Time for opening arms to come free, s. Rotors must not pull at stuck ones.
 pub const FREE_MAX: f32 = 5.0;
 /// Time for the pilot to take the throttle over, s.
 pub const TAKE_OVER_TIME: f32 = 7.0;
-/// Stick thrust that takes it over, share of the weight.
+/// Its stick thrust, share of the weight.
 pub const TAKE_OVER_SHARE: f32 = 0.9;
 
 /// See [`super::Mode::Escaping`].
@@ -44,7 +44,7 @@ pub struct Escaping {
     grip_memory: GripMemory,
     /// Roll held until the vehicle is clear, rad.
     roll: f32,
-    /// Collective at the start of the slow rise, N; `None` on a slide, which lifts at once.
+    /// Collective at the start of the slow rise, N; `None` on a slide.
     from: Option<f32>,
     /// Climb rate since the escape began, m/s.
     climb: f32,
@@ -52,8 +52,7 @@ pub struct Escaping {
 }
 
 impl Escaping {
-    /// Leaves the pipe with the arms of `grip_memory`; the collective rises slowly from `from` N, or at once without
-    /// it.
+    /// Leaves with the arms of `grip_memory`; the collective rises slowly from `from` N, or at once without it.
     pub fn leaving(inputs: &Inputs, grip_memory: GripMemory, from: Option<f32>) -> Self {
         let lean = inputs.motion.map_or(0.0, |m| m.q.to_euler().0);
         Self {
@@ -70,8 +69,8 @@ impl Escaping {
         self.late(context) && context.support.force() < -HINT_FORCE
     }
 
-    /// The arms are free, and there was time to leave the pipe. If nothing pulls it down, the vehicle flies whatever an
-    /// arm's sensors read.
+    /// The arms are free, and there was time to leave. Unless pulled down, the vehicle flies whatever an arm's sensors
+    /// read.
     pub fn clear(&self, context: &Context) -> bool {
         let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
         let free = self.grip_memory == GripMemory::Open || self.late(context);
@@ -95,7 +94,7 @@ impl Behaviour for Escaping {
     fn observe(&mut self, step: &mut Step<'_>) {
         let context = &step.context;
         self.climb -= context.sinking * step.dt;
-        // Below the least throttle of a release only the arms keep the vehicle on the pipe.
+        // Below this only the arms keep the vehicle on the pipe.
         self.opening |= context.collective.now() >= release_thrust(&context.params);
         if self.opening && step.arms_free() {
             self.grip_memory = GripMemory::Open;

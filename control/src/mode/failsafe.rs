@@ -6,7 +6,7 @@ use super::descent::descent;
 use super::{Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 
-/// Longest radio silence in the failsafe, beyond the link's staleness, after which flight resumes by itself, s.
+/// Longest radio silence, beyond the link's staleness, after which flight resumes by itself, s.
 pub const RESUME_TIME: f32 = 1.0;
 /// Roll or pitch stick that resumes flight after a longer silence, share of its travel.
 pub const RESUME_STICK: f32 = 0.3;

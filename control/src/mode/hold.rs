@@ -7,16 +7,16 @@ use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::Wrench;
 
-/// Ramp time of the collective between the pilot's throttle and 0, s.
+/// Ramp time between the pilot's collective and 0, s.
 pub const SPOOL_TIME: f32 = 1.5;
 /// Rate of levelling a lean at contact, rad/s.
 const LEVEL_RATE: f32 = 0.2;
-/// Time constant with which the held attitude follows the present one in spool-down, s.
+/// Time constant of the held attitude following the present one, s.
 const FOLLOW_TIME: f32 = 0.2;
 /// Share of the collective below which only the grip holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
-/// Share of the grip pressure above which an arm holds, though outside the tolerance: in spool-down the load moves from
-/// the rotors onto the arms.
+/// Share of the grip pressure above which an arm holds outside the tolerance: in spool-down the load moves from the
+/// rotors onto the arms.
 const HELD_SHARE: f32 = 0.6;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,12 +25,12 @@ pub struct Hold {
     pub roll: f32,
     /// Held pitch, rad.
     pub pitch: f32,
-    /// Arms chosen at contact; the switch is ignored until they are free.
+    /// Chosen at contact; the switch is ignored until they are free.
     pub arms: ArmChoice,
 }
 
 impl Hold {
-    /// Levels the roll by one step. On the crown of a pipe, an unstable seat, a held lean would grow as the rotors
+    /// Levels the roll by one step: on the crown of a pipe, an unstable seat, a held lean would grow as the rotors
     /// return the weight. Pitch stays: it is the pipe's slope.
     pub fn levelled(self, dt: f32) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Hold {
         }
     }
 
-    /// Follows the present attitude by one step: the rotors need not hold what the grip holds, nor stop with a jolt.
+    /// Follows the present attitude by one step: the grip holds it, and the rotors must not stop with a jolt.
     pub fn following(self, i: &Inputs, dt: f32) -> Self {
         let Some(motion) = i.motion else {
             return self;
@@ -85,8 +85,8 @@ impl Spool {
         }
     }
 
-    /// Setpoint at a full collective of `thrust` N. In the last part of the ramp the rotors only lift: at little thrust
-    /// a moment would come from single rotors and stop with a jolt.
+    /// Setpoint at a full collective of `thrust` N. At the end of the ramp the rotors only lift: at little thrust a
+    /// moment would come from single rotors and stop with a jolt.
     pub fn rotors(self, hold: Hold, thrust: f32) -> Setpoint {
         let thrust = self.share * thrust;
         if self.down && self.share < LIFT_SHARE {

@@ -4,7 +4,7 @@ use super::Motion;
 use crate::math::deg;
 use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE, Support};
 
-/// Lean at which a resting vehicle leaves the pipe before the arms begin to close, rad.
+/// Lean at which a resting vehicle leaves before closing, rad.
 const TOUCH_LEAN: f32 = deg(13.0);
 /// Rate at which the attitude loop reduces a lean, rad/s.
 const LEVELLING_RATE: f32 = 0.2;
@@ -18,7 +18,7 @@ const GROWING_RATE: f32 = 0.3;
 const SLIDE_TIME: f32 = 0.03;
 /// Largest lean at which the arms let go, rad: beyond, the belly slides down the flank before the rotors carry.
 const RELEASE_LEAN_MAX: f32 = deg(17.0);
-/// A fall: time (s) with little support at a collective below this share of the weight.
+/// A fall: time (s) with little support at a collective below this share of weight.
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;
 
@@ -58,7 +58,7 @@ impl Lean {
             .step(lean > TOUCH_LEAN && outward > -LEVELLING_RATE, dt);
     }
 
-    /// The lean is or soon will be beyond what closing arms can hold.
+    /// The lean is or will be beyond closing arms.
     pub fn slides(&self) -> bool {
         self.sliding.time() >= SLIDE_TIME
     }

@@ -1,11 +1,11 @@
-//! Power-up grip check: whether the arms are closed on something at power-up.
+//! Power-up grip check: whether the arms are closed on something.
 //!
-//! Retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them:
+//! The retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them:
 //! none is sent before the pressure sensors have been read.
 //!
 //! Pressed arms are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
-//! rotors carry the vehicle. A pulse needs an angle, known by tilt and pressure only to 0.2 rad or 20 N (1 mm of
-//! thread, 0.03 rad of tilt, unknown stiffness of the skin): it might lose a third of a grip's force.
+//! rotors carry the vehicle. A pulse needs an angle, known only to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of tilt,
+//! unknown stiffness of the skin): it might lose a third of a grip's force.
 
 use super::Inputs;
 use crate::grip_memory::GripMemory;
@@ -58,7 +58,7 @@ fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Opt
 }
 
 impl PowerUpGripCheck {
-    /// Decides once, at rest, whether the arms were closed at power-up.
+    /// Decides once, at rest.
     pub fn decide(&mut self, grip_memory: GripMemory, i: &Inputs, p: &Params, dt: f32) -> GripMemory {
         let (GripMemory::Unknown, Some(grip)) = (grip_memory, i.grip) else {
             return grip_memory;

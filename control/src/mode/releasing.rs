@@ -10,7 +10,7 @@ use crate::params::Params;
 
 /// Least throttle at which the arms open, to carry some weight when they let go; held while they open or close again.
 pub const RELEASE_THROTTLE_MIN: f32 = 0.2;
-/// Time that every arm must be free before flight, s.
+/// Time of free arms before flight, s.
 pub const FREE_TIME: f32 = 0.3;
 /// Time until arms that are not free are reported, s.
 const STUCK_TIME: f32 = 10.0;
@@ -24,7 +24,7 @@ pub struct Releasing {
     pub free: f32,
     /// The tendons are paying out.
     pub opening: bool,
-    /// Held by the gears alone: the drives start when the tendons open.
+    /// Held by the gears: the drives start with the opening.
     pub kept: bool,
 }
 

@@ -7,8 +7,8 @@ pub const NAME_MAX: usize = 16;
 
 /// A parameter that had another name, and perhaps another unit.
 ///
-/// The parameter store, the console and scenario files accept the old name and convert its value. If a set has both,
-/// the new name wins: only newer firmware can have written it.
+/// The parameter store, the console and scenario files accept the old name and convert its value. Of both names the new
+/// one wins: only newer firmware can have written it.
 #[derive(Clone, Copy, Debug)]
 pub struct Renamed {
     /// Old name.

@@ -1,4 +1,4 @@
-//! Drive of one tendon, at the servo frame rate: servo angle for force and tilt, and an estimate of the tension.
+//! Drive of one tendon, at the servo frame rate: servo angle for force and tilt, and estimated tension.
 
 use super::Reel;
 use crate::bench::{PULSE_MAX_US, PULSE_MIN_US};
@@ -7,14 +7,14 @@ use crate::math;
 
 /// Least tension reported until the servo is back at its release position, N.
 const RESIDUAL_TENSION: f32 = 0.5;
-/// Pay-out speed on release, rad/s: half the servo's, so that the arms spring back gently.
+/// Pay-out speed, rad/s: half the servo's, so that the arms spring back gently.
 const PAY_OUT_SPEED: f32 = 3.0;
 /// Servo speed on the bench, rad/s: half a second to the stopping key is half a radian.
 pub const BENCH_SPEED: f32 = 1.0;
 /// Cut-off of each of the two tilt low-passes, rad/s: a loop gain below 1 at the taut arm's mode (8 Hz, Q about 5) with
 /// the static gain k h² / (k h² + arm) of 0.7 to 0.85.
 pub const TILT_CUTOFF: f32 = 25.0;
-/// Cut-off while the arm stands still, rad/s: a sensor noise of 4 mrad would otherwise move the grip by 30 Pa.
+/// Cut-off at standstill, rad/s: 4 mrad of sensor noise would otherwise move the grip by 30 Pa.
 const STILL_CUTOFF: f32 = 5.0;
 /// Difference of tilt and filter above which the arm is moving, rad.
 const TILT_MOVING: f32 = 0.04;
@@ -30,7 +30,7 @@ pub struct Drive {
     pub pulse_us: f32,
     /// Estimated tension, N; 0 only once the servo is back at its release position.
     pub tension: f32,
-    /// The servo was held for lack of a tilt.
+    /// Held for lack of a tilt.
     pub held: bool,
 }
 
@@ -43,7 +43,7 @@ pub struct TendonDrive {
     tilt: Option<CascadedLowPass>,
     /// Cut-off at the last step, rad/s.
     cutoff: f32,
-    /// Moved by a bench pulse, perhaps beyond the travel, and not yet back at release.
+    /// Moved by a bench pulse, perhaps beyond the travel, and not back at release.
     placed: bool,
 }
 
@@ -72,8 +72,8 @@ impl TendonDrive {
         }
     }
 
-    /// Assumes the servo where its tendon is just taut at `tilt` (rad; `None`: at release), to pay out a tendon found
-    /// wound at power-up: from there it moves at the drive's speed, not the servo's.
+    /// Assumes the servo where its tendon is just taut at `tilt` (rad; `None`: at release), so that a tendon found
+    /// wound is paid out at the drive's speed.
     pub fn seed_from_tilt(&mut self, reel: &Reel, tilt: Option<f32>) {
         self.angle = tilt
             .filter(|t| t.abs() <= TILT_MAX)
@@ -158,7 +158,7 @@ impl TendonDrive {
         }
     }
 
-    /// Tension at the present tilt: the filtered one extrapolated over its lag and age, exact for an evenly moving arm.
+    /// Tension at the present tilt: the filtered one extrapolated over lag and age, exact for an even motion.
     fn tension(&self, reel: &Reel) -> f32 {
         self.tilt.map_or(0.0, |tilt| {
             let now = tilt.value() + tilt.lead() * (2.0 + reel.tilt_age * self.cutoff);

@@ -3,13 +3,13 @@
 use crate::math;
 use crate::params::Params;
 
-/// Usable share of the stall torque: near stall a servo neither moves nor cools.
+/// Usable share of the stall torque: near it a servo neither moves nor cools.
 const STALL_SHARE: f32 = 0.85;
 /// Largest tilt error of an arm at rest, rad: 0.5° of mounting, 4 mrad of the reference attitude and of filtered noise.
 const TILT_ERROR: f32 = 0.0127;
 /// Largest angle error of a servo at rest, rad: its dead band of 2 µs in a travel of 1900 µs for 270°.
 const SERVO_ERROR: f32 = 0.005;
-/// Least share of the force limit to demand; with stiffer tendons the force is unknown.
+/// Least demanded share of the limit; with stiffer tendons the force is unknown.
 const ASKED_SHARE_MIN: f32 = 0.5;
 
 /// Largest force on a tendon.

@@ -11,11 +11,11 @@ const PULSE_MIN_US: f32 = 550.0;
 const PULSE_MAX_US: f32 = 2450.0;
 /// Least distance of full and release pulse, µs: less is no servo's travel.
 pub const SPAN_MIN_US: f32 = 200.0;
-/// Tilt at which the tendon of a released servo is just taut, rad: 23°, beyond flight, so that a flying arm never pulls
-/// it (built so; assumed).
+/// Tilt at which a released servo's tendon is just taut, rad: 23°, beyond flight, so that a flying arm never pulls it
+/// (built so; assumed).
 pub const REFERENCE_TILT: f32 = 0.4;
 const TRIM_MAX_US: f32 = 50.0;
-/// Share of the servo's speed used, so that it follows the commanded angle.
+/// Used share of the servo's speed, so that it follows its command.
 const SPEED_SHARE: f32 = 0.9;
 /// Age of the tilt when the servo's task reads it, s: sensor 20 ms, half of the arms' 10 ms period.
 const TILT_AGE: f32 = 0.025;
@@ -93,14 +93,13 @@ impl Reel {
         self.release_us + self.span_us * math::clamp(angle / self.range, 0.0, 1.0)
     }
 
-    /// Like [`Self::pulse`], beyond the configured travel up to the limits of servos: for finding the travel on the
-    /// bench.
+    /// Like [`Self::pulse`] up to the limits of servos, for finding the travel on the bench.
     pub fn pulse_beyond(&self, angle: f32) -> f32 {
         let pulse = self.release_us + self.span_us * (angle / self.range);
         math::clamp(pulse, bench::PULSE_MIN_US, bench::PULSE_MAX_US)
     }
 
-    /// Servo angle (rad from release) for a pulse (µs): the inverse of [`Reel::pulse`].
+    /// Servo angle (rad from release) for a pulse (µs).
     pub fn angle_of(&self, pulse_us: f32) -> f32 {
         (pulse_us - self.release_us) / self.span_us * self.range
     }

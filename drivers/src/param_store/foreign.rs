@@ -11,8 +11,8 @@ const ARDUPILOT_FRAM: [u8; 4] = [0x50, 0x41, 6, 0];
 const BETAFLIGHT: u8 = 0xBE;
 /// Mark of PX4's parameters in flash.
 const PX4_FLASH: [u8; 4] = [0xC3, 0x3C, 0x55, 0xAA];
-/// Types of the first entry, 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a BSON document with
-/// names in capitals.
+/// First entry's types, 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a BSON document with names in
+/// capitals.
 const BSON_TYPES: [u8; 2] = [0x01, 0x10];
 
 /// Owner of a page beginning with `head`; `None` for a blank, own or unknown page.
@@ -30,7 +30,7 @@ pub(super) fn owner(head: &[u8; HEAD]) -> Option<&'static str> {
     }
 }
 
-/// Start of a PX4 parameter's name, such as `SYS_AUTOSTART`: three characters or more.
+/// Start of a PX4 parameter's name such as `SYS_AUTOSTART`, three characters or more.
 fn capitals(name: &[u8]) -> bool {
     let length = name.iter().position(|byte| *byte == 0).unwrap_or(name.len());
     let letter = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || *byte == b'_';

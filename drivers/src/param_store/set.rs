@@ -32,7 +32,7 @@ pub(super) struct Set {
     defaults: &'static Params,
     /// For reading: table rows with a record.
     given: Rows,
-    /// A record has an old name; the next save writes the new one.
+    /// A record has an old name, which the next save renews.
     pub renamed: bool,
     /// Records accepted.
     pub taken: u16,
@@ -58,7 +58,7 @@ impl Set {
             if self.given.contains(at)
                 && let Some(value) = self.params.get(row.name)
             {
-                // Valid: it was set in the same way when read.
+                // Valid, as when read.
                 let _ = params.set(row.name, value);
             }
         }

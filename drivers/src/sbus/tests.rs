@@ -43,7 +43,7 @@ fn pilot() -> Frame {
 
 #[test]
 fn a_known_frame() {
-    // All channels at 992: the pattern repeats every eleven bytes.
+    // All channels at 992.
     let mut bytes = [0; FRAME];
     bytes[0] = 0x0F;
     let centre = [0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C];
@@ -154,12 +154,12 @@ fn the_third_frame_in_a_row_is_believed() {
 
 #[test]
 fn only_a_pause_beyond_the_bytes_own_time_is_silence() {
-    // Half a frame, then a frame's length of bytes over 3 ms without idle time.
+    // Half a frame, then bytes over 3 ms without idle time.
     let frame = pilot().encode();
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 31_500), None, "still the same stream");
-    // After 4 ms of idle time the half is dropped, and the next frame not accepted alone.
+    // After 4 ms of idle time the half is dropped.
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 35_000), None);
@@ -242,7 +242,7 @@ proptest! {
             bytes.extend(pilot().encode());
         }
         let (frames, _) = stream(&mut fresh(), &bytes);
-        // Garbage may end in a false header, which swallows one frame and misaligns another.
+        // A false header may swallow one frame and misalign another.
         prop_assert!(frames.iter().rev().take(3).all(|f| *f == pilot()) && frames.len() >= 3);
         let mut parser = Parser::new();
         stream(&mut parser, &bytes);
@@ -269,7 +269,7 @@ proptest! {
     fn bytes_that_are_almost_sbus_give_no_sticks(
         reads in proptest::collection::vec((proptest::array::uniform23(any::<u8>()), 0u8..4), 1..60),
     ) {
-        // A valid header after silence, with one error: header, flags or end in turn.
+        // One error: header, flags or end in turn.
         let mut decoder = Decoder::new();
         for (i, (inner, wrong)) in (1..).zip(reads) {
             let mut bytes = [0; FRAME];

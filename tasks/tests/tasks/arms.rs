@@ -33,8 +33,7 @@ fn each_tilt_carries_the_time_at_which_its_own_sensor_was_asked() {
         [Some(5000), Some(4590), Some(4180), Some(3770)]
     );
     assert_eq!(rig.links.arms.latest().unwrap().at.as_micros(), 100_000);
-    // The second sensor hangs and times out after 20 ms: in a round of 21.23 ms the third and fourth are younger than
-    // the first.
+    // The second sensor hangs for 20 ms of 21.23 ms: the third and fourth are younger than the first.
     port.1[1].answer.set(Answer::Hangs);
     rig.run_with(27, level);
     assert_eq!(ages_us(rig.links), [Some(22_000), None, Some(1590), Some(1180)]);

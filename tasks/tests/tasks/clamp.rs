@@ -72,7 +72,7 @@ impl World {
     }
 }
 
-/// Forces of the newest order of any age.
+/// Of the newest order, of any age.
 fn force(links: &Links) -> Option<PerArm<f32>> {
     links
         .tendons
@@ -111,7 +111,7 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
         (&[500.0], CLOSE, true),
         (&[85.0], ClampCommand::Release, true),
         (&[75.0], ClampCommand::Release, false),
-        // Pulled off by hand before the command.
+        // Pulled off by hand.
         (&[500.0, 0.0], ClampCommand::Release, false),
         // Never kept.
         (&[], ClampCommand::Release, false),
@@ -143,12 +143,12 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
     world.command = None;
     bench.run(500, &world);
     assert!(bench.0.links.tendons.latest().is_none() && bench.0.links.grip.latest().is_none());
-    // 34.74 N/s (0.7 rad/s of a bending of 0.020152 rad/N) from 1 N: 101 steps in a second.
+    // 34.74 N/s (0.7 rad/s at 0.020152 rad/N) from 1 N: 101 steps in a second.
     world.command = Some(CLOSE);
     let force = bench.run(1000, &world);
     assert!(force.iter().all(|f| (f - 34.74).abs() < 1.5), "{force:?}");
-    // The command is stale after 200 ms; forces and judgement then age. The grip is unknown 100 ms after the last
-    // judged pressure, the servos stay 200 ms after it.
+    // Stale after 200 ms; forces and judgement then age: 100 ms after the last judged pressure the grip is unknown,
+    // after 200 ms the servos stay.
     world.command = None;
     let held = bench.run(200, &world);
     let stopped = bench.0.links.grip.latest().unwrap().at;
@@ -284,7 +284,7 @@ fn without_pressures_forces_follow_the_command_and_say_so() {
     assert!(matches!(order.value, TendonOrder::Blind(_)), "{order:?}");
     // Time of the newest command: the last step was at 550.6 ms.
     assert_eq!(order.at.as_millis(), 550);
-    // Every arm is faulty by a fresh judgement.
+    // All are faulty by a fresh judgement.
     assert!(links.grip.fresh().is_some() && bench.states() == [ArmState::Faulty; 4]);
     let held = force(links).unwrap();
     assert!(held[0] >= before[0]);

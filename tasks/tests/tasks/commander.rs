@@ -16,7 +16,7 @@ use sophie_tasks::timing::Run;
 
 use crate::rig::Rig;
 
-/// A vehicle at 1 g along its thrust axis, hovering or standing.
+/// A vehicle at 1 g, hovering or standing.
 #[derive(Clone, Copy)]
 struct World {
     sticks: Sticks,
@@ -65,7 +65,7 @@ fn running(thrust: f32, tilt: f32) -> MixOutput {
 }
 
 impl Bench {
-    /// Disarmed on the ground, without inhibits.
+    /// On the ground, without inhibits.
     fn starting(params: Params, cause: StartCause) -> Self {
         let start = Start { cause, ..Start::COLD };
         let rig = Rig::starting(params, start);
@@ -182,7 +182,7 @@ fn ten_misses_in_a_second_and_any_number_below_the_flight_level_refuse_nothing()
 #[test]
 fn a_flight_level_that_stays_late_stays_refused() {
     let mut bench = Bench::new();
-    // 20 a second, evenly: no clean moment after the first window.
+    // 20 a second, evenly.
     for i in 0..100 {
         bench.late(TaskId::Control, 1);
         bench.run(50);
@@ -198,7 +198,7 @@ fn a_flight_level_that_stays_late_stays_refused() {
 
 #[test]
 fn what_the_rotors_lift_is_their_thrust_along_the_body_axis() {
-    // At 1 g the vehicle feels 17.7 N; with the perch switch on, more than 3 N not lifted by the rotors mean the pipe.
+    // At 1 g the vehicle feels 17.7 N; more than 3 N not lifted by the rotors mean the pipe.
     for (name, mix, touched) in [
         ("4·4.425 N on level arms", running(4.425, 0.0), false),
         (
@@ -299,7 +299,7 @@ fn a_link_that_falls_silent_counts_as_none() {
 fn pressures_that_are_held_are_a_fault_of_every_sensor() {
     let mut bench = Bench::new();
     let last = bench.rig.links.contact.latest().unwrap();
-    // All else is sent, with the present pressures.
+    // All else is sent.
     let world = bench.world;
     // 11 ms old at the next step.
     bench.rig.run_with(10, |links, at| {

@@ -173,7 +173,7 @@ fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop_or_e
     for (between, then, left) in [
         (None, LEVEL, 0.084),
         (None, rest, 0.084),
-        // An integral wound up against the pipe would throw the vehicle to that side.
+        // A wound-up integral would throw the vehicle to that side.
         (None, ESCAPE, 0.0),
         (Some(ESCAPE), LEVEL, 0.0),
         (Some(idle), rest, 0.0),
@@ -212,7 +212,7 @@ fn on_the_pipe_moments_fade_with_the_thrust_and_yaw_is_given_up() {
         assert!(near(wrench.roll, most) && near(wrench.pitch, -most), "{wrench:?}");
         assert!(wrench.thrust == thrust && wrench.yaw == 0.0);
     }
-    // No integration while leaning on something: 4.5·0.05·10·0.021 N m.
+    // Nothing is integrated: 4.5·0.05·10·0.021 N m.
     let lean = Setpoint::Resting {
         roll: 0.05,
         pitch: 0.0,

@@ -18,7 +18,7 @@ use crate::rig::Rig;
 /// Transfer time after data-ready, µs.
 const TRANSFER_US: u64 = 40;
 
-/// A part of `rate_hz`, read `batch` samples at a time, turning evenly about x.
+/// A part of `rate_hz`, read `batch` samples at a time, turning about x.
 #[derive(Clone)]
 struct Part {
     rate_hz: f32,
@@ -104,7 +104,7 @@ fn samples_come_at_1_khz_from_every_rate_and_batch_stamped_with_their_data_ready
                 "{rate_hz} {batch}: {sample:?}"
             );
             assert_eq!(sample.at.as_micros() % 1000, 0);
-            // The transfer of the last millisecond's sample has just begun.
+            // The newest transfer has just begun.
             assert_eq!((at - sample.at).as_micros(), 1000);
         });
         assert_eq!(
@@ -150,14 +150,13 @@ fn the_time_since_the_sample_before_is_told_up_to_five_milliseconds() {
         rig.run_with(20, |links, _| {
             longest = longest.max(links.imu.latest().unwrap().value.dt)
         });
-        // A part silent for 3 ms is asked again; its samples are lost.
+        // After 3 ms the part is asked again.
         assert!(
             (longest - dt).abs() < 1e-5 || gap > 1500 && longest <= 5e-3,
             "{gap}: {longest}"
         );
         assert!(gap == 0 || longest > 1.9e-3, "{gap}: {longest}");
     }
-    // 100 errors with pauses of 1 ms exceed the limit.
     let part = Part::new(1000.0, 1);
     let mut rig = started(Params::default(), &part);
     rig.run(10);

@@ -83,7 +83,6 @@ fn a_sagging_battery_gets_larger_commands_for_the_same_thrust() {
     assert!(near(bench.run(3000, HOVER).commands, 0.693, 3e-3));
     bench.battery(0.9);
     assert!(near(bench.run(1, HOVER).commands, 0.785, 3e-3));
-    // A stale voltage is still the best guess.
     assert!(near(bench.run(5000, HOVER).commands, 0.785, 3e-3));
     // Full thrust is 8.3 N·0.9².
     let most = bench.run(
@@ -151,8 +150,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
 
 #[test]
 fn a_step_takes_the_time_between_two_samples() {
-    // From idle to hover the low-passed thrust follows with 5 Hz, 32 ms: steps of 4 ms and of 1 ms open the yaw gate at
-    // the same time.
+    // The low-passed thrust follows with 5 Hz, 32 ms: steps of 4 ms and of 1 ms open the yaw gate at the same time.
     let opens = |step_ms: u64| {
         let mut bench = Bench::new();
         bench.run(100, Demand::Idle);

@@ -1,4 +1,4 @@
-//! The watchdog is fed only while everything runs that flying needs.
+//! The watchdog is fed only while every task needed for flight runs.
 
 use embassy_time::{Duration, Instant};
 use sophie_tasks::deadline::TaskId;
@@ -58,8 +58,8 @@ impl Bench {
         }
     }
 
-    /// Runs for `ms`, a multiple of 100, with the least runs of every task but `other`, whose runs per 100 ms are
-    /// given; returns the feeds of the last 100 ms.
+    /// Runs for `ms`, a multiple of 100, with the least runs of every task but `other` (runs per 100 ms); returns the
+    /// feeds of the last 100 ms.
     fn run(&mut self, ms: u64, other: Option<(TaskId, u32)>) -> usize {
         let (calibrated, attitude, mix) = (self.calibrated, self.attitude, self.mix);
         let mut burst = self.ms;
@@ -108,11 +108,10 @@ fn before_calibration_the_flight_level_may_be_silent_and_the_others_may_not() {
         bench.calibrated = false;
         let fed = bench.run(4000, Some((task, 0)));
         assert_eq!(fed, if place < 5 { 10 } else { 0 }, "{task:?}");
-        // No excuse once calibrated,
         bench.calibrated = true;
         bench.run(200, Some((task, 0)));
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
-        // even if no longer calibrated.
+        // Once calibrated, no excuse.
         bench.calibrated = false;
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
     }

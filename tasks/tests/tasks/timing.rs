@@ -76,7 +76,7 @@ fn a_run_that_is_noted_is_seen_by_readers_and_lost_by_none() {
     ];
     for (i, run) in runs.iter().enumerate() {
         assert_eq!(added.add(run), noted.note(run), "{run:?}");
-        // Settled by the first of sender, next run, reader.
+        // Settled by sender, next run or reader.
         match i {
             0 => noted.settle(),
             1 => {}

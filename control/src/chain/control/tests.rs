@@ -86,8 +86,7 @@ fn a_direction_is_aimed_at_once_for_each_time_it_was_given() {
 fn the_attitude_loop_starts_from_the_present_attitude_and_aims_anew() {
     let mut bench = Bench::new();
     bench.run(2000, roll_to(0.2), 1000);
-    // Turned by hand to 0.4 rad while idle: the earlier filtered direction is gone, though the setpoint has the same
-    // time.
+    // Turned by hand to 0.4 rad while idle: the filtered direction is gone, though the time is the same.
     bench.run(1, Setpoint::Idle, 2000);
     bench.attitude.q = crate::vector::Quat::from_euler(0.4, 0.0, 0.0);
     bench.run(1, roll_to(0.2), 1000);

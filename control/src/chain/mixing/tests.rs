@@ -71,7 +71,7 @@ fn one_arm_a_step_learns_from_each_reading_once() {
         }
         last = bias;
     }
-    // A reading that comes before all arms are corrected starts again at the first arm.
+    // An early reading starts again at the first arm.
     let arms = bench.arms(2);
     bench.run(1, &hover, &arms);
     let arms = bench.arms(0);

@@ -22,7 +22,7 @@ fn a_touch_takes_the_tendon_s_own_force_over_without_a_kick() {
     let mut arm = ArmGripper::default();
     run(&mut arm, &cfg, 0.0, 1.5);
     let asked = arm.force;
-    // The tendon has 12 N less than demanded; the pressure jumps to 300 Pa.
+    // The tendon lacks 12 N; the pressure jumps to 300 Pa.
     let mut last = asked;
     for _ in 0..50 {
         let i = ArmInput {
@@ -43,7 +43,7 @@ fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
     let cfg = config();
     let before = holding(&cfg).force;
     let mut arm = ArmGripper::resume(before, None);
-    // First nothing is known, then the tilt precedes the drive's tension, 4 N more by the new attitude.
+    // The tilt precedes the drive's tension, 4 N more by the new attitude.
     let has = before + 4.0;
     for (pressure, tension, tilt, seconds, force, stays) in [
         (Pressure::Stale, None, None, 0.05, before, true),
@@ -142,7 +142,7 @@ fn the_integral_waits_at_the_limit() {
         grip.state == ArmState::ForceLimited && close(grip.force, cfg.limit, 1e-2),
         "{grip:?}"
     );
-    // Leaves the limit at once when the pressure comes, without 30 s of unwinding.
+    // Leaves the limit at once, without 30 s of unwinding.
     assert!(run(&mut arm, &cfg, 1200.0, 0.3).force < cfg.limit - 2.0);
 }
 
@@ -178,7 +178,7 @@ fn release_falls_at_its_rate_and_ends_free() {
         assert!(time < 5.0);
     }
     assert!(close(time, from / 80.0, 0.03));
-    // Pressed: not free. Light and wound back: free after the dwell.
+    // Pressed; light and wound back.
     for (pressure, state) in [(500.0, ArmState::Releasing), (0.0, ArmState::Free)] {
         let mut grip = ArmGrip::default();
         for _ in 0..50 {

@@ -62,7 +62,7 @@ fn a_sensor_that_has_read_the_grip_pressure_has_the_range() {
     let cfg = config();
     let mut arm = holding(&cfg);
     let force = arm.force;
-    // The load pulls the arm off the pipe as fast as the tendon pulls it back.
+    // The load pulls as fast as the tendon.
     let grip = run(&mut arm, &cfg, 700.0, 3.0);
     assert!(grip.force > force + 20.0 && grip.fault.is_none(), "{grip:?}");
 }
@@ -73,7 +73,7 @@ fn a_rotor_that_starts_is_no_ceiling() {
     let mut arm = ArmGripper::default();
     let mut grip = ArmGrip::default();
     for step in 0..1500 {
-        // 0.1 s after the touch the rotor gives 5 N, 35.6 N of the tendon's, which the skin does not feel.
+        // 0.1 s after the touch the rotor gives 5 N, 35.6 N of the tendon's.
         let thrust = if step > 160 { 5.0 } else { 0.0 };
         let pressure = 70.0 * math::clamp(arm.force - cfg.per_thrust * thrust - 52.0, 0.0, 1e3);
         let i = ArmInput {

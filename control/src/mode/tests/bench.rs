@@ -1,4 +1,4 @@
-//! Orders of the bench: when they begin, what ends them, and that nothing turns or moves otherwise.
+//! Orders of the bench: beginning, end, and that nothing turns or moves otherwise.
 
 use proptest::prelude::*;
 

@@ -8,7 +8,7 @@ use crate::rc::ArmChoice;
 
 #[test]
 fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
-    // The perch switch opens the arms some steps before, with or after the end of the arming gesture.
+    // The switch opens the arms before, with or after the arming gesture.
     for (grip_memory, steps) in [
         GripMemory::Controlled(ArmChoice::All),
         GripMemory::HeldByGears(ArmChoice::All),
@@ -34,7 +34,7 @@ fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
             assert!(!r.out.rotors.spin(), "{grip_memory:?}, {steps}: step {step}");
         }
         if r.out.mode == Mode::Perched {
-            // Armed on the pipe before the switch was turned: off asks for a release, which takes throttle.
+            // Armed on the pipe first.
             assert!(steps > 0, "{grip_memory:?}, {steps}");
             continue;
         }

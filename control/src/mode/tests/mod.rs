@@ -1,5 +1,5 @@
-//! Tests of the mode logic: a vehicle in a world of two switches ([`rig`]), a flight without trouble ([`mission`]), and
-//! every trouble.
+//! The mode logic: a vehicle in a world of two switches ([`rig`]), a flight without trouble ([`mission`]), and every
+//! trouble.
 
 mod bench;
 mod diagram;

@@ -10,7 +10,7 @@ use crate::rc::ArmChoice;
 const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
 impl Rig {
-    /// Restarted with this grip, the switches where they were on the pipe.
+    /// Restarted with this grip, the switches as on the pipe.
     pub(super) fn restarted(grip_memory: GripMemory) -> Self {
         let mut r = Self::new();
         r.logic = ModeLogic::resume(&r.params, grip_memory);
@@ -29,7 +29,7 @@ impl Rig {
         });
     }
 
-    /// Arms: switch off and on, yaw right for a second, the perch switch unchanged.
+    /// Arms, with the perch switch unchanged.
     pub(super) fn arm(&mut self) {
         self.sticks().throttle = 0.0;
         self.sticks().arm_switch = false;
@@ -220,7 +220,7 @@ fn every_other_check_still_counts_on_the_pipe() {
         ),
     ];
     for (edit, why) in cases {
-        // The pilot chooses the front pair, but the grip's choice counts.
+        // The pilot's choice does not count.
         let mut r = Rig::restarted(GripMemory::Controlled(ArmChoice::Rear));
         r.sticks().arms = ArmChoice::Front;
         r.calibrated();

@@ -47,7 +47,7 @@ fn the_observer_sees_through_the_lag_at_every_frame_rate() {
         );
         let mut drive = TendonDrive::new();
         let (dt, mut output) = (1.0 / rate, Drive::default());
-        // 25 ms in sensor and transit, and a frame: half until it is read, half until it acts.
+        // 25 ms in sensor and transit, and a frame.
         let age = 0.025 + dt;
         for i in 0..(2.0 * rate) as usize {
             let now = -0.2 - 0.5 * dt * i as f32;
@@ -73,7 +73,7 @@ fn a_drive_resumes_where_it_was_and_a_wound_one_is_seeded_taut() {
     let before = drive.hold(&reel).pulse_us;
     let mut again = TendonDrive::new().resume(drive.angle());
     assert!(close(again.hold(&reel).pulse_us, before, 1e-3));
-    // Without a tilt, then with one off by 0.02 rad: the servo stays, and its tension then keeps it there.
+    // Without a tilt, then with one off by 0.02 rad, the servo stays.
     let mut tension = 0.0;
     for tilt in [None, None, Some(-0.78), Some(-0.78)] {
         let output = again.hold_position(&reel, tilt, 0.02);
