@@ -110,7 +110,7 @@ fn the_pages_that_are_read_in_one_go_are_short() {
 
 #[test]
 fn the_lights_of_the_pilots_page_are_those_of_the_firmware() {
-    let source = std::fs::read_to_string(root().join("src/firmware/lights.rs")).unwrap();
+    let source = std::fs::read_to_string(root().join("boards/firmware/src/lights.rs")).unwrap();
     let page = std::fs::read_to_string(root().join("docs/pilot.md")).unwrap();
     let told: Vec<&str> = source
         .lines()

@@ -41,7 +41,7 @@ pub enum BoardFault {
     ClockHeld(usize, u32),
     /// The processor's supply fails (false) or returns.
     Supply(bool),
-    /// The task of this name in `src/firmware/tasks.rs` hangs in what it awaits.
+    /// The task of this name in `boards/flight` or `boards/firmware` hangs in what it awaits.
     TaskHung(&'static str),
     /// The task of this name recurses endlessly at its next run.
     StackOverflow(&'static str),
