@@ -20,7 +20,7 @@ pub struct Firmware {
     pub rtt: u64,
     /// First address and end.
     pub params: (u64, u64),
-    /// Addresses, by names in `src/firmware/tasks.rs`.
+    /// Addresses, by names in `src/flight` and `src/firmware`.
     pub tasks: BTreeMap<String, u64>,
     /// Format of the log.
     pub table: Table,
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_task_is_found_by_its_pool() {
-        let pool = "_RNvNvNtNtCs1qUga5DPFW4_6sophie8firmware5tasks9commander4POOL";
+        let pool = "_RNvNvNtCs1qUga5DPFW4_13sophie_flight5tasks9commander4POOL";
         assert_eq!(task(pool).as_deref(), Some("commander"));
         assert_eq!(task("_RNvNvCs1qUga5DPFW4_6sophie14___embassy_main4POOL"), None);
     }

@@ -41,7 +41,7 @@ pub enum BoardFault {
     ClockHeld(usize, u32),
     /// Fails (false) or returns.
     Supply(bool),
-    /// The task (name in `src/firmware/tasks.rs`) hangs in its await.
+    /// The task (name in `src/flight` or `src/firmware`) hangs in its await.
     TaskHung(&'static str),
     /// The task recurses endlessly at its next run.
     StackOverflow(&'static str),

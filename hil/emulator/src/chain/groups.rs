@@ -106,7 +106,7 @@ mod tests {
         for (function, group) in [
             ("<sophie_control::mixer::Mixer>::allocate", "laws"),
             (
-                "<embassy_executor::raw::TaskStorage<sophie::firmware::tasks::__imu_task::__imu_task_inner_function::{closure#0}>>::poll",
+                "<embassy_executor::raw::TaskStorage<sophie_flight::tasks::__imu_task::__imu_task_inner_function::{closure#0}>>::poll",
                 "tasks, with what is inlined",
             ),
             ("<sophie_tasks::timing::Record>::add", "deadline records"),
