@@ -89,6 +89,10 @@ impl Chip for FakeChip {
         self.restarts.set(self.restarts.get() + 1);
     }
 
+    fn board(&self) -> &'static str {
+        "table"
+    }
+
     fn looks(&self) -> &[Look] {
         &self.looks
     }

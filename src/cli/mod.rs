@@ -1,10 +1,12 @@
 //! The `sophie` command line.
 //!
-//! Exit status: 0 when the mission was accomplished, the vehicle can fly or the log was read, 1 when the mission was not
-//! accomplished or the vehicle cannot fly, 2 when it could not be flown, read or reported.
+//! Exit status: 0 when the mission was accomplished, the vehicle can fly, the log was read or the board did what was
+//! asked, 1 when the mission was not accomplished, the vehicle cannot fly or the board refused, 2 when it could not be
+//! flown, read or reported.
 
 mod args;
 mod check;
+mod operate;
 mod study;
 mod timing;
 
@@ -34,6 +36,7 @@ pub fn main() -> ExitCode {
     let done = match task {
         Task::Fly(args) => run(&args),
         Task::Check(args) => check::run(&args),
+        Task::Params(args) => return operate::params(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),

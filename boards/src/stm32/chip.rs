@@ -6,7 +6,7 @@ use static_cell::StaticCell;
 use super::options;
 use super::watchdog;
 use crate::cortex_m::restart::reset;
-use crate::stop_motors;
+use crate::{NAME, stop_motors};
 
 static LOOKS: StaticCell<Looks> = StaticCell::new();
 
@@ -29,6 +29,10 @@ impl Chip for ThisChip {
     fn restart(&mut self) {
         stop_motors();
         reset()
+    }
+
+    fn board(&self) -> &'static str {
+        NAME
     }
 
     fn looks(&self) -> &[Look] {

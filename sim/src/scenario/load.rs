@@ -56,35 +56,7 @@ impl Scenario {
     /// One line: file, line, key, value, what is allowed.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        let unreadable = |why: String| ScenarioError::Unreadable {
-            file: file.clone(),
-            why,
-        };
-        if path.is_dir() {
-            return Err(unreadable("it is a directory; allowed is a TOML file".to_owned()));
-        }
-        let mut bytes = Vec::new();
-        File::open(path)
-            .and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-            .map_err(|error| unreadable(error.to_string()))?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(unreadable(
-                "it is longer than 1 MiB; allowed is a short TOML file".to_owned(),
-            ));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let good = error
-                .as_bytes()
-                .get(..error.utf8_error().valid_up_to())
-                .unwrap_or_default();
-            let line = 1 + good.iter().filter(|b| **b == b'\n').count();
-            ScenarioError::NotText {
-                at: Place {
-                    file: file.clone(),
-                    line,
-                },
-            }
-        })?;
+        let text = read_text(path, &file)?;
         let mut scenario = Self::parse(&text, &file, overrides)?;
         if scenario.name.is_empty() {
             scenario.name = path
@@ -102,4 +74,37 @@ impl Scenario {
     pub fn parse(text: &str, file: &str, overrides: &Overrides) -> Result<Self, ScenarioError> {
         Source { file, text }.scenario(overrides)
     }
+}
+
+/// The text of the file at `path`, which messages call `file`.
+pub(super) fn read_text(path: &Path, file: &str) -> Result<String, ScenarioError> {
+    let unreadable = |why: String| ScenarioError::Unreadable {
+        file: file.to_owned(),
+        why,
+    };
+    if path.is_dir() {
+        return Err(unreadable("it is a directory; allowed is a TOML file".to_owned()));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(|error| unreadable(error.to_string()))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(unreadable(
+            "it is longer than 1 MiB; allowed is a short TOML file".to_owned(),
+        ));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = error
+            .as_bytes()
+            .get(..error.utf8_error().valid_up_to())
+            .unwrap_or_default();
+        let line = 1 + good.iter().filter(|b| **b == b'\n').count();
+        ScenarioError::NotText {
+            at: Place {
+                file: file.to_owned(),
+                line,
+            },
+        }
+    })
 }

@@ -11,6 +11,7 @@ mod load;
 mod nearest;
 mod read;
 mod read_steps;
+pub mod settings;
 mod steps;
 #[cfg(test)]
 mod tests;

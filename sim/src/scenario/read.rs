@@ -3,14 +3,13 @@
 
 use core::ops::Range as Span;
 
-use sophie_control::params::{Params, Renamed};
-use sophie_tasks::parameters::Allowed;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Place, ScenarioError};
 use super::keys::{self, KEYS, Key, Kind, Range, TABLES};
 use super::nearest::nearest;
+use super::settings::Setting;
 use super::{Overrides, Scenario, defaults};
 use crate::plant::tendon::ServoSpec;
 
@@ -79,7 +78,10 @@ impl Source<'_> {
         overrides.apply(&mut scenario);
         believe_the_vehicle(&mut scenario);
         if let Some(table) = params {
-            self.params(table, &mut scenario.params)?;
+            for Setting { row, value, .. } in self.settings(table)? {
+                // In its range: never an error.
+                let _ = scenario.params.set(row.name, value);
+            }
         }
         self.pipe_clear_of_the_ground(&root, &scenario)?;
         self.arms(&root, &scenario)?;
@@ -167,34 +169,6 @@ impl Source<'_> {
         si.ok_or_else(|| self.bad(key, value, range.allowed()))
     }
 
-    fn params(&self, table: &DeTable<'_>, params: &mut Params) -> Result<()> {
-        for (name, span, value) in in_order(table) {
-            let key = format!("params.{name}");
-            let renamed = Renamed::find(name);
-            if let Some(new) = renamed.map(|r| r.new).filter(|new| table.contains_key(*new)) {
-                return Err(self.bad(&key, value, format!("one of the two, it is params.{new} now")));
-            }
-            let Some(row) = Params::row(renamed.map_or(name, |r| r.new)) else {
-                let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
-                return Err(self.unknown(&key, &span, value, known));
-            };
-            let named = value.get_ref().as_str().and_then(|name| row.choice_named(name));
-            let number = named
-                .map(|choice| choice.value)
-                .or(as_number(value).map(|n| n as f32));
-            let number = match (renamed, named) {
-                (Some(renamed), None) => number.map(|number| renamed.convert(number)),
-                _ => number,
-            };
-            let set = number.and_then(|number| params.set(row.name, number).ok());
-            set.ok_or_else(|| {
-                let now = renamed.map_or(String::new(), |r| format!(" as params.{}", r.new));
-                self.bad(&key, value, format!("{}{now}", Allowed(row)))
-            })?;
-        }
-        Ok(())
-    }
-
     /// Requires room below the pipe.
     fn pipe_clear_of_the_ground(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         let lowest = scenario.world.pipe_diameter + 0.2;
@@ -250,7 +224,7 @@ pub(super) fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usi
     entries
 }
 
-fn as_number(value: &Value<'_>) -> Option<f64> {
+pub(super) fn as_number(value: &Value<'_>) -> Option<f64> {
     match value.get_ref() {
         DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|v| v as f64),
         DeValue::Float(f) => f.as_str().parse().ok(),
