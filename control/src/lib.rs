@@ -36,6 +36,7 @@ pub mod imu_filter;
 pub mod math;
 pub mod mixer;
 pub mod mode;
+pub mod mounting;
 pub mod params;
 pub mod rate;
 pub mod rc;

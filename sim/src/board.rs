@@ -22,7 +22,7 @@ use crate::plant::{Actuators, Plant, STEP};
 use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
-use crate::sensors::imu::Imu;
+use crate::sensors::imu::{Imu, Misfit};
 
 /// Bytes buffered by a serial line: half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
@@ -102,6 +102,11 @@ impl Board {
             accel_bias,
             imu_rate: f64::from(params.imu_rate.number()),
         }
+    }
+
+    /// Builds the inertial sensor in as `misfit` has it.
+    pub fn misfit(&self, misfit: Misfit) {
+        self.sensors.borrow_mut().imu.misfit = Some(misfit);
     }
 
     /// Steps the plant by 1 ms under the last outputs and samples the sensors.
