@@ -1,6 +1,6 @@
 //! How the vehicle's inertial sensor sits in the vehicle, beyond what the board's file says of it.
 //!
-//! A board's driver hands over *board axes*: forward, right and down as the board's file has them. A mounting says where
+//! A board's driver hands over *board axes*: forward, right, down as the board's file has them. A mounting says where
 //! these have the vehicle's nose, right side and belly, and turns a vector into the vehicle's body axes:
 //! v·x = b·nose, v·y = b·right, v·z = b·belly.
 
@@ -111,8 +111,8 @@ impl Mounting {
         self.nose.unit() * v.x + self.right.unit() * v.y + self.belly.unit() * v.z
     }
 
-    /// This mounting, found in axes that `before` has turned already: what both do together. `None` where the three sides
-    /// are those of no mounting.
+    /// This mounting, found in axes that `before` has turned already: what both do together. `None` where the three
+    /// sides are those of no mounting.
     pub fn after(&self, before: &Self) -> Option<Self> {
         let all = |direction: Direction| Direction::along(before.to_board(direction.unit()));
         let both = Self {
@@ -185,8 +185,8 @@ mod tests {
         assert_eq!(Mounting::from(ImuMounting::ForwardDown), Mounting::AS_BUILT);
     }
 
-    /// The limit case of each rotation: a vehicle that rests on one side feels 1 g away from it, and one that turns about
-    /// an axis turns about that axis, however the sensor sits.
+    /// The limit case of each rotation: a vehicle that rests on one side feels 1 g away from it, and one that turns
+    /// about an axis turns about that axis, however the sensor sits.
     #[test]
     fn gravity_and_turns_end_where_the_vehicle_has_them() {
         for value in ImuMounting::ALL {

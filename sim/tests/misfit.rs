@@ -1,4 +1,4 @@
-//! An inertial sensor that sits and reads otherwise than its board's file has it: calibrated at the console, then flown.
+//! An inertial sensor that sits and reads otherwise than its board's file has it: calibrated, then flown.
 
 use std::cell::RefCell;
 use std::rc::Rc;

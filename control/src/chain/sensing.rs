@@ -9,8 +9,8 @@ use crate::vector::Vec3;
 
 /// Filter, decimation, and what calibration has found: accelerometer's bias and scale, mounting.
 ///
-/// v = M S⁻¹ (b − bias) for the specific force b in board axes. Scale and mounting commute with the filter, which treats
-/// all axes alike: they are applied once a step and not to each reading.
+/// v = M S⁻¹ (b − bias) for the specific force b in board axes. Scale and mounting commute with the filter, which
+/// treats all axes alike: they are applied once a step and not to each reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensing {
     filter: ImuFilter,
