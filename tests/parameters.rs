@@ -37,3 +37,15 @@ fn page() -> String {
 fn the_page_is_the_table() {
     sophie_pages::is("parameters.md", &page(), "--test parameters");
 }
+
+#[test]
+fn the_page_of_calibration_has_every_mounting() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/calibration.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let row = Params::row("imu_mounting").unwrap();
+    for choice in row.choices {
+        let named = format!("{} `{}`", choice.value, choice.name);
+        assert!(page.contains(&named), "docs/calibration.md has no {named}");
+    }
+    assert_eq!(row.choices.len(), 24);
+}

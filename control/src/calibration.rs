@@ -3,6 +3,8 @@
 //! Nothing here is kept or applied: the console shows the result, `save` stores it.
 
 use crate::math::{GRAVITY, clamp, deg, sin, sqrt};
+use crate::mounting::{Direction, Mounting};
+use crate::params::Params;
 use crate::vector::Vec3;
 
 /// Least samples of a mean.
@@ -18,9 +20,9 @@ pub const BIAS_MAX: f32 = 0.6;
 pub const FACE_LEAN_MAX: f32 = deg(8.0);
 /// What may be read of gravity on the side that lies below, share of it: the largest bias there is and was taken off
 /// (0.6 m/s² and half of it), the scale and the lean.
-pub const SIDE_SHARE: [f32; 2] = [0.85, 1.15];
-/// Scale of an accelerometer's axis within which the part is sound.
-pub const SCALE: [f32; 2] = [0.97, 1.03];
+pub const SIDE_SHARE: [f32; 2] = [0.8, 1.2];
+/// Scale of an accelerometer's axis that can be taken out, as of its parameter: beyond it the part is broken.
+pub const SCALE: [f32; 2] = [0.9, 1.1];
 /// Largest spread of the battery's voltage, share of it.
 pub const VOLTAGE_SPREAD_MAX: f32 = 0.01;
 /// Batteries that a meter can have read, V.
@@ -123,15 +125,42 @@ pub fn rest_rate(samples: &Samples) -> Result<Vec3, Unfit> {
     samples.quiet_mean(RATE_SPREAD_MAX, "rad/s")
 }
 
-/// The accelerometer's bias by one rest on a level table, m/s²; `bias` is the one that is taken off already.
+/// What is made of the inertial sensor's readings already: what is found counts on top of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AccelFit {
+    /// Bias of each axis of the board, m/s².
+    pub bias: Vec3,
+    /// What each axis of the board reads over what there is.
+    pub scale: Vec3,
+    /// From the board's axes to the vehicle's.
+    pub mounting: Mounting,
+}
+
+impl AccelFit {
+    /// That of the parameters.
+    pub fn of(p: &Params) -> Self {
+        Self {
+            bias: Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z),
+            scale: Vec3::new(p.accel_scale_x, p.accel_scale_y, p.accel_scale_z),
+            mounting: Mounting::from(p.imu_mounting),
+        }
+    }
+
+    /// The bias with `error` (m/s², vehicle) taken off as well.
+    fn beyond(&self, error: Vec3) -> Vec3 {
+        self.bias + self.mounting.to_board(error).scale_by(self.scale)
+    }
+}
+
+/// The accelerometer's bias by one rest on a level table, m/s², board; samples were read with the fit `now`.
 ///
 /// A table that leans by 1° goes into x and y as 0.17 m/s², and an error of the scale into z.
 ///
 /// # Errors
 /// Samples that are few or noisy, or a bias that no sound part on a level table has.
-pub fn level(samples: &Samples, bias: Vec3) -> Result<Vec3, Unfit> {
+pub fn level(samples: &Samples, now: &AccelFit) -> Result<Vec3, Unfit> {
     let mean = samples.quiet_mean(FORCE_SPREAD_MAX, "m/s2")?;
-    checked_bias(bias + mean + Vec3::new(0.0, 0.0, GRAVITY))
+    checked_bias(now.beyond(mean + Vec3::new(0.0, 0.0, GRAVITY)))
 }
 
 fn checked_bias(bias: Vec3) -> Result<Vec3, Unfit> {
@@ -198,9 +227,9 @@ impl Face {
 /// Bias and scale by six faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SixFaces {
-    /// Bias of each axis, m/s², with what is taken off already.
+    /// Bias of each axis of the board, m/s².
     pub bias: Vec3,
-    /// What each axis reads over what there is.
+    /// What each axis of the board reads over what there is.
     pub scale: Vec3,
 }
 
@@ -220,16 +249,18 @@ pub fn face(samples: &Samples, face: Face) -> Result<Vec3, Unfit> {
     Ok(mean)
 }
 
-/// Bias and scale from the means with each side down, in the order of [`Face::ALL`]; `bias` is taken off them already. A
+/// Bias and scale from the means with each side down, in the order of [`Face::ALL`], read with the fit `now`. A
 /// table that leans does no harm: of each axis only the two faces count in which it is vertical.
 ///
 /// # Errors
 /// A bias or a scale that no sound part has.
-pub fn six_faces(means: &[Vec3; 6], bias: Vec3) -> Result<SixFaces, Unfit> {
+pub fn six_faces(means: &[Vec3; 6], now: &AccelFit) -> Result<SixFaces, Unfit> {
     let [belly, back, nose, tail, right, left] = means;
     let centre = Vec3::new(tail.x + nose.x, left.y + right.y, back.z + belly.z) * 0.5;
     let span = Vec3::new(tail.x - nose.x, left.y - right.y, back.z - belly.z);
-    let scale = span * (0.5 / GRAVITY);
+    // Of an axis and of its opposite the scale is the same.
+    let share = now.mounting.to_board(span * (0.5 / GRAVITY)).map(f32::abs);
+    let scale = share.scale_by(now.scale);
     for (name, value) in ["scale of x", "scale of y", "scale of z"]
         .into_iter()
         .zip(scale.to_array())
@@ -237,51 +268,9 @@ pub fn six_faces(means: &[Vec3; 6], bias: Vec3) -> Result<SixFaces, Unfit> {
         within(name, value, SCALE, "")?;
     }
     Ok(SixFaces {
-        bias: checked_bias(bias + centre)?,
+        bias: checked_bias(now.beyond(centre))?,
         scale,
     })
-}
-
-/// A direction of the body as the firmware has it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// Body x.
-    Forward,
-    /// Against it.
-    Back,
-    /// Body y.
-    Right,
-    /// Against it.
-    Left,
-    /// Body z.
-    Down,
-    /// Against it.
-    Up,
-}
-
-impl Direction {
-    /// For people.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Forward => "forward",
-            Self::Back => "back",
-            Self::Right => "right",
-            Self::Left => "left",
-            Self::Down => "down",
-            Self::Up => "up",
-        }
-    }
-
-    const fn unit(self) -> Vec3 {
-        match self {
-            Self::Forward => Vec3::new(1.0, 0.0, 0.0),
-            Self::Back => Vec3::new(-1.0, 0.0, 0.0),
-            Self::Right => Vec3::new(0.0, 1.0, 0.0),
-            Self::Left => Vec3::new(0.0, -1.0, 0.0),
-            Self::Down => Vec3::new(0.0, 0.0, 1.0),
-            Self::Up => Vec3::new(0.0, 0.0, -1.0),
-        }
-    }
 }
 
 /// The direction that the firmware takes to point down in this rest.
@@ -301,31 +290,6 @@ pub fn below(samples: &Samples) -> Result<Direction, Unfit> {
     let allowed = SIDE_SHARE.map(|share| share * GRAVITY);
     within("gravity along one axis", force.abs(), allowed, "m/s2")?;
     Ok(if force > 0.0 { positive } else { negative })
-}
-
-/// What the firmware takes for the vehicle's sides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sides {
-    /// Was below with the nose down.
-    pub nose: Direction,
-    /// Was below with the right side down.
-    pub right: Direction,
-    /// Was below with the vehicle level.
-    pub belly: Direction,
-}
-
-impl Sides {
-    /// The sensor is mounted as the firmware has it.
-    pub const AS_BUILT: Self = Self {
-        nose: Direction::Forward,
-        right: Direction::Right,
-        belly: Direction::Down,
-    };
-
-    /// The three are one of the 24 ways in which a sensor can sit; otherwise a side was mistaken.
-    pub fn fit(&self) -> bool {
-        self.nose.unit().cross(self.right.unit()) == self.belly.unit()
-    }
 }
 
 /// The divider with which the battery reads what a meter reads, `meter` V; with `divider` it reads the mean of
@@ -443,6 +407,14 @@ mod tests {
         samples
     }
 
+    /// A fit that takes off `bias`, on a board that sits as its file has it.
+    fn taking(bias: Vec3) -> AccelFit {
+        AccelFit {
+            bias,
+            ..AccelFit::of(&Params::DEFAULT)
+        }
+    }
+
     fn vector(size: f32) -> impl Strategy<Value = Vec3> {
         (-size..size, -size..size, -size..size).prop_map(|(x, y, z)| Vec3::new(x, y, z))
     }
@@ -451,7 +423,7 @@ mod tests {
         #[test]
         fn a_level_rest_gives_the_bias(bias in vector(0.5), taken in vector(0.3)) {
             let reads = Face::Belly.force() + bias - taken;
-            let found = level(&samples(reads, 0.2), taken).unwrap();
+            let found = level(&samples(reads, 0.2), &taking(taken)).unwrap();
             prop_assert!((found - bias).norm() < 0.04, "{found:?}");
         }
 
@@ -468,7 +440,7 @@ mod tests {
                 let reads = turned.scale_by(scale) + bias - taken;
                 means.push(face(&samples(reads, 0.2), side).unwrap());
             }
-            let found = six_faces(means.as_slice().try_into().unwrap(), taken).unwrap();
+            let found = six_faces(means.as_slice().try_into().unwrap(), &taking(taken)).unwrap();
             prop_assert!((found.bias - bias).norm() < 0.07, "{:?}", found.bias);
             prop_assert!((found.scale - scale).norm() < 0.012, "{:?}", found.scale);
         }
@@ -518,7 +490,8 @@ mod tests {
             for (x, y, z) in values {
                 samples.add(Vec3::new(x, y, z));
             }
-            prop_assert!(level(&samples, Vec3::ZERO).is_ok_and(Vec3::is_finite) || level(&samples, Vec3::ZERO).is_err());
+            let found = level(&samples, &taking(Vec3::ZERO));
+            prop_assert!(found.is_ok_and(Vec3::is_finite) || found.is_err());
             prop_assert!(divider(&samples, 11.0, 15.0).is_ok_and(f32::is_finite) || divider(&samples, 11.0, 15.0).is_err());
         }
     }
@@ -537,14 +510,17 @@ mod tests {
     fn what_is_wrong_is_named_with_its_number() {
         let rest = Face::Belly.force();
         let what = |result: Result<Vec3, Unfit>| result.unwrap_err().what;
-        assert_eq!(what(level(&Samples::default(), Vec3::ZERO)), "samples");
-        assert_eq!(what(level(&samples(rest, 0.5), Vec3::ZERO)), "noise");
+        assert_eq!(what(level(&Samples::default(), &taking(Vec3::ZERO))), "samples");
+        assert_eq!(what(level(&samples(rest, 0.5), &taking(Vec3::ZERO))), "noise");
         let leans = rest + Vec3::new(0.0, 0.7, 0.0);
-        let unfit = level(&samples(leans, 0.01), Vec3::ZERO).unwrap_err();
+        let unfit = level(&samples(leans, 0.01), &taking(Vec3::ZERO)).unwrap_err();
         assert_eq!((unfit.what, unfit.allowed), ("bias along y", [-0.6, 0.6]));
         assert!((unfit.value - 0.7).abs() < 0.01);
         assert_eq!(
-            what(level(&samples(Vec3::new(f32::NAN, 0.0, 0.0), 0.1), Vec3::ZERO)),
+            what(level(
+                &samples(Vec3::new(f32::NAN, 0.0, 0.0), 0.1),
+                &taking(Vec3::ZERO)
+            )),
             "mean"
         );
         // Another side below, and one that leans by 20°.
@@ -569,8 +545,11 @@ mod tests {
             assert_eq!(divider(read, 11.0, meter).unwrap_err().what, name);
         }
         let mut means = Face::ALL.map(Face::force);
-        means[5] = means[5] * 1.1;
-        assert_eq!(six_faces(&means, Vec3::ZERO).unwrap_err().what, "scale of y");
+        means[5] = means[5] * 1.25;
+        assert_eq!(
+            six_faces(&means, &taking(Vec3::ZERO)).unwrap_err().what,
+            "scale of y"
+        );
     }
 
     #[test]
@@ -597,15 +576,7 @@ mod tests {
 
     #[test]
     fn a_turned_sensor_shows_which_way_it_is_turned() {
-        const ALL: [Direction; 6] = [
-            Direction::Forward,
-            Direction::Back,
-            Direction::Right,
-            Direction::Left,
-            Direction::Down,
-            Direction::Up,
-        ];
-        for down in ALL {
+        for down in Direction::ALL {
             // 10° beside it, with a bias.
             let leans = (down.unit() + Vec3::new(0.1, -0.1, 0.1)) * -GRAVITY;
             assert_eq!(below(&samples(leans, 0.1)), Ok(down));
@@ -617,15 +588,48 @@ mod tests {
         );
         assert!(below(&samples(Vec3::ZERO, 0.1)).is_err());
         let mut ways = 0;
-        for nose in ALL {
-            for right in ALL {
-                for belly in ALL {
-                    ways += i32::from(Sides { nose, right, belly }.fit());
+        for nose in Direction::ALL {
+            for right in Direction::ALL {
+                for belly in Direction::ALL {
+                    ways += i32::from(Mounting { nose, right, belly }.fits());
                 }
             }
         }
         assert_eq!(ways, 24);
-        assert!(Sides::AS_BUILT.fit());
+    }
+
+    /// However the sensor sits and whatever is in force: level and six faces find the part's own bias and scale.
+    #[test]
+    fn bias_and_scale_are_those_of_the_boards_axes() {
+        let (bias, scale) = (Vec3::new(0.2, -0.3, 0.4), Vec3::new(1.03, 0.95, 0.98));
+        let in_force = [
+            (Vec3::ZERO, Vec3::new(1.0, 1.0, 1.0)),
+            (Vec3::new(-0.1, 0.2, 0.3), Vec3::new(0.98, 1.02, 1.05)),
+        ];
+        for mounting in crate::params::ImuMounting::ALL.iter().map(|m| Mounting::from(*m)) {
+            for (taken, gain) in in_force {
+                let now = AccelFit {
+                    bias: taken,
+                    scale: gain,
+                    mounting,
+                };
+                let reads = |side: Face| {
+                    let part = mounting.to_board(side.force()).scale_by(scale) + bias;
+                    let over = gain.map(|gain| 1.0 / gain);
+                    mounting.to_vehicle((part - taken).scale_by(over))
+                };
+                let found = six_faces(&Face::ALL.map(reads), &now).unwrap();
+                assert!((found.bias - bias).norm() < 1e-4, "{mounting:?} {found:?}");
+                assert!((found.scale - scale).norm() < 1e-5, "{mounting:?} {found:?}");
+                let exact = AccelFit { scale, ..now };
+                let rest = mounting.to_vehicle(
+                    (mounting.to_board(Face::Belly.force()).scale_by(scale) + bias - taken)
+                        .scale_by(scale.map(|scale| 1.0 / scale)),
+                );
+                let found = level(&samples(rest, 0.0), &exact).unwrap();
+                assert!((found - bias).norm() < 1e-3, "{mounting:?} {found:?}");
+            }
+        }
     }
 
     #[test]

@@ -6,7 +6,9 @@ mod table;
 
 use core::cmp::Ordering;
 
-pub use self::choices::{ArmSign, ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol};
+pub use self::choices::{
+    ArmSign, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorProtocol, RcProtocol,
+};
 pub use self::names::{NAME_MAX, RENAMED, Renamed, check_names};
 pub use self::table::Params;
 use self::table::ROWS;

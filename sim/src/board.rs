@@ -20,7 +20,7 @@ use crate::plant::{Actuators, Plant, STEP};
 use crate::sensors::analog::{BatteryInputs, PIN_VOLTS_PER_COUNT};
 use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
-use crate::sensors::imu::Imu;
+use crate::sensors::imu::{Imu, Misfit};
 
 /// Half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
@@ -102,7 +102,12 @@ impl Board {
         }
     }
 
-    /// Steps the plant by 1 ms under the last outputs, and samples.
+    /// Builds the inertial sensor in as `misfit` has it.
+    pub fn misfit(&self, misfit: Misfit) {
+        self.sensors.borrow_mut().imu.misfit = Some(misfit);
+    }
+
+    /// Steps the plant by 1 ms under the last outputs and samples the sensors.
     pub fn step_world(&self, plant: &mut Plant) {
         let actuators = self.actuators.get();
         let mut sensors = self.sensors.borrow_mut();

@@ -7,6 +7,7 @@ use crate::mixers::{Mixer, Variant};
 use crate::plant::Plant;
 use crate::plant::contact::Pose;
 use crate::scenario::Scenario;
+use crate::sensors::imu::Misfit;
 use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mixer::Allocation;
@@ -92,7 +93,14 @@ impl Rig {
         })
     }
 
-    /// Flies `allocation`; the parameters have the accelerometer's measured bias.
+    /// The same with an inertial sensor that is built in as `misfit` has it.
+    pub fn misfitted(scenario: &Scenario, misfit: Misfit) -> Self {
+        let rig = Self::new(scenario);
+        rig.board.misfit(misfit);
+        rig
+    }
+
+    /// The same under `allocation`, with the accelerometer's bench-measured bias in the parameters.
     pub fn calibrated<A: Allocation + 'static>(
         scenario: &Scenario,
         allocation: impl FnOnce(&Params) -> A + 'static,

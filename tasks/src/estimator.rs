@@ -3,6 +3,7 @@
 use embassy_time::{Duration, Instant};
 use sophie_control::chain::Attitude;
 use sophie_control::estimator::Estimator;
+use sophie_control::mounting::Mounting;
 
 use crate::deadline::{TaskId, note_run};
 use crate::links::Links;
@@ -16,8 +17,9 @@ pub async fn run(links: &Links) {
         return;
     };
     let bias = links.start.retained.and_then(|retained| retained.gyro_bias);
+    let mounting = Mounting::from(links.params.imu_mounting);
     let mut estimator = match bias {
-        Some(bias) => Estimator::resume(&links.params, bias),
+        Some(bias) => Estimator::resume(&links.params, mounting.to_vehicle(bias)),
         None => Estimator::new(&links.params),
     };
     let mut attitude = Attitude::default();

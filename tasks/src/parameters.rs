@@ -23,7 +23,11 @@ pub fn report(links: &Links, loaded: Loaded) {
     links.report(ArmingInhibit::StorageForeign, foreign);
 }
 
-/// Permitted values: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus".
+/// Most choices that are all named where a parameter is shown: a line has 80 characters.
+const MOST_NAMED: usize = 8;
+
+/// What a parameter takes: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus"; of many
+/// choices the first and the last.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowed<'a>(pub &'a ParamInfo);
 
@@ -32,6 +36,8 @@ impl fmt::Display for Allowed<'_> {
         let row = self.0;
         if row.choices.is_empty() {
             write!(f, "{} to {}", Decimal(row.min), Decimal(row.max))?;
+        } else if row.choices.len() > MOST_NAMED {
+            write!(f, "{} to {}", Shown(row, row.min), Shown(row, row.max))?;
         } else {
             f.write_str(if f.alternate() { "" } else { "one of " })?;
             for (i, choice) in row.choices.iter().enumerate() {

@@ -4,6 +4,7 @@
 //! message changes nothing.
 
 use crate::retained_state::RetainedState;
+use sophie_control::mounting::Mounting;
 use sophie_control::wrench::PerArm;
 
 use crate::links::{Links, TendonOrder};
@@ -55,7 +56,9 @@ impl<R: Retain> RetainedStore<R> {
             self.retained.fault = fault;
         }
         if let Some(attitude) = links.attitude.fresh().filter(|a| a.calibrated) {
-            self.retained.gyro_bias = Some(attitude.gyro_bias);
+            // In the part's own axes: the next start may have another mounting.
+            let mounting = Mounting::from(links.params.imu_mounting);
+            self.retained.gyro_bias = Some(mounting.to_board(attitude.gyro_bias));
         }
         self.retained = self.retained.bounded();
         let sequence = self.sequence.wrapping_add(1);

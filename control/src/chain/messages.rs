@@ -6,7 +6,7 @@ use crate::rate::Feedback;
 use crate::vector::{Quat, Vec3};
 use crate::wrench::{PerArm, Wrench};
 
-/// One sample of the inertial sensor in body axes.
+/// One sample of the vehicle's inertial sensor in board axes: the vehicle's, unless `imu_mounting` turns them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImuReading {
     /// Angular rate, rad/s.

@@ -124,6 +124,58 @@ choices! {
         Along = 1.0, "along";
     }
 
+    /// How the vehicle's inertial sensor sits: where the axes of the board's file have the vehicle's nose and belly.
+    ImuMounting {
+        /// Nose forward, belly down.
+        ForwardDown = 0.0, "forward_down";
+        /// Nose forward, belly up.
+        ForwardUp = 1.0, "forward_up";
+        /// Nose forward, belly right.
+        ForwardRight = 2.0, "forward_right";
+        /// Nose forward, belly left.
+        ForwardLeft = 3.0, "forward_left";
+        /// Nose back, belly down.
+        BackDown = 4.0, "back_down";
+        /// Nose back, belly up.
+        BackUp = 5.0, "back_up";
+        /// Nose back, belly right.
+        BackRight = 6.0, "back_right";
+        /// Nose back, belly left.
+        BackLeft = 7.0, "back_left";
+        /// Nose right, belly down.
+        RightDown = 8.0, "right_down";
+        /// Nose right, belly up.
+        RightUp = 9.0, "right_up";
+        /// Nose right, belly forward.
+        RightForward = 10.0, "right_forward";
+        /// Nose right, belly back.
+        RightBack = 11.0, "right_back";
+        /// Nose left, belly down.
+        LeftDown = 12.0, "left_down";
+        /// Nose left, belly up.
+        LeftUp = 13.0, "left_up";
+        /// Nose left, belly forward.
+        LeftForward = 14.0, "left_forward";
+        /// Nose left, belly back.
+        LeftBack = 15.0, "left_back";
+        /// Nose down, belly right.
+        DownRight = 16.0, "down_right";
+        /// Nose down, belly left.
+        DownLeft = 17.0, "down_left";
+        /// Nose down, belly forward.
+        DownForward = 18.0, "down_forward";
+        /// Nose down, belly back.
+        DownBack = 19.0, "down_back";
+        /// Nose up, belly right.
+        UpRight = 20.0, "up_right";
+        /// Nose up, belly left.
+        UpLeft = 21.0, "up_left";
+        /// Nose up, belly forward.
+        UpForward = 22.0, "up_forward";
+        /// Nose up, belly back.
+        UpBack = 23.0, "up_back";
+    }
+
     /// Full scale of the accelerometer, g.
     ImuAccelRange {
         /// ±2 g.
@@ -158,7 +210,7 @@ mod tests {
                 assert!(choice.name.parse::<f32>().is_err(), "{}", choice.name);
             }
         }
-        assert_eq!(enumerated, 9);
+        assert_eq!(enumerated, 10);
     }
 
     #[test]

@@ -2,7 +2,9 @@
 //! `name: Type = default, "unit";`.
 
 use super::ParamInfo;
-use super::choices::{ArmSign, ImuAccelRange, ImuGyroRange, ImuRate, MotorProtocol, RcProtocol, Value};
+use super::choices::{
+    ArmSign, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorProtocol, RcProtocol, Value,
+};
 use super::names::check_names;
 
 macro_rules! params {
@@ -152,12 +154,21 @@ params! {
     /// Sign of the sensor of arm 4.
     arm_sign_4: ArmSign = ArmSign::Along, "1";
 
-    /// Accelerometer bias along body x, measured on a level bench: what it reads beyond gravity.
+    /// How the inertial sensor sits beyond what the board's file says: where its axes have the vehicle's nose and belly
+    /// (`calibrate mounting`).
+    imu_mounting: ImuMounting = ImuMounting::ForwardDown, "1";
+    /// Accelerometer bias along x of the board's axes, before the mounting: what it reads beyond gravity.
     accel_bias_x = 0.0, "m/s2", -0.6 ..= 0.6;
-    /// Accelerometer bias along body y.
+    /// Accelerometer bias along y.
     accel_bias_y = 0.0, "m/s2", -0.6 ..= 0.6;
-    /// Accelerometer bias along body z.
+    /// Accelerometer bias along z.
     accel_bias_z = 0.0, "m/s2", -0.6 ..= 0.6;
+    /// What the accelerometer reads along x of the board's axes over what there is (`calibrate accel`).
+    accel_scale_x = 1.0, "1", 0.9 ..= 1.1;
+    /// What it reads along y over what there is.
+    accel_scale_y = 1.0, "1", 0.9 ..= 1.1;
+    /// What it reads along z over what there is.
+    accel_scale_z = 1.0, "1", 0.9 ..= 1.1;
     /// Accelerometer gain of the attitude estimator.
     estimator_kp = 0.1, "1/s", 0.01 ..= 5.0;
     /// Gyro bias gain of the attitude estimator.

@@ -6,6 +6,7 @@ use glam::DVec3;
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
+use sophie_control::mounting::Mounting;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
@@ -25,6 +26,26 @@ const BENCH_ERROR: f64 = 0.04;
 /// Per rotor at 600 rad/s, rad/s and m/s² (assumed; soft arms isolate).
 const VIBRATION: (f64, f64) = (0.01, 0.25);
 
+/// How a part differs from what its board's file says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// How it sits.
+    pub mounting: Mounting,
+    /// What its accelerometer reads over what there is, by the board's axes.
+    pub scale: Vec3,
+}
+
+impl Misfit {
+    /// What the part reads where one that fits reads `reading`.
+    #[must_use]
+    pub fn reads(&self, reading: ImuReading) -> ImuReading {
+        ImuReading {
+            gyro: self.mounting.to_board(reading.gyro),
+            accel: self.mounting.to_board(reading.accel).scale_by(self.scale),
+        }
+    }
+}
+
 /// The sensor with its errors.
 #[derive(Clone, Debug)]
 pub struct Imu {
@@ -35,6 +56,8 @@ pub struct Imu {
     lsb: (f64, f64),
     gyro_bias: DVec3,
     accel_bias: DVec3,
+    /// `None`: it fits.
+    pub misfit: Option<Misfit>,
     rng: Pcg64Mcg,
     pipeline: ImuReading,
     phase: [f64; 4],
@@ -61,6 +84,7 @@ impl Imu {
             ),
             gyro_bias,
             accel_bias,
+            misfit: None,
             rng,
             pipeline: ImuReading::default(),
             phase: [0.0; 4],
@@ -99,7 +123,9 @@ impl Imu {
             ACCEL_NOISE * self.noise,
             accel_lsb,
         );
-        std::mem::replace(&mut self.pipeline, ImuReading { gyro, accel })
+        let reading = ImuReading { gyro, accel };
+        let read = self.misfit.map_or(reading, |misfit| misfit.reads(reading));
+        std::mem::replace(&mut self.pipeline, read)
     }
 
     /// Adds `noise` RMS, rounds to `lsb`, saturates at full scale.

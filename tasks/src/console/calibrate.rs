@@ -4,8 +4,9 @@
 
 use embassy_time::{Duration, Timer};
 use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, Spin};
-use sophie_control::calibration::{self, Direction, Face, FsrFit, Samples, Sides, Unfit};
+use sophie_control::calibration::{self, AccelFit, Face, FsrFit, Samples, Unfit};
 use sophie_control::math::{clamp, to_deg};
+use sophie_control::mounting::{Direction, Mounting};
 use sophie_control::params::Params;
 use sophie_control::tendon::{Reel, SPAN_MIN_US};
 use sophie_control::vector::Vec3;
@@ -33,14 +34,8 @@ const WHAT: [(&str, &str); 9] = [
         "level",
         "accelerometer's bias on a level table; a lean of the table goes in with it",
     ),
-    (
-        "accel",
-        "bias by six sides; needs no level table, and checks the scale",
-    ),
-    (
-        "mounting",
-        "whether the inertial sensor sits as the firmware has it, by tilting",
-    ),
+    ("accel", "bias and scale by six sides; needs no level table"),
+    ("mounting", "how the inertial sensor sits, by tilting"),
     ("battery", "its voltage by a meter: calibrate battery VOLTS"),
     ("servo", "release and full mark of one servo: calibrate servo N"),
     (
@@ -53,6 +48,8 @@ const WHAT: [(&str, &str); 9] = [
 
 /// Names of the parameters that hold a bias.
 const BIAS: [&str; 3] = ["accel_bias_x", "accel_bias_y", "accel_bias_z"];
+/// And a scale.
+const SCALE: [&str; 3] = ["accel_scale_x", "accel_scale_y", "accel_scale_z"];
 const RELEASE: [&str; 4] = [
     "servo_release_1",
     "servo_release_2",
@@ -126,7 +123,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         let Some(samples) = self.rest(text, &force).await else {
             return;
         };
-        match calibration::level(&samples, self.bias_in_force()) {
+        match calibration::level(&samples, &AccelFit::of(&self.links.params)) {
             Ok(bias) => self.put_all(&BIAS, bias.to_array()).await,
             Err(unfit) => self.unfit(unfit).await,
         }
@@ -148,11 +145,12 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 }
             }
         }
-        match calibration::six_faces(&means, self.bias_in_force()) {
+        match calibration::six_faces(&means, &AccelFit::of(&self.links.params)) {
             Ok(found) => {
                 let [x, y, z] = found.scale.to_array().map(Decimal);
                 self.out.line(format_args!("scale {x:.3} {y:.3} {z:.3}")).await;
                 self.put_all(&BIAS, found.bias.to_array()).await;
+                self.put_all(&SCALE, found.scale.to_array()).await;
             }
             Err(unfit) => self.unfit(unfit).await,
         }
@@ -170,30 +168,27 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
         }
         let [belly, nose, right] = below;
-        let sides = Sides { nose, right, belly };
-        if sides == Sides::AS_BUILT {
-            return self
-                .out
-                .line(format_args!("mounted as the firmware has it; nothing to store"))
-                .await;
-        }
-        if !sides.fit() {
+        let found = Mounting { nose, right, belly };
+        let now = Mounting::from(self.links.params.imu_mounting);
+        let Some(value) = found.after(&now).and_then(|both| both.parameter()) else {
             return self
                 .out
                 .line(format_args!("not taken: these are no three sides of one vehicle"))
                 .await;
+        };
+        if found == Mounting::AS_BUILT {
+            self.out
+                .line(format_args!("mounted as the firmware has it"))
+                .await;
+        } else {
+            let [belly, nose, right] = below.map(Direction::name);
+            self.out
+                .line(format_args!(
+                    "nose is where the firmware has {nose}, right side {right}, belly {belly}"
+                ))
+                .await;
         }
-        let [belly, nose, right] = below.map(Direction::name);
-        self.out
-            .line(format_args!(
-                "nose is where the firmware has {nose}, right side {right}, belly {belly}"
-            ))
-            .await;
-        self.out
-            .line(format_args!(
-                "turn the board, or say in its file how it sits: 'mounting' in docs/porting.md"
-            ))
-            .await;
+        self.put_all(&["imu_mounting"], [value.number()]).await;
     }
 
     async fn calibrate_battery(&mut self, volts: &str) {
@@ -412,11 +407,6 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
         }
         Some(samples)
-    }
-
-    fn bias_in_force(&self) -> Vec3 {
-        let p = &self.links.params;
-        Vec3::new(p.accel_bias_x, p.accel_bias_y, p.accel_bias_z)
     }
 
     /// Puts all of `values` into the working copy, or none.

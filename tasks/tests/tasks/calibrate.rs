@@ -112,7 +112,7 @@ fn six_sides_give_the_bias_and_a_wrong_side_is_asked_for_again() {
         if i == 2 {
             // Still on its back.
             let refused = table.presses("\r", 2500);
-            let why = "not taken: gravity on this side is -0.20; 8.34 to 11.28 m/s2 allowed";
+            let why = "not taken: gravity on this side is -0.20; 7.85 to 11.77 m/s2 allowed";
             assert_eq!(refused[1..], [why, side.text(), ENTER]);
         }
         table.lies(side, bias);
@@ -123,7 +123,30 @@ fn six_sides_give_the_bias_and_a_wrong_side_is_asked_for_again() {
         assert!(line.starts_with(&format!("accel_bias_{name} 0 -> ")), "{line}");
         assert!((value(line) - bias).abs() < 1e-3, "{line}");
     }
-    assert_eq!(said.len(), 5);
+    for (line, axis) in said[5..].iter().zip(["x", "y", "z"]) {
+        assert!(line.starts_with(&format!("accel_scale_{axis} 1 -> ")), "{line}");
+        assert!((value(line) - 1.0).abs() < 1e-3, "{line}");
+    }
+    assert_eq!(said.len(), 8);
+}
+
+/// A part that reads 12 % too much along y: more than a sound one, and more than can be taken out.
+#[test]
+fn a_scale_that_no_sound_part_has_is_refused_with_its_number() {
+    let mut table = Table::set();
+    table.says("calibrate accel", 100);
+    let mut said = Vec::new();
+    for side in Face::ALL {
+        let y = side.force().y;
+        table.lies(side, Vec3::new(0.0, 0.12 * y, 0.0));
+        said = table.presses("\r", 2500);
+    }
+    assert_eq!(said[1..], ["not taken: scale of y is 1.12; 0.90 to 1.10 allowed"]);
+    assert_eq!(table.says("changes", 100), ["no changes"]);
+    assert_eq!(
+        table.says("set accel_scale_y 1.12", 100),
+        ["accel_scale_y cannot be 1.12; it takes 0.9 to 1.1"]
+    );
 }
 
 #[test]
@@ -358,13 +381,16 @@ fn the_mounting_is_found_by_tilting() {
     for (lie, answers) in [
         (
             [Face::Belly, Face::Nose, Face::Right],
-            &["mounted as the firmware has it; nothing to store"][..],
+            &[
+                "mounted as the firmware has it",
+                "imu_mounting 0 forward_down -> 0 forward_down, as in force",
+            ][..],
         ),
         (
             [Face::Belly, Face::Right, Face::Tail],
             &[
                 "nose is where the firmware has right, right side back, belly down",
-                "turn the board, or say in its file how it sits: 'mounting' in docs/porting.md",
+                "imu_mounting 0 forward_down -> 8 right_down, in force after save",
             ],
         ),
         (

@@ -4,7 +4,7 @@ use embassy_time::Instant;
 use sophie_control::grip::{ArmGrip, GripState};
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
-use sophie_control::params::Params;
+use sophie_control::params::{ImuMounting, Params};
 use sophie_control::rc::ArmChoice;
 use sophie_control::vector::Vec3;
 use sophie_tasks::links::{Attitude, Links, MixOutput, TendonForce, TendonForces, TendonOrder};
@@ -83,6 +83,21 @@ fn a_grip_is_kept_without_what_met_the_rotors_and_with_the_faults_that_last() {
         );
         assert_eq!(retained.gyro_bias, Some(BIAS));
     }
+}
+
+/// The next start may have another mounting: what is kept is in the part's own axes.
+#[test]
+fn the_gyros_bias_is_kept_as_the_part_has_it() {
+    let params = Params {
+        imu_mounting: ImuMounting::RightDown,
+        ..Params::DEFAULT
+    };
+    let (rig, memory) = (Rig::with(params), FakeMemory::default());
+    speak(rig.links, false, true);
+    RetainedStore::new(rig.links, memory.clone()).keep(rig.links);
+    // The vehicle's nose is at the board's right.
+    let own = Vec3::new(-BIAS.y, BIAS.x, BIAS.z);
+    assert_eq!(found(&memory).retained.unwrap().gyro_bias, Some(own));
 }
 
 #[test]

@@ -1,0 +1,176 @@
+//! An inertial sensor that sits and reads otherwise than its board's file has it: calibrated, then flown.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use embassy_time::Timer;
+use sophie_control::calibration::Face;
+use sophie_control::mounting::Mounting;
+use sophie_control::params::{ImuMounting, Params};
+use sophie_control::vector::Vec3;
+use sophie_control::wrench::Configuration;
+use sophie_drivers::param_store::ParamStore;
+use sophie_fakes::{FakeImu, FakeLine, Flash};
+use sophie_sim::clock::VirtualTime;
+use sophie_sim::flight_level::{Errors, Rig, level, vehicle};
+use sophie_sim::mixers::Variant;
+use sophie_sim::sensors::imu::Misfit;
+use sophie_tasks::links::Links;
+use sophie_tasks::ports::{Chip, ImuReading, Look, NotSet, PortError, SerialOutput};
+use sophie_tasks::{commander, console, estimator, imu, parameters};
+
+/// Turned by 90 degrees to the left, 3 % off along two axes.
+fn misfit() -> Misfit {
+    Misfit {
+        mounting: Mounting::from(ImuMounting::RightDown),
+        scale: Vec3::new(1.03, 0.97, 1.03),
+    }
+}
+
+#[derive(Clone, Default)]
+struct Screen(Rc<RefCell<String>>);
+
+impl SerialOutput for Screen {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        Timer::after_micros(87 * bytes.len() as u64).await;
+        self.0.borrow_mut().push_str(str::from_utf8(bytes).unwrap());
+        Ok(())
+    }
+}
+
+/// Nothing of it is asked here but the restart.
+struct PlainChip;
+
+impl Chip for PlainChip {
+    fn restart(&mut self) {}
+
+    fn looks(&self) -> &[Look] {
+        &[]
+    }
+
+    fn brown_out_volts(&self) -> f32 {
+        2.7
+    }
+
+    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
+        Err(NotSet)
+    }
+}
+
+type Memory = Flash<32, 2048>;
+
+fn store(flash: &Memory) -> ParamStore<Memory> {
+    ParamStore::new(flash.clone(), flash.range())
+}
+
+/// The parameters that a start finds.
+fn stored(flash: &Memory) -> Params {
+    let time = VirtualTime::new();
+    let found = Rc::new(RefCell::new(None));
+    let (slot, mut storage) = (found.clone(), store(flash));
+    time.spawn(async move { *slot.borrow_mut() = Some(parameters::load(&mut storage).await.0) });
+    time.run_until(1);
+    found.take().unwrap()
+}
+
+/// A builder with the vehicle in hand and a terminal.
+struct Hands {
+    time: VirtualTime,
+    ms: u64,
+    part: FakeImu,
+    line: FakeLine,
+    screen: Screen,
+}
+
+impl Hands {
+    /// The vehicle with `flash`, started.
+    fn with(flash: &Memory) -> Self {
+        let time = VirtualTime::new();
+        let links: &'static Links = Box::leak(Box::new(Links::new(stored(flash))));
+        let mut hands = Self {
+            time,
+            ms: 0,
+            part: FakeImu::default(),
+            line: FakeLine::default(),
+            screen: Screen::default(),
+        };
+        hands.lies(Face::Belly);
+        hands.time.spawn(imu::run(links, hands.part.clone()));
+        hands.time.spawn(estimator::run(links));
+        hands.time.spawn(commander::run(links));
+        let (line, screen) = (hands.line.clone(), hands.screen.clone());
+        let console = console::run(links, line, screen, store(flash), PlainChip);
+        hands.time.spawn(console);
+        hands.run(4000);
+        hands
+    }
+
+    fn run(&mut self, ms: u64) {
+        self.ms += ms;
+        self.time.run_until(self.ms * 1000);
+    }
+
+    fn lies(&mut self, side: Face) {
+        let read = misfit().reads(ImuReading {
+            gyro: Vec3::ZERO,
+            accel: side.force(),
+        });
+        // The part adds level gravity.
+        self.part.2.set(ImuReading {
+            accel: read.accel - Face::Belly.force(),
+            ..read
+        });
+        self.run(500);
+    }
+
+    fn types(&mut self, text: &str, ms: u64) -> String {
+        self.screen.0.take();
+        self.line.put(format!("{text}\r").as_bytes());
+        self.run(ms);
+        self.screen.0.take()
+    }
+
+    /// `calibrate WHAT` on these sides, then `save`; the answer to the last side.
+    fn calibrates(&mut self, what: &str, sides: &[Face]) -> String {
+        self.types(&format!("calibrate {what}"), 200);
+        let mut said = String::new();
+        for side in sides {
+            self.lies(*side);
+            said = self.types("", 2500);
+        }
+        self.lies(Face::Belly);
+        assert!(self.types("save", 1500).contains("saved; restarting"), "{said}");
+        said
+    }
+}
+
+fn hover(params: Params) -> Errors {
+    let mut scenario = vehicle(Configuration::default(), 7.75, 6.9, Variant::Flexible);
+    scenario.params = params;
+    Rig::misfitted(&scenario, misfit()).fly(12.0, level)
+}
+
+#[test]
+fn a_sensor_built_in_wrong_is_calibrated_at_the_console_and_then_hovers() {
+    let flash = Memory::blank(2);
+    let said = Hands::with(&flash).calibrates("mounting", &[Face::Belly, Face::Nose, Face::Right]);
+    let turned = "imu_mounting 0 forward_down -> 8 right_down, in force after save";
+    assert!(said.contains(turned), "{said}");
+    // After the restart: what the mounting is now, and the sides are the vehicle's.
+    let said = Hands::with(&flash).calibrates("accel", &Face::ALL);
+    assert!(said.contains("scale 1.030 0.970 1.030"), "{said}");
+    let again = Hands::with(&flash).calibrates("mounting", &[Face::Belly, Face::Nose, Face::Right]);
+    assert!(again.contains("mounted as the firmware has it"), "{again}");
+
+    let found = stored(&flash);
+    assert_eq!(found.imu_mounting, ImuMounting::RightDown);
+    let calibrated = hover(found);
+    println!("{calibrated:?}");
+    assert!(
+        calibrated.worst_roll < 3.0 && calibrated.worst_pitch < 3.0,
+        "{calibrated:?}"
+    );
+    let not = hover(Params::DEFAULT);
+    println!("not calibrated: {not:?}");
+    assert!(not.worst_roll.max(not.worst_pitch) > 45.0, "{not:?}");
+}
