@@ -204,7 +204,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     }
     assert_eq!(
         refused(&temp, &["help", "perch"]),
-        "sophie: no help on 'perch': allowed are fly, check, params, paper, fit-arm, timing"
+        "sophie: no help on 'perch': allowed are fly, check, bringup, params, paper, fit-arm, timing"
     );
 }
 

@@ -27,7 +27,7 @@ struct Cli {
 }
 
 /// The subcommands, as messages name them.
-const VERBS: [&str; 6] = ["fly", "check", "params", "paper", "fit-arm", "timing"];
+const VERBS: [&str; 7] = ["fly", "check", "bringup", "params", "paper", "fit-arm", "timing"];
 
 #[derive(Subcommand)]
 enum Command {
@@ -40,6 +40,12 @@ enum Command {
     /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit, verdict,
     /// and what to do where it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
     Check(CheckArgs),
+    /// Lead through the set-up of a vehicle over its board's console, and write a protocol.
+    ///
+    /// Each step says what to do with hands, asks, types the console's commands and judges the answers. Stopped by q,
+    /// Ctrl-C or a lost line, it continues with the first step that has not passed. Answers may be piped in, a line each.
+    /// Exit status: 0 all passed, 1 something failed, skipped or not done, 2 bad input, file or port.
+    Bringup(BringupArgs),
     /// Write a board's parameters into a file, compare them with a file, or set them from a file.
     ///
     /// FILE is the [params] of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows where FILE
@@ -68,6 +74,8 @@ pub enum Task {
     Fly(FlyArgs),
     /// Check a vehicle.
     Check(CheckArgs),
+    /// Lead through a set-up.
+    Bringup(BringupArgs),
     /// Parameters of a board.
     Params(ParamsArgs),
     /// Reproduce the paper.
@@ -161,6 +169,19 @@ impl LineArgs {
     pub fn session(&self) -> Result<Session, Failure> {
         Session::open(&self.port, self.patience)
     }
+}
+
+/// Which vehicle, and where its protocol is.
+#[derive(Args, Debug)]
+pub struct BringupArgs {
+    #[command(flatten)]
+    pub line: LineArgs,
+    /// Protocol: begun, or continued where it is there.
+    #[arg(long, value_name = "FILE", default_value = "bringup.toml")]
+    pub protocol: PathBuf,
+    /// Do this step again though it has passed, such as arm-2; may be given more than once.
+    #[arg(long, value_name = "STEP")]
+    pub again: Vec<String>,
 }
 
 /// What to do with a board's parameters.
@@ -272,6 +293,7 @@ impl Message {
                 Some("paper") => "no file",
                 Some("fit-arm") => "one CSV file",
                 Some("params") => "one parameter file",
+                Some("bringup") => "no file",
                 _ => "one scenario file",
             };
             return format!("unexpected argument '{extra}': allowed is {allowed}");
@@ -296,6 +318,7 @@ fn parse_from(
     Ok(match cli.command {
         Some(Command::Fly(fly)) => Task::Fly(fly),
         Some(Command::Check(check)) => Task::Check(check),
+        Some(Command::Bringup(bringup)) => Task::Bringup(bringup),
         Some(Command::Params(params)) => Task::Params(params),
         Some(Command::Paper(paper)) => Task::Paper(paper),
         Some(Command::FitArm(fit)) => Task::FitArm(fit),

@@ -5,6 +5,7 @@
 //! flown, read or reported.
 
 mod args;
+mod builder;
 mod check;
 mod operate;
 mod study;
@@ -36,6 +37,7 @@ pub fn main() -> ExitCode {
     let done = match task {
         Task::Fly(args) => run(&args),
         Task::Check(args) => check::run(&args),
+        Task::Bringup(args) => return operate::bringup(&args),
         Task::Params(args) => return operate::params(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),

@@ -1,16 +1,25 @@
-//! `sophie params`: what is done at a board's console.
+//! `sophie bringup` and `sophie params`: what is done at a board's console.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use sophie_console::parameters::{self, Difference};
 use sophie_console::session::Session;
-use sophie_console::{Failure, file};
+use sophie_console::{Failure, bringup, file};
 use sophie_report::terminal::{complain, console};
 use sophie_sim::scenario::settings::{self, Setting};
 
-use super::args::{ParamsArgs, ParamsVerb};
+use super::args::{BringupArgs, ParamsArgs, ParamsVerb};
+use super::builder::Terminal;
 use super::{FAILED, PROGRAM, REFUSED};
+
+/// Leads through the set-up of a vehicle.
+pub fn bringup(args: &BringupArgs) -> ExitCode {
+    let walked = args.line.session().and_then(|mut session| {
+        bringup::run(&mut session, &mut Terminal::new(), &args.protocol, &args.again)
+    });
+    status(walked)
+}
 
 /// Writes, compares or sets a board's parameters.
 pub fn params(args: &ParamsArgs) -> ExitCode {

@@ -5,7 +5,7 @@ use std::cell::{Cell, RefCell};
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::rc::Rc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -87,6 +87,8 @@ pub struct Board {
     pub port: u16,
     hands: Arc<Mutex<Hands>>,
     stored: Arc<Mutex<Params>>,
+    /// The board's time over all its starts, ms.
+    ms: Arc<AtomicU64>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -100,19 +102,21 @@ impl Board {
         let hands = Arc::new(Mutex::new(hands));
         let stored = Arc::new(Mutex::new(Params::DEFAULT));
         let stop = Arc::new(AtomicBool::new(false));
-        let shared = (hands.clone(), stored.clone(), stop.clone());
+        let ms = Arc::<AtomicU64>::default();
+        let shared = (hands.clone(), stored.clone(), stop.clone(), ms.clone());
         let thread = std::thread::spawn(move || {
-            let (hands, stored, stop) = shared;
+            let (hands, stored, stop, ms) = shared;
             let mut wire = Wire::new(listener);
             while !stop.load(Ordering::Relaxed) {
                 let params = *stored.lock().unwrap();
-                Run::start(&hands, &stored, params).serve(&mut wire, &stop);
+                Run::start(&hands, &stored, params).serve(&mut wire, &stop, &ms);
             }
         });
         Self {
             port,
             hands,
             stored,
+            ms,
             stop,
             thread: Some(thread),
         }
@@ -126,6 +130,16 @@ impl Board {
     /// Changes what hands do.
     pub fn hands(&self, change: impl FnOnce(&mut Hands)) {
         change(&mut self.hands.lock().unwrap());
+    }
+
+    /// Waits while `seconds` of the board's time pass.
+    pub fn pass(&self, seconds: f64) {
+        let until = self.ms.load(Ordering::Relaxed) + (seconds * 1e3) as u64;
+        let begun = Instant::now();
+        while self.ms.load(Ordering::Relaxed) < until {
+            assert!(begun.elapsed() < PATIENCE, "the board stands still");
+            std::thread::sleep(ROUND);
+        }
     }
 
     /// What is stored.
@@ -286,13 +300,14 @@ impl Run {
     }
 
     /// Runs until the board restarts or `stop` is set.
-    fn serve(self, wire: &mut Wire, stop: &AtomicBool) {
+    fn serve(self, wire: &mut Wire, stop: &AtomicBool, all: &AtomicU64) {
         let mut ms = 0;
         while !stop.load(Ordering::Relaxed) {
             let begun = Instant::now();
             let hands = self.hands.lock().unwrap().clone();
             self.apply(&hands, ms);
             ms += ROUND_MS;
+            all.fetch_add(ROUND_MS, Ordering::Relaxed);
             self.time.run_until(ms * 1000);
             let mut said = self.screen.text.take();
             let dies = hands

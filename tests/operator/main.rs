@@ -1,6 +1,7 @@
-//! What a builder does at a board's console: `sophie params`, against the console's own code.
+//! What a builder does at a board's console: `sophie bringup` and `sophie params`, against the console's own code.
 
 mod board;
+mod bringup;
 #[path = "../common/command.rs"]
 mod command;
 mod params;

@@ -1,8 +1,10 @@
-//! The builder's side of the console: a [session](session) over a serial port or TCP, and [parameter files](parameters).
+//! The builder's side of the console: a [session](session) over a serial port or TCP, [parameter files](parameters) and
+//! the guided [bring-up](bringup) of a vehicle.
 //!
 //! Whatever is typed is a command of docs/console.md. The line may be in any state and lose bytes; the board may restart
 //! or fall silent. Every failure is one line that names the port and what was expected.
 
+pub mod bringup;
 pub mod file;
 pub mod parameters;
 pub mod port;

@@ -145,6 +145,8 @@ impl Session {
     /// As [`Self::command`].
     pub fn cancel(&mut self) -> Result<Vec<String>, Failure> {
         self.key(CANCEL)?;
+        // The end of the line before may have been heard already.
+        self.heard.push('\n');
         Ok(self.turn("what runs was ended", &[])?.lines)
     }
 
@@ -165,10 +167,13 @@ impl Session {
             return Err(self.silent(what));
         }
         let question = asked(&self.heard);
-        let text = self
-            .heard
-            .strip_suffix(question.unwrap_or("> "))
-            .unwrap_or(&self.heard);
+        let end = match question {
+            None => "> ",
+            // A line of the answer.
+            Some(question) if question.ends_with('\n') => "",
+            Some(question) => question,
+        };
+        let text = self.heard.strip_suffix(end).unwrap_or(&self.heard);
         let mut lines: Vec<String> = whole_lines(text).collect();
         if let Some(key) = self.pressed.take()
             && lines.first().is_some_and(|line| line.as_bytes() == [key])

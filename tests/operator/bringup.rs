@@ -1,0 +1,439 @@
+//! `sophie bringup`: a vehicle from its factory state to `all steps passed`, with interruptions, by a builder whose
+//! replies come through a pipe and whose hands move the board's parts.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::process::{Child, ChildStdin, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use sophie_control::calibration::Face;
+use sophie_control::params::Params;
+use sophie_control::rc::{ArmChoice, StickMode, Sticks};
+use sophie_control::vector::Vec3;
+
+use super::board::{Board, Hands};
+use super::command::{Temp, command, refused};
+use super::run;
+
+/// What the accelerometer reads beyond gravity.
+const BIAS: Vec3 = Vec3::new(0.11, -0.04, 0.08);
+/// Longest wait for a prompt, whatever the load of the machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A builder at `sophie bringup`.
+struct Builder {
+    child: Child,
+    typed: ChildStdin,
+    said: Arc<Mutex<String>>,
+    /// Bytes of what was said that have been read.
+    read: usize,
+}
+
+impl Builder {
+    fn begins(temp: &Temp, board: &Board, more: &[&str]) -> Self {
+        let name = board.name();
+        let args = [&["bringup", "--port", &name, "--patience", "5"], more].concat();
+        let mut child = command(&temp.0, &args)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let said = Arc::new(Mutex::new(String::new()));
+        let (mut out, shared) = (child.stdout.take().unwrap(), said.clone());
+        std::thread::spawn(move || {
+            let mut bytes = [0; 1024];
+            while let Ok(count @ 1..) = out.read(&mut bytes) {
+                shared
+                    .lock()
+                    .unwrap()
+                    .push_str(&String::from_utf8_lossy(&bytes[..count]));
+            }
+        });
+        let typed = child.stdin.take().unwrap();
+        Self {
+            child,
+            typed,
+            said,
+            read: 0,
+        }
+    }
+
+    /// Waits until `text` is said, after what was waited for before.
+    fn hears(&mut self, text: &str) {
+        let begun = Instant::now();
+        loop {
+            let said = self.said.lock().unwrap().clone();
+            if let Some(at) = said[self.read..].find(text) {
+                self.read += at + text.len();
+                return;
+            }
+            assert!(
+                begun.elapsed() < PATIENCE && self.child.try_wait().unwrap().is_none(),
+                "'{text}' does not come:\n{}",
+                &said[self.read..]
+            );
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    fn types(&mut self, reply: &str) {
+        self.typed.write_all(format!("{reply}\n").as_bytes()).unwrap();
+    }
+
+    /// Waits for `prompt` and replies.
+    fn at(&mut self, prompt: &str, reply: &str) {
+        self.hears(prompt);
+        self.types(reply);
+    }
+
+    /// Begins the step `id`, which comes next.
+    fn step(&mut self, id: &str) {
+        self.at(&format!("({id})"), "");
+    }
+
+    /// A rest that the console asks for, after what hands do.
+    fn rests(&mut self, text: &str, hands: impl FnOnce()) {
+        self.hears(text);
+        hands();
+        self.at("Enter when it is so", "");
+    }
+
+    /// Exit status, and what was said last on stdout and stderr.
+    fn ends(mut self) -> (Option<i32>, String, String) {
+        drop(self.typed);
+        let status = self.child.wait().unwrap();
+        let mut complaint = String::new();
+        self.child
+            .stderr
+            .take()
+            .unwrap()
+            .read_to_string(&mut complaint)
+            .unwrap();
+        let begun = Instant::now();
+        loop {
+            let said = self.said.lock().unwrap().clone();
+            if said.contains("\nProtocol: ") || !complaint.is_empty() || begun.elapsed() > PATIENCE {
+                return (status.code(), said, complaint);
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+fn lies(board: &Board, side: Face) {
+    board.hands(|hands| hands.force = side.force() + BIAS);
+    // The samples of a rest are filtered.
+    board.pass(1.0);
+}
+
+/// A vehicle out of its bag.
+fn factory() -> Board {
+    Board::new(Hands {
+        force: Face::Belly.force() + BIAS,
+        tilt: [0.04; 4],
+        brown_out_set: false,
+        ..Hands::default()
+    })
+}
+
+/// From the chip to the level table.
+fn first_part(builder: &mut Builder, board: &Board) {
+    builder.step("chip");
+    builder.at("Enter sets it", "");
+    builder.step("setup");
+    builder.at("Enter keeps motor_protocol", "");
+    builder.at("Enter keeps rc_protocol", "");
+    builder.at("Enter keeps battery_capacity", "5");
+    builder.hears("battery_capacity cannot be 5");
+    builder.at("Enter keeps battery_capacity", "5400");
+    for name in ["battery_warning", "battery_critical", "infill"] {
+        builder.at(&format!("Enter keeps {name}"), "");
+    }
+    builder.hears("saving");
+    builder.step("selftest");
+    builder.step("live-imu");
+    builder.hears("Enter once they have followed");
+    for side in [Face::Right, Face::Nose] {
+        lies(board, side);
+        board.pass(6.0);
+    }
+    builder.types("");
+    lies(board, Face::Belly);
+    builder.step("live-arms");
+    builder.hears("Enter once they have followed");
+    board.hands(|hands| hands.tilt = [0.3; 4]);
+    board.pass(2.0);
+    board.hands(|hands| hands.tilt = [0.04; 4]);
+    board.pass(2.0);
+    builder.types("");
+    builder.step("live-grip");
+    builder.hears("Enter once they have followed");
+    // One pad is forgotten, and pressed in the second try.
+    board.hands(|hands| hands.counts.fsr = [1000, 1000, 0, 1000]);
+    board.pass(2.0);
+    board.hands(|hands| hands.counts.fsr = [0; 4]);
+    board.pass(2.0);
+    builder.types("");
+    builder.hears("press3 0 to 0; to be moved by 100 at least");
+    builder.at("Enter tries it again", "");
+    builder.types("");
+    builder.hears("Enter once they have followed");
+    board.hands(|hands| hands.counts.fsr = [1000; 4]);
+    board.pass(2.0);
+    board.hands(|hands| hands.counts.fsr = [0; 4]);
+    board.pass(2.0);
+    builder.types("");
+    builder.step("mounting");
+    for side in [Face::Belly, Face::Nose, Face::Right] {
+        builder.rests(side.text(), || lies(board, side));
+    }
+    builder.hears("mounted as the firmware has it");
+    builder.hears("passed");
+    lies(board, Face::Belly);
+    builder.step("gyro");
+    builder.at("Enter when it is so", "");
+    builder.step("level");
+    builder.at("Enter for the level table", "");
+    builder.at("Enter when it is so", "");
+}
+
+/// The arms' sensors from `first` on; that of arm 4 is mounted the other way round.
+fn arms(builder: &mut Builder, board: &Board, first: usize) {
+    for arm in first..=4 {
+        builder.step(&format!("arm-{arm}"));
+        builder.at("Enter when it is so", "");
+        builder.rests("Bend its tip up", || {
+            board.hands(|hands| hands.tilt[arm - 1] += if arm == 4 { -0.3 } else { 0.3 });
+            board.pass(1.0);
+        });
+        builder.hears("passed");
+        board.hands(|hands| hands.tilt = [0.04; 4]);
+    }
+}
+
+/// From the pressure sensors to the rotors.
+fn sensors_and_actuators(builder: &mut Builder, board: &Board) {
+    for sensor in 1..=4 {
+        builder.step(&format!("fsr-{sensor}"));
+        builder.at("Weight in N", if sensor == 1 { "1.4" } else { "" });
+        builder.at("Enter when it is so", "");
+        builder.rests("Put the weight", || {
+            board.hands(|hands| hands.counts.fsr[sensor - 1] = 2047);
+            board.pass(1.0);
+        });
+        builder.hears("Take the weight off");
+        board.hands(|hands| hands.counts.fsr = [0; 4]);
+        board.pass(1.0);
+        builder.types("");
+    }
+    for servo in 1..=4 {
+        builder.step(&format!("servo-{servo}"));
+        builder.at("+ or - moves it", "+3");
+        builder.at("580 us", "");
+        builder.at("full mark", "--");
+        builder.at("2430 us", "");
+    }
+    builder.step("battery");
+    builder.at("Type off", "yes");
+    builder.at("Type off", "off");
+    builder.at("Volts that the meter shows", "15.5");
+    builder.at("Enter when it is so", "");
+    builder.step("esc");
+    builder.at("Type off", "off");
+    for _ in 0..4 {
+        builder.at("Did it turn", "y");
+    }
+    builder.step("rotors");
+    for (rotor, way) in [("1", "a"), ("2", "c"), ("3", "c"), ("4", "a")] {
+        builder.at("Which rotor turned", rotor);
+        builder.at("From above", way);
+    }
+}
+
+#[test]
+fn a_vehicle_is_brought_up_over_four_sessions() {
+    let (temp, board) = (Temp::new("bringup-whole"), factory());
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    builder.hears("on table, chip 0x450 0x2003");
+    first_part(&mut builder, &board);
+    builder.at("(arm-1)", "q");
+    let (status, said, complaint) = builder.ends();
+    assert_eq!((status, &*complaint), (Some(1), ""), "{said}");
+    assert!(said.contains("\nStopped. not done: arm-1, arm-2"), "{said}");
+    assert!(
+        !said.contains('\x1b') && said.lines().all(|line| line.len() <= 79),
+        "{said}"
+    );
+    let file = || fs::read_to_string(temp.0.join("bringup.toml")).unwrap();
+    assert!(
+        file().contains("id = \"level\"") && file().contains("accel_bias_x = 0.11"),
+        "{}",
+        file()
+    );
+    assert!((board.stored().accel_bias_x - 0.11).abs() < 1e-3);
+    assert!((board.stored().battery_capacity - 5400.0).abs() < 1.0);
+
+    // The line is lost in the midst of a step.
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    arms(&mut builder, &board, 1);
+    builder.step("fsr-1");
+    board.hands(|hands| hands.dies_at = Some("Put the weight"));
+    builder.at("Weight in N", "");
+    builder.at("Enter when it is so", "");
+    let (status, _, complaint) = builder.ends();
+    assert_eq!(status, Some(1));
+    assert!(
+        complaint.contains("fell silent for 5 s after 'calibrate fsr 1 1.3'"),
+        "{complaint}"
+    );
+    board.hands(|hands| (hands.dies_at, hands.mute) = (None, false));
+    let stored = board.stored();
+    assert_eq!(
+        (stored.get("arm_sign_1"), stored.get("arm_sign_4")),
+        (Some(1.0), Some(-1.0))
+    );
+
+    // The input ends with the radio's step; a step is skipped.
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    builder.hears("not done: fsr-1");
+    sensors_and_actuators(&mut builder, &board);
+    builder.at("(radio)", "s");
+    builder.hears("skipped");
+    let (status, said, _) = builder.ends();
+    assert!(
+        status == Some(1) && said.contains("\nStopped. skipped: radio; not done: final"),
+        "{said}"
+    );
+
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    builder.at("(radio)", "");
+    builder.at("Type off", "off");
+    // Nothing is moved: it fails, and is left for a second try.
+    board.hands(|hands| hands.sticks = Some(Sticks::default()));
+    board.pass(1.0);
+    builder.at("Enter once they have followed", "");
+    builder.hears("thrott 0 to 0; 0.02 to 0.95 at least");
+    builder.at("Enter tries it again", "");
+    board.pass(1.0);
+    builder.types("");
+    radio(&mut builder, &board);
+    builder.step("final");
+    let (status, said, complaint) = builder.ends();
+    assert_eq!((status, &*complaint), (Some(0), ""), "{said}");
+    assert!(said.contains("\nall 26 steps passed"), "{said}");
+    assert!(file().contains("state = \"all 26 steps passed\""), "{}", file());
+    // Nothing is asked again.
+    let done = run(&temp, &["bringup", "--port", &board.name()]);
+    assert!(
+        done.status == Some(0) && !done.said.contains("(chip)"),
+        "{done:?}"
+    );
+
+    // What the board has lost is asked again, and nothing else.
+    board.type_and_leave(b"set fsr_zero_2 1\r");
+    let done = run(&temp, &["bringup", "--port", &board.name()]);
+    assert_eq!(done.status, Some(1));
+    assert!(
+        done.said
+            .contains("fsr-2 is to be done again: fsr_zero_2 is 1 at the board, was "),
+        "{done:?}"
+    );
+    assert!(done.said.contains("not done: fsr-2\n"), "{done:?}");
+}
+
+/// Sticks to their ends, switches through their positions, then the transmitter off and on.
+fn radio(builder: &mut Builder, board: &Board) {
+    let ends = |sign: f32, on: bool| Sticks {
+        roll: sign,
+        pitch: sign,
+        yaw: sign,
+        throttle: 1.0,
+        arm_switch: on,
+        perch_switch: on,
+        stick_mode: if on { StickMode::Direct } else { StickMode::Angle },
+        arms: if on { ArmChoice::Rear } else { ArmChoice::All },
+    };
+    builder.hears("Enter once they have followed");
+    for sticks in [ends(1.0, true), ends(-1.0, false), Sticks::default()] {
+        board.hands(|hands| hands.sticks = Some(sticks));
+        board.pass(1.0);
+    }
+    builder.types("");
+    builder.hears("switch the transmitter off");
+    board.hands(|hands| hands.sticks = None);
+    builder.types("");
+    builder.hears("on again");
+    board.hands(|hands| hands.sticks = Some(Sticks::default()));
+    builder.types("");
+}
+
+#[test]
+fn a_file_that_is_no_protocol_is_left_alone() {
+    let (temp, board) = (Temp::new("bringup-file"), Board::new(Hands::default()));
+    let name = board.name();
+    let tried = |file: &str| run(&temp, &["bringup", "--port", &name, "--protocol", file]);
+    for (text, why) in [
+        ("[params]\ninfill = 8\n", "is no protocol of a bring-up: "),
+        ("not toml", "is no protocol of a bring-up: "),
+    ] {
+        temp.file("p.toml", text.as_bytes());
+        tried("p.toml").complains(2, why);
+        assert_eq!(fs::read_to_string(temp.0.join("p.toml")).unwrap(), text);
+    }
+    tried("nowhere/p.toml").complains(2, "nowhere/p.toml: cannot be written");
+    tried(".").complains(2, ".: is no file");
+    // That of another board.
+    assert_eq!(tried("mine.toml").status, Some(1));
+    let mine = fs::read_to_string(temp.0.join("mine.toml")).unwrap();
+    temp.file("other.toml", mine.replace("on table", "on f405").as_bytes());
+    tried("other.toml").complains(2, "on f405, 0x450 0x2003; this is SOPHIE");
+    let line = refused(&temp, &["bringup", "--port", "tcp:127.0.0.1:1"]);
+    assert!(line.contains("tcp:127.0.0.1:1: cannot be opened"), "{line}");
+    assert!(!temp.0.join("bringup.toml").exists());
+    run(&temp, &["bringup", "--port", &name, "--again", "arm-5"])
+        .complains(2, "--again arm-5: allowed chip, setup");
+}
+
+#[test]
+fn a_board_that_refuses_fails_the_step() {
+    let (temp, board) = (Temp::new("bringup-refused"), Board::new(Hands::default()));
+    let mut builder = Builder::begins(&temp, &board, &[]);
+    builder.step("chip");
+    for id in [
+        "setup",
+        "selftest",
+        "live-imu",
+        "live-arms",
+        "live-grip",
+        "mounting",
+        "gyro",
+    ] {
+        builder.at(&format!("({id})"), "s");
+    }
+    builder.at("(level)", "");
+    // Far from level.
+    board.hands(|hands| hands.force = Face::Belly.force() + Vec3::new(0.0, 0.85, 0.0));
+    board.pass(1.0);
+    builder.at("Enter for the level table", "");
+    builder.at("Enter when it is so", "");
+    builder.hears("not taken: bias along y is 0.85");
+    builder.hears("FAILED");
+    builder.at("Enter tries it again", "s");
+    builder.at("(arm-1)", "");
+    // The console ends what is left unanswered for a minute of its own.
+    builder.hears("Enter when it is so");
+    board.pass(62.0);
+    builder.types("");
+    builder.hears("the console has waited too long");
+    builder.hears("FAILED");
+    builder.at("Enter tries it again", "q");
+    let (status, said, _) = builder.ends();
+    assert_eq!(status, Some(1));
+    assert!(
+        said.contains("Stopped. failed: level, arm-1; skipped: setup, selftest"),
+        "{said}"
+    );
+    assert!(board.stored() == Params::DEFAULT);
+}

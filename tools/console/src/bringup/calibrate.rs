@@ -1,0 +1,149 @@
+//! Steps that the console's `calibrate` and `rotors` lead through.
+
+use sophie_tasks::decimal;
+
+use super::walk::{Stop, Verdict, Walk};
+use super::{Judged, Step};
+
+/// What the last line of a calibration has that was taken.
+const TAKEN: [&str; 3] = [", in force after save", ", as in force", "nothing to store"];
+
+/// Leads through `command`, stores what it gives, and judges by its last line.
+fn calibrated(walk: &mut Walk<'_>, command: &str) -> Judged {
+    calibrated_then(walk, command, None)
+}
+
+/// The same; before the board restarts with what was taken, hands do what `first` asks for.
+fn calibrated_then(walk: &mut Walk<'_>, command: &str, first: Option<&str>) -> Judged {
+    let said = walk.dialogue(command)?;
+    let last = said.last().map_or("", String::as_str);
+    let taken = TAKEN.iter().any(|text| last.ends_with(text));
+    let mut verdict = Verdict {
+        shown: true,
+        ..Verdict::of(taken, figures(&said))
+    };
+    if taken {
+        if let Some(first) = first {
+            walk.ask(first)?;
+        }
+        verdict.parameters = walk.keep(&said)?;
+    }
+    Ok(verdict)
+}
+
+/// What was found, without what was to be done.
+fn figures(said: &[String]) -> Vec<String> {
+    let found = |line: &&String| {
+        let line = line.as_str();
+        line.contains(" -> ")
+            || TAKEN.iter().any(|text| line.ends_with(text))
+            || [
+                "not ",
+                "scale ",
+                "output ",
+                "ended",
+                "refused",
+                "controller ",
+                "all ",
+                "after the change",
+                "nose is",
+            ]
+            .iter()
+            .any(|begin| line.starts_with(begin))
+    };
+    let mut figures: Vec<String> = said.iter().filter(found).cloned().collect();
+    if figures.is_empty() {
+        figures.extend(said.last().cloned());
+    }
+    figures
+}
+
+pub(super) fn mounting(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    calibrated(walk, "calibrate mounting")
+}
+
+pub(super) fn gyro(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    walk.ready()?;
+    calibrated(walk, "calibrate gyro")
+}
+
+pub(super) fn level(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    loop {
+        match &*walk.ask("Enter for the level table, 6 for six sides:")? {
+            "" => return calibrated(walk, "calibrate level"),
+            "6" => return calibrated(walk, "calibrate accel"),
+            _ => (),
+        }
+    }
+}
+
+pub(super) fn arm(walk: &mut Walk<'_>, step: &Step) -> Judged {
+    calibrated(walk, &format!("calibrate arm {}", step.number))
+}
+
+pub(super) fn fsr(walk: &mut Walk<'_>, step: &Step) -> Judged {
+    let last = walk.weight.clone();
+    let question = format!("Weight in N, 132 g are 1.3 N; Enter for {last}:");
+    let weight = number(walk, &question, Some(last))?;
+    walk.weight.clone_from(&weight);
+    // A board that starts with a pressed sensor takes its arms for closed.
+    let free = Some("Take the weight off, then Enter:");
+    calibrated_then(walk, &format!("calibrate fsr {} {weight}", step.number), free)
+}
+
+pub(super) fn servo(walk: &mut Walk<'_>, step: &Step) -> Judged {
+    walk.ready()?;
+    calibrated(walk, &format!("calibrate servo {}", step.number))
+}
+
+pub(super) fn battery(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    if let Some(refused) = walk.propellers_off()? {
+        return Ok(Verdict::of(false, vec![refused]));
+    }
+    let volts = number(walk, "Volts that the meter shows at the battery's plug:", None)?;
+    let mut verdict = calibrated(walk, &format!("calibrate battery {volts}"))?;
+    let status = walk.ready()?;
+    verdict.figures.push(format!("meter {volts} V"));
+    verdict
+        .figures
+        .extend(status.into_iter().filter(|line| line.starts_with("battery ")));
+    Ok(verdict)
+}
+
+pub(super) fn esc(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    walk.ready()?;
+    if let Some(refused) = walk.propellers_off()? {
+        return Ok(Verdict::of(false, vec![refused]));
+    }
+    calibrated(walk, "calibrate esc")
+}
+
+pub(super) fn rotors(walk: &mut Walk<'_>, _: &Step) -> Judged {
+    walk.ready()?;
+    if let Some(refused) = walk.propellers_off()? {
+        return Ok(Verdict::of(false, vec![refused]));
+    }
+    let said = walk.dialogue("rotors")?;
+    let right = said
+        .last()
+        .is_some_and(|line| line == "all rotors as they should");
+    Ok(Verdict {
+        shown: true,
+        ..Verdict::of(right, figures(&said))
+    })
+}
+
+/// A number that the builder types; Enter takes `usual`.
+fn number(walk: &mut Walk<'_>, question: &str, usual: Option<String>) -> Result<String, Stop> {
+    loop {
+        let reply = walk.ask(question)?;
+        if reply.is_empty()
+            && let Some(usual) = &usual
+        {
+            return Ok(usual.clone());
+        }
+        if decimal::parse(&reply).is_some() {
+            return Ok(reply);
+        }
+    }
+}
