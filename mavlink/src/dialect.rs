@@ -387,6 +387,48 @@ impl Default for MotorTestThrottleType {
         Self::DEFAULT
     }
 }
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+#[derive(Debug, Copy, Clone, PartialEq, FromPrimitive, ToPrimitive)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "type"))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[repr(u32)]
+pub enum SophieArmState {
+    #[doc = "Tendon slack, no pressure."]
+    SOPHIE_ARM_STATE_FREE = 0,
+    #[doc = "Tendon winding, no contact yet."]
+    SOPHIE_ARM_STATE_CLOSING = 1,
+    #[doc = "Pressure rising."]
+    SOPHIE_ARM_STATE_TOUCHING = 2,
+    #[doc = "Pressure within its tolerance, force below its limit, for the dwell time."]
+    SOPHIE_ARM_STATE_HOLDING = 3,
+    #[doc = "Force limit reached before the pressure."]
+    SOPHIE_ARM_STATE_FORCE_LIMITED = 4,
+    #[doc = "A sensor failed: the force is held."]
+    SOPHIE_ARM_STATE_FAULTY = 5,
+    #[doc = "Tendon paying out."]
+    SOPHIE_ARM_STATE_RELEASING = 6,
+    #[doc = "The clamp loop is silent."]
+    SOPHIE_ARM_STATE_UNKNOWN = 255,
+}
+impl SophieArmState {
+    pub const DEFAULT: Self = Self::SOPHIE_ARM_STATE_FREE;
+}
+impl Default for SophieArmState {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+bitflags! { # [cfg_attr (feature = "ts-rs" , derive (TS))] # [cfg_attr (feature = "ts-rs" , ts (export , type = "number"))] # [cfg_attr (feature = "serde" , derive (Serialize , Deserialize))] # [cfg_attr (feature = "arbitrary" , derive (Arbitrary))] # [derive (Debug , Copy , Clone , PartialEq)] pub struct SophieGripFlags : u16 { # [doc = "Every chosen arm holds."] const SOPHIE_GRIP_FLAGS_PROVEN = 1 ; # [doc = "Every arm is free."] const SOPHIE_GRIP_FLAGS_RELEASED = 2 ; } }
+impl SophieGripFlags {
+    pub const DEFAULT: Self = Self::SOPHIE_GRIP_FLAGS_PROVEN;
+}
+impl Default for SophieGripFlags {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
 #[doc = "ID: 30"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -2764,6 +2806,152 @@ impl MessageData for SETUP_SIGNING_DATA {
         }
     }
 }
+#[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
+#[doc = ""]
+#[doc = "ID: 53000"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct SOPHIE_ARMS_DATA {
+    #[doc = "Time since the start."]
+    pub time_boot_ms: u32,
+    #[doc = "Tilt of each arm's tip by its own sensor, up positive."]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub tilt: [f32; 4],
+    #[doc = "Contact pressure of each arm."]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub pressure: [f32; 4],
+    #[doc = "Force asked of each tendon."]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub force: [f32; 4],
+    #[doc = "Angle to which each servo is sent, from its release mark."]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub reel: [f32; 4],
+    #[doc = "Time from the start of closing until the pressure stayed within its tolerance."]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub closure: [f32; 4],
+    #[doc = "SOPHIE_ARM_STATE of each arm."]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub state: [u8; 4],
+    #[doc = "SOPHIE_GRIP_FLAGS."]
+    pub flags: u8,
+}
+impl SOPHIE_ARMS_DATA {
+    pub const ENCODED_LEN: usize = 89usize;
+    pub const DEFAULT: Self = Self {
+        time_boot_ms: 0_u32,
+        tilt: [0.0_f32; 4usize],
+        pressure: [0.0_f32; 4usize],
+        force: [0.0_f32; 4usize],
+        reel: [0.0_f32; 4usize],
+        closure: [0.0_f32; 4usize],
+        state: [0_u8; 4usize],
+        flags: 0_u8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for SOPHIE_ARMS_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for SOPHIE_ARMS_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 53000u32;
+    const NAME: &'static str = "SOPHIE_ARMS";
+    const EXTRA_CRC: u8 = 78u8;
+    const ENCODED_LEN: usize = 89usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_boot_ms = buf.get_u32_le()?;
+        for v in &mut __struct.tilt {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        for v in &mut __struct.pressure {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        for v in &mut __struct.force {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        for v in &mut __struct.reel {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        for v in &mut __struct.closure {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        for v in &mut __struct.state {
+            let val = buf.get_u8()?;
+            *v = val;
+        }
+        __struct.flags = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u32_le(self.time_boot_ms);
+        for val in &self.tilt {
+            __tmp.put_f32_le(*val);
+        }
+        for val in &self.pressure {
+            __tmp.put_f32_le(*val);
+        }
+        for val in &self.force {
+            __tmp.put_f32_le(*val);
+        }
+        for val in &self.reel {
+            __tmp.put_f32_le(*val);
+        }
+        for val in &self.closure {
+            __tmp.put_f32_le(*val);
+        }
+        for val in &self.state {
+            __tmp.put_u8(*val);
+        }
+        __tmp.put_u8(self.flags);
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 253"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -3118,6 +3306,10 @@ pub enum MavMessage {
     SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA),
     #[doc = "ID: 256"]
     SETUP_SIGNING(SETUP_SIGNING_DATA),
+    #[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
+    #[doc = ""]
+    #[doc = "ID: 53000"]
+    SOPHIE_ARMS(SOPHIE_ARMS_DATA),
     #[doc = "ID: 253"]
     STATUSTEXT(STATUSTEXT_DATA),
     #[doc = "ID: 1"]
@@ -3130,7 +3322,7 @@ impl MavMessage {
         &[
             0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 30u32, 31u32, 36u32, 65u32, 75u32, 76u32,
             77u32, 110u32, 111u32, 147u32, 148u32, 244u32, 245u32, 251u32, 253u32, 256u32, 397u32, 435u32,
-            436u32, 437u32,
+            436u32, 437u32, 53000u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -3166,6 +3358,7 @@ impl MavMessage {
                 AVAILABLE_MODES_MONITOR_DATA::NAME,
                 AVAILABLE_MODES_MONITOR_DATA::ID,
             ),
+            (SOPHIE_ARMS_DATA::NAME, SOPHIE_ARMS_DATA::ID),
         ]
     }
 }
@@ -3225,6 +3418,7 @@ impl Message for MavMessage {
                 SERVO_OUTPUT_RAW_DATA::deser(version, payload).map(Self::SERVO_OUTPUT_RAW)
             }
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::deser(version, payload).map(Self::SETUP_SIGNING),
+            SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::deser(version, payload).map(Self::SOPHIE_ARMS),
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::deser(version, payload).map(Self::STATUSTEXT),
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::deser(version, payload).map(Self::SYS_STATUS),
             TIMESYNC_DATA::ID => TIMESYNC_DATA::deser(version, payload).map(Self::TIMESYNC),
@@ -3258,6 +3452,7 @@ impl Message for MavMessage {
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::NAME,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::NAME,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::NAME,
+            Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::NAME,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::NAME,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::NAME,
             Self::TIMESYNC(..) => TIMESYNC_DATA::NAME,
@@ -3290,6 +3485,7 @@ impl Message for MavMessage {
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::ID,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::ID,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::ID,
+            Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::ID,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::ID,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::ID,
             Self::TIMESYNC(..) => TIMESYNC_DATA::ID,
@@ -3322,6 +3518,7 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::NAME => Some(SCALED_IMU_DATA::ID),
             SERVO_OUTPUT_RAW_DATA::NAME => Some(SERVO_OUTPUT_RAW_DATA::ID),
             SETUP_SIGNING_DATA::NAME => Some(SETUP_SIGNING_DATA::ID),
+            SOPHIE_ARMS_DATA::NAME => Some(SOPHIE_ARMS_DATA::ID),
             STATUSTEXT_DATA::NAME => Some(STATUSTEXT_DATA::ID),
             SYS_STATUS_DATA::NAME => Some(SYS_STATUS_DATA::ID),
             TIMESYNC_DATA::NAME => Some(TIMESYNC_DATA::ID),
@@ -3361,6 +3558,7 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::default())),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::default())),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::default())),
+            SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::default())),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::default())),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::default())),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::default())),
@@ -3409,6 +3607,7 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::random(rng))),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::random(rng))),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::random(rng))),
+            SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::random(rng))),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::random(rng))),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::random(rng))),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::random(rng))),
@@ -3442,6 +3641,7 @@ impl Message for MavMessage {
             Self::SCALED_IMU(body) => body.ser(version, bytes),
             Self::SERVO_OUTPUT_RAW(body) => body.ser(version, bytes),
             Self::SETUP_SIGNING(body) => body.ser(version, bytes),
+            Self::SOPHIE_ARMS(body) => body.ser(version, bytes),
             Self::STATUSTEXT(body) => body.ser(version, bytes),
             Self::SYS_STATUS(body) => body.ser(version, bytes),
             Self::TIMESYNC(body) => body.ser(version, bytes),
@@ -3474,6 +3674,7 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::ID => SCALED_IMU_DATA::EXTRA_CRC,
             SERVO_OUTPUT_RAW_DATA::ID => SERVO_OUTPUT_RAW_DATA::EXTRA_CRC,
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
+            SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::EXTRA_CRC,
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::EXTRA_CRC,
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::EXTRA_CRC,
             TIMESYNC_DATA::ID => TIMESYNC_DATA::EXTRA_CRC,

@@ -1,4 +1,4 @@
-//! Frames on the wire, one direction each.
+//! Frames that are sent.
 
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 
@@ -28,8 +28,8 @@ impl Encoder {
         }
     }
 
-    /// The frame of `message`, with its trailing zeros left out.
-    pub fn encode<M: MessageData>(&mut self, message: &M) -> &[u8] {
+    /// Makes the frame of `message`, with its trailing zeros left out; returns its length.
+    pub fn encode<M: MessageData>(&mut self, message: &M) -> u32 {
         let header = MavHeader {
             system_id: SYSTEM.into(),
             component_id: COMPONENT,
@@ -37,6 +37,11 @@ impl Encoder {
         };
         self.sequence = self.sequence.wrapping_add(1);
         self.raw.serialize_message_data(header, message);
+        self.frame().len() as u32
+    }
+
+    /// The frame that was made last.
+    pub fn frame(&self) -> &[u8] {
         self.raw.raw_bytes()
     }
 }

@@ -13,6 +13,8 @@
     clippy::panic
 )]
 
+pub mod budget;
+pub mod commands;
 #[allow(
     missing_docs,
     non_camel_case_types,
@@ -24,8 +26,13 @@
 )]
 pub mod dialect;
 pub mod frame;
+pub mod messages;
+pub mod parameters;
+pub mod parser;
 pub mod server;
+pub mod streams;
+pub mod texts;
 pub mod vehicle;
 
-pub use self::server::Server;
-pub use self::vehicle::Vehicle;
+pub use self::server::{Order, Server};
+pub use self::vehicle::{Condition, Vehicle};

@@ -44,6 +44,7 @@ pub mod servos;
 pub mod shared;
 pub mod silence;
 pub mod start;
+pub mod storing;
 pub mod supervisor;
 pub mod telemetry;
 pub mod timing;
