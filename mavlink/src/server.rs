@@ -73,6 +73,28 @@ impl Answer {
     }
 }
 
+/// What a command is answered with.
+struct Reply {
+    result: MavResult,
+    /// What was asked for, behind the acknowledgement: clients wait for that first.
+    then: Option<Answer>,
+}
+
+impl From<MavResult> for Reply {
+    fn from(result: MavResult) -> Self {
+        Self { result, then: None }
+    }
+}
+
+impl From<Answer> for Reply {
+    fn from(answer: Answer) -> Self {
+        Self {
+            result: MavResult::MAV_RESULT_ACCEPTED,
+            then: Some(answer),
+        }
+    }
+}
+
 /// The server of one link.
 pub struct Server {
     parser: Parser,
@@ -273,12 +295,14 @@ impl Server {
                 }
             }
             Request::Command(command) => {
-                if let Some(result) = self.command(command, now, vehicle) {
-                    self.answer(Answer::Ack {
-                        command: command.number,
-                        result,
-                        to: from,
-                    });
+                let reply = self.command(command, now, vehicle);
+                self.answer(Answer::Ack {
+                    command: command.number,
+                    result: reply.result,
+                    to: from,
+                });
+                if let Some(answer) = reply.then {
+                    self.answer(answer);
                 }
             }
             Request::ParamList => self.parameters.list(),
@@ -316,38 +340,21 @@ impl Server {
         }
     }
 
-    /// Obeys a command; `None` where its own answer comes later.
-    fn command(&mut self, command: &Command, now: u64, vehicle: &Vehicle) -> Option<MavResult> {
+    /// Obeys a command.
+    fn command(&mut self, command: &Command, now: u64, vehicle: &Vehicle) -> Reply {
         let [first, second, ..] = command.params;
-        Some(match u32::from(command.number) {
-            n if n == MavCmd::MAV_CMD_REQUEST_MESSAGE as u32 => self.send_once(first, second),
-            n if n == MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u32 => self.set_interval(first, second, now),
+        match u32::from(command.number) {
+            n if n == MavCmd::MAV_CMD_REQUEST_MESSAGE as u32 => once(first, second),
+            n if n == MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u32 => {
+                self.set_interval(first, second, now).into()
+            }
             n if n == MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u32 => self.get_interval(first),
-            n if n == MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u32 => self.reboot(first, now, vehicle),
-            n if n == MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u32 => self.storage(first, vehicle),
-            _ => MavResult::MAV_RESULT_UNSUPPORTED,
-        })
-    }
-
-    fn send_once(&mut self, id: f32, index: f32) -> MavResult {
-        let Some(id) = whole(id) else {
-            return MavResult::MAV_RESULT_DENIED;
-        };
-        let answer = match id {
-            AUTOPILOT_VERSION_DATA::ID => Answer::Version,
-            AVAILABLE_MODES_DATA::ID => match whole(index) {
-                Some(0) => Answer::Mode { index: 1, all: true },
-                Some(index) if index as usize <= Mode::ALL.len() => Answer::Mode {
-                    index: index as u8,
-                    all: false,
-                },
-                _ => return MavResult::MAV_RESULT_DENIED,
-            },
-            id if STREAMS.iter().any(|stream| stream.id == id) => Answer::Stream(id),
-            _ => return MavResult::MAV_RESULT_UNSUPPORTED,
-        };
-        self.answer(answer);
-        MavResult::MAV_RESULT_ACCEPTED
+            n if n == MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u32 => {
+                self.reboot(first, now, vehicle).into()
+            }
+            n if n == MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u32 => self.storage(first, vehicle).into(),
+            _ => MavResult::MAV_RESULT_UNSUPPORTED.into(),
+        }
     }
 
     fn set_interval(&mut self, id: f32, interval: f32, now: u64) -> MavResult {
@@ -370,9 +377,9 @@ impl Server {
         }
     }
 
-    fn get_interval(&mut self, id: f32) -> MavResult {
+    fn get_interval(&mut self, id: f32) -> Reply {
         let Some(id) = whole(id).and_then(|id| u16::try_from(id).ok()) else {
-            return MavResult::MAV_RESULT_DENIED;
+            return MavResult::MAV_RESULT_DENIED.into();
         };
         let interval_us = match self.schedule.period(id.into()) {
             Some(0) => -1,
@@ -380,8 +387,7 @@ impl Server {
             // 0: not available.
             None => 0,
         };
-        self.answer(Answer::Interval { id, interval_us });
-        MavResult::MAV_RESULT_ACCEPTED
+        Answer::Interval { id, interval_us }.into()
     }
 
     fn reboot(&mut self, autopilot: f32, now: u64, vehicle: &Vehicle) -> MavResult {
@@ -412,6 +418,27 @@ impl Server {
             format_args!("refused: disarm first"),
         );
         MavResult::MAV_RESULT_TEMPORARILY_REJECTED
+    }
+}
+
+/// A message that is asked for once; `index` says which of several.
+fn once(id: f32, index: f32) -> Reply {
+    let Some(id) = whole(id) else {
+        return MavResult::MAV_RESULT_DENIED.into();
+    };
+    match id {
+        AUTOPILOT_VERSION_DATA::ID => Answer::Version.into(),
+        AVAILABLE_MODES_DATA::ID => match whole(index) {
+            Some(0) => Answer::Mode { index: 1, all: true }.into(),
+            Some(index) if index as usize <= Mode::ALL.len() => Answer::Mode {
+                index: index as u8,
+                all: false,
+            }
+            .into(),
+            _ => MavResult::MAV_RESULT_DENIED.into(),
+        },
+        id if STREAMS.iter().any(|stream| stream.id == id) => Answer::Stream(id).into(),
+        _ => MavResult::MAV_RESULT_UNSUPPORTED.into(),
     }
 }
 

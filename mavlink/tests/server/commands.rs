@@ -39,6 +39,9 @@ fn a_message_is_sent_when_asked_for() {
     let ask = MavCmd::MAV_CMD_REQUEST_MESSAGE;
     assert_eq!(station.command(ask, [148.0, 0.0]), [ACCEPTED]);
     assert_eq!(station.got::<AUTOPILOT_VERSION_DATA>().len(), 1);
+    // Clients wait for the acknowledgement, and then for the message.
+    let place = |id| station.sent.iter().position(|sent| sent.id == id);
+    assert!(place(77) < place(148));
     assert_eq!(station.command(ask, [435.0, 0.0]), [ACCEPTED]);
     station.run(1000);
     let modes = station.got::<AVAILABLE_MODES_DATA>();
