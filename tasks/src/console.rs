@@ -21,7 +21,6 @@ mod watch;
 
 use embassy_futures::yield_now;
 use embassy_time::{Duration, Timer};
-use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
 use self::command::{Command, HELP, parse};
@@ -31,6 +30,7 @@ pub use self::nearest::edits;
 use self::output::Output;
 use crate::links::{Links, Status};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use crate::storing;
 
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
@@ -149,10 +149,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     /// Motors stand still, as far as the commander says.
     fn stopped(&self) -> Result<(), Option<Status>> {
-        match self.links.status.fresh() {
-            Some(status) if matches!(status.mode, Mode::Disarmed | Mode::Calibrating) => Ok(()),
-            status => Err(status),
-        }
+        storing::stopped(self.links)
     }
 
     async fn refuse(&mut self, what: &str, status: Option<Status>) {

@@ -329,7 +329,7 @@ links! {
     /// Filtered inertial samples.
     imu: ImuSample, Imu to "estimator", stale after 5 ms;
     /// The estimate.
-    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor, console", stale after 5 ms;
+    attitude: Attitude, Estimator to "control, commander, arms, telemetry, supervisor, console, mavlink", stale after 5 ms;
     /// What the rotors are to do; without it they stop.
     setpoint: Setpoint, Commander to "control", stale after 50 ms;
     /// What the controllers ask of the mixer.
@@ -337,15 +337,15 @@ links! {
     /// Where down is aimed at in body axes, and the wanted heading against the present one.
     target: Target, Control to "log", stale after 50 ms;
     /// What the mixer gave, and to `control` what it could not give; without it the motors stop.
-    mix: MixOutput, Mixer to "motors, control, clamp, commander, supervisor", stale after 10 ms;
+    mix: MixOutput, Mixer to "motors, control, clamp, commander, supervisor, mavlink", stale after 10 ms;
     /// Contact pressures; without them closed arms keep their force and are faulty.
     contact: Contact, Analog to "clamp, commander, console", stale after 20 ms;
     /// The flight battery, with each fifth conversion; the mixer keeps the last one.
-    battery: Battery, Analog to "mixer, commander, telemetry, console", stale after 500 ms;
+    battery: Battery, Analog to "mixer, commander, telemetry, console, mavlink", stale after 500 ms;
     /// What the converter gave, with each fifth conversion.
     counts: AnalogFrame, Analog to "console", stale after 100 ms;
     /// Tilt of the arms, each with its own time; without one its servo stays.
-    arms: ArmAngles, Arms to "mixer, clamp, servos, console", stale after 100 ms;
+    arms: ArmAngles, Arms to "mixer, clamp, servos, console, mavlink", stale after 100 ms;
     /// What the tendons are to do; without it the clamp makes no step and sends nothing.
     clamp_command: ClampCommand, Commander to "clamp", stale after 200 ms;
     /// Forces, with the time of what they follow from; without them the servos stay, before the first there are no pulses.
@@ -353,15 +353,15 @@ links! {
     /// Tension that the servos can be giving, N, as old as the oldest tilt in it; without it nothing is proven free.
     tension: PerArm<f32>, Servos to "clamp, console", stale after 200 ms;
     /// Angle to which each servo is sent, rad from release.
-    reel_angle: PerArm<f32>, Servos to "supervisor, console", stale after 200 ms;
+    reel_angle: PerArm<f32>, Servos to "supervisor, console, mavlink", stale after 200 ms;
     /// The grip that must outlive a reset.
     grip_memory: GripMemory, Commander to "supervisor", stale after 200 ms;
     /// The judgement, of the time of its pressures, or of the command where none is fresh: closed arms are faulty then.
-    grip: GripState, Clamp to "commander, supervisor", stale after 100 ms;
+    grip: GripState, Clamp to "commander, supervisor, mavlink", stale after 100 ms;
     /// The pilot's wishes, as frames come; without them failsafe.
-    rc: RcState, Rc to "commander, console", stale after 500 ms;
+    rc: RcState, Rc to "commander, console, mavlink", stale after 500 ms;
     /// The commander's view.
-    status: Status, Commander to "telemetry, console, log", stale after 200 ms;
+    status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
     /// What a builder tries on the table, renewed while it lasts; without it motors stop and servos go to release.
     bench: BenchRequest, Console to "commander", stale after 150 ms;
     /// What has become of it.

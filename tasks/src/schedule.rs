@@ -124,6 +124,8 @@ tasks! {
     Arms "arms": Background, each 10000 us at 0 us, within 10000 us, Unwatched;
     /// Telemetry to the pilot.
     Telemetry "telemetry": Background, each 50000 us at 0 us, within 50000 us, Unwatched;
+    /// MAVLink: what is due to ground stations.
+    Mavlink "mavlink": Background, each 20000 us at 0 us, within 20000 us, Unwatched;
     /// Bench commands, renewed while one lasts; what else the console does has no rate.
     Console "console": Background, each 50000 us, within 50000 us, Unwatched;
     /// Deadline supervision and watchdog, which bites when it stands still.

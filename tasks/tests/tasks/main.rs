@@ -13,6 +13,7 @@ mod declarations;
 mod imu;
 mod last_value;
 mod links;
+mod mavlink;
 mod mixer;
 mod parameters;
 mod pilot_page;

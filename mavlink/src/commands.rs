@@ -1,0 +1,119 @@
+//! What others may ask: the messages that are taken, and commands in one shape.
+
+use mavlink_core::{MavlinkVersion, MessageData};
+
+use crate::dialect::*;
+use crate::frame::{COMPONENT, SYSTEM};
+use crate::parser::Frame;
+
+/// Who asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Peer {
+    /// Its system.
+    pub system: u8,
+    /// Its component.
+    pub component: u8,
+}
+
+/// A command, long or int.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Command {
+    /// Its number.
+    pub number: u16,
+    /// Its first four parameters, then the seventh: none of those that are obeyed uses a place on earth.
+    pub params: [f32; 5],
+}
+
+/// What a frame asks.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// Someone is there.
+    Heartbeat,
+    /// To be answered with the same.
+    Ping(PING_DATA),
+    /// To be answered with the vehicle's time.
+    Timesync(TIMESYNC_DATA),
+    /// A command.
+    Command(Command),
+    /// All parameters.
+    ParamList,
+    /// One parameter.
+    ParamRead(PARAM_REQUEST_READ_DATA),
+    /// A parameter's new value.
+    ParamSet(PARAM_SET_DATA),
+}
+
+/// What the checksum of message `id` begins with; `None` for those that are not taken.
+pub const fn crc_extra(id: u32) -> Option<u8> {
+    Some(match id {
+        HEARTBEAT_DATA::ID => HEARTBEAT_DATA::EXTRA_CRC,
+        PING_DATA::ID => PING_DATA::EXTRA_CRC,
+        TIMESYNC_DATA::ID => TIMESYNC_DATA::EXTRA_CRC,
+        COMMAND_LONG_DATA::ID => COMMAND_LONG_DATA::EXTRA_CRC,
+        COMMAND_INT_DATA::ID => COMMAND_INT_DATA::EXTRA_CRC,
+        PARAM_REQUEST_LIST_DATA::ID => PARAM_REQUEST_LIST_DATA::EXTRA_CRC,
+        PARAM_REQUEST_READ_DATA::ID => PARAM_REQUEST_READ_DATA::EXTRA_CRC,
+        PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,
+        _ => return None,
+    })
+}
+
+/// For this vehicle, or for all; 0 stands for all.
+const fn for_here(system: u8, component: u8) -> bool {
+    (system == 0 || system == SYSTEM) && (component == 0 || component == COMPONENT)
+}
+
+fn message<M: MessageData>(frame: &Frame<'_>) -> Option<M> {
+    M::deser(MavlinkVersion::V2, frame.payload).ok()
+}
+
+/// What `frame` asks of this vehicle; `None` for what is not for it, or cannot be read.
+pub fn request(frame: &Frame<'_>) -> Option<Request> {
+    if frame.system == SYSTEM && frame.component == COMPONENT {
+        // Its own, come back.
+        return None;
+    }
+    let (system, component, request) = match frame.id {
+        HEARTBEAT_DATA::ID => (0, 0, Request::Heartbeat),
+        PING_DATA::ID => {
+            let m: PING_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::Ping(m))
+        }
+        TIMESYNC_DATA::ID => {
+            let m: TIMESYNC_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::Timesync(m))
+        }
+        COMMAND_LONG_DATA::ID => {
+            let m: COMMAND_LONG_DATA = message(frame)?;
+            let params = [m.param1, m.param2, m.param3, m.param4, m.param7];
+            let command = Command {
+                number: m.command,
+                params,
+            };
+            (m.target_system, m.target_component, Request::Command(command))
+        }
+        COMMAND_INT_DATA::ID => {
+            let m: COMMAND_INT_DATA = message(frame)?;
+            let params = [m.param1, m.param2, m.param3, m.param4, m.z];
+            let command = Command {
+                number: m.command,
+                params,
+            };
+            (m.target_system, m.target_component, Request::Command(command))
+        }
+        PARAM_REQUEST_LIST_DATA::ID => {
+            let m: PARAM_REQUEST_LIST_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::ParamList)
+        }
+        PARAM_REQUEST_READ_DATA::ID => {
+            let m: PARAM_REQUEST_READ_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::ParamRead(m))
+        }
+        PARAM_SET_DATA::ID => {
+            let m: PARAM_SET_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::ParamSet(m))
+        }
+        _ => return None,
+    };
+    for_here(system, component).then_some(request)
+}

@@ -1,0 +1,76 @@
+//! What the server says of the vehicle: one picture of it, in the units and axes of the flight stack.
+
+use sophie_control::arming::ArmingInhibits;
+use sophie_control::battery::Battery;
+use sophie_control::chain::Attitude;
+use sophie_control::grip::GripState;
+use sophie_control::mode::{Mode, Reason};
+use sophie_control::rc::Sticks;
+use sophie_control::wrench::PerArm;
+
+/// The commander's view.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Condition {
+    /// What the vehicle is doing.
+    pub mode: Mode,
+    /// Why arming is refused, the failsafe acts or the last mode was left.
+    pub reason: Option<Reason>,
+    /// What does not stop the flight but must be known; empty where there is nothing.
+    pub warning: &'static str,
+    /// Everything that forbids arming.
+    pub inhibits: ArmingInhibits,
+}
+
+/// The vehicle at one time; `None` and NaN stand for what is not known or too old.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vehicle {
+    /// The commander's view.
+    pub condition: Option<Condition>,
+    /// The estimate.
+    pub attitude: Option<Attitude>,
+    /// The pilot's wishes.
+    pub sticks: Option<Sticks>,
+    /// The flight battery.
+    pub battery: Option<Battery>,
+    /// Usable charge of a fresh battery, A·s.
+    pub capacity: f32,
+    /// Motor commands, shares of full drive, 0 for a stopped one.
+    pub motors: Option<PerArm<f32>>,
+    /// Pulses of the tendon servos, µs.
+    pub servos: Option<PerArm<f32>>,
+    /// Tilt of the arms by their own sensors, rad, tip up.
+    pub tilt: PerArm<f32>,
+    /// Angle to which the servos are sent, rad from release.
+    pub reel: PerArm<f32>,
+    /// The grip.
+    pub grip: Option<GripState>,
+}
+
+impl Default for Vehicle {
+    fn default() -> Self {
+        Self {
+            condition: None,
+            attitude: None,
+            sticks: None,
+            battery: None,
+            capacity: 0.0,
+            motors: None,
+            servos: None,
+            tilt: [f32::NAN; 4],
+            reel: [f32::NAN; 4],
+            grip: None,
+        }
+    }
+}
+
+impl Vehicle {
+    /// What it is doing.
+    pub fn mode(&self) -> Option<Mode> {
+        self.condition.map(|condition| condition.mode)
+    }
+
+    /// Rotors stand and nothing may start them: what must not happen in flight may happen.
+    pub fn at_rest(&self) -> bool {
+        matches!(self.mode(), Some(Mode::Disarmed | Mode::Calibrating))
+    }
+}

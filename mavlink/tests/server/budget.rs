@@ -1,0 +1,130 @@
+//! The bytes that a link may take, and the table of streams in docs/mavlink.md.
+//!
+//! `WRITE_DOCS=1 cargo test --package sophie-mavlink --test server budget` rewrites the table.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use sophie_control::mode::Mode;
+use sophie_mavlink::dialect::*;
+use sophie_mavlink::streams::{STREAMS, Stream};
+
+use crate::station::{Station, frame, vehicle};
+
+/// A line of 57,600 baud with a fifth to spare: the slowest that is any use.
+const SLOWEST: u32 = 57_600 / 10 * 4 / 5;
+
+/// Every stream at its own rate with no zero left out, bytes each second.
+fn sum() -> u32 {
+    let streams = STREAMS.iter().filter(|stream| stream.period_ms > 0);
+    streams.map(|s| s.bytes * 1000 / s.period_ms).sum()
+}
+
+fn table() -> String {
+    let mut text = String::from(
+        "| message | number | period | bytes | bytes each second |\n|---|---:|---:|---:|---:|\n",
+    );
+    for s in &STREAMS {
+        let rate = s.bytes * 1000 / s.period_ms;
+        let Stream { name, id, .. } = s;
+        writeln!(
+            text,
+            "| `{name}` | {id} | {} ms | {} | {rate} |",
+            s.period_ms, s.bytes
+        )
+        .unwrap();
+    }
+    writeln!(text, "| all | | | | {} |", sum()).unwrap();
+    text
+}
+
+#[test]
+fn the_table_of_streams_in_the_docs_is_the_codes() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/mavlink.md");
+    let text = fs::read_to_string(&page).unwrap();
+    let (begin, end) = ("<!-- streams: begin -->\n", "<!-- streams: end -->");
+    let (before, rest) = text.split_once(begin).unwrap();
+    let (kept, after) = rest.split_once(end).unwrap();
+    if std::env::var_os("WRITE_DOCS").is_some() {
+        fs::write(&page, format!("{before}{begin}{}{end}{after}", table())).unwrap();
+    } else {
+        assert!(kept == table(), "run it with WRITE_DOCS=1");
+    }
+}
+
+#[test]
+fn all_streams_at_their_own_rates_fit_the_slowest_line_and_are_kept_there() {
+    assert!(sum() < SLOWEST * 3 / 4, "{}", sum());
+    let mut station = Station::with(SLOWEST);
+    station.vehicle = vehicle(Mode::Flight);
+    station.run(10_000);
+    for stream in &STREAMS {
+        let got = station.sent.iter().filter(|sent| sent.id == stream.id).count() as u32;
+        let due = 10_000 / stream.period_ms;
+        assert!(got.abs_diff(due) <= 1, "{}: {got} of {due}", stream.name);
+    }
+}
+
+/// Most bytes within any `window` µs.
+fn most(station: &Station, window: u64) -> usize {
+    let sent = &station.sent;
+    let from = |at: u64| {
+        let within = sent.iter().filter(move |s| (at..at + window).contains(&s.at));
+        within.map(|s| s.bytes).sum()
+    };
+    sent.iter().map(|s| from(s.at)).max().unwrap_or(0)
+}
+
+#[test]
+fn no_wish_of_a_ground_station_exceeds_the_budget_and_heartbeats_and_answers_come_first() {
+    let mut station = Station::with(1500);
+    station.vehicle = vehicle(Mode::Flight);
+    for stream in STREAMS.iter().filter(|s| s.id != 0) {
+        let results = station.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, [stream.id as f32, 20_000.0]);
+        assert_eq!(results, [0], "{}", stream.name);
+    }
+    station.run(2000);
+    station.sent.clear();
+    for asked in 1..=100 {
+        // A list of all parameters each time, and a question that is answered.
+        station.say(&frame(&PARAM_REQUEST_LIST_DATA {
+            target_system: 1,
+            target_component: 1,
+        }));
+        station.say(&frame(&TIMESYNC_DATA {
+            ts1: asked,
+            ..Default::default()
+        }));
+        station.run(100);
+    }
+    // What may have been saved up comes on top.
+    assert!(
+        most(&station, 1_000_000) <= 1500 + 400,
+        "{}",
+        most(&station, 1_000_000)
+    );
+    let total: usize = station.sent.iter().map(|s| s.bytes).sum();
+    assert!((13_000..15_500).contains(&total), "{total}");
+    let answers = station.got::<TIMESYNC_DATA>();
+    assert_eq!(answers.len(), 100);
+    let beats = station.got::<HEARTBEAT_DATA>().len();
+    assert!((10..=11).contains(&beats), "{beats}");
+}
+
+#[test]
+fn a_flood_of_questions_costs_its_line_alone() {
+    let mut station = Station::new();
+    let question = frame(&TIMESYNC_DATA {
+        ts1: 1,
+        ..Default::default()
+    });
+    for _ in 0..500 {
+        // 115,200 baud, full.
+        station.say(&question.repeat(230 / question.len()));
+        station.run(20);
+    }
+    assert!(most(&station, 1_000_000) <= 5000 + 1250);
+    let beats = station.got::<HEARTBEAT_DATA>().len();
+    assert!((10..=11).contains(&beats), "{beats}");
+}

@@ -1,0 +1,9 @@
+//! The server as a ground station sees it.
+
+mod budget;
+mod commands;
+mod messages;
+mod parameters;
+mod station;
+mod texts;
+mod wire;

@@ -1,0 +1,150 @@
+//! A ground station beside a server.
+
+use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
+use sophie_control::chain::Attitude;
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+use sophie_control::vector::{Quat, Vec3};
+use sophie_mavlink::dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
+use sophie_mavlink::{Condition, Order, Server, Vehicle};
+
+/// Plenty for every stream at its own rate.
+pub const PLENTY: u32 = 5000;
+/// The period of the task that serves a line, µs.
+pub const PERIOD: u64 = 20_000;
+
+/// A vehicle at rest that nothing is wrong with.
+pub fn vehicle(mode: Mode) -> Vehicle {
+    Vehicle {
+        condition: Some(Condition {
+            mode,
+            ..Condition::default()
+        }),
+        attitude: Some(Attitude {
+            q: Quat::default(),
+            accel: Vec3::new(0.0, 0.0, -9.80665),
+            calibrated: true,
+            ..Attitude::default()
+        }),
+        sticks: Some(sophie_control::rc::Sticks::default()),
+        battery: Some(sophie_control::battery::Battery {
+            voltage: 15.2,
+            ..Default::default()
+        }),
+        capacity: 6480.0,
+        ..Vehicle::default()
+    }
+}
+
+/// A frame of `message` from system 255, component 190.
+pub fn frame<M: MessageData>(message: &M) -> Vec<u8> {
+    frame_from(255, message)
+}
+
+/// A frame of `message` from `system`.
+pub fn frame_from<M: MessageData>(system: u8, message: &M) -> Vec<u8> {
+    let mut raw = MAVLinkV2MessageRaw::new();
+    let header = MavHeader {
+        system_id: system.into(),
+        component_id: 190,
+        sequence: 0,
+    };
+    raw.serialize_message_data(header, message);
+    raw.raw_bytes().to_vec()
+}
+
+/// What the server has sent: the message's number, its payload and its whole length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sent {
+    pub at: u64,
+    pub id: u32,
+    pub payload: Vec<u8>,
+    pub bytes: usize,
+}
+
+pub struct Station {
+    pub server: Server,
+    pub vehicle: Vehicle,
+    pub now: u64,
+    pub sent: Vec<Sent>,
+    pub orders: Vec<Order>,
+}
+
+impl Station {
+    pub fn new() -> Self {
+        Self::with(PLENTY)
+    }
+
+    pub fn with(bytes_per_second: u32) -> Self {
+        Self {
+            server: Server::new(Params::DEFAULT, bytes_per_second),
+            vehicle: vehicle(Mode::Disarmed),
+            now: 0,
+            sent: Vec::new(),
+            orders: Vec::new(),
+        }
+    }
+
+    /// The server's periods for `ms`.
+    pub fn run(&mut self, ms: u64) {
+        for _ in 0..ms * 1000 / PERIOD {
+            self.now += PERIOD;
+            while let Some(frame) = self.server.send(self.now, &self.vehicle) {
+                let length = usize::from(frame[1]);
+                assert_eq!(frame.len(), length + 12);
+                self.sent.push(Sent {
+                    at: self.now,
+                    id: u32::from_le_bytes([frame[7], frame[8], frame[9], 0]),
+                    payload: frame[10..10 + length].to_vec(),
+                    bytes: frame.len(),
+                });
+            }
+            self.orders.extend(self.server.order(self.now, &self.vehicle));
+        }
+    }
+
+    pub fn say(&mut self, bytes: &[u8]) {
+        self.server.receive(bytes, self.now, &self.vehicle);
+    }
+
+    /// Every message of one kind since the start.
+    pub fn got<M: MessageData>(&self) -> Vec<M> {
+        let of = self.sent.iter().filter(|sent| sent.id == M::ID);
+        of.map(|sent| M::deser(MavlinkVersion::V2, &sent.payload).unwrap())
+            .collect()
+    }
+
+    pub fn texts(&self) -> Vec<String> {
+        let texts = self.got::<STATUSTEXT_DATA>();
+        texts
+            .iter()
+            .map(|text| text.text.to_str().unwrap().to_string())
+            .collect()
+    }
+
+    /// Sends a command and gives the result that was acknowledged.
+    pub fn command(&mut self, command: MavCmd, params: [f32; 2]) -> Vec<u8> {
+        self.command_to(1, 1, command as u16, params)
+    }
+
+    pub fn command_to(&mut self, system: u8, component: u8, command: u16, params: [f32; 2]) -> Vec<u8> {
+        self.sent.clear();
+        self.say(&frame(&COMMAND_LONG_DATA {
+            param1: params[0],
+            param2: params[1],
+            command,
+            target_system: system,
+            target_component: component,
+            ..Default::default()
+        }));
+        self.run(100);
+        let acks = self.got::<COMMAND_ACK_DATA>();
+        for ack in &acks {
+            assert_eq!(
+                (ack.command, ack.target_system, ack.target_component),
+                (command, 255, 190)
+            );
+        }
+        acks.iter().map(|ack| ack.result).collect()
+    }
+}

@@ -1,0 +1,87 @@
+//! Storing parameters: only while the motors stand, with arming refused from before to after.
+
+use embassy_time::{Duration, Instant, Timer, with_timeout};
+use sophie_control::arming::ArmingInhibit;
+use sophie_control::mode::Mode;
+use sophie_control::params::Params;
+
+use crate::links::{Links, Status};
+use crate::ports::{Storage, StorageError};
+
+/// Time that the commander has to answer: fifty of its periods.
+const COMMANDER: Duration = Duration::from_millis(500);
+/// Time between two looks at its answer.
+const LOOK: Duration = Duration::from_millis(5);
+/// Longest save: an erase takes 4 s at worst (STM32F7 datasheet, 256 KiB), and two of them may be needed.
+const LONGEST: Duration = Duration::from_secs(10);
+
+/// Motors stand still, as far as the commander says.
+///
+/// # Errors
+/// What it says instead; `None` where it is silent.
+pub fn stopped(links: &Links) -> Result<(), Option<Status>> {
+    match links.status.fresh() {
+        Some(status) if matches!(status.mode, Mode::Disarmed | Mode::Calibrating) => Ok(()),
+        status => Err(status),
+    }
+}
+
+/// Refuses arming from here on, unless the motors may turn.
+///
+/// # Errors
+/// What the commander says then; `None` where it is silent.
+pub async fn hold_arming(links: &Links) -> Result<(), Option<Status>> {
+    stopped(links)?;
+    links.report(ArmingInhibit::Storing, true);
+    // The pilot may have armed just before: what counts is what the commander says after it has seen the report.
+    let seen = with_timeout(COMMANDER, next_status(links)).await;
+    let held = seen.map_err(|_| None).and_then(|()| stopped(links));
+    if held.is_err() {
+        links.report(ArmingInhibit::Storing, false);
+    }
+    held
+}
+
+/// Waits for a status that was decided from now on.
+async fn next_status(links: &Links) {
+    let asked = Instant::now();
+    while links.status.latest().is_none_or(|status| status.at <= asked) {
+        Timer::after(LOOK).await;
+    }
+}
+
+/// Stores `params` while arming is held, and reports what the storage is like. Arming stays refused after a success.
+///
+/// # Errors
+/// Storage that is full or broken; arming is held no longer then.
+pub async fn save(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), StorageError> {
+    let saved = with_timeout(LONGEST, storage.save(params))
+        .await
+        .unwrap_or(Err(StorageError::Broken));
+    match saved {
+        Ok(()) => {
+            links.report(ArmingInhibit::StorageFull, false);
+            links.report(ArmingInhibit::StorageUnreadable, false);
+            links.report(ArmingInhibit::StorageForeign, false);
+        }
+        Err(error) => {
+            let reason = match error {
+                StorageError::Full => ArmingInhibit::StorageFull,
+                StorageError::Broken => ArmingInhibit::StorageUnreadable,
+            };
+            links.report(reason, true);
+            links.report(ArmingInhibit::Storing, false);
+        }
+    }
+    saved
+}
+
+impl StorageError {
+    /// What is wrong, for people.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Full => "the storage is full",
+            Self::Broken => "the storage does not keep what is written",
+        }
+    }
+}
