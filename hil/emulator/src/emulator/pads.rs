@@ -111,6 +111,8 @@ pub struct Pads {
     pub receiver_out: (At, u8),
     /// Serial port of the console.
     pub console: usize,
+    /// Serial port of MAVLink.
+    pub mavlink: usize,
     /// The motors.
     pub motors: TimerPins,
     /// Servos 1 to 4.
