@@ -12,6 +12,7 @@ mod determinism;
 mod faults;
 mod first_hour;
 mod images;
+mod mavlink;
 mod missions;
 mod outputs;
 mod pads;
