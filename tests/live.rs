@@ -97,7 +97,11 @@ fn whole(datagram: &[u8]) -> bool {
 
 /// A heartbeat of an armed vehicle (base_mode, bit 7), or of one that is not.
 fn heartbeat(datagram: &[u8], armed: bool) -> bool {
-    matches!(datagram, [0xFD, _, _, _, _, _, _, 0, 0, 0, _, _, _, _, _, _, base_mode, ..] if (base_mode >> 7 == 1) == armed)
+    let heartbeat = datagram.get(7..10) == Some(&[0, 0, 0]);
+    heartbeat
+        && datagram
+            .get(16)
+            .is_some_and(|base_mode| (base_mode >> 7 == 1) == armed)
 }
 
 fn written(directory: &Path) -> bool {

@@ -3,8 +3,8 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// How far virtual time may fall behind and catch up by itself, wall time: a host's usual delays. What is later moves the
-/// pace, so that no burst follows.
+/// Wall time by which a flight may fall behind and catch up: a host's usual delays. More moves the pace, so that no burst
+/// follows.
 const SLACK: Duration = Duration::from_millis(20);
 /// Wall time over which the reached speed is measured.
 const WINDOW: Duration = Duration::from_secs(2);
@@ -55,8 +55,8 @@ impl Pace {
         })
     }
 
-    /// Wall time until `virtual_time` is due, negative when it is late, and the speed reached by a host that is found too
-    /// slow at `wall`; all in s.
+    /// Wall time until `virtual_time` is due, negative when it is late, and the speed reached by a host that is found
+    /// too slow at `wall`; all in s.
     fn look(&mut self, virtual_time: f64, wall: f64) -> (f64, Option<f64>) {
         let mut early = self.origin + virtual_time / self.speed - wall;
         if early < -SLACK.as_secs_f64() {
@@ -84,8 +84,8 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Runs `seconds` of virtual time at `speed` on a host that takes `cost(t)` s for each millisecond: wall time at the
-    /// end, the speeds told, and the largest virtual time run within any second of wall time.
+    /// Runs `seconds` of virtual time at `speed` on a host that takes `cost(t)` s for each millisecond: wall time at
+    /// the end, the speeds told, and the largest virtual time run within any second of wall time.
     fn run(speed: f64, seconds: f64, cost: impl Fn(f64) -> f64) -> (f64, Vec<f64>, f64) {
         let (mut pace, mut wall, mut told, mut times) = (Pace::new(speed), 0.0, vec![], vec![]);
         for ms in 1..=(seconds * 1e3) as u64 {

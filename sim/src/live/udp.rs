@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 const AT_ONCE: usize = 16;
 /// Longest datagram: more than Ethernet carries.
 const LONGEST: usize = 2048;
-/// A client that has been silent for so long makes room for another; clients send a heartbeat each second.
+/// Silence after which a client makes room for another; clients send a heartbeat each second.
 const SILENT: Duration = Duration::from_secs(10);
 
-/// A socket on an ephemeral port that sends to a fixed destination and to one client more: the first that sends something
-/// from elsewhere. Never waits.
+/// A socket on an ephemeral port that sends to a fixed destination and to one client more, the first that sends
+/// something from elsewhere. Never waits.
 #[derive(Debug)]
 pub struct Udp {
     socket: UdpSocket,
