@@ -14,10 +14,10 @@ mod clients;
 
 /// What the line carries, bytes each second: 57,600 baud, ten bits a byte.
 const LINE_RATE: f64 = 5760.0;
-/// Change of the time from data-ready to the motor frame that a flood may make, us: its mean and its worst. The level
-/// waits for a critical section of the background level, of some tens of instructions, never for a byte.
-const MEAN_MOVED: f64 = 0.1;
-const WORST_MOVED: f64 = 1.0;
+/// Change of the time from data-ready to the motor frame that a flood may make, us: its mean and its worst. It is 0; with
+/// the line's interrupts above the flight level it was 0.1 and 0.55.
+const MEAN_MOVED: f64 = 0.05;
+const WORST_MOVED: f64 = 0.2;
 
 /// A flight with `client` on the MAVLink line.
 fn fly_with_client(
@@ -90,12 +90,9 @@ fn a_flood_moves_nothing(board: &str, image: &Path) {
         before.worst,
         after.worst
     );
+    let moved = [after.mean() - before.mean(), after.worst - before.worst].map(f64::abs);
     assert!(
-        after.mean() - before.mean() < MEAN_MOVED,
-        "{board}: {before:?} {after:?}"
-    );
-    assert!(
-        after.worst - before.worst < WORST_MOVED,
+        moved[0] < MEAN_MOVED && moved[1] < WORST_MOVED,
         "{board}: {before:?} {after:?}"
     );
 }
