@@ -1,6 +1,6 @@
-//! Picks the board: its file and chip by cargo's features, its memory map for the linker.
+//! Selects the board's file, chip and memory map by cargo's features.
 //!
-//! What links for a board must add the linker arguments, which cargo does not pass on from here.
+//! Whatever links for a board must add the linker arguments, which cargo does not pass on.
 
 #[path = "src/output_pins.rs"]
 mod output_pins;
@@ -10,11 +10,9 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 const MAPS: &str = "memory";
-/// Chip families that `src/stm32/` and `src/cortex_m/` support.
 const FAMILIES: [&str; 3] = ["f4", "f7", "h7"];
 
 struct Selection {
-    /// The board's memory map, named like its feature.
     map: PathBuf,
     /// Chip family, one of [`FAMILIES`].
     family: &'static str,
@@ -36,11 +34,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The board and chip of this build. Boards are named like their memory maps; chips are features `stm32…`.
+/// Board and chip of this build. Boards are named like their memory maps; chips are features `stm32…`.
 ///
 /// # Errors
-/// One line: no board or several, no chip or several, or one of a family without shared code; a motor or servo on a pin
-/// that the chip pulls up.
+/// One line: no board or chip, several, or a family without shared code; a motor or servo on a pin that the chip pulls
+/// up.
 fn selection() -> Result<Selection, String> {
     let boards = boards().map_err(|error| format!("boards/{MAPS}: {error}"))?;
     let feature = |name: &str| format!("CARGO_FEATURE_{}", name.to_uppercase().replace('-', "_"));
@@ -96,7 +94,7 @@ fn boards() -> io::Result<Vec<String>> {
 }
 
 /// Passes the board's map to the linker (included by memory.x at the workspace root, which is found first) and the
-/// family to the compiler. The search path applies to whatever links this crate.
+/// family to the compiler. The search path applies to all that links this crate.
 fn apply(selection: &Selection) -> io::Result<()> {
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     fs::copy(&selection.map, out.join("board.x"))?;

@@ -1,4 +1,4 @@
-//! The whole mission over infill, arms and seeds: every flight must be accomplished.
+//! The mission over infill, arms and seeds: every flight must be accomplished.
 
 mod common;
 
@@ -9,7 +9,7 @@ use sophie_sim::scenario::Scenario;
 
 const SEEDS: u64 = 20;
 
-/// Flies the default mission over all seeds, infill in %; fails with every reason.
+/// Flies all seeds, infill in %; fails with every reason.
 fn campaign(infill: f64, arms: ArmChoice) {
     let mut scenario = Scenario::default_mission();
     scenario.vehicle.infill = infill;

@@ -1,4 +1,4 @@
-//! `sophie check`, and what `sophie fly` says of a vehicle that the check refuses.
+//! `sophie check`, and `sophie fly` for a vehicle that fails it.
 
 #[path = "common/command.rs"]
 mod command;
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use self::command::{Temp, command, refused, sophie, text};
 
-/// The page that says what a row means and which fields the JSON has.
+/// Explains rows and JSON fields.
 const DOCS: &str = include_str!("../docs/design-check.md");
 
 fn json(temp: &Temp, args: &[&str]) -> (Option<i32>, Value) {
@@ -18,7 +18,6 @@ fn json(temp: &Temp, args: &[&str]) -> (Option<i32>, Value) {
     (output.status.code(), value)
 }
 
-/// Names of the rows that fail.
 fn failing(check: &Value) -> Vec<&str> {
     let rows = check["rows"].as_array().unwrap().iter();
     let failing = rows.filter(|row| row["pass"] == false);
@@ -97,7 +96,7 @@ fn bad_input_is_refused_in_one_line() {
     }
 }
 
-/// A vehicle that cannot fly: what its flight says on stderr before it begins and in its reason must name the rows.
+/// Requires that stderr before the flight and its reason name the rows.
 fn flown_in_vain(name: &str, scenario: &str, words: &[&str]) {
     let temp = Temp::new(name);
     let file = temp.file("vehicle.toml", scenario.as_bytes());

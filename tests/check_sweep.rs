@@ -1,5 +1,5 @@
-//! The check against flights: a hundred random vehicles, each checked and flown. Minutes long, so only on demand:
-//! `cargo test --release --test check_sweep -- --ignored --nocapture`.
+//! The check against flights of a hundred random vehicles. Takes minutes, so only on demand: `cargo test --release
+//! --test check_sweep -- --ignored --nocapture`.
 
 use sophie_sim::check::Check;
 use sophie_sim::flight::fly;
@@ -10,7 +10,7 @@ use sophie_sim::scenario::{Overrides, Scenario};
 const VEHICLES: usize = 100;
 const SEED: u64 = 13;
 
-/// A key that differs from vehicle to vehicle: its table, the share of the vehicles that have it, its range.
+/// Table, share of vehicles that have the key, range.
 struct Drawn {
     table: &'static str,
     key: &'static str,
@@ -38,7 +38,7 @@ const DRAWN: [Drawn; 8] = [
     drawn("params", "attitude_p", 0.3, [2.0, 9.0]),
 ];
 
-/// Numbers from 0 to 1 by Knuth's linear congruence.
+/// 0 to 1, Knuth's linear congruential generator.
 struct Uniform(u64);
 
 impl Uniform {
@@ -51,7 +51,7 @@ impl Uniform {
     }
 }
 
-/// The next vehicle, as a scenario file.
+/// A random vehicle as a scenario file.
 fn draw(random: &mut Uniform) -> String {
     let (mut text, mut table) = (String::new(), "");
     for drawn in &DRAWN {
@@ -92,7 +92,6 @@ fn the_check_and_the_flights_agree_where_it_matters() {
     println!("                flew  failed");
     println!("check passes   {pass_flew:5} {pass_failed:7}");
     println!("check refuses  {refused_flew:5} {refused_failed:7}");
-    // A vehicle that passes and fails to fly is what the check is there to prevent.
     assert!(
         10 * pass_failed <= pass_flew,
         "{pass_failed} of {} fail",

@@ -1,4 +1,4 @@
-//! The `sophie` command as a user meets it: exit status, one line for every mistake, nothing half-written.
+//! The `sophie` command: exit status, one line per mistake, nothing half-written.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -10,7 +10,6 @@ mod command;
 
 use self::command::{Temp, command, refused, sophie, text};
 
-/// Names of what is in the directory.
 fn names(temp: &Temp) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(&temp.0)
         .unwrap()
@@ -20,7 +19,6 @@ fn names(temp: &Temp) -> Vec<String> {
     names
 }
 
-/// A short flight, so that tests of the command do not fly whole missions.
 const HOP: &[u8] =
     b"steps = [{ do = 'arm' }, { do = 'take-off', height_m = 1 }, { do = 'land' }, { do = 'disarm' }]\n";
 
@@ -161,7 +159,7 @@ fn help_and_version_are_on_stdout() {
     }
 }
 
-/// What stands on stdout, exit status 0, nothing on stderr.
+/// Requires success and empty stderr.
 fn shown(temp: &Temp, args: &[&str]) -> String {
     let output = sophie(temp, args);
     let complaints = text(&output.stderr);
@@ -206,11 +204,11 @@ fn help_is_a_word_and_an_option_everywhere() {
     }
     assert_eq!(
         refused(&temp, &["help", "perch"]),
-        "sophie: no help on 'perch': allowed are fly, check, paper, fit-arm, timing"
+        "sophie: no help on 'perch': allowed are fly, check, params, paper, fit-arm, timing"
     );
 }
 
-/// What is under `path`, with directories, however deep.
+/// Recursively.
 fn below(path: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(path)
         .into_iter()
@@ -225,7 +223,7 @@ fn below(path: &Path) -> Vec<PathBuf> {
 #[test]
 fn an_interrupted_run_leaves_nothing_behind() {
     let temp = Temp::new("interrupt");
-    // Most of an hour on the pipe, which no battery ends: the signal comes before the flight is over on a busy machine too.
+    // The flight outlasts the signal on a busy machine.
     let long = b"steps = [{ do = 'arm' }, { do = 'take-off' }, { do = 'fly-to-pipe' }, { do = 'touch' }, { do = 'clamp' }, \
                  { do = 'perch' }, { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }, \
                  { do = 'hold', seconds = 600 }, { do = 'hold', seconds = 600 }]\ntime_limit_s = 3000\n";
@@ -244,7 +242,7 @@ fn an_interrupted_run_leaves_nothing_behind() {
         while first.trim().is_empty() {
             assert!(lines.read_line(&mut first).unwrap() > 0, "{args:?} said nothing");
         }
-        // Ends it as Ctrl-C does, which the jobs that a script starts in its background ignore.
+        // Background jobs of a script ignore SIGINT.
         let status = Command::new("kill")
             .args(["-TERM", &child.id().to_string()])
             .status()
@@ -342,14 +340,13 @@ fn a_reader_that_leaves_does_not_stop_the_flight() {
     BufReader::new(child.stdout.take().unwrap())
         .read_line(&mut first)
         .unwrap();
-    // The reader is dropped here: whatever is written from now on meets a closed pipe.
     let output = child.wait_with_output().unwrap();
     assert!(first.starts_with("hop: "), "{first}");
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     assert!(output.stderr.is_empty() && temp.0.join("out/report.html").exists());
 }
 
-/// A log of the emulated board with the executors' trace, as `sophie timing` reads it.
+/// A log of the emulated board with the executors' trace, for `sophie timing`.
 fn board_log() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/timing/trace.txt")
 }

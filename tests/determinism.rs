@@ -25,7 +25,7 @@ fn digest(seed: u64) -> u64 {
     flown(&hop(seed))
 }
 
-/// Digest of a flight with a perch: contact, tendons, pressure, proof.
+/// Includes contact, tendons, pressure, proof.
 fn perch_digest(seed: u64) -> u64 {
     let steps = vec![
         Step::Arm,

@@ -1,5 +1,4 @@
-//! The pages: what they link to exists, what they name of the sources exists, all of them are in the handbook, and those
-//! that are read in one go are short.
+//! Links and names of sources in the pages exist, the handbook lists every page, and short pages are short.
 
 mod pages;
 
@@ -11,16 +10,15 @@ use sophie_control::params::Params;
 
 /// Pages outside `docs/`.
 const OUTSIDE: [&str; 3] = ["README.md", "CONTRIBUTING.md", "hil/README.md"];
-/// Most words of a page that is read in under ten minutes, at 200 a minute.
+/// Words read in ten minutes, at 200 a minute.
 const SHORT: usize = 2000;
-/// Most lines of the README.
 const README_LINES: usize = 90;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every page by its path from the root.
+/// By path from the root.
 fn all() -> BTreeMap<PathBuf, Page> {
     let docs = std::fs::read_dir(root().join("docs")).unwrap();
     let docs = docs.map(|entry| Path::new("docs").join(entry.unwrap().file_name()));
@@ -129,7 +127,7 @@ fn the_lights_of_the_pilots_page_are_those_of_the_firmware() {
 #[test]
 fn the_numbers_of_calibration_and_safety_follow_from_the_defaults() {
     let p = Params::DEFAULT;
-    // Half a kilogram on a pressure sensor with its divider; 132 g on its area; four cells.
+    // 0.5 kg on a pressure sensor with its divider; 132 g on its area; four cells.
     let conductance = p.fsr_gain * 4.9 * p.fsr_divider;
     let (volts, pascals) = (3.3 * conductance / (1.0 + conductance), 1.3 / p.fsr_area);
     let tendon = p.servo_torque_max / p.reel_radius;

@@ -1,5 +1,5 @@
 //! `sophie paper` and `sophie fit-arm`: calibrated numbers within 3 %, predicted ones with the paper's signs and
-//! orders, wrong input refused in one line.
+//! orders, refusals in one line.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,6 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// A directory removed after its test.
 struct Temp(PathBuf);
 
 impl Temp {
@@ -38,7 +37,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// Exit status 2, empty stdout, one line on stderr, nothing written.
+/// Requires exit status 2, empty stdout, one line on stderr, no files.
 fn refused(temp: &Temp, args: &[&str]) -> String {
     let output = sophie(&temp.0, args);
     let told = text(&output.stderr);
@@ -83,7 +82,7 @@ fn here(results: &Value, id: &str, what: &str) -> f64 {
         .2
 }
 
-/// A column of a section's table whose caption starts with `caption`.
+/// A column of the section's table whose caption starts with `caption`.
 fn column(results: &Value, id: &str, caption: &str, column: usize) -> Vec<Value> {
     let tables = section(results, id)["tables"].as_array().unwrap();
     let table = tables
@@ -165,7 +164,7 @@ fn the_paper_is_reproduced_where_it_can_be() {
     signs(&results);
 }
 
-/// The paper's statements in words, and where this repository differs.
+/// The paper's statements in words, and where the results differ.
 fn signs(r: &Value) {
     // Section IV-A: in hover B is stable, A is not; closed form and plant agree.
     let configuration = column(r, "stability", "Derivatives", 0);
@@ -180,7 +179,7 @@ fn signs(r: &Value) {
             "{c} {closed} {plant}"
         );
     }
-    // The printed matrix and Algorithm 1's senses of rotation are singular, the text's are not.
+    // Printed matrix and Algorithm 1's senses are singular, the text's are not.
     let ranks = column(r, "mixer", "Mixer matrices", 2);
     let ranks: Vec<f64> = ranks.iter().filter_map(Value::as_f64).collect();
     assert_eq!(ranks, [3.0, 3.0, 4.0, 4.0, 4.0, 3.0]);
@@ -198,7 +197,7 @@ fn signs(r: &Value) {
     };
     assert_eq!(of("sideways thrust in its yaw row"), [false, true]);
     assert_eq!(of("quasi-static"), [false, false]);
-    // Table III: Δα falls with infill, in the order of the paper; the tip mass takes its share.
+    // Table III: Δα falls with infill, in the paper's order; the tip mass reduces it.
     let bent = |arms: &str, infill: u32| here(r, "table3", &format!("Δα_max, {arms}, ρ {infill} %"));
     assert!(
         bent("fitted arms", 6) > bent("fitted arms", 8) && bent("fitted arms", 8) > bent("fitted arms", 10)
@@ -208,17 +207,15 @@ fn signs(r: &Value) {
             && (bent("fitted arms", 10) / 16.8 - 1.0).abs() < 0.1
     );
     assert!(bent("arms with tip mass", 8) < bent("fitted arms", 8));
-    // Table IV: time and force rise together.
     assert!(here(r, "table4", "correlation of t and U") > 0.8);
-    // Eqs. 5 to 7: derived beats printed by far (heading 0, sideways).
+    // Eqs. 5 to 7: derived far better than printed (heading 0, sideways).
     let (printed, derived) = (column(r, "eq5", "Error", 3), column(r, "eq5", "Error", 4));
     assert!(derived[0].as_f64().unwrap() < 0.1 * printed[0].as_f64().unwrap());
-    // Table V: softer arms fly and hold longer; the computed time is well below the printed one.
+    // Table V: softer arms fly and hold longer; the computed time is well below the printed.
     let honest = |infill: u32| here(r, "table5", &format!("flight time at ρ {infill} %, honest"));
     assert!(honest(6) > honest(8) && honest(8) > honest(10) && honest(6) < 0.6 * 15.8);
     let held = |infill: u32| here(r, "table5", &format!("inspection time, four arms, ρ {infill} %"));
     assert!(held(4) > held(6) && held(6) > held(8) && held(8) > held(10));
-    // Section V-C: the learnt bias grows with wear.
     let bias: Vec<f64> = column(r, "fatigue", "What the comparison", 2)
         .iter()
         .map(|v| v.as_f64().unwrap())
@@ -278,7 +275,7 @@ fn an_arm_from_the_bench_is_fitted_and_flies() {
     );
 }
 
-/// The example of docs/paper.md with changed points: infill (%), thrust (N), tilt (°), power ratio.
+/// The example of docs/paper.md, changed: infill (%), thrust (N), tilt (°), power ratio.
 fn example(change: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> String {
     let mut lines = "infill_percent,thrust_n,tilt_deg,power_ratio\n".to_owned();
     for line in include_str!("../docs/arm-bench.csv").lines() {
@@ -320,7 +317,7 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
             "{line}"
         );
     }
-    // An arm as stiff as the literal Table I: coefficients in range, but it turns down far above its data.
+    // As stiff as the literal Table I: coefficients in range, but it turns down far above its data.
     let stiff = |[rho, t, a, p]: [f64; 4]| (rho == 6.9).then(|| kgf([rho, t, a / 7.75, p]));
     write("stiff.csv", example(stiff));
     let line = refused(&temp, &["fit-arm", "stiff.csv"]);
@@ -355,7 +352,7 @@ fn a_coefficient_that_may_be_none_is_told() {
         (output.status.code(), text(&output.stderr).as_str()),
         (Some(0), "")
     );
-    // A potentiometer off by 3°, up and down in turn, in a pattern independent of thrust.
+    // A potentiometer off by ±3°, in a pattern independent of thrust.
     let at = std::cell::Cell::new(0);
     let rough = example(|[rho, t, a, p]| {
         at.set(at.get() + 1);

@@ -1,18 +1,17 @@
-//! docs/parameters.md, written by `WRITE_DOCS=1 cargo test --test parameters`.
+//! docs/parameters.md is printed from the table.
 
 use std::fmt::Write;
 
 use sophie_control::params::{Params, RENAMED};
 use sophie_tasks::parameters::Allowed;
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/parameters.md");
-
 fn page() -> String {
     let mut page = String::from(
         "# Parameters\n\n\
          The table of `control/src/params/table.rs`, as this firmware has it; a board may have other defaults for what is\n\
-         soldered to it. They are set at the [console](console.md) and in the `[params]` of a scenario file. What has names\n\
-         takes the name or the number in front of it.\n\n\
+         soldered to it. They are set at the [console](console.md), by `sophie params load FILE`\n\
+         ([a file of them](console.md#parameters-as-a-file)) and in the `[params]` of a scenario file. What has names takes the\n\
+         name or the number in front of it.\n\n\
          | name | takes | default | what it is |\n|---|---|---|---|\n",
     );
     for row in Params::TABLE {
@@ -36,13 +35,5 @@ fn page() -> String {
 
 #[test]
 fn the_page_is_the_table() {
-    let wanted = page();
-    if std::env::var_os("WRITE_DOCS").is_some() {
-        std::fs::write(PAGE, &wanted).unwrap();
-    }
-    let found = std::fs::read_to_string(PAGE).unwrap_or_default();
-    assert!(
-        found == wanted,
-        "docs/parameters.md is old: WRITE_DOCS=1 cargo test --test parameters"
-    );
+    sophie_pages::is("parameters.md", &page(), "--test parameters");
 }

@@ -1,4 +1,4 @@
-//! Flies every scenario file; the flight must end as the file's `[expect]` says.
+//! Flies every scenario file; the flight must end as its `[expect]` says.
 
 mod common;
 
@@ -39,7 +39,7 @@ fn flown_as_expected(path: &Path) -> Result<(), Failed> {
     let scenario = Scenario::load(path, &Overrides::default())?;
     let record = fly(&scenario, &mut Silent);
     judge(&scenario.expect, &record)?;
-    // Never missed in virtual time.
+    // Deadlines hold in virtual time.
     if record.overruns > 0 {
         return Err(format!("{} deadlines missed", record.overruns).into());
     }

@@ -1,7 +1,4 @@
-//! The table of symptoms in docs/tuning.md is flown: `WRITE_DOCS=1 cargo test --test tuning` writes it.
-
-#[path = "common/printed.rs"]
-mod printed;
+//! The table of symptoms in docs/tuning.md is flown.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -164,5 +161,5 @@ fn the_symptoms_of_the_page_are_those_that_are_flown() {
     for case in &CASES {
         let _ = writeln!(table, "{}", row(case));
     }
-    printed::holds("tuning", "symptoms", &table, "tuning");
+    sophie_pages::hold("tuning", &[("symptoms", table)], "--test tuning");
 }

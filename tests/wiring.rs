@@ -1,7 +1,4 @@
-//! The pads in docs/wiring.md are those of the boards' files: `WRITE_DOCS=1 cargo test --test wiring` writes the table.
-
-#[path = "common/printed.rs"]
-mod printed;
+//! The pads in docs/wiring.md are those of the boards' files.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -143,5 +140,5 @@ fn the_pads_of_the_page_are_those_of_the_boards_files() {
         let cells = boards.each_ref().map(|(board, pins)| cell(board, pins, names));
         writeln!(table, "| {what} | {} |", cells.join(" | ")).unwrap();
     }
-    printed::holds("wiring", "pads", &table, "wiring");
+    sophie_pages::hold("wiring", &[("pads", table)], "--test wiring");
 }

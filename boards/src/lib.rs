@@ -1,10 +1,9 @@
 //! The boards: all code specific to a chip, and all unsafe code that flies.
 //!
-//! A board is one file: clocks, pins, DMA streams and timers, claimed with `assign_resources`, and `Board`'s ports
-//! built from them. `stm32` is shared by several boards, `cortex_m` by all; both depend on the chip's family, never on
-//! the board. The build script picks the board's memory map in `memory/`. `sophie-fault` ends a run.
-//!
-//! On the host there is only the check of a board's pins (`output_pins`).
+//! A board is one file: clocks, pins, DMA streams and timers, claimed with `assign_resources`, and `Board`'s ports.
+//! Several boards share `stm32`, all share `cortex_m`; both depend on the chip's family, never on the board. The build
+//! script picks the memory map in `memory/`. `sophie-fault` ends a run. The host only has the check of a board's pins
+//! (`output_pins`).
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg_attr(

@@ -1,14 +1,14 @@
-//! Pins that may drive a motor or servo: none of the debug port, which the chip pulls or drives from reset on.
+//! Pins for motors and servos: none of the debug port, which the chip pulls or drives from reset on.
 //!
 //! Some servos take a pulled-up input for an endless pulse, and a reset may happen on the pipe. The build script checks
-//! the table of its board, the tests those of all.
+//! its board's table, the tests all.
 
-/// Debug port pins at reset, until the firmware sets them: SWDIO, JTDI and NJTRST with a pull-up, SWCLK with a
-/// pull-down, JTDO (RM0090 §8.3.2, RM0410 §6.3.2, RM0433 §11.3.2).
+/// Debug port pins at reset: SWDIO, JTDI and NJTRST with a pull-up, SWCLK with a pull-down, JTDO (RM0090 §8.3.2, RM0410
+/// §6.3.2, RM0433 §11.3.2).
 const DEBUG_PORT: [&str; 5] = ["PA13", "PA14", "PA15", "PB3", "PB4"];
 
-/// Checks that a board's table (`assign_resources!`) has `motor_1` to `motor_4` and `servo_1` to `servo_4`, none of
-/// them on a debug port pin.
+/// Checks that a board's table (`assign_resources!`) has `motor_1` to `motor_4` and `servo_1` to `servo_4`, none on a
+/// debug port pin.
 ///
 /// # Errors
 /// One line: the field, its pin, and the pins not allowed.

@@ -1,4 +1,4 @@
-//! Arming: the gesture of the pilot, and everything that forbids it.
+//! Arming inhibits and the pilot's gesture, evaluated at 100 Hz.
 
 mod gesture;
 
@@ -11,7 +11,7 @@ use crate::wrench::PerArm;
 /// Largest tilt at which the rotors may start, rad (25°).
 pub const TILT_MAX: f32 = crate::math::deg(25.0);
 
-/// Declares the arming checks, the most basic first: name, text for the pilot's display, what clears it.
+/// Declares the checks by priority: name, text for the pilot's display, what clears it.
 macro_rules! arming_checks {
     ($($(#[$doc:meta])+ $name:ident = $text:literal, $cleared:literal;)+) => {
         /// A reason for which arming is refused.
@@ -20,15 +20,15 @@ macro_rules! arming_checks {
         pub enum ArmingInhibit { $($(#[$doc])+ $name,)+ }
 
         impl ArmingInhibit {
-            /// Every reason, the most basic first.
+            /// Every reason, by priority.
             pub const ALL: [Self; [$($text),+].len()] = [$(Self::$name),+];
 
-            /// For the pilot's display.
+            /// Text for the pilot's display.
             pub const fn text(self) -> &'static str {
                 match self { $(Self::$name => $text,)+ }
             }
 
-            /// What ends it, for the table in the docs.
+            /// What clears it, for the docs.
             #[cfg(test)]
             pub(crate) const fn cleared_by(self) -> &'static str {
                 match self { $(Self::$name => $cleared,)+ }
@@ -104,11 +104,10 @@ arming_checks! {
     Overruns = "deadlines missed", "a second without misses";
 }
 
-/// Each has a bit in [`ArmingInhibits`].
 const _: () = assert!(ArmingInhibit::ALL.len() <= u64::BITS as usize);
 
 impl ArmingInhibit {
-    /// The pressure sensors' ranges, arm by arm.
+    /// Range checks of the pressure sensors, by arm.
     pub const FSR_RANGE: PerArm<Self> = [Self::FsrRange1, Self::FsrRange2, Self::FsrRange3, Self::FsrRange4];
 
     const fn bit(self) -> u64 {
@@ -116,7 +115,7 @@ impl ArmingInhibit {
     }
 }
 
-/// The reasons that hold now.
+/// Set of active reasons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ArmingInhibits(u64);
 
@@ -124,37 +123,37 @@ impl ArmingInhibits {
     /// No reason.
     pub const NONE: Self = Self(0);
 
-    /// No reason: arming is free.
+    /// True when arming is allowed.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// These and `reason`.
+    /// Adds `reason`.
     pub const fn with(self, reason: ArmingInhibit) -> Self {
         Self(self.0 | reason.bit())
     }
 
-    /// These without `reason`.
+    /// Removes `reason`.
     pub const fn without(self, reason: ArmingInhibit) -> Self {
         Self(self.0 & !reason.bit())
     }
 
-    /// These and `others`.
+    /// Union with `others`.
     pub const fn and(self, others: Self) -> Self {
         Self(self.0 | others.0)
     }
 
-    /// True when `reason` holds.
+    /// True when `reason` is active.
     pub const fn contains(self, reason: ArmingInhibit) -> bool {
         self.0 & reason.bit() != 0
     }
 
-    /// The most basic reason.
+    /// Highest-priority reason.
     pub fn first(self) -> Option<ArmingInhibit> {
         self.iter().next()
     }
 
-    /// Every reason that holds, the most basic first.
+    /// Active reasons by priority.
     pub fn iter(self) -> impl Iterator<Item = ArmingInhibit> {
         ArmingInhibit::ALL.into_iter().filter(move |&r| self.contains(r))
     }
@@ -166,14 +165,14 @@ impl FromIterator<ArmingInhibit> for ArmingInhibits {
     }
 }
 
-/// What the arming checks look at.
+/// Inputs of the arming checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Checks {
     /// Calibration at rest has ended.
     pub calibrated: bool,
     /// Cosine of the tilt; `None` without a fresh attitude.
     pub cos_tilt: Option<f32>,
-    /// The pilot's wishes; `None` when the radio is lost.
+    /// Sticks; `None` when the radio is lost.
     pub sticks: Option<Sticks>,
     /// The arm switch has been off since power-up.
     pub switch_seen_off: bool,
@@ -185,12 +184,12 @@ pub struct Checks {
     pub late: bool,
     /// The arms are closed and do not hold, or are not proven free.
     pub arms_closed: bool,
-    /// What the drivers, the storage and the start report.
+    /// Reports of drivers, storage and start.
     pub hardware: ArmingInhibits,
 }
 
 impl Checks {
-    /// Every reason against arming now.
+    /// Every active reason.
     pub fn inhibits(&self, params: &Params) -> ArmingInhibits {
         let sticks = self.sticks.unwrap_or_default();
         // Written as "not good", so that a NaN refuses.

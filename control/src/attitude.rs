@@ -1,10 +1,10 @@
-//! Attitude control: a P loop on the shortest turn to the wanted tilt, a leashed heading for yaw.
+//! Attitude control, 1 kHz: a P loop on the shortest turn to the wanted tilt, a leashed heading for yaw.
 //!
-//! The tilt target is the direction of down in body axes, in which the heading has no part: a yaw error cannot turn
-//! roll into pitch. The heading is never computed; its change per step moves the leash.
+//! The tilt target is the direction of down in body axes: a yaw error cannot turn roll into pitch. The heading is never
+//! computed; its changes move the leash.
 //!
-//! A setpoint becomes a direction when it is given, at the sticks' rate, so that a step needs no sine. One that is not
-//! finite leaves the tilt target and stops the turn in yaw.
+//! A setpoint becomes a direction at the sticks' rate, to save each step a sine. One that is not finite keeps the tilt
+//! target and stops the turn in yaw.
 
 use core::f32::consts::TAU;
 
@@ -13,13 +13,12 @@ use crate::math;
 use crate::params::Params;
 use crate::vector::{Quat, Vec3};
 
-/// Farthest that the heading setpoint may run ahead of the heading, rad.
+/// Largest lead of the heading setpoint over the heading, rad.
 const HEADING_LEASH: f32 = 0.5;
 /// Largest roll or pitch setpoint, rad.
 const ANGLE_MAX: f32 = 0.5 * math::PI;
 /// Time constant of the yaw rate setpoint, s: the arms' torsion needs smooth commands.
 const YAW_RATE_TAU: f32 = 0.3;
-/// Down in the axes of a level body.
 const LEVEL: Vec3 = Vec3::new(0.0, 0.0, 1.0);
 
 /// Attitude setpoint.
@@ -29,7 +28,7 @@ pub struct AttitudeSetpoint {
     pub roll: f32,
     /// Pitch, rad, nose up positive; limited to ±π/2.
     pub pitch: f32,
-    /// Yaw rate, rad/s, clockwise seen from above positive; limited to ± the parameter `yaw_slew`.
+    /// Yaw rate, rad/s, clockwise from above positive; limited to ±`yaw_slew`.
     pub yaw_rate: f32,
 }
 
@@ -101,7 +100,7 @@ impl AttitudeLoop {
         }
     }
 
-    /// Restarts without a jump: until the next setpoint the target is the attitude `q` (unit, body to world).
+    /// Bumpless restart: the target is `q` (unit, body to world) until the next setpoint.
     pub fn reset(&mut self, q: Quat) {
         let down = q.down_in_body();
         self.wanted = down;
@@ -127,7 +126,7 @@ impl AttitudeLoop {
         self.wanted_yaw_rate = math::clamp_abs(yaw_rate, self.yaw_rate_max);
     }
 
-    /// Takes the heading of `q` (unit, body to world) as the wanted one, while yaw is given up.
+    /// Takes the heading of `q` (unit, body to world) as the wanted one while yaw is given up.
     #[inline]
     pub fn capture_heading(&mut self, q: Quat) {
         self.heading = Heading::of(q);
@@ -135,8 +134,8 @@ impl AttitudeLoop {
         self.yaw_rate = LowPass::at(0.0);
     }
 
-    /// Body rates (rad/s; roll and pitch within ±`rate_max`, yaw within twice `yaw_slew`) that lead from the attitude
-    /// `q` (unit, body to world) to the target, in a step of `dt` s, > 0.
+    /// Body rates (rad/s; roll and pitch within ±`rate_max`, yaw within twice `yaw_slew`) from the attitude `q` (unit,
+    /// body to world) to the target, in a step of `dt` s, > 0.
     #[inline(always)]
     pub fn step(&mut self, q: Quat, dt: f32) -> Vec3 {
         // Shortest turn to the wanted tilt, in body axes: twice the sine of half its angle, about its axis.
@@ -177,15 +176,15 @@ impl AttitudeLoop {
     }
 }
 
-/// 2 sin(θ/2) / sin θ from cos θ, within 0.6 % up to 90°, where the rate limit already acts, and too small beyond. A
-/// turn of exactly 180° has no shortest way: its rate is 0.
+/// 2 sin(θ/2) / sin θ from cos θ, within 0.6 % up to 90°, where the rate limit acts, and too small beyond; 0 at exactly
+/// 180°, where no turn is shortest.
 #[inline(always)]
 fn per_sine(cosine: f32) -> f32 {
     let e = 1.0 - cosine;
     1.0 + e * (0.22 + 0.186 * e)
 }
 
-/// Nose direction: cosine and sine of the heading times the cosine of the pitch.
+/// Cosine and sine of the heading times the cosine of the pitch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Heading {
     north: f32,
@@ -201,8 +200,8 @@ impl Heading {
         }
     }
 
-    /// Angle turned since the step `last`, rad, by its tangent (1e-6 rad off at the fastest turn); 0 with a vertical
-    /// nose, which has no heading.
+    /// Angle turned since `last`, rad, by its tangent (1e-6 rad off at the fastest turn); 0 with a vertical nose, which
+    /// has no heading.
     #[inline]
     fn turned_since(self, last: Self) -> f32 {
         let along = last.north * self.north + last.east * self.east;
@@ -266,7 +265,7 @@ mod tests {
 
     #[test]
     fn the_change_of_heading_adds_up_to_the_heading() {
-        // A flat spin: ten turns at 6 rad/s in steps of 1 ms.
+        // Flat spin: ten turns at 6 rad/s in steps of 1 ms.
         let turned = |i: i32| Quat::from_euler(0.2, -0.3, 0.0) * spin(0.006 * i as f32);
         let mut sum = 0.0f64;
         for i in 0..10_472 {
@@ -280,7 +279,6 @@ mod tests {
         assert!((sum - whole - between.atan()).abs() < 2e-3, "{sum} {between}");
     }
 
-    /// A turn about body z by `angle` rad, exact to rounding.
     fn spin(angle: f32) -> Quat {
         let half = 0.5 * f64::from(angle);
         Quat {
@@ -298,7 +296,7 @@ mod tests {
         let turned = Quat::from_euler(0.0, 0.0, 0.6);
         let r = a.step(turned, 1e-3);
         assert!(r.x.abs() < 0.01 && r.y.abs() < 0.01);
-        // 0.5 rad of leash at 1.2 1/s, back towards the old heading.
+        // 0.5 rad of leash at 1.2 1/s, towards the old heading.
         assert!((r.z + 0.6).abs() < 0.02, "{r:?}");
     }
 
@@ -348,7 +346,7 @@ mod tests {
                 yaw_rate: 0.4,
             };
             let r = settled(q, setpoint);
-            // In world axes a turn about down: 0.4 rad/s plus the leash's 1.2 1/s · 0.5 rad.
+            // World axes, about down: 0.4 rad/s plus the leash's 1.2 1/s · 0.5 rad.
             let turn = q.rotate(r);
             assert!(
                 turn.x.abs() < 0.03 && turn.y.abs() < 0.03 && (turn.z - 1.0).abs() < 0.03,
@@ -407,7 +405,7 @@ mod tests {
                 prop_assert!(r.x.abs() <= p.rate_max && r.y.abs() <= p.rate_max, "{r:?}");
                 prop_assert!(r.z.abs() <= 2.01 * p.yaw_slew, "{r:?}");
             }
-            // A vehicle that follows its commands returns to level and to rest.
+            // A vehicle that follows its commands returns to level rest.
             const DT: f32 = 4e-3;
             let mut r = Vec3::ZERO;
             a.aim(AttitudeSetpoint::default());

@@ -1,13 +1,13 @@
-//! State of the flight battery from its voltage and current.
+//! Flight battery from voltage and current.
 //!
-//! [`Monitor::step`] is called at 100 Hz by the task `analog` (V, A, s). After a missed reading thrusts are compensated
-//! for the last voltage; it is stale after 500 ms.
+//! [`Monitor::step`] runs at 100 Hz in the task `analog` (V, A, s). After a missed reading thrusts are compensated for
+//! the last voltage; it is stale after 500 ms.
 
 use crate::filter::LowPass;
 use crate::math;
 use crate::params::Params;
 
-/// Cut-off of the voltage, rad/s (2 Hz): slower than a manoeuvre's sag, faster than the discharge.
+/// Cut-off of the voltage, rad/s (2 Hz): between a manoeuvre's sag and the discharge.
 const VOLTAGE_CUTOFF: f32 = 12.6;
 /// Cut-off of the current, rad/s (2 Hz).
 const CURRENT_CUTOFF: f32 = 12.6;
@@ -34,13 +34,13 @@ pub struct Battery {
 pub struct Monitor {
     filters: Option<(LowPass, LowPass)>,
     used: f32,
-    /// Charge not added to `used` yet, A·s.
+    /// Charge not yet in `used`, A·s.
     fraction: f32,
 }
 
 impl Monitor {
-    /// Adds `voltage` V and `current` A, `dt` s after the last. Implausible values change nothing; `None` before the
-    /// first plausible ones.
+    /// Adds `voltage` V and `current` A, `dt` s after the last. Implausible values are ignored; `None` before the first
+    /// plausible ones.
     pub fn step(&mut self, p: &Params, voltage: f32, current: f32, dt: f32) -> Option<Battery> {
         let dt = math::clamp(dt, 0.0, 1.0);
         let sane = (0.0..SANE.0).contains(&voltage) && (-SANE.1..SANE.1).contains(&current);
@@ -60,7 +60,7 @@ impl Monitor {
         })
     }
 
-    /// Adds charge in portions of 1 A·s: 10 ms of 1 A on top of 6000 A·s would vanish in an `f32`.
+    /// Adds charge in portions of 1 A·s: 10 ms of 1 A would vanish beside 6000 A·s in an `f32`.
     fn add_charge(&mut self, charge: f32) {
         self.fraction += charge;
         if self.fraction.abs() > 1.0 {
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn charge_adds_up() {
         let r = run(&mut Monitor::default(), 15.2, 12.0, 600.0);
-        // 12 A for 600 s; the rounding of 60,000 steps stays below 0.1 %.
+        // 12 A for 600 s; rounding of 60,000 steps stays below 0.1 %.
         assert!((r.used - 7200.0).abs() < 7.2, "{}", r.used);
         assert!((r.ratio - 15.2 / 14.8).abs() < 1e-4);
     }

@@ -1,9 +1,8 @@
-//! Flight step: from a batch of inertial samples to four motor commands, once a millisecond.
+//! Flight step, 1 kHz: from a batch of inertial samples to four motor commands.
 //!
-//! Four stages, each with its own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] turns a
-//! setpoint into a demand, [`Mixing`] the demand into commands. On the vehicle each belongs to a task, and links join
-//! them; instruction counts, QEMU and replays run them in the same order as one [`FlightChain`], with the same bits for
-//! a recorded mission.
+//! Four stages with their own state: [`Sensing`] filters, [`Estimator`] gives the attitude, [`Control`] the demand,
+//! [`Mixing`] the commands. On the vehicle each belongs to a task, joined by links; instruction counts, QEMU and
+//! replays run them as one [`FlightChain`], with identical bits for a recorded mission.
 
 mod control;
 mod messages;
@@ -56,12 +55,11 @@ pub struct FlightChain<A = Flexible> {
     pub mixing: Mixing<A>,
     /// Messages between them.
     pub flow: Flow,
-    /// Feedback of the last mix; nothing before the first.
     feedback: Feedback,
 }
 
 impl<A: Allocation> FlightChain<A> {
-    /// A chain at rest for samples at `rate_hz`, with the allocation `allocation`.
+    /// A chain at rest for samples at `rate_hz`.
     pub fn new(p: &Params, rate_hz: f32, allocation: A) -> Self {
         Self {
             sensing: Sensing::new(p, rate_hz),

@@ -1,12 +1,12 @@
 //! Static deflection of a soft arm under its rotor's thrust: Eq. 1 of the paper.
 //!
-//! Stateless: the tilt model evaluates it at 1 kHz, the gripper its compliance once at start-up.
+//! Evaluated at 1 kHz by the tilt model, once at start-up by the gripper.
 //!
 //! α = α0 + K ((A1 + ρ A2) T + (B1 + ρ B2) T²) (P/P0)^C_P, in degrees, ρ in %, T in N.
 //!
-//! K is not the paper's: the literal equation (K = 1) gives a fifth of the tilts of the paper's Table III. α0 makes the
-//! arm level at half throttle, as the paper's text demands. The battery's factor stays 1 in flight: thrusts here are
-//! true thrusts, already compensated for the battery. Only the printed [`Algorithm1`] uses it.
+//! K is added: the literal equation (K = 1) gives a fifth of the tilts of the paper's Table III. α0 makes the arm level
+//! at half throttle, as the paper's text demands. The battery's factor stays 1 in flight, where thrusts are compensated
+//! already; only the printed [`Algorithm1`] uses it.
 
 use crate::math;
 use crate::params::Params;
@@ -20,10 +20,10 @@ pub const B1: f32 = -0.162;
 /// B2 of Table I, °/(N² %).
 pub const B2: f32 = 0.0151;
 
-/// Tilt beyond which the paper's static model does not hold, rad.
+/// Largest tilt of the paper's static model, rad.
 pub const VALID_TILT: f32 = math::deg(40.0);
 
-/// Eq. 1 of one arm with its numbers.
+/// Eq. 1 of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmModel {
     /// Tilt without thrust, rad.
@@ -35,12 +35,12 @@ pub struct ArmModel {
 }
 
 impl ArmModel {
-    /// Arm of infill `infill` (%) with the gain `gain_k` on the elastic term, level at the thrust `level_thrust` (N).
+    /// Arm of infill `infill` (%) with gain `gain_k` on the elastic term, level at `level_thrust` (N).
     pub fn new(infill: f32, gain_k: f32, level_thrust: f32) -> Self {
         Self::with([A1, A2, B1, B2], infill, gain_k, level_thrust)
     }
 
-    /// The same with own coefficients A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)).
+    /// With own coefficients A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)).
     pub fn with([a1, a2, b1, b2]: [f32; 4], infill: f32, gain_k: f32, level_thrust: f32) -> Self {
         let linear = math::deg(gain_k * (a1 + infill * a2));
         let quadratic = math::deg(gain_k * (b1 + infill * b2));
@@ -55,7 +55,7 @@ impl ArmModel {
         }
     }
 
-    /// Arm by the parameters.
+    /// From the parameters.
     pub fn from_params(p: &Params) -> Self {
         let coefficients = [p.arm_a1, p.arm_a2, p.arm_b1, p.arm_b2];
         Self::with(coefficients, p.infill, p.gain_k, p.arm_level_share * p.thrust_max)

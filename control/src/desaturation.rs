@@ -1,16 +1,16 @@
-//! What is given up when the rotors saturate: yaw first, then thrust, roll and pitch last.
+//! Saturated rotors give up yaw first, then thrust, roll and pitch last.
 //!
-//! Runs once in each mixer step, 1 kHz, on thrusts in N.
+//! 1 kHz, thrusts in N.
 
 use crate::math;
 use crate::wrench::PerArm;
 
-/// Part of a demand that the rotors can give.
+/// Feasible part of a demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
     /// Share of the roll and pitch moments, 0..1.
     pub roll_pitch: f32,
-    /// Collective thrust added (positive) or taken off to keep roll and pitch, N.
+    /// Collective added (positive) or removed to keep roll and pitch, N.
     pub thrust_shift: f32,
     /// Share of the yaw moment, 0..1.
     pub yaw: f32,
@@ -36,7 +36,7 @@ impl Default for Given {
     }
 }
 
-/// A demand split into patterns that may be given up in turn, N per rotor.
+/// A demand split into patterns to be given up in turn, N per rotor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Patterns {
     /// Collective alone.
@@ -49,11 +49,11 @@ pub struct Patterns {
     pub yaw: PerArm<f32>,
 }
 
-/// Least thrust of a rotor per newton of collective: a rotor that the collective does not reach cannot bound the shift,
-/// and divisions stay finite.
+/// Least thrust of a rotor per newton of collective: one beyond the collective's reach cannot bound the shift, and
+/// divisions stay finite.
 const LEAST_SHIFT: f32 = 0.02;
 
-/// A share as a fraction of room and need: one division at the end serves all bounds.
+/// A share as fraction: one division at the end serves all bounds.
 #[derive(Clone, Copy)]
 struct Share {
     room: f32,
@@ -63,7 +63,7 @@ struct Share {
 impl Share {
     const ALL: Self = Self { room: 1.0, need: 1.0 };
 
-    /// Not more than `room` / `need`, need >= 0.
+    /// At most `room` / `need`, need >= 0.
     #[inline(always)]
     fn within(self, room: f32, need: f32) -> Self {
         let tighter = room * self.need < self.room * need;
@@ -98,8 +98,7 @@ impl Share {
     }
 }
 
-/// Thrusts within [`low`, `high`] N nearest to the demand, and what was given up. Constant time: no branch depends on
-/// the demand.
+/// Thrusts within [`low`, `high`] N nearest to the demand, and the shares given. No branch depends on the demand.
 #[inline(always)]
 pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let bounds = |collective: f32, shift: f32, roll_pitch: f32| {
@@ -115,8 +114,8 @@ pub fn desaturate(p: &Patterns, low: f32, high: f32) -> (PerArm<f32>, Given) {
     let (b1, b2) = (bounds(c1, s1, r1), bounds(c2, s2, r2));
     let (b3, b4) = (bounds(c3, s3, r3), bounds(c4, s4, r4));
 
-    // Roll and pitch: the largest share for which some collective fits all four rotors: every lower bound on the
-    // collective shift stays under every other rotor's upper bound.
+    // Roll and pitch: the largest share for which one collective fits all four rotors, each lower bound on the shift
+    // below every other rotor's upper one.
     let share = Share::ALL
         .agreed(&b1, &b2)
         .agreed(&b1, &b3)
@@ -196,7 +195,7 @@ mod tests {
 
     #[test]
     fn then_thrust_then_roll_and_pitch() {
-        // 6 + 3 = 9: 0.7 N too much, taken off every rotor (2.8 N of collective).
+        // 6 + 3 = 9: 0.7 N too much, removed from every rotor (2.8 N of collective).
         let (_, g) = desaturate(&patterns(6.0, 3.0, 0.0, 1.0), LOW, HIGH);
         assert!((g.thrust_shift + 2.8).abs() < 1e-4 && g.roll_pitch == 1.0 && g.yaw == 0.0);
         // A spread of 10 N cannot fit into 8.05.

@@ -1,10 +1,10 @@
 //! Effect of four tilted rotors on the body, and its change with their thrusts.
 //!
-//! Evaluated in each mixer step, 1 kHz; body axes FRD, thrusts in N, tilts in rad with the tip up.
+//! Evaluated at 1 kHz; body axes FRD, thrusts in N, tilts in rad with the tip up.
 //!
-//! A rotor at (±b, ∓d) tilted by α leans its thrust inward by α. With the arm hinged at the centre line the thrust
-//! stays perpendicular to the arm: its roll lever is d at any tilt, its pitch lever acts on T cos α, its yaw moment is
-//! the sideways part T sin α at ±b plus the rotor's drag ±k_q T.
+//! A rotor at (±b, ∓d) tilted by α leans its thrust inward by α, perpendicular to the arm hinged at the centre line:
+//! the roll lever is d at any tilt, the pitch lever acts on T cos α, and the yaw moment is the sideways part T sin α at
+//! ±b plus the rotor's drag ±k_q T.
 
 use crate::math;
 use crate::params::Params;
@@ -24,7 +24,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Geometry of the levers `d` and `b` (m, > 0) and the signed drag ratio `drag` (m).
+    /// From levers `d` and `b` (m, > 0) and the signed drag ratio `drag` (m).
     pub fn new(d: f32, b: f32, drag: f32) -> Self {
         Self {
             d,
@@ -34,13 +34,12 @@ impl Geometry {
         }
     }
 
-    /// Geometry by the parameters; the configuration gives the drag's sign.
+    /// From the parameters; the configuration gives the drag's sign.
     pub fn from_params(p: &Params, configuration: Configuration) -> Self {
         Self::new(p.arm_d, p.arm_b, configuration.chi() * p.torque_ratio)
     }
 
-    /// The same with configuration B's drag sign: its yaw moments are those of this geometry times the sign of its
-    /// drag.
+    /// With configuration B's drag sign: its yaw moments are these times the sign of this drag.
     pub fn as_b(&self) -> Self {
         if self.drag < 0.0 {
             Self {
@@ -81,7 +80,7 @@ pub struct Effectiveness {
 }
 
 impl Effectiveness {
-    /// At frozen tilt: a change of thrust before the arm has moved.
+    /// At frozen tilt: before the arm has moved.
     pub fn frozen(geometry: &Geometry, tilt: &PerArm<f32>) -> Self {
         Self {
             lift: tilt.map(math::cos),
@@ -89,12 +88,12 @@ impl Effectiveness {
         }
     }
 
-    /// Quasi-static: a change of thrust once the arm has followed; `tilt` and `follow` (T dα/dT) in rad, |tilt| <= 0.7.
+    /// Quasi-static: once the arm has followed; `tilt` and `follow` (T dα/dT) in rad, |tilt| <= 0.7.
     #[inline(always)]
     pub fn quasi_static(geometry: &Geometry, tilt: &PerArm<f32>, follow: &PerArm<f32>) -> Self {
         let rows = |tilt: f32, follow: f32| {
             let (s, c) = math::sin_cos_small(tilt);
-            // First, because the rotors' present moment shares it.
+            // First: the rotors' present moment shares it.
             let frozen = geometry.b * s + geometry.drag;
             (c - s * follow, frozen + geometry.b * c * follow)
         };
@@ -124,7 +123,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// The wrench `w` on the levers of `geometry`.
+    /// Load of wrench `w`.
     #[inline(always)]
     pub fn of(geometry: &Geometry, w: Wrench) -> Self {
         let (per_d, per_b) = geometry.per_lever;
@@ -160,7 +159,7 @@ impl Load {
 
 /// Closed-form inverse of an effectiveness.
 ///
-/// Lift and pitch rows share their entries, which gives each pair's lift; a 2×2 system then splits the pairs.
+/// Lift and pitch rows give each pair's lift; a 2×2 system then splits the pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inverse {
     inv_lift_3: f32,
@@ -205,9 +204,9 @@ impl Inverse {
     /// Thrusts (N) that give `load`.
     #[inline(always)]
     pub fn solve(&self, load: Load) -> PerArm<f32> {
-        // Lifts of the pairs, put on rotors 3 and 4 at first.
+        // Lifts of the pairs, first on rotors 3 and 4 alone.
         let (f3, r4) = (load.front * self.inv_lift_3, load.rear * self.inv_lift_4);
-        // Roll and yaw that rotors 1 and 2 add by taking over from 3 and 4.
+        // Roll and yaw gained as rotors 1 and 2 take over from 3 and 4.
         let roll = load.roll + f3 + r4;
         let yaw = load.yaw + self.yaw_3 * f3 - self.yaw_4 * r4;
         let t1 = roll * self.first.0 + yaw * self.first.1;
@@ -215,7 +214,7 @@ impl Inverse {
         [t1, t2, f3 - self.ratio_front * t1, r4 - self.ratio_rear * t2]
     }
 
-    /// Thrusts (N) that give the yaw moment `yaw` (N·m) alone.
+    /// Thrusts (N) for the yaw moment `yaw` (N·m) alone.
     #[inline(always)]
     pub fn solve_yaw(&self, yaw: f32) -> PerArm<f32> {
         let (t1, t2) = (yaw * self.first.1, yaw * self.second.1);
@@ -253,11 +252,11 @@ mod tests {
                 if i % 2 == 0 { 1.0 } else { -1.0 },
                 if i < 2 { 1.0 } else { -1.0 },
             );
-            // Arm hinged at the centre line: its tip, and the thrust perpendicular to it.
+            // Arm hinged at the centre line: its tip, and the perpendicular thrust.
             let r = crate::vector::Vec3::new(fore * g.b, -left * g.d * a.cos(), -g.d * a.sin());
             let f = crate::vector::Vec3::new(0.0, left * t * a.sin(), -t * a.cos());
             let m = r.cross(f);
-            // Rotors 1 and 4 turn counter-clockwise from above: their drag turns the body clockwise.
+            // Rotors 1 and 4 turn counter-clockwise from above; their drag turns the body clockwise.
             let spin = if i == 0 || i == 3 { 1.0 } else { -1.0 };
             for (sum, x) in force.iter_mut().zip(f.to_array()) {
                 *sum += x;
@@ -336,7 +335,7 @@ mod tests {
             let sign = if side { 1.0 } else { -1.0 };
             let g = Geometry::new(0.2, 0.15, sign * 0.016);
             let (want, got) = (Load::of(&g, g.wrench(&thrusts, &tilt)), Load::given(&g, &thrusts, &tilt));
-            // The wrench has micromath's sines.
+            // The wrench uses micromath's sines.
             prop_assert!((want.front - got.front).abs() < 0.04 && (want.rear - got.rear).abs() < 0.04);
             prop_assert!((want.roll - got.roll).abs() < 1e-4 && (want.yaw - got.yaw).abs() < 0.01);
             let b = Load::given(&g.as_b(), &thrusts, &tilt);

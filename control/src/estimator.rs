@@ -1,28 +1,26 @@
-//! Attitude from gyro and accelerometer: quaternion integration, a slow pull towards the accelerometer's
-//! vertical, and the gyro's bias.
+//! Attitude estimator, 1 kHz: quaternion integration, a slow pull towards the accelerometer's vertical, gyro bias.
 //!
-//! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (time constant 10 s at
-//! the default) and fades when the specific force is not 1 g. There is no compass: heading is integrated.
+//! In free flight the accelerometer feels thrust, not gravity, so the pull is weak (default time constant 10 s) and
+//! fades when the specific force is not 1 g. Without a compass, heading is integrated.
 
 use crate::chain::{Attitude, ImuSample};
 use crate::math::{self, GRAVITY};
 use crate::params::Params;
 use crate::vector::{Quat, Vec3};
 
-/// Time at rest that the calibration takes, s.
+/// Duration of the calibration at rest, s.
 pub const CALIBRATION_TIME: f32 = 2.0;
-/// Rate beyond which the vehicle is not at rest, rad/s: above any part's bias.
+/// Rate above which the vehicle is moving, rad/s: above any part's bias.
 const REST_RATE: f32 = 0.15;
-/// Departure from the running mean beyond which the vehicle is not at rest, rad/s: standing on soft arms it
-/// rocks in the wind by half of this, which the mean over the calibration takes out.
+/// Departure from the running mean in motion, rad/s: on soft arms the wind rocks the vehicle by half of this.
 const REST_DEVIATION: f32 = 0.08;
-/// Specific force error at which the accelerometer's pull has faded to nothing, as a share of gravity.
+/// Specific force error at which the pull has faded out, share of gravity.
 const ACCEL_FADE: f32 = 0.15;
 /// Largest gyro bias accepted, rad/s.
 const BIAS_MAX: f32 = 0.1;
-/// Time over which the accelerometer gives the attitude where the gyro's bias is known, s: a pipe sways.
+/// Averaging time of the accelerometer's attitude with a known gyro bias, s: a pipe sways.
 pub const RESUME_TIME: f32 = 0.5;
-/// Specific force error up to which it is gravity that is felt then, as a share of gravity.
+/// Largest specific force error of gravity then, share of gravity.
 const RESUME_ERROR: f32 = 0.3;
 
 /// Attitude estimator.
@@ -40,7 +38,7 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// An estimator that has yet to be calibrated at rest.
+    /// An estimator to be calibrated at rest.
     pub fn new(p: &Params) -> Self {
         Self {
             q: Quat::IDENTITY,
@@ -55,8 +53,8 @@ impl Estimator {
         }
     }
 
-    /// An estimator that a restart has interrupted: `bias` (rad/s) is what the gyro had. The attitude is taken from the
-    /// accelerometer over [`RESUME_TIME`], whatever the vehicle does; heading starts at 0 again.
+    /// Resumes after a restart with the gyro bias (rad/s). The attitude comes from the accelerometer over
+    /// [`RESUME_TIME`], also in motion; heading restarts at 0.
     pub fn resume(p: &Params, bias: Vec3) -> Self {
         Self {
             known_bias: bias
@@ -66,7 +64,7 @@ impl Estimator {
         }
     }
 
-    /// Calibration at rest has ended.
+    /// True once calibration at rest has ended.
     pub const fn calibrated(&self) -> bool {
         self.calibrated
     }
@@ -81,8 +79,8 @@ impl Estimator {
         self.bias
     }
 
-    /// One step, and all that comes of it, in the place that keeps it: a message this long is dear to copy.
-    // On its own: not for size with its caller.
+    /// One step; writes the result into `attitude`, as so long a message is costly to copy.
+    // Not inlined: its caller is built for size.
     #[inline(never)]
     pub fn estimate(&mut self, sample: &ImuSample, attitude: &mut Attitude) {
         let rate = self.step(sample.gyro, sample.accel, sample.dt);
@@ -96,8 +94,7 @@ impl Estimator {
         };
     }
 
-    /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); gives the rate without
-    /// its bias.
+    /// One step of `dt` s with finite body rate (rad/s) and specific force (m/s²); returns the unbiased rate.
     #[inline(always)]
     pub fn step(&mut self, gyro: Vec3, accel: Vec3, dt: f32) -> Vec3 {
         if !self.calibrated {
@@ -105,9 +102,9 @@ impl Estimator {
             return Vec3::ZERO;
         }
         let rate = gyro - self.bias;
-        // Down as measured (minus the specific force) against down as estimated.
+        // Measured down (minus specific force) against estimated down.
         let norm2 = accel.norm_squared();
-        // No number of no force at all: the weight and the check below take care of both.
+        // Not finite without force: weight and the check below handle both.
         let inv = math::inv_sqrt_normal(norm2);
         let excess = norm2 * inv * (1.0 / GRAVITY) - 1.0;
         let weight = 1.0 - excess.abs() * (1.0 / ACCEL_FADE);
@@ -145,7 +142,7 @@ impl Estimator {
         self.q = if q.is_finite() { q } else { self.q };
     }
 
-    /// Collects rest; any motion restarts it. With a known bias it need only stay upright, or fall no more.
+    /// Collects rest, which motion restarts. With a known bias, not falling is enough.
     #[cold]
     #[inline(never)]
     fn calibrate(&mut self, gyro: Vec3, accel: Vec3, dt: f32) {
@@ -167,7 +164,6 @@ impl Estimator {
         let still =
             limit(gyro, REST_RATE) && (self.rest_time < 0.2 || limit(gyro - self.rest_gyro, REST_DEVIATION));
         if !still {
-            // What is no rest is no part of its mean either.
             self.rest_time = 0.0;
             return;
         }
@@ -186,7 +182,7 @@ impl Estimator {
         }
     }
 
-    /// Starts with this gyro bias and the attitude that the collected specific force shows.
+    /// Starts with the attitude of the collected specific force.
     fn start(&mut self, bias: Vec3) {
         self.bias = bias;
         let up = self.rest_accel;
@@ -232,7 +228,6 @@ mod tests {
         let bias = Vec3::new(0.2, -0.3, 0.1);
         let felt = bias + Vec3::new(0.0, 0.0, -GRAVITY);
         let mut e = calibrated(Vec3::ZERO, felt);
-        // A minute of rest.
         for _ in 0..60_000 {
             e.step(Vec3::ZERO, felt, 1e-3);
         }
@@ -245,7 +240,7 @@ mod tests {
     fn a_known_bias_needs_no_rest_but_gravity() {
         let bias = Vec3::new(0.02, -0.05, 0.01);
         let mut e = Estimator::resume(&Params::default(), bias);
-        // Falling, then shaken by a landing, then swaying on a pipe at 1 Hz by 0.1 rad/s.
+        // Falls, lands, then sways on a pipe at 1 Hz by 0.1 rad/s.
         for _ in 0..1000 {
             e.step(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -0.5), 1e-3);
         }
@@ -295,7 +290,7 @@ mod tests {
     #[test]
     fn a_wrong_tilt_is_pulled_in_the_right_direction_in_ten_seconds() {
         let mut e = calibrated(Vec3::ZERO, at_rest(0.3, 0.0));
-        // Levelled, but the estimator missed it.
+        // Levelled unnoticed.
         for _ in 0..10_000 {
             e.step(Vec3::ZERO, at_rest(0.0, 0.0), 1e-3);
         }
@@ -305,8 +300,8 @@ mod tests {
 
     #[test]
     fn the_pull_towards_the_vertical_fades_with_what_is_not_gravity() {
-        // Believed level, truly rolled by 0.1 rad: 0.1 1/s of it are 0.01 rad in a second, half of that at 1.075 or
-        // 0.925 g, and nothing from 15 % on.
+        // Estimated level, truly rolled by 0.1 rad: at 0.1 1/s 0.01 rad in a second, half of that at 1.075 or 0.925 g,
+        // nothing from 15 % on.
         for (g, pulled) in [
             (1.0, 0.0095),
             (1.075, 0.0049),
@@ -320,7 +315,7 @@ mod tests {
                 e.step(Vec3::ZERO, at_rest(0.1, 0.0) * g, 1e-3);
             }
             let q = e.attitude();
-            // Twice the vector part, where micromath's arc tangent is too coarse.
+            // Twice the vector part: micromath's arc tangent is too coarse.
             assert!((2.0 * q.x - pulled).abs() < 2e-4, "{g}: {}", 2.0 * q.x);
             assert!(q.y.abs() < 1e-5 && q.z.abs() < 1e-5, "{g}: {q:?}");
             // 0.002 1/s² of an error of 0.095 rad on average: a bias of -0.0002 rad/s in a second.
@@ -367,9 +362,9 @@ mod tests {
         ] {
             assert!(within(steps(&|_| turn * 0.14), 2000));
             assert!(steps(&|_| turn * 0.16).is_none());
-            // One jolt after 1.5 s: two seconds from then on.
+            // One jolt after 1.5 s: two more seconds.
             assert!(within(steps(&|i| turn * if i == 1500 { 1.0 } else { 0.0 }), 3500));
-            // 0.07 rad/s off the mean is a rocking, 0.09 rad/s is not, once 0.2 s have given the mean.
+            // Once 0.2 s have given the mean, 0.07 rad/s off it is rocking, 0.09 rad/s is motion.
             assert!(within(
                 steps(&|i| turn * if i == 1500 { 0.07 } else { 0.0 }),
                 2000
@@ -401,7 +396,7 @@ mod tests {
             }
             assert_eq!(e.calibrated(), rests, "{g}");
         }
-        // After a restart gravity is what is within 30 % of it.
+        // After a restart, within 30 % counts as gravity.
         for (g, gravity) in [(0.68, false), (0.72, true), (1.28, true), (1.32, false)] {
             let mut e = Estimator::resume(&Params::default(), Vec3::ZERO);
             for _ in 0..600 {

@@ -1,7 +1,7 @@
-//! First-order low pass and biquads with an explicit step time.
+//! First-order low pass and biquads.
 //!
-//! Each is stepped at its owner's rate, 50 Hz to 4 kHz. Low passes take the measured step (s). Biquads are made for one
-//! sampling rate: a missed sample shifts their cut-off for as long.
+//! Stepped at their owners' rates, 50 Hz to 4 kHz. Low passes take the measured step (s); biquads are made for one
+//! sampling rate: a missed sample briefly shifts their cut-off.
 
 use crate::math;
 
@@ -17,8 +17,8 @@ impl LowPass {
         Self { value }
     }
 
-    /// One step of `dt` s with the cut-off `rate` (rad/s); stable for any positive product. An input that is not finite
-    /// changes nothing.
+    /// One step of `dt` s with the cut-off `rate` (rad/s); stable for any positive product. A non-finite input changes
+    /// nothing.
     #[inline]
     pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
         if input.is_finite() {
@@ -27,15 +27,15 @@ impl LowPass {
         self.value
     }
 
-    /// Share of the way to the input in a step of `dt` s with the cut-off `rate` (rad/s), 0..1. It takes a division,
-    /// which filters of the same cut-off share.
+    /// Share of the way to the input in a step of `dt` s with the cut-off `rate` (rad/s), 0..1. Filters of one cut-off
+    /// share its division.
     #[inline(always)]
     pub fn gain(rate: f32, dt: f32) -> f32 {
         let k = rate * dt;
         k / (1.0 + k)
     }
 
-    /// One step with the [gain](Self::gain) `gain` towards a finite `input`.
+    /// One step by [`Self::gain`] towards a finite `input`.
     #[inline(always)]
     pub fn blend(&mut self, input: f32, gain: f32) -> f32 {
         self.value += (input - self.value) * gain;
@@ -64,7 +64,7 @@ impl CascadedLowPass {
         }
     }
 
-    /// One step of `dt` s with the cut-off `rate` (rad/s). See [`LowPass::step`].
+    /// One step; see [`LowPass::step`].
     pub fn step(&mut self, input: f32, rate: f32, dt: f32) -> f32 {
         let once = self.first.step(input, rate, dt);
         self.second.step(once, rate, dt)
@@ -75,7 +75,7 @@ impl CascadedLowPass {
         self.second.value()
     }
 
-    /// First less second output: change of an evenly moving input within one time constant.
+    /// First less second output: an even input's change in one time constant.
     pub fn lead(&self) -> f32 {
         self.first.value() - self.second.value()
     }
@@ -101,7 +101,7 @@ impl Coefficients {
         a2: 0.0,
     };
 
-    /// Butterworth low pass with cut-off `hz` at the sampling rate `rate_hz`; `hz` is limited to 0.35 of it.
+    /// Butterworth low pass with cut-off `hz`, limited to 0.35 of the sampling rate `rate_hz`.
     pub fn low_pass(hz: f32, rate_hz: f32) -> Self {
         let k = Self::warped(hz, rate_hz);
         let norm = 1.0 / (1.0 + core::f32::consts::SQRT_2 * k + k * k);
@@ -134,7 +134,7 @@ impl Coefficients {
         (self.b0, self.a1, self.a2)
     }
 
-    /// tan(π f / fs): the bilinear transform's warped frequency.
+    /// Bilinear transform's warped frequency tan(π f / fs).
     fn warped(hz: f32, rate_hz: f32) -> f32 {
         math::tan(math::PI * math::clamp(hz / rate_hz, 1e-5, 0.35))
     }
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn the_notch_cuts_to_the_ratio_of_its_dampings() {
-        // At the centre the gain is ζz/ζp = 0.25, also at 4.75 Hz of 1 kHz where coefficients are delicate.
+        // At the centre the gain is ζz/ζp = 0.25, even at 4.75 Hz of 1 kHz, where coefficients are delicate.
         let b = Biquad::new(Coefficients::notch(4.75, 0.2, 0.8, 1000.0));
         assert!((gain(b, 4.75, 1000.0) - 0.25).abs() < 0.005);
         assert!((gain(b, 0.2, 1000.0) - 1.0).abs() < 0.01);

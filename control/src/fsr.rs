@@ -1,14 +1,13 @@
 //! Contact pressure from the counts of a force-sensing resistor's divider.
 //!
-//! [`Fsr::step`] is called for every sensor at 500 Hz by the task `analog`, counts in and pascals out. A missed
-//! conversion leaves the last pressure standing; after 20 ms the gripper holds that arm's force.
+//! [`Fsr::step`] runs for every sensor at 500 Hz in the task `analog`. A missed conversion keeps the last pressure;
+//! after 20 ms the gripper holds that arm's force.
 //!
-//! The resistor hangs between the supply and a pad, a fixed resistor between the pad and ground: the pad has the
-//! share x = R_d / (R_d + R) of the supply, so the conductance is x / ((1 - x) R_d). It grows in proportion to the
-//! force (Interlink integration guide), and the force over the sensor's area is the pressure. The converter is at full
-//! scale where the pad has the share s: x = s counts / full scale. On a bare pad s is 1; what sees no more than a part
-//! of x reads no more than s / ((1 - s) R_d): 692 Pa for a half, 69 Pa for an eleventh. An unloaded sensor conducts
-//! nothing, so an open lead looks like no pressure at all: only the gripper, which knows what it pulls, can tell
+//! The resistor R hangs between supply and pad, a fixed R_d between pad and ground. The pad has the share x = R_d /
+//! (R_d + R) of the supply, so the conductance is x / ((1 - x) R_d). It is proportional to the force (Interlink
+//! integration guide); pressure is force over the sensor's area. With full scale at the share s, x = s counts / full
+//! scale; on a bare pad s is 1. A pin that sees only a part s of x reads at most s / ((1 - s) R_d): 692 Pa for a half,
+//! 69 Pa for an eleventh. An open lead reads as no pressure; only the gripper, which knows its pull, detects it
 //! ([`crate::grip_fault::GripFault::Unfelt`]).
 
 use crate::math;
@@ -18,19 +17,19 @@ use crate::wrench::PerArm;
 /// Full scale of the 12-bit converter.
 pub const FULL_SCALE: f32 = 4095.0;
 
-/// Counts of a bare pad beyond which the sensor must be shorted: below 240 Ω with a 10 kΩ divider, 40 N on the sensor.
+/// Counts of a shorted sensor on a bare pad: below 240 Ω with a 10 kΩ divider, 40 N on the sensor.
 const SHORT_COUNTS: f32 = 4000.0;
-/// What a sensor must be able to read, over the grip pressure: a grip overshoots and is pushed.
+/// Range over the grip pressure: a grip overshoots and is pushed.
 const RANGE_MARGIN: f32 = 1.2;
-/// Time of plausible counts after which a fault is over, s.
+/// Plausible time that clears a fault, s.
 const RECOVERY_TIME: f32 = 0.2;
 
-/// What is wrong with a sensor.
+/// Fault of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FsrFault {
-    /// It conducts more than the largest force would make it, or than its pad can show.
+    /// Conducts more than under the largest force, or than its pad can show.
     Short,
-    /// The converter gave more counts than it has.
+    /// More counts than the converter's full scale.
     Converter,
 }
 
@@ -38,17 +37,17 @@ pub enum FsrFault {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FsrScale {
     pascal_per_siemens: f32,
-    /// Pressure that it shows while nothing presses it, Pa.
+    /// Reading of the unloaded sensor, Pa.
     zero: f32,
     divider: f32,
-    /// Counts at which the pad would have the whole supply.
+    /// Counts at the whole supply.
     full: f32,
     /// Largest counts of a sound sensor.
     most: f32,
 }
 
 impl FsrScale {
-    /// The sensor of the arm `arm` (0 to 3) that the parameters describe.
+    /// The sensor of arm `arm` (0 to 3).
     pub fn from_params(p: &Params, arm: usize) -> Self {
         let [scale, trim, zero] = match arm {
             0 => [p.fsr_scale_1, p.fsr_trim_1, p.fsr_zero_1],
@@ -61,7 +60,7 @@ impl FsrScale {
             zero,
             divider: p.fsr_divider,
             full: FULL_SCALE / scale,
-            // A pin that sees a part of the range only is at its own end first.
+            // Such a pin saturates first.
             most: if scale > 1.0 {
                 SHORT_COUNTS / scale
             } else {
@@ -70,22 +69,22 @@ impl FsrScale {
         }
     }
 
-    /// Those of all four arms.
+    /// Scales of all four arms.
     pub fn all(p: &Params) -> PerArm<Self> {
         [0, 1, 2, 3].map(|arm| Self::from_params(p, arm))
     }
 
-    /// Pressure (Pa) for the counts `counts`, which are limited to what a sound sensor gives.
+    /// Pressure, Pa, for `counts`, limited to a sound sensor's.
     pub fn pressure(&self, counts: u16) -> f32 {
         self.pressure_of(f32::from(counts))
     }
 
-    /// Largest pressure that can be read, Pa.
+    /// Largest readable pressure, Pa.
     pub fn largest(&self) -> f32 {
         self.pressure_of(self.most)
     }
 
-    /// A grip at the pressure that the parameters ask for can be read, with a fifth to spare.
+    /// The grip pressure can be read, with a fifth to spare.
     pub fn reaches_grip(&self, p: &Params) -> bool {
         self.largest() >= RANGE_MARGIN * p.grip_pressure
     }
@@ -97,7 +96,7 @@ impl FsrScale {
     }
 }
 
-/// One sensor: its scale is applied and its faults are watched.
+/// One sensor with its fault detection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fsr {
     fault: Option<FsrFault>,
@@ -105,7 +104,7 @@ pub struct Fsr {
 }
 
 impl Fsr {
-    /// One conversion of `counts`, `dt` s after the one before; returns the pressure, Pa.
+    /// Takes one conversion, `dt` s after the last; returns the pressure, Pa.
     ///
     /// # Errors
     /// The fault, until the counts have been plausible for 0.2 s.
@@ -153,7 +152,6 @@ mod tests {
         FsrScale::from_params(&params(), 0)
     }
 
-    /// The scale of a sensor with `fsr_scale` of `full_scale`.
     fn scaled(full_scale: f32) -> FsrScale {
         FsrScale::from_params(
             &Params {
@@ -195,15 +193,14 @@ mod tests {
         assert!((scaled(2.0).pressure(1184) - 950.0).abs() < 1.5);
         // A count is 11 Pa there.
         assert!((scaled(11.0).pressure(215) - 950.0).abs() < 6.0);
-        // Not set, even the whole supply at the pad reads as a half and an eleventh of it: x / (1 - x) is 1 and 0.1,
-        // times 692.52 Pa.
+        // Not set, the whole supply reads as a half and an eleventh: x / (1 - x) is 1 and 0.1, times 692.52 Pa.
         assert!((scale().pressure(2047) - 692.5).abs() < 1.0);
         assert!((scale().pressure(372) - 69.25).abs() < 0.2);
     }
 
     #[test]
     fn a_range_must_reach_a_fifth_beyond_the_grip_pressure() {
-        // The largest share that is accepted is 4000/4095; x / (1 - x) is 42.105, times 692.52 Pa.
+        // The largest accepted share is 4000/4095; x / (1 - x) is 42.105, times 692.52 Pa.
         for full_scale in [1.0, 2.0, 11.0] {
             let scale = scaled(full_scale);
             assert!(
@@ -213,7 +210,7 @@ mod tests {
             );
             assert!(scale.reaches_grip(&params()));
         }
-        // A half and an eleventh of it: 0.95460 and 0.097464 times 692.52 Pa.
+        // A half and an eleventh: 0.95460 and 0.097464 times 692.52 Pa.
         for (full_scale, largest) in [(0.5, 661.1), (1.0 / 11.0, 67.50)] {
             let scale = scaled(full_scale);
             assert!((scale.largest() - largest).abs() < 0.1, "{}", scale.largest());

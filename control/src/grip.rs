@@ -1,7 +1,7 @@
-//! Grip and release detector: whether an arm holds the pipe, and whether it is free of it.
+//! Grip and release detector, 100 Hz: whether an arm holds the pipe or is free of it.
 //!
-//! Stepped by the [gripper](crate::gripper) at 100 Hz, pressures in Pa, forces along the tendon in N. A late step
-//! delays a proof, and the rotors' stop, by as much.
+//! Stepped by the [gripper](crate::gripper), pressures in Pa, forces along the tendon in N. A late step delays a proof,
+//! and the rotors' stop.
 
 use crate::grip_fault::GripFault;
 use crate::math;
@@ -11,7 +11,7 @@ use crate::wrench::PerArm;
 /// State of the grip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GripState {
-    /// Every chosen arm, all at once, held the pressure for the dwell time with a force below the limit.
+    /// All chosen arms together held the pressure for the dwell time with a force below the limit.
     pub proven: bool,
     /// Every arm is free: no pressure, tendon slack, servo back at release.
     pub released: bool,
@@ -28,7 +28,7 @@ pub struct ArmGrip {
     pub pressure: f32,
     /// Tendon force, N.
     pub force: f32,
-    /// Time from the start of closing until the pressure stayed within its tolerance, s.
+    /// Time from closing until the pressure stayed within tolerance, s.
     pub closure: Option<f32>,
     /// Cause of [`ArmState::Faulty`].
     pub fault: Option<GripFault>,
@@ -44,27 +44,27 @@ pub enum ArmState {
     Closing,
     /// Pressure rising.
     Touching,
-    /// Pressure within its tolerance for the dwell time, force below the limit.
+    /// Pressure within tolerance for the dwell time, force below the limit.
     Holding,
     /// Force limit reached before the pressure.
     ForceLimited,
-    /// The sensor or the arm's own IMU failed: the force is held.
+    /// Its sensor or IMU failed: the force is held.
     Faulty,
     /// Tendon paying out.
     Releasing,
 }
 
-/// Tolerance factor beyond which a proven grip is doubted: the rotors' stop and pushes disturb the pressure without
-/// loosening the grip.
+/// Tolerance factor beyond which a proven grip is doubted: the rotors' stop and pushes disturb the pressure, not the
+/// grip.
 const DOUBT_FACTOR: f32 = 4.0;
 /// Largest share of the force limit for a proof.
 const FORCE_SHARE_MAX: f32 = 0.98;
 /// Time for which an arm must look free, s.
 const FREE_DWELL: f32 = 0.1;
-/// The same with a failed sensor, s: only the servo shows it, and the arm needs time to spring back.
+/// With a failed sensor, s: the arm needs time to spring back.
 const FREE_DWELL_BLIND: f32 = 1.0;
 
-/// What a proof demands.
+/// Demands of a proof.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GripDemand {
     /// Pressure, Pa.
@@ -80,7 +80,7 @@ pub struct GripDemand {
 }
 
 impl GripDemand {
-    /// The demand by the parameters, below the force limit `limit` (N).
+    /// From the parameters, below the force limit `limit` (N).
     pub fn from_params(p: &Params, limit: f32) -> Self {
         Self {
             pressure: p.grip_pressure,
@@ -103,8 +103,8 @@ pub struct HoldProof {
 }
 
 impl HoldProof {
-    /// Adds `dt` s at the pressure `pressure` (Pa; `None`: unknown) and the force `force` (N); returns whether the grip
-    /// is proven. A pressure unknown or beyond four tolerances for the dwell time revokes the proof.
+    /// Adds `dt` s at `pressure` (Pa; `None`: unknown) and `force` (N); returns whether the grip is proven. A pressure
+    /// unknown or beyond four tolerances for the dwell time revokes the proof.
     pub fn step(&mut self, demand: &GripDemand, pressure: Option<f32>, force: f32, dt: f32) -> bool {
         self.elapsed = math::clamp(self.elapsed + dt, 0.0, 1e6);
         let error = pressure.map_or(f32::INFINITY, |p| (p - demand.pressure).abs());
@@ -133,7 +133,7 @@ impl HoldProof {
         self.proven
     }
 
-    /// Time from the start of closing until the pressure stayed within its tolerance, s; `None` without proof.
+    /// Closure time, s; `None` without proof.
     pub fn closure(&self) -> Option<f32> {
         self.proven.then_some(self.entered)
     }
@@ -146,8 +146,8 @@ pub struct FreeProof {
 }
 
 impl FreeProof {
-    /// Adds `dt` s at the pressure `pressure` (Pa) and the servo's tension `tension` (N; 0 only at the release
-    /// position), `None` where unknown; returns whether the arm is free.
+    /// Adds `dt` s at `pressure` (Pa) and the servo's `tension` (N; 0 only at release), `None` where unknown; returns
+    /// whether the arm is free.
     pub fn step(
         &mut self,
         demand: &GripDemand,
@@ -165,7 +165,7 @@ impl FreeProof {
         self.proven(pressure.is_some())
     }
 
-    /// Whether the arm was free at the last step, with a pressure that is `measured` or without.
+    /// True if the arm was free for its dwell time, longer without a `measured` pressure.
     pub fn proven(&self, measured: bool) -> bool {
         self.free_for >= if measured { FREE_DWELL } else { FREE_DWELL_BLIND }
     }

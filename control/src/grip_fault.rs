@@ -1,18 +1,17 @@
-//! Faults of a closing arm; below both the loop that finds them and the grip state that carries them.
+//! Faults of a closing arm.
 
-/// Why an arm is faulty.
+/// Fault of an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GripFault {
     /// No fresh pressure; ends with the next one.
     Stale,
     /// The pressure sensor failed; stays until release.
     Sensor,
-    /// The arm met something that its sensor does not feel; stays until release.
+    /// An obstacle that the sensor does not feel; stays until release.
     Unfelt,
-    /// The force rose and the pressure, still below that of a grip, did not follow: the sensor cannot read it; stays
-    /// until release.
+    /// The pressure stayed below that of a grip while the force rose: the sensor cannot read it; stays until release.
     Ceiling,
-    /// Tilt missing; ends when it is back.
+    /// Tilt missing; ends with it.
     Tilt,
     /// A value is not finite; ends when it is.
     NotFinite,

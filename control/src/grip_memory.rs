@@ -1,26 +1,26 @@
-//! The grip as it must be remembered: over stopped rotors, and over a reset.
+//! Grip state, retained across motor stop and reset.
 //!
-//! The mode logic decides it at 100 Hz, and the supervisor copies it into memory that a reset leaves alone.
+//! The mode logic decides it at 100 Hz; the supervisor copies it into memory that a reset keeps.
 
 use crate::rc::ArmChoice;
 use crate::setpoint::ClampCommand;
 
-/// What the tendons do to the pipe, as far as it must outlive the rotors and a reset.
+/// Action of the tendons on the pipe, retained.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GripMemory {
-    /// Not looked at yet since the power came on: the arms may be closed.
+    /// Not checked since power-up: the arms may be closed.
     #[default]
     Unknown,
-    /// Open, or opening because a person wanted it.
+    /// Open, or opening on the pilot's wish.
     Open,
-    /// These arms are closed, closing, or not proven free yet: the clamp loops hold them.
+    /// Closed, closing, or not proven free: the clamp loops hold these arms.
     Controlled(ArmChoice),
-    /// These arms were found pressed when the power came on; where their servos stand is not known. The gears hold.
+    /// Found pressed at power-up, servo angles unknown: the gears hold these arms.
     HeldByGears(ArmChoice),
 }
 
 impl GripMemory {
-    /// What the tendons do that keeps it.
+    /// Tendon command that keeps this grip.
     pub const fn tendons(self) -> ClampCommand {
         match self {
             Self::Open => ClampCommand::Release,
@@ -29,7 +29,7 @@ impl GripMemory {
         }
     }
 
-    /// The arms that hold something.
+    /// Arms that hold something.
     pub const fn arms(self) -> Option<ArmChoice> {
         match self {
             Self::Controlled(arms) | Self::HeldByGears(arms) => Some(arms),

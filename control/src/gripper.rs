@@ -1,15 +1,15 @@
 //! Gripper controller: contact pressure in, tendon force out.
 //!
-//! [`Gripper::step`] is called at 100 Hz by the task `clamp`, with the measured step (s). Forces are along the tendon
-//! (N), pressures on the sensor (Pa), tilts positive with the arm's tip up (rad). A late step delays the control by as
-//! much; 200 ms without a step hold the servos, and with them the grip.
+//! [`Gripper::step`] runs at 100 Hz in the task `clamp`. Forces are along the tendon (N), pressures on the sensor (Pa),
+//! tilts positive with the tip up (rad). A late step delays the control; 200 ms without a step hold the servos, and
+//! with them the grip.
 //!
-//! Each arm is bent down at a steady speed, its force rising with its stiffness, until its sensor feels a touch. The
-//! force is then set to the tendon's tension, which lags while the arm moves, and a PID leads the pressure along a
-//! reference that approaches the target from below. On release the force falls at a limited rate.
+//! Each arm bends down steadily until its sensor feels a touch. The force is then set to the tendon's tension, which
+//! lags in motion, and a PID leads the pressure along a reference that approaches the target from below. On release the
+//! force falls at a limited rate.
 //!
-//! There are two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T meets the moment arm_d T
-//! with which the rotor's thrust bends the arm off the pipe, so that the pressure hardly moves when the rotors stop.
+//! Two feed-forwards: the arm's stiffness sets the rise, and a force of arm_d/h T balances the moment arm_d T by which
+//! the rotor's thrust bends the arm off the pipe, so the pressure hardly moves when the rotors stop.
 //!
 //! | word | meaning |
 //! |---|---|
@@ -38,7 +38,7 @@ use crate::grip_fault::GripFault;
 use crate::math;
 use crate::wrench::PerArm;
 
-/// Pressure that counts as touching, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
+/// Pressure of a touch, Pa: above the sensor's threshold of 0.1 N (69 Pa on 1444 mm²).
 const TOUCH_PRESSURE: f32 = 100.0;
 /// Least force of a closed arm, N: at 0 the servo would pay out to its release position.
 const FORCE_MIN: f32 = 1.0;
@@ -57,7 +57,7 @@ pub struct ArmOutput {
 pub struct GripperOutput {
     /// Per arm.
     pub arms: PerArm<ArmOutput>,
-    /// Every chosen arm (at least one) holds, and all were within the tolerance at once for the dwell time.
+    /// All chosen arms (at least one) hold, and were within the tolerance together for the dwell time.
     pub proven: bool,
     /// Every arm is free.
     pub released: bool,
@@ -67,13 +67,13 @@ pub struct GripperOutput {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gripper {
     arms: PerArm<ArmGripper>,
-    /// Time for which all chosen arms have been within the tolerance at once, s.
+    /// Time of all chosen arms within the tolerance, s.
     together: f32,
     proven: bool,
 }
 
 impl Gripper {
-    /// Resumes the loops of closed arms (those with a force) after a restart; see [`ArmGripper::resume`].
+    /// Resumes the loops of closed arms (those with a force) after a restart.
     pub fn resume(force: PerArm<f32>, fault: PerArm<Option<GripFault>>) -> Self {
         let mut arms = [ArmGripper::default(); 4];
         for ((arm, force), fault) in arms.iter_mut().zip(force).zip(fault) {
@@ -104,7 +104,7 @@ impl Gripper {
             within &= !input.close || (grip.pressure - cfg.demand.pressure).abs() <= cfg.demand.tolerance;
             out.released &= arm.is_free(input.pressure);
         }
-        // A proven grip is doubted arm by arm only: a push moves the pressures without loosening it.
+        // A proven grip is doubted by arm only: a push moves the pressures without loosening it.
         self.together = if within {
             math::clamp(self.together + dt, 0.0, 10.0)
         } else {

@@ -1,7 +1,7 @@
-//! Low-passes the inertial sensor at its own rate and decimates it to the control rate.
+//! Low-passes the inertial sensor at its own rate and decimates to the control rate.
 //!
-//! [`ImuFilter::batch`] is called at 1 kHz by the task `imu` with the samples of the last millisecond (4 kHz, or the
-//! part's nearest; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
+//! [`ImuFilter::batch`] runs at 1 kHz in the task `imu` with the samples of the last millisecond (4 kHz, or the part's
+//! nearest rate; rad/s and m/s² in body axes). A missed sample delays the rates by its period.
 
 use crate::chain::ImuReading;
 use crate::filter::Coefficients;
@@ -33,7 +33,7 @@ impl AxisFilter {
     /// One sample.
     #[inline(always)]
     pub fn step(&mut self, v: Vec3) -> Vec3 {
-        // The numerator is 1, 2, 1: one product serves all three taps.
+        // The numerator is 1, 2, 1: one product serves all taps.
         let x = v * self.gain;
         let y = x + self.s1;
         self.s1 = x + x - y * self.a1 + self.s2;
@@ -57,10 +57,10 @@ pub struct ImuFilter {
 }
 
 impl ImuFilter {
-    /// Cut-off of the accelerometer, Hz: it only corrects slowly and proves support.
+    /// Cut-off of the accelerometer, Hz: for slow correction and support.
     pub const ACCEL_CUTOFF: f32 = 30.0;
 
-    /// Filter for samples at `rate_hz` with the gyro's cut-off `gyro_hz`.
+    /// For samples at `rate_hz`, with the gyro's cut-off `gyro_hz`.
     pub fn new(gyro_hz: f32, rate_hz: f32) -> Self {
         Self {
             gyro: AxisFilter::low_pass(gyro_hz, rate_hz),
@@ -69,14 +69,14 @@ impl ImuFilter {
         }
     }
 
-    /// Filters the readings of a batch, oldest first, less `accel_bias` (m/s²) of specific force, leaving out those
-    /// that are not finite. Puts the newest output into `newest`; returns the count of finite readings.
+    /// Filters the finite readings of a batch, oldest first, less `accel_bias` (m/s²) of specific force. Writes the
+    /// newest output into `newest`; returns the finite count.
     #[inline(always)]
     pub fn batch(&mut self, readings: &[ImuReading], accel_bias: Vec3, newest: &mut ImuReading) -> u32 {
         if !self.started {
             self.start_at_first(readings, accel_bias);
         }
-        // Local copies stay in registers between readings.
+        // Local copies stay in registers.
         let (mut filter, mut last) = (*self, *newest);
         let mut finite = 0;
         for ImuReading { gyro, accel } in readings {
@@ -93,7 +93,6 @@ impl ImuFilter {
         finite
     }
 
-    /// Settles at the first finite reading.
     #[cold]
     #[inline(never)]
     fn start_at_first(&mut self, readings: &[ImuReading], accel_bias: Vec3) {
@@ -156,13 +155,13 @@ mod tests {
         assert!((newest.accel - (good.accel - bias)).norm() < 1e-3, "{newest:?}");
     }
 
-    /// Gain and delay (s) of the gyro's filter at `hz`, seen at its 1 kHz output, with samples at `rate_hz`.
+    /// Gain and delay (s) of the gyro's filter at `hz`, at its 1 kHz output.
     fn response(hz: f64, rate_hz: f64) -> (f64, f64) {
         let mut f = ImuFilter::new(90.0, rate_hz as f32);
         let per_output = (rate_hz / 1000.0) as usize;
         let turn = core::f64::consts::TAU * hz;
         let (mut in_phase, mut quadrature, mut n) = (0.0, 0.0, 0);
-        // Two seconds; the second, a whole number of turns, is measured.
+        // The second second, a whole number of turns, is measured.
         for i in 1..=(2.0 * rate_hz) as usize {
             let t = i as f64 / rate_hz;
             let x = f64::sin(turn * t) as f32;
@@ -182,7 +181,7 @@ mod tests {
     fn the_output_is_the_same_whatever_the_sensor_s_rate() {
         for rate in [1000.0, 2000.0, 4000.0, 8000.0] {
             for hz in [2.0, 10.0, 30.0, 90.0] {
-                // Butterworth's second order about 90 Hz.
+                // Second-order Butterworth at 90 Hz.
                 let x: f64 = hz / 90.0;
                 let gain = 1.0 / f64::sqrt(1.0 + x.powi(4));
                 let delay =
@@ -194,7 +193,7 @@ mod tests {
                     "{hz} Hz at {rate} Hz: delay {d} s, {delay} s"
                 );
             }
-            // Beyond half of the output's rate nothing is left to alias.
+            // Nothing aliases.
             if rate > 1000.0 {
                 assert!(response(900.0, rate).0 < 0.02, "{rate} Hz");
             }

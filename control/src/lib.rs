@@ -1,10 +1,9 @@
 //! Control laws of the SOPHIE flight stack.
 //!
-//! Pure functions and small structs: no I/O, no async, no allocation, no hardware. Everything is SI
-//! (N, N·m, rad, rad/s, s, Pa, V) except the infill ratio, which is in percent because the
-//! paper's coefficients are. Body frame FRD (x forward, y right, z down), world frame NED,
-//! quaternions w-first, rotors and arms in the paper's order: 1 front-left, 2 rear-left,
-//! 3 front-right, 4 rear-right. An arm tilt is positive with the tip up, thrust leaning inward.
+//! Pure functions and small structs: no I/O, async, allocation or hardware. Units are SI, except the infill ratio in
+//! percent, as in the paper. Body frame FRD (x forward, y right, z down), world frame NED, quaternions w-first; rotors
+//! and arms in the paper's order: 1 front-left, 2 rear-left, 3 front-right, 4 rear-right. An arm's tilt is positive
+//! with the tip up, thrust leaning inward.
 
 #![no_std]
 #![deny(
@@ -13,7 +12,7 @@
     clippy::expect_used,
     clippy::panic
 )]
-// Tests compare exactly where exactness is the point.
+// Tests compare floats exactly where exactness is the point.
 #![cfg_attr(not(test), deny(clippy::float_cmp))]
 
 pub mod arming;

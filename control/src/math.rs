@@ -1,9 +1,8 @@
-//! Source of all transcendental functions.
+//! All transcendental functions of the control laws.
 //!
-//! With `std` in scope `x.sin()` is another function on the host than on the board, so the laws call these by path.
-//! `sin`, `cos` and `atan2` are micromath's (absolute errors 1.1e-3, 1.1e-3 and 2.8e-3 rad), for occasional use; every
-//! step uses branch-free sines for a limited range. The roots are written here because micromath's are off by up to 6
-//! %.
+//! With `std` in scope `x.sin()` differs between host and board, so the laws call these by path. `sin`, `cos` and
+//! `atan2` are micromath's (absolute errors 1.1e-3, 1.1e-3 and 2.8e-3 rad), for occasional use; steps use branch-free
+//! sines of limited range. Micromath's roots would be off by up to 6 %.
 
 use micromath::F32Ext;
 
@@ -30,7 +29,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     F32Ext::atan2(y, x)
 }
 
-/// Arc sine of `x`, rad; `x` is limited to [-1, 1] first.
+/// Arc sine of `x`, rad; `x` is limited to [-1, 1].
 #[inline]
 pub fn asin(x: f32) -> f32 {
     let x = clamp(x, -1.0, 1.0);
@@ -77,9 +76,9 @@ pub fn inv_sqrt(x: f32) -> f32 {
     }
 }
 
-/// 1/√x for positive normal `x`, relative error below 8e-7; any value or NaN otherwise.
+/// 1/√x for positive normal `x`, relative error below 8e-7; arbitrary or NaN otherwise.
 ///
-/// Bit-level guess, a Newton step with constants fitted to it (Moroz et al., error 6.5e-4), and a plain Newton step.
+/// Bit-level guess, a Newton step with fitted constants (Moroz et al., error 6.5e-4), and a plain Newton step.
 #[inline(always)]
 pub fn inv_sqrt_normal(x: f32) -> f32 {
     let y = f32::from_bits(0x5f1f_fff9u32.wrapping_sub(x.to_bits() >> 1));
@@ -134,7 +133,7 @@ pub fn pow_near_one(base: f32, exponent: f32) -> f32 {
 #[inline]
 pub fn wrap_pi(x: f32) -> f32 {
     let turns = (x + PI) * (0.5 / PI);
-    // Truncates towards zero, then corrects negative values: `floor` is not in core.
+    // Truncation towards zero, corrected for negative values: `floor` is not in core.
     let whole = turns as i32 as f32;
     let floor = if whole > turns { whole - 1.0 } else { whole };
     x - floor * (2.0 * PI)
@@ -202,7 +201,7 @@ mod tests {
         assert!(s < 5e-7 && c < 7e-6, "{s} {c}");
         let (s, c) = worst(sin_cos_quarter, PI / 2.0);
         assert!(s < 1.2e-4 && c < 9e-6, "{s} {c}");
-        // The functions that they replace.
+        // The replaced functions.
         let (s, c) = worst(|x| (sin(x), cos(x)), PI / 2.0);
         assert!(s > 9e-4 && c > 9e-4, "{s} {c}");
     }

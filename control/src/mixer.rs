@@ -1,7 +1,7 @@
-//! Allocation of a wrench to four rotors whose arms bend, recomputed at every step.
+//! Allocation of a wrench to four rotors whose arms bend, recomputed at 1 kHz.
 //!
-//! [`Flexible`] is what flies. The mixer task takes any [`Allocation`], so that others can be flown beside it in the
-//! simulator; they are made of the same parts: the [`Limits`] of rotors and yaw, and the [`Split`] of a wrench.
+//! [`Flexible`] flies. The mixer task takes any [`Allocation`]; the simulator flies others of the same parts:
+//! [`Limits`] of rotors and yaw, and the [`Split`] of a wrench.
 
 mod flexible;
 mod limits;
@@ -16,44 +16,43 @@ use crate::desaturation::Given;
 use crate::tilt::TiltModel;
 use crate::wrench::{PerArm, Wrench};
 
-/// What one step gives.
+/// Result of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mix {
-    /// Thrust of each rotor, N, from the idle thrust to the largest that the battery allows.
+    /// Thrust of each rotor, N, within the idle and the battery's limit.
     pub thrusts: PerArm<f32>,
-    /// What was given up.
+    /// Shares given.
     pub given: Given,
-    /// Yaw has no authority to be trusted: it was given up, its integrator is to be reset.
+    /// Yaw was given up for lack of authority; its integrator is to be reset.
     pub yaw_gated: bool,
 }
 
-/// What an allocation must know besides the wrench.
+/// Inputs of an allocation besides the wrench.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Yaw may be used.
     pub yaw: bool,
-    /// Battery voltage over nominal, 0.5..1 (limited); less lowers the largest thrust by its square.
+    /// Battery voltage over nominal, limited to 0.5..1; lowers the largest thrust by its square.
     pub battery_ratio: f32,
     /// Step time, s, > 0.
     pub dt: f32,
 }
 
-/// Turns wrenches into thrusts, about the arms' modelled tilt.
+/// Turns wrenches into thrusts at the arms' modelled tilt.
 pub trait Allocation {
-    /// The thrusts for the wrench `w` (N, N·m), at the present tilt of the arms. A wrench that is not finite counts as
-    /// none: idle.
+    /// Thrusts for the wrench `w` (N, N·m) at the present tilt; idle if `w` is not finite.
     fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix;
 
     /// Rotors at idle.
     fn at_idle(&self) -> Mix;
 
-    /// Steps the models of arms and motors by `dt` s with the thrusts (N) sent.
+    /// Steps the models of arms and motors by `dt` s with the sent thrusts (N).
     fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32);
 
     /// The arms' modelled tilt.
     fn tilt(&self) -> &TiltModel;
 
-    /// The same, for what the arms' sensors correct.
+    /// The arms' modelled tilt, for correction by the sensors.
     fn tilt_mut(&mut self) -> &mut TiltModel;
 
     /// One step: [`Self::allocate`], then [`Self::follow`].
@@ -71,10 +70,10 @@ pub trait Allocation {
         mix
     }
 
-    /// One step of the `mixing` that owns such an allocation; [`Mixing::step`] says what it is given and gives.
+    /// One step of the `mixing` that owns this allocation.
     ///
-    /// Generic code is built with its caller, on a board for size. The allocation that flies repeats this method without
-    /// inlining, so that it is built with this crate, for speed.
+    /// Generic code is built with its caller, on a board for size. The flying allocation repeats this method without
+    /// inlining, to be built with this crate for speed.
     #[inline(always)]
     fn step_mixing(
         mixing: &mut Mixing<Self>,

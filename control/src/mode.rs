@@ -1,8 +1,8 @@
-//! The modes of the vehicle, what the mode logic sees and what it decides; 100 Hz.
+//! The vehicle's modes, and the inputs and outputs of the mode logic, stepped at 100 Hz.
 //!
-//! Each mode has a file with its state (`behaviour::Behaviour`); `context` holds what outlives a state, `transitions`
-//! is the table of what leads from one to the next, in the order of priority, with its conditions in `guards` and the
-//! states' beginnings in `entries`. `docs/modes.md` shows the table.
+//! Each mode has a file with its state (`behaviour::Behaviour`); `context` holds what outlives it. `transitions` is the
+//! table of transitions by priority, shown in `docs/modes.md`, with conditions in `guards` and entry functions in
+//! `entries`.
 
 mod armed;
 mod behaviour;
@@ -48,15 +48,15 @@ use crate::setpoint::{ClampCommand, Setpoint};
 use crate::vector::{Quat, Vec3};
 use crate::wrench::PerArm;
 
-/// Declares the modes in the order of a mission: name, file of its state, number in records, name on displays.
+/// Declares the modes in mission order: name, file, number in records, name on displays.
 macro_rules! modes {
     ($($(#[$doc:meta])+ $name:ident in $file:ident = $number:literal, $text:literal;)+) => {
-        /// What the vehicle is doing; the commander alone changes it.
+        /// Mode of the vehicle; only the commander changes it.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
         pub enum Mode { $($(#[$doc])+ $name = $number,)+ }
 
         impl Mode {
-            /// Every mode, in the order of a mission.
+            /// Every mode, in mission order.
             pub const ALL: [Self; [$($number),+].len()] = [$(Self::$name),+];
 
             /// Name for displays and telemetry, at most 12 ASCII characters.
@@ -65,7 +65,7 @@ macro_rules! modes {
             }
         }
 
-        /// A mode with the fields that live in it.
+        /// A mode with its fields.
         #[derive(Clone, Copy, Debug, PartialEq)]
         enum State { $($name($file::$name),)+ }
 
@@ -83,7 +83,7 @@ macro_rules! modes {
             }
         }
 
-        /// How a state begins: from the one before, in this step, for this reason.
+        /// Entry function: previous state, this step, reason.
         #[derive(Clone, Copy, Debug)]
         #[expect(dead_code, reason = "no transition leads to the mode of the start")]
         enum Entry { $($name(fn(&State, &mut Step<'_>, Option<Reason>) -> $file::$name),)+ }
@@ -93,7 +93,6 @@ macro_rules! modes {
                 match self { $(Self::$name(enter) => State::$name(enter(from, step, why)),)+ }
             }
 
-            /// The mode that begins.
             #[cfg(test)]
             fn mode(self) -> Mode {
                 match self { $(Self::$name(_) => Mode::$name,)+ }
@@ -134,13 +133,13 @@ impl Mode {
         Self::ALL.into_iter().find(|m| m.name() == name)
     }
 
-    /// The rotors stand in it. In every other mode they may turn, and what drops everything applies.
+    /// The rotors stand still. In other modes the transitions that stop everything apply.
     pub const fn rotors_stand(self) -> bool {
         matches!(self, Self::Calibrating | Self::Disarmed | Self::Perched)
     }
 }
 
-/// Estimated motion, as far as the mode logic needs it.
+/// Estimated motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// Body to world.
@@ -149,18 +148,18 @@ pub struct Motion {
     pub rate: Vec3,
     /// Specific force, m/s², body.
     pub accel: Vec3,
-    /// Calibration at rest has ended.
+    /// True once calibration at rest has ended.
     pub calibrated: bool,
 }
 
-/// What the mode logic sees in one step; `None` stands for a message that is stale.
+/// Inputs of one step; `None` stands for a stale message.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
-    /// The pilot's wishes; `None` when the radio is lost.
+    /// The pilot's sticks; `None` when the radio is lost.
     pub sticks: Option<Sticks>,
     /// Motion of the body.
     pub motion: Option<Motion>,
-    /// Thrust asked of the rotors along body -z, Σ T cos α, N; 0 when stopped.
+    /// Demanded thrust along body -z, Σ T cos α, N; 0 when stopped.
     pub lift: f32,
     /// The grip.
     pub grip: Option<GripState>,
@@ -170,15 +169,15 @@ pub struct Inputs {
     pub battery: Option<f32>,
     /// The flight level misses its deadlines.
     pub late: bool,
-    /// What the drivers, the storage and the start report against arming.
+    /// Arming inhibits of drivers, storage and start-up.
     pub hardware: ArmingInhibits,
-    /// What a builder asks at the console.
+    /// Request at the console.
     pub bench: Option<BenchRequest>,
 }
 
 impl Inputs {
-    /// Drops every message with a non-finite value, as if it were stale: NaN must not stay in a filter or in the attitude
-    /// held on the pipe. An arm switch that is off still stops the rotors.
+    /// Drops messages with a non-finite value: NaN must not stay in a filter or in the attitude held on the pipe. An
+    /// arm switch that is off still stops the rotors.
     fn finite(self) -> Self {
         let sane = |m: &Motion| m.q.is_finite() && m.rate.is_finite() && m.accel.is_finite();
         let steady = |s: &Sticks| (s.roll + s.pitch + s.yaw + s.throttle).is_finite();
@@ -201,21 +200,21 @@ impl Inputs {
     }
 }
 
-/// What the mode logic decides in one step.
+/// Outputs of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
-    /// State of the vehicle.
+    /// Mode.
     pub mode: Mode,
-    /// What the rotors are to do.
+    /// Rotors.
     pub rotors: Setpoint,
-    /// What the tendons are to do.
+    /// Tendons.
     pub tendons: ClampCommand,
-    /// The grip that must outlive a reset.
+    /// Grip to retain across a reset.
     pub grip_memory: GripMemory,
-    /// Why arming is refused, the failsafe acts or the last state was left; `None` when nothing is wrong.
+    /// Why arming is refused, the failsafe acts or the last state was left; `None` if nothing is wrong.
     pub reason: Option<Reason>,
     /// Everything against arming; empty while armed.
     pub inhibits: ArmingInhibits,
-    /// What has become of the newest order of the bench.
+    /// Answer to the newest bench order.
     pub bench: BenchAnswer,
 }

@@ -1,4 +1,4 @@
-//! Rate control: PID on the body rates, with gains in true units (1/s) that do not depend on the inertia.
+//! Rate control, 1 kHz: PID on the body rates, with gains in 1/s, independent of the inertia.
 //!
 //! The derivative acts on the filtered measured rate. Integrators stop where the mixer could not give the demand,
 //! unless they unwind. Yaw passes a notch at the arms' bending mode.
@@ -15,7 +15,7 @@ const INTEGRAL_MAX: Vec3 = Vec3::new(15.0, 15.0, 3.0);
 /// Share of a demand below which it counts as not given.
 const GIVEN: f32 = 0.999;
 
-/// How much of the last demand the mixer gave.
+/// Given part of the last demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feedback {
     /// Share of roll and pitch, 0..1.
@@ -27,7 +27,7 @@ pub struct Feedback {
 }
 
 impl Feedback {
-    /// No mix is known: nothing may wind up.
+    /// No mix: nothing may wind up.
     pub const NOTHING: Self = Self {
         roll_pitch: 0.0,
         yaw: 0.0,
@@ -41,7 +41,6 @@ pub struct RateLoop {
     p: Vec3,
     i: Vec3,
     d: Vec3,
-    /// Rate of the last step; without one there is no slope.
     last: Vec3,
     started: bool,
     d_rate: f32,
@@ -73,7 +72,7 @@ impl RateLoop {
         }
     }
 
-    /// Clears integrals, derivatives and the notch.
+    /// Clears integrals, derivatives and notch.
     pub fn reset(&mut self) {
         self.integral = Vec3::ZERO;
         self.derivative = [LowPass::default(); 3];
@@ -82,8 +81,7 @@ impl RateLoop {
         self.notch.reset(0.0);
     }
 
-    /// Moments (N·m) that lead from `rate` to `setpoint` (rad/s) in a step of `dt` s, > 0; `integrate` is false while
-    /// resting on something.
+    /// Moments (N·m) from `rate` to `setpoint` (rad/s) in a step of `dt` s, > 0; `integrate` is false while resting.
     #[inline(always)]
     pub fn step(&mut self, setpoint: Vec3, rate: Vec3, feedback: Feedback, integrate: bool, dt: f32) -> Vec3 {
         let error = setpoint - rate;
@@ -91,7 +89,7 @@ impl RateLoop {
         let slope = (rate - self.last) * per_second;
         self.last = rate;
         self.started = true;
-        // A slope that is not finite comes with a moment that is not, which resets everything.
+        // A non-finite slope makes the moment so, which resets everything.
         let gain = LowPass::gain(self.d_rate, dt);
         let [dx, dy, dz] = &mut self.derivative;
         let slope = Vec3::new(
@@ -103,7 +101,7 @@ impl RateLoop {
         let (tilt_given, yaw_given) = (feedback.roll_pitch > GIVEN, feedback.yaw > GIVEN && free);
         let step = error.scale_by(self.i) * if integrate { dt } else { 0.0 };
         let add = |sum: f32, step: f32, limit: f32, given: bool| {
-            // What was not given must not wind up, but may unwind.
+            // A limited integral may only unwind.
             let step = if given | (sum * step < 0.0) { step } else { 0.0 };
             math::clamp_abs(sum + step, limit)
         };

@@ -1,4 +1,4 @@
-//! Meaning of the transmitter's sticks and switches.
+//! Decoding of the transmitter's sticks and switches.
 //!
 //! Channels are CRSF counts, 11 bit: 172 and 1811 at the ends of a stick's travel, 992 at its centre.
 //!
@@ -24,13 +24,12 @@ pub const RAW_LOW: u16 = 172;
 pub const RAW_CENTRE: u16 = 992;
 /// Counts at the high end.
 pub const RAW_HIGH: u16 = 1811;
-/// Counts accepted: 885 to 2115 µs. A receiver that has lost its transmitter sends less.
+/// Accepted counts: 885 to 2115 µs. A receiver without transmitter sends less.
 const RAW_VALID: core::ops::RangeInclusive<u16> = 8..=1976;
 /// Half the travel of a centred stick, counts.
 const RAW_HALF: f32 = 819.5;
-/// The whole travel, counts.
 const RAW_SPAN: f32 = 1639.0;
-/// Share of the travel about the centre (or the throttle's zero) that counts as zero, for a gimbal's slack.
+/// Dead zone about the centre (or the throttle's zero), share of the travel, for a gimbal's slack.
 pub const DEADBAND: f32 = 0.01;
 /// Thresholds of a switch, counts.
 const SWITCH_LOW: u16 = 582;
@@ -82,9 +81,9 @@ pub struct Sticks {
     pub yaw: f32,
     /// Share of the largest collective thrust, 0..1.
     pub throttle: f32,
-    /// Arming switch: on permits running motors, off stops them at once.
+    /// On permits running motors, off stops them at once.
     pub arm_switch: bool,
-    /// Perch switch: on closes the arms, off releases them.
+    /// On closes the arms, off releases them.
     pub perch_switch: bool,
     /// Reading of the sticks.
     pub stick_mode: StickMode,
@@ -92,7 +91,7 @@ pub struct Sticks {
     pub arms: ArmChoice,
 }
 
-/// A channel whose count no transmitter sends on purpose.
+/// A channel with an implausible count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelError {
     /// Channel, from 1.
@@ -102,7 +101,7 @@ pub struct ChannelError {
 }
 
 impl Sticks {
-    /// Decodes a frame of channels.
+    /// Decodes a frame.
     ///
     /// # Errors
     /// A used channel outside the accepted range; the frame must be dropped.
@@ -133,7 +132,7 @@ impl Sticks {
         })
     }
 
-    /// The frame that a transmitter sends for this, exact to the count; channels 9 to 16 are centred.
+    /// The frame for these sticks, exact to the count; channels 9 to 16 are centred.
     pub fn to_channels(&self) -> [u16; CHANNELS] {
         let c = RAW_CENTRE;
         let two = |on| if on { RAW_HIGH } else { RAW_LOW };
@@ -180,7 +179,7 @@ fn centred(raw: u16) -> f32 {
     if x < 0.0 { -beyond } else { beyond }
 }
 
-/// A stick that rests at its low end, 0..1.
+/// A stick with zero at its low end, 0..1.
 fn from_zero(raw: u16) -> f32 {
     let x = (f32::from(raw) - f32::from(RAW_LOW)) / RAW_SPAN;
     clamp((x - DEADBAND) / (1.0 - DEADBAND), 0.0, 1.0)
@@ -188,7 +187,7 @@ fn from_zero(raw: u16) -> f32 {
 
 fn to_centred(value: f32) -> u16 {
     let size = clamp(value.abs(), 0.0, 1.0);
-    // Less than half a count: the stick is released and its spring centres it.
+    // Less than half a count: the released stick centres.
     if size < 0.5 / RAW_HALF {
         return RAW_CENTRE;
     }

@@ -1,11 +1,11 @@
-//! What the mode logic wants of rotors and tendons.
+//! Setpoints of rotors and tendons, from the mode logic.
 
 use crate::bench::{Place, Spin};
 use crate::rc::ArmChoice;
 use crate::vector::Vec3;
 use crate::wrench::Wrench;
 
-/// What the rotors are to do.
+/// Wanted action of the rotors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Setpoint {
     /// Stopped.
@@ -13,9 +13,9 @@ pub enum Setpoint {
     Stop,
     /// Idle, controllers reset.
     Idle,
-    /// On the bench: one motor turns, the others are stopped, controllers reset.
+    /// One motor on the bench, the others stopped, controllers reset.
     Spin(Spin),
-    /// Hold roll and pitch (rad), turn at a yaw rate (rad/s), with a collective thrust (N).
+    /// Held roll and pitch, yaw rate, collective thrust.
     Angle {
         /// Roll, rad.
         roll: f32,
@@ -26,19 +26,19 @@ pub enum Setpoint {
         /// Collective thrust, N.
         thrust: f32,
     },
-    /// Turn at body rates (rad/s) with a collective thrust (N).
+    /// Body rates with a collective thrust.
     Rate {
         /// Body rates, rad/s.
         rate: Vec3,
         /// Collective thrust, N.
         thrust: f32,
     },
-    /// This wrench.
+    /// A wrench.
     Direct {
         /// The wrench.
         wrench: Wrench,
     },
-    /// Off the pipe: as [`Setpoint::Angle`], with nothing kept of what the loops held on it.
+    /// Leaving the pipe: [`Setpoint::Angle`] with the loops reset.
     Escape {
         /// Roll, rad.
         roll: f32,
@@ -49,7 +49,7 @@ pub enum Setpoint {
         /// Collective thrust, N.
         thrust: f32,
     },
-    /// On the pipe: hold roll and pitch (rad) without integral action, give yaw up.
+    /// On the pipe: held roll and pitch without integral action, no yaw.
     Resting {
         /// Roll, rad.
         roll: f32,
@@ -78,7 +78,7 @@ impl Setpoint {
         }
     }
 
-    /// True when every number in it is finite. Tests their sum: false as well where that overflows.
+    /// True if the sum of all numbers, and so each, is finite.
     pub fn is_finite(self) -> bool {
         let sum = match self {
             Self::Stop | Self::Idle => 0.0,
@@ -103,26 +103,26 @@ impl Setpoint {
     }
 }
 
-/// What the tendons are to do.
+/// Wanted action of the tendons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ClampCommand {
     /// Slack, servos at their release position.
     #[default]
     Release,
-    /// Close these arms to the grip pressure and hold it.
+    /// Close these arms to the grip pressure.
     Close {
         /// Which arms.
         arms: ArmChoice,
     },
-    /// Nothing yet: no pulse to the servos, whose gears hold what they held when the power came on.
+    /// No pulses: the gears keep hold as at power-up.
     Keep,
-    /// On the bench: one servo at a pulse, the others as with [`Self::Release`].
+    /// One servo at a bench pulse, the others as with [`Self::Release`].
     Place(Place),
 }
 
 #[cfg(test)]
 impl Setpoint {
-    /// Every number in it, for checks that must not lean on [`Self::is_finite`]; 0 where it has fewer than four.
+    /// Its numbers, 0 where missing; independent of [`Self::is_finite`].
     pub(crate) fn numbers(self) -> [f32; 4] {
         match self {
             Self::Stop | Self::Idle => [0.0; 4],
@@ -150,7 +150,7 @@ impl Setpoint {
 mod tests {
     use super::*;
 
-    /// Each kind that has numbers, and how many of the first three places it uses; the fourth is the thrust.
+    /// Each kind with numbers, and how many of the first three it uses; then the thrust.
     fn kinds([a, b, c, thrust]: [f32; 4]) -> [(Setpoint, usize); 5] {
         let angle = Setpoint::Angle {
             roll: a,
@@ -195,7 +195,6 @@ mod tests {
                     assert_eq!(setpoint.is_finite(), !spoilt, "{setpoint:?}");
                 }
             }
-            // Two of them do not cancel.
             for (setpoint, _) in kinds([bad, -bad, 0.0, 17.7]) {
                 assert!(!setpoint.is_finite(), "{setpoint:?}");
             }
@@ -220,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_sum_that_overflows_is_no_number_either() {
-        // 3.4e38 is the largest: two of these are beyond it, whichever two, and whatever the third.
+        // The largest is 3.4e38: any two of these exceed it.
         const LARGE: f32 = 3e38;
         for numbers in [[LARGE, LARGE, 0.0, 1.0], [LARGE, LARGE, LARGE, 1.0]] {
             for (setpoint, _) in kinds(numbers) {

@@ -1,37 +1,37 @@
 //! Evidence from the inertial sensor that something carries the vehicle.
 //!
-//! [`Support::step`] is called by the mode logic at 100 Hz with its measured step (s). Forces are along the body's
-//! thrust axis (N). A missed step delays the evidence by as much; 50 ms without an inertial sample end it.
+//! [`Support::step`] runs at 100 Hz in the mode logic. Forces are along the body's thrust axis (N). A missed step
+//! delays the evidence; 50 ms without an inertial sample end it.
 //!
 //! In free air, mass times specific force along the thrust axis is the thrust; on the ground or the pipe it is about
-//! the weight, whatever the thrust. The difference is the support:
+//! the weight. The difference is the support:
 //!
 //!   support = -m f_z - Σ T_i cos α_i
 //!
-//! In hover, an error of 5 % in mass or thrust makes less than 1 N of it.
+//! In hover, an error of 5 % in mass or thrust gives less than 1 N.
 
 use crate::math::{GRAVITY, PI, clamp};
 use crate::params::Params;
 
-/// Support that counts as resting, N.
+/// Support of a resting vehicle, N.
 pub const RESTING_FORCE: f32 = 3.0;
 /// Support below which the vehicle no longer rests, N.
 pub const LEAVING_FORCE: f32 = 1.5;
-/// Support that is worth a trial by taking thrust away, N.
+/// Support worth a trial by reducing thrust, N.
 pub const HINT_FORCE: f32 = 1.8;
-/// Time for which the support must last, s.
+/// Time that the support must last, s.
 pub const RESTING_TIME: f32 = 0.3;
-/// Share of the weight that counts as all of it, rotors stopped or idle.
+/// Share of the weight of a grounded vehicle, rotors stopped or idle.
 const GROUNDED_SHARE: f32 = 0.7;
-/// Time for which it must last, s.
+/// Time that it must last, s.
 pub const GROUNDED_TIME: f32 = 0.5;
-/// Largest body rate at which the evidence counts, rad/s.
+/// Largest body rate for evidence, rad/s.
 const RATE_MAX: f32 = 0.7;
 /// Cut-off of the support's low-pass filter, Hz.
 const CUTOFF: f32 = 5.0;
-/// Silence of the inertial sensor that resets the evidence, s.
+/// Sensor silence that resets the evidence, s.
 const SILENCE_MAX: f32 = 0.05;
-/// Decay time of the sink rate, s: bounds what an accelerometer's bias adds up to.
+/// Decay time of the sink rate, s: bounds an integrated bias.
 const SINK_MEMORY: f32 = 20.0;
 /// Largest sink rate accepted, m/s.
 const SINK_MAX: f32 = 10.0;
@@ -41,7 +41,7 @@ const SINK_MAX: f32 = 10.0;
 pub(crate) struct Held(f32);
 
 impl Held {
-    /// One step; returns the time, s, 0 while the condition does not hold.
+    /// One step; returns the time, s, 0 while the condition fails.
     pub(crate) fn step(&mut self, holds: bool, dt: f32) -> f32 {
         self.0 = if holds { clamp(self.0 + dt, 0.0, 1e6) } else { 0.0 };
         self.0
@@ -61,7 +61,7 @@ pub struct Felt {
     pub down: f32,
     /// Size of the angular rate, rad/s, >= 0.
     pub rate: f32,
-    /// Thrust asked of the rotors along -z, N, >= 0.
+    /// Thrust demanded of the rotors along -z, N, >= 0.
     pub lift: f32,
 }
 
@@ -136,7 +136,7 @@ impl Support {
         self.mass * GRAVITY
     }
 
-    /// Force that something other than the rotors carries, N, low-passed; negative if something pulls down.
+    /// Force not from the rotors, N, low-passed; negative if pulling down.
     pub fn force(&self) -> f32 {
         self.force
     }
@@ -146,13 +146,13 @@ impl Support {
         self.resting
     }
 
-    /// True once nearly all of the weight has been carried for [`GROUNDED_TIME`] without tumbling.
+    /// True once nearly all of the weight was carried for [`GROUNDED_TIME`] without tumbling.
     pub fn grounded(&self) -> bool {
         self.full.time() >= GROUNDED_TIME
     }
 
-    /// Sink rate, m/s, downwards positive, within ±10 m/s: the decaying sum of the accelerometer's readings. It damps a
-    /// descent but does not measure its speed.
+    /// Sink rate, m/s, downwards positive, within ±10 m/s: decaying integral of the accelerometer, good for damping a
+    /// descent, not for its speed.
     pub fn sink(&self) -> f32 {
         self.sink
     }
@@ -264,11 +264,10 @@ mod tests {
         let mut s = Support::new(&p);
         run(&mut s, -GRAVITY, 5.0, 1.0);
         assert!(s.resting());
-        // 17.701 N of weight less 15.7 N: 2.0 N, too little to begin resting and too much to end it.
+        // 17.701 N of weight less 15.7 N: 2.0 N neither begins nor ends resting.
         run(&mut s, -GRAVITY, 15.7, 5.0);
         assert!((s.force() - 2.0).abs() < 0.01 && s.resting(), "{}", s.force());
-        // 0.2 N and back within the 0.3 s below 1.5 N: a bounce of the soft arms. The way back takes motor and filter
-        // 0.08 s.
+        // A bounce of the soft arms: 0.2 N for less than the 0.3 s below 1.5 N. Motor and filter take 0.08 s to return.
         let bounce = |s: &mut Support, steps: i32| {
             let mut below = 0;
             while below < steps {
@@ -280,7 +279,7 @@ mod tests {
         bounce(&mut s, 15);
         run(&mut s, -GRAVITY, 15.7, 1.0);
         assert!(s.resting());
-        // The time starts over; once it is full, the rest ends.
+        // The time starts again; once full, the rest ends.
         bounce(&mut s, 28);
         run(&mut s, -GRAVITY, 17.5, 0.041);
         assert!(!s.resting());

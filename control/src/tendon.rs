@@ -1,12 +1,11 @@
 //! From a tendon's force to its servo's pulse, and back to the tension that the servo can give.
 //!
-//! [`TendonDrive::step`] is called at the servos' frame rate (50 to 333 Hz) with the measured step (s). Servo angles
-//! are from the release position (rad), tilts positive with the arm's tip up (rad), forces along the tendon (N). A
-//! missed step leaves the servo at its last pulse, and the force lags by a frame.
+//! [`TendonDrive::step`] runs at the servos' frame rate (50 to 333 Hz). Servo angles are from release (rad), tilts
+//! positive with the tip up (rad), forces along the tendon (N). A missed step keeps the last pulse.
 //!
-//! The reel takes up what the arm's tilt gives away, h (α_ref - α), then stretches the tendon by F/k. The sensor's tilt
-//! is late and noisy, and feeding it to the reel is a positive feedback (a tighter tendon bends the arm, which asks for
-//! more reel), so it is low-passed well below the arm's bending mode. The tension observer extrapolates over that lag.
+//! The reel takes up the slack of the arm's tilt, h (α_ref - α), then stretches the tendon by F/k. The measured tilt is
+//! late and noisy, and a positive feedback through the reel (a tighter tendon bends the arm, which needs more reel), so
+//! it is low-passed well below the arm's bending mode. The tension observer extrapolates over that lag.
 
 mod drive;
 mod force_limit;

@@ -1,6 +1,4 @@
-//! Motor command for a thrust at the battery's voltage.
-//!
-//! Applied to each rotor's thrust (N) in each mixer step, 1 kHz; the voltage comes at 100 Hz.
+//! Motor command for a thrust (N) at the battery's voltage, 1 kHz; the voltage comes at 100 Hz.
 
 use crate::math;
 use crate::params::Params;
@@ -18,7 +16,7 @@ pub struct ThrustCurve {
 
 /// Least voltage ratio compensated.
 const LEAST_RATIO: f32 = 0.5;
-/// Keeps the root of a purely quadratic curve from 0, by which it is divided: 1e-6 of the command.
+/// Keeps the root of a quadratic curve, a divisor, from 0: 1e-6 of the command.
 const LEAST_SQUARE: f32 = 1e-12;
 
 impl ThrustCurve {
@@ -35,13 +33,13 @@ impl ThrustCurve {
         }
     }
 
-    /// Command 0..1 for `thrust` (N) at the voltage ratio `ratio` (V/V0); 0 for no thrust.
+    /// Command 0..1 for `thrust` (N) at the voltage ratio V/V0; 0 for no thrust.
     pub fn command(&self, thrust: f32, ratio: f32) -> f32 {
         let [command, ..] = self.commands(&[thrust; 4], ratio);
         command
     }
 
-    /// Commands 0..1 for the rotors' thrusts (N) at the voltage ratio `ratio` (V/V0).
+    /// Commands 0..1 for the rotors' thrusts (N) at the voltage ratio V/V0.
     #[inline(always)]
     pub fn commands(&self, thrusts: &PerArm<f32>, ratio: f32) -> PerArm<f32> {
         let ratio = math::clamp(ratio, LEAST_RATIO, 1.5);
@@ -55,7 +53,7 @@ impl ThrustCurve {
         ]
     }
 
-    /// Root of q u² + (1 - q) u = share, in the form that also holds for q = 0.
+    /// Root of q u² + (1 - q) u = share, in a form that also holds for q = 0.
     #[inline(always)]
     fn share_to_command(&self, share: f32) -> f32 {
         let share = if share > 0.0 { share } else { 0.0 };

@@ -1,10 +1,10 @@
 //! Tilt of each arm: Eq. 1 at the low-passed thrust, plus a slow bias from the arm's own sensor.
 //!
-//! [`TiltModel::step`] runs in each mixer step, 1 kHz (N, s); the sensors' tilts come at 100 Hz (rad, tip up positive).
-//! A missed reading leaves the bias where it is.
+//! [`TiltModel::step`] runs at 1 kHz (N, s), [`TiltModel::correct`] at 100 Hz (rad, tip up positive). A missed reading
+//! keeps the bias.
 //!
-//! The sensor only moves the bias, which takes up the model's error for this arm: in the allocation its noise and
-//! latency cost more than its angle brings.
+//! The sensor only moves the bias, which corrects the model: in the allocation its noise and latency would cost more
+//! than its angle brings.
 
 use core::f32::consts::TAU;
 
@@ -15,7 +15,7 @@ use crate::wrench::PerArm;
 
 /// Lag of arm and sensor behind the thrust beyond the motor's, s (assumed).
 const ARM_LAG: f32 = 0.05;
-/// Thrust below which the bias is frozen, N: on the ground the tips may rest on something.
+/// Thrust below which the bias is frozen, N: the tips may rest on the ground.
 const LEARN_THRUST: f32 = 2.2;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub struct TiltModel {
 }
 
 impl TiltModel {
-    /// Arms at rest with idle rotors and no bias.
+    /// Arms at idle thrust without bias.
     pub fn new(p: &Params) -> Self {
         let model = ArmModel::from_params(p);
         let thrust = p.thrust_idle;
@@ -63,7 +63,7 @@ impl TiltModel {
         }
     }
 
-    /// One step of `dt` s with the thrusts (N) commanded last; one that is not finite changes nothing.
+    /// One step of `dt` s with the last thrusts (N); non-finite ones change nothing.
     #[inline(always)]
     pub fn step(&mut self, commanded: &PerArm<f32>, dt: f32) {
         if !commanded.iter().sum::<f32>().is_finite() {
@@ -76,7 +76,7 @@ impl TiltModel {
             let thrust = arm.thrust.blend(*thrust, gain);
             arm.lagged.blend(thrust, lag_gain);
             let tilt = model.angle(thrust) + arm.bias;
-            // Outside the model's range the last valid tilt is held, and a fault reported.
+            // Outside the model's range the last valid tilt is held and a fault reported.
             let valid = tilt.abs() <= VALID_TILT;
             arm.tilt = if valid { tilt } else { arm.tilt };
             arm.follow = thrust * model.slope(thrust);
@@ -86,7 +86,7 @@ impl TiltModel {
         self.fault = doubtful > LEARN_THRUST;
     }
 
-    /// Takes the tilt (rad) by the sensor of `arm` (0 to 3), at 100 Hz, while the arm hangs free.
+    /// Takes a tilt (rad) of the sensor of `arm` (0 to 3), at 100 Hz, while the arm hangs free.
     #[inline(always)]
     pub fn correct(&mut self, arm: usize, measured: f32) {
         let Some(arm) = self.arms.get_mut(arm) else {
@@ -95,7 +95,7 @@ impl TiltModel {
         let felt = arm.lagged.value();
         let gain = if felt > LEARN_THRUST { self.bias_gain } else { 0.0 };
         let bias = arm.bias + gain * (measured - self.model.angle(felt) - arm.bias);
-        // A glitch, beyond the limit or NaN, moves nothing.
+        // A glitch, beyond the limit or NaN, is ignored.
         arm.bias = if bias.abs() <= self.bias_max {
             bias
         } else {
@@ -126,20 +126,20 @@ impl TiltModel {
         self.each(|arm| arm.follow)
     }
 
-    /// Bias of each arm against the model, rad, tip up positive, within the parameters' limit.
+    /// Bias of each arm, rad, tip up positive, within the parameters' limit.
     #[inline]
     pub fn bias(&self) -> PerArm<f32> {
         self.each(|arm| arm.bias)
     }
 
-    /// By reference: mapped by value, the arms would be copied first.
+    /// By reference: by value would copy the arms.
     #[inline(always)]
     fn each(&self, what: impl Fn(&Arm) -> f32) -> PerArm<f32> {
         let [first, second, third, fourth] = &self.arms;
         [what(first), what(second), what(third), what(fourth)]
     }
 
-    /// A flying arm is outside the model's range, and its last valid tilt is held.
+    /// A flying arm is outside the model's range: its last valid tilt is held.
     pub const fn fault(&self) -> bool {
         self.fault
     }
@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn whether_it_learns_is_up_to_the_thrust_that_the_arm_has_felt() {
-        // Spooling up: a flying command, the arm still hangs.
+        // Spooling up, the arm still hangs.
         let mut t = settled(0.25);
         while t.thrusts()[0] < LEARN_THRUST + 0.2 {
             t.step(&[6.0; 4], 1e-3);
@@ -222,7 +222,7 @@ mod tests {
         assert!(t.arms[0].lagged.value() < LEARN_THRUST);
         correct(&mut t, [0.1; 4]);
         assert!(t.bias() == [0.0; 4], "{:?}", t.bias());
-        // Spooling down: an idle command, the arm still bent.
+        // Spooling down, the arm still bent.
         let mut t = settled(6.0);
         while t.thrusts()[0] > LEARN_THRUST - 0.2 {
             t.step(&[0.25; 4], 1e-3);

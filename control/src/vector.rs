@@ -1,10 +1,10 @@
-//! Three-vectors and unit quaternions in `f32`, just what the laws need.
+//! Three-vectors and unit quaternions in `f32`.
 
 use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 use crate::math;
 
-/// A vector; the frame and unit are the owner's.
+/// A vector; frame and unit are the owner's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3 {
     /// Forward or north component.
@@ -16,15 +16,15 @@ pub struct Vec3 {
 }
 
 impl Vec3 {
-    /// The null vector.
+    /// Zero.
     pub const ZERO: Self = Self::new(0.0, 0.0, 0.0);
 
-    /// A vector from its components.
+    /// From its components.
     pub const fn new(x: f32, y: f32, z: f32) -> Self {
         Self { x, y, z }
     }
 
-    /// The components in order.
+    /// The components.
     pub const fn to_array(self) -> [f32; 3] {
         [self.x, self.y, self.z]
     }
@@ -58,12 +58,12 @@ impl Vec3 {
         Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
     }
 
-    /// `f` of each component.
+    /// Applies `f` to each component.
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// True if every component is finite, by their sum: false also where that overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.x + self.y + self.z).is_finite()
@@ -110,7 +110,7 @@ impl Neg for Vec3 {
     }
 }
 
-/// A rotation from body to world as a unit quaternion, w first.
+/// Rotation from body to world, a unit quaternion, w first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quat {
     /// Scalar part.
@@ -138,7 +138,7 @@ impl Quat {
         z: 0.0,
     };
 
-    /// From roll, pitch and yaw (rad), applied in the order yaw, pitch, roll.
+    /// From roll, pitch and yaw (rad), in the order yaw, pitch, roll.
     pub fn from_euler(roll: f32, pitch: f32, yaw: f32) -> Self {
         let (sr, cr) = (math::sin(0.5 * roll), math::cos(0.5 * roll));
         let (sp, cp) = (math::sin(0.5 * pitch), math::cos(0.5 * pitch));
@@ -171,7 +171,7 @@ impl Quat {
         }
     }
 
-    /// The same rotation with length one; identity if the length vanishes or is not finite.
+    /// Normalised to length one; identity if the length vanishes or is not finite.
     pub fn normalised(self) -> Self {
         let n2 = self.w * self.w + self.x * self.x + self.y * self.y + self.z * self.z;
         let k = math::inv_sqrt(n2);
@@ -209,7 +209,7 @@ impl Quat {
         )
     }
 
-    /// True if every component is finite, by their sum: false also where that overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.w + self.x + self.y + self.z).is_finite()
@@ -258,7 +258,7 @@ mod tests {
             }
             assert!(!vector([bad, -bad, 0.0, 0.0]) && !quaternion([0.0, 0.0, bad, -bad]));
         }
-        // Two that overflow together: no rate, force or rotation of this vehicle.
+        // Two that overflow together: implausible for this vehicle.
         for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
             let mut parts = [0.0; 4];
             (parts[a], parts[b]) = (3e38, 3e38);
@@ -274,7 +274,7 @@ mod tests {
         #[test]
         fn euler_angles_come_back(r in -3.0f32..3.0, p in -1.3f32..1.3, y in -3.0f32..3.0) {
             let (r2, p2, y2) = Quat::from_euler(r, p, y).to_euler();
-            // micromath's sine and atan2 errors, magnified by the steep pitch.
+            // micromath's errors, magnified by the steep pitch.
             prop_assert!((r - r2).abs() < 0.03 && (p - p2).abs() < 0.03 && (y - y2).abs() < 0.03);
         }
 

@@ -1,4 +1,4 @@
-//! Wrench asked of the rotors, and values per arm.
+//! Wrench of the rotors, and values per arm.
 
 /// One value per arm or rotor: 1 front-left, 2 rear-left, 3 front-right, 4 rear-right.
 pub type PerArm<T> = [T; 4];
@@ -7,7 +7,7 @@ pub type PerArm<T> = [T; 4];
 pub const SIDE: PerArm<f32> = [1.0, 1.0, -1.0, -1.0];
 /// +1 for front arms, -1 for rear ones: sign of a thrust's pitch moment.
 pub const FORE: PerArm<f32> = [1.0, -1.0, 1.0, -1.0];
-/// Sign of the yaw moment of an inward lean; configuration B's rotor drag has the same.
+/// Sign of the yaw moment of an inward lean, and of configuration B's rotor drag.
 pub const YAW: PerArm<f32> = [1.0, -1.0, -1.0, 1.0];
 
 /// Force along the thrust axis and moments about the body axes.
@@ -19,12 +19,12 @@ pub struct Wrench {
     pub roll: f32,
     /// Moment about y, nose up positive, N·m.
     pub pitch: f32,
-    /// Moment about z, clockwise seen from above positive, N·m.
+    /// Moment about z, clockwise from above positive, N·m.
     pub yaw: f32,
 }
 
 impl Wrench {
-    /// True if every component is finite, by their sum: false also where that overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         (self.thrust + self.roll + self.pitch + self.yaw).is_finite()
@@ -34,9 +34,9 @@ impl Wrench {
 /// Sense of rotation of the rotors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Configuration {
-    /// Rotors 1 and 4 clockwise seen from above: yaw is mechanically unstable with soft arms.
+    /// Rotors 1 and 4 clockwise from above: yaw is unstable with soft arms.
     A,
-    /// Rotors 1 and 4 counter-clockwise seen from above: the paper's choice.
+    /// Rotors 1 and 4 counter-clockwise from above, as in the paper.
     #[default]
     B,
 }

@@ -1,4 +1,4 @@
-//! The four arm sensors on two I2C buses. A broken bus costs one side.
+//! The four arm sensors on two I2C buses; a broken bus costs one side.
 //!
 //! | arm | index | bus | address |
 //! |---|---|---|---|
@@ -15,10 +15,8 @@ use sophie_tasks::ports::{ArmImus, PortError};
 use crate::bno055::{Address, Bno055, Calibration, Config};
 use crate::fault::Fault;
 
-/// The arm sensors, two each on bus `I1` (left) and `I2` (right).
-///
-/// The buses should run at 400 kHz, and time a stretched clock out after 2 to 3 ms where their driver waits without
-/// yielding.
+/// The arm sensors, two each on bus `I1` (left) and `I2` (right), at 400 kHz. A busy-waiting bus driver should time a
+/// stretched clock out after 2 to 3 ms.
 pub struct ArmBuses<I1, I2> {
     left: I1,
     right: I2,
@@ -26,7 +24,7 @@ pub struct ArmBuses<I1, I2> {
 }
 
 impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
-    /// Left arms' sensors on `left`, right arms' on `right`; `configs` per arm.
+    /// Left sensors on `left`, right ones on `right`; `configs` per arm.
     pub const fn new(left: I1, right: I2, configs: PerArm<Config>) -> Self {
         let [one, two, three, four] = configs;
         let chips = [
@@ -38,7 +36,7 @@ impl<I1: I2c, I2: I2c> ArmBuses<I1, I2> {
         Self { left, right, chips }
     }
 
-    /// Last calibration of arm `arm` (0..=3); `None` while it gives no readings.
+    /// Last calibration of arm `arm` (0..=3); `None` without readings.
     pub fn calibration(&self, arm: usize) -> Option<Calibration> {
         self.chips
             .get(arm)

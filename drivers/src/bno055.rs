@@ -1,8 +1,8 @@
 //! Bosch BNO055 on I2C: the fused gravity vector at an arm's tip. Sections are those of BST-BNO055-DS000 rev. 1.4.
 //!
-//! The chip takes 650 ms from reset, 19 ms into and 7 ms out of its configuration mode, stretches the clock and may
-//! reset itself. So no call waits: each does one step of a few register accesses, each bounded in time, and returns
-//! [`PortError::Absent`] until the chip is ready. After a failure it pauses, doubling up to 1 s.
+//! The chip takes 650 ms from reset, 19 ms into and 7 ms out of configuration mode, stretches the clock and may reset
+//! itself. A call therefore does one step of a few time-limited accesses and returns [`PortError::Absent`] until the
+//! chip is ready. Failures cause a pause, doubling up to 1 s.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use embedded_hal_async::i2c::I2c;
@@ -12,7 +12,7 @@ use sophie_tasks::ports::PortError;
 use crate::fault::{Fault, report};
 use crate::mounting::Mounting;
 
-/// Time limit of a transaction. The longest here has 19 bytes: 0.43 ms at 400 kHz.
+/// Time limit of a transaction; the longest, 19 bytes, takes 0.43 ms at 400 kHz.
 pub const TRANSACTION: Duration = Duration::from_millis(3);
 /// Reset until registers are writable (§1.2: 650 ms), with margin.
 const RESET_TIME: Duration = Duration::from_millis(700);
@@ -22,7 +22,6 @@ const TO_CONFIG: Duration = Duration::from_millis(19);
 const FROM_CONFIG: Duration = Duration::from_millis(7 + 10);
 /// First and longest pause after a failure.
 const PAUSE: [Duration; 2] = [Duration::from_millis(20), Duration::from_secs(1)];
-/// Consecutive failed readings before the chip counts as lost.
 const FAILURES_MAX: u8 = 3;
 /// Time limit for the fusion to start or to recover.
 const FUSION_LIMIT: Duration = Duration::from_secs(2);
@@ -47,17 +46,13 @@ mod reg {
 
 /// Content of the chip id register (§4.3.1).
 pub const CHIP_ID: u8 = 0xA0;
-/// PAGE_ID, on both pages: the page without the registers above.
+/// The other register page.
 const OTHER_PAGE: u8 = 1;
-/// SYS_TRIGGER: system reset.
 const RST_SYS: u8 = 0x20;
-/// UNIT_SEL: m/s², °/s, degrees, °C; Android's pitch sense, the reset value.
+/// m/s², °/s, degrees, °C; Android's pitch sense, the reset value.
 const UNITS: u8 = 0x80;
-/// SYS_STATUS: the fusion runs.
 const FUSION_RUNS: u8 = 5;
-/// SYS_STATUS: system error.
 const SYSTEM_ERROR: u8 = 1;
-/// OPR_MODE: the configuration mode.
 const CONFIG_MODE: u8 = 0x00;
 /// Identity axis map (§3.4); [`Mounting`] rotates instead.
 const AXES: [u8; 2] = [0x24, 0x00];
@@ -76,7 +71,7 @@ pub enum Address {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fusion {
-    /// Accelerometer and gyroscope: the motor's magnets beside an arm would disturb a compass.
+    /// Without a compass, which the motor's magnets would disturb.
     #[default]
     ImuPlus = 0x08,
     /// With the magnetometer.
@@ -131,19 +126,19 @@ impl Calibration {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Identity is read at this time.
+    /// Identity is due.
     Absent(Instant),
-    /// Reset ends at this time.
+    /// Reset ends.
     Resetting(Instant),
-    /// Configuration mode is reached at this time.
+    /// Configuration mode is reached.
     Entering(Instant),
-    /// Fusion mode is reached at this time.
+    /// Fusion mode is reached.
     Leaving(Instant),
-    /// Running; time of the last good reading.
+    /// Time of the last good reading.
     Running(Instant),
 }
 
-/// One chip. Two chips share a bus, so each call borrows it.
+/// One chip; each call borrows the bus, which two chips share.
 pub struct Bno055 {
     address: Address,
     config: Config,
@@ -155,7 +150,7 @@ pub struct Bno055 {
 }
 
 impl Bno055 {
-    /// The bus is first used by [`Bno055::gravity`].
+    /// Without bus access until [`Bno055::gravity`].
     pub const fn new(address: Address, config: Config) -> Self {
         let [pause, _] = PAUSE;
         Self {
@@ -211,7 +206,7 @@ impl Bno055 {
         self.state = match self.state {
             State::Absent(_) => {
                 self.identify(bus).await?;
-                // Configured from the reset state, whatever the chip's former mode.
+                // Configured from the reset state, whatever its former mode.
                 self.write(bus, reg::PAGE_ID, 0).await?;
                 self.write(bus, reg::SYS_TRIGGER, RST_SYS).await?;
                 State::Resetting(Instant::now() + RESET_TIME)
@@ -243,7 +238,7 @@ impl Bno055 {
             (reg::AXIS_MAP_CONFIG, axes),
             (reg::AXIS_MAP_SIGN, signs),
         ];
-        // Internal clock, no self-test. The register is write-only: no read-back.
+        // Internal clock, no self-test; write-only, so no read-back.
         self.write(bus, reg::SYS_TRIGGER, 0x00).await?;
         for (register, value) in settings {
             self.write(bus, register, value).await?;
@@ -262,10 +257,10 @@ impl Bno055 {
         Ok(())
     }
 
-    /// Finds the chip on either page; writes only to one that shows a BNO055's page.
+    /// Finds the chip on either page; writes only if the page is a BNO055's.
     async fn identify(&self, bus: &mut impl I2c) -> Result<(), Lost> {
         let [mut found] = self.read(bus, reg::CHIP_ID).await?;
-        // A processor-only reset or a bus glitch can leave the other page selected.
+        // After a processor-only reset or a bus glitch.
         if found != CHIP_ID && self.read(bus, reg::PAGE_ID).await? == [OTHER_PAGE] {
             self.write(bus, reg::PAGE_ID, 0).await?;
             [found] = self.read(bus, reg::CHIP_ID).await?;
@@ -280,7 +275,6 @@ impl Bno055 {
         }
     }
 
-    /// Reads gravity and the status that validates it in one burst.
     async fn reading(&mut self, bus: &mut impl I2c, since: Instant) -> Result<Vec3, PortError> {
         match self
             .read::<16>(bus, reg::GRV_DATA_X_LSB)
@@ -297,7 +291,7 @@ impl Bno055 {
             Ok(None) => Err(PortError::Absent),
             Err(lost) => {
                 self.failures = self.failures.saturating_add(1);
-                // A chip that left its mode does not return by itself.
+                // A chip does not return to its mode by itself.
                 let left = matches!(lost, Lost::Fault(Fault::Configuration { .. } | Fault::Silent));
                 if left || self.failures >= FAILURES_MAX {
                     self.lose(lost);
@@ -342,7 +336,7 @@ impl Bno055 {
         if bytes.iter().all(|&b| b == 0x00) || bytes.iter().all(|&b| b == 0xFF) {
             return Err(Lost::Fault(Fault::Garbled));
         }
-        // A self-reset leaves the configuration mode.
+        // Detects a self-reset, which leaves the configuration mode.
         expect(reg::OPR_MODE, self.config.fusion as u8, mode & 0x0F)?;
         expect(reg::UNIT_SEL, UNITS, units)?;
         self.calibration = Calibration::from_register(calibration);
@@ -355,7 +349,7 @@ impl Bno055 {
             };
         }
         let counts = [[xl, xh], [yl, yh], [zl, zh]].map(i16::from_le_bytes);
-        // The chip's gravity points up when level, as its accelerometer; the port wants down.
+        // The chip's gravity points up when level, the port's down.
         let gravity = Vec3::from(counts.map(|c| f32::from(c) * (-1.0 / COUNTS_PER_UNIT)));
         if !LENGTH_SQUARED.contains(&gravity.norm_squared()) {
             return Err(Lost::Fault(Fault::Garbled));
@@ -392,7 +386,7 @@ impl Bno055 {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Lost {
-    /// Not over in time: held clock or hung bus.
+    /// Held clock or hung bus.
     Timeout,
     /// I2C error, usually a NACK on the address.
     Refused,

@@ -1,9 +1,9 @@
 //! CRSF at 420 kbaud: TBS Crossfire, ExpressLRS.
 //!
-//! A receiver without its transmitter may repeat the last channels. At an uplink quality of 0 % in its link statistics
-//! no sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a
-//! quality above 0 %, or after 1 s without statistics, as for a receiver that sends none. The receiver should be set to
-//! send nothing without a link ("no pulses").
+//! A receiver without its transmitter may repeat the last channels. At 0 % uplink quality in its link statistics no
+//! sticks are published: the link turns stale and the failsafe acts. Sticks resume with the first frame after a quality
+//! above 0 %, or after 1 s without statistics, which some receivers never send. Receivers should be set to "no pulses"
+//! without a link.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::Sticks;
@@ -11,23 +11,20 @@ use sophie_tasks::links::RcState;
 use sophie_tasks::ports::RcDecoder;
 use uf_crsf::{CrsfParser, Packet};
 
-/// Age at which link statistics expire. Receivers report at 5 to 10 Hz.
+/// Age at which link statistics expire; receivers report at 5 to 10 Hz.
 const STATISTICS_SILENCE: Duration = Duration::from_secs(1);
-/// Time of a byte on the line: ten bits at 420 kbaud.
+/// Ten bits at 420 kbaud.
 const BYTE: Duration = Duration::from_micros(24);
-/// Line pause that ends a frame: twice the time of the longest, 64 bytes. Otherwise an unfinished frame would be
-/// published as new with the bytes of a link that returns.
+/// Line pause that ends a frame: twice the longest, 64 bytes. A returning link must not complete an old frame.
 const SILENCE: Duration = Duration::from_millis(3);
 
-/// Decodes frames from a stream in pieces of any length.
+/// Decodes frames from a stream, in pieces of any length.
 pub struct Decoder {
     parser: CrsfParser,
     state: RcState,
-    /// Time of the last report of 0 % uplink quality; `None` while the radio is not known to be lost.
+    /// Last report of 0 % uplink quality.
     lost: Option<Instant>,
-    /// Time of the last read or failure.
     last: Option<Instant>,
-    /// The last bytes belong to an unfinished frame.
     unfinished: bool,
 }
 
@@ -59,7 +56,7 @@ impl Decoder {
 
 impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        // A read ends with its last byte: these bytes began their length earlier.
+        // A read ends with its last byte.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let before = self.last.replace(at);
         let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
@@ -86,10 +83,9 @@ impl RcDecoder for Decoder {
                 },
                 Ok(Packet::LinkStatistics(link)) => {
                     self.lost = (link.uplink_link_quality == 0).then_some(at);
-                    // Frames just before the report may be repetitions.
+                    // Earlier frames may be repetitions.
                     news &= self.lost.is_none();
                 }
-                // Device information and the like: well formed, but unused.
                 Ok(_) => (),
                 Err(_) => self.state.errors = self.state.errors.wrapping_add(1),
             }
@@ -169,7 +165,7 @@ mod tests {
         );
         assert_eq!(published(&mut d, &throttle(0.5), 20), Some(50));
         assert_eq!(published(&mut d, &statistics(0), 30), None);
-        // The last frame repeated, the loss reported at 5 Hz, longer than any silence.
+        // The last frame repeated, the loss reported at 5 Hz.
         for ms in (40..3000).step_by(20) {
             if ms % 200 == 0 {
                 assert_eq!(published(&mut d, &statistics(0), ms), None, "{ms}");
@@ -181,7 +177,7 @@ mod tests {
             "counted all the same: {:?}",
             d.state
         );
-        // 1 % is a link; the channels are those of the first frame after it.
+        // 1 % is a link.
         assert_eq!(published(&mut d, &throttle(0.6), 3000), None);
         assert_eq!(published(&mut d, &statistics(1), 3010), None);
         assert_eq!(published(&mut d, &throttle(0.7), 3020), Some(70));
@@ -204,12 +200,11 @@ mod tests {
     fn what_came_before_a_silence_is_never_published_after_it() {
         for later in [4, 20, 1000, 60_000] {
             for length in 2..=62 {
-                // A frame start announcing `length` bytes, the rest lost, then a pilot's frame.
+                // A start announcing `length` bytes, then a pilot's frame.
                 let (mut d, mut missing) = (Decoder::new(), usize::from(length) + 2);
                 let read = [std::vec![0xC8, length], throttle(0.9)].concat();
                 let seen = published(&mut d, &read, 1000);
                 missing = missing.saturating_sub(read.len());
-                // Enough bytes to end the false frame, then the pilot's present one.
                 assert_eq!(
                     published(&mut d, &std::vec![0; missing], 1000 + later),
                     None,
@@ -232,7 +227,7 @@ mod tests {
         let _ = published(&mut d, first, 1000);
         assert_eq!(published(&mut d, rest, 1002), Some(30));
         assert_eq!(d.state.errors, 0);
-        // Silence after a whole frame is no error; a read counts from its first byte.
+        // Silence after a whole frame is no error.
         assert_eq!(published(&mut d, &bytes.repeat(4), 1006), Some(30));
         let _ = published(&mut d, first, 2000);
         assert_eq!((d.state.frames, d.state.errors), (5, 0));

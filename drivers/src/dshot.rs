@@ -35,8 +35,7 @@ impl Frame {
         Self(payload << 4 | checksum(payload))
     }
 
-    /// A frame of a motor command of the tasks: 0 (or anything that is not a positive number) stops, 0 < c <= 1 maps to
-    /// 48..=2047.
+    /// Frame of a motor command: 0 (or anything not positive) stops, 0 < c <= 1 maps to 48..=2047.
     pub fn from_command(command: f32) -> Self {
         if command > 0.0 {
             let span = f32::from(THROTTLE_MAX - THROTTLE_MIN);
@@ -54,7 +53,7 @@ impl Frame {
         self.0
     }
 
-    /// The frame of these 16 bits; `None` if the checksum is wrong.
+    /// The frame of these bits; `None` if the checksum is wrong.
     pub const fn from_bits(bits: u16) -> Option<Self> {
         if checksum(bits >> 4) == bits & 0xF {
             Some(Self(bits))
@@ -113,11 +112,10 @@ pub struct BitTiming {
 }
 
 impl BitTiming {
-    /// Fewest counts per bit: below, the pulses are off by more than 2 % of the bit.
+    /// Fewest counts per bit, for pulses within 2 % of the bit.
     pub const PERIOD_MIN: u32 = 24;
 
-    /// Values nearest to `speed` for a timer at `timer_hz`; `None` where a bit has fewer than [`Self::PERIOD_MIN`]
-    /// counts or more than 16 bits hold.
+    /// Values nearest to `speed` at `timer_hz`; `None` below [`Self::PERIOD_MIN`] counts or beyond 16 bits.
     pub const fn new(timer_hz: u32, speed: Speed) -> Option<Self> {
         let rate = speed.bits_per_second();
         let period = (timer_hz + rate / 2) / rate;
@@ -131,22 +129,20 @@ impl BitTiming {
         })
     }
 
-    /// Relative error of the bit rate against `speed`, positive when too fast. Motor controllers accept several
-    /// percent.
+    /// Relative error of the bit rate, positive when too fast. Motor controllers accept several percent.
     pub fn rate_error(self, timer_hz: u32, speed: Speed) -> f32 {
         timer_hz as f32 / (f32::from(self.period) * speed.bits_per_second() as f32) - 1.0
     }
 
-    /// Frame time, s, without the pause after it.
+    /// Frame time, s, without pause.
     pub fn frame_time(self, timer_hz: u32) -> f32 {
         BITS as f32 * f32::from(self.period) / timer_hz as f32
     }
 }
 
-/// Fills `buffer` with one burst: a row per bit with the four motors in the order of the timer's channels, then rows of
-/// zeros, so that the lines rest low.
+/// Fills `buffer` with one burst: a row per bit with the four motors in channel order, then rows of zeros to rest low.
 ///
-/// `N` is [`BURST`], or longer by whole rows where the timer runs on briefly after the last bit.
+/// `N` is [`BURST`] or longer by whole rows, where the timer runs on briefly after the last bit.
 pub fn fill_burst<const N: usize>(buffer: &mut [u16; N], frames: PerArm<Frame>, timing: BitTiming) {
     const {
         assert!(
@@ -161,8 +157,8 @@ pub fn fill_burst<const N: usize>(buffer: &mut [u16; N], frames: PerArm<Frame>, 
     rest.fill([0; MOTORS]);
 }
 
-/// The rows of four frames' bits, two in each word. One product per pair replaces a choice per motor, since this stands
-/// between mix and first edge. Not inlined, so that it stays fast in a caller optimised for size.
+/// Rows of four frames' bits, two in each word. One product per pair replaces a choice per motor, to advance the first
+/// edge. Not inlined, to stay fast in a caller optimised for size.
 #[inline(never)]
 fn fill_bits(rows: &mut [[u16; MOTORS]], pairs: [u32; 2], timing: BitTiming) {
     const BOTH: u32 = 1 << 16 | 1;

@@ -1,11 +1,11 @@
-//! Decodes DShot from pulses, as a motor controller does: for tests and benches.
+//! Decodes DShot pulses as a motor controller does, for tests and benches.
 
 use crate::dshot::{BITS, Frame};
 
-/// Why pulses make no frame.
+/// Reason for no frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineError {
-    /// A pulse that is neither 0 nor 1: its share of the bit, ‰.
+    /// Neither 0 nor 1: the pulse's share of the bit, ‰.
     Pulse(u16),
     /// Wrong checksum.
     Checksum(u16),
@@ -13,10 +13,9 @@ pub enum LineError {
     Short(usize),
 }
 
-/// Gathers the bits of one line, in any unit of time.
+/// Decoder of one line, in any unit of time.
 #[derive(Clone, Copy, Debug)]
 pub struct Decoder {
-    /// Nominal bit length.
     bit: u32,
     bits: u16,
     count: usize,
@@ -40,7 +39,7 @@ impl Decoder {
     /// A pulse of invalid length, a truncated frame, a wrong checksum. The decoder then restarts.
     pub fn pulse(&mut self, rise: u64, high: u32) -> Option<Result<Frame, LineError>> {
         let gap = self.last_rise.replace(rise).map(|last| rise.saturating_sub(last));
-        // A rise later than 1.5 bits after the last starts a frame.
+        // A rise more than 1.5 bits after the last starts a frame.
         let short = match gap {
             Some(gap) if gap * 2 > u64::from(self.bit) * 3 => self.finish(),
             _ => None,
@@ -52,7 +51,7 @@ impl Decoder {
         self.take(high)
     }
 
-    /// The line is silent: returns an error if a frame was truncated.
+    /// The line is silent: returns an error for a truncated frame.
     pub fn silence(&mut self) -> Option<LineError> {
         self.last_rise = None;
         self.finish()
@@ -66,7 +65,7 @@ impl Decoder {
 
     fn take(&mut self, high: u32) -> Option<Result<Frame, LineError>> {
         let share = u64::from(high) * 1000 / u64::from(self.bit.max(1));
-        // Nominal 375 and 750, split in the middle; far outside it is no DShot pulse.
+        // Nominal 375 and 750, split in the middle.
         let bit = match share {
             200..=562 => 0,
             563..=900 => 1,
@@ -96,7 +95,6 @@ mod tests {
     use super::*;
     use crate::dshot::{BURST, BitTiming, MOTORS, Speed, fill_burst};
 
-    /// Plays one motor's burst from `start`; returns the decoder's results.
     fn play(
         decoder: &mut Decoder,
         buffer: &[u16],
@@ -143,7 +141,7 @@ mod tests {
         fill_burst(&mut good, [frame; 4], t);
         let mut decoder = Decoder::new(u32::from(t.period));
 
-        // Cut after ten bits: detected at the next frame's first pulse; that frame is kept.
+        // Cut after ten bits, detected at the next frame.
         assert!(play(&mut decoder, &good[..40], 0, t, 0).is_empty());
         let next = play(&mut decoder, &good, 0, t, 168_000);
         assert_eq!(next, [Err(LineError::Short(10)), Ok(frame)]);
@@ -158,7 +156,6 @@ mod tests {
         let heard = play(&mut decoder, &flipped, 0, t, 336_000);
         assert_eq!(heard, [Err(LineError::Checksum(frame.bits() ^ 1 << 12))]);
 
-        // A line that never falls.
         assert_eq!(decoder.pulse(504_000, 560), Some(Err(LineError::Pulse(1000))));
         let _ = play(&mut decoder, &good[..8], 0, t, 672_000);
         assert_eq!(decoder.silence(), Some(LineError::Short(2)));

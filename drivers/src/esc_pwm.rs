@@ -1,4 +1,4 @@
-//! Motor controllers with pulses: standard PWM and OneShot125.
+//! Pulses for motor controllers: standard PWM and OneShot125.
 
 use sophie_control::math;
 
@@ -7,7 +7,7 @@ use crate::pwm_timing::PwmTiming;
 /// Pulse protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EscPulse {
-    /// 1000 to 2000 µs, at most 400 Hz: what a DJI 430 Lite accepts.
+    /// 1000 to 2000 µs, at most 400 Hz, as a DJI 430 Lite accepts.
     #[default]
     Standard,
     /// 125 to 250 µs, one per mix.
@@ -18,9 +18,9 @@ impl EscPulse {
     /// Least time between pulse starts, µs.
     pub const fn period_us(self) -> u32 {
         match self {
-            // Standard pulses: 400 Hz (PX4's rate); some controllers accept no more.
+            // 400 Hz (PX4's rate); some controllers accept no more.
             Self::Standard => 2500,
-            // OneShot125 specifies only the pulse; two must not merge.
+            // Only the pulse is specified; two must not merge.
             Self::OneShot125 => 260,
         }
     }
@@ -38,8 +38,7 @@ impl EscPulse {
         PwmTiming::new(clock_hz, self.period_us())
     }
 
-    /// Pulse of a motor command, µs: the stop pulse for 0 and anything that is not a positive number, twice as long for
-    /// 1.
+    /// Pulse of a motor command, µs: the stop pulse for 0 and anything not positive, twice as long for 1.
     pub fn pulse_us(self, command: f32) -> f32 {
         // The clamp maps NaN to its lower bound.
         self.stop_us() * (1.0 + math::clamp(command, 0.0, 1.0))
@@ -79,7 +78,7 @@ mod tests {
 
     #[test]
     fn a_full_pulse_ends_before_its_period_and_the_period_before_a_command_of_1_khz() {
-        // The third command after a standard pulse, the next one after a short pulse.
+        // The third command after a standard pulse.
         for (protocol, high, commands) in [
             (EscPulse::Standard, 2000.0, 2..3),
             (EscPulse::OneShot125, 250.0, 0..1),
@@ -89,7 +88,7 @@ mod tests {
                 let period = t.period as f32 * t.count_us();
                 assert!(high + 9.0 < period, "{protocol:?} {clock}: {period}");
                 let ms = (period * 1e-3) as u32;
-                // A command a quarter of a millisecond early or late changes nothing.
+                // A command 0.25 ms early or late changes nothing.
                 let margin = (period * 1e-3).fract();
                 assert!(
                     commands.contains(&ms) && (0.25..0.75).contains(&margin),

@@ -1,4 +1,4 @@
-//! Faults of chips, in words and numbers for a builder.
+//! Faults of chips.
 
 use core::fmt;
 
@@ -10,21 +10,21 @@ use sophie_tasks::ports::PortError;
 pub enum Fault {
     /// Bus peripheral error: wiring, clock or DMA.
     Bus,
-    /// Wrong identity. 0x00 and 0xFF mean that nothing drives the line.
+    /// Wrong identity; 0x00 and 0xFF: nothing drives the line.
     Identity {
         /// Identity of this part.
         expected: u8,
         /// Value read.
         found: u8,
     },
-    /// A register without its reset value after a reset.
+    /// No reset value after a reset.
     Reset {
         /// Register.
         register: u8,
         /// Value read.
         found: u8,
     },
-    /// A register not written, or lost later by a brown-out of the part.
+    /// A register not written, or lost in a brown-out.
     Configuration {
         /// Bank.
         bank: u8,
@@ -35,22 +35,22 @@ pub enum Fault {
         /// Value read, masked.
         found: u8,
     },
-    /// No sample, by line or status, although the registers are right.
+    /// No sample, by line or status, with right registers.
     Silent,
-    /// A sample of all zeros or ones, or the mark of "no sample yet".
+    /// All zeros or ones, or the mark of "no sample yet".
     Garbled,
-    /// The same sample repeated: a real sensor has noise.
+    /// A repeated sample: a real sensor has noise.
     Stuck,
-    /// The response to actuation differs from the factory's.
+    /// Response to actuation differs from the factory's.
     SelfTest {
         /// Sensor.
         sensor: Sensor,
         /// Axis of the part: 0 x, 1 y, 2 z.
         axis: u8,
-        /// Response, % of the expected one (of the least allowed without a factory value).
+        /// Response, % of the factory's, or of the least allowed.
         percent: u16,
     },
-    /// Gyroscope offset at rest too large: a bad part, or one in motion.
+    /// Gyroscope offset at rest too large: bad part, or motion.
     Offset {
         /// Axis of the part: 0 x, 1 y, 2 z.
         axis: u8,
@@ -152,7 +152,7 @@ const fn axis_name(axis: u8) -> char {
     }
 }
 
-/// Logs the loss of a chip, only with the feature `defmt`.
+/// Logs the loss of a chip (feature `defmt`).
 pub(crate) fn report(chip: &'static str, fault: &Fault) {
     #[cfg(feature = "defmt")]
     defmt::warn!("{=str}: {=str} ({})", chip, fault.what(), fault);

@@ -2,7 +2,7 @@
 //! (Ramtron) FM25V02, FM25V02A, FM25V05 and Fujitsu MB85RS256B, MB85RS256TY, MB85RS512T, which differ only in identity.
 //! Sources: Cypress datasheet 001-90865, the tables of ArduPilot (`AP_RAMTRON`) and Betaflight's family.
 //!
-//! It emulates NOR flash (an erase fills a page with 0xFF), as the parameter store requires.
+//! Emulates NOR flash (an erase fills a page with 0xFF) for the parameter store.
 
 use core::fmt;
 
@@ -13,30 +13,29 @@ use embedded_storage_async::nor_flash::{
 
 use crate::fault::{Fault, report};
 
-/// Bytes used: those of the smallest part.
+/// Bytes used, as of the smallest part.
 pub const CAPACITY: u32 = 32 * 1024;
-/// Bytes of an emulated page; the store rotates over eight.
+/// Emulated page; the store rotates over eight.
 pub const PAGE: usize = 4096;
-/// Most data bytes of one transfer.
 const CHUNK: usize = 64;
 const HEAD: usize = 3;
 
-/// Sets the write enable latch, which the end of each write clears.
+/// Sets the write enable latch, which each write clears.
 const WREN: u8 = 0x06;
 const RDSR: u8 = 0x05;
 const WRSR: u8 = 0x01;
 const READ: u8 = 0x03;
 const WRITE: u8 = 0x02;
 const RDID: u8 = 0x9F;
-/// Identity prefix of Ramtron, today Cypress: JEDEC continuation codes and maker, followed by product and revision.
+/// Identity prefix of Ramtron, now Cypress: JEDEC continuation codes and maker; product and revision follow.
 const RAMTRON: [u8; 7] = [0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0x7F, 0xC2];
-/// Its products: V family with 256 and 512 Kbit. Larger ones need three-byte addresses.
+/// V family with 256 and 512 Kbit. Larger ones need three-byte addresses.
 const RAMTRON_PARTS: [u8; 2] = [0x22, 0x23];
-/// Identity prefix of Fujitsu: maker and continuation code, followed by two bytes of product.
+/// Identity prefix of Fujitsu: maker and continuation code; two bytes of product follow.
 const FUJITSU: [u8; 2] = [0x04, 0x7F];
-/// Its products: MB85RS256TY, MB85RS256B, MB85RS512T.
+/// MB85RS256TY, MB85RS256B, MB85RS512T.
 const FUJITSU_PARTS: [[u8; 2]; 3] = [[0x25, 0x03], [0x05, 0x09], [0x26, 0x03]];
-/// Status register write protection: pin enable and both block bits.
+/// Write protection: pin enable and both block bits.
 const PROTECTION: u8 = 0x8C;
 
 /// Failure of a read or write.
@@ -72,9 +71,8 @@ impl NorFlashError for FramFault {
     }
 }
 
-/// Driver of an FRAM on SPI device `S`.
-///
-/// All transfers use a buffer in this struct: where DMA does not reach every memory, the board places the driver.
+/// Driver of an FRAM on SPI device `S`. Transfers use a buffer in this struct: where DMA does not reach every memory,
+/// the board places the driver.
 pub struct Fram<S> {
     spi: S,
     buffer: [u8; HEAD + CHUNK],
@@ -82,7 +80,7 @@ pub struct Fram<S> {
 }
 
 impl<S: SpiDevice> Fram<S> {
-    /// The bus is first used by [`Fram::init`] or the first access.
+    /// Without bus access until [`Fram::init`] or the first access.
     pub const fn new(spi: S) -> Self {
         Self {
             spi,
@@ -130,7 +128,6 @@ impl<S: SpiDevice> Fram<S> {
         Ok(status & PROTECTION)
     }
 
-    /// One transaction; returns the bytes received.
     async fn exchange<const N: usize>(&mut self, bytes: [u8; N]) -> Result<[u8; N], Fault> {
         let transfer = self.buffer.first_chunk_mut::<N>().ok_or(Fault::Bus)?;
         *transfer = bytes;
@@ -235,7 +232,7 @@ fn identify(answer: [u8; 9]) -> Result<(), Fault> {
     agree(&RAMTRON_PARTS, &[product])
 }
 
-/// Slice of `buffer` for `length` data bytes after opcode and address.
+/// Room for `length` data bytes after opcode and address.
 fn head(buffer: &mut [u8; HEAD + CHUNK], opcode: u8, at: u32, length: usize) -> Option<&mut [u8]> {
     let [high, low] = u16::try_from(at).ok()?.to_be_bytes();
     let transfer = buffer.get_mut(..HEAD + length)?;

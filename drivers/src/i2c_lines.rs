@@ -1,30 +1,30 @@
 //! Frees an I2C bus whose data line a chip holds low.
 //!
-//! A chip that loses its master within a byte, by a reset or noise, keeps holding its present bit, which blocks start
-//! conditions. Nine clocks take the rest of any byte, and a stop ends the transfer (UM10204, §3.1.16).
+//! A chip that loses its master within a byte, by a reset or noise, holds its bit, which blocks start conditions. Nine
+//! clocks take the rest of any byte, a stop ends the transfer (UM10204, §3.1.16).
 
 use embassy_time::Timer;
 use embedded_hal::digital::{InputPin, OutputPin};
 
 /// Half a clock, µs: 100 kHz, accepted by every chip.
 const HALF_CLOCK_US: u64 = 5;
-/// Clocks after which every I2C chip has stopped sending.
+/// Clocks after which every chip has stopped sending.
 const CLOCKS: u8 = 9;
-/// Clock halves for which a chip may stretch: 1 ms.
+/// Clock halves that a chip may stretch: 1 ms.
 const STRETCH: u8 = 200;
 
-/// Result for the lines.
+/// State of the lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lines {
-    /// Both high: nothing done.
+    /// Both high.
     Idle,
-    /// Data came free after this many clocks.
+    /// Freed after this many clocks.
     Freed(u8),
-    /// A line stays low: short circuit, or chip without power.
+    /// A line stays low: short circuit or unpowered chip.
     Held,
 }
 
-/// Frees the bus of the open drains `clock` and `data` with pull-ups. Takes at most 0.3 ms, or 10 ms with a chip that
+/// Frees the bus of the open drains `clock` and `data` with pull-ups. Takes at most 0.3 ms, or 10 ms if a chip
 /// stretches every clock; yields throughout.
 pub async fn free<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) -> Lines {
     release(data).await;
@@ -59,7 +59,7 @@ async fn stop<L: InputPin + OutputPin>(clock: &mut L, data: &mut L) {
     release(data).await;
 }
 
-/// Releases the clock and waits until no chip stretches it; false if it never rises.
+/// Releases the clock; false if it never rises.
 async fn rises<L: InputPin + OutputPin>(clock: &mut L) -> bool {
     for _ in 0..STRETCH {
         release(clock).await;

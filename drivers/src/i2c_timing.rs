@@ -1,10 +1,10 @@
 //! Fast-mode times (400 kHz) of an STM32 I2C with a register `TIMINGR` (F7, H7), from its kernel clock (RM0433 §47.4.5
 //! and §47.4.9, RM0410 §33.4.5 and §33.4.9; times of UM10204 table 10).
 //!
-//! embassy-stm32 0.6 computes fields too large for the register at 100 MHz and loses their upper bits: data would
-//! change 20 ns before the clock's edge instead of the required 100 ns, from the slowest data edge.
+//! At 100 MHz embassy-stm32 0.6 loses the upper bits of fields too large for the register: data would change 20 ns
+//! before the clock's edge instead of the required 100 ns, from the slowest data edge.
 
-/// Slowest edge, ns: largest pull-up and capacitance of the bus.
+/// Slowest edge, ns: largest pull-up and capacitance.
 const EDGE_NS: u64 = 300;
 /// Data valid before the clock rises, ns.
 const SET_UP_NS: u64 = 100;
@@ -17,10 +17,10 @@ const LOW_NS: u64 = 1300;
 const HIGH_NS: u64 = 600;
 /// Shortest clock period, ns: 400 kHz.
 const PERIOD_NS: u64 = 2500;
-/// Fewest kernel clock cycles to detect both edges of its own clock.
+/// Kernel clock cycles to detect both edges of the own clock.
 const SYNC: u64 = 4;
 
-/// Nanoseconds per second: times are cycles times this, rounded only at the end.
+/// Times are cycles times this, rounded at the end.
 const NS: u64 = 1_000_000_000;
 
 /// Register fields.
@@ -39,21 +39,21 @@ pub struct I2cTiming {
 }
 
 impl I2cTiming {
-    /// Fast mode at a kernel clock of `clock_hz` with the shortest ticks that fit; `None` if none do (some clocks below
-    /// 23 MHz, and those above some 600). No digital filter.
+    /// Fast mode at a kernel clock of `clock_hz` with the shortest fitting ticks; `None` if none fit (some clocks below
+    /// 23 MHz, those above some 600). No digital filter.
     pub const fn fast_mode(clock_hz: u32) -> Option<Self> {
         let hz = clock_hz as u64;
         let mut prescaler = 0;
         while prescaler < 16 {
             let tick = (prescaler as u64 + 1) * NS;
             let set_up = ((EDGE_NS + SET_UP_NS) * hz).div_ceil(tick);
-            // The edge must have ended, less what filter and synchroniser add.
+            // The edge must have ended, less filter and synchroniser.
             let hold = ((EDGE_NS - FILTER_NS[0]) * hz)
                 .saturating_sub(3 * NS)
                 .div_ceil(tick);
             let latest = ((VALID_NS - EDGE_NS - FILTER_NS[1]) * hz).saturating_sub(4 * NS) / tick;
             let period = (PERIOD_NS * hz).saturating_sub(SYNC * NS).div_ceil(tick);
-            // Two parts low, one part high, unless the bus requires more.
+            // Two parts low, one high, unless the bus requires more.
             let low = longer((2 * period).div_ceil(3), (LOW_NS * hz).div_ceil(tick));
             let high = longer(period.saturating_sub(low), (HIGH_NS * hz).div_ceil(tick));
             if set_up <= 16 && hold <= latest && hold <= 15 && low <= 256 && high <= 256 {
@@ -79,7 +79,7 @@ const fn longer(a: u64, b: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Fields at the kernel clocks of the Matek H743 and CUAV V5; evaluated at compile time, unlike a board's.
+    /// At the kernel clocks of the Matek H743 and CUAV V5, evaluated at compile time.
     const MATEK: Option<I2cTiming> = I2cTiming::fast_mode(100_000_000);
     const CUAV: Option<I2cTiming> = I2cTiming::fast_mode(54_000_000);
 

@@ -1,8 +1,8 @@
 //! TDK ICM-20689 on SPI, up to 8 MHz, mode 0 or 3. Register names and values are those of DS-000143.
 //!
-//! The gyroscope samples at 8 kHz behind the part's 250 Hz filter (0.97 ms delay); every second sample is read: 4 kHz.
-//! Other rates read another fraction: the part's own 1 kHz would delay by 2.9 ms. The accelerometer is renewed at 1 kHz
-//! behind its filter, so its samples repeat.
+//! The gyroscope samples at 8 kHz behind its 250 Hz filter (0.97 ms delay); every second sample is read. Other rates
+//! read another fraction: the part's own 1 kHz would delay by 2.9 ms. The accelerometer runs at 1 kHz, so its samples
+//! repeat.
 
 use embassy_time::Duration;
 use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
@@ -66,7 +66,7 @@ pub enum AccelRange {
     G16 = 3,
 }
 
-/// Gyroscope filter, which sets its rate: DLPF_CFG, CONFIG bits 2:0.
+/// Gyroscope filter and rate: DLPF_CFG, CONFIG bits 2:0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum GyroFilter {
@@ -110,7 +110,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// Rate and ranges of the parameters; the rest as by default.
+    /// Rate and ranges of the parameters, defaults otherwise.
     pub fn from_params(p: &Params) -> Self {
         let read_every = match p.imu_rate {
             ImuRate::Hz1000 => 8,
@@ -162,14 +162,14 @@ impl Chip for Config {
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x98;
     const BANK_SELECT: Option<u8> = None;
-    // Accelerometer, temperature, gyroscope in sequence.
+    // Accelerometer, temperature, gyroscope.
     const DATA: u8 = reg::ACCEL_XOUT_H;
     const WATCH_FROM: u8 = reg::SMPLRT_DIV;
-    // Set with each sample, cleared by reading: INT_RD_CLEAR is 0.
+    // Set with each sample, cleared by reading (INT_RD_CLEAR 0).
     const SAMPLE_READY: Setting = Setting::bits(0, reg::INT_STATUS, 0x01, 0x01);
     const LINE: &'static [u8] = &[reg::INT_PIN_CFG, reg::INT_ENABLE];
     const RESET: &'static [Setting] = &[Setting::all(reg::PWR_MGMT_1, 0x80)];
-    // Up to 100 ms from power to register access; PX4 allows a reset as much.
+    // Up to 100 ms from power to register access; PX4 waits as long after a reset.
     const RESET_TIME: Duration = Duration::from_millis(100);
     // Asleep, reset bit gone.
     const AFTER_RESET: Setting = Setting::bits(0, reg::PWR_MGMT_1, 0xC0, 0x40);
@@ -200,7 +200,7 @@ impl Chip for Config {
             // Used at 1 kHz only: every sample.
             Setting::all(reg::SMPLRT_DIV, 0x00),
             Setting::bits(0, reg::CONFIG, 0x87, self.gyro_filter as u8),
-            // Self-test off, FCHOICE_B 0: the filter is in the path.
+            // Self-test off, FCHOICE_B 0: filter in the path.
             Setting::bits(0, reg::GYRO_CONFIG, 0xFB, (self.gyro_range as u8) << 3),
             Setting::bits(0, reg::ACCEL_CONFIG, 0xF8, (self.accel_range as u8) << 3),
             Setting::bits(0, reg::ACCEL_CONFIG2, 0x0F, self.accel_filter as u8),

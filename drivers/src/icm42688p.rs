@@ -1,8 +1,7 @@
 //! TDK ICM-42688-P on SPI, up to 24 MHz, mode 0 or 3. Sections are those of DS-000347 rev. 1.8.
 //!
-//! Sampling at 1, 2, 4 (default) or 8 kHz, one burst per data-ready pulse, with wide filters: the imu task filters. At
-//! 2 kHz and above the rate alone fixes the UI filter's bandwidth (§5.5: 1048 Hz at 4 kHz); its order can be chosen,
-//! and its bandwidth only below that rate.
+//! Samples at 1, 2, 4 (default) or 8 kHz, one burst per data-ready pulse, with wide filters: the imu task filters. From
+//! 2 kHz the rate fixes the UI filter's bandwidth (§5.5: 1048 Hz at 4 kHz); only its order can be chosen.
 
 use embassy_time::Duration;
 use sophie_control::params::{ImuAccelRange, ImuGyroRange, ImuRate, Params};
@@ -191,7 +190,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// Rate and ranges of the parameters; the rest as by default.
+    /// Rate and ranges of the parameters, defaults otherwise.
     pub fn from_params(p: &Params) -> Self {
         let rate = match p.imu_rate {
             ImuRate::Hz1000 => Rate::Khz1,
@@ -226,16 +225,16 @@ impl Chip for Config {
     const WHO_AM_I: u8 = reg::WHO_AM_I;
     const IDENTITY: u8 = 0x47;
     const BANK_SELECT: Option<u8> = Some(reg::REG_BANK_SEL);
-    // Temperature, accelerometer, gyroscope in sequence (§13.1).
+    // Temperature, accelerometer, gyroscope (§13.1).
     const DATA: u8 = reg::TEMP_DATA1;
     const WATCH_FROM: u8 = reg::PWR_MGMT0;
-    // Set with each sample, cleared by reading: INT_CONFIG0 keeps its reset value (§14.21, §14.49).
+    // Set with each sample, cleared by reading: reset value of INT_CONFIG0 (§14.21, §14.49).
     const SAMPLE_READY: Setting = Setting::bits(0, reg::INT_STATUS, 0x08, 0x08);
     const LINE: &'static [u8] = &[reg::INT_CONFIG, reg::INT_CONFIG1, reg::INT_SOURCE0];
     const RESET: &'static [Setting] = &[Setting::all(reg::DEVICE_CONFIG, 0x01)];
     // 1 ms (§14.1), doubled.
     const RESET_TIME: Duration = Duration::from_millis(2);
-    // Both sensors off; in use they are on.
+    // Both sensors off.
     const AFTER_RESET: Setting = Setting::all(reg::PWR_MGMT0, 0x00);
     const WAKE: &'static [Setting] = &[];
     const WAKE_TIME: Duration = Duration::from_ticks(0);
@@ -271,16 +270,16 @@ impl Chip for Config {
             Setting::bits(0, reg::FIFO_CONFIG, 0xC0, 0x00),
             // Big-endian data, -32768 until the first sample, I2C off.
             Setting::bits(0, reg::INTF_CONFIG0, 0x93, 0x13),
-            // Adaptive full scale off, a bit that the datasheet reserves: with it on, the gyroscope's output stalls at
-            // times for some 2 ms (ArduPilot pull request 25332; also off in Betaflight and INAV). Clock from the PLL
-            // when available.
+            // Adaptive full scale off, a bit the datasheet reserves: with it on, the gyroscope's output sometimes
+            // stalls for some 2 ms (ArduPilot pull request 25332; also off in Betaflight and INAV). PLL clock when
+            // available.
             Setting::bits(0, reg::INTF_CONFIG1, 0xC3, 0x41),
             Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, (self.gyro_range as u8) << 5 | rate),
             Setting::bits(0, reg::ACCEL_CONFIG0, 0xEF, (self.accel_range as u8) << 5 | rate),
             Setting::bits(0, reg::GYRO_CONFIG1, 0x0C, order << 2),
             Setting::all(reg::GYRO_ACCEL_CONFIG0, bandwidth << 4 | bandwidth),
             Setting::bits(0, reg::ACCEL_CONFIG1, 0x18, order << 3),
-            // Pulses of 8 µs without a pause, needed from 4 kHz on (§14.50); INT_ASYNC_RESET off (§12.6).
+            // Pulses of 8 µs without a pause, needed from 4 kHz (§14.50); INT_ASYNC_RESET off (§12.6).
             Setting::bits(0, reg::INT_CONFIG1, 0x70, 0x60),
             // Only data-ready on INT1.
             Setting::bits(0, reg::INT_SOURCE0, 0x7F, 0x08),
@@ -310,7 +309,7 @@ impl Chip for Config {
         let actuate = |axes| Setting::bits(0, reg::SELF_TEST_CONFIG, 0x7F, axes);
         match stage {
             // 250 °/s and 2 g at 1 kHz, third order, a tenth of the rate: the maker's choice. Filters may only change
-            // while the sensors are off (§12.9).
+            // with the sensors off (§12.9).
             Stage::Rest => Settings::from_array([
                 Setting::bits(0, reg::PWR_MGMT0, 0x2F, 0x00),
                 Setting::bits(0, reg::GYRO_CONFIG0, 0xEF, 3 << 5 | Rate::Khz1 as u8),

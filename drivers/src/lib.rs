@@ -1,7 +1,7 @@
-//! Drivers of SOPHIE's sensors, and the wire formats of receiver and actuators.
+//! Drivers of sensors, and wire formats of receiver and actuators.
 //!
-//! Chips are reached through embedded-hal traits, timers through counts that a board writes into compare registers. A
-//! board builds the drivers and gives them to the tasks as ports.
+//! Chips are reached through embedded-hal traits, timers through counts for compare registers. A board builds the
+//! drivers and gives them to the tasks as ports.
 //!
 //! | module | part or protocol | port |
 //! |---|---|---|

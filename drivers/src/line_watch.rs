@@ -1,22 +1,21 @@
-//! Decides whether a data-ready line is reliable, and when samples are polled instead.
+//! Decides whether a data-ready line is reliable, or samples are polled instead.
 //!
 //! A silent line is used again once its pulses and the part's status have agreed for a time that doubles with each
-//! silence, so that a loose contact does not toggle the driver. A lasting or repeated silence is reported, a single
-//! short one is not.
+//! silence: a loose contact must not toggle the driver. A single short silence is not reported.
 
 use embassy_time::{Duration, Instant};
 
-/// Polling time after which the line is reported as silent: one short silence, which ends within the first
-/// `BACK_AFTER`, is no reason to land.
+/// Polling time until the line is reported as silent: one short silence, within the first `BACK_AFTER`, is no reason to
+/// land.
 pub const REPORTED_AFTER: Duration = Duration::from_millis(200);
-/// First and longest time of agreement before the line is used again.
+/// First and longest agreement before the line is used again.
 const BACK_AFTER: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(3200)];
 /// Time on the line that clears earlier silences.
 const FORGOTTEN_AFTER: Duration = Duration::from_secs(10);
 /// Poll period times rate, µs·Hz: 1.5 % shorter than the part's, whose clock, locked to the gyroscope, is off by about
-/// 1 %. Practically no sample is missed, and the filters' rate is met within 2 %.
+/// 1 %. Hardly any sample is missed, and the filters' rate holds within 2 %.
 const PERIOD_BY_RATE: f32 = 0.985e6;
-/// Fraction of the period until a missing sample is requested again; bounds its lateness.
+/// Fraction of the period before a missing sample is requested again.
 const AGAIN: u32 = 4;
 
 /// Line state.
@@ -24,25 +23,23 @@ const AGAIN: u32 = 4;
 pub struct LineWatch {
     clock: Option<Clock>,
     back_after: Duration,
-    /// When the line came back into use.
     back_at: Option<Instant>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Clock {
     since: Instant,
-    /// Next poll, and sample period.
     due: Instant,
     period: Duration,
-    /// Samples with a pulse minus those without, at least 0, and the number that makes the line sound.
+    /// Samples with a pulse less those without, >= 0, and the count that clears the line.
     agreeing: u32,
     sound: u32,
     reported: bool,
 }
 
 impl Clock {
-    /// Schedules the next poll after `time`: from the due time, since processing would lengthen the period, but after a
-    /// stall from `now`, which avoids a burst.
+    /// Schedules the next poll `time` after the due one, so that processing does not lengthen the period; after a stall
+    /// from `now`, against a burst.
     fn go_on(&mut self, now: Instant, time: Duration) {
         let late = now.saturating_duration_since(self.due) > time;
         self.due = if late { now } else { self.due } + time;
@@ -76,7 +73,7 @@ impl LineWatch {
         self.clock.is_some_and(|clock| clock.reported)
     }
 
-    /// The line is silent at `now` although the part is well; samples come at `rate_hz`.
+    /// The line is silent at `now` although the part works; samples come at `rate_hz`.
     pub fn silent(&mut self, now: Instant, rate_hz: f32) {
         let [first, longest] = BACK_AFTER;
         self.back_after = match self.back_at {
@@ -131,7 +128,7 @@ mod tests {
         Instant::from_micros(us)
     }
 
-    /// Feeds samples at 4 kHz from `from` until the line is back in use or `to`; returns that time.
+    /// Feeds samples at 4 kHz until the line is used again, at most to `to`; returns that time.
     fn run(line: &mut LineWatch, from: u64, to: u64, announced: impl Fn(u64) -> bool) -> u64 {
         let mut now = from;
         while now < to && line.due().is_some() {
@@ -161,11 +158,10 @@ mod tests {
         let back = run(&mut line, 0, 1000 * MS, |_| true);
         assert!((50 * MS..53 * MS).contains(&back), "{back}");
         assert!(!line.reported(), "one short silence is nothing");
-        // A third of the pulses is missed during polls: longer, but the line returns.
+        // A third of the pulses falls outside the polls.
         line.silent(at(20_000 * MS), 4000.0);
         let back = run(&mut line, 20_000 * MS, 21_000 * MS, |us| us % 750 != 0) - 20_000 * MS;
         assert!((140 * MS..160 * MS).contains(&back), "{back}");
-        // Pulses unrelated to the samples.
         line.silent(at(40_000 * MS), 4000.0);
         let back = run(&mut line, 40_000 * MS, 45_000 * MS, |us| us % 500 == 0);
         assert_eq!(back, 45_000 * MS);

@@ -20,7 +20,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// Component of `v`, a vector in sensor axes.
+    /// Component of `v`, in sensor axes.
     pub const fn of(self, v: Vec3) -> f32 {
         match self {
             Self::PlusX => v.x,
@@ -108,7 +108,7 @@ impl Mounting {
         }
     }
 
-    /// Turns a vector from sensor axes into body axes (forward, right, down).
+    /// Rotates a vector from sensor axes to body axes.
     pub const fn to_body(self, sensor: Vec3) -> Vec3 {
         Vec3::new(
             self.forward.of(sensor),
@@ -151,7 +151,7 @@ mod tests {
                 assert!(x == Vec3::new(forward, right, 0.0), "{heading:?}: {x:?}");
             }
         }
-        // At rest with the marking up, specific force is +g along z: up, body -z.
+        // At rest with the marking up, specific force is +g along z: body -z.
         let rest = Mounting::default().to_body(Vec3::new(0.0, 0.0, 9.81));
         assert!(rest == Vec3::new(0.0, 0.0, -9.81));
     }

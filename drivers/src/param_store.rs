@@ -1,14 +1,13 @@
 //! Parameters in flash or FRAM.
 //!
-//! One item of a `sequential_storage` map holds the whole set: a save cut short by power loss leaves the old set or the
-//! new one, never a mixture. An item is a tag and a record of eight bytes per parameter that differs from the board's
-//! default: FNV-1a hash of its name, bits of its value. Other firmware reads the parameters that it knows, also by
-//! former names.
+//! One item of a `sequential_storage` map holds the whole set: a save cut short leaves the old or the new set. An item
+//! is a tag and eight bytes per parameter that differs from the board's default: FNV-1a hash of its name, bits of its
+//! value. Other firmware reads the parameters that it knows, also by former names.
 //!
 //! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
 //! start-up could outlast the watchdog.
 //!
-//! Memory: one buffer of [`BUFFER`] bytes in the future of a call.
+//! Memory: [`BUFFER`] bytes in the future of a call.
 
 mod foreign;
 mod guard;
@@ -28,7 +27,7 @@ use self::guard::ReadOnly;
 pub use self::set::hash;
 use self::set::{LONGEST, Set};
 
-/// Buffer of a load or save: the longest set, in multiples of 32 bytes.
+/// Buffer of a load or save: the longest set, rounded up to 32 bytes.
 pub const BUFFER: usize = LONGEST.next_multiple_of(32);
 
 /// Parameter store in `range` of flash `F`.
@@ -45,7 +44,7 @@ struct Found {
 }
 
 impl Found {
-    /// True if a save of `params` over `defaults` leaves exactly this.
+    /// True if a save of `params` over `defaults` would change nothing.
     fn holds(&self, params: &Params, defaults: &Params) -> bool {
         let same = match &self.set {
             Some(set) => set.refused == 0 && !set.renamed && set.over(defaults) == *params,
@@ -56,9 +55,8 @@ impl Found {
 }
 
 impl<F: NorFlash> ParamStore<F> {
-    /// A store in the bytes `range` of `flash`: 2 to 32 whole erase pages, each long enough for a set.
-    ///
-    /// An unsuitable range shows as storage that cannot be read or written.
+    /// A store in `range` of `flash`: 2 to 32 whole erase pages, each long enough for a set. An unsuitable range acts
+    /// as unreadable, unwritable storage.
     pub const fn new(flash: F, range: Range<u32>) -> Self {
         Self {
             flash,
@@ -67,7 +65,7 @@ impl<F: NorFlash> ParamStore<F> {
         }
     }
 
-    /// Sets the board's defaults; values equal to them are not stored.
+    /// Sets the board's defaults, which are not stored.
     pub fn with_defaults(self, defaults: &'static Params) -> Self {
         Self { defaults, ..self }
     }
@@ -107,7 +105,7 @@ impl<F: NorFlash> ParamStore<F> {
         }
     }
 
-    /// Owner of the data in a page that belongs to other firmware.
+    /// Foreign owner of a page.
     async fn foreign(&mut self) -> Option<&'static str> {
         self.config::<&mut F>()?;
         let mut page = self.range.start;
@@ -125,13 +123,13 @@ impl<F: NorFlash> ParamStore<F> {
 
     async fn append(&mut self, params: &Params, buffer: &mut [u8; BUFFER]) -> Result<(), StorageError> {
         let config = self.config().ok_or(StorageError::Broken)?;
-        // Caches the place of the one key; otherwise moving a page searches it for each item.
+        // Caches the place of the one key, which moving a page would search for each item.
         let cache = Cache::new(Uncached, Uncached, ArrayKeyPointers::<(), 1>::new());
         let mut map = MapStorage::<(), _, _>::new(&mut self.flash, config, cache);
         map.store_item(buffer, &(), &Set::of(*params, self.defaults))
             .await
             .map_err(|e| match e {
-                // A full log makes room for one set by itself; failing that, its flash does not hold the marks.
+                // A full log makes room by itself; otherwise its flash does not hold the marks.
                 Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
                 _ => StorageError::Broken,
             })
@@ -169,7 +167,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
         if found.holds(params, self.defaults) {
             return Ok(());
         }
-        // Appending keeps the old set, if readable, until the new one is complete.
+        // Appending keeps a readable old set until the new one is complete.
         if found.set.is_some() || !found.damaged {
             match self.append(params, &mut buffer).await {
                 Ok(()) if self.find(&mut buffer).await.holds(params, self.defaults) => return Ok(()),

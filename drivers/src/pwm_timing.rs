@@ -2,10 +2,10 @@
 
 use sophie_control::math;
 
-/// Prescaler and period for a frame rate, and counts per µs.
+/// Prescaler, period and counts per µs of a frame rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PwmTiming {
-    /// Prescaler register: the clock is divided by one more.
+    /// Prescaler register: divider less one.
     pub prescaler: u16,
     /// Counts per frame; the reload register takes one less.
     pub period: u32,
@@ -14,14 +14,14 @@ pub struct PwmTiming {
 
 impl PwmTiming {
     const COUNTS: u32 = 1 << 16;
-    /// Counts at the end of a frame that separate two pulses.
+    /// Counts that separate two pulses.
     const REST: u32 = 2;
 
-    /// Finest values of a 16-bit timer at `clock_hz` that make frames of `frame_us` µs exactly; `None` if the timer
-    /// cannot. Exact frames keep their phase to the board's clock: an error of 1e-7 shifts them by 0.4 ms an hour.
-    /// Where exactness takes more than twice the finest count: the finest.
+    /// Finest values of a 16-bit timer at `clock_hz` for frames of exactly `frame_us` µs; `None` if the timer cannot.
+    /// Exact frames keep their phase to the board's clock: an error of 1e-7 shifts them by 0.4 ms an hour. The finest
+    /// values win if exactness costs more than twice the count.
     pub fn new(clock_hz: u32, frame_us: u32) -> Option<Self> {
-        // Unit: a millionth of a clock; a count has `MICRO` times the divider.
+        // Unit: a millionth of a clock; a count is `MICRO` times the divider.
         const MICRO: u64 = 1_000_000;
         let frame = u64::from(clock_hz) * u64::from(frame_us);
         let least = frame.div_ceil(MICRO * u64::from(Self::COUNTS)).max(1);
@@ -52,8 +52,7 @@ impl PwmTiming {
         (self.period.saturating_sub(passed) as f32 * self.count_us() + 0.5) as u32
     }
 
-    /// Compare value of a pulse of `us` µs: 0 (no pulse) for 0, negative numbers and NaN, and always shorter than the
-    /// frame.
+    /// Compare value of a pulse of `us` µs, shorter than the frame; 0 (no pulse) for 0, negative numbers and NaN.
     pub fn compare(&self, us: f32) -> u32 {
         let longest = self.period.saturating_sub(Self::REST);
         let counts = math::clamp(us * self.counts_per_us + 0.5, 0.0, longest as f32);
@@ -84,7 +83,7 @@ mod tests {
                     u64::from(clock) * u64::from(frame_us),
                     "{t:?}"
                 );
-                // Rounding of half a count; a count is at most a third of a µs, at 50 Hz.
+                // Rounding of half a count; a count is at most 1/3 µs, at 50 Hz.
                 for us in [125.0, 250.0f32] {
                     assert!((t.compare(us) as f32 * t.count_us() - us).abs() <= 0.51 * t.count_us());
                 }

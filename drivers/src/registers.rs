@@ -1,5 +1,5 @@
-//! Registers of an InvenSense SPI part: address byte first, top bit set for a read, address increment in bursts, and on
-//! some parts banks behind a select register.
+//! Registers of an InvenSense SPI part: address byte with a read bit, address increment in bursts, on some parts banks
+//! behind a select register.
 
 use embedded_hal_async::spi::SpiDevice;
 
@@ -7,7 +7,6 @@ use crate::fault::Fault;
 
 /// Read bit of the address byte (DS-000347 §9.6, DS-000143).
 const READ: u8 = 0x80;
-/// Longest burst read, bytes.
 const BURST: usize = 15;
 
 /// A required register value.
@@ -17,7 +16,7 @@ pub struct Setting {
     pub bank: u8,
     /// Address in the bank.
     pub register: u8,
-    /// Relevant bits; the others keep their value.
+    /// Relevant bits; others stay.
     pub mask: u8,
     /// Value of those bits.
     pub value: u8,
@@ -58,9 +57,8 @@ impl Setting {
     }
 }
 
-/// The registers of one part.
-///
-/// All transfers use a buffer in this struct: where DMA does not reach every memory, the board places the driver.
+/// Registers of one part. Transfers use a buffer in this struct: where DMA does not reach every memory, the board
+/// places the driver.
 pub struct Registers<S> {
     spi: S,
     bank_select: Option<u8>,
@@ -68,7 +66,7 @@ pub struct Registers<S> {
 }
 
 impl<S: SpiDevice> Registers<S> {
-    /// Registers on `spi`; `bank_select` is the bank select register, if any.
+    /// Registers on `spi`, with a bank select register or none.
     pub const fn new(spi: S, bank_select: Option<u8>) -> Self {
         Self {
             spi,
@@ -77,7 +75,7 @@ impl<S: SpiDevice> Registers<S> {
         }
     }
 
-    /// Reads `N` registers of the selected bank from `first` on.
+    /// Reads `N` registers of the selected bank from `first`.
     ///
     /// # Errors
     /// [`Fault::Bus`].
@@ -120,7 +118,7 @@ impl<S: SpiDevice> Registers<S> {
         }
     }
 
-    /// Writes `settings` in order, keeps the bits outside their masks, and selects bank 0.
+    /// Writes `settings` in order, keeping the bits outside their masks, and selects bank 0.
     ///
     /// # Errors
     /// [`Fault::Bus`].

@@ -9,12 +9,11 @@
 //!
 //! Counts are those of CRSF: 172 and 1811 at the stick's ends, 992 at its centre.
 //!
-//! There is no checksum. A frame must begin after silence or at the end of another frame; after garbage on an unbroken
-//! stream, the first frame found only locates the second. Sticks are accepted from the third consecutive frame on:
-//! random bytes after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
+//! Without a checksum, a frame must begin after silence or right after another frame; after garbage on an unbroken
+//! stream, the first frame only locates the second. Sticks are accepted from the third frame in a row: random bytes
+//! after silence form one with probability 1/256 · 1/16 · 5/256 = 1/210,000 (header, flags, end).
 //!
-//! Frames whose flags report a lost transmitter, and repeated ones, publish no sticks: the link turns stale and the
-//! failsafe acts.
+//! Frames with a lost transmitter or a repetition publish no sticks: the link turns stale and the failsafe acts.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::rc::{CHANNELS, ChannelError, Sticks};
@@ -25,11 +24,10 @@ use sophie_tasks::ports::RcDecoder;
 pub const FRAME: usize = 25;
 const HEADER: u8 = 0x0F;
 const CHANNEL_BITS: u32 = 11;
-/// Defined flags; no receiver sets others.
 const FLAGS: u8 = 0x0F;
-/// Time of a byte on the line: twelve bits.
+/// Twelve bits.
 const BYTE: Duration = Duration::from_micros(120);
-/// Pause between two frames. Receivers leave 4 ms or more; within a frame there is none.
+/// Pause between frames. Receivers leave 4 ms or more, and none within a frame.
 const SILENCE: Duration = Duration::from_millis(3);
 /// Consecutive frames before sticks are accepted.
 const BELIEVED_FROM: u8 = 3;
@@ -43,18 +41,18 @@ pub struct Frame {
     pub channel_17: bool,
     /// Channel 18, a switch.
     pub channel_18: bool,
-    /// The receiver missed this frame and repeats the one before.
+    /// The last frame repeated for a missed one.
     pub frame_lost: bool,
     /// The transmitter is lost: the channels are failsafe values.
     pub failsafe: bool,
 }
 
-/// Why bytes give no sticks.
+/// Reason for no sticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SbusError {
     /// No frame.
     Garbage,
-    /// A repeated old frame.
+    /// Repeated frame.
     FrameLost,
     /// Transmitter lost.
     Failsafe,
@@ -90,7 +88,7 @@ impl Frame {
         })
     }
 
-    /// Encodes a frame as a receiver does; channels are cut to 11 bits.
+    /// Encodes a frame; channels are cut to 11 bits.
     pub fn encode(&self) -> [u8; FRAME] {
         let mut bytes = [0; FRAME];
         let [header, payload @ .., flags, _end] = &mut bytes;
@@ -132,15 +130,15 @@ const fn is_end(byte: u8) -> bool {
     byte == 0x00 || byte & 0xCF == 0x04
 }
 
-/// Finds frames in a stream of bytes in pieces of any length.
+/// Finds frames in a stream of bytes, in pieces of any length.
 ///
 /// [`Parser::silence`] must be called wherever the line was idle (4 ms or more after each frame): constant data can
-/// look like frames at a wrong offset, and only silence separates them.
+/// look like misplaced frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Parser {
     bytes: [u8; FRAME],
     count: usize,
-    /// The present frame began after silence or after a whole frame.
+    /// Began after silence or a whole frame.
     aligned: bool,
 }
 
@@ -160,20 +158,19 @@ impl Parser {
         }
     }
 
-    /// Bytes are missing: drops an unfinished frame; the next byte may be any of a frame.
+    /// Bytes are missing: drops an unfinished frame and its alignment.
     pub fn gap(&mut self) {
         (self.count, self.aligned) = (0, false);
     }
 
-    /// The line was silent for longer than a byte: the next byte starts a frame. True if an unfinished frame was
-    /// dropped.
+    /// The line was idle: the next byte starts a frame. True if an unfinished frame was dropped.
     pub fn silence(&mut self) -> bool {
         let dropped = self.count > 0;
         (self.count, self.aligned) = (0, true);
         dropped
     }
 
-    /// The next frame or report of garbage in `bytes`, which is advanced past what was used; `None` at its end.
+    /// Next frame or report of garbage in `bytes`, which is advanced; `None` at its end.
     ///
     /// # Errors
     /// [`SbusError::Garbage`], once for each run of discarded bytes.
@@ -210,7 +207,7 @@ impl Parser {
         }
     }
 
-    /// Looks for another start among the gathered bytes.
+    /// Looks for another start in the gathered bytes.
     fn resume(&mut self) {
         self.aligned = false;
         let next = self
@@ -234,9 +231,7 @@ impl Parser {
 pub struct Decoder {
     parser: Parser,
     state: RcState,
-    /// Consecutive frames without garbage.
     in_a_row: u8,
-    /// Time of the last read or failure.
     last: Option<Instant>,
 }
 
@@ -265,7 +260,7 @@ impl Decoder {
 
 impl RcDecoder for Decoder {
     fn take(&mut self, mut bytes: &[u8], at: Instant) -> Option<RcState> {
-        // A read ends with its last byte: these bytes began their length earlier.
+        // A read ends with its last byte.
         let length = BYTE * u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let before = self.last.replace(at);
         let pause = before.map_or(Duration::MIN, |before| at.saturating_duration_since(before));
@@ -286,7 +281,7 @@ impl RcDecoder for Decoder {
                     news = true;
                 }
                 Ok(_) => (),
-                // Frames just before the report may be repetitions.
+                // Earlier frames may be repetitions.
                 Err(SbusError::Failsafe | SbusError::FrameLost) => news = false,
                 Err(_) => {
                     news = false;

@@ -1,8 +1,7 @@
-//! Verdict on the self-test of an InvenSense part: the sensors are actuated electrically, and their response is
-//! compared with the factory's.
+//! Verdict on the self-test of an InvenSense part, whose sensors are actuated electrically.
 //!
-//! Procedure and limits are those of TDK's ICM-426xx driver and of application note AN-000029 (older register map): 200
-//! samples averaged at rest and actuated, at 250 °/s and 2 g.
+//! Procedure and limits of TDK's ICM-426xx driver and of application note AN-000029 (older register map): 200 samples
+//! averaged at rest and actuated, at 250 °/s and 2 g.
 
 use crate::fault::{Fault, Sensor};
 
@@ -63,7 +62,7 @@ pub struct Measured {
     pub accel: Response,
 }
 
-/// Responses of a part that passed, % of the factory's (of the least allowed if it has none).
+/// Responses of a passed part, % of the factory's, or of the least allowed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SelfTest {
@@ -92,7 +91,7 @@ pub fn judge(m: &Measured, limits: &Limits) -> Result<SelfTest, Fault> {
     })
 }
 
-/// Judges one sensor; `absolute`: limits, counts, without factory codes.
+/// Judges one sensor; `absolute`: limits without factory codes, counts.
 fn sensor(
     sensor: Sensor,
     measured: &Response,
@@ -104,7 +103,7 @@ fn sensor(
         actuated,
         codes,
     } = measured;
-    // With one code missing, the maker regards none as programmed.
+    // By the maker, one missing code means none.
     let coded = codes.iter().all(|&c| c != 0);
     let [least, greatest] = absolute;
     let mut percents = [0; 3];
@@ -130,7 +129,7 @@ fn sensor(
     Ok(percents)
 }
 
-/// Factory response, counts at the test's range.
+/// Counts at the test's range.
 fn factory_response(code: u8) -> f32 {
     (1..code).fold(CODE_BASE, |counts, _| counts * 1.01)
 }

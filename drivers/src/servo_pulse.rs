@@ -4,7 +4,7 @@ use sophie_control::math;
 
 use crate::pwm_timing::PwmTiming;
 
-/// Shortest and longest pulse, µs; a safety limit outside the drive's own range.
+/// Shortest and longest pulse, µs: a safety limit.
 pub const LIMITS_US: [f32; 2] = [400.0, 2600.0];
 /// Shortest and longest frame, µs: analog servos accept 50 Hz, digital ones up to 333 Hz.
 pub const FRAME_US: core::ops::RangeInclusive<u32> = 3003..=20_000;
@@ -18,8 +18,8 @@ pub fn timing(clock_hz: u32, frame_us: u32) -> Option<PwmTiming> {
     }
 }
 
-/// Compare value of a pulse of `us` µs: 0 (no pulse, servo not driven) for 0 and anything that is not a positive
-/// number, else limited to [`LIMITS_US`].
+/// Compare value of a pulse of `us` µs: 0 (no pulse, servo not driven) for 0 and anything not positive, else limited to
+/// [`LIMITS_US`].
 pub fn compare(timing: &PwmTiming, us: f32) -> u32 {
     let [shortest, longest] = LIMITS_US;
     if us > 0.0 {

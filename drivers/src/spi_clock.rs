@@ -4,10 +4,10 @@
 const LEAST: u32 = 2;
 const MOST: u32 = 256;
 
-/// The fastest clock, Hz, up to `most_hz` that an SPI at `clock_hz` makes; the slowest where all are faster.
+/// Fastest clock up to `most_hz`, Hz, of an SPI at `clock_hz`; the slowest if all are faster.
 ///
-/// To be requested by its exact value: embassy-stm32 0.6 may take too fast a divider for an inexact one (84 MHz by 8,
-/// 10.5 MHz, for 8 MHz).
+/// Must be requested exactly: for an inexact value embassy-stm32 0.6 may take too fast a divider (84 MHz by 8, 10.5
+/// MHz, for 8 MHz).
 pub fn at_most(clock_hz: u32, most_hz: u32) -> u32 {
     let ratio = clock_hz.div_ceil(most_hz.max(1)).min(MOST);
     clock_hz / ratio.next_power_of_two().max(LEAST)

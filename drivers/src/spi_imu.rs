@@ -1,14 +1,12 @@
-//! Driver of InvenSense inertial sensors on SPI with a data-ready line; a [`Chip`] gives the registers and bits. It
-//! detects a part that is silent, garbled, stuck, or has lost its configuration.
+//! InvenSense inertial sensors on SPI with a data-ready line; a [`Chip`] gives registers and bits. Detects a silent,
+//! garbled or stuck part and a lost configuration.
 //!
-//! If the line falls silent while the part answers and its registers are right, samples are polled by the clock; the
-//! part's status shows which are new, so none counts twice. The first comes 0.4 ms after the silence is detected (1.2
-//! ms at 1 kHz), later ones up to a quarter of a period and one transfer after they are ready; each is stamped with the
-//! time of its request. [`line_watch`](crate::line_watch) decides when the line is used again.
+//! If the line is silent though the part answers correctly, the driver polls the part's status, so no sample counts
+//! twice. The first comes 0.4 ms after detection (1.2 ms at 1 kHz), later ones up to a quarter period and one transfer
+//! late, stamped with their request. [`line_watch`](crate::line_watch) decides when to use the line again.
 //!
-//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms). Every step may be dropped:
-//! the next call resumes at a consistent step and examines a dropped wait as a silence. Failures are followed by a
-//! pause (1 ms, doubling to 128 ms), so a dead part costs no processor time.
+//! The caller bounds the wait by dropping the future of `read` (the imu task after 3 ms), which the next call treats as
+//! a silence. Failures are followed by a pause (1 ms, doubling to 128 ms), so a dead part costs no processor time.
 
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
@@ -28,18 +26,17 @@ use crate::self_test::{Limits, Measured, SAMPLES, SelfTest, Stage, judge};
 /// Bytes of one sample: accelerometer, gyroscope, temperature.
 const SAMPLE: usize = 14;
 const WATCHED: usize = 6;
-/// Consecutive garbled samples before a reset.
+/// Garbled samples in a row before a reset.
 const GARBLED_MAX: u8 = 4;
-/// Consecutive dropped waits before a reset of a part whose registers are right.
+/// Dropped waits in a row before a reset of a part with right registers.
 const SILENCES_MAX: u8 = 2;
-/// Longest time without a sample while polling, before a reset: two periods at the slowest rate, and less than the
-/// caller waits.
+/// Longest polling without a sample: two periods at the slowest rate, below the caller's time-out.
 const NOT_READY_MAX: Duration = Duration::from_millis(2);
-/// Factor on `stuck_after` for the accelerometer, which is slower on some parts.
+/// Factor on `stuck_after` for the accelerometer, slower on some parts.
 const ACCEL_PATIENCE: u16 = 4;
 /// First and longest pause after a failure.
 const PAUSE: [Duration; 2] = [Duration::from_millis(1), Duration::from_millis(128)];
-/// Margin before power is switched on: no register may be written for 200 µs after it (DS-000347 §14.36).
+/// Margin before power-on: no register may be written for 200 µs after it (DS-000347 §14.36).
 const POWER_QUIET: Duration = Duration::from_micros(500);
 const SELF_TEST_PERIOD: Duration = Duration::from_millis(1);
 const SELF_TEST_ATTEMPTS: u16 = 2 * SAMPLES;
@@ -64,13 +61,13 @@ pub struct Raw {
 pub struct Watch {
     /// Samples between checks of identity and configuration; 0: none.
     pub check_every: u16,
-    /// Equal gyroscope samples in a row that mean a stuck part; 0: no limit (a plant without noise).
+    /// Equal gyroscope samples in a row of a stuck part; 0: no limit (a plant without noise).
     pub stuck_after: u16,
 }
 
 impl Watch {
-    /// Checks every 100 ms; stuck after 16 equal samples, which noise rules out at every rate. (Two are not rare at 1
-    /// kHz, where the noise is below one count.)
+    /// Checks every 100 ms; stuck after 16 equal samples, which noise excludes (two occur at 1 kHz, with noise below
+    /// one count).
     pub const fn at(rate_hz: f32) -> Self {
         Self {
             check_every: (rate_hz * 0.1) as u16,
@@ -98,7 +95,7 @@ pub trait Chip {
     const BANK_SELECT: Option<u8>;
     /// First of the 14 data registers.
     const DATA: u8;
-    /// First of the six bank 0 registers that are checked in flight.
+    /// First of six registers checked in flight, bank 0.
     const WATCH_FROM: u8;
     /// Status bit of a new sample, cleared by reading it.
     const SAMPLE_READY: Setting;
@@ -108,7 +105,7 @@ pub trait Chip {
     const RESET: &'static [Setting];
     /// Duration of a reset.
     const RESET_TIME: Duration;
-    /// A register content that only a reset leaves.
+    /// Content left only by a reset.
     const AFTER_RESET: Setting;
     /// Makes the registers writable.
     const WAKE: &'static [Setting];
@@ -116,22 +113,22 @@ pub trait Chip {
     const WAKE_TIME: Duration;
     /// Switches both sensors on; written last.
     const POWER: Setting;
-    /// Time from power to samples within specification.
+    /// Time from power to valid samples.
     const START_UP: Duration;
-    /// Bank and first register of the gyroscope's factory self-test codes.
+    /// Bank and first register of the gyroscope's self-test codes.
     const GYRO_CODES: (u8, u8);
-    /// Bank and first register of the accelerometer's factory self-test codes.
+    /// Bank and first register of the accelerometer's.
     const ACCEL_CODES: (u8, u8);
     /// Limits of the self-test.
     const SELF_TEST: Limits;
 
-    /// Configuration to write before power is switched on.
+    /// Configuration before power-on.
     fn settings(&self) -> Settings;
-    /// Configuration of a self-test stage, written over [`Chip::settings`].
+    /// Configuration of a self-test stage, over [`Chip::settings`].
     fn self_test_settings(stage: Stage) -> Settings;
     /// Settling time of a self-test stage.
     fn self_test_time(stage: Stage) -> Duration;
-    /// Sorts the seven words of a burst into a sample.
+    /// Sample from the seven words of a burst.
     fn arrange(words: [i16; 7]) -> Raw;
     /// Temperature, °C.
     fn celsius(raw: i16) -> f32;
@@ -149,15 +146,15 @@ pub trait Chip {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Reset is due at this time.
+    /// Reset is due.
     Down(Instant),
-    /// Reset ends at this time.
+    /// Reset ends.
     Resetting(Instant),
-    /// Configuration is due at this time.
+    /// Configuration is due.
     Waking(Instant),
-    /// Power is being switched on; no register is written until this time.
+    /// Power is being switched on; no register is written before.
     Powering(Instant),
-    /// Configured; samples are valid from this time on.
+    /// Configured; samples become valid.
     Settling(Instant),
     Running,
 }
@@ -166,7 +163,6 @@ enum State {
 struct Repeats {
     last: Option<[i16; 3]>,
     count: u16,
-    /// The value has changed at least once.
     alive: bool,
 }
 
@@ -177,7 +173,7 @@ impl Repeats {
         alive: false,
     };
 
-    /// Adds a value; true if the last `limit` values were equal (0: never).
+    /// Adds a value; true if the last `limit` were equal (0: never).
     fn too_many(&mut self, value: [i16; 3], limit: u16) -> bool {
         let same = self.last == Some(value);
         self.count = if same { self.count.saturating_add(1) } else { 1 };
@@ -196,7 +192,6 @@ pub struct SpiImu<C, S, D> {
     mounting: Mounting,
     state: State,
     pause: Duration,
-    /// A wait for data-ready has not ended.
     waiting: bool,
     silences: u8,
     line: LineWatch,
@@ -210,9 +205,8 @@ pub struct SpiImu<C, S, D> {
 }
 
 impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
-    /// The bus is first used by [`SpiImu::init`] or the first read.
-    ///
-    /// `data_ready` rises with each sample. `mounting` turns the part's axes into the body's.
+    /// Without bus access until [`SpiImu::init`] or the first read. `data_ready` rises with each sample; `mounting`
+    /// rotates the part's axes to the body's.
     pub const fn new(spi: S, data_ready: D, chip: C, mounting: Mounting) -> Self {
         let [pause, _] = PAUSE;
         Self {
@@ -240,18 +234,18 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Resets, identifies and configures the part, verifies the configuration and waits for valid samples: about 50 ms
-    /// (ICM-42688-P) or 190 ms (ICM-20689).
+    /// Resets, identifies, configures and verifies the part, and waits for valid samples: about 50 ms (ICM-42688-P) or
+    /// 190 ms (ICM-20689).
     ///
     /// # Errors
-    /// The fault of the part. The driver still serves as a port, which retries.
+    /// The part's fault. The driver still serves as a port, which retries.
     pub async fn init(&mut self) -> Result<(), Fault> {
         let result = self.bring_up().await;
         self.note(result)
     }
 
     /// Actuates both sensors and compares their response with the factory codes; about 1.5 s, vehicle at rest. Then
-    /// resets and configures the part in any case.
+    /// always resets and configures the part.
     ///
     /// # Errors
     /// The first axis that fails, or a fault of the part.
@@ -280,19 +274,18 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         self.last_fault
     }
 
-    /// Takes one sample, in counts. It is kept in `self`, since a returned value would be copied at each level.
+    /// Takes one sample, in counts, into `self`: a returned value would be copied at each level.
     async fn sample(&mut self) -> Result<(), Fault> {
         self.bring_up().await?;
         loop {
             self.next_raw().await?;
-            // A hung part may hang after its reset too: samples are discarded until they change.
+            // A part may still hang after its reset.
             if self.gyro.alive || self.chip.watch().stuck_after == 0 {
                 return Ok(());
             }
         }
     }
 
-    /// The last sample in body axes.
     fn reading(&mut self) -> ImuReading {
         let raw = self.raw;
         self.temperature = C::celsius(raw.temperature);
@@ -304,7 +297,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Waits for, reads and checks the sample; periodically checks the part.
     async fn next_raw(&mut self) -> Result<(), Fault> {
         if self.waiting {
             self.look_into_silence().await?;
@@ -322,7 +314,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         let raw = self.raw;
         let watch = self.chip.watch();
         let accel_limit = watch.stuck_after.saturating_mul(ACCEL_PATIENCE);
-        // No short circuit: each keeps its own count.
+        // No short circuit: each counts.
         let gyro_stuck = self.gyro.too_many(raw.gyro, watch.stuck_after);
         if self.accel.too_many(raw.accel, accel_limit) || gyro_stuck {
             return Err(Fault::Stuck);
@@ -342,7 +334,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         while let Some(due) = self.line.due() {
             let in_time = Timer::at(due);
             if let Either::First(_) = select(self.data_ready.next(), in_time).await {
-                // A pulse does not make the polls more frequent.
+                // A pulse does not speed up the polls.
                 announced = true;
                 until(due).await;
             }
@@ -361,14 +353,13 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(())
     }
 
-    /// Brings the part from any state to running.
     async fn bring_up(&mut self) -> Result<(), Fault> {
         loop {
             match self.state {
                 State::Running => return Ok(()),
                 State::Down(at) => {
                     until(at).await;
-                    // A dropped transfer may have left another bank selected.
+                    // Another bank may be selected after a dropped transfer.
                     self.registers.select(0).await?;
                     self.registers.apply(C::RESET).await?;
                     self.state = State::Resetting(Instant::now() + C::RESET_TIME);
@@ -392,7 +383,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
                     self.registers.select(0).await?;
                     self.registers.apply(&settings).await?;
                     self.registers.verify(&settings).await?;
-                    // A dropped call resumes after the switch: nothing is configured again.
                     self.state = State::Powering(Instant::now() + POWER_QUIET);
                     self.registers.apply(&[C::POWER]).await?;
                 }
@@ -415,7 +405,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// After a dropped wait: checks the part and, if it is well, starts polling.
+    /// After a dropped wait: checks the part; if it is well, starts polling.
     async fn look_into_silence(&mut self) -> Result<(), Fault> {
         self.silences = self.silences.saturating_add(1);
         self.check().await?;
@@ -448,7 +438,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         }
     }
 
-    /// Compares identity, scale and rate registers with the configuration.
     async fn check(&mut self) -> Result<(), Fault> {
         self.identify().await?;
         let read: [u8; WATCHED] = self.registers.read(C::WATCH_FROM).await?;
@@ -487,7 +476,6 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         judge(&m, &C::SELF_TEST)
     }
 
-    /// Configures a stage, lets it settle and averages.
     async fn stage(&mut self, stage: Stage) -> Result<([f32; 3], [f32; 3]), Fault> {
         self.registers.apply(&C::self_test_settings(stage)).await?;
         Timer::after(C::self_test_time(stage)).await;
@@ -515,7 +503,7 @@ impl<C: Chip, S: SpiDevice, D: DataReady> SpiImu<C, S, D> {
         Ok(codes)
     }
 
-    /// Records a result; a failure schedules a reset after a pause.
+    /// A failure schedules a reset after a pause.
     fn note<T>(&mut self, result: Result<T, Fault>) -> Result<T, Fault> {
         let Err(fault) = &result else { return result };
         let first = self.last_fault != Some(*fault);

@@ -1,4 +1,4 @@
-//! The arm sensors' driver with fake chips.
+//! The arm sensors' driver on fake chips.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -49,7 +49,6 @@ async fn round(arms: &mut ArmBuses<Bus, Bus>) -> [Call; 4] {
     calls.try_into().ok().unwrap()
 }
 
-/// Rounds at 100 Hz for `time`; returns the last.
 async fn rounds(arms: &mut ArmBuses<Bus, Bus>, time: Duration) -> [Call; 4] {
     let end = Instant::now() + time;
     loop {
@@ -76,7 +75,7 @@ fn four_chips_come_up_in_a_second_and_a_half_without_a_long_call() {
             Timer::after_millis(10).await;
         }
         let took = (Instant::now() - start).as_millis();
-        // The chips boot for 650 ms at power-on and after their reset.
+        // 650 ms of boot after power-on and reset.
         assert!(took < 2200, "{took} ms");
         assert!(worst < Duration::from_millis(3), "{} µs", worst.as_micros());
         for chip in &chips {
@@ -115,15 +114,14 @@ fn a_chip_left_on_its_second_page_is_found() {
     run(async {
         let (mut arms, chips) = arms([Config::default(); 4]);
         Timer::after_millis(700).await;
-        // A processor-only reset leaves chips in any mode: configuration, fusion.
+        // A processor-only reset leaves chips in any mode.
         chips[0].borrow_mut().pages[0][0x07] = 1;
         chips[1].borrow_mut().pages[0][0x07] = 1;
         chips[1].borrow_mut().pages[0][0x3D] = 0x08;
         let calls = rounds(&mut arms, Duration::from_secs(2)).await;
         assert!(calls.iter().all(|c| c.result.is_ok()), "{:?}", arms.last_fault(0));
         assert!((0..4).all(|arm| arms.last_fault(arm).is_none()));
-        // A bus glitch changes the page of a chip that gives readings, one that boots, and one that enters
-        // configuration mode.
+        // A glitch changes the page in readings, boot, or configuration mode.
         for wait in [0, 725, 735] {
             chips[2].borrow_mut().pages[0][0x07] = 1;
             rounds(&mut arms, Duration::from_millis(wait)).await;
@@ -173,7 +171,7 @@ fn gravity_points_down_in_the_arm_s_axes() {
             let g = call.result.unwrap();
             assert!((g - Vec3::new(0.0, 0.0, 9.81)).norm() < 1e-3, "{g:?}");
         }
-        // Right side down by 30°: gravity leans to body +y, so specific force leans to body -y.
+        // Right side down by 30°: gravity leans to body +y, specific force to body -y.
         let (side, height) = (490, 850);
         chips[0].borrow_mut().gravity = [0, side, height]; // y is left
         chips[1].borrow_mut().gravity = [side, 0, height]; // x is left
@@ -241,7 +239,7 @@ fn a_chip_that_resets_itself_is_noticed_at_once_and_set_up_again() {
     run(async {
         let (mut arms, chips) = arms([Config::default(); 4]);
         rounds(&mut arms, Duration::from_secs(2)).await;
-        // Back from a brown-out before the next read.
+        // Back from a brown-out.
         chips[3].borrow_mut().pages[0][0x3D] = 0x00;
         let calls = round(&mut arms).await;
         assert_eq!(calls[3].result, Err(PortError::Corrupt));
@@ -334,7 +332,7 @@ fn an_arm_that_does_not_exist_is_absent() {
 
 #[test]
 fn the_arms_task_waits_for_slow_chips_and_names_the_broken_ones() {
-    // The chips' power-up before, with and after the processor's.
+    // Power-up of the chips.
     for late_ms in [0, 100, 300, 600] {
         run(async move {
             let (port, chips) = arms([Config::default(); 4]);

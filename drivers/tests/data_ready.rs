@@ -1,4 +1,4 @@
-//! A data-ready line that falls silent, returns, or is loose, on both parts.
+//! A data-ready line that is silent, returns, or is loose, on both parts.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -36,14 +36,11 @@ fn at_rate(hz: f32) -> Params {
 
 #[derive(Debug, Default)]
 struct Read {
-    /// Driver's sample times, µs.
     stamps: Vec<u64>,
     errors: Vec<PortError>,
-    /// Longest time between samples, µs.
     gap: u64,
 }
 
-/// Reads for `ms` as the imu task does.
 async fn read_for(driver: &mut impl Imu, ms: u64) -> Read {
     let end = Instant::now() + Duration::from_millis(ms);
     let (mut read, mut last) = (Read::default(), Instant::now().as_micros());
@@ -74,7 +71,7 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
     part.borrow_mut().failure = Failure::LineCut;
     let writes = part.borrow().writes.len();
 
-    // 3 ms until the wait is dropped, a check of the part, and a new sample.
+    // 3 ms until the wait is dropped, a check, a new sample.
     let first = read_for(&mut driver, 190).await;
     assert!(first.errors.is_empty(), "{case}: {first:?}");
     assert!(first.gap < 3100 + each + each / 4, "{case}: {} us", first.gap);
@@ -93,10 +90,10 @@ async fn cut_and_joined<C: Chip>(mut driver: SpiImu<C, Bus, DataReady>, part: Sh
     let share = samples.len() as f64 / f64::from(rate);
     assert!((0.98..1.02).contains(&share), "{case}: {share}");
     assert!(samples.windows(2).all(|pair| pair[0] < pair[1]), "{case}: twice");
-    // Read at most a quarter of a period and a transfer after it was ready, or while it became ready.
+    // At most a quarter of a period and a transfer late.
     for (stamp, sample) in timed.stamps.iter().zip(&samples) {
         let late = stamp.cast_signed() - (sample * period).cast_signed();
-        // With several samples per sample read: the newest.
+        // With several samples per read: the newest.
         let most = if each > period { period } else { period / 4 }.cast_signed() + 10;
         assert!(
             *stamp >= start && (-25..=most).contains(&late),
@@ -144,7 +141,7 @@ fn a_cut_line_is_done_without_and_used_again_once_it_is_joined() {
             cut_and_joined(driver, part, skew).await;
         });
     }
-    // At 8 kHz every sample counts, and some are read.
+    // At 8 kHz every sample counts.
     for (rate, skew) in [(1000.0, 0), (4000.0, 1), (8000.0, -1)] {
         run(async move {
             let (driver, part) = pair(Kind::Icm20689, icm20689::Config::from_params(&at_rate(rate)));
@@ -238,7 +235,7 @@ fn a_loose_contact_is_reported_and_samples_come_throughout() {
                 reported.push(nth);
             }
         }
-        // One or two silences are not reported; then the line must agree for longer each time.
+        // One or two silences are not reported; then agreement takes longer each time.
         assert!(
             matches!(reported[..], [1 | 2, ..]) && reported.len() >= 6,
             "{reported:?}"
@@ -270,7 +267,7 @@ fn the_imu_task_keeps_its_rate_over_a_cut_line_reports_it_and_takes_it_back() {
                 told = Some(ms);
             }
         }
-        // A reader regards a sample as stale after 5 ms.
+        // Readers regard a sample as stale after 5 ms.
         assert!(longest < 4600, "{longest} us");
         assert!((1960..2040).contains(&count), "{count}");
         assert!(told.is_some_and(|ms| (195..215).contains(&ms)), "{told:?}");

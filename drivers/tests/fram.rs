@@ -1,4 +1,4 @@
-//! The FRAM driver with a fake part.
+//! The FRAM driver on a fake part.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -126,7 +126,7 @@ fn another_chip_or_none_is_named() {
         assert_eq!(first_read(&chip), Err(FramFault::Chip(fault)));
         assert_eq!(fault.what(), "no answer");
     }
-    // Another maker, a part of half the size, one with three-byte addresses; the same of the other maker.
+    // Another maker, half the size, three-byte addresses.
     let ramtron = Chip::new().borrow().identity;
     let fujitsu = [0x04, 0x7F, 0x25, 0x03, 0, 0, 0, 0, 0];
     for (identity, index, expected, found) in [
@@ -148,7 +148,6 @@ fn another_chip_or_none_is_named() {
     let chip = Chip::new();
     chip.borrow_mut().answer = Answer::Bus;
     assert_eq!(first_read(&chip), Err(FramFault::Chip(Fault::Bus)));
-    // A later revision is the same part.
     let chip = Chip::new();
     chip.borrow_mut().identity[8] = 0x10;
     assert_eq!(first_read(&chip), Ok(()));
@@ -163,7 +162,7 @@ fn every_part_that_boards_of_this_kind_carry_is_taken() {
         ramtron(0x22, 0x00),
         ramtron(0x22, 0x08),
         ramtron(0x23, 0x00),
-        // MB85RS256B, MB85RS256TY, MB85RS512T; only four bytes are the identity.
+        // MB85RS256B, MB85RS256TY, MB85RS512T; only four bytes identify.
         fujitsu(0x05, 0x09, 0x00),
         fujitsu(0x25, 0x03, 0xFF),
         fujitsu(0x26, 0x03, 0x04),
@@ -220,7 +219,7 @@ fn it_keeps_parameters_and_a_missing_one_is_a_broken_storage() {
         );
         assert_eq!(again, Params::default());
     }
-    // A part that ignores writes is detected by reading back, and keeps its contents.
+    // Reading back detects a part that ignores writes.
     chip.borrow_mut().answer = Answer::Deaf;
     let (_, saved, again) = store(&chip, Params::default());
     assert_eq!((saved, again), (Err(StorageError::Broken), params));

@@ -1,4 +1,4 @@
-//! Freeing a held bus from a chip cut off within a byte.
+//! Frees a bus held by a chip cut off within a byte.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;

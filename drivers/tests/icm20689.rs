@@ -1,4 +1,4 @@
-//! The ICM-20689 driver with a fake part; icm42688p.rs tests what both share.
+//! The ICM-20689 driver on a fake part; icm42688p.rs tests what both share.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;

@@ -1,4 +1,4 @@
-//! The ICM-42688-P driver with a fake part.
+//! The ICM-42688-P driver on a fake part.
 
 #[allow(dead_code, reason = "each test binary uses its own part of the fakes")]
 mod fake;
@@ -42,7 +42,6 @@ async fn read(driver: &mut Driver) -> Option<Result<ImuReading, PortError>> {
     Some(batch.map(|b| b[0]))
 }
 
-/// Reads for `time`; returns samples, errors, and the last sample's time.
 async fn read_for(driver: &mut Driver, time: Duration) -> (u32, Vec<PortError>, Instant) {
     let end = Instant::now() + time;
     let (mut good, mut errors, mut last) = (0, Vec::new(), Instant::from_ticks(0));
@@ -125,7 +124,7 @@ fn every_choice_reaches_its_register() {
 fn samples_come_at_4_khz_in_body_axes_one_burst_each() {
     run(async {
         let part = Part::new(Kind::Icm42688p);
-        // Marking up, x to the right: the part's x is body y, its y is body x.
+        // The part's x is body y, its y is body x.
         let mounting = Mounting::top_up(Heading::Right);
         let mut driver = Driver::new(
             Bus(part.clone()),
@@ -157,7 +156,7 @@ fn samples_come_at_4_khz_in_body_axes_one_burst_each() {
             (3999..=4001).contains(&good) && errors.is_empty(),
             "{good} {errors:?}"
         );
-        // Besides samples: ten checks of identity and configuration.
+        // Besides samples: ten checks.
         assert_eq!(part.borrow().transactions.len() as u32, 2 + good + 2 * 10);
     });
 }
@@ -246,7 +245,7 @@ fn a_part_that_appears_late_is_taken_up_by_the_task() {
             errors.iter().all(|&e| e == PortError::Absent) && !errors.is_empty(),
             "{errors:?}"
         );
-        // A missing part causes no busy loop.
+        // No busy loop.
         assert!(
             part.borrow().transactions.len() < 100,
             "{}",
@@ -294,7 +293,7 @@ fn every_failure_in_flight_is_noticed_within_5_ms_and_got_over() {
                     found: 0xFF,
                 },
             };
-            // A frozen part answers its resets, so it ends without samples.
+            // A frozen part answers its resets.
             assert!(
                 driver.last_fault() == Some(expected) || failure == Failure::Frozen,
                 "{failure:?}: {:?}",
@@ -413,7 +412,7 @@ fn a_call_dropped_at_any_moment_leaves_nothing_half_done() {
         for after in (0..60_000).step_by(37) {
             let (mut driver, part) = pair(Config::default());
             let _ = with_timeout(Duration::from_micros(after), driver.init()).await;
-            // Dropped just before switch-on, it finds the sensors off and restarts.
+            // Dropped just before switch-on, it restarts.
             if driver.init().await.is_err() {
                 driver.init().await.unwrap();
             }
@@ -501,7 +500,7 @@ fn the_part_is_looked_at_ten_times_a_second_at_every_rate() {
             driver.init().await.unwrap();
             part.borrow_mut().transactions.clear();
             read_for(&mut driver, Duration::from_secs(1)).await;
-            // A check reads the identity, 2 bytes, and six registers.
+            // A check reads six registers in 7 bytes.
             let looks = part.borrow().transactions.iter().filter(|&&n| n == 7).count();
             assert!((9..=10).contains(&looks), "{looks} at {rate} Hz");
         });

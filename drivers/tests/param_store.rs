@@ -16,7 +16,7 @@ use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
 use sophie_fakes::Flash;
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
-/// Small pages, so that a short log rotates often.
+/// Small, so that a short log rotates often.
 const SMALL: usize = 512;
 
 fn load<const W: usize, const P: usize>(flash: &Flash<W, P>) -> (Params, Loaded) {
@@ -106,7 +106,7 @@ fn the_log_goes_round_and_spares_the_flash() {
     // 20 bytes in items of 64 (32 + 32), 28 (8 + 20) and 28 bytes; a page holds 14, 18 and 145.
     assert!(goes_round::<32, 1024>(2, 300) <= 300 / 13);
     assert!(goes_round::<1, SMALL>(2, 300) <= 300 / 16);
-    // Eleven pages are begun; while the eighth is in use, the next must be blank.
+    // Eleven pages are begun; the next one must be blank.
     assert_eq!(goes_round::<1, 4096>(8, 1500), 4);
 }
 
@@ -151,7 +151,7 @@ fn survives_cuts<const W: usize, const P: usize>(pages: usize, before: &[Params]
 fn power_may_go_at_every_step_of_every_save() {
     let at = |i: usize| set(&[("infill", 4.0 + 0.1 * i as f32), ("rate_p", 5.0), ("rate_i", 3.0)]);
     let mut cuts = 0;
-    // The first save and each one up to twice round the log: appends, new pages, moves of a page's last item, erases.
+    // Twice round the log: appends, new pages, moves of a page's last item, erases.
     for saves in 0..40 {
         let before: Vec<Params> = (0..saves).map(at).collect();
         cuts += survives_cuts::<32, 512>(2, &before, at(saves));
@@ -166,7 +166,6 @@ fn power_may_go_at_every_step_of_every_save() {
     assert!(cuts > 1000);
 }
 
-/// Flash on which another program keeps `item` in the same kind of map.
 fn with_item<const W: usize, const P: usize>(item: &'static [u8]) -> Flash<W, P> {
     let flash = Flash::<W, P>::blank(2);
     let (device, range) = (flash.clone(), flash.range());
@@ -198,12 +197,12 @@ fn what_firmware_with_other_parameters_stored_is_read_as_far_as_it_is_known() {
         ..Loaded::default()
     };
     assert_eq!(load(&flash), (known, loaded));
-    // A save removes what was refused.
+    // A save removes refused records.
     assert_eq!(save(&flash, known), Ok(()));
     assert_eq!(load(&flash), (known, sound(2)));
 }
 
-/// Two sectors after two saves by firmware with the old names; erased behind these bytes.
+/// Two sectors after two saves by firmware with the old names, then erased.
 fn of_old<const W: usize, const P: usize>(stored: &[u8]) -> Flash<W, P> {
     let mut bytes = stored.to_vec();
     bytes.resize(2 * P, 0xFF);
@@ -267,7 +266,7 @@ fn of_an_old_and_a_new_name_in_one_set_the_new_one_counts() {
 
 const FULL: usize = 256;
 
-/// [`FULL`] records of firmware with more parameters: all known ones, and others.
+/// [`FULL`] records of firmware with more parameters.
 fn full_set(params: &Params) -> Vec<u8> {
     let known = Params::TABLE
         .iter()
@@ -282,7 +281,7 @@ fn full_set(params: &Params) -> Vec<u8> {
     item
 }
 
-/// Stores `saves` sets of [`FULL`] records, reads each back; returns the erases.
+/// Stores and reads back `saves` sets of [`FULL`] records; returns the erases.
 fn keeps_full_sets<const W: usize, const P: usize>(saves: usize) -> usize {
     let flash = Flash::<W, P>::blank(2);
     for i in 0..saves {
@@ -313,8 +312,8 @@ fn keeps_full_sets<const W: usize, const P: usize>(saves: usize) -> usize {
 
 #[test]
 fn sets_of_256_records_are_kept_on_the_boards_sectors_and_spare_them() {
-    // Items of 2052 bytes: 62 in an H743 sector (words of 32 bytes), 7 in an F405 sector, one of them the newest of the
-    // sector before.
+    // Items of 2052 bytes: 62 in an H743 sector (words of 32 bytes), 7 in an F405 sector, one of them the last sector's
+    // newest.
     let (large, small) = (
         keeps_full_sets::<32, { 128 * 1024 }>(140),
         keeps_full_sets::<4, { 16 * 1024 }>(60),
@@ -322,7 +321,7 @@ fn sets_of_256_records_are_kept_on_the_boards_sectors_and_spare_them() {
     assert!(large <= 140 / 60 && small <= 60 / 6, "{large}, {small} erases");
 }
 
-/// F405 sectors used by another stack: the second page begins with `head`, the rest is full.
+/// F405 sectors of another stack: the second page begins with `head`.
 fn used_before(head: &[u8]) -> Flash<4, 0x4000> {
     let mut bytes: Vec<u8> = (0..0x8000)
         .map(|n: u32| (n.wrapping_mul(2_654_435_761) >> 24) as u8)
@@ -390,14 +389,14 @@ fn damage_to_the_newest_set_is_noticed_and_the_one_before_is_kept() {
 
 #[test]
 fn a_flash_that_is_too_small_or_broken_says_so() {
-    // A page of 256 bytes cannot hold every parameter, and keeps its contents.
+    // 256 bytes cannot hold every parameter.
     let flash = Flash::<1, 256>::blank(2);
     let few = set(&[("infill", 5.0)]);
     assert_eq!(save(&flash, few), Ok(()));
     assert_eq!(save(&flash, all_changed()), Err(StorageError::Full));
     assert_eq!(load(&flash).0, few);
 
-    // A cell that cannot be programmed to 0, in the mark, the head and the values of the first item.
+    // A cell stuck at 1, in mark, head and values of the first item.
     for cell in [0, 4, 8, 12, 20] {
         let flash = Flash::<4, SMALL>::blank(2);
         flash.0.borrow_mut().stuck = Some(cell);
@@ -527,12 +526,11 @@ fn a_board_with_defaults_of_its_own_stores_what_differs_from_those() {
         let mut store = ParamStore::new(bytes.clone(), range).with_defaults(&CUAV);
         assert_eq!(*store.defaults(), CUAV);
         let mut params = CUAV;
-        // Blank, and saved as it is: nothing is written; the board's defaults stay.
         assert_eq!(store.load(&mut params).await, sound(0));
         assert_eq!(params, CUAV);
         assert_eq!(store.save(&CUAV).await, Ok(()));
         assert_eq!(bytes.0.borrow().steps, 0);
-        // The table's defaults differ from the board's, so they are stored.
+        // The table's defaults differ from the board's.
         let other = Params {
             infill: 8.0,
             battery_a_per_v: 40.0,

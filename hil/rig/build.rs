@@ -1,4 +1,4 @@
-//! Linker arguments of the tests on a board; none for the host. `boards/build.rs` picks the board.
+//! Linker arguments of the tests; none for the host. `boards/build.rs` picks the board.
 
 use std::env;
 

@@ -1,4 +1,4 @@
-//! Eq. 1 and Table I: tilt over thrust, and the gain K that Table III implies.
+//! Eq. 1 and Table I: tilt over thrust, and the K that Table III implies.
 
 use sophie_control::deflection::ArmModel;
 use sophie_control::params::Params;
@@ -9,7 +9,7 @@ use super::printed::{Printed, Roll, Table1};
 /// %.
 pub const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
 
-/// Eq. 1's linear (°/N) and quadratic (°/N²) coefficient at an infill (%), literal.
+/// Literal coefficients of Eq. 1 at an infill (%): linear (°/N), quadratic (°/N²).
 pub fn literal(t: &Table1, infill: f64) -> (f64, f64) {
     (t.a1 + infill * t.a2, t.b1 + infill * t.b2)
 }
@@ -23,7 +23,7 @@ pub struct Identified {
     pub sum: f64,
 }
 
-/// Least squares of Δα = X ((A1 + ρA2) + (B1 + ρB2) S) over Table III: linear in X and X S.
+/// Least squares of Δα = X ((A1 + ρA2) + (B1 + ρB2) S) over Table III, linear in X and X S.
 pub fn identify(p: &Printed) -> Identified {
     let (mut aa, mut ab, mut bb, mut ay, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for row in &p.table_3 {
@@ -43,11 +43,10 @@ pub fn identify(p: &Printed) -> Identified {
     }
 }
 
-/// The arm as flown, and the gains that the paper leaves open.
 struct Flown<'a> {
     printed: &'a Printed,
     k: f64,
-    /// Largest thrust of a rotor, N; the arm is level at half of it.
+    /// Largest thrust of a rotor, N; the arm is level at half.
     top: f64,
     identified: Identified,
 }
@@ -63,19 +62,19 @@ impl<'a> Flown<'a> {
         }
     }
 
-    /// Least and largest gain that Table III allows: T3 = 0, and ΔT/(T1 + T3) as in the text.
+    /// Gains that Table III allows: from T3 = 0, and from ΔT/(T1 + T3) as in the text.
     fn allowed(&self) -> (f64, f64) {
         let id = &self.identified;
         let share = self.printed.text.delta_thrust_share;
         (id.product / id.sum, id.product / (share * id.sum))
     }
 
-    /// Gain of "α < 40° for ρ > 5 %", with α0 = 0 at the largest thrust.
+    /// Gain of "α < 40° for ρ > 5 %", α0 = 0, at the largest thrust.
     fn gain_of_limit(&self) -> f64 {
         self.printed.eq_1.valid_tilt_deg / self.most_elastic(self.printed.eq_1.valid_infill_percent)
     }
 
-    /// Largest literal bending over the thrusts, degrees.
+    /// Largest literal bending, degrees.
     fn most_elastic(&self, infill: f64) -> f64 {
         let bent = self.thrusts().map(|t| elastic(self.printed, infill, t));
         bent.fold(0.0, f64::max)
@@ -197,7 +196,6 @@ fn calibrated(flown: &Flown<'_>) -> Vec<Comparison> {
     flown.printed.table_3.iter().map(row).collect()
 }
 
-/// Table III by the printed Eq. 1.
 fn literal_rows(flown: &Flown<'_>) -> Vec<Comparison> {
     let (t1, t3) = thrusts_of_table_3(flown);
     let row = |row: &Roll| {

@@ -1,14 +1,12 @@
-//! Thrust-bench data of soft arms: a CSV file of thrusts and tilts.
+//! Thrust-bench data of soft arms: CSV.
 //!
 //! The first line names the columns, in any order: `infill_percent` (%), `thrust_n` (N), `tilt_deg` (degrees, tip up
-//! positive), and optionally `power_ratio` (P/P0, default 1). Blank lines and text after `#` are skipped. Commas
-//! separate columns.
+//! positive), optionally `power_ratio` (P/P0, default 1). Blank lines and text after `#` are skipped.
 
 use std::path::Path;
 
-/// Limit of the file's size, bytes.
 const MAX_BYTES: u64 = 16 << 20;
-/// Fewest rows for a fit: three more than the unknowns of a single infill.
+/// Three more than the unknowns of one infill.
 pub const MIN_ROWS: usize = 6;
 
 /// A measured point.
@@ -24,7 +22,7 @@ pub struct Point {
     pub power: f64,
 }
 
-/// A column: name, smallest and largest value, unit.
+/// Name, smallest and largest value, unit.
 type Column = (&'static str, f64, f64, &'static str);
 
 const COLUMNS: [Column; 4] = [
@@ -55,7 +53,7 @@ pub fn load(path: &Path) -> Result<Vec<Point>, String> {
     parse(&text, &file.to_string())
 }
 
-/// Parses the text of the file `file`.
+/// Parses the text of `file`.
 ///
 /// # Errors
 /// See [`load`].
@@ -103,7 +101,6 @@ struct BadLine {
     why: String,
 }
 
-/// The other bad lines, in words.
 fn bad_as_well(others: &[BadLine]) -> String {
     if others.is_empty() {
         return String::new();
@@ -146,7 +143,7 @@ fn names() -> String {
     "infill_percent, thrust_n, tilt_deg and, if wanted, power_ratio".to_owned()
 }
 
-/// Refuses other separators than commas, as spreadsheets write where the comma is the decimal point.
+/// Refuses other separators, as spreadsheets write with a decimal comma.
 fn commas(line: &str) -> Result<(), String> {
     let other = [(';', "';'"), ('\t', "a tab")];
     other

@@ -111,32 +111,8 @@ pub fn draw(chart: &Chart) -> String {
     for tile in &chart.tiles {
         svg += &tile_svg(&f, tile);
     }
-    for (x, name) in marks(&chart.x, f.x, 8, 3) {
-        let class = if x == 0.0 { "grid zero" } else { "grid" };
-        if chart.tiles.is_empty() {
-            svg += &line(f.px(x), TOP, f.px(x), bottom, class);
-        }
-        svg += &text(f.px(x), bottom + 16.0, "tick mid", &name);
-    }
-    for (y, name) in marks(&chart.y, f.y, 6, 4) {
-        let class = if y == 0.0 { "grid zero" } else { "grid" };
-        if chart.tiles.is_empty() {
-            svg += &line(left, f.py(y), right, f.py(y), class);
-        }
-        svg += &text(left - 7.0, f.py(y) + 4.0, "tick end", &name);
-    }
-    for (level, word) in &chart.levels {
-        svg += &line(left, f.py(*level), right, f.py(*level), "level");
-        svg += &text(right - 5.0, f.py(*level) - 4.0, "small end halo", word);
-    }
-    for (at, word) in &chart.uprights {
-        let x = f.px(*at);
-        svg += &line(x, TOP, x, bottom, "level");
-        // Centred on the line, but within the drawing.
-        let half = 3.2 * word.chars().count() as f64;
-        let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
-        svg += &text(middle, TOP - 5.0, "small mid", word);
-    }
+    svg += &grid(&f, chart);
+    svg += &guides(&f, chart);
     // The paper's values on top.
     let printed = |s: &&Series| s.look == Look::Printed;
     for series in chart
@@ -155,6 +131,46 @@ pub fn draw(chart: &Chart) -> String {
         escape(&chart.y.title)
     );
     format!("<h4>{}</h4>{}{svg}", escape(&chart.title), legend(chart))
+}
+
+/// Gridlines, where no tiles cover them, and the axes' values.
+fn grid(f: &Frame, chart: &Chart) -> String {
+    let (left, right, bottom) = (LEFT, WIDTH - RIGHT, HEIGHT - BOTTOM);
+    let mut svg = String::new();
+    for (x, name) in marks(&chart.x, f.x, 8, 3) {
+        let class = if x == 0.0 { "grid zero" } else { "grid" };
+        if chart.tiles.is_empty() {
+            svg += &line(f.px(x), TOP, f.px(x), bottom, class);
+        }
+        svg += &text(f.px(x), bottom + 16.0, "tick mid", &name);
+    }
+    for (y, name) in marks(&chart.y, f.y, 6, 4) {
+        let class = if y == 0.0 { "grid zero" } else { "grid" };
+        if chart.tiles.is_empty() {
+            svg += &line(left, f.py(y), right, f.py(y), class);
+        }
+        svg += &text(left - 7.0, f.py(y) + 4.0, "tick end", &name);
+    }
+    svg
+}
+
+/// Levels and uprights with their words.
+fn guides(f: &Frame, chart: &Chart) -> String {
+    let (left, right, bottom) = (LEFT, WIDTH - RIGHT, HEIGHT - BOTTOM);
+    let mut svg = String::new();
+    for (level, word) in &chart.levels {
+        svg += &line(left, f.py(*level), right, f.py(*level), "level");
+        svg += &text(right - 5.0, f.py(*level) - 4.0, "small end halo", word);
+    }
+    for (at, word) in &chart.uprights {
+        let x = f.px(*at);
+        svg += &line(x, TOP, x, bottom, "level");
+        // Centred on the line, but within the drawing.
+        let half = 3.2 * word.chars().count() as f64;
+        let middle = x.clamp(half.min(WIDTH / 2.0), WIDTH - half.min(WIDTH / 2.0));
+        svg += &text(middle, TOP - 5.0, "small mid", word);
+    }
+    svg
 }
 
 fn tile_svg(f: &Frame, tile: &super::model::Tile) -> String {

@@ -1,4 +1,4 @@
-//! Tables V and VI: how long it flies and how long it holds, from stated power models.
+//! Tables V and VI: flight and holding time from stated power models.
 
 use std::f64::consts::PI;
 
@@ -11,31 +11,31 @@ use super::model::{Axis, Chart, Class, Comparison, Look, Section, Series, Table,
 use super::printed::{Endurance, Printed};
 use super::statics::root;
 
-/// Density of air, kg/m³, and radius of a 10-inch propeller, m.
+/// Air density, kg/m³, and radius of a 10-inch propeller, m.
 const AIR: f64 = 1.225;
 const RADIUS: f64 = 0.127;
-/// Shaft power over ideal power, and electric over shaft: figure of merit 0.70, motor and ESC 0.78 (assumed, typical).
+/// Figure of merit 0.70 and efficiency of motor and ESC 0.78 (assumed, typical).
 const FIGURE_OF_MERIT: f64 = 0.70;
 const DRIVE: f64 = 0.78;
-/// Electronics, W (assumed), and the share of the charge that is drawn before landing (usual practice).
+/// Electronics, W (assumed), and usable share of the charge (usual practice).
 const ELECTRONICS: f64 = 6.0;
 const USABLE: f64 = 0.8;
-/// Nominal voltages of the flight battery (4S) and the servo battery (2S), V.
+/// 4S flight battery and 2S servo battery, V.
 const FLIGHT_VOLTAGE: f64 = 14.8;
-/// Ideal power of hover, W: four discs, momentum theory, thrusts leaning by `tilt` rad.
+/// Ideal hover power, W: four discs, momentum theory, thrusts leaning by `tilt` rad.
 fn ideal_power(mass: f64, tilt: f64) -> f64 {
     let thrust = mass * GRAVITY / 4.0 / tilt.cos();
     4.0 * thrust * (thrust / (2.0 * AIR * PI * RADIUS * RADIUS)).sqrt()
 }
 
-/// The calibrated model: FT = η E / P(m), m = m0 + slope (ρ - ρ0).
+/// FT = η E / P(m), m = m0 + slope (ρ - ρ0).
 struct Fudge {
     efficiency: f64,
     /// kg per % of infill.
     slope: f64,
 }
 
-/// Least squares of the two over rows of Table V by Gauss-Newton in ln FT: ln FT = ln η E - ln P(m).
+/// Gauss-Newton in ln FT over rows of Table V: ln FT = ln η E - ln P(m).
 fn fit(p: &Printed, energy: f64) -> Fudge {
     let rows: Vec<_> = p
         .table_5
@@ -67,10 +67,9 @@ fn fit(p: &Printed, energy: f64) -> Fudge {
     }
 }
 
-/// Flight time by both power models.
 struct Flight<'a> {
     printed: &'a Printed,
-    /// What the battery holds, J.
+    /// J.
     energy: f64,
     fudge: Fudge,
 }
@@ -85,23 +84,23 @@ impl<'a> Flight<'a> {
         }
     }
 
-    /// Ideal power at an infill, W, with the mass of the calibrated model.
+    /// Ideal, W, with the calibrated mass.
     fn power(&self, infill: f64) -> f64 {
         let mass = self.printed.mass() + self.fudge.slope * (infill - self.printed.text.infill_percent);
         ideal_power(mass, 0.0)
     }
 
-    /// Flight time without any loss, min.
+    /// Without losses, min.
     fn ideal(&self, infill: f64) -> f64 {
         self.energy / 60.0 / self.power(infill)
     }
 
-    /// Flight time of the calibrated model, min.
+    /// min.
     fn fitted(&self, infill: f64) -> f64 {
         self.fudge.efficiency * self.energy / 60.0 / self.power(infill)
     }
 
-    /// Flight time with usual losses on this share of the charge, min.
+    /// With usual losses on `share` of the charge, min.
     fn honest(&self, infill: f64, share: f64) -> f64 {
         share * self.energy / 60.0 / (self.power(infill) / (FIGURE_OF_MERIT * DRIVE) + ELECTRONICS)
     }
@@ -157,7 +156,6 @@ fn power_of_hover(flight: &Flight<'_>) -> String {
     )
 }
 
-/// Table V by the model that is fitted to it.
 fn calibrated(flight: &Flight<'_>) -> Vec<Comparison> {
     let Flight {
         printed: p, fudge, ..
@@ -190,7 +188,7 @@ fn calibrated(flight: &Flight<'_>) -> Vec<Comparison> {
     p.table_5.iter().map(row).collect()
 }
 
-/// Table V by usual losses.
+/// With usual losses.
 fn predicted(flight: &Flight<'_>) -> Vec<Comparison> {
     let row = |row: &Endurance| Comparison {
         what: format!("flight time at ρ {} %, honest", row.infill_percent),
@@ -248,15 +246,15 @@ fn finding(flight: &Flight<'_>) -> String {
     )
 }
 
-/// What tilt would explain the 10.7 min at 4 %.
+/// Tilt that would explain the 10.7 min at 4 %.
 fn lean_at_four_percent(s: &mut Section, flight: &Flight<'_>) {
     let p = flight.printed;
     let Some(row) = p.table_5.first() else { return };
     let share = row.flight_min / flight.fitted(row.infill_percent);
-    // Time goes with cos^1.5 of the lean.
+    // Flight time is proportional to cos^1.5 of the lean.
     let lean = share.powf(2.0 / 3.0).acos().to_degrees();
     let k = f64::from(Params::default().gain_k);
-    // α0 = 0: the arm's tilt at the thrust that it then needs.
+    // α0 = 0: the arm's tilt at the required thrust.
     let droopless = |infill: f64| {
         let (a, b) = super::arm::literal(&p.table_1, infill);
         let tilt = |t: f64| (k * (a + b * t) * t).to_radians();
@@ -277,7 +275,6 @@ fn lean_at_four_percent(s: &mut Section, flight: &Flight<'_>) {
     ));
 }
 
-/// Table VI as printed, with Table V below it.
 fn printed_robots(p: &Printed) -> Table {
     let mut t = Table::new(
         "Table VI as printed; specific strength of Tables V and VI is quoted, not computed: it is a material test",
@@ -307,14 +304,13 @@ fn printed_robots(p: &Printed) -> Table {
     t
 }
 
-/// Table VI against Table V and the text.
 fn table_6(s: &mut Section, p: &Printed) {
     s.table(printed_robots(p));
     let (Some(sophie), Some(semi), Some(mhyro)) = (p.table_6.first(), p.table_6.get(1), p.table_6.get(2))
     else {
         return;
     };
-    // Table V at the infill of the prototype, on the line between its neighbours.
+    // Table V interpolated at the prototype's infill.
     let between = |f: &dyn Fn(&Endurance) -> f64| {
         let (Some(a), Some(b)) = (p.table_5.get(1), p.table_5.get(2)) else {
             return f64::NAN;

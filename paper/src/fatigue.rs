@@ -1,4 +1,4 @@
-//! Section V-C: an arm that loses stiffness, in flight and as measured on board.
+//! Section V-C: an arm loses stiffness, in flight and as measured on board.
 
 use crate::study::rig::{Flown, Moment, Wish, fly};
 use sophie_control::params::Params;
@@ -10,11 +10,11 @@ use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 use super::printed::Printed;
 use sophie_sim::parallel;
 
-/// Compliance of arm 1 over that of a new arm.
+/// Compliance of arm 1 over a new arm's.
 const WORN: [f64; 6] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5];
 /// Averaging time of the on-board comparison, s.
 const WINDOW: f64 = 5.0;
-/// Hover of each flight, s.
+/// s.
 const SECONDS: f64 = 25.0;
 
 #[derive(Clone, Copy)]
@@ -39,7 +39,6 @@ fn mean(moments: &[Moment], f: impl Fn(&Moment) -> f64) -> f64 {
     moments.iter().map(f).sum::<f64>() / moments.len().max(1) as f64
 }
 
-/// Mean heading error, degrees.
 fn heading(flown: &Flown) -> f64 {
     mean(&flown.moments, |m| m.attitude[2] - m.target[2]).to_degrees()
 }
@@ -81,7 +80,7 @@ const KINDS: [Kind; 3] = [
 ];
 
 struct Flights {
-    /// Index in [`KINDS`] and hover of each flight.
+    /// Index in [`KINDS`], and flight.
     jobs: Vec<(usize, Job)>,
     flown: Vec<Flown>,
 }
@@ -135,13 +134,11 @@ impl Flights {
     }
 }
 
-/// Range of the rotors' mean thrusts, N.
 fn apart(f: &Flown) -> f64 {
     let thrusts: Vec<f64> = (0..4).map(|i| mean(&f.moments, |m| m.thrust[i])).collect();
     thrusts.iter().copied().fold(f64::MIN, f64::max) - thrusts.iter().copied().fold(f64::MAX, f64::min)
 }
 
-/// A bias of arm 1, degrees.
 struct OnBoard {
     worn: f64,
     /// True tilt less the model's.
@@ -192,7 +189,7 @@ fn on_board_table(seen: &[OnBoard]) -> Table {
     t
 }
 
-/// Yaw error per kind, and the on-board bias with its detection `level` (°).
+/// Yaw error per kind, on-board bias and its detection `level` (°).
 fn figure(s: &mut Section, flights: &Flights, seen: &[OnBoard], level: f64) {
     let yaw = |kind: usize| {
         let flown = |worn: f64| {

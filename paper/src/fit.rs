@@ -1,20 +1,18 @@
 //! Least-squares fit of Eq. 1 to bench data, with confidence intervals.
 //!
-//! α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. All but C_P enter linearly; Gauss-Newton from a linear start takes
-//! a few steps. One infill cannot separate A1 and A2 (B1 and B2): A and B are fitted. C_P is fitted only where the
-//! power ratio varies. K multiplies what is fitted and is no further unknown: it is the gain that Table I would need,
-//! fitted on its own, with the residual of Table I's shape.
+//! α = α0 + ((A1 + ρ A2) T + (B1 + ρ B2) T²) p^C_P. All but C_P are linear; Gauss-Newton from a linear start takes a
+//! few steps. One infill cannot separate A1 and A2 (B1 and B2): A and B are fitted; C_P only where the power ratio
+//! varies. K is the gain that Table I would need, fitted on its own, with the residual of Table I's shape.
 
 use super::bench_data::Point;
 use super::least_squares::{quantile, solve};
 
-/// C_P is fitted if some power ratio is below this.
+/// C_P is fitted below this power ratio.
 const POWER_SEEN: f64 = 0.95;
-/// Assumed exponent: the middle of the paper's 1.6 to 1.8.
+/// Assumed: the middle of the paper's 1.6 to 1.8.
 const EXPONENT: f64 = 1.7;
-/// Limit of Gauss-Newton steps.
 const STEPS: u32 = 30;
-/// Least difference between two infills, %.
+/// Smallest difference between two infills, %.
 const INFILL_STEP: f64 = 0.2;
 
 /// A fitted value.
@@ -35,7 +33,7 @@ pub struct Fitted {
 pub struct Fit {
     /// All fitted values.
     pub fitted: Vec<Fitted>,
-    /// A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)); for one infill A, 0, B, 0.
+    /// A1, A2, B1, B2 (°/N, °/(N %), °/N², °/(N² %)); A, 0, B, 0 for one infill.
     pub coefficients: [f64; 4],
     /// α0, degrees.
     pub offset: f64,
@@ -43,7 +41,7 @@ pub struct Fit {
     pub exponent: f64,
     /// RMS residual over the degrees of freedom, degrees.
     pub residual: f64,
-    /// Best gain on Table I, with its residual RMS (°).
+    /// Best gain on Table I, and its residual RMS (°).
     pub gain: (Fitted, f64),
 }
 
@@ -69,7 +67,6 @@ impl Fit {
     }
 }
 
-/// What the data can determine.
 #[derive(Clone, Copy)]
 struct Unknowns {
     /// Several infills: A1, A2, B1, B2 instead of A, B.
@@ -87,7 +84,7 @@ impl Unknowns {
         }
     }
 
-    /// Count of the linear unknowns: α0, A (A2), B (B2).
+    /// Number of linear unknowns: α0, A (A2), B (B2).
     const fn linear(self) -> usize {
         if self.several { 5 } else { 3 }
     }
@@ -96,7 +93,7 @@ impl Unknowns {
         self.linear() + usize::from(self.powered)
     }
 
-    /// Names and units, in column order.
+    /// In column order.
     fn names(self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let linear: &[(&str, &str)] = if self.several {
             &[
@@ -112,7 +109,6 @@ impl Unknowns {
         linear.iter().copied().chain([("C_P", "")]).take(self.count())
     }
 
-    /// Factors of A (A1, A2) and B (B1, B2) at full power.
     fn basis(self, p: &Point) -> Vec<f64> {
         let (t, t2) = (p.thrust, p.thrust * p.thrust);
         if self.several {
@@ -164,11 +160,11 @@ struct Solution {
 }
 
 impl Solution {
-    /// Gauss-Newton; `None` if the points cannot separate the unknowns.
+    /// `None` if the points cannot separate the unknowns.
     fn of(points: &[Point], unknowns: Unknowns) -> Option<Self> {
         let linear = unknowns.linear();
         let mut exponent = EXPONENT;
-        // First without C_P: its derivative needs a solution.
+        // C_P's derivative needs a solution.
         let start: Vec<Vec<f64>> = points
             .iter()
             .map(|p| unknowns.row(p, &[], exponent)[..linear].to_vec())
@@ -190,7 +186,7 @@ impl Solution {
         })
     }
 
-    /// A1, A2, B1, B2; A, 0, B, 0 for one infill.
+    /// A, 0, B, 0 for one infill.
     fn coefficients(&self) -> [f64; 4] {
         match self.x[1..] {
             [a1, a2, b1, b2, ..] => [a1, a2, b1, b2],
@@ -200,10 +196,10 @@ impl Solution {
     }
 }
 
-/// Fits `points` against Table I's coefficients `table_1`.
+/// Fits `points`, and the gain on `table_1`.
 ///
 /// # Errors
-/// One line on what the data lack.
+/// What the data lack, one line.
 pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
     let unknowns = Unknowns::of(points);
     unknowns.refuse_too_little(points)?;
@@ -243,7 +239,7 @@ pub fn fit(points: &[Point], table_1: [f64; 4]) -> Result<Fit, String> {
     Ok(fit)
 }
 
-/// Gain on Table I, with its own offset.
+/// Best gain on Table I, with its own offset.
 fn gain(points: &[Point], [a1, a2, b1, b2]: [f64; 4], exponent: f64) -> Option<(Fitted, f64)> {
     let shape = |p: &Point| {
         ((a1 + p.infill * a2) + (b1 + p.infill * b2) * p.thrust) * p.thrust * p.power.powf(exponent)
@@ -283,7 +279,7 @@ mod tests {
 
     const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 
-    /// Bench data of Table I with gain, offset and a fixed error pattern.
+    /// Table I with gain, offset and a fixed error pattern.
     fn bench(infills: &[f64], powers: &[f64], gain: f64, noise: f64) -> Vec<Point> {
         let mut points = vec![];
         for infill in infills {
@@ -292,7 +288,7 @@ mod tests {
                     let thrust = 0.5 * f64::from(i);
                     let elastic =
                         (2.4387 - 0.1997 * infill) * thrust + (-0.162 + 0.0151 * infill) * thrust * thrust;
-                    // Without trend: estimates stay near the truth, the intervals do not vanish.
+                    // Without trend: estimates stay near the truth, intervals do not vanish.
                     let error = noise * (1.7 * (points.len() as f64 + 1.0).powi(2)).sin();
                     let tilt = -20.0 + gain * elastic * power.powf(1.7) + error;
                     points.push(Point {

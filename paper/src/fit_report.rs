@@ -1,4 +1,4 @@
-//! The page of a fitted arm, and its parameter file for simulator and stack.
+//! Page of a fitted arm, and its parameter file for simulator and stack.
 
 use sophie_control::params::Params;
 use sophie_sim::scenario::Scenario;
@@ -7,12 +7,11 @@ use super::bench_data::Point;
 use super::fit::{Fit, Fitted};
 use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// Largest span of tilts taken for radians: a quarter turn and rounding. Table I's stiffest arm (10 %, K = 1) bends by
-/// 2.8°.
+/// Tilts within this span may be radians: a quarter turn. Table I's stiffest arm (10 %, K = 1) bends by 2.8°.
 const RADIANS: f64 = 1.58;
-/// Share of a rotor's largest thrust that the data must reach; below it hover is extrapolated.
+/// Share of a rotor's largest thrust below which hover is extrapolated.
 const REACH: f64 = 0.5;
-/// Coefficients that may be 0: an arm may be level at rest, and K is not written.
+/// May be 0: an arm may be level at rest, and K is not written.
 const MAY_BE_NONE: [&str; 2] = ["α0", "K"];
 
 fn span(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
@@ -27,7 +26,7 @@ fn span(points: &[Point], of: impl Fn(&Point) -> f64) -> (f64, f64) {
 /// Refuses tilts that cannot be degrees.
 ///
 /// # Errors
-/// One line: the span of the tilts and what is allowed.
+/// One line: the span and what is allowed.
 pub fn check_units(points: &[Point]) -> Result<(), String> {
     let ((low, high), (from, to)) = (span(points, |p| p.tilt), span(points, |p| p.thrust));
     if high - low > RADIANS {
@@ -40,15 +39,14 @@ pub fn check_units(points: &[Point]) -> Result<(), String> {
     ))
 }
 
-/// Largest thrust of the data and of a rotor, N, if the data end too early.
+/// Largest thrust of data and rotor, N, if the data end too early.
 fn reach(points: &[Point]) -> Option<(f64, f64)> {
     let (most, top) = (span(points, |p| p.thrust).1, thrust_max());
     (most < REACH * top).then_some((most, top))
 }
 
-/// N.
 fn thrust_max() -> f64 {
-    // Without the `f32`'s further digits.
+    // Drops the `f32`'s further digits.
     (f64::from(Params::default().thrust_max) * 1e4).round() * 1e-4
 }
 
@@ -80,9 +78,8 @@ pub fn warnings(points: &[Point], fit: &Fit) -> Vec<String> {
     lines
 }
 
-/// Infill of the vehicle, %: the only one measured, or the stack's within those measured.
+/// Vehicle's infill, %: the only measured one, or the stack's within the measured.
 pub fn infill(points: &[Point]) -> f64 {
-    // Without the `f32`'s further digits.
     let default = (f64::from(Params::default().infill) * 1e4).round() * 1e-4;
     let (low, high) = span(points, |p| p.infill);
     default.clamp(low, high.max(low))
@@ -180,7 +177,7 @@ fn curves(s: &mut Section, points: &[Point], fit: &Fit) {
     );
 }
 
-/// The console lines that set the parameters of the file `text`.
+/// Console lines that set the parameters in `text`.
 pub fn console_lines(text: &str) -> String {
     let named = text.lines().skip_while(|l| *l != "[params]").skip(1);
     let mut lines: String = named
@@ -191,10 +188,10 @@ pub fn console_lines(text: &str) -> String {
     lines
 }
 
-/// The parameter file: a scenario with this arm as `[vehicle]` and the same for the stack as `[params]`.
+/// Parameter file: a scenario with this arm in `[vehicle]` and `[params]`.
 ///
 /// # Errors
-/// One line: which number the stack cannot take, and what it can.
+/// One line: a number outside the stack's range, and the range.
 pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, String> {
     let rho = infill(points);
     let (a, b) = fit.at(rho);
@@ -213,7 +210,7 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
         ));
     }
     in_range(points, fit)?;
-    // A single infill's arm does not depend on the infill, which is clamped to the stack's range.
+    // One infill's arm is independent of the infill, which is clamped to the stack's range.
     let [a1, a2, b1, b2] = fit.coefficients;
     let rho = rho.clamp(4.0, 10.0);
     let text = format!(
@@ -228,7 +225,6 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
         fit.residual,
         fit.exponent.clamp(1.0, 2.5)
     );
-    // The file must be readable before it is written.
     Scenario::parse(&text, "arm.toml", &Default::default()).map_err(|e| {
         let hint = unit_hint(points);
         format!("the fitted arm is out of range{hint}; as arm.toml, which is not written: {e}")
@@ -236,14 +232,12 @@ pub fn parameters(points: &[Point], fit: &Fit, source: &str) -> Result<String, S
     Ok(text)
 }
 
-/// Hint for thrusts that end early; otherwise empty.
 fn unit_hint(points: &[Point]) -> String {
     reach(points).map_or_else(String::new, |(most, _)| {
         format!(": thrust_n ends at {most:.2} N, as thrusts in kgf do (1 kgf is 9.81 N)")
     })
 }
 
-/// Refuses coefficients outside the stack's range, named as in the file.
 fn in_range(points: &[Point], fit: &Fit) -> Result<(), String> {
     let one = fit.coefficients[1] == 0.0 && fit.coefficients[3] == 0.0;
     let names = if one {

@@ -1,4 +1,4 @@
-//! Shared by the flown sections: vehicle, gusts, figures of a flight.
+//! Shared by the flown sections.
 
 use crate::study::rig::{Flown, Moment, rms};
 use sophie_control::wrench::Configuration;
@@ -7,12 +7,12 @@ use sophie_sim::scenario::Scenario;
 
 use super::model::{Cell, num};
 
-/// Gusts of the comparisons: RMS force (N) and moment (N·m) per axis.
+/// Gusts: RMS force (N) and moment (N·m) per axis.
 pub const GUSTS: (f64, f64) = (0.35, 0.015);
 /// The paper's two senses of rotation.
 pub const BOTH: [Configuration; 2] = [Configuration::A, Configuration::B];
 
-/// The vehicle in still air; infill (%) and gain K are in the stack's parameters.
+/// In still air; infill (%) and gain K also in the stack's parameters.
 pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Variant) -> Scenario {
     let mut s = Scenario::default_mission();
     (s.vehicle.gain_k, s.vehicle.infill, s.vehicle.configuration) = (gain_k, infill, configuration);
@@ -28,7 +28,7 @@ pub fn in_gusts(mut s: Scenario) -> Scenario {
     s
 }
 
-/// RMS of target less truth on an axis (0 roll, 1 pitch, 2 yaw), degrees; `None` if lost.
+/// RMS of target less truth about an axis (0 roll, 1 pitch, 2 yaw), degrees; `None` if lost.
 pub fn error(flown: &Flown, axis: usize) -> Option<f64> {
     let of = |m: &Moment| {
         let error = m.attitude[axis] - m.target[axis];
@@ -37,7 +37,7 @@ pub fn error(flown: &Flown, axis: usize) -> Option<f64> {
     flown.lost.is_none().then(|| rms(&flown.moments, of).to_degrees())
 }
 
-/// Range of the thrust (N) asked of rotor 1.
+/// Range of rotor 1's asked thrust (N).
 pub fn swing(flown: &Flown) -> Option<f64> {
     let asked = flown.moments.iter().map(|m| m.asked[0]);
     let (low, high) = asked.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
@@ -51,7 +51,7 @@ pub fn or_lost(value: Option<f64>, digits: usize) -> Cell {
     value.map_or_else(|| Cell::from("lost"), |v| num(v, digits))
 }
 
-/// Time of the loss in words, else a dash.
+/// Time of the loss, or a dash.
 pub fn lost_when(flown: &Flown) -> Cell {
     match flown.lost {
         None => Cell::from("–"),
@@ -79,12 +79,12 @@ pub fn curve(flown: &Flown, every: usize, value: impl Fn(&Moment) -> f64) -> Vec
         .collect()
 }
 
-/// Mean tilt of the left less the right arms, rad.
+/// Mean tilt, left less right arms, rad.
 pub fn delta_alpha(m: &Moment) -> f64 {
     0.5 * (m.tilt[0] + m.tilt[1] - m.tilt[2] - m.tilt[3])
 }
 
-/// Mean thrust of a left less a right rotor, N.
+/// Mean thrust, left less right rotor, N.
 pub fn delta_thrust(m: &Moment) -> f64 {
     0.5 * (m.thrust[0] + m.thrust[1] - m.thrust[2] - m.thrust[3])
 }

@@ -1,4 +1,4 @@
-//! Table V's inspection times: how long a servo battery holds the steady force on a pipe.
+//! Table V's inspection times: how long a servo battery holds a pipe.
 
 use sophie_report::units::kgcm;
 use sophie_sim::parallel;
@@ -10,15 +10,14 @@ use super::clamp::{closing_thrust, mean_closing};
 use super::model::{Axis, Chart, Class, Comparison, Look, Series, Table, num};
 use super::printed::{Endurance, Printed};
 
-/// Pipe of the inspection times, m.
+/// m.
 const PIPE: f64 = 0.30;
 
-/// Current of an MG996R at a torque (kgcm), A.
 fn drawn(torque: f64) -> f64 {
     MG996R.at(torque / kgcm(1.0))
 }
 
-/// Current per servo of four that empties the servo battery in `minutes`, A.
+/// Current per servo of four that empties the battery in `minutes`, A.
 pub fn current(p: &Printed, minutes: f64) -> f64 {
     p.text.servo_battery_mah * 1e-3 / (minutes / 60.0) / 4.0
 }
@@ -29,14 +28,13 @@ pub struct Inspection<'a> {
     rows: Vec<Held<'a>>,
 }
 
-/// A row of Table V, and the holding current at its infill.
 struct Held<'a> {
     row: &'a Endurance,
     /// Steady force, kgcm; NaN if the arms do not close.
     force: f64,
-    /// Servo current that holds it, A.
+    /// Servo current for it, A.
     amps: f64,
-    /// Servo current implied by the printed time, A.
+    /// Implied by the printed time, A.
     meant: f64,
 }
 
@@ -61,7 +59,6 @@ impl<'a> Inspection<'a> {
         }
     }
 
-    /// Time until this many servos empty their battery, min.
     fn minutes(&self, held: &Held<'_>, arms: f64) -> f64 {
         60.0 * (self.printed.text.servo_battery_mah * 1e-3) / (arms * held.amps)
     }

@@ -5,7 +5,6 @@ use serde_json::{Value, json};
 use super::model::{Axis, Block, Cell, Chart, Comparison, Section};
 use sophie_report::summary::tidy;
 
-/// Most points of a curve.
 const POINTS: usize = 300;
 
 /// The sections as JSON text, newline-terminated.
@@ -14,7 +13,7 @@ pub fn json(sections: &[Section]) -> String {
         "version": env!("CARGO_PKG_VERSION"),
         "sections": sections.iter().map(section).collect::<Vec<_>>(),
     });
-    // Numbers, text and string keys only: serialisation cannot fail.
+    // Numbers, text and string keys only: cannot fail.
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 

@@ -2,7 +2,7 @@
 
 use super::bench_data::Point;
 
-/// Least squares of `design` x = tilts by normal equations with scaled columns; x and (XᵀX)⁻¹.
+/// Solves `design` x = tilts by normal equations with scaled columns; x and (XᵀX)⁻¹.
 pub fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let n = design.first()?.len();
     let scale: Vec<f64> = (0..n)
@@ -11,7 +11,7 @@ pub fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec
     if scale.iter().any(|s| !s.is_normal()) {
         return None;
     }
-    // [XᵀX | I | Xᵀy] of the scaled columns, reduced to [I | inverse | solution].
+    // [XᵀX | I | Xᵀy] of scaled columns, reduced to [I | inverse | solution].
     let mut m: Vec<Vec<f64>> = (0..n)
         .map(|i| {
             let dot = |j: usize| design.iter().map(|r| r[i] * r[j]).sum::<f64>() / (scale[i] * scale[j]);
@@ -44,7 +44,7 @@ pub fn solve(design: &[Vec<f64>], points: &[Point]) -> Option<(Vec<f64>, Vec<Vec
     Some((solution, inverse))
 }
 
-/// Student's 97.5 % quantile, Cornish-Fisher expansion: within 1 % at 4 degrees of freedom.
+/// Student's 97.5 % quantile by Cornish-Fisher: within 1 % at 4 degrees of freedom.
 pub fn quantile(freedom: usize) -> f64 {
     let (z, n) = (1.959_964_f64, freedom as f64);
     let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));

@@ -1,6 +1,5 @@
-//! The paper's results: every table and figure, computed and flown with this stack beside the printed numbers.
-//!
-//! One file per section. Numbers come from running code; the paper's are in `printed.toml`, with table and row.
+//! Every table and figure of the paper, computed and flown beside the printed numbers (`printed.toml`). One file per
+//! section.
 
 mod arm;
 pub mod bench_data;
@@ -30,7 +29,6 @@ mod translation;
 use self::model::Section;
 use self::printed::Printed;
 
-/// A section's function.
 type Work = fn(&Printed) -> Section;
 
 /// The sections, in the order of the paper.

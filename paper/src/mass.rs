@@ -1,4 +1,4 @@
-//! Table II: the mass budget and the rigid-body numbers derived from it.
+//! Table II: mass budget and derived rigid-body numbers.
 
 use sophie_control::params::Params;
 use sophie_sim::plant::GRAVITY;
@@ -7,14 +7,14 @@ use sophie_sim::plant::arm::TIP_MASS;
 use super::model::{Class, Comparison, Section, Table, num};
 use super::printed::Printed;
 
-/// Positions of the masses, m: platform with battery and electronics as a box (length, width, height), sideways place
-/// of servos and reels (assumed from the layout; the paper gives no dimension).
+/// Places of the masses, m (assumed; the paper gives no dimension): platform with battery and electronics as a box
+/// (length, width, height), servos and reels sideways.
 const BOX: [f64; 3] = [0.40, 0.12, 0.06];
 const BATTERY_LENGTH: f64 = 0.15;
 const SERVO_SIDE: f64 = 0.05;
 
-/// Moments of inertia: roll, pitch, yaw, kg·m², from Table II and a layout: arms as rods from the centre line to the
-/// rotor, propulsion as points at their ends.
+/// Roll, pitch, yaw, kg·m², from Table II: arms as rods from the centre line to the rotor, propulsion as points at
+/// their ends.
 pub fn inertia(p: &Printed, d: f64, b: f64) -> [f64; 3] {
     let m = |name: &str| {
         let row = p.table_2.iter().find(|r| r.equipment == name);
@@ -72,12 +72,11 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// Thrust per motor in Table II, N.
 fn nominal_thrust(p: &Printed) -> f64 {
     p.text.motor_thrust_g * 1e-3 * GRAVITY
 }
 
-/// Tip mass by Table II, kg: the propulsion and a third of the arm.
+/// kg: propulsion and a third of the arm.
 fn tip_mass(p: &Printed) -> f64 {
     let arm_rod = p.table_2.first().map_or(0.0, |r| r.mass_g * 1e-3) / 3.0;
     let propulsion = p.table_2.iter().find(|r| r.equipment == "Propulsion");

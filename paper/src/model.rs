@@ -1,18 +1,18 @@
-//! Parts of a section of the results: text, tables, comparisons with the printed numbers, charts.
+//! Parts of a section: text, tables, comparisons with printed numbers, charts.
 
-/// Standing of a number beside a printed one.
+/// Relation of a computed number to the printed one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// No parameter was set with this number in view.
+    /// No parameter was set for this number.
     Prediction,
-    /// A parameter was set to give this number.
+    /// A parameter was set for this number.
     Calibrated,
-    /// The paper contradicts itself or physics; the reason is given.
+    /// The paper contradicts itself or physics, for the given reason.
     Inconsistent,
 }
 
 impl Class {
-    /// Its word.
+    /// Name.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Prediction => "prediction",
@@ -22,7 +22,7 @@ impl Class {
     }
 }
 
-/// A printed number and the one computed here.
+/// A printed and a computed number.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// Quantity.
@@ -35,7 +35,7 @@ pub struct Comparison {
     pub here: f64,
     /// Standing.
     pub class: Class,
-    /// Reason, one line.
+    /// One line.
     pub why: String,
 }
 
@@ -51,7 +51,7 @@ impl Comparison {
 pub enum Cell {
     /// Words.
     Text(String),
-    /// A number and its decimals; a dash if not finite.
+    /// Number and decimals; a dash if not finite.
     Number(f64, usize),
 }
 
@@ -138,7 +138,7 @@ pub enum Look {
 /// One series of a chart.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Name in the legend; may be empty.
+    /// In the legend; may be empty.
     pub name: String,
     /// Colour, 0 to 7.
     pub colour: usize,
@@ -182,12 +182,12 @@ pub struct Axis {
     pub include: Vec<f64>,
     /// Fixed limits, whatever the data.
     pub limits: Option<(f64, f64)>,
-    /// Names at 0, 1, 2, …, in place of numbers.
+    /// Names at 0, 1, 2, … instead of numbers.
     pub names: Vec<String>,
 }
 
 impl Axis {
-    /// An axis scaled to its data.
+    /// Scaled to its data.
     pub fn new(title: &str) -> Self {
         Self {
             title: title.to_owned(),
@@ -195,7 +195,7 @@ impl Axis {
         }
     }
 
-    /// An axis with fixed limits.
+    /// With fixed limits.
     pub fn between(title: &str, low: f64, high: f64) -> Self {
         Self {
             title: title.to_owned(),
@@ -204,7 +204,7 @@ impl Axis {
         }
     }
 
-    /// An axis of named cells.
+    /// Of named cells.
     pub fn of_cells(title: &str, names: Vec<String>) -> Self {
         Self {
             names: names.clone(),
@@ -241,7 +241,7 @@ pub struct Chart {
 /// Charts side by side.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// What is shown, and which part is the paper's.
+    /// What is shown, and which part is printed.
     pub caption: String,
     /// The drawings.
     pub charts: Vec<Chart>,
@@ -263,11 +263,11 @@ pub enum Block {
 /// A section of the results.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// Short name for links and JSON.
+    /// For links and JSON.
     pub id: &'static str,
     /// Heading.
     pub title: &'static str,
-    /// Result in a sentence or two.
+    /// In a sentence or two.
     pub finding: String,
     /// Parts.
     pub blocks: Vec<Block>,

@@ -4,7 +4,7 @@ use super::chart;
 use super::model::{Block, Cell, Class, Comparison, Section, Table};
 use sophie_report::svg::escape;
 
-/// The style of all reports, and this page's additions.
+/// Style of all reports, and additions.
 const STYLE: [&str; 2] = [sophie_report::page::STYLE, include_str!("style.css")];
 
 const CLASSES: [(Class, &str); 3] = [

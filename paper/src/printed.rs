@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// With the table and row of every number.
+/// Has table and row of every number.
 const FILE: &str = include_str!("printed.toml");
 
 /// All printed numbers.
@@ -51,7 +51,7 @@ pub struct MixerMatrix {
     pub algorithm_1_row: [f64; 4],
 }
 
-/// Table I: coefficients of Eq. 1, °/N, °/(N %), °/N², °/(N² %).
+/// Table I: °/N, °/(N %), °/N², °/(N² %).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Table1 {

@@ -1,4 +1,4 @@
-//! Section IV-A, Figs. 4 and 5: rotational stability derivatives, and where yaw authority reverses.
+//! Section IV-A, Figs. 4 and 5: rotational stability derivatives, and the reversal of yaw authority.
 
 use crate::study::allocation::Studied;
 use crate::study::perturbation::Trial;
@@ -15,12 +15,12 @@ use super::printed::Printed;
 use super::statics::{AtThrust, root};
 use sophie_sim::parallel;
 
-/// Step of the perturbation, N.
+/// Perturbation, N.
 const STEP: f64 = 0.05;
-/// Perturbation of Fig. 5: moment (N·m) and duration (s).
+/// Fig. 5: moment (N·m) and duration (s).
 const KICK: (f64, f64) = (0.02, 0.5);
 
-/// C_φ, C_θ, C_ψ of the plant: moment per pattern with following arms against rigid level ones.
+/// C_φ, C_θ, C_ψ of the plant: moment per pattern, following arms against rigid level ones.
 pub fn of_the_plant(infill: f64, gain_k: f64, chi: f64, thrust: f64) -> [f64; 3] {
     let slope = |trial: Trial, pattern: [f32; 4], axis: usize| {
         let at = |step: f64| trial.wrench(pattern.map(|p| thrust + step * f64::from(p)))[axis];
@@ -70,7 +70,7 @@ struct Hovering {
     infill: f64,
 }
 
-/// Derivatives in hover; returns the largest relative difference of closed form and plant about yaw.
+/// Returns the largest relative difference of closed form and plant about yaw.
 fn in_hover(s: &mut Section, k: f64, hover: f64) -> f64 {
     let mut t = Table::new(
         "Derivatives in hover: closed form and plant perturbed by 0.05 N",
@@ -175,7 +175,6 @@ fn over_thrust(c: Configuration, k: f64, hover: f64) -> Chart {
     }
 }
 
-/// Where yaw authority vanishes, over infill and thrust.
 fn reversal_map(s: &mut Section, hover: f64, k: f64) {
     s.figure(
         "Yaw authority in units of the stiff frame's, once the arms have followed; red: a yaw command turns the vehicle the \
@@ -188,7 +187,6 @@ fn reversal_map(s: &mut Section, hover: f64, k: f64) {
     );
 }
 
-/// Yaw authority of a configuration, and the thrusts of its reversal.
 fn authority(c: Configuration, hover: f64, k: f64) -> Chart {
     let chi = f64::from(c.chi());
     let rhos: Vec<f64> = (0..=12).map(|i| 4.0 + 0.5 * f64::from(i)).collect();
@@ -241,7 +239,7 @@ struct Perturbed {
     studied: Option<Studied>,
 }
 
-/// B and A with the rigid mixer over the gain, and the mixer flown at the stack's gain `k`.
+/// B and A with the rigid mixer over gain, and the flown mixer at the gain `k`.
 fn perturbed(k: f64) -> [Perturbed; 7] {
     let rigid = |name, configuration, gain_k| Perturbed {
         name,

@@ -6,7 +6,7 @@ use sophie_report::terminal::table::{Align, Table};
 
 const WIDTH: usize = 110;
 
-/// The lines of a section: finding, comparisons and tables; figures are on the page.
+/// Finding, comparisons and tables of a section; figures are on the page.
 pub fn lines(number: usize, s: &Section) -> Vec<String> {
     let mut out = vec![String::new(), format!("{number}. {}", s.title)];
     out.extend(wrapped(&s.finding));
@@ -20,7 +20,7 @@ pub fn lines(number: usize, s: &Section) -> Vec<String> {
     out
 }
 
-/// Printed numbers beside ours, then the reasons of contradictions, each once.
+/// Printed numbers beside computed ones, then the reasons of contradictions, each once.
 fn comparisons(caption: &str, rows: &[Comparison]) -> Vec<String> {
     let mut t = Table::new(&[
         (caption, Align::Left),
@@ -54,7 +54,7 @@ fn comparisons(caption: &str, rows: &[Comparison]) -> Vec<String> {
     out
 }
 
-/// A table under its caption; columns of numbers are right-aligned.
+/// Columns of numbers are right-aligned.
 fn table_lines(table: &model::Table) -> Vec<String> {
     let align = |i: usize| {
         let words = table.rows.iter().any(|r| matches!(r.get(i), Some(Cell::Text(_))));

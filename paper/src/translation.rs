@@ -1,4 +1,4 @@
-//! Eqs. 5 to 8: translational dynamics as printed and as derived, against a flight.
+//! Eqs. 5 to 8: translational dynamics, printed and derived, against a flight.
 
 use std::f32::consts::TAU;
 
@@ -14,7 +14,7 @@ use super::printed::Printed;
 use super::roll::sideways;
 use sophie_sim::parallel;
 
-/// Linear air drag of the plant, N·s/m; removed so that only the equations differ.
+/// Of the plant, N·s/m; subtracted, so that only the equations differ.
 const DRAG: f64 = 0.3;
 
 /// Thrust along the body's -z, N.
@@ -22,12 +22,12 @@ fn lift(m: &Moment) -> f64 {
     m.thrust.iter().zip(m.tilt).map(|(t, a)| t * a.cos()).sum()
 }
 
-/// The printed f_x, sign included: -α1T1 - α2T2 + α3T3 + α4T4, N.
+/// Printed f_x, sign included: -α1T1 - α2T2 + α3T3 + α4T4, N.
 fn printed_f_x(m: &Moment) -> f64 {
     -m.tilt[0] * m.thrust[0] - m.tilt[1] * m.thrust[1] + m.tilt[2] * m.thrust[2] + m.tilt[3] * m.thrust[3]
 }
 
-/// Eqs. 5 to 7 as printed: force along x (east), y (north), z (down), N; T is the sum of the thrusts.
+/// Printed Eqs. 5 to 7: force along x (east), y (north), z (down), N; T is the sum of the thrusts.
 fn printed(m: &Moment) -> DVec3 {
     let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
     let (t, f) = (m.thrust.iter().sum::<f64>(), printed_f_x(m));
@@ -38,7 +38,7 @@ fn printed(m: &Moment) -> DVec3 {
     )
 }
 
-/// As derived: sum of the thrusts along -z, their sideways part along body y, gravity.
+/// Thrusts along -z, their sideways part along body y, gravity.
 fn derived(m: &Moment, mass: f64) -> DVec3 {
     let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
     let (t, f) = (lift(m), sideways(m));
@@ -49,7 +49,7 @@ fn derived(m: &Moment, mass: f64) -> DVec3 {
     )
 }
 
-/// The rigid vehicle: thrust alone.
+/// Thrust alone.
 fn rigid(m: &Moment, mass: f64) -> DVec3 {
     let [(sp, cp), (st, ct), (ss, cs)] = m.attitude.map(f64::sin_cos);
     let t = m.thrust.iter().sum::<f64>();
@@ -60,7 +60,7 @@ fn rigid(m: &Moment, mass: f64) -> DVec3 {
     )
 }
 
-/// Reference for the equations: mass times acceleration less drag, N, over a centred window of 10 ms.
+/// Mass times acceleration less drag, N, over a centred window of 10 ms.
 fn truth(flown: &Flown, mass: f64) -> Vec<(Moment, DVec3)> {
     let m = &flown.moments;
     (5..m.len().saturating_sub(5))
@@ -94,9 +94,7 @@ fn manoeuvre(coupled: bool, heading: f64, angle: f64) -> Flown {
 
 struct Rolled {
     coupled: bool,
-    /// Heading, rad.
     heading: f64,
-    /// Every moment with the reference force.
     truth: Vec<(Moment, DVec3)>,
 }
 
@@ -140,14 +138,14 @@ pub fn section(p: &Printed) -> Section {
 }
 
 impl Rolled {
-    /// RMS error (N) of an equation on an axis.
+    /// N.
     fn rms(&self, axis: usize, equation: impl Fn(&Moment) -> DVec3) -> f64 {
         let square = |(m, force): &(Moment, DVec3)| (equation(m)[axis] - force[axis]).powi(2);
         let sum = self.truth.iter().map(square).sum::<f64>();
         (sum / self.truth.len().max(1) as f64).sqrt()
     }
 
-    /// A value every 5 ms from the first moment on.
+    /// A value every 5 ms.
     fn curve(&self, value: impl Fn(&Moment, &DVec3) -> f64) -> Vec<(f64, f64)> {
         let start = self.truth.first().map_or(0.0, |(m, _)| m.t);
         let shown = self.truth.iter().step_by(5);

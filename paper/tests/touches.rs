@@ -4,9 +4,9 @@ use sophie_control::mode::Mode;
 use sophie_paper::study::touch::{End, Touch, Touched, fly};
 use sophie_sim::parallel;
 
-/// Touches flown; docs/results.md has a longer run.
+/// docs/results.md has a longer run.
 const COUNT: u64 = 1000;
-/// Deepest fall of an escape below the touch, m.
+/// Deepest fall of an escape, m.
 const DROP_MAX: f64 = 0.5;
 
 #[test]
@@ -26,7 +26,6 @@ fn no_touch_ends_on_the_ground() {
     assert!(of(End::Released) > 20, "{} released", of(End::Released));
 }
 
-/// A level touch on the crown.
 fn central(seed: u64) -> Touch {
     Touch {
         offset: 0.01,

@@ -1,6 +1,5 @@
-//! Simulated seconds per wall second, whole stack and plant on one core.
-//!
-//! `cargo bench -p sophie-sim` prints median and spread of several default missions.
+//! Simulated seconds per wall second, stack and plant on one core: median and spread of several default missions
+//! (`cargo bench -p sophie-sim`).
 
 #![allow(clippy::print_stdout, reason = "the figure is what it is for")]
 
@@ -8,7 +7,6 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::Scenario;
 
-/// Missions flown.
 const FLIGHTS: u64 = 9;
 
 fn main() {

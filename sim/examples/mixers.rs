@@ -1,6 +1,5 @@
-//! Tracking of each allocation: hover in gusts with arms matched and mismatched over the yaw gain, and whole missions.
-//!
-//! `cargo run --release -p sophie-sim --example mixers` prints the tables of docs/results.md.
+//! Tracking of each allocation in docs/results.md: hover in gusts with matched and mismatched arms over the yaw gain,
+//! and whole missions (`cargo run --release -p sophie-sim --example mixers`).
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
@@ -13,7 +12,7 @@ use sophie_sim::record::{Sample, Silent};
 
 const SEEDS: u64 = 10;
 
-/// Hover of 40 s in gusts of 0.35 N and 0.015 N·m RMS, yaw gain `gain` (1/s).
+/// Hover of 40 s in gusts of 0.35 N and 0.015 N·m RMS; yaw gain in 1/s.
 fn hover(configuration: Configuration, gain_k: f64, mixer: Variant, gain: f32, mismatched: bool) -> String {
     let mut s = vehicle(configuration, gain_k, 6.9, mixer);
     s.world.gust_force = 0.35;
@@ -32,7 +31,6 @@ fn hover(configuration: Configuration, gain_k: f64, mixer: Variant, gain: f32, m
     }
 }
 
-/// RMS of setpoint less truth on an axis in free flight, degrees.
 fn rms(samples: &[&Sample], axis: usize) -> f64 {
     let square = |s: &&Sample| {
         let error = s.attitude[axis] - s.attitude_setpoint[axis];
@@ -43,7 +41,7 @@ fn rms(samples: &[&Sample], axis: usize) -> f64 {
         .to_degrees()
 }
 
-/// The default mission over the seeds: count accomplished, and tracking in free flight.
+/// The default mission over the seeds: number accomplished, tracking in free flight.
 fn missions(configuration: Configuration, gain_k: f64, mixer: Variant) {
     let mut s = vehicle(configuration, gain_k, 6.9, mixer);
     let (mut accomplished, mut tracking, mut reason) = (0, [0.0; 3], String::new());

@@ -1,7 +1,7 @@
-//! The default mission over many seeds: how many are accomplished, and why the others end.
+//! The default mission over many seeds: number accomplished, and reasons of the others (docs/results.md).
 //!
-//! `cargo run --release -p sophie-sim --example seeds -- FIRST COUNT [RHO [GUST [ARMS]]]` gives the counts of
-//! docs/results.md: infill in %, gusts in N RMS, 4 arms or 2.
+//! `cargo run --release -p sophie-sim --example seeds -- FIRST COUNT [RHO [GUST [ARMS]]]`: infill in %, gusts in N RMS,
+//! 4 arms or 2.
 
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 

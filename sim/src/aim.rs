@@ -2,7 +2,7 @@
 
 use sophie_control::attitude::Target;
 
-/// Wanted roll (±π) and pitch (±π/2), and wanted heading less the present one, rad.
+/// Target roll (±π), pitch (±π/2), and heading less the present one, rad.
 #[must_use]
 pub fn angles(target: Target) -> [f64; 3] {
     let [x, y, z] = target.down.to_array().map(f64::from);

@@ -1,5 +1,5 @@
-//! One arm closes on a pipe, as on the paper's test bench: the body is fixed, arm, tendon, servo, skin and pressure
-//! sensor are the plant's, gripper and tendon drive are the flight stack's, each at its rate.
+//! One arm closes on a pipe, as on the paper's test bench: body fixed, gripper and tendon drive the flight stack's, the
+//! rest the plant's.
 
 use std::collections::VecDeque;
 
@@ -19,25 +19,25 @@ use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
 use crate::sensors::fsr::FsrSensor;
 
-/// Time at rest before the closing, s.
+/// Before closing, s.
 const REST: f64 = 1.0;
-/// Fore-aft distance of the belly pads from the pipe's crown line, m, and how deep they sink: a quarter of 10 N each.
+/// Fore-aft distance of the belly pads from the pipe's crown line, and their indentation under a quarter of 10 N each,
+/// m.
 const PADS: (f64, f64) = (0.03, 0.6e-3);
-/// RMS of the arm sensor's noise, rad.
+/// RMS of the arm sensor, rad.
 const TILT_NOISE: f64 = 0.004;
-/// Time constant of the rotor of a [`Closing`], s, and the friction of its pipe.
+/// Of a [`Closing`]: rotor, s, and pipe.
 const ROTOR_TAU: f64 = 0.05;
 const FRICTION: f64 = 0.6;
-/// Time over which the rotor of an arm that holds is stopped, s, as on a perch.
+/// Stop of a holding arm's rotor, s, as on a perch.
 const SPOOL_TIME: f64 = 1.5;
-/// Time for which an arm that was tried holds with its rotor stopped, s, and runs of the gripper in half a second.
+/// Holding time after the rotor's stop, s, and gripper runs in half a second.
 const AFTER: f64 = 0.5;
 const STEADY_SAMPLES: usize = 50;
-/// Steps of the plant between two samples of the pressure sensor, 500 Hz.
+/// Plant steps per sample, 500 Hz.
 const FSR_STEPS: u64 = 4;
-/// Steps of the plant between two runs of the gripper, 100 Hz.
+/// Plant steps per run, 100 Hz.
 const GRIPPER_STEPS: u64 = 20;
-/// The body, fixed.
 const BODY: Pose = Pose {
     position: DVec3::ZERO,
     attitude: DQuat::IDENTITY,
@@ -50,41 +50,41 @@ const BODY: Pose = Pose {
 pub struct Closing {
     /// Infill of the arm, %.
     pub infill: f64,
-    /// Outer diameter of the pipe, m.
+    /// Outer, m.
     pub diameter: f64,
-    /// The servo fitted; the stack knows it.
+    /// The servo fitted; the stack's parameters match it.
     pub servo: ServoSpec,
-    /// Thrust of the arm's rotor while it closes, N.
+    /// Of the arm's rotor while it closes, N.
     pub thrust: f64,
-    /// Time from the start of the closing, s.
+    /// From the start of closing, s.
     pub seconds: f64,
     /// Seed of the sensors' noise.
     pub seed: u64,
 }
 
-/// An arm before a pipe, with its rotor, servo and the parameters that the stack has of it.
+/// An arm before a pipe.
 #[derive(Clone, Debug)]
 pub struct BenchArm {
-    /// Which arm, 0 to 3.
+    /// Index, 0 to 3.
     pub arm: usize,
     /// The arm as built.
     pub spec: ArmSpec,
     /// The servo fitted.
     pub servo: ServoSpec,
-    /// Time constant of the rotor, s.
+    /// s.
     pub rotor_tau: f64,
-    /// Parameters of the stack, which may differ from the arm that is there.
+    /// May differ from the true arm.
     pub params: Params,
-    /// Outer diameter of the pipe, m.
+    /// Outer, m.
     pub diameter: f64,
     /// Friction of the pipe.
     pub friction: f64,
-    /// Thrust of the arm's rotor while it closes, N.
+    /// Of the arm's rotor while it closes, N.
     pub thrust: f64,
 }
 
 impl BenchArm {
-    /// The other arm closes as this one does: their prints, servos and sensors are alike.
+    /// Whether arm, servo, reel and sensor scale are equal.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         let reel = |arm: &Self| Reel::from_params(&arm.params, arm.arm);
@@ -118,19 +118,18 @@ impl From<&Closing> for BenchArm {
     }
 }
 
-/// What the gripper made of an arm before a pipe.
+/// Result of [`try_grip`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tried {
-    /// State and fault in the end.
+    /// Final state and fault.
     pub grip: ArmGrip,
-    /// Largest force that it asked of the tendon while the arm held, N; of one that never did, in all.
+    /// Largest force asked of the tendon while holding, N; over the whole run if it never held.
     pub asked: f64,
-    /// Mean torque of the servo over the last half second, N·m.
+    /// Mean servo torque over the last half second, N·m.
     pub steady: f64,
 }
 
-/// Closes `arm` for at most `longest` s: until it has held with its rotor stopped for `AFTER`, or the gripper has given
-/// it up.
+/// Closes `arm` until it has held with its rotor stopped for `AFTER`, the gripper gives up, or `longest` s have passed.
 #[must_use]
 pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
     let mut bench = ArmBench::new(arm, 1);
@@ -142,7 +141,7 @@ pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
             continue;
         }
         let holding = bench.grip.state == ArmState::Holding;
-        // What the proof stood on, once there is one: on the way there the force may be more for a moment.
+        // The force that holds counts: during closing it may be briefly larger.
         asked = if holding && !held { 0.0 } else { asked };
         held |= holding;
         asked = asked.max(f64::from(bench.grip.force));
@@ -169,24 +168,24 @@ pub fn try_grip(arm: &BenchArm, longest: f64) -> Tried {
 /// A sample of the closing.
 #[derive(Clone, Copy, Debug)]
 pub struct BenchSample {
-    /// Time since the closing began, s.
+    /// From the start of closing, s.
     pub t: f64,
-    /// True pressure at the sensor, Pa.
+    /// True, at the sensor, Pa.
     pub pressure: f64,
-    /// True torque of the servo, N·m.
+    /// True, of the servo, N·m.
     pub torque: f64,
     /// Tilt of the arm, rad.
     pub tilt: f64,
 }
 
-/// What came of it.
+/// Result of [`close`].
 #[derive(Clone, Debug)]
 pub struct Closed {
     /// Samples every 10 ms.
     pub samples: Vec<BenchSample>,
-    /// Time to the pressure within its tolerance for good, s; none when the grip was not proven.
+    /// Until the pressure stays within tolerance, s; `None` without proof of grip.
     pub closure: Option<f64>,
-    /// Mean torque over the last second, N·m, with the rotor stopped.
+    /// Mean torque over the last second, rotor stopped, N·m.
     pub steady: f64,
     /// Largest torque, N·m.
     pub peak: f64,
@@ -194,7 +193,7 @@ pub struct Closed {
     pub state: ArmState,
 }
 
-/// Closes one arm. Once it holds, its rotor is stopped within 1.5 s, as on a perch.
+/// Closes one arm; once it holds, its rotor stops within 1.5 s.
 #[must_use]
 pub fn close(what: &Closing) -> Closed {
     let mut bench = ArmBench::new(&what.into(), what.seed);
@@ -229,7 +228,6 @@ pub fn close(what: &Closing) -> Closed {
     out
 }
 
-/// The arm on its pipe, with what flies of the stack.
 struct ArmBench {
     rng: Pcg64Mcg,
     pipe: Pipe,
@@ -237,10 +235,10 @@ struct ArmBench {
     tendon: Tendon,
     skin: ArmSkin,
     sensor: FsrSensor,
-    /// Thrust, N, and the one that it follows.
+    /// N.
     thrust: f64,
     thrust_asked: f64,
-    /// Tilts on their way through the arm sensor, rad.
+    /// Tilts delayed by the arm sensor, rad.
     tilts: VecDeque<f64>,
 
     config: Config,
@@ -249,11 +247,9 @@ struct ArmBench {
     fsr: Fsr,
     gripper: ArmGripper,
     drive: TendonDrive,
-    /// Time constant of the rotor, s.
     rotor_tau: f64,
-    /// Steps of the plant between two orders to the servo.
     drive_steps: u64,
-    /// What the stack has last measured, decided and ordered.
+    /// Last outputs of the stack.
     pressure: Pressure,
     tilt: Option<f32>,
     grip: ArmGrip,
@@ -295,8 +291,7 @@ impl ArmBench {
         }
     }
 
-    /// A step of the plant, the `step`th, and of what is due of the stack; gives the true pressure at the sensor, Pa. The
-    /// arm closes once it has rested; once it holds, its rotor of `thrust` N is stopped.
+    /// Returns the true pressure, Pa. The arm closes after [`REST`]; once it holds, its rotor of `thrust` N stops.
     fn step(&mut self, step: u64, thrust: f64) -> f64 {
         let tilt = self.arm.tilt;
         let pressure = self.move_arm();
@@ -308,7 +303,7 @@ impl ArmBench {
         pressure
     }
 
-    /// Moves rotor, tendon and arm by a step of the plant; gives the true pressure at the sensor, Pa.
+    /// Returns the true pressure, Pa.
     fn move_arm(&mut self) -> f64 {
         let (alpha, rate) = (self.arm.tilt, self.arm.rate);
         self.thrust += (self.thrust_asked - self.thrust) * STEP / self.rotor_tau;
@@ -322,7 +317,7 @@ impl ArmBench {
         load.pressure
     }
 
-    /// Runs the pressure sensor's filter and the gripper where they are due; `pressure` (Pa) and `tilt` (rad) are true.
+    /// Runs filter and gripper when due; `pressure` (Pa) and `tilt` (rad) are true.
     fn run_stack(&mut self, step: u64, close: bool, pressure: f64, tilt: f64) {
         if step.is_multiple_of(FSR_STEPS) {
             let counts = self.sensor.sample(pressure, 0.002, &mut self.rng);
@@ -356,7 +351,6 @@ impl ArmBench {
     }
 }
 
-/// The pipe of `radius` m that the body sits on.
 fn pipe(radius: f64, friction: f64) -> Pipe {
     Pipe {
         north: 0.0,

@@ -1,7 +1,5 @@
-//! The simulated board: the tasks' ports, wired to the plant through its sensors.
-//!
-//! The world steps the plant by a millisecond, then the tasks run; their outputs take effect in the next one. Only
-//! sensor readings reach the tasks.
+//! The simulated board: the tasks' ports, wired to the plant through its sensors. The plant steps by a millisecond,
+//! then the tasks run; their outputs act in the next one.
 
 use std::cell::{Cell, RefCell};
 
@@ -24,11 +22,11 @@ use crate::sensors::arm_imu::{self, ArmImu};
 use crate::sensors::fsr::FsrSensor;
 use crate::sensors::imu::Imu;
 
-/// Bytes buffered by a serial line: half a hardware ring of 512.
+/// Half a hardware ring of 512.
 const LINE_BYTES: usize = 256;
-/// Time of one conversion of all analog inputs, µs.
+/// All analog inputs, µs.
 const CONVERSION_US: u64 = 30;
-/// Time to read one arm's sensor over I2C at 400 kHz, µs.
+/// One sensor over I2C at 400 kHz, µs.
 const ARM_READ_US: u64 = 400;
 
 const STEPS_PER_MS: u32 = (1e-3 / STEP) as u32;
@@ -42,11 +40,11 @@ pub struct Board {
     sensors: RefCell<Sensors>,
     truth: Cell<AnalogTruth>,
     arm_gravity: Cell<PerArm<Vec3>>,
-    /// Sample rate of the inertial sensor, Hz.
+    /// Hz.
     imu_rate: f64,
     /// Memory that outlives a reset.
     pub memory: Cell<[Words; 2]>,
-    /// Accelerometer bias measured on a level bench, m/s²: a parameter of this board.
+    /// Accelerometer bias as measured on a level bench, m/s².
     pub accel_bias: [f32; 3],
 }
 
@@ -69,13 +67,13 @@ struct Sensors {
 }
 
 impl Board {
-    /// A board with the default parameters and errors of its parts drawn from `rng`.
+    /// Default parameters; errors of the parts drawn from `rng`.
     #[must_use]
     pub fn new(rng: &mut Pcg64Mcg) -> Self {
         Self::configured(&Params::default(), rng)
     }
 
-    /// A board with the parameters `params` and errors of its parts drawn from `rng`.
+    /// With `params`; errors of the parts drawn from `rng`.
     #[must_use]
     pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
         let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
@@ -104,7 +102,7 @@ impl Board {
         }
     }
 
-    /// Steps the plant by 1 ms under the last outputs and samples the sensors.
+    /// Steps the plant by 1 ms under the last outputs, and samples.
     pub fn step_world(&self, plant: &mut Plant) {
         let actuators = self.actuators.get();
         let mut sensors = self.sensors.borrow_mut();
@@ -113,7 +111,7 @@ impl Board {
             let (rate, force) = (plant.pose().omega, plant.specific_force());
             plant.step(&actuators);
             let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
-            // A part at 1 kHz samples at the end of every other step; a faster one on the line between two steps.
+            // A sensor at 1 kHz samples at the end of every other step, a faster one also between steps.
             let samples = (self.imu_rate * STEP * f64::from(step + 1)) as u32
                 - (self.imu_rate * STEP * f64::from(step)) as u32;
             for k in 1..=samples {
@@ -123,7 +121,7 @@ impl Board {
                     sensors
                         .imu
                         .sample(rate + rate_step * share, force + force_step * share, &rotors);
-                // The batch holds more than 1 ms of samples.
+                // It holds more than 1 ms of samples.
                 let _ = batch.push(reading);
             }
         }
@@ -146,7 +144,7 @@ impl Board {
         self.imu_ready.signal(batch);
     }
 
-    /// Reset: no motor frame, no servo pulse, empty line buffers. Sensors and memory are unaffected.
+    /// Reset: no motor frame or servo pulse, empty line buffers. Sensors and memory stay.
     pub fn reset(&self) {
         self.actuators.set(Actuators::default());
         self.imu_ready.reset();
@@ -154,7 +152,7 @@ impl Board {
         self.telemetry.clear();
     }
 
-    /// Puts bytes on the receiver's line; excess is lost, as on an unread line.
+    /// Puts bytes on the receiver's line; the excess is lost.
     pub fn receive(&self, bytes: &[u8]) {
         let mut rest = bytes;
         while !rest.is_empty()
@@ -169,7 +167,7 @@ impl Board {
         self.telemetry.try_read(buffer).unwrap_or(0)
     }
 
-    /// Readings held by the inertial sensor that no task has read.
+    /// Unread readings of the inertial sensor.
     #[must_use]
     pub fn imu_batch(&self) -> Vec<ImuReading, IMU_BATCH> {
         let batch = self.imu_ready.try_take();
@@ -186,7 +184,7 @@ impl Board {
     }
 }
 
-/// A port of the simulated board; one type for all ports.
+/// A port; one type for all.
 #[derive(Clone, Copy)]
 pub struct Port(pub &'static Board);
 
@@ -298,6 +296,6 @@ impl ports::Retain for Port {
 }
 
 impl ports::Watchdog for Port {
-    /// No watchdog: tests of the supervisor cover withheld feeds.
+    /// No watchdog: the supervisor's tests cover withheld feeds.
     fn feed(&mut self) {}
 }

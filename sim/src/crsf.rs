@@ -26,7 +26,7 @@ pub fn rc_frame(sticks: &Sticks) -> Frame {
     channel_frame(&sticks.to_channels())
 }
 
-/// The frame of these 11-bit channel counts.
+/// Frame of 11-bit channel counts.
 ///
 /// # Panics
 /// Never: 26 bytes fit.
@@ -130,7 +130,7 @@ mod tests {
             for byte in &bytes[..n] {
                 t.take(&[*byte]);
             }
-            // A broken start may swallow the next frame; the one after is decoded.
+            // A broken start may swallow the next frame.
             t.take(&bytes[..n]);
             t.take(&bytes[..n]);
             assert_eq!((t.mode, t.reason.as_str()), (Some(mode), reason));

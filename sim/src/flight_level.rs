@@ -1,4 +1,4 @@
-//! The flight level alone, without pilot and commander, under given setpoints.
+//! The flight level alone under given setpoints.
 
 use crate::aim;
 use crate::board::{Board, Port};
@@ -14,14 +14,14 @@ use sophie_control::params::Params;
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::{Links, Setpoint};
 
-/// Take-off, not judged, s.
+/// Unjudged take-off, s.
 const SETTLE: f64 = 5.0;
-/// Height of the hover, m.
+/// m.
 const HEIGHT: f64 = 3.0;
-/// Weight held by [`Rig::fly`] and largest thrust it asks for, N.
+/// Held by [`Rig::fly`], and its largest thrust, N.
 const WEIGHT: f64 = 17.7;
 const THRUST_MAX: f64 = 30.0;
-/// Rest before take-off for the gyroscope's calibration, ms.
+/// Rest for the gyroscope's calibration, ms.
 const REST_MS: usize = 4000;
 
 /// Demand at a time, s.
@@ -68,8 +68,7 @@ pub struct Rig {
     ms: u64,
 }
 
-/// The default vehicle with this configuration, gain, infill and allocation; the stack has gain and infill as
-/// parameters.
+/// The stack's parameters match gain and infill.
 pub fn vehicle(configuration: Configuration, gain_k: f64, infill: f64, mixer: Variant) -> Scenario {
     let mut s = Scenario::default_mission();
     s.vehicle.gain_k = gain_k;
@@ -93,7 +92,7 @@ impl Rig {
         })
     }
 
-    /// The same under `allocation`, with the accelerometer's bench-measured bias in the parameters.
+    /// Flies `allocation`; the parameters have the accelerometer's measured bias.
     pub fn calibrated<A: Allocation + 'static>(
         scenario: &Scenario,
         allocation: impl FnOnce(&Params) -> A + 'static,
@@ -118,7 +117,6 @@ impl Rig {
         allocation: impl FnOnce(&Params) -> A + 'static,
     ) -> Self {
         let time = VirtualTime::new();
-        // Leaked: tasks borrow them as `'static`.
         let board: &'static Board = Box::leak(Box::new(board));
         let links: &'static Links = Box::leak(Box::new(Links::new(params)));
         time.spawn(sophie_tasks::imu::run(links, Port(board)));
@@ -147,7 +145,7 @@ impl Rig {
         self.time.run_until(self.ms * 1000);
     }
 
-    /// Calibrates, climbs to 3 m under a simple height hold and follows `wish` for `seconds`.
+    /// Calibrates, climbs to 3 m and follows `wish` for `seconds`.
     ///
     /// # Panics
     /// If the gyroscope is not calibrated after 4 s of rest.
@@ -183,16 +181,16 @@ fn seeded(scenario: &Scenario) -> Pcg64Mcg {
     Pcg64Mcg::new(u128::from(scenario.seed) * 2 + 1)
 }
 
-/// Holds 3 m; the thrust ramps up over the first second.
+/// Holds 3 m; thrust ramps up in the first second.
 pub struct HeightHold {
     weight: f64,
     thrust_max: f64,
-    /// Integral of the height error, m s.
+    /// m s.
     sum: f64,
 }
 
 impl HeightHold {
-    /// For a vehicle of `weight` (N) with at most `thrust_max` (N).
+    /// `weight` and `thrust_max` in N.
     pub fn new(weight: f64, thrust_max: f64) -> Self {
         Self {
             weight,
@@ -201,7 +199,7 @@ impl HeightHold {
         }
     }
 
-    /// Thrust of the next millisecond (N), `t` s after take-off.
+    /// Thrust (N) at `t` s after take-off, every millisecond.
     pub fn thrust(&mut self, pose: &Pose, t: f64) -> f32 {
         let error = (HEIGHT + pose.position.z).clamp(-1.0, 1.0) + pose.velocity.z;
         self.sum = (self.sum + error * 1e-3).clamp(-2.0, 2.0);

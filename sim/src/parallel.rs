@@ -1,10 +1,10 @@
-//! Flights in as many threads as processors, results in the order of the jobs.
+//! Runs jobs in one thread per processor.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// Does `work` on every job; each result depends on its job alone.
+/// Results of `work` in the order of `jobs`.
 pub fn each<J: Sync, R: Send>(jobs: &[J], work: impl Fn(&J) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let results: Vec<Mutex<Option<R>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
@@ -26,7 +26,7 @@ pub fn each<J: Sync, R: Send>(jobs: &[J], work: impl Fn(&J) -> R + Sync) -> Vec<
             });
         }
     });
-    // A panic has ended the scope: here every slot is filled.
+    // After a panic the scope has ended.
     results
         .into_iter()
         .filter_map(|slot| slot.into_inner().ok().flatten())

@@ -1,4 +1,4 @@
-//! Record of a flight for the table, the report and the log file.
+//! Record of a flight for table, report and log file.
 
 use sophie_control::mode::Mode;
 use sophie_control::wrench::PerArm;
@@ -18,15 +18,15 @@ pub struct FlightRecord {
     pub phases: Vec<Phase>,
     /// In order of time.
     pub events: Vec<Event>,
-    /// One entry per chosen arm of each proven grip.
+    /// Chosen arms of proven grips.
     pub grip: Vec<Grip>,
     /// Simulated time, s.
     pub sim_seconds: f64,
-    /// Wall time that the simulation took, s.
+    /// Wall time, s.
     pub wall_seconds: f64,
     /// Missed deadlines, all tasks.
     pub overruns: u32,
-    /// Digest of all samples, bit for bit.
+    /// Of all samples, bit for bit.
     pub digest: u64,
 }
 
@@ -42,7 +42,7 @@ pub struct Outcome {
     pub reason: String,
 }
 
-/// A sample of the truth and the stack's estimates.
+/// True and estimated state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Simulated time, s.
@@ -57,27 +57,27 @@ pub struct Sample {
     pub attitude: [f64; 3],
     /// Estimated roll, pitch, yaw, rad.
     pub attitude_estimate: [f64; 3],
-    /// Roll, pitch, yaw aimed at, rad; NaN if none.
+    /// Target roll, pitch, yaw, rad; NaN if none.
     pub attitude_setpoint: [f64; 3],
     /// True angular rate, rad/s, body.
     pub rate: [f64; 3],
-    /// True tilt of each arm, rad.
+    /// True, rad.
     pub tilt: PerArm<f64>,
-    /// Tilt by the arm's sensor, rad; NaN if none.
+    /// By the arm's sensor, rad; NaN if none.
     pub tilt_measured: PerArm<f64>,
-    /// Tilt by the mixer's model, rad.
+    /// By the mixer's model, rad.
     pub tilt_model: PerArm<f64>,
-    /// True thrust of each rotor, N.
+    /// True, N.
     pub thrust: PerArm<f64>,
-    /// Thrust asked of each rotor, N.
+    /// N.
     pub thrust_asked: PerArm<f64>,
-    /// True tension of each tendon, N.
+    /// True, N.
     pub tension: PerArm<f64>,
-    /// Tension asked of each tendon, N.
+    /// N.
     pub tension_asked: PerArm<f64>,
-    /// True contact pressure at each sensor, Pa.
+    /// True, at the sensor, Pa.
     pub pressure: PerArm<f64>,
-    /// Measured contact pressure, Pa; NaN if none is fresh.
+    /// Pa; NaN if not fresh.
     pub pressure_measured: PerArm<f64>,
     /// Battery voltage under load, V.
     pub battery_voltage: f64,
@@ -90,7 +90,7 @@ pub struct Sample {
 /// A flown step of the mission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
-    /// Name of the step, such as `take-off`.
+    /// Such as `take-off`.
     pub name: String,
     /// Start, s.
     pub start: f64,
@@ -98,13 +98,13 @@ pub struct Phase {
     pub end: f64,
     /// The step was done.
     pub done: bool,
-    /// Largest angle between true and wanted attitude (roll, pitch), rad.
+    /// Largest angle between true and target attitude (roll, pitch), rad.
     pub worst_attitude_error: f64,
     /// Largest tilt of any arm, rad, signed.
     pub worst_tilt: f64,
-    /// Share of the time with saturated rotors, 0..1.
+    /// Share of the time, 0..1.
     pub saturation: f64,
-    /// Battery voltage at the end, V.
+    /// At the end, V.
     pub battery_voltage: f64,
     /// Missed deadlines during the step.
     pub overruns: u32,
@@ -124,13 +124,13 @@ pub struct Event {
 pub struct Grip {
     /// Arm, 1 to 4.
     pub arm: u8,
-    /// Measured pressure at the proof, Pa.
+    /// At the proof, Pa.
     pub pressure: f64,
-    /// True pressure at the proof, Pa.
+    /// At the proof, Pa.
     pub pressure_true: f64,
-    /// Servo torque at the proof, N·m.
+    /// Of the servo at the proof, N·m.
     pub torque: f64,
-    /// From the start of closing until the pressure stays within tolerance, s.
+    /// Time from start of closing to pressure within tolerance, s.
     pub closure: f64,
 }
 
@@ -140,7 +140,7 @@ pub trait Observer {
     fn step_began(&mut self, t: f64, index: usize, count: usize, name: &str);
     /// A step ended.
     fn step_ended(&mut self, t: f64, phase: &Phase);
-    /// Called a few times a simulated second; `height` over the ground, m.
+    /// A few times a simulated second; `height` over the ground, m.
     fn progress(&mut self, t: f64, mode: Mode, height: f64);
     /// Something happened.
     fn event(&mut self, event: &Event);

@@ -3,12 +3,12 @@
 use sophie_control::rc::CHANNELS;
 use sophie_drivers::sbus::{FRAME, Frame};
 
-/// Frame period, s: the slower of the two usual ones.
+/// Frame period, s: the slower usual one.
 const PERIOD: f64 = 14e-3;
-/// Silence after which a receiver reports failsafe, s (FrSky: about 1 s).
+/// Silence, s (FrSky: about 1 s).
 const FAILSAFE_AFTER: f64 = 0.9;
 
-/// The receiver. After its first frame it always sends; a lost transmitter is in the flags.
+/// Sends always after its first frame; flags report a lost transmitter.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     channels: Option<[u16; CHANNELS]>,
@@ -19,7 +19,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// One step of `dt` s with `heard` from the air; returns a frame when one is due.
+    /// A step of `dt` s with `heard` from the air; returns a due frame.
     pub fn step(&mut self, dt: f64, heard: Option<[u16; CHANNELS]>) -> Option<[u8; FRAME]> {
         self.silence += dt;
         self.elapsed += dt;

@@ -1,8 +1,8 @@
-//! One arm closes on a pipe, holds it while the rotor stops and the arm is disturbed, and lets go.
+//! One arm closes on a pipe, holds it while the rotor stops and the arm is disturbed, and releases it, as on the
+//! paper's bench.
 //!
-//! The body is fixed on the pipe, as on the paper's bench. Arm, tendon, servo, skin and pressure sensor are the
-//! plant's; fault watch, gripper and tendon drive the flight stack's, each at its rate. The tilt arrives 20 ms late
-//! with noise and offset; the thrust given to the loop is 5 % wrong.
+//! Arm, tendon, servo, skin and pressure sensor are the plant's; fault watch, gripper and tendon drive the flight
+//! stack's. The tilt is 20 ms late with noise and offset; the thrust given to the loop is 5 % wrong.
 
 use std::collections::VecDeque;
 
@@ -34,15 +34,15 @@ struct Bench {
     pose: Pose,
     pipe: Pipe,
     sensor: FsrSensor,
-    /// Voltage at the sensor's pad over that at the converter's pin.
+    /// Voltage at the sensor's pad over the converter's pin.
     pad: f64,
     tilts: VecDeque<f64>,
     tilt_offset: f64,
     steps: u64,
-    /// Servo frame period and time to the next frame, s.
+    /// Servo frame period and time to the next, s.
     frame: f64,
     to_frame: f64,
-    /// Thrust asked by the mixer and thrust of the rotor, N.
+    /// Demanded and actual thrust, N.
     asked: f64,
     thrust: f64,
     thrust_error: f64,
@@ -73,7 +73,6 @@ impl Bench {
         Self::with(Params::default(), infill, diameter, seed, servo)
     }
 
-    /// Servo frames and pulses are those of `params`.
     fn with(mut params: Params, infill: f64, diameter: f64, seed: u64, servo: ServoProfile) -> Self {
         params.infill = infill as f32;
         if servo == ServoProfile::Mg996r {
@@ -149,7 +148,6 @@ impl Bench {
         }
     }
 
-    /// One step of the plant and the parts of the flight stack that are due.
     fn step(&mut self) {
         let (alpha, rate) = (self.arm.tilt, self.arm.rate);
         self.thrust += (self.asked * self.thrust_error - self.thrust) * STEP / 0.05;
@@ -210,7 +208,6 @@ impl Bench {
         }
     }
 
-    /// Runs until the grip's state is `state`, at most `seconds`; true if reached.
     fn run_until(&mut self, state: ArmState, seconds: f64) -> bool {
         for _ in 0..(seconds / STEP) as u64 {
             self.step();
@@ -221,7 +218,6 @@ impl Bench {
         false
     }
 
-    /// Ramps the asked thrust to `thrust` within `seconds`.
     fn ramp_thrust(&mut self, thrust: f64, seconds: f64) {
         let steps = (seconds / STEP) as u64;
         let change = (thrust - self.asked) / steps as f64;
@@ -231,7 +227,6 @@ impl Bench {
         }
     }
 
-    /// Resets the extremes.
     fn forget(&mut self) {
         (self.peak, self.trough) = (0.0, f64::INFINITY);
     }
@@ -240,15 +235,15 @@ impl Bench {
 #[derive(Debug)]
 struct Outcome {
     closure: f64,
-    /// Servo torque that holds the grip with the rotor stopped, kgcm.
+    /// Holding torque with the rotor stopped, kgcm.
     torque: f64,
     closing_peak: f64,
-    /// Largest deviation of the true pressure during spool-down, Pa.
+    /// Largest deviation of true pressure during spool-down, Pa.
     spool_down: f64,
     released_in: f64,
 }
 
-/// Closes, stops the rotor, holds, disturbs, spools up, releases; `None` if the arm reports insufficient force.
+/// Closes, stops the rotor, holds, disturbs, spools up, releases; `None` for insufficient force.
 fn whole_run(infill: f64, diameter: f64, seed: u64) -> Option<Outcome> {
     whole_run_with(Params::default(), infill, diameter, seed)
 }
@@ -288,7 +283,7 @@ fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Opti
 
     b.run(3.0);
     let torque = b.tendon.servo_torque() * KGCM;
-    // Knocks on the arm, towards the pipe and away: 0.3 N at the tip.
+    // Knocks on the arm both ways: 0.3 N at the tip.
     for push in [0.05, -0.05] {
         b.push = push;
         b.run(1.0);
@@ -300,7 +295,7 @@ fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Opti
             b.grip
         );
     }
-    // Tilt noise and the deadband move the pressure; its mean must recover.
+    // Tilt noise and deadband move the pressure; its mean must recover.
     let mean = (0..100).fold(0.0, |sum, _| {
         b.run(0.01);
         sum + 0.01 * f64::from(b.grip.pressure)
@@ -332,9 +327,9 @@ fn whole_run_with(params: Params, infill: f64, diameter: f64, seed: u64) -> Opti
     })
 }
 
-/// Infill (%), pipe diameter (m), torque (kgcm) that holds it with the rotor stopped: 0.6 times the moment of the arm
-/// bent from its droop to the pipe's curvature, L (T_s(-L/R)), and of 950 Pa on its skin, 0.13 N·m. The two stiffest
-/// are at the servo's limit and may report that.
+/// Infill (%), pipe diameter (m), holding torque with the rotor stopped (kgcm): 0.6 times the moment of the arm bent
+/// from its droop to the pipe's curvature, L (T_s(-L/R)), and of 950 Pa on its skin, 0.13 N·m. The two stiffest may
+/// report the servo's limit.
 const CASES: [(f64, f64, f64); 15] = [
     (6.0, 0.20, 8.9),
     (6.0, 0.25, 6.6),
@@ -374,7 +369,7 @@ fn every_arm_closes_holds_and_lets_go() {
             assert!(o.closing_peak < 1150.0, "{what}");
             assert!((2.0..5.0).contains(&o.closure), "{what}");
             assert!(o.spool_down < 150.0, "{what}");
-            // 5 % of the arm's stiffness, 1.1° of its offset, 7 % of the pressure.
+            // 5 % of stiffness, 1.1° of offset, 7 % of pressure.
             assert!((o.torque / torque - 1.0).abs() < 0.12, "{what}");
         }
     }
@@ -437,7 +432,7 @@ fn a_weak_servo_is_reported_and_never_asked_for_more_than_it_has() {
     assert!(b.grip.force <= limit.force && b.tendon.servo_torque() < 0.922);
 }
 
-/// A holding bench, with its tension (N) and pressure (Pa).
+/// Tension in N, pressure in Pa.
 fn holding(infill: f64, seed: u64) -> (Bench, f64, f64) {
     let mut b = Bench::new(infill, 0.30, seed, ServoProfile::Paper);
     b.close = true;
@@ -488,7 +483,7 @@ fn a_lead_that_breaks_while_holding_does_not_run_away() {
 fn a_sensor_behind_a_divider_that_nobody_told_of_stops_the_closing() {
     for infill in [6.0, 6.9, 8.0] {
         for seed in 1..=4 {
-            // Behind 1:2 it reads at most 692 Pa; behind 1:11 69 Pa, which is no touch.
+            // Behind 1:2 it reads at most 692 Pa; behind 1:11 69 Pa, below a touch.
             for (pad, fault) in [(2.0, GripFault::Ceiling), (11.0, GripFault::Unfelt)] {
                 let mut b = Bench::new(infill, 0.30, seed, ServoProfile::Paper);
                 b.pad = pad;

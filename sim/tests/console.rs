@@ -19,7 +19,7 @@ use sophie_tasks::ports::{
 };
 use sophie_tasks::{analog, clamp, commander, console, estimator, imu, parameters, servos};
 
-/// A terminal's screen at 115,200 baud, or one that takes nothing.
+/// A terminal at 115,200 baud, or one that takes nothing.
 #[derive(Clone, Default)]
 struct Screen {
     text: Rc<RefCell<String>>,
@@ -37,7 +37,7 @@ impl SerialOutput for Screen {
     }
 }
 
-/// Brown-out looks of a start-up, with `level` of 3.
+/// Brown-out checks of a start-up with `level` of 3.
 fn looks(level: u8) -> [Look; 2] {
     let look = |name, read: String, expected, ok, refuses| Look {
         name,
@@ -64,7 +64,7 @@ fn looks(level: u8) -> [Look; 2] {
     ]
 }
 
-/// A chip with a restart counter and a brown-out level, which it may refuse to set.
+/// A chip with restart counter and brown-out level, which it may refuse to set.
 #[derive(Clone)]
 struct FakeChip {
     restarts: Rc<Cell<u32>>,
@@ -74,7 +74,6 @@ struct FakeChip {
 }
 
 impl FakeChip {
-    /// A chip started at brown-out level `level`.
     fn at(level: u8) -> Self {
         Self {
             restarts: Rc::default(),
@@ -88,6 +87,10 @@ impl FakeChip {
 impl Chip for FakeChip {
     fn restart(&mut self) {
         self.restarts.set(self.restarts.get() + 1);
+    }
+
+    fn board(&self) -> &'static str {
+        "table"
     }
 
     fn looks(&self) -> &[Look] {
@@ -107,7 +110,7 @@ impl Chip for FakeChip {
     }
 }
 
-/// Saved parameters, with the commander's status at that time.
+/// Saved parameters, and the commander's status then.
 type Saves = Rc<RefCell<Vec<(Params, Option<Status>)>>>;
 
 #[derive(Clone)]
@@ -154,7 +157,6 @@ impl Bench {
         }
     }
 
-    /// With the console over `storage`.
     fn console(self, storage: impl Storage + 'static) -> Self {
         let (links, line, screen) = (self.links, self.line.clone(), self.screen.clone());
         self.time
@@ -162,7 +164,7 @@ impl Bench {
         self
     }
 
-    /// With a commander in `mode`, and in `then` once it receives the save request.
+    /// In `mode`, and in `then` from the save request on.
     fn commander(self, mode: Mode, then: Mode) -> Self {
         let links = self.links;
         self.time.spawn(async move {
@@ -197,7 +199,7 @@ impl Bench {
         self.time.run_until(self.ms * 1000);
     }
 
-    /// Types `text`, awaits the answer and returns the new text on the screen.
+    /// Returns the new text on the screen.
     fn types(&mut self, text: &str) -> String {
         self.line.put(text.as_bytes());
         self.run(1500);
@@ -213,7 +215,7 @@ fn store(flash: &Flash<32, 2048>) -> ParamStore<Flash<32, 2048>> {
     ParamStore::new(flash.clone(), flash.range())
 }
 
-/// Starts a bench vehicle as the firmware does, with the contents of `flash`.
+/// Starts a vehicle as the firmware does, from `flash`.
 fn start(flash: &Flash<32, 2048>) -> (Bench, Loaded) {
     let time = VirtualTime::new();
     let found = Rc::new(Cell::new(None));
@@ -326,7 +328,6 @@ fn status_says_all_that_forbids_arming() {
     }
 }
 
-/// A console in `mode`, after a change and `save`: the answer to the latter.
 fn saves_in(mode: Mode, then: Mode) -> (String, Bench, FakeStorage) {
     let (bench, storage) = Bench::new(Params::default()).fake_storage(Ok(()));
     let mut bench = bench.commander(mode, then);
@@ -358,7 +359,6 @@ fn nothing_is_stored_or_restarted_while_rotors_may_turn() {
             assert_eq!(bench.chip.restarts.get(), 0, "{mode:?}");
         }
     }
-    // The pilot armed before the commander received the request.
     let (answer, bench, storage) = saves_in(Mode::Disarmed, Mode::Armed);
     assert_eq!(answer, "save\nnot saved while ARMED: disarm first\n> ");
     assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
@@ -487,7 +487,7 @@ fn storage_full_of_another_programs_data_boots_with_defaults_and_says_so() {
 fn a_line_of_noise_does_nothing_and_starves_nobody() {
     let (bench, storage) = Bench::new(Params::default()).fake_storage(Ok(()));
     let mut bench = bench.commander(Mode::Disarmed, Mode::Disarmed);
-    // A neighbour at the same level that only yields.
+    // A neighbour on the same level that only yields.
     let (turns, line) = (Rc::new(Cell::new(0u32)), bench.line.clone());
     let counter = turns.clone();
     bench.time.spawn(async move {
@@ -508,7 +508,6 @@ fn a_line_of_noise_does_nothing_and_starves_nobody() {
     bench.run(12_000);
     assert_eq!(turns.get(), 10_000);
     assert!(storage.saves.borrow().is_empty() && bench.chip.restarts.get() == 0);
-    // The noise may have ended within a line.
     let _ = bench.types("\r");
     assert_eq!(bench.types("changes\r"), "changes\nno changes\n> ");
 }
@@ -555,7 +554,7 @@ fn a_terminal_that_takes_nothing_loses_its_text_and_holds_nothing_up() {
     let mut bench = bench.commander(Mode::Disarmed, Mode::Disarmed);
     bench.run(100);
     bench.screen.hangs.set(true);
-    // The whole list has 90 lines, each waiting for the terminal.
+    // 90 lines, each waiting for the terminal.
     bench.line.put(b"list\r");
     bench.run(700);
     bench.line.put(b"set infill 8\rsave\r");

@@ -1,4 +1,4 @@
-//! The whole stack with failing parts in flight: silent sensor, hung task, dead radio.
+//! The whole stack with faults in flight: silent sensor, hung task, dead radio.
 
 mod vehicle;
 
@@ -12,11 +12,10 @@ use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::Setpoint;
 use vehicle::Vehicle;
 
-/// A silent inertial sensor stops the motors within the mix's limit, permanently, and the board is reset.
+/// Requires that a silent inertial sensor stops the motors permanently within the mix's limit, and a reset.
 fn a_lost_sensor_stops_the_motors(answer: Answer) {
     let mut v = Vehicle::flying();
     v.imu.0.answer.set(answer);
-    // The present sample still arrives; 10 ms later the motors stop.
     let stopped = v.until(30, Vehicle::motors_stand);
     assert!((5..=12).contains(&stopped), "{answer:?}: {stopped} ms");
     assert!(v.links.attitude.fresh().is_none());
@@ -99,7 +98,7 @@ fn a_hung_port_of_any_watched_task_leaves_the_watchdog_unfed() {
         let mut v = Vehicle::flying();
         hang(&v);
         v.run(200);
-        // Two windows: the one in which it hung may have had enough runs.
+        // The window in which it hung may have had enough runs.
         v.run(1000);
         assert_eq!(v.fed_over(1000), 0, "{name}");
     }

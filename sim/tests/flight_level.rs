@@ -1,4 +1,4 @@
-//! The flight level alone on the soft vehicle, by allocation.
+//! The flight level on the soft vehicle, by allocation.
 
 use sophie_control::wrench::Configuration::{A, B};
 use sophie_sim::flight_level::{Maneuver, Rig, level, vehicle};
@@ -72,8 +72,8 @@ fn the_frozen_inverse_limit_cycles_where_c_is_large_and_only_there() {
 
 #[test]
 fn mismatched_arms_are_learnt_by_their_sensors() {
-    // Arms up to 15 % and 3° off in gusts of 0.35 N and 0.015 N·m, all with the same true loop gain: a rigid mixer's
-    // yaw commands come out 1 - C = 4.9 times larger.
+    // Arms up to 15 % and 3° off, gusts of 0.35 N and 0.015 N·m, equal true loop gain: a rigid mixer's yaw commands
+    // come out 1 - C = 4.9 times larger.
     let off = |mixer, loop_gain: f32, sensors: bool| {
         let mut s = vehicle(B, 7.75, 6.9, mixer);
         s.vehicle.arm_gain = [1.15, 0.85, 0.9, 1.1];
@@ -132,7 +132,6 @@ fn rate_and_direct_setpoints_fly_and_hand_back_without_a_kick() {
         }
         let rolled = rig.plant.euler()[0].to_degrees();
         assert!((least..most).contains(&rolled), "{setpoint:?}: {rolled}");
-        // The vehicle reverses at once and hardly overshoots.
         let (mut farthest, mut swung) = (rolled, rolled);
         for _ in 0..3000 {
             rig.step(level);

@@ -1,4 +1,4 @@
-//! A mission flown by the tasks and replayed from its recorded inputs in a [`FlightChain`] gives the same bits.
+//! A mission flown by the tasks, replayed from its inputs in a [`FlightChain`], gives the same bits.
 
 use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
@@ -25,11 +25,9 @@ struct Step {
     attitude: Attitude,
     demand: Demand,
     mix: MixOutput,
-    /// What the motors got.
     motors: PerArm<f64>,
 }
 
-/// The stack with a recorder on its links.
 struct Recorded {
     stack: Stack,
     tape: Vec<Step>,
@@ -38,7 +36,7 @@ struct Recorded {
 /// Period of late readings of two arms, ms.
 const LATE_EVERY: usize = 500;
 
-/// Puts two readings older than the limit on the link; their values are far off, so their use would move the tilt.
+/// Sends two readings older than the limit, with values whose use would move the tilt.
 fn send_late_readings(links: &Links) {
     let Some(newest) = links.arms.latest() else {
         return;
@@ -52,7 +50,6 @@ fn send_late_readings(links: &Links) {
     links.arms.send(now, ArmAngles { tilt });
 }
 
-/// What control would read from its links now.
 fn command(links: &Links) -> Command {
     let Some(message) = links.setpoint.latest() else {
         return Command::default();
@@ -81,7 +78,7 @@ impl Aircraft for Recorded {
         self.stack.step_world(plant);
     }
 
-    // The flight level answers a batch before the clock advances and before other events of this millisecond.
+    // The flight level answers a batch before the clock advances and before other events.
     fn run_until(&mut self, us: u64) -> Result<(), String> {
         let links = self.stack.links;
         let batch = self.stack.board.imu_batch();
@@ -155,7 +152,7 @@ impl Aircraft for Recorded {
     }
 }
 
-/// Bits of a step's estimate and mix, with -0 as 0.
+/// With -0 as 0.
 fn bits(attitude: &Attitude, mix: &MixOutput) -> Vec<u32> {
     let Attitude {
         q,

@@ -1,5 +1,4 @@
-//! Tasks analog, clamp and servos on four simple arms with failing parts: the reaction to each fault, and no force
-//! beyond the limit.
+//! Tasks analog, clamp and servos on four simple arms with faults: reactions, and no force beyond the limit.
 
 use embassy_time::Instant;
 use sophie_control::deflection::ArmModel;
@@ -14,36 +13,35 @@ use sophie_sim::clock::VirtualTime;
 use sophie_tasks::links::{ArmAngles, ClampCommand, Links, TendonForce, TendonForces, TendonOrder};
 use sophie_tasks::timing::Quantity;
 
-/// Tilt without tendon force, and tilt at the touch, rad.
+/// Tilt without tendon force, and at the touch, rad.
 const FREE_TILT: f32 = -0.2;
 const TOUCH_TILT: f32 = -0.8;
-/// Compliance against the pipe over that in the air.
+/// Compliance on the pipe over that in the air.
 const PRESSED: f32 = 0.2;
 /// s.
 const ARM_TIME: f32 = 0.03;
-/// Counts of a converter pin shorted to the supply.
+/// A pin shorted to the supply, counts.
 const SHORTED: u16 = 4095;
-/// Servo pulse at release, µs.
+/// µs.
 const RELEASE_US: f32 = 550.0;
 const CLOSE: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
-/// Quasi-static arm on its tendon: a spring in the air, a stiffer one on the pipe.
+/// Quasi-static arm on its tendon: a spring in the air, stiffer on the pipe.
 #[derive(Clone, Copy)]
 struct Arm {
     tilt: f32,
-    /// Pressure per tendon force beyond the touch, Pa/N.
+    /// Pressure per tendon force after the touch, Pa/N.
     stiffness: f32,
-    /// Saturation of this skin, Pa.
+    /// Saturation of the skin, Pa.
     most: f32,
     pressure: f32,
-    /// Pin counts in place of the pressure.
+    /// Pin counts instead of the pressure.
     pin: Option<u16>,
     tilt_alive: bool,
 }
 
 impl Arm {
     fn step(&mut self, pulse: f32, reel: &Reel, p: &Params, dt: f32) {
-        // Without a pulse no pull.
         let angle = if pulse > 0.0 {
             reel.angle_of(pulse).max(0.0)
         } else {
@@ -54,7 +52,7 @@ impl Arm {
             let stretch = p.reel_radius * angle - p.tendon_lever * (REFERENCE_TILT - tilt);
             (p.tendon_stiffness * stretch).max(0.0)
         };
-        // Equilibrium tilt of spring and tendon, by bisection: the force grows with the tilt.
+        // Equilibrium of spring and tendon by bisection: the force grows with tilt.
         let (mut low, mut high) = (-2.5f32, FREE_TILT);
         let at_touch = (FREE_TILT - TOUCH_TILT) / bend;
         for _ in 0..30 {
@@ -88,7 +86,7 @@ struct Bench {
     converter: FakeAnalog,
     servos: FakeServos,
     arms: [Arm; 4],
-    /// Command of the commander; `None`: silent.
+    /// `None`: silent.
     command: Option<ClampCommand>,
     ms: u64,
     largest_force: f32,
@@ -196,7 +194,7 @@ fn four_sound_arms_close_hold_and_let_go() {
     assert_eq!((b.forces(), b.servos.now()), ([0.0; 4], [RELEASE_US; 4]));
 }
 
-/// Servos: default, mirrored, trimmed, short of travel, slow.
+/// Default, mirrored, trimmed, short of travel, slow.
 fn mixed_servos() -> Params {
     Params {
         servo_release_2: 2450.0,
@@ -246,7 +244,7 @@ fn no_pulse_goes_out_before_the_clamp_loop_has_spoken_and_none_pulls_before_it_i
         "nothing is known of servos without a pulse"
     );
 
-    // Without a commander the clamp loop is silent too: the arms may be closed on a pipe.
+    // Without commander the clamp loop is silent too: arms may be on a pipe.
     time.spawn(sophie_tasks::clamp::run(links));
     time.run_until(2_000_000);
     assert!(servos.pulses.borrow().iter().all(|p| *p == [0.0; 4]) && links.tendons.latest().is_none());
@@ -274,7 +272,7 @@ fn an_open_sensor_is_found_out_by_the_arm_that_does_not_bend_on() {
     for arm in [0, 2, 3] {
         assert_eq!(b.state(arm), ArmState::Holding, "{arm}");
     }
-    // Touch at 30 N, grip at 54 N: detected before the arm is pressed harder than its neighbours.
+    // Touch at 30 N, grip at 54 N: detected before the arm is pressed harder than the others.
     assert!((30.0..60.0).contains(&b.forces()[1]), "{:?}", b.forces());
     b.command = Some(ClampCommand::Release);
     b.run(3.0);
@@ -295,7 +293,6 @@ fn a_shorted_sensor_freezes_its_arm_and_no_other() {
     b.run(3.0);
     assert!((b.forces()[2] - before).abs() < 1.0, "{before} {:?}", b.forces());
     assert!(!b.grip().proven && b.state(0) == ArmState::Holding);
-    // Sound again, but the fault is latched until release.
     b.arms[2].pin = None;
     b.run(1.0);
     assert_eq!(b.state(2), ArmState::Faulty);
@@ -381,14 +378,13 @@ fn an_arm_whose_pressure_does_not_rise_any_more_stops_and_says_so() {
     let grip = b.grip();
     assert_eq!(b.state(0), ArmState::Faulty, "{grip:?}");
     assert_eq!(grip.arms[0].fault, Some(GripFault::Ceiling));
-    // Little more than a sound arm: the others hold.
     assert!(grip.arms[0].force < grip.arms[1].force + 30.0, "{grip:?}");
     assert!((1..4).all(|arm| b.state(arm) == ArmState::Holding) && !grip.proven);
 }
 
 #[test]
 fn an_arm_that_cannot_reach_the_pressure_stops_at_the_limit() {
-    // 46 N at 15 mm; these arms take 54 N.
+    // 46 N at 15 mm; these arms need 54 N.
     let mut b = Bench::with(Params {
         servo_torque_max: 0.7,
         ..Params::default()
@@ -453,7 +449,6 @@ fn a_slow_converter_shows_in_the_time_from_pressure_to_pulse() {
         let missed = if in_time { 0 } else { timing.runs };
         assert!(timing.runs >= 45 && timing.overruns == missed, "{timing:?}");
         let us = b.links.take_contact_histogram(Quantity::Response).min();
-        // Converted, judged, written, in this order.
         assert!(u64::from(us) >= delay_us, "{us}");
         us
     };

@@ -1,5 +1,4 @@
-//! Broken, missing or wrong sensors: named on the display, arming refused until they recover, flights continued where
-//! possible.
+//! Broken, missing or wrong sensors: displayed, arming inhibited meanwhile, flights continued where possible.
 
 mod vehicle;
 
@@ -25,7 +24,7 @@ fn ready() -> Vehicle {
     v
 }
 
-/// Holds the arming gesture for 1.2 s; true if rotors may turn then.
+/// Whether the arming gesture, held for 1.2 s, arms.
 fn tries_to_arm(v: &mut Vehicle) -> bool {
     v.sticks = Some(Sticks {
         arm_switch: true,
@@ -60,7 +59,7 @@ fn a_sound_vehicle_has_nothing_to_report_from_power_up_on() {
 
 #[test]
 fn arm_sensors_that_take_their_time_to_start_raise_no_alarm() {
-    // A BNO055 answers after 650 ms; its driver has found, reset and configured it after at most 2.1 s.
+    // A BNO055 answers after 650 ms; its driver has configured it after at most 2.1 s.
     let mut v = Vehicle::new();
     v.arms.0.answer.set(Answer::Refuses);
     for _ in 0..2300 {
@@ -117,7 +116,7 @@ fn a_silent_inertial_sensor_stays_silent_in_words_too() {
 fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
     for (error, reason) in ERRORS {
         let mut v = Vehicle::flying();
-        // One or two at a time every 250 ms: glitches.
+        // One or two every 250 ms: glitches.
         for _ in 0..20 {
             v.imu.0.answer.set(Answer::Errs(error));
             v.until(4, |v| v.imu.0.failed.get() > 0);
@@ -129,7 +128,7 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
             }
         }
         assert_eq!((v.mode(), v.reason()), (Mode::Flight, None));
-        // One every 20 ms: the third is reported and stays, without flapping.
+        // One every 20 ms: the third is reported, without flapping.
         let mut changes = 0;
         let mut before = false;
         for _ in 0..50 {
@@ -144,7 +143,6 @@ fn one_bad_answer_is_no_fault_and_many_are_one_until_it_is_quiet_again() {
             }
         }
         assert_eq!((changes, before), (1, true), "{error:?}");
-        // The flight continues: every gap was shorter than the limit.
         assert!(v.motors_run() && v.mode() == Mode::Flight && v.reason().is_none());
         let healed = v.until(300, |v| !holds(v, reason));
         assert!((70..=100).contains(&healed), "{error:?}: {healed} ms");
@@ -171,7 +169,6 @@ fn each_arm_sensor_is_named_and_refuses_arming_until_it_answers() {
             v.arms.1[arm].answer.set(answer);
             let took = v.until(1500, |v| !v.links.hardware().is_empty());
             assert!((950..=1150).contains(&took), "{answer:?}: {took} ms");
-            // The other sensors continue.
             v.run(2000);
             assert!(v.links.hardware().iter().eq([reason]), "{answer:?} on arm {arm}");
             let tilts = v.links.tilts().values();
@@ -230,7 +227,6 @@ fn a_converter_that_stops_is_named_and_refuses_arming_until_it_converts() {
         );
         assert!(!tries_to_arm(&mut v), "{answer:?}");
         if answer == Answer::Hangs {
-            // Permanent: the watchdog resets the board.
             assert_eq!(v.fed_over(500), 0);
             continue;
         }

@@ -5,7 +5,7 @@ use sophie_sim::flight_level::{Maneuver, Rig, vehicle};
 use sophie_sim::mixers::Variant;
 use sophie_tasks::deadline::TaskId;
 
-/// Leans by 10° to the right for 2 s, and back.
+/// 10° to the right for 2 s, and back.
 fn lean(t: f64) -> Maneuver {
     Maneuver {
         roll: if (8.0..10.0).contains(&t) { 0.1745 } else { 0.0 },
@@ -28,11 +28,10 @@ fn every_rate_flies_alike_and_hands_on_at_1_khz() {
         let mut rig = Rig::new(&scenario);
         let e = rig.fly(16.0, lean);
         println!("{rate} Hz: {e:?}");
-        // 4 s of calibration and 16 s of flight.
         let runs = rig.links.timing(TaskId::Imu).runs;
         assert!((19_990..=20_000).contains(&runs), "{rate} Hz: {runs} samples");
         assert!(e.worst_pitch < 1.0 && e.worst_yaw < 3.0, "{rate} Hz: {e:?}");
-        // Response to the lean with its delay; the rates differ by one sample of delay in the part.
+        // The rates differ by one sample of delay in the part.
         assert!((e.rms_roll - 2.2).abs() < 0.1, "{rate} Hz: {e:?}");
     }
 }

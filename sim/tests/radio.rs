@@ -1,4 +1,4 @@
-//! Missions without radio or with an empty battery: descent, touchdown, behaviour on the perch.
+//! Flights without radio or with an empty battery: descent, touchdown, on the perch.
 
 use std::path::Path;
 
@@ -7,13 +7,12 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Sample, Silent};
 use sophie_sim::scenario::{Overrides, Scenario};
 
-/// Height of the centre of mass of a vehicle on the ground, m.
+/// Height of the centre of mass on the ground, m.
 const STANDS: f64 = 0.05;
 
-/// Sink rate of a crash, m/s.
 const CRASH: f64 = 2.0;
 
-/// Flies a scenario file with seeds 1 to 3; `look` checks each flight.
+/// Seeds 1 to 3.
 fn flights(file: &str, look: impl Fn(&FlightRecord)) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../tests/scenarios")
@@ -34,13 +33,11 @@ fn flights(file: &str, look: impl Fn(&FlightRecord)) {
     }
 }
 
-/// Start and end of the step `name`, s.
 fn times(record: &FlightRecord, name: &str) -> (f64, f64) {
     let phase = record.phases.iter().find(|p| p.name == name).unwrap();
     (phase.start, phase.end)
 }
 
-/// Modes in order from `from` s on.
 fn modes(record: &FlightRecord, from: f64) -> Vec<Mode> {
     let mut modes: Vec<Mode> = after(record, from).map(|s| s.mode).collect();
     modes.dedup();
@@ -51,7 +48,7 @@ fn after(record: &FlightRecord, from: f64) -> impl Iterator<Item = &Sample> {
     record.samples.iter().filter(move |s| s.t >= from)
 }
 
-/// Failsafe descent: level, no crash, rotors stop on the ground only.
+/// Requires a failsafe descent: level, no crash, rotors stop only on the ground.
 fn sinks_and_stands(record: &FlightRecord) {
     let sinking: Vec<&Sample> = record
         .samples
@@ -123,7 +120,7 @@ fn a_sinking_vehicle_is_taken_back_with_the_roll_stick() {
     flights("radio-taken-back.toml", |record| {
         let (off, back) = times(record, "radio-off");
         let taken = after(record, back).find(|s| s.mode == Mode::Flight).unwrap();
-        // It had not resumed in the 0.5 s with frames before the step ended.
+        // Not resumed in the 0.5 s with frames before the step ended.
         assert!((0.0..0.5).contains(&(taken.t - back)), "{} s", taken.t - back);
         assert!(taken.t - off > 2.5 && taken.position[2] < -1.5);
         assert!(after(record, off).all(|s| s.attitude[0].abs() < 25f64.to_radians()));

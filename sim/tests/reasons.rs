@@ -1,4 +1,4 @@
-//! The reason of a failed flight names the quantity that ended it and its required value.
+//! A failed flight's reason names the quantity that ended it and its required value.
 
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Silent};
@@ -22,7 +22,7 @@ fn reason(text: &str) -> String {
 
 #[test]
 fn a_vehicle_too_weak_to_fly_is_told_by_its_thrust_to_weight() {
-    // With the arms bent by full thrust: 2 % less than 4 T / W.
+    // Arms bent by full thrust: 2 % less than 4 T / W.
     for (mass, thrust, ratio) in [(3.0, 7.7, "1.03"), (3.0, 7.5, "1.00"), (3.0, 7.0, "0.93")] {
         let line = reason(&format!(
             "{HOP}[vehicle]\nmass_kg = {mass}\nthrust_max_n = {thrust}\n"

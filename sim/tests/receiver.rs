@@ -1,4 +1,4 @@
-//! The receiver task on a real line, with every error a radio can make.
+//! The receiver task on a line with every radio error.
 
 use embassy_time::Instant;
 use rand::{Rng, SeedableRng};
@@ -66,7 +66,7 @@ fn frames_split_anywhere_are_understood_and_stamped_when_they_are_whole() {
 
 #[test]
 fn a_flipped_bit_anywhere_is_never_obeyed() {
-    // Every bit behind the frame's address, which CRSF does not protect.
+    // Every bit behind the address, which CRSF does not protect.
     for bit in 8..26 * 8 {
         let mut line = Line::new();
         line.send(&frame(0.0), 10_000);
@@ -74,7 +74,7 @@ fn a_flipped_bit_anywhere_is_never_obeyed() {
         broken[bit / 8] ^= 1 << (bit % 8);
         line.send(&broken, 10_000);
         assert!(line.state().sticks.throttle < 0.01, "bit {bit}");
-        // A broken length may swallow what follows; within three frames reception resumes.
+        // A broken length may swallow what follows; three frames restore reception.
         for _ in 0..4 {
             line.send(&frame(0.9), 10_000);
         }

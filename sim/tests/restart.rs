@@ -28,7 +28,7 @@ use sophie_tasks::start::{Start, StartCause};
 
 /// Counts at about 950 Pa with the default sensor.
 const PRESSED: u16 = 2000;
-/// Servo angle and tendon force of a grip, rad and N.
+/// Servo angle (rad) and tendon force (N) of a grip.
 const ANGLE: f32 = 2.5;
 const FORCE: f32 = 45.0;
 
@@ -55,7 +55,6 @@ struct Vehicle {
 }
 
 impl Vehicle {
-    /// Started for `cause` with retained `copies` and sensor counts `counts`.
     fn start(cause: StartCause, copies: [Words; 2], counts: [u16; 4]) -> Self {
         let time = VirtualTime::new();
         let start = Start::new(cause, &copies);
@@ -101,7 +100,6 @@ impl Vehicle {
         v
     }
 
-    /// Restarted by the watchdog with `retained` in memory.
     fn retained(retained: RetainedState, counts: [u16; 4]) -> Self {
         let copy = retained.to_words(7).expect("a sane one");
         Self::start(StartCause::Watchdog, [[0; WORDS], copy], counts)
@@ -129,7 +127,6 @@ impl Vehicle {
         (status.mode, status.reason, status.warning)
     }
 
-    /// Pulses of servo `arm`, µs.
     fn pulses(&self, arm: usize) -> Vec<f32> {
         self.servos.pulses.borrow().iter().map(|p| p[arm]).collect()
     }
@@ -156,7 +153,7 @@ fn pulse(angle: f32) -> f32 {
 fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
     let mut v = Vehicle::retained(held(), [PRESSED, 0, PRESSED, 0]);
     v.run(650);
-    // The attitude is valid after 0.5 s; 0.2 s later the loops take over.
+    // Attitude is valid after 0.5 s; 0.2 s later the loops take over.
     for arm in [0, 2] {
         let pulses = v.pulses(arm);
         let sent = pulses.iter().skip_while(|p| **p == 0.0);
@@ -182,7 +179,7 @@ fn a_closed_arm_goes_on_at_its_angle_from_the_first_pulse_on() {
     );
     let (kept, sequence) = v.kept().unwrap();
     assert_eq!((kept.grip_memory, kept.angle), (held().grip_memory, held().angle));
-    // 100 Hz, both copies by turns, continuing the sequence of the run before.
+    // 100 Hz, copies in turn, continuing the previous sequence.
     let writes = v.memory.0.get().1;
     assert_eq!(sequence, 7 + writes[0] + writes[1]);
     assert!(
@@ -336,7 +333,6 @@ fn flown(file: &str) -> FlightRecord {
     fly(&scenario, &mut Silent)
 }
 
-/// Time of the first event `text` after `from` s.
 fn when(record: &FlightRecord, text: &str, from: f64) -> f64 {
     let event = record.events.iter().find(|e| e.t >= from && e.text == text);
     event
@@ -356,7 +352,7 @@ fn a_reset_in_flight_stops_the_rotors_and_they_stay_stopped() {
     when(&record, "warning: restarted by the watchdog", reset);
     let after: Vec<_> = record.samples.iter().filter(|s| s.t >= reset + 0.01).collect();
     assert!(after.len() > 30 && after.iter().all(|s| s.thrust_asked == [0.0; 4]));
-    // The propellers' rest runs out with the motors' 50 ms.
+    // The propellers stop with the motors' time constant, 50 ms.
     let late = after.iter().filter(|s| s.t > reset + 0.4);
     assert!(late.clone().count() > 10 && late.clone().all(|s| s.thrust.iter().all(|t| *t < 0.05)));
 }
@@ -367,7 +363,7 @@ fn a_reset_on_the_ground_keeps_the_calibration() {
     assert!(record.outcome.accomplished, "{:?}", record.outcome);
     let reset = when(&record, "board reset", 0.0);
     let start = when(&record, "mode CALIBRATING", reset);
-    // 0.5 s for the attitude, against 2 s at rest.
+    // 0.5 s for the attitude, 2 s at rest.
     let ready = when(&record, "mode DISARMED", start) - start;
     assert!((0.4..0.7).contains(&ready), "{ready}");
     let armed = when(&record, "mode ARMED", start);

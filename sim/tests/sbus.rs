@@ -1,4 +1,4 @@
-//! SBUS: the receiver task, loss of radio by the receiver's flags, and a line with the wrong protocol.
+//! SBUS: receiver task, loss of radio by the receiver's flags, a line with the wrong protocol.
 
 mod vehicle;
 
@@ -16,7 +16,7 @@ use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario};
 use vehicle::Vehicle;
 
-/// Time between two frames, ms.
+/// ms.
 const FRAME_MS: u64 = 7;
 
 fn sbus() -> Params {
@@ -33,7 +33,6 @@ fn frame(sticks: &Sticks) -> Frame {
     }
 }
 
-/// A vehicle whose only radio is `line`.
 fn on_line(params: Params) -> (Vehicle, FakeLine) {
     let mut v = Vehicle::with(params);
     v.sticks = None;
@@ -44,7 +43,6 @@ fn on_line(params: Params) -> (Vehicle, FakeLine) {
     (v, line)
 }
 
-/// Repeats `bytes` on the line for `ms`.
 fn send(v: &mut Vehicle, line: &FakeLine, bytes: &[u8], ms: u64) {
     for _ in 0..ms / FRAME_MS {
         line.put(bytes);
@@ -52,7 +50,7 @@ fn send(v: &mut Vehicle, line: &FakeLine, bytes: &[u8], ms: u64) {
     }
 }
 
-/// Armed by switch and gesture over SBUS, throttle at hover; with the bytes that hold it.
+/// Armed over SBUS at hover throttle; with the frame that holds it.
 fn flying() -> (Vehicle, FakeLine, Frame) {
     let (mut v, line) = on_line(sbus());
     let low = Sticks::default();
@@ -149,7 +147,6 @@ fn noise_gives_no_sticks_and_the_pilot_is_heard_behind_it() {
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let (mut v, line) = on_line(sbus());
     for _ in 0..100_000 {
-        // Bursts with a frame's start, with and without silence between: the worst noise.
         let mut noise: Vec<u8> = (0..25).map(|_| rng.random()).collect();
         noise[0] = 0x0F;
         line.put(&noise);
@@ -206,7 +203,7 @@ fn a_transmitter_switched_off_in_hover_ends_on_the_ground() {
             .unwrap()
             .start;
         let failsafe = record.samples.iter().find(|s| s.mode == Mode::Failsafe).unwrap();
-        // The last good frame is up to 14 ms old when the transmitter goes off.
+        // The last good frame is up to 14 ms old.
         let after = failsafe.t - off;
         assert!((0.48..0.53).contains(&after), "{after} s");
         let last = record.samples.last().unwrap();

@@ -1,10 +1,10 @@
-//! The pilot on vehicles of other strength: the flight must not fail by him.
+//! The pilot model flies vehicles of other strength.
 
 use sophie_sim::flight::fly;
 use sophie_sim::record::{FlightRecord, Silent};
 use sophie_sim::scenario::{Overrides, Scenario};
 
-/// A flight with this mass (kg) and largest rotor thrust (N), and its thrust to weight.
+/// With this mass (kg) and largest rotor thrust (N); returns thrust to weight too.
 fn flown(mass: f64, thrust: f64, steps: &str) -> (FlightRecord, f64) {
     let text = format!("{steps}\n[vehicle]\nmass_kg = {mass}\nthrust_max_n = {thrust}\n");
     let scenario = Scenario::parse(&text, "strong.toml", &Overrides::default()).unwrap();

@@ -4,9 +4,13 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use sophie_console::Failure;
+use sophie_console::port::PortName;
+use sophie_console::session::Session;
 use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_report::terminal::console;
@@ -28,7 +32,7 @@ struct Cli {
 const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 
 /// The subcommands, as messages name them.
-const VERBS: [&str; 5] = ["fly", "check", "paper", "fit-arm", "timing"];
+const VERBS: [&str; 6] = ["fly", "check", "params", "paper", "fit-arm", "timing"];
 
 #[derive(Subcommand)]
 enum Command {
@@ -41,6 +45,12 @@ enum Command {
     /// A row each for thrust, throttle, yaw, the control loops, the arms, batteries, wind and grip: value, limit, verdict,
     /// and what to do where it fails. Exit status: 0 it can fly, 1 it cannot, 2 bad input.
     Check(CheckArgs),
+    /// Write a board's parameters into a file, compare them with a file, or set them from a file.
+    ///
+    /// FILE is the [params] of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows where FILE
+    /// differs from the board. `load` checks FILE as a whole, sets what differs, saves, restarts, and reads back.
+    /// Exit status: 0 done or equal, 1 different, refused by the board or lost on the way, 2 bad file or port.
+    Params(ParamsArgs),
     /// Compute and fly every table and figure of the paper, and set them beside the printed numbers.
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
@@ -63,6 +73,8 @@ pub enum Task {
     Fly(FlyArgs),
     /// Check a vehicle.
     Check(CheckArgs),
+    /// Parameters of a board.
+    Params(ParamsArgs),
     /// Reproduce the paper.
     Paper(PaperArgs),
     /// Fit an arm.
@@ -158,6 +170,49 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
+/// Which console, and how patient to be with it.
+#[derive(Args, Debug)]
+pub struct LineArgs {
+    /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT; serial ports at 115,200 baud.
+    #[arg(long, value_name = "PORT")]
+    pub port: PortName,
+    /// Longest silence of the board while an answer is due, 1 to 600 s.
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = patience, allow_negative_numbers = true)]
+    pub patience: Duration,
+}
+
+impl LineArgs {
+    /// A session at that console.
+    ///
+    /// # Errors
+    /// One line: the port cannot be opened, or no console answers there.
+    pub fn session(&self) -> Result<Session, Failure> {
+        Session::open(&self.port, self.patience)
+    }
+}
+
+/// What to do with a board's parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ParamsVerb {
+    /// Write them into the file.
+    Dump,
+    /// Show where the file differs.
+    Diff,
+    /// Set them from the file.
+    Load,
+}
+
+/// Which parameters, and where.
+#[derive(Args, Debug)]
+pub struct ParamsArgs {
+    /// What to do.
+    pub verb: ParamsVerb,
+    /// Parameter file; - is stdout for `dump`.
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub line: LineArgs,
+}
+
 /// Which vehicle and mission. Options win over the file.
 #[derive(Args, Debug)]
 pub struct MissionArgs {
@@ -244,6 +299,7 @@ impl Message {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper") => "no file",
                 Some("fit-arm") => "one CSV file",
+                Some("params") => "one parameter file",
                 _ => "one scenario file",
             };
             return format!("unexpected argument '{extra}': allowed is {allowed}");
@@ -268,6 +324,7 @@ fn parse_from(
     Ok(match cli.command {
         Some(Command::Fly(fly)) => Task::Fly(fly),
         Some(Command::Check(check)) => Task::Check(check),
+        Some(Command::Params(params)) => Task::Params(params),
         Some(Command::Paper(paper)) => Task::Paper(paper),
         Some(Command::FitArm(fit)) => Task::FitArm(fit),
         Some(Command::Timing(timing)) => Task::Timing(timing),
@@ -286,6 +343,15 @@ fn infill(text: &str) -> Result<f64, String> {
 
 fn gain_k(text: &str) -> Result<f64, String> {
     number(text, keys::GAIN_K)
+}
+
+fn patience(text: &str) -> Result<Duration, String> {
+    let seconds = text
+        .parse()
+        .ok()
+        .filter(|seconds| (1.0..=600.0).contains(seconds));
+    let seconds = seconds.ok_or_else(|| "allowed 1 to 600 s".to_owned())?;
+    Ok(Duration::from_secs_f64(seconds))
 }
 
 fn seed(text: &str) -> Result<u64, String> {

@@ -1,11 +1,13 @@
 //! The `sophie` command line.
 //!
-//! Exit status: 0 when the mission was accomplished, the vehicle can fly or the log was read, 1 when the mission was not
-//! accomplished or the vehicle cannot fly, 2 when it could not be flown, read or reported.
+//! Exit status: 0 when the mission was accomplished, the vehicle can fly, the log was read or the board did what was
+//! asked, 1 when the mission was not accomplished, the vehicle cannot fly or the board refused, 2 when it could not be
+//! flown, read or reported.
 
 mod args;
 mod check;
 mod live;
+mod operate;
 mod study;
 mod timing;
 
@@ -38,6 +40,7 @@ pub fn main() -> ExitCode {
         Task::Fly(args) if args.live.wanted => live::run(&args),
         Task::Fly(args) => run(&args),
         Task::Check(args) => check::run(&args),
+        Task::Params(args) => return operate::params(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),

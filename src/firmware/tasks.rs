@@ -1,14 +1,11 @@
-//! The tasks as static, non-generic executor tasks on a board's ports. `sophie_tasks` has their code,
-//! [`sophie_tasks::schedule`] their levels.
+//! Every task is spawned here. Those of the background are static executor tasks here too, compiled for size; those of
+//! the other levels are in [`sophie_flight`], compiled for speed.
 
 use embassy_executor::SpawnError;
 use embassy_sync::mutex::Mutex;
 use sophie_boards::Board;
 use sophie_boards::retained::Memory;
-use sophie_control::arming::ArmingInhibit;
-use sophie_control::mixer::Flexible;
-use sophie_control::wrench::Configuration;
-use sophie_drivers::rc_decoder::Decoder;
+use sophie_flight::tasks as flight;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::mavlink::Line;
 use sophie_tasks::ports::{Look, Storage};
@@ -23,9 +20,6 @@ type StoragePort = SharedStorage<'static, sophie_boards::StoragePort>;
 
 static STORAGE: StaticCell<Mutex<Raw, sophie_boards::StoragePort>> = StaticCell::new();
 
-/// Most attempts at the inertial sensor's self-test per start.
-const SELF_TESTS: u8 = 3;
-
 /// Spawns every task; `self_test`: the inertial sensor's, first. Called once.
 ///
 /// # Errors
@@ -38,17 +32,20 @@ pub fn spawn(
     self_test: bool,
 ) -> Result<(), SpawnError> {
     // Motors first: their first frame is a stop.
-    levels.spawn(TaskId::Motors, motors(links, board.motors)?);
-    levels.spawn(TaskId::Mixer, mixer(links)?);
-    levels.spawn(TaskId::Control, control(links)?);
-    levels.spawn(TaskId::Estimator, estimator(links)?);
-    levels.spawn(TaskId::Imu, imu(links, board.imu, self_test)?);
-    levels.spawn(TaskId::Supervisor, supervisor(links, board.watchdog, memory)?);
-    levels.spawn(TaskId::Commander, commander(links)?);
-    levels.spawn(TaskId::Rc, rc(links, board.receiver)?);
-    levels.spawn(TaskId::Analog, analog(links, board.analog)?);
-    levels.spawn(TaskId::Clamp, clamp(links)?);
-    levels.spawn(TaskId::Servos, servos(links, board.servos)?);
+    levels.spawn(TaskId::Motors, flight::motors(links, board.motors)?);
+    levels.spawn(TaskId::Mixer, flight::mixer(links)?);
+    levels.spawn(TaskId::Control, flight::control(links)?);
+    levels.spawn(TaskId::Estimator, flight::estimator(links)?);
+    levels.spawn(TaskId::Imu, flight::imu(links, board.imu, self_test)?);
+    levels.spawn(
+        TaskId::Supervisor,
+        flight::supervisor(links, board.watchdog, memory)?,
+    );
+    levels.spawn(TaskId::Commander, flight::commander(links)?);
+    levels.spawn(TaskId::Rc, flight::rc(links, board.receiver)?);
+    levels.spawn(TaskId::Analog, flight::analog(links, board.analog)?);
+    levels.spawn(TaskId::Clamp, flight::clamp(links)?);
+    levels.spawn(TaskId::Servos, flight::servos(links, board.servos)?);
     levels.spawn(TaskId::Arms, arms(links, board.arms)?);
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
     let looks = board.chip.looks;
@@ -66,77 +63,6 @@ pub fn spawn(
     #[cfg(feature = "trace")]
     levels.spawn_unmeasured("trace", super::trace::trace()?);
     Ok(())
-}
-
-/// Inertial sensor.
-///
-/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. A
-/// failed one is repeated, since a vehicle being carried also fails; the last verdict counts.
-#[embassy_executor::task]
-async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
-    for _ in 0..if self_test { SELF_TESTS } else { 0 } {
-        let result = port.self_test().await;
-        links.report(ArmingInhibit::ImuSelfTest, result.is_err());
-        match result {
-            Ok(_) => {
-                defmt::info!("imu: self-test passed");
-                break;
-            }
-            Err(fault) => defmt::error!("imu: {=str} ({})", fault.what(), fault),
-        }
-    }
-    sophie_tasks::imu::run(links, port).await
-}
-
-#[embassy_executor::task]
-async fn estimator(links: &'static Links) {
-    sophie_tasks::estimator::run(links).await;
-}
-
-#[embassy_executor::task]
-async fn control(links: &'static Links) {
-    sophie_tasks::control::run(links).await;
-}
-
-#[embassy_executor::task]
-async fn mixer(links: &'static Links) {
-    sophie_tasks::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
-}
-
-#[embassy_executor::task]
-async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
-    sophie_tasks::motors::run(links, port).await;
-}
-
-#[embassy_executor::task]
-async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
-    sophie_tasks::analog::run(links, port).await
-}
-
-#[embassy_executor::task]
-async fn clamp(links: &'static Links) -> ! {
-    sophie_tasks::clamp::run(links).await
-}
-
-#[embassy_executor::task]
-async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
-    sophie_tasks::servos::run(links, port).await
-}
-
-#[embassy_executor::task]
-async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
-    sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
-}
-
-#[embassy_executor::task]
-async fn commander(links: &'static Links) -> ! {
-    sophie_tasks::commander::run(links).await
-}
-
-/// Also keeps the state that outlives a reset.
-#[embassy_executor::task]
-async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
-    sophie_tasks::supervisor::run(links, port, memory).await
 }
 
 #[embassy_executor::task]

@@ -1,9 +1,7 @@
-//! Contact pressures and the battery, from the same converter.
+//! Samples contact pressures at 500 Hz and the battery in every fifth run, from one converter.
 //!
-//! Pressures in each run, the battery in every fifth; a conversion must be over before the next. Messages carry the time
-//! at which the conversion was begun, however long it takes. A converter that fails publishes nothing: its links go
-//! stale, and their readers know what to do. After 100 ms without a conversion it is reported against arming, and from
-//! the start on a sensor that cannot read the grip pressure.
+//! A conversion must end before the next; messages carry the time of its beginning. A failing converter's links go
+//! stale; after 100 ms arming is refused, and from the start if a sensor cannot read the grip pressure.
 
 use core::pin::pin;
 
@@ -18,12 +16,11 @@ use crate::links::{Contact, Links};
 use crate::ports::Analog;
 use crate::silence::SilenceWatch;
 
-/// Time without a conversion after which the inputs count as silent.
+/// Time without a conversion before a report.
 pub const SILENCE: Duration = Duration::from_millis(100);
-/// Conversions for one battery reading.
 const BATTERY_EVERY: u8 = 5;
 
-/// Serves the analog inputs; never returns.
+/// Samples the analog inputs; never returns.
 pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Analog);
     let scales = FsrScale::all(&links.params);
@@ -47,7 +44,7 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
                 Either::First(result) => result,
                 Either::Second(()) => {
                     watch.look(links, Instant::now());
-                    // A converter that never ends holds its task: the supervisor sees to that.
+                    // A hung conversion holds its task; the supervisor detects that.
                     conversion.await
                 }
             }
@@ -81,7 +78,6 @@ pub async fn run(links: &Links, mut port: impl Analog) -> ! {
     }
 }
 
-/// One arm's pressure sensor.
 struct Sensor {
     scale: FsrScale,
     fsr: Fsr,

@@ -1,9 +1,8 @@
-//! The arms' own inertial sensors: tilt of each arm against the body.
+//! Reads the arms' inertial sensors at 100 Hz: tilt of each arm against the body.
 //!
-//! In the background, since the sensors stretch the I2C clock and nothing in flight waits for them; a round of four
-//! sensors must end within its period. A sensor that gives nothing for a second is reported against arming;
-//! one that never answers costs its own reading, not those of the others. Each tilt carries the time at which its own
-//! sensor was asked: a slow sensor does not make the readings after it look older, nor those before it newer.
+//! Runs in the background: the sensors stretch the I2C clock and nothing in flight waits for them. A round of four must
+//! end within its period. A sensor silent for a second is reported against arming, and costs only its own reading. Each
+//! tilt carries the time of its own request.
 
 use embassy_time::{Duration, Instant, with_timeout};
 use sophie_control::arming::ArmingInhibit;
@@ -18,14 +17,13 @@ use crate::links::{ArmAngles, Links, Stamped};
 use crate::ports::ArmImus;
 use crate::silence::SilenceWatch;
 
-/// Time without a reading after which a sensor counts as silent.
+/// Time without a reading before a report.
 pub const SILENCE: Duration = Duration::from_secs(1);
-/// Time from power-up in which nothing is silent yet. A BNO055 needs 650 ms before it answers; its driver, which
-/// asks at growing pauses, finds it by 1.3 s, and resets and configures it in 0.75 s.
+/// Time from power-up before silence counts. A BNO055 answers after 650 ms; its driver finds it by 1.3 s, then resets
+/// and configures it in 0.75 s.
 pub const START: Duration = Duration::from_millis(2500);
-/// Longest time that one reading may take. The driver bounds each transfer to 3 ms itself, a few of them in a call.
+/// Limit of one reading, a few transfers of at most 3 ms.
 const READING: Duration = Duration::from_millis(20);
-/// What is reported of each arm.
 const REASONS: PerArm<ArmingInhibit> = [
     ArmingInhibit::ArmSensor1,
     ArmingInhibit::ArmSensor2,
@@ -33,7 +31,7 @@ const REASONS: PerArm<ArmingInhibit> = [
     ArmingInhibit::ArmSensor4,
 ];
 
-/// Serves the arm sensors; never returns. A sensor that fails leaves `None` for its arm.
+/// Reads the arm sensors; never returns. A failing sensor leaves `None` for its arm.
 pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Arms);
     let start = Instant::now() + START - SILENCE;
@@ -69,7 +67,7 @@ pub async fn run(links: &Links, mut port: impl ArmImus) -> ! {
     }
 }
 
-/// What makes a tilt of what each arm's sensor shows.
+/// Sign and zero of each arm's sensor.
 pub fn fits(p: &Params) -> PerArm<ArmFit> {
     [
         (p.arm_sign_1, p.arm_zero_1),
@@ -83,25 +81,24 @@ pub fn fits(p: &Params) -> PerArm<ArmFit> {
     })
 }
 
-/// True for a vector that can be gravity, m/s².
 fn plausible(gravity: &Vec3) -> bool {
     gravity.is_finite() && (5.0..15.0).contains(&gravity.norm())
 }
 
-/// Tilt (rad, tip up) of an arm on side `side` that sees gravity along `gravity` (m/s², its own axes), on
-/// a body at the attitude `q`. `None` for a vector that cannot be gravity.
+/// Tilt (rad, tip up) of an arm on side `side` that measures `gravity` (m/s², its axes) on a body at `q`; `None` if
+/// that cannot be gravity.
 ///
-/// A left arm whose tip goes up turns about +x, a right arm about -x; the turn shows as the angle
-/// between the two gravity directions in the y-z plane.
+/// A left arm whose tip rises turns about +x, a right arm about -x: the angle between the gravity directions in the y-z
+/// plane.
 fn arm_tilt(q: Quat, gravity: Vec3, side: f32) -> Option<f32> {
-    /// Least share of gravity in the y-z plane for its direction to mean anything.
+    /// Least share of gravity in the y-z plane for a valid direction.
     const LEAST: f32 = 0.3;
     let body = q.down_in_body();
     let planar = |v: Vec3, length: f32| v.y * v.y + v.z * v.z > (LEAST * length) * (LEAST * length);
     if !plausible(&gravity) || !planar(gravity, gravity.norm()) || !planar(body, 1.0) {
         return None;
     }
-    // Gravity turned by +a about x: (y, z) of the arm's view is the body's view turned back by a.
+    // The arm's view of (y, z) is the body's turned back by the turn about x.
     let turn = math::atan2(gravity.y, gravity.z) - math::atan2(body.y, body.z);
     Some(math::wrap_pi(turn) * side)
 }
@@ -112,7 +109,7 @@ mod tests {
 
     use super::*;
 
-    /// What a sensor on an arm tilted by `tilt` sees on a body at `q`.
+    /// Reading of a sensor on an arm tilted by `tilt`, on a body at `q`.
     fn seen(q: Quat, tilt: f32, side: f32) -> Vec3 {
         let arm = Quat::from_euler(side * tilt, 0.0, 0.0);
         (q * arm).rotate_inverse(Vec3::new(0.0, 0.0, GRAVITY))
@@ -125,7 +122,7 @@ mod tests {
                 for (roll, pitch) in [(0.0, 0.0), (0.3, 0.0), (-0.4, 0.2), (0.1, -0.3)] {
                     let q = Quat::from_euler(roll, pitch, 0.7);
                     let got = arm_tilt(q, seen(q, tilt, side), side).unwrap();
-                    // Pitch couples into the planar angle by less than 1 - cos(pitch); micromath adds its own.
+                    // Pitch couples into the planar angle by less than 1 - cos(pitch); micromath adds its error.
                     assert!((got - tilt).abs() < 0.015, "{side} {tilt} {roll} {pitch}: {got}");
                 }
             }

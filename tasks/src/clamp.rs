@@ -1,17 +1,17 @@
-//! The loops that close the arms on the pipe and let them go.
+//! The gripper's task, 100 Hz: closes the arms on the pipe and lets them go.
 //!
-//! To be done before the next step. A step's forces and judgement carry the time at which its pressures were
-//! converted, or that of its command where no pressure is fresh. What happens when an input is stale by its link's limit:
+//! A step ends before the next. Forces and judgement carry the time at which the pressures were converted, or of the
+//! command without fresh pressure. When an input is stale by its link's limit:
 //!
-//! - the command: no step is made and nothing is sent, so that forces and judgement age: the servos stay, the
-//!   grip is unknown. Loops and forces are held for the next command; before the first, what the run before left;
-//! - the pressure: that arm's force is held and it is faulty until there is one again;
-//! - an arm's tilt: its force is held, and after half a second it is faulty;
-//! - the thrusts: the motors have stopped by then, so the thrust fed forward is none;
-//! - the tension: the force asked for counts as given, and nothing is proven free.
+//! - command: no step is made and nothing is sent, so that forces and judgement age: the servos stay, the grip is
+//!   unknown. Loops and forces are held for the next command; before the first, those of the run before the restart;
+//! - pressure: that arm's force is held, and it is faulty until there is a pressure again;
+//! - an arm's tilt: its force is held, and after 0.5 s it is faulty;
+//! - thrusts: the motors have stopped by then, so the feed-forward is zero;
+//! - tension: the demanded force counts as given, and nothing is proven free.
 //!
-//! No force is sent before one is known: after power-on the arms may be closed, and the servos' gears hold them as long
-//! as no pulse opens them.
+//! No force is sent before one is known: at power-up closed arms are held by the servos' gears until a pulse opens
+//! them.
 
 use crate::retained_state::RetainedState;
 use embassy_time::Instant;
@@ -24,7 +24,7 @@ use crate::links::{
     ClampCommand, Contact, GripState, Links, Newest, Stamped, TendonForce, TendonForces, TendonOrder,
 };
 
-/// Runs the clamp loops; never returns.
+/// Runs the gripper; never returns.
 pub async fn run(links: &Links) -> ! {
     let mut rate = FixedRate::of(links, TaskId::Clamp);
     let config = Config::from_params(&links.params);
@@ -74,8 +74,7 @@ pub async fn run(links: &Links) -> ! {
     }
 }
 
-/// Loops at the start. Those of closed arms continue, and their servos get pulses for where they stand; all others wait
-/// for a command.
+/// Initial loops. Those of closed arms continue, their servos pulsed where they stand; all others wait for a command.
 fn begin(links: &Links) -> Gripper {
     match links.start.retained {
         Some(RetainedState {
@@ -95,7 +94,6 @@ fn begin(links: &Links) -> Gripper {
     }
 }
 
-/// What each arm is to do, and what is known of it now, with the fresh pressures `contact`.
 fn inputs(links: &Links, close: PerArm<bool>, contact: Option<Stamped<Contact>>) -> PerArm<ArmInput> {
     let mut inputs = close.map(|close| ArmInput {
         close,

@@ -1,6 +1,6 @@
-//! The commander: everything's health in, the mode and what follows from it out.
+//! The commander, 100 Hz: runs the mode logic on the state of the vehicle.
 //!
-//! A miss costs one step of a state machine whose shortest timer is 50 ms; rotors stop when its setpoint is stale.
+//! A miss delays a state machine whose shortest timer is 50 ms; rotors stop when its setpoint is stale.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::math::cos;
@@ -11,11 +11,10 @@ use crate::deadline::{FixedRate, Level, TaskId};
 use crate::links::{Links, MixOutput, Status};
 use crate::warning::Warning;
 
-/// Infill below which the paper's authors did not fly, %.
+/// Smallest infill flown in the paper, %.
 const INFILL_FLOWN: f32 = 6.0;
-/// Time over which missed deadlines are counted.
 const LATE_WINDOW: Duration = Duration::from_secs(1);
-/// Misses of the whole flight level in that time beyond which it counts as late: 1 % of one task's runs.
+/// Allowed misses of the flight level in that window: 1 % of one task's runs.
 const LATE_MAX: u32 = 10;
 
 /// Steps the mode logic; never returns.
@@ -55,7 +54,7 @@ pub async fn run(links: &Links) -> ! {
     }
 }
 
-/// What the pilot must know without being stopped by it.
+/// Warning that does not affect the modes.
 fn warning(links: &Links, mode: Mode) -> &'static str {
     let started = Warning::Restarted(links.start.cause);
     if links.mix.fresh().is_some_and(|m| m.running && m.tilt_fault) {
@@ -71,7 +70,6 @@ fn warning(links: &Links, mode: Mode) -> &'static str {
     }
 }
 
-/// What the links say now; a stale message counts as none.
 fn collect(links: &Links, late: bool) -> Inputs {
     Inputs {
         sticks: links.rc.fresh().map(|rc| rc.sticks),
@@ -94,7 +92,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
     }
 }
 
-/// Thrust along body -z that the mixer asks for, N.
+/// Demanded thrust along body -z, N.
 fn lift(mix: &MixOutput) -> f32 {
     if !mix.running {
         return 0.0;
@@ -106,7 +104,7 @@ fn lift(mix: &MixOutput) -> f32 {
         .sum()
 }
 
-/// Missed deadlines of the flight level over the last window: they forbid arming.
+/// Missed deadlines of the flight level; too many forbid arming.
 struct Lateness {
     window_start: Instant,
     count_at_start: u32,

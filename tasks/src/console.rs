@@ -113,6 +113,10 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             }
             Command::Status => self.status().await,
             Command::Timing => self.timing().await,
+            Command::Version => {
+                let (version, board) = (env!("CARGO_PKG_VERSION"), self.chip.board());
+                self.out.line(format_args!("SOPHIE {version} on {board}")).await;
+            }
             Command::Silicon => self.silicon().await,
             Command::BrownOut => self.brown_out().await,
             Command::SetBrownOut => self.set_brown_out().await,

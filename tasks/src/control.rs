@@ -1,4 +1,4 @@
-//! Attitude and rate control, one step for each attitude.
+//! Attitude and rate control, one step for each attitude (1 kHz).
 //!
 //! The [`DEADLINE`] counts from data-ready. Without a fresh setpoint the rotors stop.
 

@@ -1,4 +1,4 @@
-//! Fixed rates and deadlines: measured, counted, and never made up for by a burst.
+//! Fixed rates and deadlines: misses are counted, not made up for by a burst.
 
 use embassy_time::{Duration, Instant, Timer};
 
@@ -7,12 +7,12 @@ pub use crate::schedule::{Level, TaskId};
 use crate::timing::Run;
 pub use crate::timing::Timing;
 
-/// Records one run of an event-driven task: released when its input was measured, run from `started` to now.
+/// Records a run of an event-driven task, released by its input's measurement, until now.
 pub fn record_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
     record_run_until(links, task, released, started, Instant::now(), deadline);
 }
 
-/// The same on the way to the motor frame, after which [`Links::settle`] adds it.
+/// Notes such a run ahead of the motor frame; [`Links::settle`] adds it later.
 #[inline]
 pub fn note_run(links: &Links, task: TaskId, released: Instant, started: Instant, deadline: Duration) {
     links.note(
@@ -27,7 +27,7 @@ pub fn note_run(links: &Links, task: TaskId, released: Instant, started: Instant
     );
 }
 
-/// Records one run whose deadline is for what it did at `ended`, not for what it waits for afterwards.
+/// Records a run whose deadline applies to `ended`, before what it waits for afterwards.
 pub fn record_run_until(
     links: &Links,
     task: TaskId,
@@ -48,7 +48,7 @@ pub fn record_run_until(
     );
 }
 
-/// First instant from `now` on that is `phase` and a whole number of `period`s of the board's clock.
+/// First instant from `now` at `phase` of the board's clock's periods.
 pub fn begins_next(now: Instant, period: Duration, phase: Duration) -> Instant {
     let period = period.as_ticks().max(1);
     let passed = (now.as_ticks() % period + period - phase.as_ticks() % period) % period;
@@ -59,19 +59,18 @@ pub fn begins_next(now: Instant, period: Duration, phase: Duration) -> Instant {
 /// Start of a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
-    /// When the period's work should have started.
+    /// Scheduled start.
     pub released: Instant,
-    /// When it started.
+    /// Actual start.
     pub started: Instant,
-    /// Time since the start before, s, limited to half and four times the period.
+    /// Time since the last start, s, limited to half and four times the period.
     pub dt: f32,
 }
 
-/// The loop of every periodic task.
+/// Loop of a periodic task.
 ///
-/// embassy's `Ticker` fires every missed tick at once after a stall, which feeds a control law a burst of
-/// steps with no time between them. This one drops them, counts them as overruns, and restarts the period.
-/// Dropped periods keep the phase: the next release is the next multiple of the period.
+/// embassy's `Ticker` fires every missed tick at once after a stall: a burst of steps without time between. This one
+/// counts missed periods as overruns and keeps the phase.
 pub struct FixedRate<'a> {
     links: &'a Links,
     task: TaskId,
@@ -83,13 +82,13 @@ pub struct FixedRate<'a> {
 }
 
 impl<'a> FixedRate<'a> {
-    /// The loop of `task` as it is declared.
+    /// The loop of `task` as declared.
     pub fn of(links: &'a Links, task: TaskId) -> Self {
         Self::new(links, task, task.period(), task.deadline())
     }
 
-    /// A loop of `period` whose work must end within `deadline` of its release. Periods begin at the task's phase of the
-    /// board's clock: whatever the order in which tasks are spawned, one that reads another's message runs after it.
+    /// A loop of `period` whose work must end within `deadline` of its release. Periods begin at the task's phase of
+    /// the board's clock: readers run after writers, however spawned.
     pub fn new(links: &'a Links, task: TaskId, period: Duration, deadline: Duration) -> Self {
         Self {
             links,
@@ -102,7 +101,7 @@ impl<'a> FixedRate<'a> {
         }
     }
 
-    /// Ends the run before, if any, and waits for the next release.
+    /// Ends the last run, if any, and waits for the next release.
     pub async fn next(&mut self) -> Tick {
         let period_s = self.period.as_micros() as f32 * 1e-6;
         let previous = self.current.take();

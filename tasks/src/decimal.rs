@@ -1,28 +1,27 @@
-//! Decimal numbers, read and shown. The library's own conversions are exact to the last bit and take 20 KB of flash;
-//! parameters have at most seven digits, for which one rounded division is exact as well.
+//! Decimal numbers, read and shown. The library's exact conversions take 20 KB of flash; for a parameter's seven digits
+//! at most one rounded division is exact as well.
 
 use core::fmt;
 
-/// Largest whole number shown, exact in the 24 bits of an `f32`: seven digits, eight of those that begin with 1 (below
-/// 1.6777216).
+/// Largest whole number shown, exact in an `f32`: seven digits, or eight below 1.6777216e7.
 const UNITS_MAX: u64 = 1 << 24;
-/// Digits read; 32 bits hold them.
+/// 32 bits hold them.
 const DIGITS_READ: u32 = 9;
-/// Most places shown: the smallest parameters are a few millionths.
+/// The smallest parameters are a few millionths.
 const PLACES_MAX: usize = 10;
 /// Exact in `f32`.
 const POWERS: [f32; PLACES_MAX + 1] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
-/// Largest exponent read; beyond it every number is 0 or too large.
+/// Beyond it every number is 0 or too large.
 const EXPONENT_MAX: i32 = 60;
-/// Size from which numbers are shown with a power of ten.
+/// Shown with a power of ten from here.
 const LARGE: f32 = 1e9;
-/// Longest text: sign, nine digits, point and places.
+/// Sign, nine digits, point and places.
 const TEXT: usize = 24;
 
-/// Reads digits with at most one point, a sign before them and an exponent (`e-3`) behind. Correctly rounded for up to
-/// seven digits and exponents within ±10, else to a last bit; digits beyond the ninth only count by their place.
+/// Reads digits with at most one point, a sign before and an exponent (`e-3`) behind. Correctly rounded for up to seven
+/// digits and exponents within ±10, else to a last bit; digits beyond the ninth only count by their place.
 ///
-/// `None` for anything else, including `inf` and `nan`, and for numbers that are too large.
+/// `None` for anything else, including `inf`, `nan` and overflow.
 pub fn parse(text: &str) -> Option<f32> {
     let (sign, digits) = match text.as_bytes() {
         [b'-', rest @ ..] => (-1.0, rest),
@@ -94,8 +93,7 @@ fn scaled(mut value: f32, exponent: i32) -> f32 {
     value
 }
 
-/// A number to show: with the fewest digits that read back to it, at most seven or eight, or with the places of a
-/// precision (`{:.2}`).
+/// A number shown with the fewest digits that read back to it, at most seven or eight, or with a precision (`{:.2}`).
 #[derive(Clone, Copy, Debug)]
 pub struct Decimal(pub f32);
 
@@ -132,7 +130,7 @@ impl fmt::Display for Decimal {
         if negative {
             text.push(b'-');
         }
-        // `pad` would cut the text by the precision.
+        // `pad` would cut by the precision.
         match f.width() {
             Some(width) if f.align() != Some(fmt::Alignment::Right) => write!(f, "{:<width$}", text.as_str()),
             Some(width) => write!(f, "{:>width$}", text.as_str()),
@@ -141,7 +139,7 @@ impl fmt::Display for Decimal {
     }
 }
 
-/// A number beyond any parameter's: seven digits and the power of ten.
+/// Seven digits and a power of ten.
 fn large(value: f32, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let (mut digits, mut exponent) = (value, 0);
     while digits.abs() >= 10.0 {
@@ -157,7 +155,7 @@ fn fixed(magnitude: f32, places: usize) -> (u64, usize) {
     ((magnitude * power + 0.5) as u64, places)
 }
 
-/// The same with the fewest places that read back, within seven digits.
+/// Like [`fixed`], with the fewest places that read back, within seven digits.
 fn shortest(magnitude: f32) -> (u64, usize) {
     let mut best = fixed(magnitude, 0);
     for (places, &power) in POWERS.iter().enumerate() {

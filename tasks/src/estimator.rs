@@ -1,6 +1,4 @@
-//! Attitude estimation, one step for each inertial sample.
-//!
-//! The [`DEADLINE`] counts from the data-ready of the sample.
+//! Attitude estimation, one step for each inertial sample (1 kHz). The [`DEADLINE`] counts from its data-ready.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::chain::Attitude;

@@ -1,10 +1,9 @@
 //! Times on a logarithmic scale, in a fixed number of buckets.
 //!
-//! Below 8 µs each microsecond has a bucket, above it every octave has four: a quantile is never too small, and less
-//! than a quarter too large. Smallest and largest are exact. Adding takes the same few instructions for any time,
-//! without a division.
+//! Each microsecond below 8 µs has a bucket, every octave above has four: a quantile is never too small, and less than
+//! a quarter too large. Smallest and largest are exact. Adding takes a few instructions, without division.
 
-/// Buckets: up to 65.5 ms, and all beyond in the last.
+/// Buckets: up to 65.5 ms, the last for all beyond.
 pub const BUCKETS: usize = 60;
 
 /// A histogram of times.
@@ -16,7 +15,7 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Nothing added yet.
+    /// Empty.
     pub const EMPTY: Self = Self {
         counts: [0; BUCKETS],
         min: u32::MAX,
@@ -47,7 +46,7 @@ impl Histogram {
         self.max
     }
 
-    /// Time, µs, that `permille` of a thousand do not exceed, less than a quarter too large; 0 without any.
+    /// Time, µs, not exceeded by `permille` of a thousand, less than a quarter too large; 0 without any.
     pub fn quantile(&self, permille: u32) -> u32 {
         let rank = (self.count() * permille.min(1000)).div_ceil(1000).max(1);
         let mut below = 0;

@@ -1,5 +1,5 @@
-//! Newest value for readers at every level, who look at it in place: only what they need is copied under the lock,
-//! which masks interrupts.
+//! Newest value for readers at every level, looked at in place: only what they need is copied under the lock, which
+//! masks interrupts.
 
 use core::cell::RefCell;
 use core::future::poll_fn;
@@ -9,14 +9,14 @@ use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::waitqueue::MultiWakerRegistration;
 
-/// The mutex of every link: tasks of different priority meet here on the board.
+/// Mutex of every link, shared by tasks of different priority.
 pub type Raw = CriticalSectionRawMutex;
 
 /// Most receivers of one link.
 pub const RECEIVERS: usize = 8;
 
-/// A value and the wakers of its receivers. A function called with the value in place must not use the same
-/// `LastValue`, which is locked and looks empty.
+/// A value and the wakers of its receivers. Within a function on the value in place, the same `LastValue` is locked and
+/// looks empty.
 pub struct LastValue<T> {
     state: Mutex<Raw, RefCell<State<T>>>,
 }
@@ -58,7 +58,7 @@ impl<T> LastValue<T> {
         });
     }
 
-    /// `f` of the value; `None` before the first.
+    /// Applies `f` to the value; `None` before the first.
     #[inline]
     pub fn look<R>(&self, f: impl FnOnce(&T) -> R) -> Option<R> {
         self.with(|state| state.value.as_ref().map(f)).flatten()
@@ -71,7 +71,7 @@ impl<T> LastValue<T> {
             state.receivers += usize::from(free);
             free.then_some(Receiver {
                 newest: self,
-                // A value that is there is new to it.
+                // A value already there is new to it.
                 seen: state.sent.wrapping_sub(1),
             })
         })
@@ -102,7 +102,7 @@ impl<T> Receiver<'_, T> {
         self.changed_to(T::clone).await
     }
 
-    /// `f` of the next unseen value.
+    /// Applies `f` to the next unseen value.
     #[inline]
     pub async fn changed_to<R>(&mut self, mut f: impl FnMut(&T) -> R) -> R {
         poll_fn(|cx| self.poll(cx, &mut f)).await
@@ -135,7 +135,7 @@ impl<T> Drop for Receiver<'_, T> {
 #[cfg(test)]
 mod tests {
     use embassy_futures::poll_once;
-    // Provides the critical section of host tests.
+    // Critical section of host tests.
     use sophie_clock as _;
 
     use super::*;

@@ -25,7 +25,7 @@ pub mod commander;
 pub mod console;
 pub mod control;
 pub mod deadline;
-mod decimal;
+pub mod decimal;
 pub mod estimator;
 pub mod histogram;
 pub mod imu;

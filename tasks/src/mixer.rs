@@ -1,6 +1,4 @@
-//! Allocation, one step for each demand, with the arms' present tilt in it.
-//!
-//! The [`DEADLINE`] counts from data-ready.
+//! Allocation at the arms' present tilt, one step for each demand (1 kHz). The [`DEADLINE`] counts from data-ready.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::chain::{ArmReading, MixOutput, Mixing, Surroundings};
@@ -13,7 +11,7 @@ use crate::links::Links;
 /// Time from data-ready to the motor commands.
 pub const DEADLINE: Duration = TaskId::Mixer.deadline();
 
-/// Allocates at 1 kHz by what `allocation` makes of the parameters; returns only if the link has no receiver left.
+/// Allocates at 1 kHz; returns only if the link has no receiver left.
 pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) -> A) {
     let Some(mut demand) = links.demand.receiver() else {
         return;
@@ -23,7 +21,7 @@ pub async fn run<A: Allocation>(links: &Links, allocation: impl FnOnce(&Params) 
     loop {
         let message = demand.changed().await;
         let started = Instant::now();
-        // Copied only while it is new: nine steps of ten have no use for it.
+        // Copied only while new, once in ten steps.
         let new = links.arms.look(|angles| mixing.awaits(angles.at.as_micros()));
         let angles = new.filter(|new| *new).and_then(|_| links.arms.latest());
         let arms = angles.map(|angles| ArmReading {

@@ -1,7 +1,6 @@
-//! Motor output, one frame for each mix; stops the motors by itself when mixes stop coming.
+//! Motor output, one frame for each mix (1 kHz); stops the motors when mixes stop coming.
 //!
-//! The [`DEADLINE`] of the frame counts from data-ready. This task's response is therefore that of the
-//! whole chain.
+//! The [`DEADLINE`] of the frame counts from data-ready: the response is that of the whole chain.
 
 use embassy_time::{Duration, Instant, with_deadline, with_timeout};
 
@@ -12,18 +11,17 @@ use sophie_control::wrench::PerArm;
 
 /// Time from data-ready to the frame.
 pub const DEADLINE: Duration = TaskId::Motors.deadline();
-/// Time after which a frame is given up: ten times the slowest protocol's.
+/// Time-out of a frame; the slowest, of DShot150, takes 0.107 ms.
 pub const FRAME_LIMIT: Duration = Duration::from_millis(3);
 
-/// Serves the motors; returns, motors stopped, only if the link has no receiver left.
+/// Drives the motors; returns, motors stopped, only if the link has no receiver left.
 pub async fn run(links: &Links, mut port: impl Motors) {
     write(&mut port, [0.0; 4], Instant::now()).await;
     let Some(mut mix) = links.mix.receiver() else {
         return;
     };
     loop {
-        // `fresh` beside the timeout: a mix that was computed from an old sample must not spin a motor.
-        // Of a mix only its commands are copied: the rest is for others.
+        // `fresh` beside the timeout: a mix from an old sample must not spin a motor.
         let next = mix.changed_to(|mix| Stamped {
             at: mix.at,
             value: mix.value.commands,
@@ -36,10 +34,10 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                     .unwrap_or([0.0; 4]);
                 let commands = commands.map(|c| if c.is_finite() { c } else { 0.0 });
                 let began = write(&mut port, commands, started).await;
-                // A frame that never began is late by all the time that was waited for it.
+                // An unsent frame is late by the whole wait.
                 let began = began.unwrap_or_else(Instant::now);
                 record_run_until(links, TaskId::Motors, message.at, started, began, DEADLINE);
-                // The frame is out: now there is time for what the stages before it have noted.
+                // The frame is out: adds what the earlier stages noted.
                 links.settle();
             }
             Err(_) => {
@@ -49,7 +47,7 @@ pub async fn run(links: &Links, mut port: impl Motors) {
     }
 }
 
-/// Sends one frame and gives its beginning; one that hangs is given up (`None`): the next follows within a millisecond.
+/// Sends one frame and returns its start; `None` if it hangs: the next follows within 1 ms.
 async fn write(port: &mut impl Motors, commands: PerArm<f32>, now: Instant) -> Option<Instant> {
     with_deadline(now + FRAME_LIMIT, port.write(commands)).await.ok()
 }

@@ -1,4 +1,4 @@
-//! Parameters at start-up (defaults, overlaid with what is stored), and ranges shown to people.
+//! Parameters at start-up (defaults, overlaid with the stored ones), and their display.
 
 use core::fmt;
 
@@ -9,21 +9,21 @@ use crate::decimal::{self, Decimal};
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
 
-/// Parameters to fly with, and the result of reading them. Called once, before [`Links::new`].
+/// Parameters in force and the result of reading them. Called once, before [`Links::new`].
 pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {
     let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
     (params, loaded)
 }
 
-/// Refuses arming if the storage could not be read. Refused values do not: their defaults are sound.
+/// Refuses arming if the storage is unreadable. Refused values have sound defaults.
 pub fn report(links: &Links, loaded: Loaded) {
     let foreign = loaded.foreign.is_some();
     links.report(ArmingInhibit::StorageUnreadable, loaded.unreadable && !foreign);
     links.report(ArmingInhibit::StorageForeign, foreign);
 }
 
-/// What a parameter takes: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus".
+/// Permitted values: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus".
 #[derive(Clone, Copy, Debug)]
 pub struct Allowed<'a>(pub &'a ParamInfo);
 
@@ -47,7 +47,7 @@ impl fmt::Display for Allowed<'_> {
     }
 }
 
-/// The value of `text` for `row`: a number (under an old name in its old unit), or a choice's name; `None` for anything
+/// The value of `text` for `row`: a number (under an old name in its old unit) or a choice's name; `None` for anything
 /// else. The range is not checked.
 pub(crate) fn parse_value(row: &ParamInfo, renamed: Option<&Renamed>, text: &str) -> Option<f32> {
     if let Some(choice) = row.choice_named(text) {
@@ -57,7 +57,7 @@ pub(crate) fn parse_value(row: &ParamInfo, renamed: Option<&Renamed>, text: &str
     Some(renamed.map_or(number, |renamed| renamed.convert(number)))
 }
 
-/// A value: the number, with its name where it has one.
+/// A value with its choice's name, if any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown<'a>(pub &'a ParamInfo, pub f32);
 
@@ -71,7 +71,7 @@ impl fmt::Display for Shown<'_> {
     }
 }
 
-/// A unit behind its value; nothing for a pure number.
+/// A unit behind its value, if any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit(pub &'static str);
 

@@ -212,6 +212,9 @@ pub trait Chip {
     /// Restarts, motors stopped first. Does not return on a board.
     fn restart(&mut self);
 
+    /// Name of the board that the firmware was built for.
+    fn board(&self) -> &'static str;
+
     /// What the start-up looked at.
     fn looks(&self) -> &[Look];
 

@@ -1,8 +1,7 @@
-//! Receiver: bytes in, the pilot's input out.
+//! Receiver: decodes bytes to the pilot's sticks.
 //!
-//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. A frame that is broken or has invalid
-//! channels is counted and dropped, so that the link turns stale; likewise when the receiver reports a lost transmitter
-//! or the line has the other protocol.
+//! CRSF or SBUS by the parameter `rc_protocol`; 50 to 500 frames a second. Invalid frames are counted and dropped;
+//! then, and with a lost transmitter or the wrong protocol, the link turns stale.
 
 use embassy_time::{Duration, Instant, Timer};
 
@@ -10,11 +9,11 @@ use crate::deadline::{TaskId, record_run};
 use crate::links::Links;
 use crate::ports::{RcDecoder, SerialInput};
 
-/// Bytes taken at once: two of the longest frames.
+/// Bytes per read: two of the longest frames.
 const BUFFER: usize = 128;
-/// Deadline of decoding, from the bytes' arrival.
+/// From the bytes' arrival.
 const DEADLINE: Duration = TaskId::Rc.deadline();
-/// Pause after a line error or an empty read, so that a dead line cannot take the processor.
+/// Pause after an error or an empty read: a dead line must not take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
 
 /// Decodes frames; never returns.

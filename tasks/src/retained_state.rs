@@ -1,8 +1,8 @@
-//! State that outlives a reset: the grip on the pipe, and what must otherwise be calibrated at rest.
+//! State retained over a reset: the grip on the pipe, and what else would need calibration at rest.
 //!
-//! A reset (watchdog, fault, command, pin) keeps memory that start-up code does not touch. Two copies lie there,
-//! written by turns, each with a sequence number and a checksum: a reset during a write leaves the other one whole.
-//! After power-on the memory is noise, which fails the checksum.
+//! A reset (watchdog, fault, command, pin) keeps memory that start-up does not touch. Two copies there are written by
+//! turns, with sequence number and checksum: a reset during a write leaves the other whole. After power-on the noise
+//! fails the checksum.
 
 use sophie_control::grip_fault::GripFault;
 use sophie_control::grip_memory::GripMemory;
@@ -16,33 +16,33 @@ pub const WORDS: usize = 16;
 /// One copy as it lies in memory.
 pub type Words = [u32; WORDS];
 
-/// Marks a copy ("WARM") of this layout; each layout has its own number.
+/// Marks a copy ("WARM") and its layout's number.
 const MAGIC: u32 = 0x5741_524D + 2;
 const FAULT_BITS: u32 = 4;
-/// Largest servo angle accepted, rad: beyond any servo's travel.
+/// Beyond any servo's travel, rad.
 const ANGLE_MAX: f32 = 6.5;
-/// Largest tendon force accepted, N: beyond any parameters' limit.
+/// Beyond any parameters' limit, N.
 const FORCE_MAX: f32 = 2000.0;
-/// Largest gyro bias accepted, rad/s: the estimator's own bound.
+/// The estimator's own bound, rad/s.
 const BIAS_MAX: f32 = 0.1;
 
-/// State left to the next run.
+/// State retained for the next run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RetainedState {
     /// The grip; never [`GripMemory::Unknown`] in memory.
     pub grip_memory: GripMemory,
-    /// Angle to which each tendon's servo was sent, rad from release, 0 to 6.5.
+    /// Commanded angle of each servo, rad from release, 0 to 6.5.
     pub angle: PerArm<f32>,
-    /// Force asked of each tendon, less its share against the rotor's thrust, N, 0 to 2000.
+    /// Force of each tendon, less its share against the rotor's thrust, N, 0 to 2000.
     pub force: PerArm<f32>,
     /// Latched fault of each closed arm.
     pub fault: PerArm<Option<GripFault>>,
-    /// Gyro bias, rad/s, at most 0.1 on each axis; `None` before the first calibration at rest.
+    /// Gyro bias, rad/s, within ±0.1; `None` before calibration.
     pub gyro_bias: Option<Vec3>,
 }
 
 impl RetainedState {
-    /// Words of one copy; `None` with a grip not yet checked or an invalid value.
+    /// Words of one copy; `None` with an unchecked grip or an invalid value.
     pub fn to_words(&self, sequence: u32) -> Option<Words> {
         let (grip_memory, arms) = match self.grip_memory {
             GripMemory::Unknown => return None,
@@ -129,7 +129,7 @@ impl RetainedState {
         retained.is_sane().then_some((retained, sequence))
     }
 
-    /// Later valid copy and its sequence number.
+    /// Newest valid copy and its sequence number.
     pub fn newest(copies: &[Words; 2]) -> Option<(Self, u32)> {
         let [a, b] = copies.each_ref().map(Self::from_words);
         match (a, b) {
@@ -147,7 +147,7 @@ impl RetainedState {
             && within(&bias, -BIAS_MAX, BIAS_MAX)
     }
 
-    /// The same with servo angles and forces limited to what validation accepts.
+    /// Servo angles and forces limited to what validation accepts.
     pub fn bounded(self) -> Self {
         Self {
             angle: self.angle.map(|a| math::clamp(a, 0.0, ANGLE_MAX)),
@@ -175,7 +175,7 @@ fn arm_choice(code: u32) -> Option<ArmChoice> {
         .find(|&arms| arm_code(arms) == code)
 }
 
-/// Only latched faults: others show themselves again.
+/// Only latched faults: others recur by themselves.
 fn fault_code(fault: Option<GripFault>) -> u32 {
     match fault {
         Some(GripFault::Sensor) => 1,
@@ -185,7 +185,7 @@ fn fault_code(fault: Option<GripFault>) -> u32 {
     }
 }
 
-/// The outer `None` is an unknown code.
+/// Outer `None`: unknown code.
 fn fault_of(code: u32) -> Option<Option<GripFault>> {
     match code {
         0 => Some(None),
@@ -196,7 +196,7 @@ fn fault_of(code: u32) -> Option<Option<GripFault>> {
     }
 }
 
-/// CRC-32 (IEEE 802.3, bit by bit: a few thousand cycles) of all words but the last; it finds every single wrong bit.
+/// CRC-32 (IEEE 802.3, bitwise: a few thousand cycles) of all words but the last.
 fn checksum(words: &Words) -> u32 {
     let (_, head) = words.split_last().unwrap_or((&0, &[]));
     let mut crc = u32::MAX;

@@ -1,7 +1,7 @@
-//! Writes the retained state; run by the supervisor.
+//! Writes the retained state for the supervisor, 100 Hz.
 //!
-//! It is at most 30 ms old (a servo's frame and a run of its own), in which a winding servo turns 0.2 rad and a holding
-//! one not at all. A stale or missing message changes nothing.
+//! It is at most 30 ms old (a servo's frame and a run), in which a winding servo turns 0.2 rad. A stale or missing
+//! message changes nothing.
 
 use crate::retained_state::RetainedState;
 use sophie_control::wrench::PerArm;
@@ -17,7 +17,7 @@ pub struct RetainedStore<R> {
 }
 
 impl<R: Retain> RetainedStore<R> {
-    /// Continues from the state of the run before.
+    /// Continues from the last run's state.
     pub fn new(links: &Links, port: R) -> Self {
         Self {
             port,
@@ -26,7 +26,7 @@ impl<R: Retain> RetainedStore<R> {
         }
     }
 
-    /// Keeps the present state, once the commander knows whether the arms are closed.
+    /// Keeps the present state, once the commander knows the arms.
     pub fn keep(&mut self, links: &Links) {
         if let Some(grip_memory) = links.grip_memory.fresh() {
             self.retained.grip_memory = grip_memory;
@@ -36,7 +36,7 @@ impl<R: Retain> RetainedStore<R> {
         }
         if let Some(TendonOrder::Measured(tendons) | TendonOrder::Blind(tendons)) = links.tendons.fresh() {
             // A rotor's thrust bends its arm off the pipe. The reset stops it, and the tendon's share against it would
-            // press the pipe.
+            // then press the pipe.
             let thrusts = links
                 .mix
                 .fresh()
@@ -61,7 +61,7 @@ impl<R: Retain> RetainedStore<R> {
         let sequence = self.sequence.wrapping_add(1);
         if let Some(words) = self.retained.to_words(sequence) {
             self.sequence = sequence;
-            // By turns: a reset during the write leaves the copy before whole.
+            // By turns: a reset during the write leaves the other copy whole.
             self.port.keep(sequence & 1 == 1, &words);
         }
     }

@@ -1,11 +1,10 @@
-//! The tendon servos: forces asked for become pulses, and the tension that they can be giving is published.
+//! Drives the tendon servos: converts forces to pulses and publishes the estimated tension.
 //!
-//! At the servos' frame (`servo_frame_rate`, 50 to 333 Hz). Until the first force there are no pulses:
-//! when power comes on on the pipe the gears hold, and nothing moves before the clamp loop knows what it wants. After a
-//! restart the drives continue from the angles that the run before left. Forces whose measurement is stale leave
-//! the servos where they are; so does a missing tilt for its arm, unless that arm is to be released.
+//! Runs at the servos' frame rate (`servo_frame_rate`, 50 to 333 Hz), without pulses until the first force: on the pipe
+//! at power-up the gears hold. After a restart the drives continue from the retained angles. Stale forces hold the
+//! servos; so does a missing tilt, unless its arm is to be released.
 //!
-//! The task closes the chain from contact pressure to pulse and measures it (`ChainWatch`).
+//! The task ends the chain from contact pressure to pulse and measures it (`ChainWatch`).
 
 use embassy_time::{Duration, Instant};
 use sophie_control::grip_memory::GripMemory;
@@ -17,21 +16,21 @@ use crate::links::{Links, Newest, Stamped, TendonForce, TendonOrder};
 use crate::ports::Servos;
 use crate::timing::Run;
 
-/// When the servos' frames begin by the board's clock: time enough after the task's own start to write the pulse widths,
-/// which take effect with the next frame. A port with frames of its own puts them there.
+/// Start of the servos' frames by the board's clock, also of a port's own: after the task has written the pulse widths,
+/// which take effect then.
 pub const FRAME_AT: Duration = Duration::from_micros(1500);
 
-/// Time between two frames of servos that take `hz` frames a second.
+/// Frame period at `hz` frames a second.
 pub fn period(hz: f32) -> Duration {
     Duration::from_micros((1e6 / hz + 0.5) as u64)
 }
 
-/// Longest time from the conversion of pressures to the beginning of the pulse that answers them: to the frame of the
-/// clamp's step, and 2 ms for a conversion that the clamp sees only as the one before. Frames that do not keep the
-/// clamp's phase (all but 50, 100 and 200 Hz) are up to one frame later.
+/// Longest time from the conversion of pressures to the pulse that answers them: up to the frame of the clamp's step,
+/// and 2 ms for a conversion it just missed. Frames out of the clamp's phase (all but 50, 100 and 200 Hz) are up to one
+/// frame later.
 ///
-/// A miss leaves a tendon's force behind what the pressure asks for: at most by 0.3 N for each ms, since the clamp turns
-/// it by 300 N/s at most. From 20 N (67 ms) on its integral waits, and the grip takes longer to close.
+/// A miss makes a tendon's force lag by at most 0.3 N per ms, as the clamp's rate limit is 300 N/s. From 20 N (67 ms)
+/// its integral waits, and the grip closes later.
 pub fn chain_deadline(frame: Duration) -> Duration {
     let in_phase = FRAME_AT + TaskId::Analog.period();
     let (frame_us, clamp_us) = (frame.as_micros().max(1), TaskId::Clamp.period().as_micros());
@@ -42,7 +41,7 @@ pub fn chain_deadline(frame: Duration) -> Duration {
     }
 }
 
-/// Serves the servos; never returns.
+/// Drives the servos; never returns.
 pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     let period = period(links.params.servo_frame_rate);
     let mut rate = FixedRate::new(links, TaskId::Servos, period, period);
@@ -69,14 +68,12 @@ pub async fn run(links: &Links, mut port: impl Servos) -> ! {
     }
 }
 
-/// One tendon: its reel and the drive of its servo.
 struct Tendon {
     reel: Reel,
     drive: TendonDrive,
 }
 
 impl Tendon {
-    /// One step of `dt` s as `asked`, with the tilt (rad) of its arm.
     fn step(&mut self, asked: TendonForce, tilt: Option<f32>, dt: f32) -> Drive {
         if asked.stay {
             self.stay(tilt, dt)
@@ -85,16 +82,14 @@ impl Tendon {
         }
     }
 
-    /// One step of `dt` s that leaves the servo where it is.
     fn stay(&mut self, tilt: Option<f32>, dt: f32) -> Drive {
         self.drive.hold_position(&self.reel, tilt, dt)
     }
 }
 
-/// The four tendons.
 struct Tendons {
     arms: PerArm<Tendon>,
-    /// An order has come: arms that were found wound have their angle.
+    /// An order has come: arms found wound have their angle.
     begun: bool,
 }
 
@@ -104,7 +99,7 @@ impl Tendons {
             reel,
             drive: TendonDrive::new(),
         });
-        // Kept arms are on gears alone: the angle of a servo without pulses is not known.
+        // Without pulses the angle is unknown.
         let known = links
             .start
             .retained
@@ -117,7 +112,6 @@ impl Tendons {
         Self { arms, begun: false }
     }
 
-    /// One step of `dt` s by the newest order, with the fresh tilts (rad).
     fn step(&mut self, newest: &Newest<TendonOrder>, tilts: PerArm<Option<f32>>, dt: f32) -> PerArm<Drive> {
         let mut output = [Drive::default(); 4];
         let placed = match newest {
@@ -146,7 +140,7 @@ impl Tendons {
                     };
                 }
             }
-            // Held forces are no order to wind, whatever the arm does.
+            // Held forces are no order to wind.
             Newest::Fresh(Stamped {
                 value: TendonOrder::Resumed(_),
                 ..
@@ -161,20 +155,18 @@ impl Tendons {
         output
     }
 
-    /// Angle to which each servo is sent, rad from release.
+    /// Commanded servo angles, rad from release.
     fn angles(&self) -> PerArm<f32> {
         self.arms.each_ref().map(|tendon| tendon.drive.angle())
     }
 }
 
-/// Measures from the conversion of pressures to the pulse that answers them, once for each conversion that gets as far.
+/// Measures from the conversion of pressures to the pulse that answers them.
 ///
-/// Lateness is from the conversion until the pulse widths are written, execution what the servos' frame adds until the
-/// first pulse of these widths begins, response both. Conversions that a newer one overtakes never become a pulse, and
-/// forces that do not follow from a pressure are not measured.
+/// Lateness runs until the pulse widths are written, execution until their first pulse begins, response is both.
+/// Overtaken conversions and forces without pressure are not measured.
 struct ChainWatch {
     deadline: Duration,
-    /// Conversion that was answered last.
     last: Option<Instant>,
 }
 
@@ -186,7 +178,7 @@ impl ChainWatch {
         }
     }
 
-    /// The pulse widths of `order` were written at `written`, the first pulse of these begins at `began`.
+    /// The pulse widths of `order` were written at `written` and begin at `began`.
     fn answered(&mut self, links: &Links, order: &Stamped<TendonOrder>, written: Instant, began: Instant) {
         if !matches!(order.value, TendonOrder::Measured(_)) || self.last == Some(order.at) {
             return;

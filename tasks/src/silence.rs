@@ -1,4 +1,4 @@
-//! Silent sensors: refuse arming from the start of the silence to its end.
+//! Refuses arming while a sensor is silent.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::ArmingInhibit;
@@ -9,13 +9,12 @@ use crate::links::Links;
 pub struct SilenceWatch {
     reason: ArmingInhibit,
     limit: Duration,
-    /// Last reading.
     last: Instant,
     silent: bool,
 }
 
 impl SilenceWatch {
-    /// Reports `reason` after `limit` without a reading, counted from `since` at the earliest.
+    /// Reports `reason` after `limit` without a reading, from `since` on.
     pub const fn new(reason: ArmingInhibit, limit: Duration, since: Instant) -> Self {
         Self {
             reason,
@@ -25,7 +24,7 @@ impl SilenceWatch {
         }
     }
 
-    /// When the sensor counts as silent without a further reading.
+    /// When the sensor becomes silent without a further reading.
     pub fn due(&self) -> Instant {
         self.last + self.limit
     }

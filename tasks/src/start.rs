@@ -1,4 +1,4 @@
-//! Cause of a start, and the state left by the run before.
+//! Cause of a start, and the state retained from the last run.
 
 use crate::retained_state::{RetainedState, Words};
 
@@ -8,13 +8,13 @@ pub enum StartCause {
     /// Power was switched on.
     #[default]
     PowerOn,
-    /// The supply dipped: memory is lost, as after power-on.
+    /// The supply dipped: memory is lost.
     BrownOut,
     /// The watchdog was not fed.
     Watchdog,
-    /// A panic or a fault of the processor.
+    /// Panic or processor fault.
     Fault,
-    /// A command, the reset button, the debug probe.
+    /// Command, reset button or debug probe.
     Software,
 }
 
@@ -40,9 +40,9 @@ impl StartCause {
 pub struct Start {
     /// Its cause.
     pub cause: StartCause,
-    /// Valid retained state of the run before.
+    /// Valid retained state of the last run.
     pub retained: Option<RetainedState>,
-    /// Number of the last copy; the next one takes the next.
+    /// Sequence number of the last copy.
     pub sequence: u32,
 }
 
@@ -54,7 +54,7 @@ impl Start {
         sequence: 0,
     };
 
-    /// A start for `cause` with these two copies in memory.
+    /// A start with these copies in memory.
     pub fn new(cause: StartCause, copies: &[Words; 2]) -> Self {
         let kept = if cause.loses_memory() {
             None

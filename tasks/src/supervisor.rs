@@ -1,10 +1,8 @@
-//! Supervisor: feeds the watchdog only while everything runs that flying needs, and keeps what must outlive a reset.
+//! Supervisor: feeds the watchdog only while every task needed for flight runs, and keeps the retained state.
 //!
-//! Its level is below the flight level, which starves it by never yielding. A window of 100 ms in which a task has made
-//! less than half of its runs, or a stale flight level after calibration, leaves the watchdog unfed. With a period of
-//! 200 to 500 ms it then resets the board, which starts disarmed with the grip as it was.
-//!
-//! The watched tasks are declared in [`crate::schedule`].
+//! It stops feeding after a window of 100 ms in which a task has made less than half of its runs, or with a stale
+//! flight level after calibration; a flight level that never yields starves it. After 200 to 560 ms the watchdog then
+//! resets the board, which starts disarmed with the grip as it was. [`crate::schedule`] declares the watched tasks.
 
 use embassy_time::{Duration, Instant};
 
@@ -14,13 +12,12 @@ use crate::ports::{Retain, Watchdog};
 use crate::retained_store::RetainedStore;
 use crate::schedule::Watch;
 
-/// Looks per window.
 const WINDOW: u8 = 10;
 /// Time from power-up for drivers to start.
 pub const BOOT_TIME: Duration = Duration::from_secs(3);
 
-/// Least runs of a watched task in a window, half of what its period gives; `None` if it is not watched. Tasks of the
-/// flight level only count after calibration.
+/// Least runs of a watched task in a window, half of its nominal; `None` if not watched. Tasks of the flight level
+/// count only after calibration.
 pub const fn least_runs(task: TaskId) -> Option<u32> {
     let window = TaskId::Supervisor.period().as_ticks() * WINDOW as u64;
     match task.task().watch {
@@ -62,9 +59,9 @@ impl Health {
         }
     }
 
-    /// One look; true if the watchdog may be fed.
+    /// One check; true if the watchdog may be fed.
     fn look(&mut self, links: &Links, now: Instant) -> bool {
-        // Calibrated stays calibrated: a silent flight level must not excuse itself.
+        // Stays calibrated: a silent flight level must not excuse itself.
         let newly = !self.calibrated && links.attitude.fresh().is_some_and(|a| a.calibrated);
         if newly {
             self.calibrated = true;

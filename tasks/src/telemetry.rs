@@ -1,6 +1,5 @@
-//! Telemetry to the pilot's transmitter over the receiver's serial line.
-//!
-//! One frame a run, so that the thin downlink never queues. SBUS has no downlink: nothing is sent.
+//! Telemetry to the pilot's transmitter over the receiver's line. One frame a run, so that the slow downlink never
+//! queues; SBUS has none.
 //!
 //! | frame | type | rate |
 //! |---|---|---|
@@ -21,11 +20,8 @@ use crate::deadline::{FixedRate, TaskId};
 use crate::links::{Battery, Links, Status};
 use crate::ports::SerialOutput;
 
-/// Runs in a cycle of frames.
 const CYCLE: u8 = 10;
-/// Run of a cycle that carries the battery.
 const BATTERY_SLOT: u8 = 9;
-/// Longest text of a flight-mode frame.
 const TEXT: usize = 59;
 
 type Frame = heapless::Vec<u8, 64>;
@@ -40,7 +36,7 @@ pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
     let mut shown = None;
     loop {
         rate.next().await;
-        // A silent commander shows as a display that no longer changes.
+        // A silent commander freezes the display.
         let Some(status) = links.status.fresh() else {
             continue;
         };
@@ -53,7 +49,7 @@ pub async fn run(links: &Links, mut port: impl SerialOutput) -> ! {
             encode(packets::FlightMode::new(&mode_text(status)).ok())
         };
         if let Some(frame) = frame {
-            // A frame that the line does not take is lost; the next one follows.
+            // A frame that the line does not take is lost.
             let _ = port.write(&frame).await;
         }
     }
@@ -76,7 +72,6 @@ fn scheduled(links: &Links, status: Status, slot: u8) -> Option<Frame> {
     }
 }
 
-/// The mode's name, with any reason behind a colon.
 fn mode_text(status: Status) -> String<TEXT> {
     let Status {
         mode,
@@ -92,21 +87,21 @@ fn mode_text(status: Status) -> String<TEXT> {
         write!(text, "{}: {reason}", mode.name())
     };
     if written.is_err() {
-        // The name always fits; a longer reason is left out.
+        // The name always fits; a longer reason is omitted.
         text.clear();
         let _ = text.write_str(mode.name());
     }
     text
 }
 
-/// Splits the text of a flight-mode frame into mode and reason, as a display does.
+/// Splits the text of a flight-mode frame into mode and reason.
 pub fn parse_mode_text(text: &str) -> Option<(Mode, &str)> {
     let (name, reason) = text.split_once(": ").unwrap_or((text, ""));
     Some((Mode::from_name(name)?, reason))
 }
 
 fn tenths_of_mrad(angle: f32) -> i16 {
-    // The conversion saturates and takes NaN as 0.
+    // Saturates; NaN gives 0.
     (angle * 1e4) as i16
 }
 

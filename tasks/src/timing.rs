@@ -1,8 +1,8 @@
-//! What is known of a task's timing: totals since power-up, and histograms since they were last taken.
+//! Timing of a task: totals since power-up, and histograms since they were last taken.
 //!
-//! Times are whole microseconds, the resolution of the clock. Lateness is from release to start, execution from start to
-//! end, response from release to end. A run's execution holds whatever preempted it and what it waited for on a bus; the
-//! executor trace (docs/timing.md) separates them.
+//! Times are whole microseconds, the clock's resolution: lateness from release to start, execution from start to end,
+//! response from release to end. Execution includes preemption and bus waits, separated by the executor trace
+//! (docs/timing.md).
 
 use embassy_time::{Duration, Instant};
 
@@ -11,15 +11,15 @@ use crate::histogram::Histogram;
 /// One run of a task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// When its input was measured, or its period began.
+    /// Measurement of its input, or start of its period.
     pub released: Instant,
-    /// When it started.
+    /// Start of the run.
     pub started: Instant,
-    /// When it had done what its deadline is for.
+    /// Completion of what its deadline applies to.
     pub ended: Instant,
-    /// Time from release by which it had to end.
+    /// Time allowed from release to end.
     pub deadline: Duration,
-    /// Periods before it that passed without a run.
+    /// Periods skipped before it.
     pub skipped: u32,
 }
 
@@ -28,7 +28,7 @@ pub struct Run {
 pub struct Timing {
     /// Completed runs.
     pub runs: u32,
-    /// Runs that ended after their deadline, and periods that were skipped altogether.
+    /// Runs that missed their deadline, and skipped periods.
     pub overruns: u32,
     /// Longest time from release to start, µs.
     pub worst_lateness_us: u32,
@@ -40,7 +40,7 @@ pub struct Timing {
     pub deadline_us: u32,
 }
 
-/// What a histogram is of.
+/// Measured quantity of a histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// From release to start.
@@ -53,21 +53,21 @@ pub enum Quantity {
 
 /// Everything recorded of one task.
 ///
-/// A run of the flight level is noted where it ends and settled, into totals and histograms, when the motor frame is on
-/// its way: noting takes a quarter of the instructions. Whoever reads or notes again settles first, so none is lost.
+/// A run of the flight level is noted at its end, and settled into totals and histograms once the motor frame is out:
+/// noting takes a quarter of the instructions.
 #[derive(Debug)]
 pub struct Record {
-    /// Since power-up, without what is only noted.
+    /// Since power-up, without the noted run.
     totals: Timing,
     lateness: Histogram,
     execution: Histogram,
     response: Histogram,
-    /// The last run, until it is settled.
+    /// The last run, until settled.
     noted: Option<Run>,
 }
 
 impl Record {
-    /// Nothing measured yet.
+    /// An empty record.
     pub const fn new() -> Self {
         Self {
             totals: Timing {
@@ -85,7 +85,7 @@ impl Record {
         }
     }
 
-    /// Notes a run; true when a deadline was missed.
+    /// Notes a run; true if a deadline was missed.
     #[inline]
     pub fn note(&mut self, run: &Run) -> bool {
         if self.noted.is_some() {
@@ -95,7 +95,7 @@ impl Record {
         run.skipped > 0 || run.ended.saturating_duration_since(run.released) > run.deadline
     }
 
-    /// Adds the run that was noted, if any.
+    /// Adds the noted run, if any.
     #[inline(never)]
     pub fn settle(&mut self) {
         if let Some(run) = self.noted.take() {
@@ -109,7 +109,7 @@ impl Record {
         self.totals
     }
 
-    /// Adds a run; true when a deadline was missed.
+    /// Adds a run; true if a deadline was missed.
     pub fn add(&mut self, run: &Run) -> bool {
         let lateness = between(run.released, run.started);
         let execution = between(run.started, run.ended);
@@ -129,7 +129,7 @@ impl Record {
         missed > 0
     }
 
-    /// The histogram of `quantity` since it was taken last.
+    /// Takes the histogram of `quantity`, which restarts.
     pub fn take(&mut self, quantity: Quantity) -> Histogram {
         self.settle();
         let histogram = match quantity {
@@ -151,7 +151,7 @@ fn between(from: Instant, to: Instant) -> u32 {
     us(to.saturating_duration_since(from))
 }
 
-/// Whole microseconds; what does not fit is the most that does.
+/// Whole microseconds, saturating.
 pub(crate) fn us(time: Duration) -> u32 {
     u32::try_from(time.as_micros()).unwrap_or(u32::MAX)
 }

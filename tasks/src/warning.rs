@@ -1,17 +1,17 @@
-//! What the pilot must know without being stopped by it.
+//! Warnings to the pilot that do not affect the modes.
 
 use crate::start::StartCause;
 
-/// A warning, shown beside the mode where no reason stands.
+/// A warning, shown beside the mode when there is no reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warning {
-    /// An arm's measured tilt is farther from its model than the model's correction reaches.
+    /// An arm's tilt is beyond its model's correction.
     ArmTilt,
-    /// Why the board started, where that is not as it should be.
+    /// Cause of an unusual start of the board.
     Restarted(StartCause),
-    /// The servo cannot give the force that the parameters allow.
+    /// The servo cannot give the force limit of the parameters.
     ServoWeak,
-    /// The arms are softer than any that have flown.
+    /// The arms are softer than any flown.
     InfillLow,
 }
 
@@ -26,7 +26,7 @@ impl Warning {
         Self::InfillLow,
     ];
 
-    /// For the pilot's display; empty where there is nothing to warn of.
+    /// Text on the pilot's display; empty without cause.
     pub const fn text(self) -> &'static str {
         match self {
             Self::ArmTilt => "arm tilt beyond its model",

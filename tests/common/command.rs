@@ -1,10 +1,10 @@
-//! The `sophie` command in a directory of its own, for tests of what a user meets.
+//! The `sophie` command in a temporary directory.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// A directory of its own for one test, gone afterwards.
+/// A directory removed after its test.
 pub struct Temp(pub PathBuf);
 
 impl Temp {
@@ -47,7 +47,7 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// Refused: exit status 2, nothing on stdout, one line on stderr (given back), no output directory.
+/// Requires exit status 2, empty stdout, one line on stderr (returned), no output directory.
 pub fn refused(temp: &Temp, args: &[&str]) -> String {
     let output = sophie(temp, args);
     let told = text(&output.stderr);

@@ -2,7 +2,7 @@
 
 use sophie_sim::record::FlightRecord;
 
-/// A mission with a perch needs a grip within tolerance on every chosen arm.
+/// Requires a grip within tolerance on every chosen arm of a perch.
 pub fn proven(record: &FlightRecord) -> Result<(), String> {
     let perches = record.phases.iter().filter(|p| p.name == "perch").count();
     let arms = record.scenario.arms.mask().into_iter().filter(|m| *m).count();

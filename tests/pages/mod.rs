@@ -1,31 +1,29 @@
-//! What a page of Markdown has: headings, links, names of files, words.
+//! Headings, links, file names and words of a Markdown page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
-/// Folders of the sources: an inline `code` that begins with one of them and `/` names a file.
+/// Source folders: inline `code` that begins with one of them and `/` names a file.
 const SOURCES: [&str; 13] = [
     ".ci", ".github", "boards", "control", "docs", "drivers", "hil", "paper", "sim", "src", "tasks", "tests",
     "tools",
 ];
 
-/// One page.
 #[derive(Debug, Default)]
 pub struct Page {
-    /// Where its headings can be linked to.
+    /// Anchors of its headings.
     pub anchors: BTreeSet<String>,
-    /// What it links to, images too.
+    /// Links, images too.
     pub links: Vec<String>,
-    /// What it names in inline code.
+    /// Inline code.
     pub code: Vec<String>,
-    /// Words of its text, tables and code blocks included.
+    /// Words, tables and code blocks included.
     pub words: usize,
 }
 
 impl Page {
-    /// Reads a page.
     pub fn read(text: &str) -> Self {
         let mut page = Self::default();
         let mut heading = None;
@@ -61,7 +59,7 @@ impl Page {
         page
     }
 
-    /// The anchor of a heading, by the rule that GitHub and mdBook share; one that is there already gets a number.
+    /// Adds a heading's anchor by the rule of GitHub and mdBook; a repeated one gets a number.
     fn anchor(&mut self, heading: &str) {
         let kept = heading.trim().chars().filter_map(|c| match c {
             c if c.is_alphanumeric() || c == '_' || c == '-' => Some(c.to_lowercase().to_string()),
@@ -77,7 +75,7 @@ impl Page {
     }
 }
 
-/// What is wrong with the links and names of `pages`, a line each; `exists` says whether a path from the root does.
+/// Faulty links and file names of `pages`, a line each; `exists` takes paths from the root.
 pub fn faults(pages: &BTreeMap<PathBuf, Page>, exists: impl Fn(&Path) -> bool) -> Vec<String> {
     let mut found = Vec::new();
     for (path, page) in pages {
@@ -103,7 +101,7 @@ pub fn faults(pages: &BTreeMap<PathBuf, Page>, exists: impl Fn(&Path) -> bool) -
     found
 }
 
-/// The file that an inline `code` names, if it names one: no blanks, no placeholders.
+/// The file that inline `code` names, if it does: no blanks, no placeholders.
 fn named(code: &str) -> Option<&str> {
     let plain = !code.contains([' ', '*', '<', '{', '…', ':']) && !code.contains("...");
     let folder = code.split_once('/')?.0;
@@ -111,7 +109,6 @@ fn named(code: &str) -> Option<&str> {
     (plain && !placeholder && SOURCES.contains(&folder)).then_some(code)
 }
 
-/// `path` without `..`.
 fn resolved(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for part in path.components() {

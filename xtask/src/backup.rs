@@ -1,4 +1,4 @@
-//! Backup of a board's flash in a file, and restoring it: the way back to the former firmware.
+//! Backup of a board's flash in a file, and its restoration: the way back to the former firmware.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -17,7 +17,7 @@ pub struct Backup<'a> {
 }
 
 impl<'a> Backup<'a> {
-    /// Parses `words`, the arguments behind `verb`.
+    /// Parses `words` behind `verb`.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -62,10 +62,10 @@ impl<'a> Backup<'a> {
         self.file.map_or_else(|| usual(self.board), PathBuf::from)
     }
 
-    /// Reads the whole flash twice and keeps it in the file if both are equal.
+    /// Reads the whole flash twice and keeps it if both are equal.
     ///
     /// # Errors
-    /// The file exists; there is no probe; probe-rs fails or reads nothing that could be restored.
+    /// The file exists; no probe; probe-rs fails or reads nothing that could be restored.
     pub fn save(&self) -> Result<(), Error> {
         let path = self.path();
         if !self.dry && path.symlink_metadata().is_ok() {
@@ -89,7 +89,7 @@ impl<'a> Backup<'a> {
         tools::probe(self.board)?;
         let kept = keep(self.board, commands, &parts, &path);
         for part in &parts {
-            // The first is already renamed if it became the backup.
+            // The first is gone if it became the backup.
             let _ = fs::remove_file(part);
         }
         kept?;
@@ -100,7 +100,7 @@ impl<'a> Backup<'a> {
     /// Writes the file over the whole flash.
     ///
     /// # Errors
-    /// The file cannot be a backup of this board; there is no probe; probe-rs fails.
+    /// The file cannot be a backup of this board; no probe; probe-rs fails.
     pub fn restore(&self) -> Result<(), Error> {
         let path = self.path();
         sound(self.board, &path).map_err(|why| Refused(format!("restore: {why}")))?;
@@ -150,7 +150,7 @@ pub fn sound(board: &Board, path: &Path) -> Result<(), String> {
     let mut file = File::open(path).map_err(unread)?;
     file.read_exact(&mut head).map_err(unread)?;
     let [stack, reset] = [0, 4].map(|at| u32::from_le_bytes(std::array::from_fn(|n| head[at + n])));
-    // A core starts with a stack in RAM, and the address of an instruction in flash, with the Thumb bit.
+    // A core starts with a stack in RAM and a Thumb address in flash.
     let flash = FLASH..FLASH + board.flash_size();
     if (0x1000_0000..0x4000_0000).contains(&stack) && reset % 2 == 1 && flash.contains(&u64::from(reset)) {
         Ok(())
@@ -169,7 +169,6 @@ fn read(board: &Board, file: &Path) -> Command {
     command
 }
 
-/// Runs both reads, compares, and renames the first.
 fn keep(board: &Board, commands: [Command; 2], parts: &[PathBuf; 2], path: &Path) -> Result<(), Error> {
     for (mut command, part) in commands.into_iter().zip(parts) {
         PROBE_RS

@@ -9,10 +9,10 @@ use crate::{Error, build};
 
 const EMULATED: [&str; 2] = ["matek-h743", "f405"];
 
-/// Printed before the emulator is built: its code generator takes long.
+/// Printed before the emulator's slow build.
 const FIRST_BUILD: &str = "building the emulated board: minutes the first time, seconds from then on";
 
-/// The emulator's options without a value, and those with one and its name.
+/// Options of the emulator without a value, and with one.
 const ALONE: [&str; 2] = ["--json", "--factory"];
 const WITH_VALUE: [(&str, &str); 6] = [
     ("--seed", "N"),
@@ -26,12 +26,11 @@ const WITH_VALUE: [(&str, &str); 6] = [
 pub struct Bench<'a> {
     pub board: &'static Board,
     variant: Variant,
-    /// Passed to the emulator.
     rest: Vec<&'a str>,
 }
 
 impl<'a> Bench<'a> {
-    /// Parses `words`, the arguments behind the verb, before the minutes of building; the emulator checks the values.
+    /// Parses `words` behind the verb, before the minutes of building; the emulator checks values.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -89,7 +88,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The emulated board at the start of `words`, the arguments behind `verb`, and the other arguments.
+/// The emulated board that `words` behind `verb` begins with, and the rest.
 fn emulated<'w, 'a>(verb: &str, words: &'w [&'a str]) -> Result<(&'static Board, &'w [&'a str]), String> {
     let allowed = EMULATED.join(", ");
     let (name, rest) = match words {
@@ -105,12 +104,11 @@ fn emulated<'w, 'a>(verb: &str, words: &'w [&'a str]) -> Result<(&'static Board,
 /// A count of the control path's instructions.
 pub struct Chain<'a> {
     pub board: &'static Board,
-    /// Number of steps, if given.
     steps: Option<&'a str>,
 }
 
 impl<'a> Chain<'a> {
-    /// Parses `words`, the arguments behind the verb.
+    /// Parses `words` behind the verb.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -128,7 +126,7 @@ impl<'a> Chain<'a> {
         Ok(Self { board, steps })
     }
 
-    /// Builds, flies and prints the counts; returns the emulator's exit status.
+    /// Builds, flies, prints the counts; returns the emulator's exit status.
     ///
     /// # Errors
     /// The firmware does not build.
@@ -139,7 +137,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// Builds the emulator and runs its binary `name` with `arguments` and the caller's additions; returns its exit status.
+/// Builds and runs the emulator's binary `name` with `arguments` and the caller's additions; returns its exit status.
 ///
 /// # Errors
 /// Cargo does not start.
@@ -158,7 +156,7 @@ pub fn emulator<'a>(
     ))
 }
 
-/// Command to build and run the emulator's binary `name`, with cargo's progress on stderr.
+/// With cargo's progress on stderr.
 fn run(name: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // The emulator declares a newer Rust than it needs.
@@ -169,7 +167,7 @@ fn run(name: &str) -> Command {
         "--locked",
         "--ignore-rust-version",
     ]);
-    // Not from the workspace's folder: paths in the arguments are the caller's.
+    // Not from the workspace: paths in arguments are the caller's.
     command
         .arg("--manifest-path")
         .arg(build::root().join("Cargo.toml"));

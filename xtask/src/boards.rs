@@ -1,6 +1,6 @@
 //! Board data for builds and checks.
 
-/// First address of the flash, all chips.
+/// All chips.
 pub const FLASH: u64 = 0x0800_0000;
 
 /// Consecutive equal sectors.
@@ -26,20 +26,20 @@ pub struct Board {
     pub name: &'static str,
     /// Chip name of probe-rs.
     pub probe_rs_chip: &'static str,
-    /// Core, for code specific to it. The plain target is built for an M4F.
+    /// Core, for specific code; the plain target is built for an M4F.
     pub core: &'static str,
     pub interrupts: usize,
     /// Vectors of the flight and steady level.
     pub levels: [&'static str; 2],
     /// Flash sectors from [`FLASH`] on.
     pub flash: &'static [Sectors],
-    /// The chip's own loader, for use without a probe.
+    /// The chip's own loader, without a probe.
     pub usb_loader: UsbLoader,
-    /// Memories that DMA1 and DMA2 reach: first address and end.
+    /// Memories of DMA1 and DMA2: first address and end.
     pub dma_reaches: &'static [(u64, u64)],
-    /// Memory that outlives a reset: first address and end.
+    /// Memory retained across resets: first address and end.
     pub retained: (u64, u64),
-    /// It flies with the data cache off, and has an image with the cache on.
+    /// Flies with the data cache off; another image has it on.
     pub data_cache_is_optional: bool,
 }
 
@@ -57,7 +57,7 @@ pub const BOARDS: [Board; 3] = [
         usb_loader: UsbLoader::Enter("hold its button BOOT while plugging USB in"),
         // AXI SRAM, SRAM1 to SRAM3 (RM0433 §2.1); not the tightly coupled memories.
         dma_reaches: &[(0x2400_0000, 0x2408_0000), (0x3000_0000, 0x3004_8000)],
-        // DTCM: its error correction works on words of 32 bits, as they are written.
+        // DTCM: its error correction works on 32-bit words, as written.
         retained: (0x2001_FC00, 0x2002_0000),
         data_cache_is_optional: true,
     },
@@ -69,10 +69,9 @@ pub const BOARDS: [Board; 3] = [
         levels: ["SAI1", "SAI2"],
         // One bank (RM0410 §3.3.2), as in `boards/memory/cuav-v5.x`.
         flash: &[sectors(4, 32), sectors(1, 128), sectors(7, 256)],
-        // FMUv5 is flashed over USB by a loader in the flash.
+        // FMUv5 is flashed over USB by a loader in flash.
         usb_loader: UsbLoader::OutOfReach("it has no button for BOOT0, and its case leads the pin nowhere"),
-        // DTCM, which is never cached: the data cache is on, and caches the DMA's other memories, SRAM1 and SRAM2
-        // (RM0410 §2.1).
+        // DTCM, never cached; the data cache is on and caches the DMA's other memories, SRAM1 and SRAM2 (RM0410 §2.1).
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
         // DTCM.
         retained: (0x2001_FC00, 0x2002_0000),
@@ -86,9 +85,9 @@ pub const BOARDS: [Board; 3] = [
         levels: ["CAN1_TX", "CAN2_TX"],
         // RM0090 §3.3.
         flash: &[sectors(4, 16), sectors(1, 64), sectors(7, 128)],
-        // PA11 and PA12 are free for a USB connector, and the chip's pin BOOT0 for a button.
+        // PA11 and PA12 are free for USB, BOOT0 for a button.
         usb_loader: UsbLoader::Enter("take BOOT0 to 3.3 V while plugging USB (PA11, PA12) in"),
-        // SRAM1 and SRAM2 (RM0090 §2.1); not the core-coupled memory.
+        // SRAM1 and SRAM2 (RM0090 §2.1), not the core-coupled memory.
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
         // SRAM2's end.
         retained: (0x2001_FC00, 0x2002_0000),

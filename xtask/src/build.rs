@@ -10,7 +10,7 @@ use crate::Error;
 use crate::boards::Board;
 use crate::toolchain::{self, TARGET};
 
-/// Bytes of the log's buffer in a build with trace: 2 ms of events and their frames, for a slow probe.
+/// 2 ms of events and their frames, for a slow probe.
 const TRACE_BUFFER: &str = "8192";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Variant {
     Plain,
     /// Logs every event of the executors (docs/timing.md).
     Trace,
-    /// Data cache on, for a board that flies without (docs/boards.md).
+    /// Data cache on, for a board that flies without it (docs/boards.md).
     DataCache,
 }
 
@@ -48,10 +48,10 @@ impl Variant {
     }
 }
 
-/// Builds the firmware of `board`; returns the path of its ELF.
+/// Builds the firmware of `board`; returns its ELF.
 ///
 /// # Errors
-/// No toolchain, or the build failed (with its output).
+/// No toolchain, or the build failed (with output).
 pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
     let (feature, variables): (_, &[_]) = match variant {
         Variant::Plain => ("", &[]),
@@ -75,7 +75,7 @@ pub fn firmware(board: &Board, variant: Variant) -> Result<PathBuf, Error> {
     })
 }
 
-/// Inputs of an image. Profile and flags are the same for all.
+/// Inputs of an image; profile and flags are common.
 #[derive(Clone, Copy, Debug)]
 pub struct Recipe<'a> {
     pub package: &'a str,
@@ -88,10 +88,10 @@ pub struct Recipe<'a> {
     pub kept: &'a str,
 }
 
-/// Builds an image of this workspace; returns the path of its ELF.
+/// Builds an image of this workspace; returns its ELF.
 ///
 /// # Errors
-/// No toolchain, or the build failed (with its output).
+/// No toolchain, or the build failed (with output).
 pub fn image(recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     image_in(root(), recipe)
 }
@@ -114,7 +114,7 @@ pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(folder);
     if folder != root() {
-        // Builds what lies outside the folder once for both.
+        // External crates are built once for both.
         command.env("CARGO_TARGET_DIR", target_dir());
     }
     command.args([
@@ -130,7 +130,7 @@ pub fn image_in(folder: &Path, recipe: &Recipe<'_>) -> Result<PathBuf, Error> {
     command.args(arguments).args(toolchain.arguments);
     command.envs(toolchain.variables.iter().map(|(name, value)| (name, value)));
     command.envs(variables.iter().copied());
-    // Only for speed: an image built without it does the same.
+    // Only for speed: an image without it behaves the same.
     let mut flags = env::var_os("RUSTFLAGS").unwrap_or_default();
     if !flags.is_empty() {
         flags.push(" ");
@@ -181,7 +181,7 @@ pub fn shown(command: &Command) -> String {
     for (name, value) in command.get_envs() {
         let value = value.map(OsString::from).unwrap_or_default();
         let value = value.to_string_lossy();
-        // The rest of the path is the user's own.
+        // The rest of the path is the user's.
         let value = if name == "PATH" {
             format!("{}:$PATH", value.split(':').next().unwrap_or(""))
         } else {

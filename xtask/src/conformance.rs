@@ -1,5 +1,5 @@
-//! The conformance image on QEMU and on the emulated core, whose logs must be equal. The control laws' lines must also
-//! equal the host's, so that its tests hold for the chip.
+//! The conformance image on QEMU and on the emulated core: equal logs, and the laws' lines equal to the host's, so that
+//! its tests hold for the chip.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -9,13 +9,12 @@ use crate::build::Recipe;
 use crate::cost::{CORES, Core};
 use crate::{Error, build};
 
-/// Most differing lines shown; the rest is counted.
 const SHOWN: usize = 5;
 
 /// Builds the image for each core, runs it on both, compares.
 ///
 /// # Errors
-/// No toolchain or QEMU, an image that fails, or logs that differ.
+/// No toolchain or QEMU, a failing image, or different logs.
 pub fn conformance() -> Result<(), Error> {
     let laws = output(cargo().args(["run", "--quiet", "--locked", "--package", "sophie-conformance"]))?;
     for core in &CORES {

@@ -1,7 +1,7 @@
 //! Flash of an image by crate, from its symbols.
 //!
-//! A function counts for the crate that its name begins with: an instance of another crate's generics counts for the
-//! instantiating one. Bytes without a crate's name are listed apart, so that a column adds up to the image.
+//! A function counts for the crate that its name begins with, a generic's instance for the instantiating one. Bytes
+//! without a crate are listed apart.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +12,8 @@ use crate::sizes::Sizes;
 
 /// Crates below this on every board are summed, bytes.
 const SMALL: u64 = 2048;
-/// Constants without a crate's name.
 const NAMELESS: &str = "constants without a name";
-/// Bytes without a symbol, or with one without a crate.
+/// Bytes without a symbol or a crate.
 const REST: &str = "rest: vectors, assembly, C names, padding";
 
 /// Bytes of flash by crate.
@@ -27,7 +26,7 @@ pub type Shares = BTreeMap<String, u64>;
 pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
     let symbols = image.functions.iter().chain(&image.statics);
     let mut symbols: Vec<&Static> = symbols.filter(|symbol| symbol.size > 0).collect();
-    // Of two at one address, the longer counts.
+    // The longer of two at one address counts.
     symbols.sort_by_key(|symbol| (symbol.address, std::cmp::Reverse(symbol.size)));
     let mut shares = Shares::new();
     for section in image.sections.iter().filter(|section| section.in_image) {
@@ -45,7 +44,6 @@ pub fn shares(image: &Image, sizes: &Sizes) -> Result<Shares, Error> {
     }
 }
 
-/// Assigns every byte of `section` to one owner.
 fn share(section: &Section, symbols: &[&Static], shares: &mut Shares) {
     let mut give = |owner: String, bytes: u64| {
         if bytes > 0 {
@@ -65,7 +63,6 @@ fn share(section: &Section, symbols: &[&Static], shares: &mut Shares) {
     give(REST.into(), end - next);
 }
 
-/// The crate that a symbol's name begins with.
 fn owner(symbol: &str) -> String {
     if symbol.starts_with(".Lanon.") || symbol.starts_with("anon.") {
         return NAMELESS.into();
@@ -95,7 +92,7 @@ fn first_crate(path: &str) -> Option<&str> {
     }
 }
 
-/// Prints the shares of every board as a table, the largest crate first.
+/// Table of all boards, the largest crate first.
 pub fn print(boards: &[(&Board, Shares)]) {
     println!("{}", table(boards));
 }
@@ -168,7 +165,7 @@ mod tests {
         assert_eq!(owner("memcpy"), REST);
     }
 
-    /// An image with code at 0x100 and constants at 0x200, 64 bytes each, and RAM.
+    /// Code at 0x100 and constants at 0x200, 64 bytes each, and RAM.
     fn image() -> Image {
         let section = |name: &str, address, in_image| Section {
             name: name.into(),
@@ -213,7 +210,7 @@ mod tests {
             stack: 0,
         };
         let shares = shares(&image(), &sizes(128)).unwrap();
-        // 4 before, 24 between, 16 where the section ends before the symbol; constants overlap by 8.
+        // 4 before, 24 between, 16 up to the section's end; constants overlap by 8.
         let expected = [
             ("alpha", 20 + 16),
             ("beta", 16),

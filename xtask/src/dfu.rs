@@ -1,8 +1,8 @@
-//! Writes firmware through the chip maker's USB loader (ST's AN2606 and AN3156).
+//! Writes firmware through the chip's USB loader (ST's AN2606 and AN3156).
 //!
-//! `dfu-util` erases each sector that a file touches, and keeps no state between calls. So the image is written in
+//! `dfu-util` erases each sector that a file touches, without memory of earlier calls. So the image is written in
 //! stretches that share no sector: a flat file would erase the gaps (on the f405 the stored parameters), a file per
-//! segment the end of the one before. The stretch with the vector table comes last: the loader starts the firmware at
+//! segment the end of the previous one. The vector table's stretch comes last: the loader starts the firmware at
 //! the address of the last call, and an interrupted transfer leaves the old table or none.
 
 use std::fs;
@@ -13,11 +13,11 @@ use crate::image::{Image, Load};
 use crate::tools::DFU_UTIL;
 use crate::{Error, Refused, build};
 
-/// Vendor and product of ST's loader, all chips.
+/// ST's loader, all chips.
 const DEVICE: &str = "0483:df11";
-/// Its setting for the flash; others are option bytes and one-time memory.
+/// Flash; other settings are option bytes and one-time memory.
 const SETTING: &str = "0";
-/// Largest flash word, bytes (an H7's): a stretch holds whole ones.
+/// Largest flash word, bytes (H7): stretches are whole words.
 const WORD: u64 = 32;
 
 /// Bytes to write in one call.
@@ -30,7 +30,7 @@ pub struct Stretch {
 /// Writes `image` to the chip in its loader and starts it; `dry` only prints the commands.
 ///
 /// # Errors
-/// The board's chip cannot be reached this way, none is in its loader or it is another one, or dfu-util fails.
+/// The loader is out of reach, no such chip is in it, or dfu-util fails.
 pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
     let enter = enter(board)?;
     let stretches = stretches(&image.loads, board.flash)?;
@@ -66,10 +66,10 @@ pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
     Ok(())
 }
 
-/// How to enter the loader of the board's chip.
+/// How to enter the chip's loader.
 ///
 /// # Errors
-/// It cannot be: why, and what to do.
+/// Why it is out of reach, and what to do.
 pub fn enter(board: &Board) -> Result<&'static str, Refused> {
     match board.usb_loader {
         UsbLoader::Enter(how) => Ok(how),
@@ -80,7 +80,7 @@ pub fn enter(board: &Board) -> Result<&'static str, Refused> {
     }
 }
 
-/// The stretches of `loads` in writing order, the one with the vector table last.
+/// Stretches of `loads` in writing order, the vector table's last.
 ///
 /// # Errors
 /// A part lies outside the flash, or overlaps another.
@@ -133,14 +133,14 @@ impl Stretch {
         self.start + self.bytes.len() as u64
     }
 
-    /// Pads with erased bytes up to `address`.
+    /// Pads with erased bytes.
     fn extend_to(&mut self, address: u64) {
         let length = address.saturating_sub(self.start) as usize;
         self.bytes.resize(length.max(self.bytes.len()), 0xFF);
     }
 }
 
-/// The sector that holds `address`: first address and end.
+/// First address and end of the sector of `address`.
 pub fn sector(flash: &[Sectors], address: u64) -> Option<(u64, u64)> {
     let mut start = FLASH;
     for sectors in flash {
@@ -154,7 +154,7 @@ pub fn sector(flash: &[Sectors], address: u64) -> Option<(u64, u64)> {
     None
 }
 
-/// Writes each stretch to a file, which stays: the commands can be repeated by hand.
+/// The files stay: the commands can be repeated by hand.
 fn files(board: &Board, stretches: &[Stretch]) -> Result<Vec<PathBuf>, Error> {
     let folder = build::target_dir().join("dfu");
     fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -192,7 +192,7 @@ fn chip(board: &Board, enter: &str) -> Result<(), Error> {
     }
 }
 
-/// Flash layouts of all chips that `dfu-util --list` shows in their loader.
+/// Layouts listed by `dfu-util --list`.
 fn found(listed: &str) -> Vec<String> {
     let field = |line: &str, name: &str| {
         let (_, rest) = line.split_once(&format!("{name}="))?;
@@ -205,7 +205,7 @@ fn found(listed: &str) -> Vec<String> {
         .collect()
 }
 
-/// The sectors of a layout: `@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg` (UM0424, §4.3.2).
+/// Parses `@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg` (UM0424, §4.3.2).
 fn flash_of(layout: &str) -> Option<Vec<Sectors>> {
     let mut parts = layout.split('/').skip(1);
     let start = parts.next()?.trim().strip_prefix("0x")?;
@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn what_shares_a_sector_is_written_at_one_go_and_the_vector_table_last() {
-        // Table; code and constants in one sector with a gap; initial values two sectors further.
+        // Table; code and constants in one sector with a gap; initial values two sectors on.
         let loads = [
             load(0x0800_0000, &[1; 40]),
             load(0x0800_C000, &[2; 64]),

@@ -1,19 +1,17 @@
-//! Checks that DMA's buffers are in memory that it reaches.
-//!
-//! These are statics named `DMA_…`, and the futures of the tasks (embassy's statics `POOL`), since a buffer that lives
-//! across an `await` is part of its task's future. DMA would silently fail elsewhere on most chips.
+//! Checks that DMA reaches its buffers; elsewhere it would silently fail on most chips. Buffers are statics named
+//! `DMA_…`, and task futures (embassy's statics `POOL`), which hold buffers that live across an `await`.
 
 use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Fewest buffers of a board with motors, receiver and converter.
+/// Motors, receiver and converter.
 const FEWEST: usize = 3;
 
 /// Checks every buffer; returns their number.
 ///
 /// # Errors
-/// A buffer that DMA does not reach, by name; or too few buffers, which means that the names have changed.
+/// A buffer out of DMA's reach; or too few, which means that names have changed.
 pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     let buffers: Vec<_> = image
         .statics

@@ -1,4 +1,4 @@
-//! Flashes a board by a probe, or through the chip's own USB loader.
+//! Flashes a board by a probe, or through the chip's USB loader.
 
 use std::path::{Path, PathBuf};
 
@@ -27,14 +27,14 @@ pub struct Flash<'a> {
     pub board: &'static Board,
     by: By,
     variant: Variant,
-    /// The image, unless it is to be built.
+    /// The image; `None`: to be built.
     elf: Option<&'a str>,
     before: Before<'a>,
     dry: bool,
 }
 
 impl<'a> Flash<'a> {
-    /// Parses `words`, the arguments behind the verb.
+    /// Parses `words` behind the verb.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -98,8 +98,7 @@ impl<'a> Flash<'a> {
     /// Builds or reads the image, checks it and flashes it.
     ///
     /// # Errors
-    /// The board must be backed up first or cannot be reached in this way; a check of the image, the probe, the chip's
-    /// loader or a program fails.
+    /// No backup, no way to the board, or a failure of the image's checks, probe, loader or a program.
     pub fn run(&self) -> Result<(), Error> {
         if self.by == By::Usb {
             dfu::enter(self.board)?;
@@ -124,8 +123,8 @@ impl<'a> Flash<'a> {
         }
     }
 
-    /// Requires a backup where the chip's own loader cannot be entered: flashing overwrites the loader in the flash,
-    /// the only way back to the board's original firmware.
+    /// Requires a backup where the chip's own loader is out of reach: flashing overwrites the flash's loader, the only
+    /// way back to the original firmware.
     fn backed_up(&self) -> Result<(), Refused> {
         if self.before == Before::Nothing || matches!(self.board.usb_loader, UsbLoader::Enter(_)) {
             return Ok(());
@@ -146,7 +145,7 @@ impl<'a> Flash<'a> {
 
     fn by_probe(&self, elf: &Path) -> Result<(), Error> {
         let mut command = PROBE_RS.command(&["run", "--chip", self.board.probe_rs_chip]);
-        // The firmware drops log lines rather than wait for a probe; the probe must not make it wait.
+        // The firmware drops log lines rather than wait for a probe, which must not make it wait.
         command.args(["--rtt-channel-mode", "no-block-trim"]).arg(elf);
         if self.dry {
             println!("{}", build::shown(&command));

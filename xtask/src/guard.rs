@@ -1,16 +1,14 @@
-//! The guard against damaged words in the flash of an H7: `boards/src/stm32/flash_ecc.rs`.
-//!
-//! Power loss while a parameter is stored leaves an uncorrectable word, whose reading is a bus fault at every later
-//! start. An image without the guard flies until then.
+//! The guard against damaged flash words of an H7: `boards/src/stm32/flash_ecc.rs`. Power loss during a save leaves an
+//! uncorrectable word, whose reading is a bus fault at every later start; without the guard an image flies until then.
 
 use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Parts of the mangled name of the guard's function, which is never inlined.
+/// In its mangled name; never inlined.
 const GUARD: [&str; 2] = ["flash_ecc", "begin_guard"];
 
-/// Returns whether the image needs the guard, which it then has.
+/// Whether the image needs the guard.
 ///
 /// # Errors
 /// It needs the guard and has none.

@@ -13,7 +13,7 @@ pub struct Section {
     /// Run-time address.
     pub address: u64,
     pub size: u64,
-    /// It has contents in the image; otherwise it is RAM that start-up clears or leaves alone.
+    /// It has contents; otherwise it is RAM that start-up clears or keeps.
     pub in_image: bool,
     pub writable: bool,
 }
@@ -61,7 +61,7 @@ impl Symbols {
         let mut symbols = Self::default();
         for symbol in file.symbols() {
             let Ok(name) = symbol.name() else { continue };
-            // The log's texts are symbols too, in sections that are not loaded.
+            // Log texts are symbols too, in sections that are not loaded.
             let on_chip = |s: &Section| (s.address..s.address + s.size).contains(&symbol.address());
             if symbol.kind() == SymbolKind::Data && sections.iter().any(on_chip) {
                 symbols.statics.push(Static {
@@ -73,7 +73,6 @@ impl Symbols {
             if symbol.kind() == SymbolKind::Text {
                 symbols.functions.push(Static {
                     name: name.into(),
-                    // Without the Thumb bit.
                     address: symbol.address() & !1,
                     size: symbol.size(),
                 });
@@ -153,7 +152,7 @@ impl Image {
     /// Address of the symbol `name`.
     ///
     /// # Errors
-    /// There is no such symbol.
+    /// There is none.
     pub fn symbol(&self, name: &str) -> Result<u64, Error> {
         self.symbols
             .get(name)

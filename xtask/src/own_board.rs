@@ -1,8 +1,7 @@
-//! A board of one's own, as docs/porting.md says: a copy of the reference board in a scratch folder, built and checked.
+//! The custom board of docs/porting.md: a copy of the reference board in a scratch folder, built and checked.
 //!
-//! It shows that such a board touches the files named there and no other, that what the boards share goes by the chip,
-//! and what the named boards do not need: motors on two timers in an order of their own, a pin that switches the
-//! sensors' supply. Its firmware is not for any real board.
+//! It touches only the files named there, uses shared code by chip, and has what no board here has: motors on two
+//! timers in another order, a pin that switches the sensors' supply. It fits no real board.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,17 +12,15 @@ use crate::build::Recipe;
 use crate::toolchain::{self, TARGET};
 use crate::{Error, build};
 
-/// The copy's name.
 const NAME: &str = "own-h743";
-/// The same board with a feature that forgets the chip: it must not build.
+/// Has a feature that names no chip: must not build.
 const CHIPLESS: &str = "chipless-h743";
-/// The workspace's version, without the quote behind it, and what the copy adds.
+/// Version of the workspace, without the closing quote, and the copy's suffix.
 const VERSION: &str = concat!("version = \"", env!("CARGO_PKG_VERSION"));
 const OF_THE_COPY: &str = "-copy";
-/// What is copied.
 const ORIGINAL: &str = "matek-h743";
 
-/// What the copy changes in its board file: old and new.
+/// In the board file: old and new.
 const CHANGES: [(&str, &str); 9] = [
     (
         "pub const NAME: &str = \"matek-h743\"",
@@ -66,7 +63,7 @@ const CHANGES: [(&str, &str); 9] = [
     ),
 ];
 
-/// Builds and checks the copy, and sees that one without chip is refused.
+/// Builds and checks the copy, and that one without chip is refused.
 ///
 /// # Errors
 /// The copy does not build, its image is wrong, or a board that names no chip builds.
@@ -111,7 +108,6 @@ pub fn own_board() -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes the files of docs/porting.md into the copy of the workspace.
 fn write(scratch: &Path) -> Result<(), Error> {
     let folder = scratch.join("boards");
     let mut file = fs::read_to_string(folder.join("src/matek_h743.rs"))?;
@@ -139,8 +135,8 @@ fn write(scratch: &Path) -> Result<(), Error> {
         let line = format!("#[cfg_attr(feature = \"{name}\", path = \"{path}.rs\")]\n{anchor}");
         replace(&mut list, anchor, &line)?;
     }
-    // A version of its own, or cargo would take what was built of the copy for what is to be built of the original: both
-    // build into one folder, for the crates of others.
+    // A version of its own: both workspaces build into one folder to share external crates, and cargo would mix up
+    // their artefacts.
     replace(&mut image, VERSION, &format!("{VERSION}{OF_THE_COPY}"))?;
     let lock = fs::read_to_string(scratch.join("Cargo.lock"))?;
     put(&scratch.join("Cargo.lock"), locked(&lock).as_bytes())?;
@@ -150,7 +146,7 @@ fn write(scratch: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// The lock file with the copy's version at every package of the workspace, which alone have no source.
+/// The lock file with the copy's version at the workspace's packages, which alone have no source.
 fn locked(lock: &str) -> String {
     let packages = lock.split("\n\n").map(|package| {
         if package.contains("\nsource = ") {
@@ -171,8 +167,7 @@ fn replace(text: &mut String, old: &str, new: &str) -> Result<(), Error> {
     Ok(())
 }
 
-/// Copies the workspace without what is built and what is hidden. A file that is the same stays, and with it what was
-/// built of it.
+/// Leaves out build results and hidden files; unchanged files keep their times, and so their build results.
 fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {
@@ -191,7 +186,6 @@ fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes what is not there already.
 fn put(path: &Path, content: &[u8]) -> Result<(), Error> {
     if fs::read(path).is_ok_and(|old| old == content) {
         return Ok(());
@@ -213,7 +207,6 @@ mod tests {
         });
         let count = crates.count();
         assert!(count > 10 && ours(&lock) == 0 && ours(&locked(&lock)) == count);
-        // Nothing else is changed.
         assert_eq!(locked(&lock).replace(OF_THE_COPY, ""), lock);
     }
 }

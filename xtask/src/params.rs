@@ -4,8 +4,7 @@ use crate::boards::{Board, Sectors};
 use crate::image::{Image, Load};
 use crate::{Error, dfu};
 
-/// Checks that nothing is loaded into the parameters' sectors, which flashing would erase; returns their bytes, 0 where
-/// the board stores parameters elsewhere.
+/// Checks that flashing does not erase the parameters' sectors; returns their bytes, 0 if stored elsewhere.
 ///
 /// # Errors
 /// Part of the image lies there: its address.
@@ -24,7 +23,6 @@ pub fn check(board: &Board, image: &Image) -> Result<u64, Error> {
     }
 }
 
-/// The first part of the image that shares a sector with `start` to `end`.
 fn first_in<'a>(loads: &'a [Load], flash: &[Sectors], start: u64, end: u64) -> Option<&'a Load> {
     let erased = |address| dfu::sector(flash, address).unwrap_or((address, address + 1));
     loads.iter().filter(|load| load.size() > 0).find(|load| {

@@ -1,4 +1,4 @@
-//! Checks that retained data lie in memory that outlives a reset and that neither loading nor start-up touches.
+//! Checks that retained data lie in memory that survives resets, untouched by loading and start-up.
 
 use crate::Error;
 use crate::boards::Board;
@@ -6,10 +6,10 @@ use crate::image::Image;
 
 const SECTION: &str = ".retained";
 
-/// Checks its place; returns its bytes.
+/// Checks the place of retained data; returns their bytes.
 ///
 /// # Errors
-/// There is none, it lies elsewhere, or flashing would write it.
+/// There are none, or they are misplaced or written by flashing.
 pub fn check(board: &Board, image: &Image) -> Result<u64, Error> {
     let section = image.sections.iter().find(|section| section.name == SECTION);
     let section = section.ok_or("the image has nothing that outlives a reset")?;
@@ -44,7 +44,7 @@ mod tests {
     use crate::boards;
     use crate::image::Section;
 
-    /// The error for 0x184 bytes at `address`, while start-up clears memory from `bss` on.
+    /// The error for 0x184 bytes at `address` while start-up clears from `bss` on.
     fn complaint(address: u64, in_image: bool, bss: (u64, u64)) -> Option<String> {
         let symbols = [
             ("__sbss", bss.0),

@@ -1,4 +1,4 @@
-//! Builds a board's tests and runs them by a probe, or on the emulated board.
+//! Builds a board's tests and runs them by a probe or on the emulated board.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -8,7 +8,6 @@ use crate::build::{Recipe, Variant};
 use crate::tools::{self, PROBE_RS};
 use crate::{Error, build};
 
-/// The board whose tests the emulator can run.
 const EMULATED: &str = "matek-h743";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,12 +22,12 @@ pub struct Rig<'a> {
     on: Where,
     wired: bool,
     variant: Variant,
-    /// Passed to the runner: parts of test names.
+    /// Parts of test names, for the runner.
     names: Vec<&'a str>,
 }
 
 impl<'a> Rig<'a> {
-    /// Parses `words`, the arguments behind the verb.
+    /// Parses `words` behind the verb.
     ///
     /// # Errors
     /// One line: what is wrong and what is allowed.
@@ -67,12 +66,11 @@ impl<'a> Rig<'a> {
         Ok(rig)
     }
 
-    /// Builds the tests and runs them; returns the runner's exit status.
+    /// Builds and runs the tests; returns the runner's exit status.
     ///
     /// # Errors
     /// The tests do not build, their image is wrong, or there is no probe.
     pub fn run(&self) -> Result<ExitCode, Error> {
-        // The emulated board has every jumper.
         let wired = self.wired || self.on == Where::Emulated;
         let cached = self.variant == Variant::DataCache;
         let features = format!(

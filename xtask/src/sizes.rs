@@ -1,4 +1,4 @@
-//! Flash and RAM of a board's firmware, against limits and ceilings.
+//! Flash and RAM of firmware against limits and ceilings.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,12 +9,12 @@ use crate::boards::Board;
 use crate::image::Image;
 use crate::{Error, build};
 
-/// Most flash on any board, bytes.
+/// Of any board, bytes.
 const FLASH_LIMIT: u64 = 400 * 1024;
-/// Most static RAM on any board, bytes.
+/// Static, of any board, bytes.
 const RAM_LIMIT: u64 = 64 * 1024;
 
-/// Page with the ceilings, between two marks.
+/// With the ceilings, between two marks.
 const PAGE: &str = "docs/boards.md";
 const BEGIN: &str = "<!-- sizes: written by `cargo xtask sizes --tighten` -->";
 const END: &str = "<!-- sizes end -->";
@@ -32,14 +32,14 @@ impl Sizes {
     /// Sizes of `image`.
     ///
     /// # Errors
-    /// The image does not define its stack.
+    /// It does not define its stack.
     pub fn of(image: &Image) -> Result<Self, Error> {
         let sum = |what: fn(&crate::image::Section) -> bool| {
             image.sections.iter().filter(|s| what(s)).map(|s| s.size).sum()
         };
         Ok(Self {
             flash: sum(|s| s.in_image),
-            // Initial values count twice: they lie in flash and are copied.
+            // Initial values count twice: in flash and copied.
             ram: sum(|s| s.writable || !s.in_image),
             stack: image.symbol("_stack_start")? - image.symbol("_stack_end")?,
         })
@@ -61,7 +61,7 @@ pub fn print(rows: &[(&Board, Sizes)]) {
     println!("| limit | {FLASH_LIMIT} | {RAM_LIMIT} | |");
 }
 
-/// Compares with the limits and `xtask/ceilings.toml`, and that with its table in `docs/boards.md`. `tighten` lowers
+/// Compares sizes with limits and `xtask/ceilings.toml`, and that with its table in `docs/boards.md`; `tighten` lowers
 /// the ceilings and writes the table.
 ///
 /// # Errors
@@ -101,7 +101,7 @@ pub fn compare(rows: &[(&Board, Sizes)], tighten: bool) -> Result<(), Error> {
     let stacks: Vec<_> = rows.iter().map(|(board, s)| (board.name, s.stack)).collect();
     let updated = with_table(&page, &ceilings, &stacks)?;
     if tighten {
-        // Keeps the reasons above the ceilings.
+        // Keeps the comment above the ceilings.
         let head: String = text
             .lines()
             .take_while(|line| line.starts_with('#'))
@@ -142,13 +142,13 @@ fn with_table(
     Ok(format!("{head}{BEGIN}{table}{END}{tail}"))
 }
 
-/// A board's row without its stack, which only an image knows.
+/// Without the stack, which only an image knows.
 fn row(name: &str, ceiling: &Ceiling) -> String {
     let (flash, ram) = (ceiling.flash / 1024, ceiling.ram / 1024);
     format!("| `{name}` | {flash} | {ram} |")
 }
 
-/// A few per cent of margin, in whole KiB: compilers differ.
+/// A margin of a few per cent, in whole KiB: compilers differ.
 fn rounded(size: u64) -> u64 {
     (size + size / 32).next_multiple_of(1024)
 }

@@ -1,5 +1,5 @@
-//! Finds a toolchain for the boards: the target's library from rustup, or, on an offline machine, a compiler that comes
-//! with the library's source: Debian's packages `rustc-web` and `rust-web-src`.
+//! Finds a toolchain for the boards: the target's library from rustup, or offline Debian's packages `rustc-web` and
+//! `rust-web-src`, with the library's source.
 
 use std::env;
 use std::ffi::OsString;
@@ -66,7 +66,7 @@ fn debian(rustc: &str) -> Option<Toolchain> {
     let path = env::join_paths(std::iter::once(linkers).chain(env::split_paths(&path))).ok()?;
     Some(Toolchain {
         name: format!("Debian's {version}, building `core` from its source"),
-        // Not in .cargo/config.toml, where it would also affect host builds with a nightly cargo.
+        // Not in .cargo/config.toml, which would also affect host builds with a nightly cargo.
         arguments: &["-Zbuild-std=core"],
         variables: vec![
             ("RUSTC", DEBIAN_RUSTC.into()),
@@ -77,14 +77,13 @@ fn debian(rustc: &str) -> Option<Toolchain> {
     })
 }
 
-/// Output of a program; `None` when it fails.
 fn ask(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     output.status.success().then(|| text.trim().to_string())
 }
 
-/// The folder holds a compiled `core`.
+/// Whether it holds a compiled `core`.
 fn holds_core(folder: &Path) -> bool {
     folder.read_dir().is_ok_and(|entries| {
         entries.flatten().any(|entry| {

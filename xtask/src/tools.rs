@@ -18,10 +18,8 @@ pub const PROBE_RS: Tool = Tool {
     install: "see https://probe.rs/docs/getting-started/installation",
 };
 
-/// Writes a chip through its own USB loader.
-///
-/// A program instead of a crate (`dfu-libusb`, `dfu-nusb`): every system has it, users flash autopilots with it, and it
-/// handles the quirks of ST's loaders; a crate would add a USB library to every build of xtask.
+/// Writes a chip through its USB loader. A program instead of a crate (`dfu-libusb`, `dfu-nusb`), which would add a USB
+/// library to xtask: users have it from other autopilots, and it handles the quirks of ST's loaders.
 pub const DFU_UTIL: Tool = Tool {
     program: "dfu-util",
     install: "Debian, Ubuntu: apt-get install dfu-util; macOS: brew install dfu-util; else https://dfu-util.sourceforge.net",
@@ -34,10 +32,10 @@ impl Tool {
         command
     }
 
-    /// Writes a chip through its own USB loader.
+    /// Prints `command` and runs it.
     ///
-    /// A program instead of a crate (`dfu-libusb`, `dfu-nusb`): every system has it, and it handles the quirks of ST's
-    /// loaders; a crate would add a USB library to every build of xtask.
+    /// # Errors
+    /// The program is not installed, or fails.
     pub fn run(&self, command: &mut Command) -> Result<(), Error> {
         eprintln!("{}", build::shown(command));
         let status = command.status().map_err(|e| self.missing(&e))?;
@@ -48,7 +46,7 @@ impl Tool {
         }
     }
 
-    /// Runs the command and returns its output.
+    /// Runs `command`; returns its output.
     ///
     /// # Errors
     /// The program is not installed.
@@ -65,7 +63,7 @@ impl Tool {
     }
 }
 
-/// Checks that a probe is plugged in.
+/// Checks for a connected probe.
 ///
 /// # Errors
 /// probe-rs is not installed, or lists none.
@@ -82,7 +80,7 @@ pub fn probe(board: &Board) -> Result<(), Error> {
     .into())
 }
 
-/// `probe-rs list` numbers the probes: `[0]: STLink V3 -- …`.
+/// Probes are numbered: `[0]: STLink V3 -- …`.
 fn names_a_probe(listed: &str) -> bool {
     listed.lines().any(|line| line.trim_start().starts_with('['))
 }

@@ -1,21 +1,21 @@
-//! Checks the vector table, which the core reads at the start and at every exception.
+//! Checks the vector table.
 
 use crate::Error;
 use crate::boards::Board;
 use crate::image::Image;
 
-/// Words before the first interrupt: stack pointer and fifteen exceptions.
+/// Stack pointer and fifteen exceptions, words.
 const EXCEPTIONS: usize = 16;
 
 /// Vector table offset register (ARMv7-M, B3.2.5).
 const VTOR: u32 = 0xE000_ED08;
-/// Bytes of start-up code within which it must be written: before any possible exception.
+/// Bytes of start-up within which it must be written: before any possible exception.
 const AT_ONCE: u64 = 16;
 
-/// Checks the table; returns how many interrupts have their own handler.
+/// Returns how many interrupts have their own handler.
 ///
 /// # Errors
-/// What is wrong with it.
+/// What is wrong with the table.
 pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     let table = &image.vectors;
     if table.len() != EXCEPTIONS + board.interrupts {
@@ -46,7 +46,7 @@ pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
         .ok_or("the image has no code")?;
     let code = text.address..text.address + text.size;
     for (number, &vector) in table.iter().enumerate().skip(1) {
-        // 0 marks what the architecture or the chip reserves.
+        // 0 marks reserved vectors.
         if vector != 0 && (vector & 1 == 0 || !code.contains(&u64::from(vector))) {
             return Err(format!("vector {number} is {vector:#010x}: no code").into());
         }
@@ -71,7 +71,8 @@ pub fn check(board: &Board, image: &Image) -> Result<usize, Error> {
     Ok(interrupts.iter().filter(|&&v| v != 0 && v != default).count())
 }
 
-/// Start-up begins with a store of the table's address to [`VTOR`]: `ldr rA, =VTOR; ldr rB, =table; str rB, [rA]`.
+/// Whether start-up begins with a store of the table's address to [`VTOR`]: `ldr rA, =VTOR; ldr rB, =table; str rB,
+/// [rA]`.
 fn takes_its_own(image: &Image) -> Result<bool, Error> {
     let reset = image.symbol("Reset")? & !1;
     let table = image.symbol("__vector_table")? as u32;
@@ -85,7 +86,7 @@ fn takes_its_own(image: &Image) -> Result<bool, Error> {
         let word = image.word(((at + 4) & !3) + 4 * u64::from(code & 0xFF))?;
         Some((code >> 8 & 7, word))
     };
-    // Register stored and register with the address (encoding T1 without offset, A7.7.161).
+    // Stored register and address register (encoding T1 without offset, A7.7.161).
     let store =
         |at: u64| Some(half(at).filter(|code| code >> 6 == 0b01_1000_0000)?).map(|c| (c & 7, c >> 3 & 7));
     let found = (reset..reset + AT_ONCE).step_by(2).any(|at| {
@@ -113,7 +114,7 @@ mod tests {
     use super::*;
     use crate::image::Load;
 
-    /// An image that starts with `code` at 0x0800_0102, followed by its words.
+    /// Starts with `code` at 0x0800_0102, followed by its words.
     fn starting_with(code: &[u16], words: &[u32]) -> Image {
         let halves = code.iter().flat_map(|half| half.to_le_bytes());
         let bytes = [0; 2].into_iter().chain(halves);
@@ -137,13 +138,13 @@ mod tests {
 
     #[test]
     fn start_up_that_leaves_the_table_of_another_is_found() {
-        // ldr r0, [pc, #8]; ldr r1, [pc, #8]; str r1, [r0]; nop; nop; the words from 0x0800_010C on.
+        // ldr r0, [pc, #8]; ldr r1, [pc, #8]; str r1, [r0]; nop; nop; words from 0x0800_010C on.
         let code = [0x4802, 0x4902, 0x6001, 0xBF00, 0xBF00];
         let own = [VTOR, 0x0800_0000];
         assert!(takes_its_own(&starting_with(&code, &own)).unwrap());
         assert!(!takes_its_own(&starting_with(&code, &[VTOR, 0x1FFF_0000])).unwrap());
         assert!(!takes_its_own(&starting_with(&code, &[0xE000_ED88, 0x0800_0000])).unwrap());
-        // Stored the other way round, loaded and not stored, none of it.
+        // Stored in reverse, loaded and not stored, neither.
         for code in [
             [0x4802, 0x4902, 0x6008, 0xBF00, 0xBF00],
             [0x4802, 0x4902, 0xBF00, 0xBF00, 0xBF00],

@@ -1,7 +1,7 @@
 //! Hard fault handler: unmapped addresses, undefined instructions, stack overflow.
 //!
-//! It does not use the old stack. An overflowed one has left its memory, where the handler would fault again at the
-//! highest priority: the processor would lock up without a message, with the motors unchanged.
+//! It does not use the old stack: after an overflow that would fault again, locking the processor up without a message
+//! and with the motors unchanged.
 
 use core::arch::naked_asm;
 
@@ -12,11 +12,11 @@ const FRAME: u32 = 32;
 /// Fault status: stacking failed by memory protection or by the bus (ARMv7-M, B3.2.15).
 const STACKING: u32 = 1 << 4 | 1 << 12;
 
-/// The address of a memory fault is valid, and that of a bus fault.
+/// Validity of the addresses of memory and bus faults.
 const MEMORY_ADDRESS: u32 = 1 << 7;
 const BUS_ADDRESS: u32 = 1 << 15;
 
-/// Entry in the vector table: reads the frame, if it lies in the stack, then restarts the stack from its top.
+/// Entry in the vector table: reads the frame if it lies in the stack, then restarts the stack from its top.
 ///
 /// # Safety
 /// Only the processor calls it.
@@ -25,7 +25,7 @@ const BUS_ADDRESS: u32 = 1 << 15;
 #[allow(non_snake_case, reason = "the name that the vector table wants")]
 unsafe extern "C" fn HardFault() -> ! {
     naked_asm!(
-        // Cancels the float state's pending save to the old stack (FPCCR.LSPACT).
+        // Cancels a pending save of floats to the old stack (FPCCR.LSPACT).
         "movw r3, #0xEF34",
         "movt r3, #0xE000",
         "ldr r2, [r3]",
@@ -55,7 +55,7 @@ unsafe extern "C" fn HardFault() -> ! {
     )
 }
 
-/// Ends the run. `stacked`: address of the frame; `pc`, `lr`: from the frame, if readable.
+/// Ends the run. `stacked`: address of the frame; `pc`, `lr`: from it, if readable.
 extern "C" fn told(stacked: u32, pc: u32, lr: u32) -> ! {
     unsafe extern "C" {
         static _stack_start: u32;

@@ -1,13 +1,12 @@
-//! The end of a run on a Cortex-M: stops the motors, keeps the message, resets the chip.
+//! End of a run on a Cortex-M: stops the motors, keeps the message, resets the chip.
 //!
-//! After a fault nothing can be trusted; a reset leads fastest to motors that are *commanded* to stop, since the motor
-//! task first sends a frame of zeros. The next start logs the message.
+//! After a fault nothing can be trusted. A reset leads fastest to *commanded* stops, the motor task's first frame; the
+//! next start logs the message.
 //!
-//! A second fault goes straight to the reset. Within a hard fault handler it locks the processor up, with the motors'
-//! pins already low, and the watchdog resets the chip. The next start then finds the text kept before the message was
-//! made.
+//! A second fault resets at once. In a hard fault handler it locks the processor up, with the motors' pins already low,
+//! until the watchdog resets the chip; the next start then finds a substitute text.
 //!
-//! The crate knows no chip or board, so an image for QEMU runs the same code. Empty on the host.
+//! The same for every chip and board, so an image for QEMU runs it too. Empty on the host.
 
 #![no_std]
 #![cfg(target_os = "none")]
@@ -24,25 +23,25 @@ use core::sync::atomic::{AtomicBool, Ordering};
 /// Kept while the message is made.
 const UNTOLD: &str = "a fault, and another one while it was to be told";
 
-/// A run is ending. Set by [`stop_and_restart`]; a reset clears it.
+/// The run is ending; only a reset clears it.
 pub static ENDING: AtomicBool = AtomicBool::new(false);
 
 /// A board's part in the end of a run. Called with interrupts off, from any handler, at any stack depth.
 pub trait Machine {
-    /// Drives the motors' pins low by plain register accesses, which cannot fault.
+    /// Drives the motors' pins low by register accesses that cannot fault.
     fn stop_motors();
 
-    /// Keeps `message` for the next start. May fault in formatting it.
+    /// Keeps `message` for the next start. May fault while formatting it.
     fn keep(message: Arguments<'_>);
 
     /// Restarts the chip.
     fn reset() -> !;
 }
 
-/// Stops the motors, keeps `message` for the next start and restarts the machine `M`.
+/// Stops the motors, keeps `message` for the next start, restarts `M`.
 pub fn stop_and_restart<M: Machine>(message: Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
-    // Nothing that can fault precedes this.
+    // Nothing before this can fault.
     M::stop_motors();
     if !ENDING.load(Ordering::Relaxed) {
         ENDING.store(true, Ordering::Relaxed);
@@ -61,7 +60,8 @@ pub fn end_of_run(message: Arguments<'_>) -> ! {
     sophie_end_of_run(message)
 }
 
-/// Defines the end of an image's run after a fault or panic: a function `fn(fmt::Arguments<'_>) -> !`. Once per image.
+/// Defines a function `fn(fmt::Arguments<'_>) -> !` as the end of an image's run after a fault or panic. Once per
+/// image.
 #[macro_export]
 macro_rules! ends_with {
     ($end:path) => {

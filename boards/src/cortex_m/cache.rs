@@ -2,9 +2,9 @@
 
 use cortex_m::peripheral::{MPU, Peripherals, SCB};
 
-/// Protection regions with base, memory type and access (ARMv7-M B3.5.8, B3.5.9): the default map (B3.1), but no access
-/// to external memories, speculative reads included, and no caching of data memories. The background map (privileged
-/// code only) would serve for the rest, but the emulator checks it at each access.
+/// Protection regions: base, memory type and access (ARMv7-M B3.5.8, B3.5.9). The default map (B3.1) without access to
+/// external memories, even speculative, and without caching of data memories. The background map (privileged code only)
+/// would serve for the rest, but the emulator checks it at each access.
 const MAP: [(u32, u32); 4] = [
     // All addresses but the eighths below 0x6000_0000 and from 0xE000_0000 on.
     (0, NEVER_EXECUTED | 0x87 << 8 | SIZE_4_GB | ENABLED),
@@ -14,7 +14,7 @@ const MAP: [(u32, u32); 4] = [
 ];
 /// Flash and instruction memory.
 const CODE: u32 = 0x0000_0000;
-/// Tightly coupled memory, which has no cache, and memories that DMA reaches.
+/// Tightly coupled memory (uncached) and DMA's memories.
 const DATA: u32 = 0x2000_0000;
 const PERIPHERALS: u32 = 0x4000_0000;
 const NEVER_EXECUTED: u32 = 1 << 28;
@@ -25,11 +25,11 @@ const DEVICE: u32 = NEVER_EXECUTED | 1 << 16;
 const SIZE_4_GB: u32 = 31 << 1;
 const SIZE_512_MB: u32 = 28 << 1;
 const ENABLED: u32 = 1;
-/// Protection on; default map outside the regions, in the system's own space.
+/// Protection on, default map elsewhere.
 const ON: u32 = 1 << 2 | 1;
 
 /// Enables the instruction cache, and with `data` the data cache, for reads from flash; blocks speculative reads of
-/// external memories, where a controller that is not set up may stall the core forever. Called once, at the start.
+/// external memories, where a controller not set up may stall the core. Called once, at the start.
 pub fn enable_caches(data: bool) {
     // SAFETY: nothing else uses the core's cache control and memory protection, and nothing else runs yet.
     let mut core = unsafe { Peripherals::steal() };
@@ -56,7 +56,7 @@ fn protect(mpu: &MPU) {
     cortex_m::asm::isb();
 }
 
-/// Drops cached data of `length` bytes at `address`, changed behind the cache.
+/// Drops cached data that changed behind the cache.
 pub fn forget_cached(address: usize, length: usize) {
     if SCB::dcache_enabled() {
         // SAFETY: cache control is the core's own, and dropping cached flash loses no write: flash is never written
@@ -66,7 +66,7 @@ pub fn forget_cached(address: usize, length: usize) {
     }
 }
 
-/// Every region is as set: no speculative reads of external memories.
+/// Every region is as set.
 pub fn protected() -> bool {
     // SAFETY: this only selects the region to read, and nothing else uses the protection's registers.
     let mpu = unsafe { &*MPU::PTR };
@@ -78,7 +78,7 @@ pub fn protected() -> bool {
     regions && mpu.ctrl.read() & ON == ON
 }
 
-/// Instruction cache and data cache are on.
+/// State of instruction and data cache.
 pub fn enabled() -> [bool; 2] {
     [SCB::icache_enabled(), SCB::dcache_enabled()]
 }

@@ -1,13 +1,12 @@
-//! Copies of whole words, as the compiler calls them for every message that is longer than 64 bytes.
+//! Word copies, which the compiler calls for every message longer than 64 bytes.
 //!
-//! What `compiler_builtins` has moves one word in five instructions; this moves eight in four. Its symbols are weak, so
-//! these take their place in the whole image. The rig compares every count of words up to 32 and
-//! every rest of bytes (`hil/rig/tests/rig/t11_copies.rs`).
+//! They replace the weak symbols of `compiler_builtins`: eight words in four instructions instead of one in five. The
+//! rig compares all counts up to 32 words with every rest of bytes (`hil/rig/tests/rig/t11_copies.rs`).
 
 use core::arch::global_asm;
 
-// Run-time ABI for the Arm architecture (IHI 0043), §4.3.4: r0 to, r1 from, r2 bytes, both addresses on a word; r0 to r3
-// and r12 are the callee's. Eight words a turn, then what is left by the bits of its length.
+// Run-time ABI for the Arm architecture (IHI 0043), §4.3.4: r0 to, r1 from, r2 bytes, both addresses word-aligned; r0
+// to r3 and r12 are the callee's. Eight words a turn, then the rest by the bits of its length.
 global_asm!(
     ".syntax unified",
     ".section .text.copy_words, \"ax\", %progbits",

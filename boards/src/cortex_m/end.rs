@@ -23,7 +23,7 @@ impl Machine for Here {
     }
 }
 
-/// Stops the motors, keeps `message` for the next start and restarts the chip.
+/// Stops the motors, keeps `message` for the next start, restarts.
 pub fn stop_and_restart(message: Arguments<'_>) -> ! {
     sophie_fault::stop_and_restart::<Here>(message)
 }

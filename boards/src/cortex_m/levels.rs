@@ -20,7 +20,7 @@ pub const STEADY: Priority = Priority::P8;
 
 /// Makes two of the board's interrupt vectors the flight and steady level.
 ///
-/// The priority is set before the executor starts: unmasked first, it would run at the reset priority, the highest.
+/// The priority is set before the executor starts: at reset it is the highest.
 macro_rules! levels_on {
     ($flight:ident, $steady:ident) => {
         static FLIGHT_LEVEL: embassy_executor::InterruptExecutor = embassy_executor::InterruptExecutor::new();

@@ -1,4 +1,4 @@
-//! What every Cortex-M board does the same way: levels, stack, caches, restarts, and what outlives the end of a run.
+//! Common to every Cortex-M board: interrupt levels, stack, caches, restarts, and memory that outlives a run.
 
 #[cfg(not(family = "f4"))]
 mod cache;

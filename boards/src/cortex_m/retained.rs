@@ -1,9 +1,9 @@
-//! Memory that outlives a reset: the count of starts, the end of the last run, and two copies of the state that the
-//! tasks resume from (`sophie_tasks::retained_state`), which this file only stores.
+//! Memory retained over a reset: the count of starts, the end of the last run, and two copies of the tasks' state
+//! (`sophie_tasks::retained_state`).
 //!
-//! Only these functions reach the memory: the linker gives it to nothing else, no DMA is pointed at it, and the stack
-//! lies at the bottom of another memory, where an overflow faults. A fault handler writes only the message, so a
-//! half-written copy does not matter to it.
+//! Only these functions access it: the linker places nothing else there, no DMA points at it, and the stack lies at the
+//! bottom of another memory, where an overflow faults. A fault handler writes only the message, so it may interrupt a
+//! copy.
 
 use core::cell::UnsafeCell;
 use core::fmt::{self, Write};
@@ -22,7 +22,7 @@ pub enum ResetCause {
     BrownOut,
     /// Watchdog not fed.
     Watchdog,
-    /// Requested by the firmware: after a fault, or on command.
+    /// By the firmware: after a fault or on command.
     Software,
     /// Reset pin: button or probe.
     Pin,
@@ -31,7 +31,7 @@ pub enum ResetCause {
 }
 
 impl ResetCause {
-    /// The tasks' view; `fault` if the last run left a message of a fault.
+    /// The tasks' view; `fault` if the last run left a fault message.
     pub fn told(self, fault: bool) -> StartCause {
         match self {
             Self::PowerOn => StartCause::PowerOn,
@@ -44,23 +44,23 @@ impl ResetCause {
 }
 
 const LONGEST: usize = 240;
-/// Message of the fault that ended the last run.
+/// Fault message that ended the last run.
 pub type LastWords = String<LONGEST>;
 
 /// State at start-up.
 pub struct Kept {
     /// Starts since power-on, including this one.
     pub starts: u32,
-    /// Starts since power-on after a fault or watchdog reset.
+    /// Of these, after a fault or watchdog reset.
     pub faults: u32,
-    /// Message of the fault that ended the last run.
+    /// Message of the last run's fault.
     pub last_words: Option<LastWords>,
     /// Copies kept by the last run; blank after power-on.
     pub copies: [Words; 2],
 }
 
 const WORDS: usize = LONGEST / 4;
-/// Marks a block of this firmware ("SOPH"): noise after power-on is rejected.
+/// Marks a block of this firmware ("SOPH"); rejects noise after power-on.
 const MAGIC: u32 = 0x534F_5048;
 
 #[repr(C)]
@@ -70,7 +70,6 @@ struct Block {
     faults: u32,
     length: u32,
     text: [u32; WORDS],
-    /// Sum of all words before it.
     sum: u32,
 }
 
@@ -110,7 +109,7 @@ impl Block {
     }
 }
 
-/// The block, in memory that start-up code does not initialise.
+/// The block, in memory that start-up does not initialise.
 #[repr(transparent)]
 struct Cell(UnsafeCell<Block>);
 
@@ -132,7 +131,7 @@ unsafe impl Sync for Copies {}
 #[unsafe(link_section = ".retained")]
 static COPIES: Copies = Copies(UnsafeCell::new([[0; STATE_WORDS]; 2]));
 
-/// Writes the copies; [`start`] makes the only one.
+/// Writer of the copies; only [`start`] makes one.
 pub struct Memory(());
 
 impl Retain for Memory {
@@ -163,9 +162,9 @@ fn store(mut block: Block) {
     }
 }
 
-/// Takes the state of the last run, counts this start and clears the message. Called once, before any task.
+/// Takes the last run's state, counts this start and clears the message. Called once, before any task.
 pub fn start(cause: ResetCause) -> (Kept, Memory) {
-    // After power-on the block is noise and fails the memory's error correction.
+    // Noise fails the memory's error correction.
     let lost = matches!(cause, ResetCause::PowerOn | ResetCause::BrownOut);
     let mut block = if lost { Block::EMPTY } else { load() };
     if !block.is_whole() && !lost {
@@ -207,7 +206,7 @@ pub fn leave(message: fmt::Arguments<'_>) {
         words: [0; WORDS],
         length: 0,
     };
-    // Never fails: an overlong message is truncated.
+    // Never fails: long messages are truncated.
     let _ = text.write_fmt(message);
     store(Block {
         length: text.length as u32,
@@ -216,7 +215,7 @@ pub fn leave(message: fmt::Arguments<'_>) {
     });
 }
 
-/// Withdraws the message: its cause did not occur. Called before any task runs.
+/// Withdraws the message: its cause did not occur. Called before any task.
 pub fn forget() {
     let block = load();
     store(Block { length: 0, ..block });

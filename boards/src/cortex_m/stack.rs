@@ -1,5 +1,5 @@
-//! Greatest stack depth so far, from the start-up's paint. All levels share the stack: the greatest depth is background
-//! + steady + flight + a driver's interrupt.
+//! Greatest stack depth, from the start-up's paint. All levels share the stack: background + steady + flight + a
+//! driver's interrupt.
 
 /// Paint of cortex-m-rt (feature `paint-stack`).
 const PAINT: u32 = 0xCCCC_CCCC;

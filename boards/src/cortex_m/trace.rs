@@ -2,8 +2,8 @@
 //!
 //! An event is two words: the clock's low half (µs), and from the lowest bit the kind (3 bits), the address of task or
 //! executor without its two lowest bits (18 bits: enough within one memory) and the active exception (9 bits, 0 in
-//! thread mode). Interrupts fill the ring, [`drain`] empties it; events that do not fit are counted. Nothing is logged
-//! here: a log line takes longer than most events.
+//! thread mode). [`drain`] empties the ring; events that do not fit are counted. Nothing is logged here: a log line
+//! takes longer than most events.
 
 use core::sync::atomic::Ordering::Relaxed;
 use core::sync::atomic::{AtomicBool, AtomicU32};
@@ -11,14 +11,13 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 use cortex_m::peripheral::SCB;
 use embassy_time::Instant;
 
-/// Capacity, a power of two: 20 ms of a flight, more than the background ever stalls.
+/// Capacity, a power of two: 20 ms of a flight, beyond any stall of the background.
 pub const EVENTS: u32 = 1024;
 /// Address bits of an event, and their shift.
 const ADDRESS: u32 = 0x000F_FFFC;
 const ADDRESS_SHIFT: u32 = 1;
 const EXCEPTION_SHIFT: u32 = 21;
 
-/// Event kinds, by number.
 #[repr(u32)]
 enum Kind {
     /// A task was woken.
@@ -33,11 +32,10 @@ enum Kind {
 
 static RING: [[AtomicU32; 2]; EVENTS as usize] =
     [const { [const { AtomicU32::new(0) }; 2] }; EVENTS as usize];
-/// Events written and read since the start.
 static WRITTEN: AtomicU32 = AtomicU32::new(0);
 static READ: AtomicU32 = AtomicU32::new(0);
 static LOST: AtomicU32 = AtomicU32::new(0);
-/// The clock runs; before that its registers must not be read.
+/// Set once the clock runs: it must not be read before.
 static ON: AtomicBool = AtomicBool::new(false);
 
 /// Starts recording. The clock must run.
@@ -73,7 +71,7 @@ pub fn drain(events: &mut [[u32; 2]]) -> usize {
     let mut count = 0;
     for slot in events {
         let read = READ.load(Relaxed);
-        // Entries before `WRITTEN` are complete: it moves last, in the writer's critical section.
+        // Complete up to `WRITTEN`, set last in a critical section.
         if read == WRITTEN.load(Relaxed) {
             break;
         }
@@ -91,7 +89,7 @@ pub fn lost() -> u32 {
     LOST.load(Relaxed)
 }
 
-/// The thread mode executor polled since it was idle; every interrupt wakes it, mostly without work.
+/// The thread mode executor polled since it was idle: interrupts mostly wake it without work.
 static POLLED: AtomicBool = AtomicBool::new(false);
 
 // SAFETY (all seven): symbols declared by embassy-executor, each defined once with its signature.

@@ -1,9 +1,9 @@
-//! The F4's flash accelerator. embassy-stm32 0.6 switches it off when it sets the wait states: five wait states at each
-//! branch and constant cost a third to a half of the speed.
+//! The F4's flash accelerator, which embassy-stm32 0.6 switches off when it sets the wait states: five at each branch
+//! and constant cost a third to a half of the speed.
 
 use embassy_stm32::pac::{DBGMCU, FLASH};
 
-/// Revision A: its prefetch must stay off (STM32F405 errata, "ART accelerator prefetch").
+/// Its prefetch must stay off (STM32F405 errata, "ART accelerator prefetch").
 const REVISION_A: u16 = 0x1000;
 
 /// Prefetch is usable.
@@ -31,8 +31,8 @@ pub fn enable() {
     caches(true);
 }
 
-/// Runs `change`, which writes or erases flash, with the data cache off, and empties it: the cache does not see such
-/// changes, so a verifying read would return old data (RM0090 §3.5.2).
+/// Runs `change`, which writes or erases flash, with the data cache off, and empties it: otherwise a verifying read
+/// would return old data (RM0090 §3.5.2).
 pub fn uncached<T>(change: impl FnOnce() -> T) -> T {
     FLASH.acr().modify(|w| w.set_dcen(false));
     let result = change();
@@ -43,7 +43,7 @@ pub fn uncached<T>(change: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Prefetch, instruction cache and data cache are on.
+/// State of prefetch, instruction cache and data cache.
 pub fn enabled() -> [bool; 3] {
     let r = FLASH.acr().read();
     [r.prften(), r.icen(), r.dcen()]

@@ -1,7 +1,5 @@
-//! A scan on the converter of the F4 and F7.
-//!
-//! embassy-stm32 0.6 only has a free-running ring there, with thousands of interrupts a second for 500 readings. This
-//! starts single scans.
+//! Single scans on the converter of the F4 and F7: embassy-stm32 0.6 only has a free-running ring there, with thousands
+//! of interrupts a second for 500 readings.
 
 use embassy_stm32::Peri;
 use embassy_stm32::adc::{Adc, AnyAdcChannel, RxDma, SampleTime};
@@ -21,7 +19,7 @@ const LONGEST: Duration = Duration::from_millis(1);
 
 /// Converter and channels.
 pub struct Converter<D: RxDma<ADC1>, I> {
-    /// Held so that converter and pins stay this driver's.
+    /// Held to own converter and pins.
     _kept: (Adc<'static, ADC1>, [AnyAdcChannel<'static, ADC1>; CHANNELS]),
     dma: Peri<'static, D>,
     irqs: I,
@@ -53,7 +51,7 @@ impl<D: RxDma<ADC1>, I> Converter<D, I> {
             let number = channel.get_hw_channel();
             // The third register holds ranks 1 to 6: all in use.
             registers.sqr3().modify(|w| w.set_sq(rank, number));
-            // Sampling time for the 10 kOhm of a pressure sensor's divider.
+            // For the 10 kOhm of a pressure sensor's divider.
             if number <= 9 {
                 registers
                     .smpr2()
@@ -80,7 +78,7 @@ where
 {
     async fn scan(&mut self) -> Result<[u16; CHANNELS], PortError> {
         let r = pac::ADC1;
-        // The request must fall before each scan: it stays masked after the previous scan's last transfer.
+        // The request must fall before each scan: it stays masked after the last transfer of the previous one.
         r.cr2().modify(|w| w.set_dma(false));
         r.sr().modify(|w| {
             w.set_eoc(false);

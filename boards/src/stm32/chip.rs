@@ -6,7 +6,7 @@ use static_cell::StaticCell;
 use super::options;
 use super::watchdog;
 use crate::cortex_m::restart::reset;
-use crate::stop_motors;
+use crate::{NAME, stop_motors};
 
 static LOOKS: StaticCell<Looks> = StaticCell::new();
 
@@ -36,6 +36,10 @@ impl Chip for ThisChip {
         restart()
     }
 
+    fn board(&self) -> &'static str {
+        NAME
+    }
+
     fn looks(&self) -> &[Look] {
         self.looks
     }
@@ -45,7 +49,7 @@ impl Chip for ThisChip {
     }
 
     async fn set_brown_out(&mut self) -> Result<(), NotSet> {
-        // May stall the processor beyond the watchdog's normal time-out. Only while disarmed.
+        // May stall the processor beyond the normal time-out; only while disarmed.
         watchdog::be_patient(true).await;
         let set = options::set_brown_out();
         watchdog::be_patient(false).await;

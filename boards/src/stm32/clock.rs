@@ -1,4 +1,4 @@
-//! From reset to running clocks: outputs and watchdog first, so that nothing spins or hangs while crystal and PLLs
+//! From reset to running clocks. Outputs and watchdog come first: nothing may spin or hang while crystal and PLLs
 //! start.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -12,10 +12,9 @@ use crate::cortex_m::retained;
 
 const STUCK: &str = "the clocks did not start: a PLL does not lock, or the core's supply does not settle";
 
-/// embassy-time's clock counts; before that its registers must not be read.
+/// Set once embassy-time's clock runs: it must not be read before.
 static COUNTING: AtomicBool = AtomicBool::new(false);
 
-/// Clock of the flash's bus, Hz; 0 before the clocks run.
 static BUS: AtomicU32 = AtomicU32::new(0);
 
 /// Clock of the flash's bus, Hz.
@@ -23,7 +22,7 @@ pub fn bus_hz() -> u32 {
     BUS.load(Ordering::Relaxed)
 }
 
-/// Time since the clocks run, µs; 0 before.
+/// Time since the clocks started, µs; 0 before.
 pub fn micros() -> u64 {
     if COUNTING.load(Ordering::Relaxed) {
         embassy_time::Instant::now().as_micros()
@@ -32,9 +31,8 @@ pub fn micros() -> u64 {
     }
 }
 
-/// Sets the outputs' first levels, starts the watchdog, then the clocks of `config`. `timer` is embassy-time's. A
-/// crystal that does not start or a PLL that does not lock ends in a watchdog reset, and the next start reports which.
-/// Called once.
+/// Sets the outputs' first levels, starts the watchdog, then the clocks of `config`; `timer` is embassy-time's. If the
+/// crystal or a PLL fails, the watchdog resets, and the next start reports which. Called once.
 pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals {
     first_levels();
     watchdog::start();
@@ -46,7 +44,7 @@ pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals 
         let peripherals = embassy_stm32::init(config);
         // embassy-stm32 loads the timer by an update event while counter and compare values are zero, which raises the
         // compare flags. Their interrupt would count a half turn of 65.5 ms too many; from then on, between each half
-        // turn and its interrupt, the time would read 65.5 ms too early.
+        // turn and its interrupt, the time would be 65.5 ms early.
         timer.sr().write_value(SrGp16(0));
         peripherals
     });
@@ -57,8 +55,7 @@ pub fn start(config: Config, timer: TimGp32, first_levels: fn()) -> Peripherals 
     peripherals
 }
 
-/// Starts the crystal of `mhz` MHz before embassy-stm32, which would not report a failure. The watchdog bounds the
-/// wait.
+/// Starts the crystal before embassy-stm32, which would not report a failure. The watchdog bounds the wait.
 fn start_crystal(mhz: u32) {
     retained::leave(format_args!("the {mhz} MHz crystal does not start"));
     RCC.cr().modify(|w| w.set_hseon(true));

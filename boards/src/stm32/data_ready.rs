@@ -1,7 +1,7 @@
-//! The inertial sensor's data-ready line, stamped in its interrupt: a task that runs late does not move the sample.
+//! Data-ready line of the inertial sensor, stamped in its interrupt: a late task does not move the sample's time.
 //!
-//! The line stays enabled from one sample to the next. The HAL sets it up anew for each wait, 80 instructions that stand
-//! between a sample and the motor frame that follows from it.
+//! The line stays enabled between samples: the HAL's set-up for each wait would add 80 instructions between sample and
+//! motor frame.
 
 use core::future::{Future, poll_fn};
 use core::pin::pin;
@@ -19,15 +19,11 @@ use sophie_drivers::data_ready::DataReady;
 
 /// The lowest 32 bits of the clock at the last interrupt, µs.
 static RISEN: AtomicU32 = AtomicU32::new(0);
-/// Interrupts, modulo 2^32.
 static EDGES: AtomicU32 = AtomicU32::new(0);
-/// The line's bit in the registers of external interrupts.
 static LINE: AtomicU32 = AtomicU32::new(0);
-/// Who waits for the line.
 static WAITING: AtomicWaker = AtomicWaker::new();
 
-/// Stamps the interrupt and acknowledges it. To be bound before the HAL's handler, which then finds nothing to do: it
-/// would disable the line.
+/// Stamps and acknowledges the interrupt. Bound before the HAL's handler, which would disable the line.
 pub struct ReadyStamp;
 
 impl<I: Interrupt> Handler<I> for ReadyStamp {
@@ -39,22 +35,22 @@ impl<I: Interrupt> Handler<I> for ReadyStamp {
     }
 }
 
-/// The line. One exists.
+/// The data-ready line; only one exists.
 pub struct ReadyLine {
-    /// Kept, so that pin and line are no one else's.
+    /// Kept to own pin and line.
     _input: ExtiInput<'static, Async>,
 }
 
 impl ReadyLine {
-    /// The line on pin `number` of its port, which `input` reads.
+    /// The line on pin `number` of its port, read by `input`.
     pub fn new(mut input: ExtiInput<'static, Async>, number: u8) -> Self {
-        // A wait that is given up leaves edge and port configured, and the line disabled.
+        // Leaves edge and port configured, the line disabled.
         let _ = pin!(input.wait_for_rising_edge()).poll(&mut Context::from_waker(Waker::noop()));
         LINE.store(1 << number, Ordering::Relaxed);
         Self { _input: input }
     }
 
-    /// Enables the line where it is not: at first, and after an edge between the two handlers.
+    /// Enables a disabled line: at first, and after an edge between the handlers.
     fn enable() {
         let line = LINE.load(Ordering::Relaxed);
         if EXTI.imr(0).read().0 & line == 0 {

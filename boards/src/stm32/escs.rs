@@ -1,7 +1,7 @@
-//! The motors' speed controllers, as DShot frames or as pulses: on the channels of one timer in any order, or of two.
+//! The motors' speed controllers, by DShot frames or pulses, on any channels of one or two timers.
 //!
-//! A frame or pulse is sent for a command and ends by itself with the pins low: without software there is none, and a
-//! controller stops its motor. The last rows of a DShot frame are zeros, and the timer stops after a pulse.
+//! Each command starts one frame or pulse, which ends with the pins low: in zeros, or by the timer's stop. Without
+//! software there is none, and the controllers stop the motors.
 
 use embassy_futures::join::join;
 use embassy_stm32::dma::InterruptHandler;
@@ -22,26 +22,23 @@ use static_cell::ConstStaticCell;
 use super::Aligned;
 use super::frame_stream::{FrameStream, Stream};
 
-/// In place of the motor of a channel that moves none.
+/// Marks a channel without a motor.
 const NO_MOTOR: usize = usize::MAX;
 
-/// Rows of compare values of a frame: one for each bit, and two of zeros. The first of those is in force when the second
-/// has been moved: the pins are low when the last row has been.
+/// Rows of compare values in a frame: one a bit, and two of zeros. The first of these is in force once the second has
+/// been moved: the pins end low.
 const FRAME_ROWS: usize = dshot::BITS + 2;
-/// Rows that DMA would write: what follows the frame are zeros, in which the timer is stopped. They last as long as a
-/// frame of the fastest protocol: no task of the level keeps this one waiting for longer.
+/// Rows given to DMA. The timer is stopped in the zeros after the frame, which last as long as a frame of the fastest
+/// protocol: longer than any task of the level delays this one.
 const ROWS: usize = 2 * FRAME_ROWS;
-/// All rows.
 type EscBurst = Aligned<[u16; ROWS * dshot::MOTORS]>;
 
 static DMA_MOTORS: ConstStaticCell<EscBurst> = ConstStaticCell::new(Aligned([0; ROWS * dshot::MOTORS]));
-/// That of a second timer, where there is one.
 static DMA_MORE_MOTORS: ConstStaticCell<EscBurst> = ConstStaticCell::new(Aligned([0; ROWS * dshot::MOTORS]));
 
-/// How commands become compare values.
 #[derive(Clone, Copy)]
 enum Timing {
-    /// With the time that all rows take.
+    /// With the time of all rows.
     DShot(BitTiming, Duration),
     Pulse(EscPulse, PwmTiming),
 }
@@ -49,13 +46,11 @@ enum Timing {
 /// Speed controllers on channels of a 16-bit timer.
 pub struct EscTimer<T: GeneralInstance4Channel, D: UpDma<T>, I> {
     timer: low_level::Timer<'static, T>,
-    /// The channel of each motor that is on this timer.
     channels: PerArm<Option<Channel>>,
-    /// The motor of each channel, 0 to 3, or [`NO_MOTOR`].
     motors: [usize; dshot::MOTORS],
-    /// Kept, so that the pins stay the timer's.
+    /// Kept to own the pins.
     pins: PerArm<Option<Flex<'static>>>,
-    /// Kept, so that the stream is no one else's.
+    /// Kept to own the stream.
     _dma: Peri<'static, D>,
     _irqs: I,
     stream: Stream,
@@ -68,8 +63,8 @@ where
     I: Binding<D::Interrupt, InterruptHandler<D>> + Copy,
     u16: Into<T::Word>,
 {
-    /// Motors 1 to 4 on these pins, which stay low until the first command. The pins say the channels, in any order: two
-    /// of one channel do not build. Called once.
+    /// Motors 1 to 4 on these pins, low until the first command. The pins determine the channels, in any order; two of
+    /// one channel do not build. Called once.
     pub fn new<C1: TimerChannel, C2: TimerChannel, C3: TimerChannel, C4: TimerChannel>(
         timer: Peri<'static, T>,
         (one, two, three, four): (
@@ -120,9 +115,8 @@ where
             Timing::Pulse(_, t) => (t.prescaler, t.period),
         };
         timer.regs_core().psc().write_value(prescaler);
-        // `PwmTiming` and `BitTiming` are made for 16 bits: period - 1 always fits.
+        // `PwmTiming` and `BitTiming` are 16-bit: period - 1 always fits.
         timer.set_max_compare_value((period.wrapping_sub(1) as u16).into());
-        // Nothing moves: the timer stands still and asks for nothing.
         let rows = &burst.0[..];
         let first = timer.setup_update_dma_burst(dma.reborrow(), irqs, Channel::Ch1, Channel::Ch4, rows);
         let stream = Stream::of::<D>(first, rows.len());
@@ -139,7 +133,7 @@ where
         }
     }
 
-    /// Adds motor `index`, 0 to 3, on its pin, which stays low until the first command.
+    /// Adds motor `index`, 0 to 3, on its pin, low until the first command.
     pub fn motor<C: TimerChannel>(mut self, index: usize, pin: Peri<'static, impl TimerPin<T, C>>) -> Self {
         let channel = C::CHANNEL;
         self.timer
@@ -147,7 +141,7 @@ where
         self.timer.set_output_compare_preload(channel, true);
         self.timer.set_compare_value(channel, 0.into());
         self.timer.enable_channel(channel, true);
-        // Takes prescaler, period and compare values over while the pin is not yet the timer's.
+        // Loads all values before the pin becomes the timer's.
         self.timer.generate_update_event();
         self.timer.enable_outputs();
         let function = pin.af_num();
@@ -163,7 +157,6 @@ where
         self
     }
 
-    /// Channels with the values of their motors.
     fn on_channels<V: Copy>(
         &self,
         motors: PerArm<V>,
@@ -172,8 +165,8 @@ where
         pairs.filter_map(|(channel, value)| Some((channel?, value)))
     }
 
-    /// One pulse to all motors, now. A command that comes before the last pulse's period is over is passed over, since it
-    /// must neither cut a pulse nor lengthen it: the next one is younger.
+    /// Starts one pulse on all motors. A command within the last pulse's period is dropped, so that it neither cuts nor
+    /// lengthens the pulse; the next is newer.
     fn shoot(&mut self, pulse: EscPulse, t: PwmTiming, commands: PerArm<f32>) {
         let registers = self.timer.regs_core();
         // In one-pulse mode the counter stops by itself.
@@ -184,10 +177,10 @@ where
             let counts = pulse.compare(&t, command);
             self.timer.set_compare_value(channel, (counts as u16).into());
         }
-        // The pins rise with the first line and the pulse is timed from the last one: less than half a microsecond.
+        // Pins rise with the first line, the pulse is timed from the last: less than 0.5 µs.
         critical_section::with(|_| {
             registers.egr().write(|w| w.set_ug(true));
-            // In force from the end of the period on, when the counter stops at zero: the pins stay low.
+            // In force when the counter stops at zero: the pins stay low.
             for (channel, _) in self.on_channels(commands) {
                 self.timer.set_compare_value(channel, 0.into());
             }
@@ -198,23 +191,22 @@ where
         });
     }
 
-    /// Stops the counter first: a request that it makes is still served.
+    /// Stops the counter first: a pending request is still served.
     fn stop_frame(&mut self) {
         self.timer.stop();
         self.timer.enable_update_dma(false);
         self.stream.stop();
     }
 
-    /// One frame to all motors, over when this returns; gives its beginning.
+    /// Sends one frame to all motors; returns its start once it is over.
     ///
-    /// The order matters: counter and stream stopped, rows written, stream armed, request enabled, counter started. With
-    /// the request enabled first, an update that comes before the stream is armed is lost, and with it the frame's first
-    /// bit.
+    /// Order: stop counter and stream, write rows, arm stream, enable request, start counter. An update between
+    /// enabling and arming would be lost, and the frame's first bit with it.
     async fn send_frame(&mut self, bit: BitTiming, time: Duration, commands: PerArm<f32>) -> Instant {
-        // One that was given up half-way.
+        // Ends an abandoned frame.
         self.stop_frame();
         self.timer.reset();
-        // In the order of the channels, as the timer takes them. A channel without a motor has no pin.
+        // In channel order. A channel without a motor has no pin.
         let frame = |motor| {
             commands
                 .get(motor)
@@ -228,7 +220,7 @@ where
         self.timer.enable_update_dma(true);
         self.timer.start();
         let began = Instant::now();
-        // A stream that stands still is not waited for: the next frame sets out anew.
+        // Not waiting for a stalled stream: the next frame sets it up.
         Timer::at(began + time).await;
         self.stop_frame();
         began
@@ -249,7 +241,7 @@ where
     }
 }
 
-/// The motors on two timers, each with a stream of its own.
+/// Motors on two timers, each with its own stream.
 pub struct EscTimers<A, B>(A, B);
 
 impl<T, D, I, U, E, J> EscTimers<EscTimer<T, D, I>, EscTimer<U, E, J>>
@@ -259,10 +251,10 @@ where
     U: GeneralInstance4Channel,
     E: UpDma<U>,
 {
-    /// Two timers with their motors.
+    /// Both timers with their motors.
     ///
     /// # Panics
-    /// If a motor is on none or on both: a board with such a table never starts, so it is found at the bench.
+    /// If a motor is on none or both: such a board never starts, so the bench finds it.
     pub fn new(first: EscTimer<T, D, I>, second: EscTimer<U, E, J>) -> Self {
         for (a, b) in first.channels.iter().zip(&second.channels) {
             assert!(a.is_some() != b.is_some(), "each motor is on one timer");
@@ -279,15 +271,15 @@ impl<A: Motors, B: Motors> Motors for EscTimers<A, B> {
     }
 }
 
-/// The timer's values for a protocol, on a timer clocked at `clock_hz`.
+/// Timer values for a protocol at `clock_hz`.
 ///
 /// # Panics
-/// If the clock cannot make the protocol: a board with such a clock never starts, so it is found at the bench.
+/// If the clock cannot make the protocol: such a board never starts, so the bench finds it.
 fn timing(protocol: EscProtocol, clock_hz: u32) -> Timing {
     let found = match protocol {
         EscProtocol::DShot(speed) => BitTiming::new(clock_hz, speed).map(|bit| {
             let counts = FRAME_ROWS as u64 * u64::from(bit.period);
-            // A microsecond for each end: the clock's resolution.
+            // 1 µs for each end: the clock's resolution.
             let time = Duration::from_micros(counts * 1_000_000 / u64::from(clock_hz) + 2);
             Timing::DShot(bit, time)
         }),

@@ -1,8 +1,7 @@
-//! The chip's own flash for parameters.
+//! The chip's flash for parameters, placed by the memory map (`_params_start`, `_params_end`).
 //!
-//! The memory map places it (`_params_start`, `_params_end`); nothing outside is reachable. Erasing and writing block
-//! for up to a few seconds: on the H7, which runs on from its other bank, only the background, on the F4 everything. A
-//! restart follows.
+//! Erasing and writing block for up to a few seconds: on the H7, running from its other bank, only the background, on
+//! the F4 everything. A restart follows.
 
 use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Error, FLASH_BASE, Flash, WRITE_SIZE};
@@ -51,7 +50,7 @@ fn uncached<T>(_place: u32, _length: usize, change: impl FnOnce() -> T) -> T {
     super::accelerator::uncached(change)
 }
 
-/// Runs `change`, which writes or erases `length` bytes at `place`; no cache keeps old data.
+/// As on the F4.
 #[cfg(not(family = "f4"))]
 fn uncached<T>(place: u32, length: usize, change: impl FnOnce() -> T) -> T {
     let result = change();

@@ -1,7 +1,7 @@
-//! Reads flash of the H7 that may be damaged; every 32 bytes have an error correction.
+//! Reads possibly damaged flash of the H7, which has error correction per 32 bytes.
 //!
 //! Power loss during a write leaves an uncorrectable word. Reading it is a bus fault, which would end every start; here
-//! it is an ordinary error (RM0433 §4.3.12, §4.7.7).
+//! it is an error (RM0433 §4.3.12, §4.7.7).
 
 use core::arch::asm;
 
@@ -9,7 +9,7 @@ use embassy_stm32::pac;
 
 /// Core configuration and control register (ARMv7-M, B3.2.8).
 const CCR: *mut u32 = 0xE000_ED14 as *mut u32;
-/// Handlers at hard fault priority or above ignore data bus faults.
+/// Data bus faults are ignored at hard fault priority.
 const BFHFNMIGN: u32 = 1 << 8;
 
 /// Parameter bank: the second.
@@ -17,8 +17,8 @@ fn bank() -> pac::flash::Bank {
     pac::FLASH.bank(1)
 }
 
-/// Clears errors of earlier accesses. embassy-stm32 0.6 clears them in a register that is not writable here, and so
-/// reports an old error at each later access.
+/// Clears old errors. embassy-stm32 0.6 clears them in a register that is not writable here, so they would recur at
+/// each access.
 pub fn forget_errors() {
     bank().ccr().write(|w| {
         w.set_clr_wrperr(true);
@@ -33,7 +33,7 @@ pub fn forget_errors() {
     });
 }
 
-/// Suppresses data bus faults from here on.
+/// Suppresses data bus faults.
 ///
 /// Never inlined: `cargo xtask` finds the guard in an image by its name.
 ///
@@ -63,8 +63,7 @@ unsafe fn end_guard() {
     }
 }
 
-/// Calls `read`; `None` if it met an uncorrectable word. Every interrupt waits meanwhile: some microseconds for the few
-/// bytes that are read at once.
+/// Calls `read`; `None` if it met an uncorrectable word. All interrupts wait: some microseconds for a few bytes.
 pub fn read<T>(read: impl FnOnce() -> T) -> Option<T> {
     forget_errors();
     // SAFETY: both are undone before anything else runs. `read` only copies bytes.

@@ -1,10 +1,8 @@
-//! The DMA stream of a motor frame. The HAL sets it up once; between two frames nothing of that changes, so that each one
-//! takes three registers: flags, length, enable. All of it, as the HAL does it, is 150 instructions between the mix and
-//! the frame.
+//! The DMA stream of a motor frame. The HAL sets it up once, which takes 150 instructions; each later frame writes
+//! three registers: flags, length, enable.
 //!
-//! A frame's end is waited for by the clock, not by the stream's interrupt: how long it takes is known. The stream then
-//! still has rows of zeros to move, so that none of the timer's requests is left over: it would be served as the next
-//! frame is armed, and that frame would begin a bit early.
+//! The clock times the end of a frame, not the stream's interrupt. The stream still has rows of zeros to move then, so
+//! that no timer request is left over to shift the next frame a bit early.
 
 use core::sync::atomic::{Ordering, fence};
 
@@ -13,14 +11,14 @@ use embassy_stm32::pac::dma::regs::{Cr, Ixr, Ndtr};
 use embassy_stm32::pac::dma::{Dma, St};
 use embassy_stm32::{pac, peripherals};
 
-/// Looks at a stream that was disabled until it stands still: it ends the beat that it is in, a few cycles of the bus.
+/// Polls of a disabled stream, which finishes its beat: a few bus cycles.
 const LOOKS: u32 = 100;
 
-/// Where a stream's registers are.
+/// Location of a stream's registers.
 pub trait FrameStream {
-    /// The controller.
+    /// DMA controller.
     const CONTROLLER: Dma;
-    /// The stream's number, 0 to 7.
+    /// Stream number, 0 to 7.
     const NUMBER: usize;
 }
 
@@ -38,23 +36,23 @@ streams! {
     DMA2: DMA2_CH0 0 DMA2_CH1 1 DMA2_CH2 2 DMA2_CH3 3 DMA2_CH4 4 DMA2_CH5 5 DMA2_CH6 6 DMA2_CH7 7;
 }
 
-/// A stream that moves the same memory to the same register each time.
+/// A stream from one memory to one register.
 pub struct Stream {
     controller: Dma,
     registers: St,
-    /// Which of the two flag registers, and the stream's flags in it.
+    /// Index of the flag register, and the stream's flags in it.
     flags: (usize, Ixr),
-    /// As the HAL configured it, not enabled and without interrupts.
+    /// Configuration by the HAL, disabled and without interrupts.
     control: Cr,
     length: Ndtr,
 }
 
 impl Stream {
-    /// Stream `D`, set up as `first` set it up for `length` values, and stopped.
+    /// Stream `D` as `first` set it up for `length` values, stopped.
     pub fn of<D: FrameStream>(first: Transfer<'_>, length: usize) -> Self {
         let registers = D::CONTROLLER.st(D::NUMBER);
         let mut control = registers.cr().read();
-        // What is given up leaves address, length and FIFO as they are (embassy-stm32 0.6, `Channel::request_reset`).
+        // Dropping it keeps address, length and FIFO (embassy-stm32 0.6, `Channel::request_reset`).
         drop(first);
         control.set_en(false);
         control.set_teie(false);
@@ -70,7 +68,7 @@ impl Stream {
         }
     }
 
-    /// Ends a transfer, wherever it is; one that has ended takes a look.
+    /// Ends a transfer, finished or not.
     #[inline]
     pub fn stop(&self) {
         let control = self.registers.cr();
@@ -84,14 +82,14 @@ impl Stream {
         }
     }
 
-    /// Makes the stream wait for requests. It fetches the first values at once: they must lie in memory.
+    /// Makes the stream wait for requests. It fetches the first values at once.
     #[inline]
     pub fn arm(&self) {
         let (register, flags) = self.flags;
-        // A stream is not enabled while one of its flags stands (RM0433 §16.3.19, RM0090 §10.3.18).
+        // A stream cannot be enabled while one of its flags is set (RM0433 §16.3.19, RM0090 §10.3.18).
         self.controller.ifcr(register).write_value(flags);
         self.registers.ndtr().write_value(self.length);
-        // What was written before is in memory when the stream fetches it.
+        // Earlier writes reach memory before the stream fetches them.
         fence(Ordering::SeqCst);
         let mut control = self.control;
         control.set_en(true);

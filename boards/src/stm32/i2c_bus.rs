@@ -11,12 +11,12 @@ use sophie_drivers::i2c_lines::{Lines, free};
 #[cfg(any(family = "f7", family = "h7"))]
 use sophie_drivers::i2c_timing::I2cTiming;
 
-/// Pins and peripheral of a bus, from which it can be built repeatedly.
+/// Pins and peripheral of a bus, for repeated construction.
 pub trait BusParts {
     /// Name in the log.
     const NAME: &'static str;
 
-    /// The two lines as plain pins, high: clock, data.
+    /// Both lines as plain pins, high: clock, data.
     fn lines(&mut self) -> (OutputOpenDrain<'_>, OutputOpenDrain<'_>);
 
     /// Resets and sets up the peripheral.
@@ -76,7 +76,7 @@ pub(crate) use i2c_bus;
 pub fn i2c_config() -> Config {
     let mut config = Config::default();
     config.frequency = Hertz(400_000);
-    // The driver spins this long on a stretched clock, which only the background can afford.
+    // Busy-waited on a stretched clock: for the background only.
     config.timeout = Duration::from_millis(3);
     config
 }
@@ -109,7 +109,7 @@ timed!(I2C4);
 /// runs.
 ///
 /// # Panics
-/// If the clock cannot make them: such a board never starts, which shows on the bench.
+/// If the clock cannot make them: such a board never starts, so the bench finds it.
 #[cfg(any(family = "f7", family = "h7"))]
 pub fn set_fast_mode<T: TimedBus>(_bus: &embassy_stm32::Peri<'static, T>) {
     let clock = embassy_stm32::rcc::frequency::<T>().0;
@@ -135,17 +135,15 @@ pub fn set_fast_mode<T: embassy_stm32::PeripheralType>(_bus: &embassy_stm32::Per
 
 /// A bus that is rebuilt after a failure: clocks free the lines, then the peripheral starts from reset.
 ///
-/// For the background only: it blocks for up to some milliseconds.
+/// For the background only: blocks for up to some milliseconds.
 pub struct ArmBus<P> {
     parts: P,
-    /// The bus while it works.
     bus: Option<I2c<'static, Async, Master>>,
-    /// Last result for the lines.
     lines: Lines,
 }
 
 impl<P: BusParts> ArmBus<P> {
-    /// The bus of `parts`, which the first transfer touches.
+    /// The bus of `parts`, untouched until the first transfer.
     pub const fn new(parts: P) -> Self {
         Self {
             parts,
@@ -154,7 +152,7 @@ impl<P: BusParts> ArmBus<P> {
         }
     }
 
-    /// A bus with free lines; `None` where clocks cannot free them.
+    /// A bus with free lines; `None` if clocks cannot free them.
     async fn rebuilt(&mut self) -> Option<I2c<'static, Async, Master>> {
         let (mut clock, mut data) = self.parts.lines();
         let lines = free(&mut clock, &mut data).await;
@@ -180,13 +178,13 @@ impl<P> ErrorType for ArmBus<P> {
 
 impl<P: BusParts> embedded_hal_async::i2c::I2c for ArmBus<P> {
     async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), Error> {
-        // Taken out: the transfer after a dropped one rebuilds the bus.
+        // Taken out: after a dropped transfer the next one rebuilds the bus.
         let mut bus = match self.bus.take() {
             Some(bus) => bus,
             None => self.rebuilt().await.ok_or(Error::Bus)?,
         };
         let result = bus.transaction(address, operations).await;
-        // A missing answer leaves the bus in order; other errors may not.
+        // Other errors may leave the bus in disorder.
         if matches!(result, Ok(()) | Err(Error::Nack)) {
             self.bus = Some(bus);
         }

@@ -1,7 +1,7 @@
-//! What the STM32 boards share: the ports of `sophie_tasks` over embassy-stm32's drivers, generic over the instance.
+//! Common to the STM32 boards: the ports of `sophie_tasks` over embassy-stm32's drivers, generic over the instance.
 //!
-//! What differs between chips goes by `family`, which the build script takes from the chip that a board's feature names,
-//! never by the board: a second board with the same chip gets all that the first one has.
+//! Differences between chips depend on `family`, which the build script takes from the board feature's chip, never on
+//! the board.
 
 #![allow(
     dead_code,
@@ -71,6 +71,6 @@ pub use storage::BoardStorage;
 pub use tone::Tone;
 pub use watchdog::{Dog, stop_with_core};
 
-/// A buffer that DMA moves in bursts of up to 16 bytes: a burst must not cross a 1 KiB boundary.
+/// A buffer for DMA bursts of up to 16 bytes, which must not cross a 1 KiB boundary.
 #[repr(C, align(32))]
 pub struct Aligned<T>(pub T);

@@ -3,8 +3,7 @@
 use embassy_stm32::pac::FLASH;
 use embassy_time::{Duration, Instant};
 
-/// Brown-out level 3: two bits that count downwards, all ones for none (RM0090 §3.7.1, RM0410 §3.4.1). The H7 counts
-/// upwards.
+/// Brown-out level 3: two bits counting downwards, all ones for none (RM0090 §3.7.1, RM0410 §3.4.1).
 const HIGHEST: u8 = 0b00;
 /// Option byte keys (RM0090 §3.9.4, RM0410 §3.7.3).
 const KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
@@ -56,7 +55,6 @@ pub fn set_brown_out() -> bool {
     done && brown_out_level() == 3
 }
 
-/// Waits until the flash is idle; false on time-out.
 fn ready() -> bool {
     let start = Instant::now();
     while FLASH.sr().read().bsy() {

@@ -3,11 +3,11 @@
 use embassy_stm32::pac::FLASH;
 use embassy_time::{Duration, Instant};
 
-/// Brown-out level 3: two bits that count upwards, zero for none (RM0433 §4.9.8). The F4 and F7 count downwards.
+/// Brown-out level 3: two bits counting upwards, zero for none (RM0433 §4.9.8).
 const HIGHEST: u8 = 0b11;
 /// Option byte keys (RM0433 §4.5.1).
 const KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
-/// Time-out of a write, the F7's, since no datasheet of the H7 states one.
+/// Time-out of a write, as on the F7: no datasheet of the H7 states one.
 const LONGEST: Duration = Duration::from_secs(2);
 /// Read-out protection: off, and irreversible.
 const OPEN: u8 = 0xAA;
@@ -51,7 +51,6 @@ pub fn set_brown_out() -> bool {
     done && !FLASH.optsr_cur().read().optchangeerr() && brown_out_level() == 3
 }
 
-/// Waits until the option bytes are idle; false on time-out.
 fn ready() -> bool {
     let start = Instant::now();
     while FLASH.optsr_cur().read().opt_busy() {

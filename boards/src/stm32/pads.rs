@@ -1,4 +1,4 @@
-//! Pads as plain pins, apart from their drivers, for tests on a board that join some of them by jumpers.
+//! Pads as plain pins, for tests on a board that join some of them by jumpers.
 
 use embassy_stm32::pac::gpio::Gpio;
 use embassy_stm32::pac::gpio::vals::Moder;
@@ -13,7 +13,7 @@ pub struct Pad {
     pin: usize,
 }
 
-/// What a board's tests need besides its drivers; every board has these pads.
+/// Needs of a board's tests besides its drivers.
 pub struct Wiring {
     /// Core clock, Hz.
     pub core_hz: u32,
@@ -51,7 +51,7 @@ impl Pad {
         taken
     }
 
-    /// True if a peripheral drives or reads the pad, as the board's file states.
+    /// True if a peripheral uses the pad, as the board's file states.
     pub fn serves_a_peripheral(self) -> bool {
         self.port.moder().read().moder(self.pin) == Moder::ALTERNATE
     }

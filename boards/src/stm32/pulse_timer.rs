@@ -1,4 +1,4 @@
-//! Pulses from any of a timer's channels; embassy-stm32's `SimplePwm` requires four.
+//! Pulses on any of a timer's channels; embassy-stm32's `SimplePwm` requires four.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Speed};
@@ -8,13 +8,13 @@ use embassy_time::{Duration, Instant};
 use sophie_drivers::pwm_timing::PwmTiming;
 use sophie_tasks::deadline::begins_next;
 
-/// A running timer; its outputs are low until set. Channels without a pin are left alone.
+/// A running timer, outputs low until set; channels without a pin are untouched.
 pub struct PulseTimer<T: GeneralInstance4Channel> {
     timer: Timer<'static, T>,
 }
 
 impl<T: GeneralInstance4Channel> PulseTimer<T> {
-    /// The timer with the frame of `timing`.
+    /// With the frame of `timing`.
     pub fn new(timer: Peri<'static, T>, timing: PwmTiming) -> Self {
         let timer = Timer::new(timer);
         let registers = timer.regs_gp16();
@@ -27,8 +27,8 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         Self { timer }
     }
 
-    /// Shifts the frames so that one of each `frame` begins at `phase` of the board's clock. To be called before the
-    /// outputs start: it would change a pulse under way.
+    /// Shifts the frames so that one in each `frame` begins at `phase` of the board's clock. Called before the outputs
+    /// start, as it would change a pulse.
     pub fn put_frames_at(&mut self, timing: &PwmTiming, frame: Duration, phase: Duration) {
         critical_section::with(|_| {
             let now = Instant::now();
@@ -45,7 +45,7 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         self.set(channel, 0);
         self.timer
             .set_output_compare_mode(channel, OutputCompareMode::PwmMode1);
-        // Preloaded: a new width takes effect at the next frame, never within a pulse.
+        // Preloaded: a new width takes effect at the next frame.
         self.timer.set_output_compare_preload(channel, true);
         self.timer.enable_channel(channel, true);
         let function = pin.af_num();
@@ -60,8 +60,8 @@ impl<T: GeneralInstance4Channel> PulseTimer<T> {
         registers.ccr(channel.index()).write(|w| w.set_ccr(counts as u16));
     }
 
-    /// Start of the next frame, to the microsecond, when the pulses set last take effect. A frame that begins between
-    /// their setting and this call is missed; the next one is returned.
+    /// Start of the next frame, to the microsecond, when the last set pulses take effect; late by one if a frame begins
+    /// between setting and this call.
     pub fn next_frame(&self, timing: &PwmTiming) -> Instant {
         let passed = self.timer.regs_gp16().cnt().read().cnt();
         Instant::now() + Duration::from_micros(timing.left_us(u32::from(passed)).into())

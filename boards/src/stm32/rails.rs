@@ -1,5 +1,5 @@
-//! Pins at fixed levels: from the first instructions on, those of the motors and of whatever a floating line would
-//! move, sound or switch; also switches of supplies and other chips.
+//! Pins at fixed levels: from the first instructions those of the motors and of whatever a floating line would move,
+//! sound or switch; also switches of supplies and chips.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AnyPin, Level, Output, Speed};
@@ -9,13 +9,13 @@ use embassy_stm32::pac::gpio::vals::Moder;
 
 const PORTS: u32 = 0xFF;
 
-/// Holds `pin` at `level` permanently: leaked, since a dropped pin floats.
+/// Holds `pin` at `level` permanently: a dropped pin would float.
 pub fn hold(pin: Peri<'static, AnyPin>, level: Level) {
     core::mem::forget(Output::new(pin, level, Speed::Low));
 }
 
-/// Makes pins of a port outputs at `level`, whatever drove them: the first step of a start, before the clocks run, and
-/// for the motors the last step of a fault handler.
+/// Makes pins of a port outputs at `level`, whatever drove them: a start's first step, before the clocks run, and for
+/// the motors a fault handler's last.
 pub fn drive(port: Gpio, pins: &[usize], level: Level) {
     clock_ports();
     for &pin in pins {
@@ -27,7 +27,6 @@ pub fn drive(port: Gpio, pins: &[usize], level: Level) {
     }
 }
 
-/// Enables every port's clock, off before the start.
 fn clock_ports() {
     let bus = pac::RCC;
     #[cfg(family = "h7")]
@@ -35,6 +34,6 @@ fn clock_ports() {
     #[cfg(not(family = "h7"))]
     let clocks = bus.ahb1enr();
     clocks.modify(|w| w.0 |= PORTS);
-    // The clock is there two cycles after the write (RM0090 §7.2.14, RM0433 §8.5.10): this read takes them.
+    // Two cycles until the clock runs (RM0090 §7.2.14, RM0433 §8.5.10).
     let _ = clocks.read();
 }

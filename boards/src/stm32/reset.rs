@@ -4,9 +4,8 @@ use embassy_stm32::pac::RCC;
 
 use crate::cortex_m::retained::ResetCause;
 
-/// Reads and clears the reset cause.
-///
-/// Every reset sets the pin's flag, so it counts only alone; a power-on also sets the brown-out flag.
+/// Reads and clears the reset cause. Every reset sets the pin's flag, so it counts only alone; a power-on also sets the
+/// brown-out flag.
 #[cfg(family = "h7")]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.rsr().read();
@@ -20,9 +19,7 @@ pub fn take_reset_cause() -> ResetCause {
     )
 }
 
-/// Reads and clears the reset cause.
-///
-/// Every reset sets the pin's flag, so it counts only alone; a power-on also sets the brown-out flag.
+/// Reads and clears the reset cause; flags as on the H7.
 #[cfg(not(family = "h7"))]
 pub fn take_reset_cause() -> ResetCause {
     let r = RCC.csr().read();

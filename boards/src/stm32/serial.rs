@@ -50,7 +50,7 @@ fn receiver_config(protocol: RcProtocol) -> Config {
             config.baudrate = 100_000;
             config.parity = Parity::ParityEven;
             config.stop_bits = StopBits::STOP2;
-            // The F4's ports cannot invert: the board's inverter makes the line idle high.
+            // The F4 cannot invert: the board's inverter makes the line idle high.
             #[cfg(family = "f4")]
             {
                 config.rx_pull = Pull::Up;
@@ -65,7 +65,7 @@ fn receiver_config(protocol: RcProtocol) -> Config {
     config
 }
 
-/// The receiver's line for the parameter `rc_protocol`.
+/// The receiver's line for `rc_protocol`.
 #[expect(clippy::too_many_arguments, reason = "the parts of one port of the board")]
 pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     uart: Peri<'static, T>,
@@ -158,7 +158,7 @@ impl BufferedLine {
     }
 }
 
-/// Every rate above is within every port's range: a refusal means wrong clocks of the board, which shows on the bench.
+/// All rates are in range: a refusal means wrong clocks, found on the bench.
 fn accepted<U>(port: Result<U, ConfigError>) -> U {
     match port {
         Ok(port) => port,
@@ -166,17 +166,17 @@ fn accepted<U>(port: Result<U, ConfigError>) -> U {
     }
 }
 
-/// Receiver input: a ring filled by DMA, read when the line falls idle at the end of a frame.
+/// Receiver input: a DMA ring, read when the line idles after a frame.
 pub struct ReceiverLine(RingBufferedUartRx<'static>);
 
 impl SerialInput for ReceiverLine {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
-        // Framing, noise and overrun errors stop the ring; the next call restarts it.
+        // Line errors stop the ring; the next call restarts it.
         self.0.read(buffer).await.map_err(|_| PortError::Corrupt)
     }
 }
 
-/// Output to the receiver; none where it does not listen.
+/// Output to the receiver, if it listens.
 pub struct TelemetryLine(Option<UartTx<'static, Async>>);
 
 impl SerialOutput for TelemetryLine {

@@ -17,7 +17,7 @@ struct Pair<T: GeneralInstance4Channel> {
     timer: PulseTimer<T>,
     timing: PwmTiming,
     channels: [Channel; 2],
-    /// Held so that the pins stay the timer's.
+    /// Held to own the pins.
     _pins: [Flex<'static>; 2],
 }
 
@@ -46,7 +46,7 @@ impl<T: GeneralInstance4Channel> Pair<T> {
         }
     }
 
-    /// Sets both pulses, µs; returns when the first of these widths begin.
+    /// Sets both pulses, µs; returns when they first begin.
     fn set(&mut self, pulses_us: [f32; 2]) -> Instant {
         for (channel, pulse) in self.channels.into_iter().zip(pulses_us) {
             self.timer.set(channel, servo_pulse::compare(&self.timing, pulse));
@@ -62,8 +62,8 @@ pub struct ServoPairs<A: GeneralInstance4Channel, B: GeneralInstance4Channel> {
 }
 
 impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
-    /// Servos on these pins without pulses, at the parameter `servo_frame_rate`. The pins determine the channels, in
-    /// any order: two of one channel do not build.
+    /// Servos on these pins, without pulses, at `servo_frame_rate`. The pins determine the channels, in any order; two
+    /// of one channel do not build.
     ///
     /// # Panics
     /// As [`timer_with_frames`].
@@ -89,7 +89,6 @@ impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> ServoPairs<A, B> {
 
 impl<A: GeneralInstance4Channel, B: GeneralInstance4Channel> Servos for ServoPairs<A, B> {
     async fn write(&mut self, [one, two, three, four]: PerArm<f32>) -> Instant {
-        // The later of the two timers' frames counts.
         let [first, second] = [self.first.set([one, two]), self.second.set([three, four])];
         first.max(second)
     }

@@ -15,10 +15,10 @@ use super::pulse_timer::PulseTimer;
 
 const SERVOS: [Channel; 4] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
 
-/// `timer` with frames of the parameter `servo_frame_rate`, at [`servos::FRAME_AT`] of the board's clock.
+/// `timer` with frames at `servo_frame_rate`, starting at [`servos::FRAME_AT`] of the board's clock.
 ///
 /// # Panics
-/// If the timer's clock cannot make the frames: such a board never starts, which shows on the bench.
+/// If the timer's clock cannot make the frames: such a board never starts, so the bench finds it.
 pub(super) fn timer_with_frames<T: GeneralInstance4Channel>(
     timer: Peri<'static, T>,
     params: &Params,
@@ -39,12 +39,12 @@ pub(super) fn timer_with_frames<T: GeneralInstance4Channel>(
 pub struct ServoTimer<T: GeneralInstance4Channel> {
     timer: PulseTimer<T>,
     timing: PwmTiming,
-    /// Held so that the pins stay the timer's.
+    /// Held to own the pins.
     _pins: [Flex<'static>; 4],
 }
 
 impl<T: GeneralInstance4Channel> ServoTimer<T> {
-    /// Servos on these pins without pulses, at the parameter `servo_frame_rate`.
+    /// Servos on these pins, without pulses, at `servo_frame_rate`.
     ///
     /// # Panics
     /// As [`timer_with_frames`].

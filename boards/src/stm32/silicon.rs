@@ -1,5 +1,5 @@
-//! Checks of the chip at start-up: what no datasheet of the board states, and traces of a failed start, another chip
-//! revision or another firmware's option bytes.
+//! Start-up checks of the chip: what the board's datasheets do not state, and traces of a failed start, another chip
+//! revision or foreign option bytes.
 
 use core::fmt::{self, Write};
 
@@ -12,11 +12,10 @@ use sophie_tasks::ports::{Loaded, Look, Looks, READ};
 use super::clock::bus_hz;
 use super::options;
 
-/// Checks the chip. `stored` is the result of reading the parameters, `sectors` their flash sectors, one bit each.
-/// Called once, when clocks and caches are set.
+/// Checks the chip. `stored` is the result of reading the parameters, `sectors` a bit for each of their flash sectors.
+/// Called once, with clocks and caches set.
 pub fn look(stored: Loaded, sectors: u32) -> Looks {
     let mut looks = Looks::new();
-    // The table has room for all.
     let mut add = |look| {
         let _ = looks.push(look);
     };
@@ -59,10 +58,9 @@ pub fn look(stored: Loaded, sectors: u32) -> Looks {
     looks
 }
 
-/// A check that does not forbid flight.
+/// A check that permits flight.
 fn row(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok: bool) -> Look {
     let mut text = String::<READ>::new();
-    // Truncated if too long.
     let _ = text.write_fmt(read);
     Look {
         name,
@@ -73,7 +71,7 @@ fn row(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok:
     }
 }
 
-/// A check that forbids arming if it fails.
+/// A check that forbids arming on failure.
 fn needed(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, ok: bool) -> Look {
     Look {
         inhibits: Some(ArmingInhibit::Silicon),
@@ -81,8 +79,8 @@ fn needed(name: &'static str, read: fmt::Arguments<'_>, expected: &'static str, 
     }
 }
 
-/// Before revision X the H7's converter must run slower than here, and its clocks are set differently (STM32H743
-/// errata, RM0433 §60.5.8).
+/// Before revision X the H7's converter must run slower than here, with its clocks set differently (STM32H743 errata,
+/// RM0433 §60.5.8).
 #[cfg(family = "h7")]
 fn revision() -> Look {
     let id = pac::DBGMCU.idc().read();
@@ -102,7 +100,7 @@ fn revision() -> Look {
     needed("revision", format_args!("{part:#x} {revision:#x}"), "any", true)
 }
 
-/// Core clock in MHz, and that it comes from the PLL on the crystal instead of the fallback oscillator.
+/// Core clock in MHz, from the PLL on the crystal, not the fallback oscillator.
 fn clocks() -> Look {
     let mhz = bus_hz() / 1_000_000;
     let r = pac::RCC;
@@ -121,8 +119,8 @@ fn clocks() -> Look {
     )
 }
 
-/// At 2.7 V or more: one for each 30 MHz beyond the first on the F4 and F7 (RM0090 table 10, RM0410 table 7), and two
-/// from 140 to 210 MHz on the H7 (RM0433 table 17, VOS1).
+/// At 2.7 V or more: one for each 30 MHz beyond the first on F4 and F7 (RM0090 table 10, RM0410 table 7), two from 140
+/// to 210 MHz on the H7 (RM0433 table 17, VOS1).
 fn wait_states() -> Look {
     #[cfg(family = "h7")]
     let read = pac::FLASH.acr().read().latency();

@@ -9,7 +9,7 @@ use embassy_time::Timer;
 use embedded_hal_async::spi::{ErrorType, Operation, SpiBus, SpiDevice};
 use sophie_drivers::spi_clock;
 
-/// Mode 3, which every chip on these boards accepts, and the fastest clock of bus `T` up to `most_hz`.
+/// Mode 3, fit for every chip here, and the fastest clock of bus `T` up to `most_hz`.
 pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Config {
     let mut config = Config::default();
     config.mode = MODE_3;
@@ -20,16 +20,15 @@ pub fn spi_config<T: SpiInstance>(_bus: &Peri<'static, T>, most_hz: u32) -> Conf
 /// A bus with its only chip's select line.
 pub struct Selected<B> {
     bus: B,
-    /// Low during transfers.
     select: Output<'static>,
 }
 
 impl<B> Selected<B> {
-    /// The chip on `bus` that `select` addresses.
+    /// The chip on `bus` with the line `select`.
     ///
-    /// The select edges are slow, some tens of nanoseconds, shorter than the time before the first clock: the Matek's
-    /// select (PC13 to PC15, on the backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743
-    /// datasheet, pin table).
+    /// The select edges are slow, some tens of nanoseconds, within the time before the first clock: the Matek's select
+    /// (PC13 to PC15, backup domain's supply) drives at most 2 MHz and 30 pF, one at a time (STM32H743 datasheet, pin
+    /// table).
     pub fn new(bus: B, select: Peri<'static, impl Pin>) -> Self {
         Self {
             bus,
@@ -41,12 +40,12 @@ impl<B> Selected<B> {
 /// A chip on a bus with DMA.
 pub type DmaChip = Selected<Spi<'static, embassy_stm32::mode::Async, Master>>;
 
-/// A chip on a bus moved by the processor, which waits meanwhile.
+/// A chip on a bus without DMA: the processor waits.
 pub type PlainChip = Selected<
     embassy_embedded_hal::adapter::BlockingAsync<Spi<'static, embassy_stm32::mode::Blocking, Master>>,
 >;
 
-/// Holds the select line low; a dropped transfer also releases the chip.
+/// Selects the chip; a dropped transfer also releases it.
 struct Hold<'a>(&'a mut Output<'static>);
 
 impl Drop for Hold<'_> {

@@ -1,4 +1,4 @@
-//! Non-volatile parameters in the board's memory.
+//! Parameters in the board's non-volatile memory.
 
 use embedded_storage_async::nor_flash::NorFlash;
 use sophie_control::params::Params;
@@ -29,7 +29,7 @@ impl<F: NorFlash> Storage for BoardStorage<F> {
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
-        // May stall the processor beyond the watchdog's normal time-out. Only while disarmed.
+        // May stall the processor beyond the normal time-out; only while disarmed.
         watchdog::be_patient(true).await;
         let saved = self.0.save(params).await;
         watchdog::be_patient(false).await;

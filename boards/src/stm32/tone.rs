@@ -1,4 +1,4 @@
-//! A passive sounder, which needs a tone.
+//! A passive sounder.
 
 use embassy_stm32::gpio::Flex;
 use embassy_stm32::timer::{Ch1, Channel, GeneralInstance4Channel, TimerPin};
@@ -16,7 +16,7 @@ pub struct Tone<T: GeneralInstance4Channel> {
     timer: PulseTimer<T>,
     /// Counts of half a wave.
     half: u32,
-    /// Held so that the pin stays the timer's.
+    /// Held to own the pin.
     _pin: Flex<'static>,
 }
 
@@ -24,7 +24,7 @@ impl<T: GeneralInstance4Channel> Tone<T> {
     /// The sounder on `pin`, silent.
     ///
     /// # Panics
-    /// If the clock cannot make the tone: such a board never starts, which shows on the bench.
+    /// If the clock cannot make the tone: such a board never starts, so the bench finds it.
     pub fn new(timer: Peri<'static, T>, pin: Peri<'static, impl TimerPin<T, Ch1>>) -> Self {
         let Some(timing) = PwmTiming::new(rcc::frequency::<T>().0, WAVE_US) else {
             panic!("the sounder's timer cannot make waves of {WAVE_US} us")

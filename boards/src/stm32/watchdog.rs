@@ -11,21 +11,20 @@ use embassy_stm32::wdg::{IndependentWatchdog, Instance};
 use embassy_time::Timer;
 use sophie_tasks::ports::Watchdog;
 
-/// Watchdog time-out, µs, at its nominal clock of 32 kHz. The actual clock is 17 to 47 kHz on the F4 and F7 and 29.7 to
-/// 33.6 kHz on the H7 (datasheets, LSI): 0.20 to 0.56 s, and 0.29 to 0.32 s. The supervisor is designed for the
-/// shortest.
+/// Watchdog time-out, µs, at its nominal clock of 32 kHz. Actual: 17 to 47 kHz on F4 and F7, 29.7 to 33.6 kHz on the H7
+/// (datasheets, LSI), so 0.20 to 0.56 s and 0.29 to 0.32 s. The supervisor is designed for the shortest.
 const PERIOD_US: u32 = 300_000;
-/// The same in watchdog counts: prescaler, and reload value at 32 kHz.
+/// In counts: prescaler and reload value.
 const SHORT: (Pr, u16) = (Pr::DIVIDE_BY4, 2399);
 /// While parameters are stored: 22 s at the fastest clock. Two sectors take up to 8 s on the H7 (datasheet, 128 KiB),
 /// 1.6 s on the F4 (16 KiB).
 const LONG: (Pr, u16) = (Pr::DIVIDE_BY256, 0xFFF);
 
-/// Starts the watchdog with its reset values (longest count, smallest prescaler): 0.35 to 0.96 s, for the start-up.
-/// [`Dog`]'s first feed sets its period.
+/// Starts the watchdog with its reset values (longest count, smallest prescaler): 0.35 to 0.96 s, until [`Dog`]'s first
+/// feed sets the period.
 ///
-/// In a development image a debugger that halts the core halts the watchdog too. In a flight image it does not: a
-/// halted core stops the motors' frames, and the watchdog then resets the chip.
+/// A debugger that halts the core also halts the watchdog in a development image only. In a flight image a halted core
+/// stops the motors' frames, and the watchdog resets the chip.
 pub fn start() {
     #[cfg(feature = "trace")]
     stop_with_core();
@@ -44,7 +43,7 @@ pub fn stop_with_core() {
 pub struct Dog<T: Instance + 'static>(IndependentWatchdog<'static, T>);
 
 impl<T: Instance + 'static> Dog<T> {
-    /// Starts the watchdog; it cannot be stopped.
+    /// Starts the watchdog for good.
     pub fn start(instance: Peri<'static, T>) -> Self {
         let mut dog = IndependentWatchdog::new(instance, PERIOD_US);
         dog.unleash();
@@ -58,16 +57,16 @@ impl<T: Instance + 'static> Watchdog for Dog<T> {
     }
 }
 
-/// Sets the time-out to 22 s or more, or back to normal, and feeds.
+/// Sets the time-out to at least 22 s, or back to normal, and feeds.
 pub async fn be_patient(patient: bool) {
     let (prescaler, reload) = if patient { LONG } else { SHORT };
-    // Atomic: the supervisor's feed would lock the registers after the key.
+    // Atomic: the supervisor's feed would lock the registers.
     critical_section::with(|_| {
         IWDG.kr().write(|w| w.set_key(Key::ENABLE));
         IWDG.pr().write(|w| w.set_pr(prescaler));
         IWDG.rlr().write(|w| w.set_rl(reload));
     });
-    // The values reach the watchdog's clock in 0.2 ms and count from the next feed.
+    // In 0.2 ms the values reach the watchdog's clock, for the next feed.
     for _ in 0..20 {
         Timer::after_micros(100).await;
         let status = IWDG.sr().read();

@@ -2,12 +2,12 @@
 
 use crate::rc::Sticks;
 
-/// Time for which the gesture must be held, s.
+/// Time that the gesture must be held, s.
 pub const GESTURE_TIME: f32 = 1.0;
-/// Yaw stick beyond which the gesture counts, share of its travel.
+/// Yaw stick of a gesture, share of its travel.
 const GESTURE_STICK: f32 = 0.9;
 
-/// A gesture that has just been completed.
+/// A completed gesture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gesture {
     /// Arm switch on, throttle low, yaw full right for [`GESTURE_TIME`].
@@ -16,7 +16,7 @@ pub enum Gesture {
     Disarm,
 }
 
-/// Reports each gesture once, until the stick comes back.
+/// Reports each gesture once, until the stick returns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GestureWatch {
     shape: Option<Gesture>,

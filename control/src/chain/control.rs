@@ -1,4 +1,4 @@
-//! Third stage: attitude and rate loop, which of them runs, and what is kept of them when that changes.
+//! Third stage, 1 kHz: attitude and rate loop, and their switching.
 
 #[cfg(test)]
 mod tests;
@@ -12,24 +12,23 @@ use crate::setpoint::Setpoint;
 use crate::vector::Vec3;
 use crate::wrench::Wrench;
 
-/// Largest share of a rotor's thrust that roll and pitch may each add or take while resting on the pipe.
+/// Largest share of a rotor's thrust for roll and for pitch on the pipe.
 const RESTING_SHARE: f32 = 0.4;
 
-/// A setpoint, and when it was given.
+/// A setpoint and its time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
-    /// What the rotors are to do; [`Setpoint::Stop`] in place of one that is stale.
+    /// Wanted motion of the rotors; [`Setpoint::Stop`] replaces a stale one.
     pub setpoint: Setpoint,
-    /// When it was given, µs. A direction is aimed at once for each time: that takes as long as half a step.
+    /// Its time, µs. Each is aimed at only once, which takes as long as half a step.
     pub at_us: u64,
 }
 
-/// Which loops a setpoint runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     None,
     Attitude,
-    /// The same, as the vehicle leaves the pipe by itself.
+    /// Attitude loop while the vehicle leaves the pipe by itself.
     Escape,
     Rate,
     Direct,
@@ -47,28 +46,26 @@ impl Kind {
         }
     }
 
-    /// The attitude loop runs.
     const fn turns(self) -> bool {
         matches!(self, Self::Attitude | Self::Escape)
     }
 
-    /// The rate loop runs.
     const fn integrates(self) -> bool {
         self.turns() || matches!(self, Self::Rate)
     }
 }
 
-/// Both loops with their switching.
+/// Both loops and their switching.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
-    /// From setpoints to rates.
+    /// Attitude loop.
     pub attitude: AttitudeLoop,
-    /// From rates to moments.
+    /// Rate loop.
     pub rate: RateLoop,
     /// Sideways and fore-aft lever of a rotor, m.
     levers: [f32; 2],
     kind: Kind,
-    /// When what the attitude loop aims at was given, µs.
+    /// Time of the setpoint aimed at, µs.
     aimed: Option<u64>,
 }
 
@@ -84,14 +81,14 @@ impl Control {
         }
     }
 
-    /// What the attitude loop aims at.
+    /// Target of the attitude loop.
     #[inline]
     pub const fn target(&self) -> Target {
         self.attitude.target()
     }
 
-    /// The demand that leads from `a` to `command`; `feedback` is what the last mix gave.
-    // On its own: not for size with its caller.
+    /// Demand that leads from `a` to `command`; `feedback` comes from the last mix.
+    // Not inlined: its caller is built for size.
     #[inline(never)]
     pub fn step(&mut self, a: &Attitude, command: &Command, feedback: &Feedback) -> Demand {
         let kind = Kind::of(&command.setpoint);
@@ -148,7 +145,7 @@ impl Control {
         }
     }
 
-    /// A loop is reset on activation, at the vehicle's attitude: its state is stale.
+    /// Resets a loop on activation: its state is stale.
     #[cold]
     fn change_to(&mut self, kind: Kind, a: &Attitude) {
         if kind.turns() && !self.kind.turns() {
@@ -156,14 +153,14 @@ impl Control {
             self.aimed = None;
         }
         let lasts = kind.integrates() && self.kind.integrates();
-        // What the integrals hold on the pipe was wound up against it: in the air it would throw the vehicle to that side.
+        // Integrals wound up against the pipe would throw the vehicle in the air.
         if !lasts || kind == Kind::Escape {
             self.rate.reset();
         }
         self.kind = kind;
     }
 
-    /// Rates that lead to `angle`, given at `at_us` µs.
+    /// Rates towards `angle`, given at `at_us` µs.
     #[inline(always)]
     fn turn(&mut self, a: &Attitude, angle: AttitudeSetpoint, at_us: u64) -> Vec3 {
         if self.aimed != Some(at_us) {
@@ -173,8 +170,8 @@ impl Control {
         self.attitude.step(a.q, a.dt)
     }
 
-    /// Moments fade with the thrust, so that rotors which spool down stop alike: whatever differs between them at the end
-    /// vanishes faster than the tendons can follow.
+    /// Limits moments in proportion to the thrust, so that spooling-down rotors stop alike: their difference vanishes
+    /// faster than the tendons follow.
     #[inline(always)]
     fn while_resting(&self, moment: Vec3, thrust: f32) -> Wrench {
         let [roll_max, pitch_max] = self.levers.map(|lever| RESTING_SHARE * thrust * lever);

@@ -1,4 +1,4 @@
-//! What the stages of the flight step hand on.
+//! Messages between the stages of the flight step.
 
 use crate::bench::Spin;
 use crate::desaturation::Given;
@@ -6,7 +6,7 @@ use crate::rate::Feedback;
 use crate::vector::{Quat, Vec3};
 use crate::wrench::{PerArm, Wrench};
 
-/// One sample of the vehicle's inertial sensor in body axes.
+/// One sample of the inertial sensor in body axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImuReading {
     /// Angular rate, rad/s.
@@ -16,7 +16,7 @@ pub struct ImuReading {
 }
 
 impl ImuReading {
-    /// True when every component is finite. Tests their sum: false as well where that overflows.
+    /// True if the sum of the components, and so each, is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         (self.gyro + self.accel).is_finite()
@@ -26,11 +26,11 @@ impl ImuReading {
 /// Filtered inertial sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImuSample {
-    /// Angular rate, rad/s, body, low-passed; the estimator takes its bias off.
+    /// Angular rate, rad/s, body, low-passed, bias included.
     pub gyro: Vec3,
-    /// Specific force, m/s², body, the newest, low-passed.
+    /// Newest specific force, m/s², body, low-passed.
     pub accel: Vec3,
-    /// Time since the sample before, s, limited to a sane range.
+    /// Time since the last sample, s, limited.
     pub dt: f32,
 }
 
@@ -47,11 +47,11 @@ pub struct Attitude {
     pub gyro_bias: Vec3,
     /// Calibration at rest has ended.
     pub calibrated: bool,
-    /// Time since the estimate before, s.
+    /// Time since the last estimate, s.
     pub dt: f32,
 }
 
-/// What control asks of the mixer.
+/// Demand of control on the mixer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Demand {
     /// Rotors stopped.
@@ -61,35 +61,35 @@ pub enum Demand {
     Idle,
     /// One motor on the bench.
     Spin(Spin),
-    /// This wrench, yaw included.
+    /// A wrench, yaw included.
     Wrench(Wrench),
-    /// This wrench on the pipe: yaw is given up, and the arms do not hang free, so that their sensors correct nothing.
+    /// A wrench on the pipe: yaw is given up, and sensors do not correct arms that do not hang free.
     Resting(Wrench),
 }
 
-/// What the mixer gave.
+/// Result of the mixer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MixOutput {
-    /// Rotors run.
+    /// The rotors run.
     pub running: bool,
-    /// Thrust asked of each rotor, N.
+    /// Thrust demanded of each rotor, N.
     pub thrusts: PerArm<f32>,
     /// Motor commands, 0..1, battery compensated.
     pub commands: PerArm<f32>,
-    /// Share of the asked yaw, thrust (relative to the range left) and roll/pitch that was given, 0..1.
+    /// Share given of the demanded yaw, thrust (relative to the range left) and roll/pitch, 0..1.
     pub given: Given,
-    /// Yaw is being given up because the arms' tilt leaves no authority.
+    /// Yaw is given up: the arms' tilt leaves no authority.
     pub yaw_gated: bool,
     /// Estimated tilt of each arm, rad.
     pub tilt: PerArm<f32>,
     /// Tilt bias of each arm, rad.
     pub tilt_bias: PerArm<f32>,
-    /// An arm's model is outside its range of validity.
+    /// An arm is outside its model's range.
     pub tilt_fault: bool,
 }
 
 impl MixOutput {
-    /// What the rate loop needs of it.
+    /// Feedback for the rate loop.
     #[inline(always)]
     pub const fn feedback(&self) -> Feedback {
         Feedback {

@@ -1,4 +1,4 @@
-//! Fourth stage: the arms' tilt, allocation, motor commands.
+//! Fourth stage, 1 kHz: tilt of the arms, allocation, motor commands.
 
 #[cfg(test)]
 mod tests;
@@ -11,25 +11,25 @@ use crate::thrust_curve::ThrustCurve;
 use crate::tilt::TiltModel;
 use crate::wrench::PerArm;
 
-/// What the arms' own sensors measured.
+/// Measurement of the arms' sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmReading {
-    /// When, µs.
+    /// Time of measurement, µs.
     pub at_us: u64,
-    /// Tilt of each arm, rad, tip up positive; `None` when its sensor gave nothing.
+    /// Tilt of each arm, rad, tip up positive; `None` without reading.
     pub tilt: PerArm<Option<f32>>,
 }
 
-/// What is known of the vehicle besides the demand.
+/// Inputs besides the demand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surroundings {
-    /// Battery voltage over nominal, the last that was measured, however old: still the best guess. Without any, nominal.
+    /// Last battery voltage over nominal, of any age; `None` means nominal.
     pub battery_ratio: Option<f32>,
-    /// The last reading of the arms' sensors, `None` for each that is too old; those that were taken may be left out.
+    /// Last reading of the arms' sensors, `None` where too old; taken readings may be omitted.
     pub arms: Option<ArmReading>,
 }
 
-/// Allocation with the arms' readings and the motors' curve.
+/// Allocation, arm readings and motor curve.
 #[derive(Clone, Debug)]
 pub struct Mixing<A = Flexible> {
     /// From wrench to thrusts.
@@ -51,20 +51,20 @@ impl<A: Allocation> Mixing<A> {
         }
     }
 
-    /// True for readings that are newer than those taken last, measured at `at_us` µs.
+    /// True for readings at `at_us` µs that are newer than those taken.
     #[inline(always)]
     pub fn awaits(&self, at_us: u64) -> bool {
         at_us > self.readings.seen_us
     }
 
-    /// Commands for `demand`, whose sample was ready at `at_us` µs, in the place that keeps them: a message this long is
-    /// dear to copy.
+    /// Writes the commands for `demand`, whose sample was ready at `at_us` µs, into `out`, as so long a message is
+    /// costly to copy.
     #[inline(always)]
     pub fn step(&mut self, at_us: u64, demand: &Demand, surroundings: &Surroundings, out: &mut MixOutput) {
         A::step_mixing(self, at_us, demand, surroundings, out);
     }
 
-    /// What [`Allocation::step_mixing`] does.
+    /// Default body of [`Allocation::step_mixing`].
     #[inline(always)]
     pub(crate) fn compose(
         &mut self,
@@ -117,7 +117,7 @@ impl<A: Allocation> Mixing<A> {
     }
 }
 
-/// One motor in place of the idling four. Apart from the flying, which must not pay for it.
+/// One motor instead of four idling ones, out of the flight path.
 #[cold]
 #[inline(never)]
 fn on_bench(out: &mut MixOutput, spin: &Spin) {
@@ -125,18 +125,16 @@ fn on_bench(out: &mut MixOutput, spin: &Spin) {
     out.commands = spin.commands();
 }
 
-/// The readings of the arms' sensors that have not corrected their arm yet.
 #[derive(Clone, Copy, Debug, Default)]
 struct Readings {
-    /// When those taken last were measured, µs.
+    /// Time of the last readings taken, µs.
     seen_us: u64,
     tilt: PerArm<Option<f32>>,
-    /// Arm whose turn it is; 4 when all have had theirs.
+    /// Next arm to correct; 4 when all are done.
     arm: usize,
 }
 
 impl Readings {
-    /// Takes each reading once.
     #[inline(always)]
     fn take(&mut self, arms: Option<&ArmReading>) {
         if let Some(arms) = arms
@@ -150,7 +148,7 @@ impl Readings {
         }
     }
 
-    /// One arm a step: all four in one would make it longer than the others.
+    /// Corrects one arm a step, to keep steps equal.
     #[inline(always)]
     fn correct_one(&mut self, model: &mut TiltModel) {
         let Some(reading) = self.tilt.get(self.arm) else {

@@ -1,4 +1,4 @@
-//! First stage: filters the inertial sensor at its own rate, outputs at the control rate.
+//! First stage: filters the inertial sensor at its own rate, outputs at 1 kHz.
 
 use crate::chain::{CONTROL_RATE_HZ, ImuReading, ImuSample, StepClock};
 use crate::imu_filter::ImuFilter;
@@ -11,7 +11,7 @@ use crate::vector::Vec3;
 pub struct Sensing {
     filter: ImuFilter,
     accel_bias: Vec3,
-    /// Readings of a step, and those since the last.
+    /// Readings per step, and since the last.
     per_step: u32,
     collected: u32,
     clock: StepClock,
@@ -29,9 +29,9 @@ impl Sensing {
         }
     }
 
-    /// Takes readings, oldest first, the newest ready at `at_us` µs, and updates `sample`, the one given last. True
-    /// once the finite readings of a step have come.
-    // Never inlined: a caller optimised for size would slow it down.
+    /// Takes readings, oldest first, the newest ready at `at_us` µs, and updates the last `sample`. True once a step's
+    /// finite readings have come.
+    // Not inlined: a caller built for size would slow it down.
     #[inline(never)]
     pub fn take(&mut self, at_us: u64, readings: &[ImuReading], sample: &mut ImuSample) -> bool {
         let mut newest = ImuReading {

@@ -3,8 +3,8 @@
 use crate::chain::CONTROL_RATE_HZ;
 use crate::math;
 
-/// Shortest and longest step time for a law, s: half and five times the nominal one. A longer gap is a fault reported
-/// elsewhere; integrating over it would jump.
+/// Bounds of a law's step time, s: half and five times the nominal one. A longer gap is a fault reported elsewhere;
+/// integrating over it would jump.
 const SHORTEST: f32 = 0.5e-3;
 const LONGEST: f32 = 5e-3;
 
@@ -19,7 +19,7 @@ impl StepClock {
     #[inline(always)]
     pub fn step(&mut self, at_us: u64) -> f32 {
         let dt = match self.last_us {
-            // 32 bits: a conversion of 64 is a library call on these cores.
+            // 32 bits: converting 64 is a library call on these cores.
             Some(last) => match u32::try_from(at_us.wrapping_sub(last)) {
                 Ok(gap_us) => gap_us as f32 * 1e-6,
                 Err(_) => odd_gap(last, at_us),
@@ -31,7 +31,7 @@ impl StepClock {
     }
 }
 
-/// Step time (s) for a gap of over an hour, or backwards.
+/// Step time (s) for a gap over an hour, or backwards.
 #[cold]
 const fn odd_gap(last_us: u64, at_us: u64) -> f32 {
     if at_us < last_us { SHORTEST } else { LONGEST }

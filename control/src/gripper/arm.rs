@@ -11,18 +11,18 @@ use crate::math;
 
 /// Largest force rate of a touching arm, N/s.
 const FORCE_RATE_MAX: f32 = 300.0;
-/// Largest force rise of an arm that lost touch, N/s: slow enough for the bend watch.
+/// Largest force rise after a lost touch, N/s: slow enough for the bend watch.
 const REGAIN_RATE_MAX: f32 = 30.0;
-/// Lasting lag (N) of a servo at the end of its travel or strength.
+/// Lag of a servo at the end of its travel or strength, N.
 const LAG_STUCK: f32 = 8.0;
-/// Time at the force limit after which the arm counts as limited, s.
+/// Time at the force limit before the arm counts as limited, s.
 const LIMITED_AFTER: f32 = 1.0;
-/// Time for which pressure and tilt must be known after a restart, s: ten servo frames of 20 ms.
+/// Time of known pressure and tilt after a restart, s: ten servo frames of 20 ms.
 const RESUME_TIME: f32 = 0.2;
-/// Time without a tilt after which the arm is faulty, s; its servo is held from the first moment.
+/// Time without a tilt until a fault, s; the servo is held at once.
 const TILT_MISSING_MAX: f32 = 0.5;
-/// Shares of the grip pressure between which no arm can fall within one step of 10 ms (its modes are below 30 Hz): the
-/// sensor's lead is broken.
+/// A fall between these shares of the grip pressure within one step of 10 ms means a broken sensor lead: an arm's modes
+/// are below 30 Hz.
 const VANISHED_FROM_SHARE: f32 = 0.3;
 const VANISHED_TO_SHARE: f32 = 0.02;
 
@@ -32,7 +32,7 @@ pub(super) enum Phase {
     Free,
     /// Bending down without touch.
     Approach,
-    /// After a restart, with the time for which all inputs are known, s: the servo stays.
+    /// After a restart, servo held, with the time of known inputs, s.
     Resume(f32),
     /// Touched: the pressure is controlled.
     Grip(PressureLoop),
@@ -53,14 +53,14 @@ pub struct ArmGripper {
     tilt_missing: f32,
     /// Time at the force limit, s.
     at_limit: f32,
-    /// Unfiltered pressure of the last step, Pa.
+    /// Unfiltered, Pa.
     last_pressure: Option<f32>,
     hold: HoldProof,
     free: FreeProof,
 }
 
 impl ArmGripper {
-    /// Resumes a closed arm with the retained `force` (N) and, until release, a latched `fault`.
+    /// Resumes a closed arm with the retained `force` (N) and a latched `fault`, which lasts until release.
     pub fn resume(force: f32, fault: Option<GripFault>) -> Self {
         Self {
             phase: Phase::Resume(0.0),
@@ -70,7 +70,7 @@ impl ArmGripper {
         }
     }
 
-    /// One step of `dt` s: closes or releases the arm. The force stays within 0 and the limit for any input.
+    /// One step of `dt` s. The force stays within 0 and the limit for any input.
     pub fn step(&mut self, cfg: &Config, input: &ArmInput, dt: f32) -> ArmGrip {
         let dt = math::clamp(dt, 1e-4, 0.1);
         let measured = self.filters.step(input, dt);
@@ -109,7 +109,7 @@ impl ArmGripper {
         }
     }
 
-    /// The arm's fault.
+    /// Present fault.
     pub fn fault(&self) -> Option<GripFault> {
         self.fault
     }
@@ -118,7 +118,6 @@ impl ArmGripper {
         matches!(self.phase, Phase::Resume(_))
     }
 
-    /// The arm is free and has been for its dwell time.
     pub(super) fn is_free(&self, sensed: Pressure) -> bool {
         self.phase == Phase::Free && self.free.proven(sensed.known().is_some())
     }
@@ -174,7 +173,7 @@ impl ArmGripper {
         } else {
             self.watch_bending(cfg, &contact, dt);
         }
-        // A servo at the end of its travel or at stall is a limit like the force's.
+        // A servo at its end or stall counts as a force limit.
         let stuck = matches!(self.phase, Phase::Grip(_)) && self.force - contact.tension > LAG_STUCK;
         let limited = self.force >= cfg.demand.force || stuck;
         self.at_limit = if limited {
@@ -184,7 +183,6 @@ impl ArmGripper {
         };
     }
 
-    /// Fault by the input, or the latched one.
     fn input_fault(&self, cfg: &Config, measured: &Measured) -> Option<GripFault> {
         let latched = self.fault.is_some_and(GripFault::is_latched);
         let pressure = measured.sensed.known();
@@ -196,7 +194,7 @@ impl ArmGripper {
         match measured.sensed {
             _ if latched => self.fault,
             Pressure::Faulty => Some(GripFault::Sensor),
-            // An unloaded sensor looks like an open one, but no arm lets go within one step.
+            // An unloaded sensor reads as open, but no arm lets go in one step.
             Pressure::Known(_) if vanished => Some(GripFault::Sensor),
             Pressure::Stale => Some(GripFault::Stale),
             Pressure::Known(_) if measured.pressure.is_none() || measured.thrust.is_none() => {
@@ -207,7 +205,7 @@ impl ArmGripper {
         }
     }
 
-    /// Input of the loop; `None` if part of it is missing or the arm is faulty.
+    /// Input of the loop; `None` if incomplete or the arm is faulty.
     fn contact(&self, cfg: &Config, measured: &Measured) -> Option<Contact> {
         if self.fault.is_some() {
             return None;
@@ -220,7 +218,7 @@ impl ArmGripper {
         })
     }
 
-    /// Holds the force; the loop restarts from it without wind-up or kick.
+    /// Holds the force, from which the loop restarts bumplessly.
     fn pause(&mut self) {
         match self.phase {
             Phase::Grip(_) => self.phase = Phase::Approach,
@@ -232,7 +230,7 @@ impl ArmGripper {
     }
 
     /// After a restart: seeds the force from the tension by the new attitude, which may shift every tilt by 0.02 rad,
-    /// once it has been known for [`RESUME_TIME`]. The old force would make the servo jump.
+    /// once known for [`RESUME_TIME`]. The old force would make the servo jump.
     fn take_over(&mut self, cfg: &Config, contact: &Contact, seen: f32) {
         if seen < RESUME_TIME {
             self.phase = Phase::Resume(seen);
@@ -247,7 +245,7 @@ impl ArmGripper {
         };
     }
 
-    /// Force of this step: by the pressure after touch, by the arm's stiffness before.
+    /// Controls the pressure after touch, raises the force by the arm's stiffness before.
     fn control(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         let lag = self.force - contact.tension;
         match self.phase {
@@ -273,7 +271,6 @@ impl ArmGripper {
         }
     }
 
-    /// A touching arm's pressure must rise with its force.
     fn watch_ceiling(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.bend_watch = None;
         let sample = CeilingSample {
@@ -286,7 +283,7 @@ impl ArmGripper {
         }
     }
 
-    /// An arm without touch must bend as the force rises; if not, the force of before the rise returns.
+    /// An arm without touch must bend as the force rises; otherwise the force returns to its value before.
     fn watch_bending(&mut self, cfg: &Config, contact: &Contact, dt: f32) {
         self.ceiling_watch.pause();
         let start = BendWatch::new(contact.tilt, contact.tension);

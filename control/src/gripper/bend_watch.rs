@@ -1,18 +1,18 @@
-//! Watches that an arm without touch bends as its tension rises.
+//! Detects an arm without touch that does not bend as its tension rises.
 //!
-//! Something that the sensor does not feel (a cable, the wrong side of a pipe) stops the arm: the tension rises, the
-//! tilt does not fall, and the controller would wind to the force limit.
+//! An obstacle that the sensor does not feel (a cable, the wrong side of a pipe) stops the arm, and the controller
+//! would wind to the force limit.
 
 use super::Config;
 use crate::filter::LowPass;
 
-/// Tension rise (N) over which an arm without touch must bend.
+/// Tension rise over which an arm without touch must bend, N.
 const WINDOW: f32 = 8.0;
-/// Least tension (N) for the watch: below it the tendon may be slack, knotted 1 mm too long (8 N) with the tilt wrong
-/// by 0.03 rad (6 N).
+/// Least tension of the watch, N: below, the tendon may be slack, knotted 1 mm too long (8 N) with the tilt off by 0.03
+/// rad (6 N).
 const TENSION_MIN: f32 = 20.0;
-/// Least share of the expected bending: a free arm bends by 1 within its model, the stiffest on the skin of a pipe by
-/// 0.4, a soft one by 0.2.
+/// Least share of the expected bending: 1 for a free arm within its model, 0.4 for the stiffest on a pipe's skin, 0.2
+/// for a soft one.
 const BEND_SHARE_MIN: f32 = 0.6;
 /// Delay of the watch on an arm that starts under tension, s.
 const START_TIME: f32 = 0.4;
@@ -34,7 +34,7 @@ pub struct BendSample {
     pub tilt: f32,
     /// Tension, N.
     pub tension: f32,
-    /// Force asked for, N.
+    /// Demanded force, N.
     pub force: f32,
 }
 
@@ -48,7 +48,7 @@ impl BendWatch {
         }
     }
 
-    /// Watch of an arm that starts under tension: at first its tilt is late and the tension seems to rise.
+    /// For an arm that starts under tension: its late tilt looks like a rise.
     pub fn of_a_start(tilt: f32, tension: f32) -> Self {
         Self {
             wait: START_TIME,
@@ -56,7 +56,8 @@ impl BendWatch {
         }
     }
 
-    /// One step of `dt` s; if the tension rose by the window but the tilt hardly fell, the force of before, N.
+    /// One step of `dt` s; returns the force before the rise, N, if the tension rose by the window but the tilt hardly
+    /// fell.
     pub fn step(&mut self, cfg: &Config, sample: BendSample, dt: f32) -> Option<f32> {
         let tilt = self.tilt.step(sample.tilt, CUTOFF, dt);
         let tension = self.tension.step(sample.tension, CUTOFF, dt);

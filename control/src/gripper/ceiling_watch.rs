@@ -1,44 +1,41 @@
-//! Watches that the pressure rises with the tension, until a sensor has shown that it can read the grip pressure.
+//! Detects a pressure that does not rise with the tension, until a sensor has read the grip pressure.
 //!
-//! Behind a divider that no parameter states, a reading ends far below the grip pressure, and the loop would wind to
-//! the force limit. Only a rise too slow to reach the grip pressure within the limit counts: no arm that could have
-//! held is stopped.
+//! Behind an undeclared divider a reading ends far below the grip pressure, and the loop would wind to the force limit.
+//! Only a rise too slow to reach the grip pressure within the limit counts: an arm that could have held is not stopped.
 
 use super::Config;
 use crate::filter::LowPass;
 
-/// Tension rise (N) over which the pressure must rise: the way from touch to grip on a skin of 70 Pa/N, and more than a
-/// swinging arm feels.
+/// Tension rise over which the pressure must rise, N: from touch to grip on a skin of 70 Pa/N, and more than a swinging
+/// arm feels.
 const WINDOW: f32 = 12.0;
-/// Cut-off of the tension, rad/s: a tilt that is 0.1 rad wrong is 20 N for a frame.
+/// Cut-off of the tension, rad/s: a tilt wrong by 0.1 rad is 20 N for a frame.
 const CUTOFF: f32 = 20.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CeilingWatch {
     tension: Option<LowPass>,
     from: Option<CeilingSample>,
-    /// The grip pressure has been read since the arm closed.
     shown: bool,
 }
 
-/// One step of a touching arm; forces without the share that meets the rotor's thrust.
+/// One step of a touching arm; forces without the share against the rotor's thrust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CeilingSample {
     /// Tension, N.
     pub tension: f32,
-    /// Force asked for, N.
+    /// Demanded force, N.
     pub force: f32,
     /// Contact pressure, Pa.
     pub pressure: f32,
 }
 
 impl CeilingWatch {
-    /// Restarts the window after the pressure was not controlled.
     pub fn pause(&mut self) {
         (self.tension, self.from) = (None, None);
     }
 
-    /// One step of `dt` s; true if tension and force both rose by the window and the pressure did not follow.
+    /// One step of `dt` s; true if tension and force rose without the pressure.
     pub fn step(&mut self, cfg: &Config, sample: CeilingSample, dt: f32) -> bool {
         self.shown |= sample.pressure >= cfg.demand.pressure - cfg.demand.tolerance;
         if self.shown {

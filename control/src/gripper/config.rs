@@ -1,4 +1,4 @@
-//! The controller's numbers.
+//! Configuration of the gripper.
 
 use crate::deflection::ArmModel;
 use crate::grip::GripDemand;
@@ -6,30 +6,30 @@ use crate::math;
 use crate::params::Params;
 use crate::tendon::ForceLimit;
 
-/// The controller's numbers, derived from the parameters.
+/// Derived from the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Gains of the pressure loop, N/Pa, N/(Pa s) and N s/Pa.
     pub(super) p: f32,
     pub(super) i: f32,
     pub(super) d: f32,
-    /// Rise of the force that bends a free arm at the approach speed, N/s.
+    /// Force rise at the approach speed of a free arm, N/s.
     pub(super) approach_rate: f32,
-    /// Fall of the force on release, N/s.
+    /// Force fall on release, N/s.
     pub(super) release_rate: f32,
     /// Largest force, N.
     pub(super) limit: f32,
-    /// Tendon force that a rotor's thrust takes, N/N.
+    /// Tendon force relieved by a rotor's thrust, N/N.
     pub(super) per_thrust: f32,
-    /// Tilt that a free arm loses for tendon force, rad/N.
+    /// Tilt loss of a free arm by tendon force, rad/N.
     pub(super) bend_per_force: f32,
     pub(super) demand: GripDemand,
 }
 
 impl Config {
-    /// The controller that the parameters describe.
+    /// From the parameters.
     pub fn from_params(p: &Params) -> Self {
-        // The tendon's moment h F bends like the thrust F h/d; below level thrust the arm is linear.
+        // The moment h F bends like the thrust F h/d; below level thrust the arm is linear.
         let compliance = math::clamp(ArmModel::from_params(p).slope(0.0), 1e-3, 10.0);
         let bend_per_force = compliance * p.tendon_lever / p.arm_d;
         let limit = ForceLimit::from_params(p).asked;

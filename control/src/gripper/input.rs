@@ -1,14 +1,14 @@
-//! Input of one arm, and what of it is usable.
+//! Input of one arm, filtered and validated.
 
 use crate::filter::LowPass;
 use crate::math;
 
 /// Cut-off of the measured pressure, rad/s (13 Hz).
 const PRESSURE_CUTOFF: f32 = 80.0;
-/// Cut-off of the thrust fed forward, rad/s: it acts after the motors' 50 ms, less the servo's own delay.
+/// Cut-off of the thrust fed forward, rad/s: after the motors' 50 ms, less the servo's delay.
 const THRUST_CUTOFF: f32 = 30.0;
 
-/// Contact pressure of one arm, or why there is none.
+/// Contact pressure of one arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pressure {
     /// Pa.
@@ -16,12 +16,12 @@ pub enum Pressure {
     /// Nothing fresh.
     #[default]
     Stale,
-    /// The sensor is open, shorted or out of range.
+    /// Sensor open, shorted or out of range.
     Faulty,
 }
 
 impl Pressure {
-    /// The pressure if known and finite, limited so that filters cannot overflow.
+    /// A finite pressure, limited so that filters cannot overflow.
     pub(super) fn known(self) -> Option<f32> {
         match self {
             Self::Known(p) if p.is_finite() => Some(math::clamp(p, 0.0, 1e6)),
@@ -33,19 +33,19 @@ impl Pressure {
 /// Command and measurements of one arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmInput {
-    /// Closes the arm; releases it otherwise.
+    /// Closes the arm, else releases it.
     pub close: bool,
     /// Contact pressure.
     pub pressure: Pressure,
-    /// Thrust asked of the arm's rotor, N; 0 when it is stopped.
+    /// Thrust demanded of the arm's rotor, N; 0 when stopped.
     pub thrust: f32,
-    /// Tension that the servo can be giving, N.
+    /// Estimated tension, N.
     pub tension: Option<f32>,
-    /// Tilt by the arm's own sensor, rad.
+    /// Tilt by its sensor, rad.
     pub tilt: Option<f32>,
 }
 
-/// Bounded input, pressure and thrust low-passed; `None` where missing or not finite.
+/// Bounded, pressure and thrust low-passed; `None` where missing or not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Measured {
     /// Unfiltered pressure.
@@ -94,14 +94,13 @@ impl InputFilters {
     }
 }
 
-/// Complete input of the pressure loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Contact {
     /// Contact pressure, Pa.
     pub pressure: f32,
     /// Tendon force against the rotor's thrust, N.
     pub feed_forward: f32,
-    /// Tension, N; the force asked for if unknown.
+    /// Tension, N; the demanded force if unknown.
     pub tension: f32,
     /// Tilt, rad.
     pub tilt: f32,

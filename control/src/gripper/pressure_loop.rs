@@ -10,9 +10,9 @@ use crate::tendon::TILT_CUTOFF;
 const REFERENCE_TAU: f32 = 0.25;
 /// Cut-off of the pressure's derivative, rad/s (6 Hz).
 const DERIVATIVE_CUTOFF: f32 = 40.0;
-/// Lag of the tendon (N) beyond which the integral waits.
+/// Lag of the tendon above which the integral waits, N.
 pub(super) const LAG_MAX: f32 = 20.0;
-/// Cut-off of the force to fall back to when a touch is lost for good, rad/s.
+/// Cut-off of the fallback force after a lost touch, rad/s.
 const MEAN_FORCE_CUTOFF: f32 = 3.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,22 +21,19 @@ pub struct PressureLoop {
     touch_transient: CascadedLowPass,
     /// Mean force of the last third of a second in touch, N.
     mean_force: LowPass,
-    /// Pressure reference, Pa.
     reference: f32,
     /// N.
     integral: f32,
-    /// Last pressure, Pa.
     last: f32,
-    /// Derivative of the pressure, Pa/s.
     slope: LowPass,
 }
 
 impl PressureLoop {
-    /// Bumpless start: at the contact's pressure the output is `force` N with `transient` N in it; the reference is
-    /// that pressure.
+    /// Bumpless start: output `force` N, with `transient` N in it, at the contact's pressure, which becomes the
+    /// reference.
     ///
-    /// The transient is what the tendon lacked while the arm moved and its tilt came late. The arm now stands still: as
-    /// the tilt catches up, the same reel position means the smaller force.
+    /// The transient is what the tendon lacked while the arm moved and its tilt came late. As the tilt catches up on
+    /// the standing arm, the same reel position means the smaller force.
     pub fn new(contact: &Contact, force: f32, transient: f32) -> Self {
         let base = force - transient - contact.feed_forward;
         Self {
@@ -49,7 +46,7 @@ impl PressureLoop {
         }
     }
 
-    /// One step of `dt` s with the tendon's lag `lag` (N); returns the force, N.
+    /// One step of `dt` s with the tendon's `lag` (N); returns the force, N.
     pub fn step(&mut self, cfg: &Config, contact: &Contact, lag: f32, dt: f32) -> f32 {
         let towards = dt / (REFERENCE_TAU + dt);
         self.reference += (cfg.demand.pressure - self.reference) * towards;
@@ -73,7 +70,6 @@ impl PressureLoop {
         self.mean_force.step(force, MEAN_FORCE_CUTOFF, dt);
     }
 
-    /// Mean force of the last third of a second in touch, N.
     pub fn mean_force(&self) -> f32 {
         self.mean_force.value()
     }

@@ -1,7 +1,7 @@
 //! The allocation that flies: the wrench inverted through the quasi-static Jacobian about the low-passed thrusts.
 //!
-//! Inverting the effectiveness at the frozen arm angle is wrong even with the true angle: a thrust changed for yaw bends
-//! its arm a moment later and yaws |C| times more, and an inverse that follows the angle turns this into a limit cycle.
+//! Inverting the effectiveness at the frozen arm angle is wrong even with the true angle: a thrust changed for yaw soon
+//! bends its arm and yaws |C| times more, and an inverse that follows the angle makes a limit cycle.
 
 #[cfg(test)]
 mod tests;
@@ -18,18 +18,18 @@ use crate::wrench::{Configuration, PerArm, Wrench};
 /// Share of the stiff frame's yaw authority k_q below which yaw fades and entries are floored.
 pub const YAW_FLOOR: f32 = 0.35;
 
-/// Allocation by the quasi-static Jacobian, with its state.
+/// Allocation by the quasi-static Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flexible {
     geometry: Geometry,
-    /// The same as configuration B would have it, and the sign that makes one of the other.
+    /// Geometry of configuration B, and the sign towards it.
     as_b: Geometry,
     chi: f32,
     tilt: TiltModel,
     limits: Limits,
     /// Least entry of the yaw row, m.
     yaw_floor: f32,
-    /// Rise of yaw's share with the authority, 1/m: nothing at half the floor, all of it at the floor.
+    /// Slope of yaw's share over the authority, 1/m: 0 at half the floor, 1 at the floor.
     fade_slope: f32,
 }
 
@@ -52,15 +52,15 @@ impl Flexible {
     #[inline(always)]
     fn quasi_static(&self, wrench: &Wrench, yaw_usable: bool) -> Split {
         let (thrusts, tilt) = (self.tilt.thrusts(), self.tilt.tilt());
-        // In A yaw works the other way round: it is allocated as in B, with the moment reversed.
+        // In A yaw acts the other way: allocated as in B, with the moment reversed.
         let geometry = self.as_b;
         let w = Wrench {
             yaw: self.chi * wrench.yaw,
             ..*wrench
         };
         let mut e = Effectiveness::quasi_static(&geometry, &tilt, &self.tilt.follow());
-        // The authority fades with its own quasi-static gain, and no entry may pass zero: the inverse of a
-        // vanishing entry would be a kick, and a reversed authority is not to be trusted.
+        // Yaw fades with its quasi-static gain, and no entry may pass zero: the inverse of a vanishing entry is a kick,
+        // a reversed authority unreliable.
         let [y1, y2, y3, y4] = e.yaw;
         let authority = 0.25 * (y1 + y2 + y3 + y4);
         let least = self.yaw_floor;
@@ -80,8 +80,8 @@ impl Flexible {
         });
         let [t1, t2, t3, t4] = thrusts;
         let (c1, c2, c3, c4) = (t1 + c1, t2 + c2, t3 + c3, t4 + c4);
-        // The collective continues from the last thrusts. Where yaw is given up nothing corrects what they have
-        // of the yaw pattern, so it is taken out here; it has no part in thrust, roll and pitch.
+        // The collective continues from the last thrusts, without their share of the yaw pattern where yaw is given up:
+        // nothing else corrects it, and thrust, roll and pitch are unaffected.
         let left = (0.25 - 0.25 * fade) * (c1 - c2 - c3 + c4);
         let patterns = Patterns {
             collective: [c1 - left, c2 + left, c3 + left, c4 - left],
@@ -90,7 +90,7 @@ impl Flexible {
         Split { patterns, fade }
     }
 
-    /// No authority in yaw at all: the stiff frame's patterns still give thrust, roll and pitch.
+    /// Without yaw authority: the stiff frame's patterns still give thrust, roll and pitch.
     #[cold]
     fn without_yaw(&self, w: &Wrench) -> Split {
         Split {
@@ -101,7 +101,7 @@ impl Flexible {
 }
 
 impl Allocation for Flexible {
-    // On its own: inlined into a caller that is built for size, its loops would not be unrolled and cost twice as much.
+    // Not inlined: in a caller built for size its loops would cost twice as much.
     #[inline(never)]
     fn allocate(&mut self, w: &Wrench, c: Conditions) -> Mix {
         if !w.is_finite() {
@@ -118,7 +118,7 @@ impl Allocation for Flexible {
         self.limits.at_idle()
     }
 
-    // On its own as the allocation.
+    // Not inlined, like `allocate`.
     #[inline(never)]
     fn follow(&mut self, thrusts: &PerArm<f32>, dt: f32) {
         self.tilt.step(thrusts, dt);

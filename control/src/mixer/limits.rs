@@ -6,10 +6,10 @@ use crate::mixer::{Mix, Split};
 use crate::params::Params;
 use crate::wrench::PerArm;
 
-/// Hysteresis of the yaw gate, N: a mean near the gate must not switch yaw.
+/// Hysteresis of the yaw gate, N.
 const GATE_HYSTERESIS: f32 = 0.2;
 
-/// Rotor limits, and the state of the yaw gate.
+/// Rotor limits and yaw gate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     idle: f32,
@@ -20,7 +20,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Limits by the parameters, the yaw gate shut.
+    /// From the parameters, with the yaw gate shut.
     pub const fn new(p: &Params) -> Self {
         Self {
             idle: p.thrust_idle,
@@ -40,13 +40,13 @@ impl Limits {
         }
     }
 
-    /// Voltage ratio for the rotors' limits: never above the nominal voltage, at least half of it.
+    /// Voltage ratio of the rotors' limits, within 0.5..1.
     #[inline(always)]
     pub fn battery_ratio(ratio: f32) -> f32 {
         math::clamp(ratio, 0.5, 1.0)
     }
 
-    /// Moves the yaw gate by the low-passed thrusts (N); true if yaw may be used.
+    /// Updates the yaw gate by the low-passed thrusts (N); true if yaw may be used.
     #[inline(always)]
     pub fn open_yaw(&mut self, thrusts: PerArm<f32>) -> bool {
         let [t1, t2, t3, t4] = thrusts;
@@ -56,7 +56,7 @@ impl Limits {
         self.yaw_open
     }
 
-    /// Thrusts of `split` within the limits at the voltage ratio `ratio`, yaw only if `usable`.
+    /// Thrusts of `split` within the limits at a voltage ratio, yaw only if `usable`.
     #[inline(always)]
     pub fn give(&self, split: Split, usable: bool, ratio: f32) -> Mix {
         let high = self.max * ratio * ratio;
@@ -72,7 +72,7 @@ impl Limits {
         }
     }
 
-    /// Share of a yaw pattern within one rotor's allowance, at most `fade`.
+    /// Share of a yaw pattern within a rotor's allowance, at most `fade`.
     #[inline(always)]
     fn yaw_share(&self, yaw: &PerArm<f32>, fade: f32) -> f32 {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn the_rotor_that_yaw_moves_most_sets_its_share_whichever_it_is() {
         let limits = Limits::new(&Params::default());
-        // 1.5 N of 3 N are allowed: a half. 1.2 N are within it: only the fade counts.
+        // 1.5 N of 3 N are allowed: a half. 1.2 N are within it: only the fade acts.
         for worst in 0..4 {
             for sign in [1.0, -1.0] {
                 let mut yaw = [0.5, -1.0, 0.25, -2.0];

@@ -1,11 +1,11 @@
-//! A wrench split into patterns of thrust that may be given up in turn.
+//! A wrench split into patterns of thrust to be given up in turn.
 
 use crate::desaturation::Patterns;
 use crate::effectiveness::{Geometry, Inverse, Load};
 use crate::math;
 use crate::wrench::{FORE, PerArm, SIDE, Wrench, YAW};
 
-/// Patterns of a wrench, and the trust in its yaw.
+/// Patterns of a wrench and its yaw's authority.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {
     /// Thrusts of collective, roll and pitch, and yaw, N.
@@ -14,10 +14,10 @@ pub struct Split {
     pub fade: f32,
 }
 
-/// Moments of `w` as patterns, with the thrusts of a newton of collective; without the collective itself.
+/// Moments of `w` as patterns, with the thrusts per newton of collective but without it.
 #[inline(always)]
 pub fn moment_patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Patterns {
-    // Adding -0 leaves the other number: it takes no instruction.
+    // Adding -0 leaves the other number, without an instruction.
     let moments = Load::of(
         geometry,
         Wrench {
@@ -39,7 +39,7 @@ pub fn moment_patterns(geometry: &Geometry, inverse: &Inverse, w: Wrench) -> Pat
     }
 }
 
-/// The printed matrix: stiff levers for roll, pitch and yaw, the cosine of `tilt` (rad) in the thrust row alone.
+/// The printed matrix: stiff levers for roll, pitch and yaw, the cosine of `tilt` (rad) only in the thrust row.
 pub fn stiff(geometry: &Geometry, w: Wrench, tilt: PerArm<f32>) -> Split {
     let roll = 0.25 * w.roll / geometry.d;
     let pitch = 0.25 * w.pitch / geometry.b;

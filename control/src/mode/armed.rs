@@ -4,7 +4,7 @@ use super::behaviour::Behaviour;
 use super::context::Context;
 use super::{Inputs, Setpoint};
 
-/// Time for which the rotors may idle before they are stopped, s.
+/// Longest idling of the rotors, s.
 pub const IDLE_MAX: f32 = 30.0;
 
 /// See [`super::Mode::Armed`].

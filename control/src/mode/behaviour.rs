@@ -1,4 +1,4 @@
-//! What every state answers: what it watches, what rotors and tendons do in it, what the pilot reads.
+//! Interface of a state: transitions, rotors, tendons, display.
 
 use super::context::{Context, Step};
 use super::demand::HAND_OVER_TIME;
@@ -6,33 +6,32 @@ use super::{ClampCommand, Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 
-/// One state, with the fields that live in it.
+/// One state with its fields.
 pub trait Behaviour {
-    /// Before the transitions are looked through: brings up to date what their guards ask of this state.
+    /// Before the transitions: updates what their guards read.
     fn observe(&mut self, _step: &mut Step<'_>) {}
 
-    /// After them, when none applies: a step within this state.
+    /// When no transition applies.
     fn advance(&mut self, _step: &mut Step<'_>) {}
 
-    /// The grip that must outlive a reset: from the first step of closing until every arm is proven free.
+    /// Grip to retain: closed from the first step of closing until every arm is proven free.
     fn grip_memory(&self) -> GripMemory {
         GripMemory::Open
     }
 
-    /// What the tendons are to do.
     fn tendons(&self) -> ClampCommand {
         self.grip_memory().tendons()
     }
 
-    /// What the rotors are to do, before the collective is handed over and limited.
+    /// Setpoint before hand-over and limiting of the collective.
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint;
 
-    /// What the pilot reads beside the mode.
+    /// Reason shown to the pilot beside the mode.
     fn reason(&self, context: &Context, inputs: &Inputs, _inhibits: ArmingInhibits) -> Option<Reason> {
         context.reason(inputs, true)
     }
 
-    /// Time over which the collective goes from that of the state before to this one's, s.
+    /// Hand-over time of the collective from the previous state, s.
     fn hand_over_time(&self) -> f32 {
         HAND_OVER_TIME
     }

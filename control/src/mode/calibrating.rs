@@ -37,7 +37,7 @@ impl Behaviour for Calibrating {
         } else if i.hardware.is_empty() {
             Some(Reason::KeepStill)
         } else {
-            // Shows what is broken without an attempt to arm.
+            // Shows defects without an attempt to arm.
             first(i.hardware)
         }
     }

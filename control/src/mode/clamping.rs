@@ -1,4 +1,4 @@
-//! Tendons close the chosen arms under the pressure loop; rotors spool down once the grip is proven.
+//! Closes the chosen arms under the pressure loop, then spools the rotors down once the grip is proven.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -7,13 +7,13 @@ use super::{Inputs, Reason, Setpoint};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 
-/// Time from the end of the ramp until the rotors stand still, s: six motor time constants.
+/// Time from the ramp's end to standing rotors, s: six motor time constants.
 pub const STOP_TIME: f32 = 0.3;
-/// Time for which the proof may be missing after the rotors have stopped, s.
+/// Time allowed without proof after the rotors have stopped, s.
 const PROOF_TIME: f32 = 3.0;
-/// Time for which a chosen arm may be at its force limit, or faulty, before the closing ends, s.
+/// Time of an arm at its force limit, or faulty, that ends the closing, s.
 pub const HOPELESS_TIME: f32 = 1.0;
-/// Time beyond `clamp_timeout` for spooling down and proving the grip, s.
+/// Time beyond `clamp_timeout` for spooling down and proof, s.
 const SPOOL_ALLOWANCE: f32 = 10.0;
 
 /// See [`super::Mode::Clamping`].
@@ -24,12 +24,12 @@ pub struct Clamping {
 }
 
 impl Clamping {
-    /// The arms press with a good part of the grip pressure.
+    /// Every chosen arm [holds](held).
     pub fn holds(&self, step: &Step<'_>) -> bool {
         held(step.inputs.grip, self.hold.arms, &step.context.params)
     }
 
-    /// Why the closing should end. Without radio no pilot can fly away: a poor grip is then better than none.
+    /// Reason to end the closing. Without radio no pilot can fly away: a poor grip is then better than none.
     pub fn doubt(&self, step: &Step<'_>) -> Option<Reason> {
         let sticks = step.inputs.sticks?;
         let context = &step.context;
@@ -44,15 +44,15 @@ impl Clamping {
         }
     }
 
-    /// Why arms that hold stay closed in spite of a doubt.
+    /// Reason to keep arms closed despite a doubt.
     pub fn must_stay(&self, step: &Step<'_>) -> Option<Reason> {
         if !self.holds(step) {
             None
         } else if step.context.lean.too_far_to_release() {
-            // The belly alone would slide: a poor grip is better than none.
+            // The belly would slide: a poor grip is better than none.
             Some(Reason::LeansTooFar)
         } else if step.context.dangers.line_silent() {
-            // A vehicle that may not fly stays where its arms hold it.
+            // A vehicle that may not fly stays where it is held.
             Some(Reason::LINE_SILENT)
         } else {
             None
@@ -64,12 +64,10 @@ impl Clamping {
         step.inputs.sticks.is_none() && step.context.dangers.battery_critical()
     }
 
-    /// The rotors stand still at the end of this step.
     pub fn stands(&self, step: &Step<'_>) -> bool {
         self.spooled(step).still >= STOP_TIME
     }
 
-    /// Spool at the end of this step.
     fn spooled(&self, step: &Step<'_>) -> Spool {
         let mut spool = self.spool;
         let down = if spool.down {
@@ -118,7 +116,7 @@ impl Behaviour for Clamping {
             step.context.note(Some(Reason::GripLostSpooling));
         }
         if spool.still >= STOP_TIME + PROOF_TIME {
-            // Held but not proven: carry part of the weight again until the loop proves it.
+            // Held, not proven: carries some weight until proven.
             spool = Spool::at(0.0);
         }
         self.spool = spool;

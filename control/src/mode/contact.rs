@@ -1,4 +1,4 @@
-//! Resting on the pipe with the rotors helping; attitude held, yaw given up.
+//! Resting on the pipe with running rotors; attitude held, yaw given up.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -7,7 +7,7 @@ use super::{Inputs, Setpoint};
 
 /// Time on the pipe before the tendons close, s.
 pub const CONTACT_TIME: f32 = 0.3;
-/// Throttle above `perch_thr_max` by which the contact is given up, 1.
+/// Throttle above `perch_thr_max` that ends the contact, 1.
 pub const CONTACT_MARGIN: f32 = 0.03;
 
 /// See [`super::Mode::Contact`].

@@ -15,35 +15,33 @@ use crate::params::Params;
 use crate::rc::Sticks;
 use crate::support::{Felt, Support};
 
-/// Time over which gravity is learnt at rest, s, and what may come of it, m/s²: a part's bias of some 40 mg.
+/// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
 const GRAVITY_TIME: f32 = 0.5;
 const GRAVITY_BOUNDS: (f32, f32) = (9.4, 10.2);
-/// Time for which a reason stays on the pilot's display, s.
+/// Display time of a reason, s.
 const NOTE_TIME: f32 = 10.0;
 
-/// What a state or a guard looks at in one step.
+/// View of one step for states and guards.
 #[derive(Debug)]
 pub struct Step<'a> {
-    /// What outlives the state.
     pub context: &'a mut Context,
-    /// What is seen now.
     pub inputs: &'a Inputs,
-    /// Time since the step before, s.
+    /// Time since the last step, s.
     pub dt: f32,
 }
 
-/// Where the perch switch has been.
+/// History of the perch switch.
 #[derive(Clone, Copy, Debug)]
 pub struct PerchSwitch {
-    /// Off since the last try: on starts the next.
+    /// Off since the last try: turning it on starts the next.
     pub seen_off: bool,
-    /// On since the arms closed: off opens them.
+    /// On since the arms closed: turning it off opens them.
     pub seen_on: bool,
-    /// On since the start: where it was left says nothing about what the pilot wants now.
+    /// On since power-up: its position is no wish of the pilot.
     pub left_on: bool,
 }
 
-/// What outlives a state.
+/// State that outlives a mode.
 #[derive(Clone, Debug)]
 pub struct Context {
     pub params: Params,
@@ -54,9 +52,9 @@ pub struct Context {
     gestures: GestureWatch,
     /// The gesture completed in this step.
     pub gesture: Option<Gesture>,
-    /// The throttle last seen: held when the radio is lost on the pipe.
+    /// Last throttle: held when the radio is lost on the pipe.
     pub throttle: f32,
-    /// The arm switch has been off since power-up.
+    /// Off since power-up.
     arm_seen_off: bool,
     pub perch_switch: PerchSwitch,
     pub power_up_grip: PowerUpGripCheck,
@@ -66,7 +64,7 @@ pub struct Context {
     pub collective: Collective,
     pub probe: Probe,
     pub bench: Bench,
-    /// A reason and the time for which it is still shown, s.
+    /// A reason and its remaining display time, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
     gravity: f32,
@@ -99,7 +97,7 @@ impl Context {
         }
     }
 
-    /// Takes in what is seen; `at_rest`: the rotors stand and gravity may be learnt.
+    /// Takes in the inputs; learns gravity `at_rest`.
     pub fn observe(&mut self, i: &Inputs, at_rest: bool, dt: f32) {
         self.since = clamp(self.since + dt, 0.0, 1e6);
         self.note.1 -= dt;
@@ -116,7 +114,7 @@ impl Context {
         }
         let down = i.motion.map_or(-self.gravity, |m| m.q.rotate(m.accel).z);
         if at_rest && i.motion.is_some() {
-            // What the accelerometer calls gravity at rest: its bias would otherwise add up in the sink rate.
+            // Measured at rest: the bias would add up in the sink rate.
             let seen = clamp(-down, GRAVITY_BOUNDS.0, GRAVITY_BOUNDS.1);
             self.gravity += (seen - self.gravity) * dt / (dt + GRAVITY_TIME);
         }
@@ -132,17 +130,16 @@ impl Context {
         self.dangers.step(i, &self.params, dt);
     }
 
-    /// Shows `why` for a while.
+    /// Shows `why` for [`NOTE_TIME`].
     pub fn note(&mut self, why: Option<Reason>) {
         self.note = (why, NOTE_TIME);
     }
 
-    /// What just happened, as long as it is shown.
     pub fn noted(&self) -> Option<Reason> {
         self.note.0.filter(|_| self.note.1 > 0.0)
     }
 
-    /// What the pilot reads beside most modes; `radio`: its loss is worth a word.
+    /// The reason shown beside most modes; `radio`: include its loss.
     pub fn reason(&self, i: &Inputs, radio: bool) -> Option<Reason> {
         let note = self.noted();
         if self.dangers.battery_critical() {
@@ -162,7 +159,7 @@ impl Context {
             .arms()
             .unwrap_or(i.sticks.unwrap_or_default().arms)
             .mask();
-        // Arms that open still pull at the pipe, and so would rotors at them: free is what is proven free.
+        // Opening arms still pull at the pipe, and rotors would at them: only proven-free arms are free.
         let arms_closed = match grip_memory {
             GripMemory::Open => !i.grip.is_some_and(|grip| grip.released),
             GripMemory::Controlled(_) | GripMemory::HeldByGears(_) => !self.grasps(i, grip_memory),
@@ -184,15 +181,15 @@ impl Context {
             arms_closed,
         }
         .inhibits(&self.params);
-        // The range of a sensor of an unused arm.
+        // Sensor ranges of unused arms do not matter.
         let inhibits = ArmingInhibit::FSR_RANGE
             .into_iter()
             .zip(chosen)
             .filter(|(_, chosen)| !chosen)
             .fold(inhibits, |all, (range, _)| all.without(range));
         if grip_memory.arms().is_some() {
-            // Armed on the pipe, the rotors stay stopped. There the switch is on, and turning it off is how the arms
-            // are opened; and no one can reach the battery there to put a broken supply right.
+            // Armed on the pipe, the rotors stay stopped. The perch switch is on there, and off opens the arms; a
+            // broken supply cannot be repaired.
             inhibits
                 .without(ArmingInhibit::PerchSwitchOn)
                 .without(ArmingInhibit::BrownOut)
@@ -201,8 +198,8 @@ impl Context {
         }
     }
 
-    /// The arms of `grip_memory` hold something. Of arms that the gears alone hold only some pressure is asked: a weak
-    /// servo has given way to what its friction carries, and still holds.
+    /// The arms of `grip_memory` hold something. For the gears some pressure is enough: a weak servo yields to what its
+    /// friction carries.
     pub fn grasps(&self, i: &Inputs, grip_memory: GripMemory) -> bool {
         match grip_memory {
             GripMemory::Controlled(arms) => held(i.grip, arms, &self.params),
@@ -214,7 +211,7 @@ impl Context {
         }
     }
 
-    /// The grip of a vehicle at rest. A person who holds it opens the arms by the perch switch, on and off again.
+    /// Grip of a vehicle at rest: the perch switch, on and off again, opens the arms.
     pub fn after_switch(&self, sticks: Option<Sticks>, grip_memory: GripMemory) -> GripMemory {
         let off = sticks.is_some_and(|s| !s.perch_switch);
         if grip_memory.arms().is_some() && off && self.perch_switch.seen_on {
@@ -224,29 +221,27 @@ impl Context {
         }
     }
 
-    /// Collective of four rotors at full throttle, N.
+    /// Collective at full throttle, N.
     pub fn full_thrust(&self) -> f32 {
         4.0 * self.params.thrust_max
     }
 
-    /// The pilot's collective on the pipe, N: his throttle, no more than a perch takes.
+    /// The pilot's collective on the pipe, N: the throttle, limited to `perch_thr_max`.
     pub fn perch_thrust(&self) -> f32 {
         clamp(self.throttle, 0.0, self.params.perch_thr_max) * self.full_thrust()
     }
 }
 
 impl Step<'_> {
-    /// The clamp loop has proven the grip.
     pub fn grip_proven(&self) -> bool {
         self.inputs.grip.is_some_and(|g| g.proven)
     }
 
-    /// The clamp loop has proven every arm free.
     pub fn arms_free(&self) -> bool {
         self.inputs.grip.is_some_and(|g| g.released)
     }
 
-    /// One step of the power-up grip check; gives the grip as it is known then.
+    /// One step of the power-up grip check; returns the updated grip.
     pub fn check_power_up_grip(&mut self, grip_memory: GripMemory) -> GripMemory {
         let Context {
             power_up_grip,

@@ -1,4 +1,4 @@
-//! Dangers that exist in any state.
+//! Dangers common to all states, 100 Hz.
 //!
 //! | trouble | on the ground | in the air | on the pipe |
 //! |---|---|---|---|
@@ -15,7 +15,7 @@ use crate::math::deg;
 use crate::params::Params;
 use crate::support::Held;
 
-/// Silence of the inertial sensor after which the rotors stop for good, s; control has stopped them already.
+/// Sensor silence that stops the rotors for good, s; control has already.
 pub const IMU_LOST_TIME: f32 = 0.05;
 /// Tilt beyond which the vehicle has tipped over, rad.
 pub const TIPPED_TILT: f32 = deg(100.0);
@@ -29,7 +29,7 @@ pub struct Dangers {
     imu: Held,
     tipped: Held,
     battery: Held,
-    /// Data-ready line silent; the port waits before it reports.
+    /// Set by the port after its own delay.
     line_silent: bool,
 }
 
@@ -62,8 +62,7 @@ impl Dangers {
         self.line_silent
     }
 
-    /// Why the vehicle must come down under the pilot's sticks and may not leave a pipe, the more pressing reason
-    /// first.
+    /// Reason to land under the sticks, or not to leave a pipe, by priority.
     pub fn landing(&self) -> Option<Reason> {
         if self.battery_critical() {
             Some(Reason::BatteryCritical)

@@ -1,4 +1,4 @@
-//! From sticks to a demand on the rotors, without a step in the collective and never out of range.
+//! From sticks to a demand, without a step in the collective and never out of range.
 
 use super::Setpoint;
 use crate::math::{clamp, clamp_abs};
@@ -7,10 +7,10 @@ use crate::rc::{StickMode, Sticks};
 use crate::vector::Vec3;
 use crate::wrench::Wrench;
 
-/// Time over which the collective goes from one state's to the next one's, s.
+/// Default hand-over time of the collective between two states, s.
 pub const HAND_OVER_TIME: f32 = 0.5;
 
-/// What the pilot asks for in free flight.
+/// Setpoint of the pilot in free flight.
 pub fn from_sticks(s: &Sticks, p: &Params) -> Setpoint {
     let thrust = s.throttle * 4.0 * p.thrust_max;
     match s.stick_mode {
@@ -35,7 +35,6 @@ pub fn from_sticks(s: &Sticks, p: &Params) -> Setpoint {
     }
 }
 
-/// Body rates of full sticks are the pilot's; the sign of each is the stick's.
 fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
     Vec3::new(
         s.roll * p.stick_rate,
@@ -44,32 +43,32 @@ fn stick_rates(s: &Sticks, p: &Params) -> Vec3 {
     )
 }
 
-/// The collective over the changes of state.
+/// Hand-over of the collective between states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Collective {
-    /// Collective of the last step, N; `None` while the rotors are stopped or idle.
+    /// Last collective, N; `None` while the rotors are stopped or idle.
     last: Option<f32>,
-    /// What is left of the difference to the state before, N, and the time left for it, s.
+    /// Remaining difference to the previous state, N, and time for it, s.
     offset: f32,
     left: f32,
-    /// Time that a hand-over which begins takes, s.
+    /// Duration of a hand-over to begin, s.
     pending: Option<f32>,
-    /// Time that the one under way takes, s.
+    /// Duration of the current hand-over, s.
     time: f32,
 }
 
 impl Collective {
-    /// A new state begins: its collective starts where the last one's is, and has its own after `time` s (> 0).
+    /// Begins a new state: the collective moves from the last one to the state's own within `time` s (> 0).
     pub fn hand_over(&mut self, time: f32) {
         self.pending = Some(time);
     }
 
-    /// Collective of the last step, N; 0 while the rotors are stopped or idle.
+    /// Last collective, N; 0 while the rotors are stopped or idle.
     pub fn now(&self) -> f32 {
         self.last.unwrap_or(0.0)
     }
 
-    /// The demand as it goes out: handed over, limited to what four rotors give, stopped if it is no number.
+    /// The demand handed over, limited to four rotors, stopped if not finite.
     pub fn finish(&mut self, wish: Setpoint, p: &Params, dt: f32) -> Setpoint {
         let begins = self.pending.take();
         if matches!(wish, Setpoint::Stop | Setpoint::Idle | Setpoint::Spin(_)) || !wish.is_finite() {
@@ -95,7 +94,7 @@ impl Collective {
 }
 
 fn with_thrust(rotors: Setpoint, thrust: f32) -> Setpoint {
-    // Defensive limit at a quarter turn.
+    // Defensive limit near a quarter turn.
     let angle = |x| clamp_abs(x, 1.6);
     match rotors {
         Setpoint::Angle {

@@ -1,4 +1,4 @@
-//! The failsafe's descent: level, sinking slowly, and [probing](super::probe) for what carries.
+//! The failsafe's descent: level, sinking slowly, [probing](super::probe) for support.
 
 use super::context::Context;
 use super::{Setpoint, demand};
@@ -7,7 +7,7 @@ use crate::rc::{StickMode, Sticks};
 
 /// Target sink rate, m/s.
 const SINK_RATE: f32 = 0.8;
-/// Share of the weight taken off the collective to start sinking, returned as the sink rate is reached.
+/// Share of the weight removed to start sinking, until the sink rate.
 const SINK_SHARE: f32 = 0.15;
 
 /// Level and sinking, at the roll, pitch and yaw rate of `steer`.

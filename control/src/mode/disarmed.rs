@@ -10,9 +10,9 @@ use crate::grip_memory::GripMemory;
 /// See [`super::Mode::Disarmed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disarmed {
-    /// A grip outlives rotors and resets.
+    /// Grip state, retained across motor stop and reset.
     pub grip_memory: GripMemory,
-    /// What a builder has tried now.
+    /// Current bench order.
     pub bench: Option<BenchOrder>,
 }
 
@@ -48,7 +48,7 @@ impl Behaviour for Disarmed {
         if self.bench.is_some() {
             return Some(Reason::OnBench);
         }
-        // What just happened comes before what keeps from arming again.
+        // What just happened precedes what prevents arming again.
         match context.noted() {
             None if i.sticks.is_some_and(|s| s.arm_switch) => first(inhibits),
             None if !i.hardware.is_empty() => first(i.hardware),
@@ -57,7 +57,7 @@ impl Behaviour for Disarmed {
     }
 }
 
-/// The most basic of `inhibits`.
+/// Highest-priority inhibit.
 pub fn first(inhibits: ArmingInhibits) -> Option<Reason> {
     inhibits.first().map(Reason::Check)
 }

@@ -1,8 +1,8 @@
-//! Off the pipe by itself: what follows a closing that is given up, a lean that grows, a release that nothing carries.
+//! Leaves the pipe by itself: after an abandoned closing, a growing lean, or a release that nothing carries.
 //!
-//! The rotors lift with more than the weight, nearly level, while the tendons pay out. A capped throttle would let a
-//! vehicle with sound rotors fall, and so would the pilot's, which is set to rest on the pipe. So the collective stays
-//! here until the throttle stick says hover; a pilot who never moves it is brought down by the failsafe.
+//! The rotors lift more than the weight, nearly level, while the tendons pay out. A capped throttle would let a sound
+//! vehicle fall, and so would the pilot's, set for resting: the collective is set here until the throttle stick reaches
+//! hover. If it never moves, the failsafe lands the vehicle.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -12,50 +12,47 @@ use crate::grip_memory::GripMemory;
 use crate::math::{clamp, clamp_abs, deg};
 use crate::support::HINT_FORCE;
 
-/// Collective while the vehicle does not climb, share of the weight: 3.4 m/s² upwards.
+/// Collective without climb, share of the weight: 3.4 m/s² upwards.
 pub const LIFT_SHARE: f32 = 1.35;
 /// Least collective, share of the weight.
 const LEAST_SHARE: f32 = 0.9;
-/// Share of the weight for each m/s that the climb rate lacks.
+/// Share of the weight per m/s of missing climb rate.
 const CLIMB_GAIN: f32 = 0.7;
-/// Climb rate aimed at until the vehicle is clear, m/s; later the height is kept.
+/// Climb rate until the vehicle is clear, m/s.
 const CLIMB_RATE: f32 = 0.5;
-/// Time over which the collective rises when the vehicle slides, s: its lean grows e-fold in 0.16 s.
+/// Rise time of the collective on a slide, s: the lean grows e-fold in 0.16 s.
 pub const SLIDE_RAMP: f32 = 0.15;
-/// When it stands it rises later and slower, s: the rotors pull at the tendons with 7 times their thrust, and tendons at
-/// their limit must have paid out before.
+/// Later and slower for a standing vehicle, s: the rotors pull at the tendons with 7 times their thrust, so tendons at
+/// their limit must pay out first.
 const STAND_DELAY: f32 = 0.25;
 const STAND_RAMP: f32 = 0.5;
-/// Time after the rise in which the vehicle comes clear of the pipe, s; the sticks do not steer before.
+/// Time after the rise until the vehicle is clear and the sticks steer, s.
 const CLEAR_TIME: f32 = 0.65;
-/// Largest lean that is kept away from the pipe, rad: level rotors beside the crown pull the vehicle up along the
-/// flank, and a lean across the crown throws it under the pipe.
+/// Largest lean away from the pipe, rad: level rotors beside the crown pull the vehicle up along the flank, a lean
+/// across the crown throws it under the pipe.
 pub const AWAY_LEAN: f32 = deg(8.0);
-/// Time in which arms that open come free, s. Later ones are stuck on the pipe, and the rotors must not pull at them.
+/// Time for opening arms to come free, s. Rotors must not pull at stuck ones.
 pub const FREE_MAX: f32 = 5.0;
-/// Time in which the pilot must have taken the throttle over, s.
+/// Time for the pilot to take the throttle over, s.
 pub const TAKE_OVER_TIME: f32 = 7.0;
-/// Thrust of the stick by which he takes it over, share of the weight.
+/// Its stick thrust, share of the weight.
 pub const TAKE_OVER_SHARE: f32 = 0.9;
 
 /// See [`super::Mode::Escaping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Escaping {
-    /// What the tendons still hold: open, or closed until every arm is proven free.
     grip_memory: GripMemory,
     /// Roll held until the vehicle is clear, rad.
     roll: f32,
-    /// Collective from which the slow rise starts, N; `None` on a slide, which lifts at once.
+    /// Collective at the start of the slow rise, N; `None` on a slide.
     from: Option<f32>,
     /// Climb rate since the escape began, m/s.
     climb: f32,
-    /// The tendons are paying out.
     opening: bool,
 }
 
 impl Escaping {
-    /// Leaves the pipe with the arms of `grip_memory` closed or closing, its collective rising slowly from `from` N or,
-    /// without that, at once.
+    /// Leaves with the arms of `grip_memory`; the collective rises slowly from `from` N, or at once without it.
     pub fn leaving(inputs: &Inputs, grip_memory: GripMemory, from: Option<f32>) -> Self {
         let lean = inputs.motion.map_or(0.0, |m| m.q.to_euler().0);
         Self {
@@ -67,20 +64,19 @@ impl Escaping {
         }
     }
 
-    /// Arms that have had their time and still hold pull the vehicle down.
+    /// Overdue arms that still hold pull the vehicle down.
     pub fn stuck(&self, context: &Context) -> bool {
         self.late(context) && context.support.force() < -HINT_FORCE
     }
 
-    /// The arms are free, and there was time to leave the pipe. Where nothing pulls the vehicle down it flies, whatever
-    /// an arm's sensors say.
+    /// The arms are free, and there was time to leave. Unless pulled down, the vehicle flies whatever an arm's sensors
+    /// read.
     pub fn clear(&self, context: &Context) -> bool {
         let ramp = self.from.map_or(SLIDE_RAMP, |_| STAND_DELAY + STAND_RAMP);
         let free = self.grip_memory == GripMemory::Open || self.late(context);
         context.since >= ramp + CLEAR_TIME && free
     }
 
-    /// Arms that hold have had their time.
     fn late(&self, context: &Context) -> bool {
         self.grip_memory.arms().is_some() && context.since >= FREE_MAX
     }
@@ -98,7 +94,7 @@ impl Behaviour for Escaping {
     fn observe(&mut self, step: &mut Step<'_>) {
         let context = &step.context;
         self.climb -= context.sinking * step.dt;
-        // Below the least throttle of a release only the arms keep the vehicle on the pipe.
+        // Below this only the arms keep the vehicle on the pipe.
         self.opening |= context.collective.now() >= release_thrust(&context.params);
         if self.opening && step.arms_free() {
             self.grip_memory = GripMemory::Open;
@@ -122,7 +118,6 @@ impl Behaviour for Escaping {
         }
     }
 
-    /// Nearly level, climbing until the vehicle is clear; then where the pilot steers.
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         let clear = self.clear(context);
         let wanted = if clear { 0.0 } else { CLIMB_RATE };

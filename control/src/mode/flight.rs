@@ -6,8 +6,8 @@ use super::descent::descent;
 use super::{Inputs, Reason, Setpoint, demand};
 use crate::math::cos;
 
-/// Lean beyond which the arms do not close, rad. Before they hold, a vehicle leaning by θ along a pipe's flank stays
-/// only while sin θ <= μ (cos θ - T/W): 14° at μ 0.6 and 30 % throttle.
+/// Largest lean at which the arms close, rad. Before they hold, a vehicle leaning by θ along a pipe's flank stays only
+/// while sin θ <= μ (cos θ - T/W): 14° at μ 0.6 and 30 % throttle.
 pub const PERCH_LEAN_MAX: f32 = crate::math::deg(11.0);
 
 /// See [`super::Mode::Flight`].
@@ -44,7 +44,7 @@ impl Behaviour for Flight {
     fn rotors(&self, context: &Context, inputs: &Inputs) -> Setpoint {
         match inputs.sticks {
             Some(s) => demand::from_sticks(&s, &context.params),
-            // No transition leads here: without radio the failsafe flies.
+            // Unused: without radio the failsafe flies.
             None => descent(context, None),
         }
     }

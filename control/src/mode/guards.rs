@@ -1,4 +1,4 @@
-//! The conditions of the transitions, each with the name under which the table is printed.
+//! Conditions of the transitions, with their names in the printed table.
 
 use super::clamping::Clamping;
 use super::contact::{CONTACT_MARGIN, CONTACT_TIME};
@@ -19,7 +19,7 @@ pub struct Guard {
     /// For the table in the docs.
     #[cfg(test)]
     pub name: &'static str,
-    /// Whether it holds in this state and step.
+    /// True if it holds in this state and step.
     pub holds: fn(&State, &Step<'_>) -> bool,
 }
 
@@ -108,7 +108,7 @@ guards! {
     });
 }
 
-/// The grip of a vehicle at rest as this step's perch switch leaves it.
+/// Grip of a vehicle at rest after this step's perch switch.
 fn at_rest(state: &State, step: &Step<'_>) -> GripMemory {
     let before = state.behaviour().grip_memory();
     step.context.after_switch(step.inputs.sticks, before)

@@ -1,4 +1,4 @@
-//! What is held on the pipe: attitude, share of the collective, grip.
+//! Holding on the pipe: attitude, share of the collective, grip.
 
 use super::{GripState, Inputs, Reason, Setpoint};
 use crate::grip::{ArmGrip, ArmState};
@@ -7,32 +7,31 @@ use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::Wrench;
 
-/// Ramp time of the collective between the pilot's throttle and 0, s.
+/// Ramp time between the pilot's collective and 0, s.
 pub const SPOOL_TIME: f32 = 1.5;
-/// Rate at which a lean at contact is levelled, rad/s.
+/// Rate of levelling a lean at contact, rad/s.
 const LEVEL_RATE: f32 = 0.2;
-/// Time constant with which the held attitude follows the present one during spool-down, s.
+/// Time constant of the held attitude following the present one, s.
 const FOLLOW_TIME: f32 = 0.2;
-/// Share of the collective below which the grip alone holds the attitude.
+/// Share of the collective below which only the grip holds the attitude.
 const LIFT_SHARE: f32 = 0.5;
-/// Share of the grip pressure above which an arm still holds outside the tolerance: during spool-down the load moves
-/// from the rotors onto the arms.
+/// Share of the grip pressure above which an arm holds outside the tolerance: in spool-down the load moves from the
+/// rotors onto the arms.
 const HELD_SHARE: f32 = 0.6;
 
-/// Attitude held on the pipe, and the arms that close.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hold {
     /// Held roll, rad.
     pub roll: f32,
     /// Held pitch, rad.
     pub pitch: f32,
-    /// Arms chosen at contact; the switch is ignored until they are free.
+    /// Chosen at contact; the switch is ignored until they are free.
     pub arms: ArmChoice,
 }
 
 impl Hold {
-    /// Levels the roll by one step. On the crown of a pipe, an unstable seat, a lean that is merely held grows as the
-    /// rotors give the weight back. Pitch stays: it is the slope of the pipe.
+    /// Levels the roll by one step: on the crown of a pipe, an unstable seat, a held lean would grow as the rotors
+    /// return the weight. Pitch stays: it is the pipe's slope.
     pub fn levelled(self, dt: f32) -> Self {
         Self {
             roll: self.roll - clamp_abs(self.roll, LEVEL_RATE * dt),
@@ -40,8 +39,7 @@ impl Hold {
         }
     }
 
-    /// Follows the present attitude by one step: the rotors need not hold what the grip holds, and must not stop with a
-    /// jolt.
+    /// Follows the present attitude by one step: the grip holds it, and the rotors must not stop with a jolt.
     pub fn following(self, i: &Inputs, dt: f32) -> Self {
         let Some(motion) = i.motion else {
             return self;
@@ -55,7 +53,6 @@ impl Hold {
         }
     }
 
-    /// Resting with a collective of `thrust` N.
     pub fn rotors(self, thrust: f32) -> Setpoint {
         Setpoint::Resting {
             roll: self.roll,
@@ -88,8 +85,8 @@ impl Spool {
         }
     }
 
-    /// Setpoint at a full collective of `thrust` N. In the last part of the ramp the rotors only lift: at little thrust
-    /// a moment would come from single rotors and stop with a jolt on their arms.
+    /// Setpoint at a full collective of `thrust` N. At the end of the ramp the rotors only lift: at little thrust a
+    /// moment would come from single rotors and stop with a jolt.
     pub fn rotors(self, hold: Hold, thrust: f32) -> Setpoint {
         let thrust = self.share * thrust;
         if self.down && self.share < LIFT_SHARE {
@@ -109,7 +106,7 @@ impl Spool {
     }
 }
 
-/// Every chosen arm presses with a good part of the grip pressure.
+/// Every chosen arm has at least [`HELD_SHARE`] of the grip pressure.
 pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
     let firm = |a: &ArmGrip| a.pressure >= HELD_SHARE * p.grip_pressure && a.state != ArmState::Faulty;
     grip.is_some_and(|g| {
@@ -120,7 +117,7 @@ pub fn held(grip: Option<GripState>, arms: ArmChoice, p: &Params) -> bool {
     })
 }
 
-/// Why a chosen arm will never hold.
+/// Reason for which a chosen arm will never hold.
 pub fn hopeless(grip: Option<GripState>, arms: ArmChoice) -> Option<Reason> {
     let grip = grip?;
     let chosen = || {

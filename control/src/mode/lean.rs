@@ -1,30 +1,30 @@
-//! Lean across the pipe: whether the vehicle stays on the crown, slides off it, or hangs too far to let go.
+//! Lean across the pipe: whether the vehicle stays on the crown, slides off, or leans too far to let go.
 
 use super::Motion;
 use crate::math::deg;
 use crate::support::{Held, LEAVING_FORCE, RESTING_FORCE, Support};
 
-/// Lean at which a vehicle that rests on the pipe leaves it before the arms begin to close, rad.
+/// Lean at which a resting vehicle leaves before closing, rad.
 const TOUCH_LEAN: f32 = deg(13.0);
-/// Rate at which a lean goes back, rad/s, when the attitude loop is setting the vehicle upright.
+/// Rate at which the attitude loop reduces a lean, rad/s.
 const LEVELLING_RATE: f32 = 0.2;
-/// Lean beyond which closing arms no longer hold, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
+/// Lean too large for closing arms, rad: they touch after 1.3 s, a slide reaches the flank in 0.35 s.
 const HOPELESS_LEAN: f32 = deg(25.0);
-/// Lean (rad) and rate (rad/s) from which a growing lean counts. A touch 30 mm beside the crown drifts out to 14 to 18°
-/// before it sits, and is held.
+/// Lean (rad) and rate (rad/s) of a growing lean. A touch 30 mm beside the crown drifts to 14 to 18° before it sits and
+/// is held.
 const GROWING_LEAN: f32 = deg(18.0);
 const GROWING_RATE: f32 = 0.3;
-/// Time for which any of these must last, s: three steps.
+/// Time that these must last, s: three steps.
 const SLIDE_TIME: f32 = 0.03;
-/// Largest lean at which the arms let go, rad: beyond it the belly slides down the flank before the rotors carry.
+/// Largest lean at which the arms let go, rad: beyond, the belly slides down the flank before the rotors carry.
 const RELEASE_LEAN_MAX: f32 = deg(17.0);
-/// A fall: time (s) with next to no support at a collective below this share of the weight.
+/// A fall: time (s) with little support at a collective below this share of weight.
 const FALL_TIME: f32 = 0.05;
 const FALL_SHARE: f32 = 0.8;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lean {
-    /// Roll of the last known attitude, rad.
+    /// Last known roll, rad.
     roll: f32,
     sliding: Held,
     leaning: Held,
@@ -32,7 +32,7 @@ pub struct Lean {
 }
 
 impl Lean {
-    /// One step of `dt` s with the support and the rotors' collective (N).
+    /// One step of `dt` s with the rotors' collective (N).
     pub fn step(&mut self, motion: Option<Motion>, support: &Support, collective: f32, dt: f32) {
         self.follow(motion, dt);
         let idle = support.force() < LEAVING_FORCE;
@@ -58,12 +58,12 @@ impl Lean {
             .step(lean > TOUCH_LEAN && outward > -LEVELLING_RATE, dt);
     }
 
-    /// The lean is, or soon will be, beyond what closing arms can hold.
+    /// The lean is or will be beyond closing arms.
     pub fn slides(&self) -> bool {
         self.sliding.time() >= SLIDE_TIME
     }
 
-    /// Leans at the touch of a vehicle that is about to perch.
+    /// A vehicle about to perch leans at the touch.
     pub fn slides_at_touch(&self, support: &Support) -> bool {
         self.leaning.time() >= SLIDE_TIME && support.force() > RESTING_FORCE
     }
@@ -72,7 +72,6 @@ impl Lean {
         self.roll.abs() > RELEASE_LEAN_MAX
     }
 
-    /// Neither the pipe nor the rotors carry the vehicle.
     pub fn falls(&self) -> bool {
         self.falling.time() >= FALL_TIME
     }

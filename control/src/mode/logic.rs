@@ -1,4 +1,4 @@
-//! The state machine: one step takes what is seen and gives what is to be done.
+//! The state machine, stepped at 100 Hz.
 
 use super::bench::Table;
 use super::calibrating::Calibrating;
@@ -21,12 +21,12 @@ pub struct ModeLogic {
 }
 
 impl ModeLogic {
-    /// A vehicle that has just been switched on: whether its arms are closed is found out first.
+    /// A vehicle just powered up: it first finds out whether its arms are closed.
     pub fn new(params: &Params) -> Self {
         Self::resume(params, GripMemory::Unknown)
     }
 
-    /// A vehicle whose board has restarted with this grip. The rotors wait for the pilot, whatever ran before.
+    /// A vehicle restarted with this grip. The rotors wait for the pilot in any case.
     pub fn resume(params: &Params, grip_memory: GripMemory) -> Self {
         Self {
             context: Context::new(params),
@@ -34,7 +34,7 @@ impl ModeLogic {
         }
     }
 
-    /// One step, `dt` s after the one before; 100 Hz.
+    /// One step, `dt` s after the last.
     pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let dt = clamp(dt, 0.0, STEP_MAX);
         let inputs = &inputs.finite();
@@ -62,7 +62,6 @@ impl ModeLogic {
         self.decide(inputs, dt)
     }
 
-    /// What follows from the state: rotors, tendons, and the words for the pilot's display.
     fn decide(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let (mode, state, context) = (self.state.mode(), self.state.behaviour(), &mut self.context);
         context.probe.step(mode == Mode::Failsafe, &context.support, dt);
@@ -86,7 +85,6 @@ impl ModeLogic {
     }
 }
 
-/// At rest, waiting to be armed.
 fn rotors_locked(mode: Mode) -> bool {
     matches!(mode, Mode::Calibrating | Mode::Disarmed)
 }

@@ -15,7 +15,7 @@ pub struct Perched {
 }
 
 impl Perched {
-    /// The pilot validly asks for the arms to open.
+    /// The pilot validly asks to open the arms.
     pub fn release_asked(step: &Step<'_>) -> bool {
         let Context {
             params, perch_switch, ..

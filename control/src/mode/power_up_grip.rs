@@ -1,11 +1,11 @@
-//! Power-up grip check: whether the arms are closed on something at power-on.
+//! Power-up grip check: whether the arms are closed on something.
 //!
-//! Retained state is lost with the power, but the servos' gears hold the arms without a pulse, and the first pulse
-//! would open them: no pulse goes out before the pressure sensors have been read.
+//! The retained state is lost with the power, but the servos' gears hold the arms, and the first pulse would open them:
+//! none is sent before the pressure sensors have been read.
 //!
-//! Arms that press are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
-//! rotors carry the vehicle. A pulse must name an angle, and tilt and pressure give it only to 0.2 rad or 20 N (1 mm of
-//! thread, 0.03 rad of tilt, unknown stiffness of the skin): a third of a grip's force might be lost.
+//! Pressed arms are left to the gears ([`GripMemory::HeldByGears`]) until a person opens them or the pilot lets the
+//! rotors carry the vehicle. A pulse needs an angle, known only to 0.2 rad or 20 N (1 mm of thread, 0.03 rad of tilt,
+//! unknown stiffness of the skin): it might lose a third of a grip's force.
 
 use super::Inputs;
 use crate::grip_memory::GripMemory;
@@ -13,14 +13,14 @@ use crate::params::Params;
 use crate::rc::ArmChoice;
 use crate::wrench::PerArm;
 
-/// Time over which the pressures are averaged, s.
+/// Averaging time of the pressures, s.
 pub const AVERAGING_TIME: f32 = 0.5;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Felt {
-    /// Its integral, Pa s.
+    /// Integral, Pa s.
     sum: f32,
-    /// Its duration, s.
+    /// Duration, s.
     time: f32,
 }
 
@@ -31,8 +31,8 @@ pub struct PowerUpGripCheck {
 }
 
 impl PowerUpGripCheck {
-    /// Adds `dt` s of each arm's pressure (Pa; `None`: unknown); returns the arms that press more than `least` Pa on
-    /// average. Undecided while no sensor at all answers.
+    /// Adds `dt` s of each arm's pressure (Pa; `None`: unknown); returns the arms above `least` Pa on average, or
+    /// `None` while undecided.
     fn step(&mut self, pressure: PerArm<Option<f32>>, least: f32, dt: f32) -> Option<PerArm<bool>> {
         if pressure.iter().all(Option::is_none) {
             return None;
@@ -58,7 +58,7 @@ fn chosen([front_left, rear_left, front_right, rear_right]: PerArm<bool>) -> Opt
 }
 
 impl PowerUpGripCheck {
-    /// Decides once, at rest, whether the arms were closed at power-on.
+    /// Decides once, at rest.
     pub fn decide(&mut self, grip_memory: GripMemory, i: &Inputs, p: &Params, dt: f32) -> GripMemory {
         let (GripMemory::Unknown, Some(grip)) = (grip_memory, i.grip) else {
             return grip_memory;

@@ -1,4 +1,4 @@
-//! Why the vehicle is in its mode, stays in it, or has left the one before: each reason with its text, in one place.
+//! Reasons for being in a mode, staying in it or having left the last one, each with its text.
 
 use crate::arming::ArmingInhibit;
 use crate::grip_fault::GripFault;

@@ -1,4 +1,4 @@
-//! Rotors spool up again; tendons pay out until every arm is proven free.
+//! Rotors spool up again, then tendons pay out until every arm is proven free.
 
 use super::behaviour::Behaviour;
 use super::context::{Context, Step};
@@ -8,30 +8,28 @@ use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::params::Params;
 
-/// Least throttle at which the arms open, so that some of the weight is carried when they let go; kept while they open
-/// or close again, whatever the stick does.
+/// Least throttle at which the arms open, to carry some weight when they let go; held while they open or close again.
 pub const RELEASE_THROTTLE_MIN: f32 = 0.2;
-/// Time for which every arm must be free before flight, s.
+/// Time of free arms before flight, s.
 pub const FREE_TIME: f32 = 0.3;
-/// Time after which arms that are not free are reported, s.
+/// Time until arms that are not free are reported, s.
 const STUCK_TIME: f32 = 10.0;
 
 /// See [`super::Mode::Releasing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Releasing {
     pub hold: Hold,
-    /// Share of the collective reached, 0..1.
+    /// Reached share of the collective, 0..1.
     pub share: f32,
-    /// Time for which every arm has been free, s.
     pub free: f32,
     /// The tendons are paying out.
     pub opening: bool,
-    /// The gears alone hold: the drives start when the tendons open.
+    /// Held by the gears: the drives start with the opening.
     pub kept: bool,
 }
 
 impl Releasing {
-    /// The arms press with a good part of the grip pressure.
+    /// Every chosen arm [holds](held).
     pub fn holds(&self, step: &Step<'_>) -> bool {
         held(step.inputs.grip, self.hold.arms, &step.context.params)
     }
@@ -46,17 +44,16 @@ impl Releasing {
         step.inputs.sticks.is_none_or(|s| s.perch_switch && seen_off)
     }
 
-    /// The arms are still closed, and the vehicle may not fly.
     pub fn grounded(&self, step: &Step<'_>) -> bool {
         !self.opening && step.context.dangers.line_silent()
     }
 
-    /// The lean has grown during spool-up: the arms stay closed.
+    /// The lean has grown in spool-up: the arms stay closed.
     pub fn leans(&self, step: &Step<'_>) -> bool {
         !self.opening && self.spooled(step.dt) >= 1.0 && step.context.lean.too_far_to_release()
     }
 
-    /// Share of the collective at the end of a step of `dt` s.
+    /// Share of the collective after a step of `dt` s.
     pub fn spooled(&self, dt: f32) -> f32 {
         clamp(self.share + dt / SPOOL_TIME, 0.0, 1.0)
     }

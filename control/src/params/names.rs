@@ -2,13 +2,13 @@
 
 use core::f32::consts::TAU;
 
-/// Longest name: what telemetry protocols carry (MAVLink's `param_id`).
+/// Longest name, as in telemetry protocols (MAVLink's `param_id`).
 pub const NAME_MAX: usize = 16;
 
 /// A parameter that had another name, and perhaps another unit.
 ///
-/// The parameter store, the console and scenario files read values under the old name and convert them. Where a set has
-/// both, the new name wins: only newer firmware can have written it.
+/// The parameter store, the console and scenario files accept the old name and convert its value. Of both names the new
+/// one wins: only newer firmware can have written it.
 #[derive(Clone, Copy, Debug)]
 pub struct Renamed {
     /// Old name.
@@ -55,7 +55,7 @@ impl Renamed {
     }
 }
 
-/// Compiles only where each name has 1 to [`NAME_MAX`] characters and none stands twice.
+/// Compiles only if each name has 1 to [`NAME_MAX`] characters and is unique.
 ///
 /// ```
 /// const _: () = sophie_control::params::check_names(&["sixteen_letters_", "another"]);

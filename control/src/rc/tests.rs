@@ -1,4 +1,4 @@
-//! Decoding of frames, and agreement with their encoding.
+//! Decoding frames, and agreement with their encoding.
 
 use proptest::prelude::*;
 
@@ -80,7 +80,7 @@ proptest! {
     ) {
         let sent = Sticks { roll, pitch, yaw, throttle, arm_switch, perch_switch, ..Default::default() };
         let got = Sticks::from_channels(&sent.to_channels()).unwrap();
-        // One count of a half travel, and the rounding about it.
+        // One count of a half travel, plus rounding.
         for (a, b) in [(roll, got.roll), (pitch, got.pitch), (yaw, got.yaw), (throttle, got.throttle)] {
             prop_assert!((a - b).abs() < 1.6e-3, "{a} {b}");
         }

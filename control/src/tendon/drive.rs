@@ -1,49 +1,49 @@
-//! The drive of one tendon: the servo's angle by force and tilt, and the tension that it can be giving.
+//! Drive of one tendon, at the servo frame rate: servo angle for force and tilt, and estimated tension.
 
 use super::Reel;
 use crate::bench::{PULSE_MAX_US, PULSE_MIN_US};
 use crate::filter::CascadedLowPass;
 use crate::math;
 
-/// Tension (N) that is reported at least until the servo is back at its release position.
+/// Least tension reported until the servo is back at its release position, N.
 const RESIDUAL_TENSION: f32 = 0.5;
-/// Speed of paying out on release, rad/s: half the servo's, the arms spring back gently.
+/// Pay-out speed, rad/s: half the servo's, so that the arms spring back gently.
 const PAY_OUT_SPEED: f32 = 3.0;
-/// Speed of a servo on the bench, rad/s: half a second from a word to the key that stops it is half a radian.
+/// Servo speed on the bench, rad/s: half a second to the stopping key is half a radian.
 pub const BENCH_SPEED: f32 = 1.0;
-/// Cut-off of each of the two low passes on the tilt, rad/s: a loop gain below 1 at the taut arm's mode
-/// (8 Hz, Q about 5) with the static gain k h² / (k h² + arm) of 0.7 to 0.85.
+/// Cut-off of each of the two tilt low-passes, rad/s: a loop gain below 1 at the taut arm's mode (8 Hz, Q about 5) with
+/// the static gain k h² / (k h² + arm) of 0.7 to 0.85.
 pub const TILT_CUTOFF: f32 = 25.0;
-/// The same while the arm stands still, rad/s: a sensor noise of 4 mrad would else move the grip by 30 Pa.
+/// Cut-off at standstill, rad/s: 4 mrad of sensor noise would otherwise move the grip by 30 Pa.
 const STILL_CUTOFF: f32 = 5.0;
-/// Distance of the tilt from its filter from which the arm counts as moving, rad.
+/// Difference of tilt and filter above which the arm is moving, rad.
 const TILT_MOVING: f32 = 0.04;
-/// Angles beyond this are no servo's, rad.
+/// Largest plausible servo angle, rad.
 pub(super) const ANGLE_MAX: f32 = 6.5;
-/// Tilts beyond this are not an arm's, rad.
+/// Largest plausible tilt, rad.
 const TILT_MAX: f32 = 2.5;
 
-/// What the drive of one tendon puts out.
+/// Output of a tendon's drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drive {
     /// Pulse width, µs.
     pub pulse_us: f32,
-    /// Tension that the servo can be giving now, N; 0 only once it is back at its release position.
+    /// Estimated tension, N; 0 only once the servo is back at its release position.
     pub tension: f32,
-    /// The servo was held because the tilt is missing.
+    /// Held for lack of a tilt.
     pub held: bool,
 }
 
-/// The drive of one tendon.
+/// Drive of one tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonDrive {
-    /// Angle to which the servo is sent, rad from release.
+    /// Commanded servo angle, rad from release.
     angle: f32,
     /// Measured tilt, low-passed, rad.
     tilt: Option<CascadedLowPass>,
-    /// Cut-off of its low passes at the last step, rad/s.
+    /// Cut-off at the last step, rad/s.
     cutoff: f32,
-    /// Sent by a pulse of the bench, perhaps beyond its travel, and not back at its release mark yet.
+    /// Moved by a bench pulse, perhaps beyond the travel, and not back at release.
     placed: bool,
 }
 
@@ -64,7 +64,7 @@ impl TendonDrive {
         }
     }
 
-    /// The same drive, its servo at `angle` (rad from release), where the run before left it.
+    /// Resumes with the servo at `angle` (rad from release), as the last run left it.
     pub fn resume(self, angle: f32) -> Self {
         Self {
             angle: math::clamp(angle, 0.0, ANGLE_MAX),
@@ -72,24 +72,21 @@ impl TendonDrive {
         }
     }
 
-    /// Takes the servo to stand where its tendon is just taut at the tilt `tilt` (rad; `None`: at release). For a
-    /// tendon that was wound at power-on and is to be paid out: from there on it moves at the drive's speed, not the
-    /// servo's.
+    /// Assumes the servo where its tendon is just taut at `tilt` (rad; `None`: at release), so that a tendon found
+    /// wound is paid out at the drive's speed.
     pub fn seed_from_tilt(&mut self, reel: &Reel, tilt: Option<f32>) {
         self.angle = tilt
             .filter(|t| t.abs() <= TILT_MAX)
             .map_or(0.0, |tilt| reel.angle(0.0, tilt));
     }
 
-    /// Angle to which the servo is sent, rad from release.
+    /// Commanded servo angle, rad from release.
     pub fn angle(&self) -> f32 {
         self.angle
     }
 
-    /// One step of `dt` s towards `force` N (0, or anything that is no number: pay out to the release
-    /// position) with the arm's measured tilt (rad).
-    ///
-    /// Without a tilt the servo is held where it is, unless it is to pay out, which needs none.
+    /// One step of `dt` s towards `force` (N) at the arm's measured tilt (rad). A force of 0 or not finite pays out to
+    /// release; otherwise a missing tilt holds the servo.
     pub fn step(&mut self, reel: &Reel, force: f32, tilt: Option<f32>, dt: f32) -> Drive {
         let dt = math::clamp(dt, 0.0, 0.2);
         let force = math::clamp(force, 0.0, reel.limit.asked);
@@ -112,7 +109,7 @@ impl TendonDrive {
         self.output(reel, held)
     }
 
-    /// One step of `dt` s towards the pulse `pulse_us` (µs), at `BENCH_SPEED` and as far as servos go.
+    /// One step of `dt` s towards `pulse_us` (µs) at `BENCH_SPEED`, within the range of servos.
     pub fn place(&mut self, reel: &Reel, pulse_us: f32, tilt: Option<f32>, dt: f32) -> Drive {
         let dt = math::clamp(dt, 0.0, 0.2);
         self.filter_tilt(tilt.filter(|t| t.abs() <= TILT_MAX), dt);
@@ -122,7 +119,7 @@ impl TendonDrive {
         self.output(reel, false)
     }
 
-    /// One step of `dt` s that leaves the servo where it is and only filters the tilt (rad).
+    /// One step of `dt` s that holds the servo and only filters the tilt (rad).
     pub fn hold_position(&mut self, reel: &Reel, tilt: Option<f32>, dt: f32) -> Drive {
         self.filter_tilt(tilt.filter(|t| t.abs() <= TILT_MAX), math::clamp(dt, 0.0, 0.2));
         self.output(reel, true)
@@ -138,7 +135,7 @@ impl TendonDrive {
         filter.step(tilt, self.cutoff, dt);
     }
 
-    /// The output without a step: for when there is no order at all.
+    /// The output without a step, for a missing order.
     pub fn hold(&self, reel: &Reel) -> Drive {
         self.output(reel, true)
     }
@@ -161,8 +158,7 @@ impl TendonDrive {
         }
     }
 
-    /// Tension at the present tilt: the filtered one extrapolated over its lag and age, exact for a tilt
-    /// that moves evenly.
+    /// Tension at the present tilt: the filtered one extrapolated over lag and age, exact for an even motion.
     fn tension(&self, reel: &Reel) -> f32 {
         self.tilt.map_or(0.0, |tilt| {
             let now = tilt.value() + tilt.lead() * (2.0 + reel.tilt_age * self.cutoff);

@@ -1,4 +1,4 @@
-//! Reel, tendon and servo of one arm: angle, force and pulse.
+//! Reel, tendon and servo of one arm: conversion between angle, force and pulse.
 
 use super::ForceLimit;
 use crate::bench;
@@ -6,50 +6,47 @@ use crate::math;
 use crate::params::Params;
 use crate::wrench::PerArm;
 
-/// Least and largest release and full pulse of a servo, µs: the usual 500 to 2500 with room for a trim.
+/// Bounds of a servo's release and full pulse, µs: the usual 500 to 2500 with room for a trim.
 const PULSE_MIN_US: f32 = 550.0;
 const PULSE_MAX_US: f32 = 2450.0;
-/// Least distance of the full pulse from the release pulse, µs: less is no servo's travel.
+/// Least distance of full and release pulse, µs: less is no servo's travel.
 pub const SPAN_MIN_US: f32 = 200.0;
-/// Tilt at which the tendon of a servo at release is just taut, rad: 23°, beyond what flight reaches, so that
-/// a flying arm never pulls on it (built so; assumed).
+/// Tilt at which a released servo's tendon is just taut, rad: 23°, beyond flight, so that a flying arm never pulls it
+/// (built so; assumed).
 pub const REFERENCE_TILT: f32 = 0.4;
-/// Largest trim of a servo, µs.
 const TRIM_MAX_US: f32 = 50.0;
-/// Share of the servo's speed that is asked of it, so that the commanded angle is the true one.
+/// Used share of the servo's speed, so that it follows its command.
 const SPEED_SHARE: f32 = 0.9;
-/// Age of the tilt when the servo's task takes it, s: sensor 20 ms, half of the arms' period of 10 ms.
+/// Age of the tilt when the servo's task reads it, s: sensor 20 ms, half of the arms' 10 ms period.
 const TILT_AGE: f32 = 0.025;
 
-/// Reel, tendon and servo of one arm as the parameters describe them.
+/// Reel, tendon and servo of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reel {
     /// Radius of the reel, m.
     radius: f32,
     /// Lever of the tendon about the arm's hinge, m.
     lever: f32,
-    /// Stiffness of the tendon, N/m.
+    /// Tendon stiffness, N/m.
     stiffness: f32,
-    /// Stall torque of the servo, N·m.
+    /// Stall torque, N·m.
     stall: f32,
-    /// Speed of the servo without load, rad/s.
+    /// No-load speed, rad/s.
     slew: f32,
-    /// Travel of the servo, rad.
+    /// Servo travel, rad.
     range: f32,
-    /// Pulse of the release position, trim included, µs.
+    /// Release pulse with trim, µs.
     release_us: f32,
-    /// From the release to the full pulse, µs; negative for a mirrored servo.
+    /// From release to full pulse, µs; negative if mirrored.
     span_us: f32,
-    /// Age of the tilt by the time that the pulse acts, s.
+    /// Age of the tilt when the pulse acts, s.
     pub(super) tilt_age: f32,
     pub(super) limit: ForceLimit,
 }
 
 impl Reel {
-    /// The parts of arm `servo` (0..=3) that the parameters describe.
-    ///
-    /// A full pulse nearer to the release pulse than [`SPAN_MIN_US`] is taken to be that far from it, on the side
-    /// that it is on, or on that of the greater room: no parameters make a travel of nothing.
+    /// The parts of arm `servo` (0..=3). A full pulse closer to the release pulse than [`SPAN_MIN_US`] is moved to that
+    /// distance, on its side where there is room.
     pub fn from_params(p: &Params, servo: usize) -> Self {
         let [trim, release, full, slew] = match servo {
             0 => [p.servo_trim_1, p.servo_release_1, p.servo_full_1, p.servo_slew_1],
@@ -68,55 +65,52 @@ impl Reel {
             range: p.servo_range,
             release_us: release + math::clamp(trim, -TRIM_MAX_US, TRIM_MAX_US),
             span_us: full - release,
-            // Half of a frame until the task runs, half of one until the servo has moved.
+            // Half a frame until the task runs, half until the servo has moved.
             tilt_age: TILT_AGE + 1.0 / p.servo_frame_rate,
             limit: ForceLimit::from_params(p),
         }
     }
 
-    /// Those of all four arms.
+    /// The parts of all four arms.
     pub fn all(p: &Params) -> PerArm<Self> {
         [0, 1, 2, 3].map(|servo| Self::from_params(p, servo))
     }
 
-    /// Angle of the servo (rad from release) that gives the force `force` (N) at the tilt `tilt` (rad),
-    /// within its travel.
+    /// Servo angle (rad from release) for `force` (N) at `tilt` (rad), within its travel.
     pub fn angle(&self, force: f32, tilt: f32) -> f32 {
         let take_up = self.lever * (REFERENCE_TILT - tilt) + force / self.stiffness;
         math::clamp(take_up / self.radius, 0.0, self.range)
     }
 
-    /// Force (N, >= 0) of a tendon on a servo at `angle` (rad) with the arm at `tilt` (rad).
+    /// Tendon force (N, >= 0) with the servo at `angle` and the arm at `tilt` (rad).
     pub fn force(&self, angle: f32, tilt: f32) -> f32 {
         let stretch = self.radius * angle - self.lever * (REFERENCE_TILT - tilt);
         math::clamp(self.stiffness * stretch, 0.0, f32::MAX)
     }
 
-    /// Pulse width (µs, trim included) for the servo at `angle` (rad from release).
+    /// Pulse width (µs, with trim) for the servo at `angle` (rad from release).
     pub fn pulse(&self, angle: f32) -> f32 {
         self.release_us + self.span_us * math::clamp(angle / self.range, 0.0, 1.0)
     }
 
-    /// The same beyond the travel that the parameters know, as far as servos go: for the bench, where the travel is found.
+    /// Like [`Self::pulse`] up to the limits of servos, for finding the travel on the bench.
     pub fn pulse_beyond(&self, angle: f32) -> f32 {
         let pulse = self.release_us + self.span_us * (angle / self.range);
         math::clamp(pulse, bench::PULSE_MIN_US, bench::PULSE_MAX_US)
     }
 
-    /// Angle (rad from release) that the pulse `pulse_us` (µs) asks for: what the servo makes of it, and
-    /// [`Reel::pulse`] undone.
+    /// Servo angle (rad from release) for a pulse (µs).
     pub fn angle_of(&self, pulse_us: f32) -> f32 {
         (pulse_us - self.release_us) / self.span_us * self.range
     }
 
-    /// Speed (rad/s) that the servo has against the force `force` (N).
+    /// Servo speed (rad/s) against the force `force` (N).
     pub(super) fn speed(&self, force: f32) -> f32 {
         let load = math::clamp(force * self.radius / self.stall, 0.0, 1.0);
         SPEED_SHARE * self.slew * (1.0 - load)
     }
 }
 
-/// The full pulse, at least [`SPAN_MIN_US`] from the release pulse, µs.
 fn enforce_min_span(release: f32, full: f32) -> f32 {
     let span = full - release;
     if span.abs() >= SPAN_MIN_US {

@@ -1,10 +1,8 @@
-//! Identifies other flight stacks' data where parameters are stored: a board used before has them in the same sectors
-//! or FRAM.
+//! Identifies other flight stacks' data: on a board used before they lie in the same sectors or FRAM.
 
-/// Bytes of a page that identify its owner.
 pub(super) const HEAD: usize = 16;
 
-/// AP_FlashStorage's mark: in an F4's sector 24 bits after a byte of state, in an H7's after a word of state.
+/// AP_FlashStorage's mark: 24 bits after a byte of state in an F4's sector, 32 after a word of state in an H7's.
 const ARDUPILOT_F4: [u8; 3] = [0x5B, 0x68, 0x51];
 const ARDUPILOT_H7: [u8; 4] = [0x62, 0x5B, 0x68, 0x51];
 /// AP_Param's header in an FRAM: "PA" and format revision.
@@ -13,17 +11,18 @@ const ARDUPILOT_FRAM: [u8; 4] = [0x50, 0x41, 6, 0];
 const BETAFLIGHT: u8 = 0xBE;
 /// Mark of PX4's parameters in flash.
 const PX4_FLASH: [u8; 4] = [0xC3, 0x3C, 0x55, 0xAA];
-/// BSON's 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a BSON document with names in capitals.
+/// First entry's types, 64-bit float and 32-bit integer: PX4's parameters in an FRAM are a BSON document with names in
+/// capitals.
 const BSON_TYPES: [u8; 2] = [0x01, 0x10];
 
-/// The stack that owns a page beginning with `head`; `None` for a blank page, this firmware's or an unknown one.
+/// Owner of a page beginning with `head`; `None` for a blank, own or unknown page.
 pub(super) fn owner(head: &[u8; HEAD]) -> Option<&'static str> {
     match *head {
         [_, a, b, c, ..] if [a, b, c] == ARDUPILOT_F4 => Some("ArduPilot"),
         [_, _, _, _, a, b, c, d, ..] if [a, b, c, d] == ARDUPILOT_H7 => Some("ArduPilot"),
         [a, b, c, d, ..] if [a, b, c, d] == ARDUPILOT_FRAM => Some("ArduPilot"),
         [a, b, c, d, ..] if [a, b, c, d] == PX4_FLASH => Some("PX4"),
-        // Document length (older ones write 0), then the first entry: type and name.
+        // Document length (0 in older ones), then type and name of the first entry.
         [_, _, _, 0, kind, ref name @ ..] if BSON_TYPES.contains(&kind) && capitals(name) => Some("PX4"),
         // Version, mark, then the length of the first record, with at least 6 bytes of head.
         [100..=250, BETAFLIGHT, 6..=255, 0..=0x0F, ..] => Some("Betaflight"),
@@ -31,7 +30,7 @@ pub(super) fn owner(head: &[u8; HEAD]) -> Option<&'static str> {
     }
 }
 
-/// The start of a PX4 parameter's name, such as `SYS_AUTOSTART`: three characters or more.
+/// Start of a PX4 parameter's name such as `SYS_AUTOSTART`, three characters or more.
 fn capitals(name: &[u8]) -> bool {
     let length = name.iter().position(|byte| *byte == 0).unwrap_or(name.len());
     let letter = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || *byte == b'_';
@@ -42,7 +41,6 @@ fn capitals(name: &[u8]) -> bool {
 mod tests {
     use super::*;
 
-    /// A page of `bytes`, then erased.
     fn page(bytes: &[u8]) -> [u8; HEAD] {
         let mut head = [0xFF; HEAD];
         head[..bytes.len()].copy_from_slice(bytes);

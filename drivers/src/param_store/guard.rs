@@ -6,9 +6,9 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Reads after which the contents count as noise: five times those of the fullest valid log.
+/// Reads before the contents count as noise: five times a full log's.
 const READS_MAX: u16 = 20_000;
-/// Zero bits from which a page's mark counts as set (the map's rule).
+/// Zero bits of a set page mark (the map's rule).
 const MARKED: u32 = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,11 +25,11 @@ impl NorFlashError for Refused {
     }
 }
 
-/// Lets the map read, and erase in this view only: an erased page reads as blank.
+/// Lets the map read; erases happen in this view only.
 pub(super) struct ReadOnly<'a, F> {
     flash: &'a mut F,
     range: Range<u32>,
-    /// Pages that count as erased, one bit each.
+    /// Erased pages, one bit each.
     erased: u32,
     reads: u16,
     end: u32,
@@ -53,14 +53,14 @@ impl<'a, F: NorFlash> ReadOnly<'a, F> {
         }
     }
 
-    /// True if the range is blank, including pages that count as erased.
+    /// True if the range is blank, erased pages included.
     pub(super) async fn blank(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
         self.erased = 0;
         self.all_ones(self.range.clone(), buffer).await
     }
 
-    /// True if nothing is written behind the item read last, the newest valid one: data there are a newer item, cut
-    /// short or damaged.
+    /// True if nothing is written behind the item read last, the newest valid one; data there are a newer, damaged
+    /// item.
     pub(super) async fn blank_behind_last_read(&mut self, buffer: &mut [u8]) -> Result<bool, Refused> {
         let (end, start) = (self.end, self.range.start);
         let page = start + end.saturating_sub(start + 1) / Self::PAGE * Self::PAGE;
@@ -72,7 +72,7 @@ impl<'a, F: NorFlash> ReadOnly<'a, F> {
         } else {
             start
         };
-        // A closed page is old; an unmarked one is erased before use.
+        // A closed page is old, an unmarked one erased before use.
         let in_use =
             self.marked(next).await? && !self.marked(next + Self::PAGE - F::READ_SIZE as u32).await?;
         let inside = next + Self::WORD..next + Self::PAGE - Self::WORD;

@@ -3,11 +3,10 @@
 use sequential_storage::map::{SerializationError, Value};
 use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
 
-/// Marks an item and its layout.
 const TAG: [u8; 4] = *b"SPH1";
-/// Bytes of a record: hash of the name, bits of the value, both little-endian.
+/// Hash of the name and bits of the value, both little-endian.
 const RECORD: usize = 8;
-/// Most records: more than the table has, so that other firmware's sets are readable.
+/// Exceeds the table, so that other firmware's sets are readable.
 pub(super) const RECORDS: usize = 256;
 pub(super) const LONGEST: usize = TAG.len() + RECORDS * RECORD;
 
@@ -29,11 +28,11 @@ pub const fn hash(name: &str) -> u32 {
 
 pub(super) struct Set {
     params: Params,
-    /// For writing: only parameters that differ from these are stored.
+    /// For writing: parameters equal to these are not stored.
     defaults: &'static Params,
-    /// Of a set read: the table rows with a record.
+    /// For reading: table rows with a record.
     given: Rows,
-    /// A record has an old name; the next save writes the new one.
+    /// A record has an old name, which the next save renews.
     pub renamed: bool,
     /// Records accepted.
     pub taken: u16,
@@ -53,14 +52,13 @@ impl Set {
         }
     }
 
-    /// The values read, over `defaults`.
     pub(super) fn over(&self, defaults: &Params) -> Params {
         let mut params = *defaults;
         for (at, row) in Params::TABLE.iter().enumerate() {
             if self.given.contains(at)
                 && let Some(value) = self.params.get(row.name)
             {
-                // Valid: it was set in the same way when it was read.
+                // Valid, as when read.
                 let _ = params.set(row.name, value);
             }
         }
@@ -89,7 +87,6 @@ impl Rows {
 struct Known {
     at: usize,
     row: &'static ParamInfo,
-    /// Set if the record has the row's old name.
     renamed: Option<&'static Renamed>,
 }
 
@@ -177,7 +174,7 @@ mod tests {
         let names = names.chain(RENAMED.iter().map(|renamed| renamed.old));
         let hashes: BTreeSet<u32> = names.map(hash).collect();
         assert_eq!(hashes.len(), Params::TABLE.len() + RENAMED.len());
-        // Published 32-bit FNV-1a vectors: stored keys must not change between releases.
+        // Published 32-bit FNV-1a vectors: stored keys must not change.
         assert_eq!(
             [hash(""), hash("a"), hash("foobar")],
             [0x811C_9DC5, 0xE40C_292C, 0xBF9C_F968]

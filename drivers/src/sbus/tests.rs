@@ -1,4 +1,4 @@
-//! Frames, their search in a stream, and what is published.
+//! Frames, finding them in a stream, and what is published.
 
 extern crate std;
 
@@ -20,7 +20,7 @@ fn stream(parser: &mut Parser, mut bytes: &[u8]) -> (Vec<Frame>, usize) {
     (frames, errors)
 }
 
-/// A parser whose line has been silent.
+/// A parser after silence.
 fn fresh() -> Parser {
     let mut parser = Parser::new();
     parser.silence();
@@ -43,7 +43,7 @@ fn pilot() -> Frame {
 
 #[test]
 fn a_known_frame() {
-    // Every channel at its centre, 992: the bit pattern repeats every eleven bytes.
+    // All channels at 992.
     let mut bytes = [0; FRAME];
     bytes[0] = 0x0F;
     let centre = [0xE0, 0x03, 0x1F, 0xF8, 0xC0, 0x07, 0x3E, 0xF0, 0x81, 0x0F, 0x7C];
@@ -94,7 +94,6 @@ fn a_frame_after_garbage_is_not_believed_before_the_stream_is_understood() {
     }
     let (frames, errors) = stream(&mut fresh(), &bytes);
     assert_eq!((frames.len(), errors), (2, 1));
-    // After silence, the very first frame is found.
     let mut parser = fresh();
     assert!(stream(&mut parser, &[0x55; 11]).0.is_empty());
     parser.silence();
@@ -122,7 +121,6 @@ fn a_lost_byte_costs_its_frame_and_the_next() {
     }
 }
 
-/// Throttle published, %.
 fn published(decoder: &mut Decoder, bytes: &[u8], us: u64) -> Option<u32> {
     decoder
         .take(bytes, Instant::from_micros(us))
@@ -156,12 +154,12 @@ fn the_third_frame_in_a_row_is_believed() {
 
 #[test]
 fn only_a_pause_beyond_the_bytes_own_time_is_silence() {
-    // Half a frame, then a frame's length of bytes over 3 ms without idle time.
+    // Half a frame, then bytes over 3 ms without idle time.
     let frame = pilot().encode();
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 31_500), None, "still the same stream");
-    // After 4 ms of idle time: the half is dropped, and the next frame not accepted alone.
+    // After 4 ms of idle time the half is dropped.
     let mut d = believing();
     assert_eq!(published(&mut d, &frame[..12], 28_000), None);
     assert_eq!(published(&mut d, &frame, 35_000), None);
@@ -182,7 +180,7 @@ fn a_receiver_without_its_transmitter_publishes_nothing_and_is_believed_again_at
         for i in 4..200 {
             assert_eq!(published(&mut d, &lost.encode(), 7_000 * i), None);
         }
-        // A report applies to the earlier frames of its read.
+        // A report applies to earlier frames of its read.
         let read = [pilot().encode(), lost.encode()].concat();
         assert_eq!(published(&mut d, &read, 1_400_000), None);
         assert_eq!(published(&mut d, &pilot().encode(), 1_407_000), Some(30));
@@ -196,7 +194,6 @@ fn a_line_error_costs_the_frame_in_progress_and_trust() {
     let frame = pilot().encode();
     assert_eq!(published(&mut d, &frame[..12], 27_000), None);
     d.broken(Instant::from_micros(27_500));
-    // The rest of the frame with the error.
     assert_eq!(published(&mut d, &frame[13..], 29_000), None);
     assert_eq!(published(&mut d, &frame, 35_000), None);
     assert_eq!(published(&mut d, &frame, 42_000), None);
@@ -245,7 +242,7 @@ proptest! {
             bytes.extend(pilot().encode());
         }
         let (frames, _) = stream(&mut fresh(), &bytes);
-        // Garbage may end in a false head, which swallows one frame and misaligns another.
+        // A false header may swallow one frame and misalign another.
         prop_assert!(frames.iter().rev().take(3).all(|f| *f == pilot()) && frames.len() >= 3);
         let mut parser = Parser::new();
         stream(&mut parser, &bytes);
@@ -272,7 +269,7 @@ proptest! {
     fn bytes_that_are_almost_sbus_give_no_sticks(
         reads in proptest::collection::vec((proptest::array::uniform23(any::<u8>()), 0u8..4), 1..60),
     ) {
-        // A valid header after silence, with one error: header, flags or end in turn.
+        // One error: header, flags or end in turn.
         let mut decoder = Decoder::new();
         for (i, (inner, wrong)) in (1..).zip(reads) {
             let mut bytes = [0; FRAME];
@@ -281,7 +278,7 @@ proptest! {
             bytes[23] = if wrong == 1 { inner[22] | 0x10 } else { 0x00 };
             bytes[24] = if wrong == 2 { 0x01 } else { 0x00 };
             if wrong == 3 {
-                // Whole, but from a receiver without transmitter.
+                // Whole, but without transmitter.
                 bytes[23] = 0x08;
             }
             prop_assert_eq!(decoder.take(&bytes, Instant::from_micros(7_000 * i)), None);

@@ -1,4 +1,4 @@
-//! A fake FM25V02A on SPI, and what may replace it.
+//! A fake FM25V02A on SPI, or what replaces it.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -17,7 +17,6 @@ pub enum Answer {
     /// Always this byte: an undriven line.
     Only(u8),
     Bus,
-    /// A part that ignores writes.
     Deaf,
 }
 
@@ -46,7 +45,7 @@ impl Chip {
     fn transfer(&mut self, sent: &[u8]) -> Vec<u8> {
         let mut answer = vec![0; sent.len()];
         let latched = self.status & 0x02 != 0;
-        // 15 address bits: the top one is ignored.
+        // 15 address bits.
         let address = |i: usize| (usize::from(u16::from_be_bytes([sent[1], sent[2]])) + i) & 0x7FFF;
         match sent[0] {
             0x06 => self.status |= 0x02,

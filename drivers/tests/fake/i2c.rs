@@ -1,4 +1,4 @@
-//! A fake bus with up to two BNO055: registers, pages, boot and mode switch times, failures.
+//! A fake bus with up to two BNO055: registers, pages, boot and mode times, failures.
 
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -10,7 +10,7 @@ use std::rc::Rc;
 
 use sophie_clock::VirtualTime;
 
-/// Runs `future` on its own clock, for at most ten minutes of it.
+/// Runs `future` on its own clock, for at most ten minutes.
 pub fn run<T: 'static>(future: impl Future<Output = T> + 'static) -> T {
     let time = VirtualTime::new();
     let result = Rc::new(RefCell::new(None));

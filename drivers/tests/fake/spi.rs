@@ -29,7 +29,7 @@ pub enum Failure {
     Frozen,
 }
 
-/// State of the part; shared by bus and data-ready line.
+/// State of the part, shared by bus and data-ready line.
 pub struct Part {
     pub kind: Kind,
     pub failure: Failure,
@@ -37,7 +37,7 @@ pub struct Part {
     bank: u8,
     /// Registers that ignore writes.
     pub deaf: Vec<(u8, u8)>,
-    /// Writes other than bank selects: bank, register, value.
+    /// Writes except bank selects: bank, register, value.
     pub writes: Vec<(u8, u8, u8)>,
     /// Transaction lengths, bytes.
     pub transactions: Vec<usize>,
@@ -59,7 +59,7 @@ pub struct Part {
     busy_until: Instant,
 }
 
-/// Fake factory codes: 1.01^(code - 1) times 2620 counts.
+/// Factory codes: 1.01^(code - 1) times 2620 counts.
 pub const CODES: [u8; 6] = [90, 100, 110, 60, 70, 80];
 
 impl Part {
@@ -137,12 +137,11 @@ impl Part {
         }
     }
 
-    /// Number of the newest sample's period.
     fn newest(&self) -> Option<u64> {
         self.period().map(|period| Instant::now().as_micros() / period)
     }
 
-    /// The status register; reading clears it.
+    /// Reading clears it.
     fn status(&mut self) -> u8 {
         let now = Instant::now().as_micros();
         let last = std::mem::replace(&mut self.status_read, now);
@@ -216,7 +215,7 @@ impl Part {
                 self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let mut c = value * scale + (self.noise >> 30) as f32 - 2.0;
                 if actuated[sensor] >> axis & 1 == 1 {
-                    // Counts at the test's range, scaled to the present range.
+                    // Counts at the test's range, scaled to the present one.
                     let response = 2620.0 * 1.01f32.powi(i32::from(CODES[index]) - 1);
                     c += self.health[index] * response * scale / full;
                 }
@@ -258,7 +257,7 @@ impl Part {
                 self.bank = value & 7;
                 return;
             }
-            // Allowed by §12.9 while the sensors are on, and the self-test's own register.
+            // Allowed by §12.9 with the sensors on, and the self-test's register.
             let allowed = self.bank == 0 && matches!(register, 0x11 | 0x4E | 0x4F | 0x50 | 0x70);
             if self.on() && !allowed {
                 self.violations.push(format!(
@@ -310,7 +309,7 @@ impl spi::ErrorType for Bus {
 
 impl SpiDevice for Bus {
     async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), BusError> {
-        // 2 µs overhead and 1 µs per byte, about 8 MHz: a transaction can be dropped half way.
+        // 2 µs overhead and 1 µs per byte (8 MHz): a transaction can be dropped half way.
         let length: usize = operations
             .iter()
             .map(|o| match o {

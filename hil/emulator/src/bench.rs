@@ -1,4 +1,4 @@
-//! The emulated board as the aircraft of a flight; the world sees its pins, telemetry and log.
+//! The emulated board as the aircraft of a flight.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -29,7 +29,7 @@ use crate::terminal::Sockets;
 use crate::tilt::{TiltError, Tilts};
 use crate::wires::{BoardFault, Digest, FarEnd, Pins, Run, Wires};
 
-/// Height at which the arms hang free, m.
+/// Arms hang free from this height on, m.
 const AIRBORNE: f64 = 0.3;
 
 /// A vehicle with the emulated board.
@@ -52,7 +52,7 @@ pub struct Bench<'a> {
     grip: PerArm<ArmGrip>,
     proven: bool,
     setpoint: [f64; 3],
-    /// The mission's last reset, the number of resets, and whether the board is down.
+    /// Last reset of the mission, number of resets, whether the board is down.
     reset: Option<Reset>,
     cuts: u32,
     dead: bool,
@@ -65,7 +65,7 @@ pub struct Bench<'a> {
     /// Log lines.
     pub lines: Vec<Line>,
     raw: Vec<u8>,
-    /// Processor resets: time (ms since power-on) and cause.
+    /// Time (ms since power-on) and cause.
     pub resets: Vec<(f64, String)>,
 }
 
@@ -75,30 +75,29 @@ struct Status {
     warning: String,
 }
 
-/// Plant state besides the pins.
 #[derive(Default)]
 struct Watched {
     tilt: PerArm<f64>,
     voltage: f64,
 }
 
-/// Results of a bench after its run.
+/// Results of a run.
 pub struct Finished {
     /// The emulator's record.
     pub run: Run,
-    /// Missed deadlines by task, as last logged.
+    /// By task, as last logged.
     pub overruns: BTreeMap<String, u32>,
     /// Digest of all log lines with their times.
     pub log_digest: u64,
-    /// Measured minus modelled arm tilt in flight.
+    /// Arm tilt in flight, measured less modelled.
     pub tilt_error: TiltError,
     /// Log lines.
     pub lines: Vec<Line>,
     /// The log as written by the firmware.
     pub log: Vec<u8>,
-    /// Processor resets: time (ms since power-on) and cause.
+    /// Time (ms since power-on) and cause.
     pub resets: Vec<(f64, String)>,
-    /// Parts of the log that could not be decoded.
+    /// Parts that could not be decoded.
     pub malformed: u32,
     /// Bytes that MAVLink clients sent to the board.
     pub mavlink_received: u64,
@@ -115,8 +114,8 @@ pub struct Setup {
 }
 
 impl<'a> Bench<'a> {
-    /// A vehicle with `firmware` in its board, run as in `setup` with the parameters of `scenario` and a calibrated
-    /// accelerometer; `rng` draws the sensors' errors. `logged` receives each line of the log.
+    /// Runs `firmware` as in `setup` with the parameters of `scenario` and a calibrated accelerometer; `rng` draws the
+    /// sensors' errors, `logged` receives log lines.
     pub fn new(
         firmware: &'a Firmware,
         scenario: &Scenario,
@@ -226,7 +225,6 @@ impl<'a> Bench<'a> {
         pressure
     }
 
-    /// Commanded thrust of each rotor, N.
     fn thrusts(&self) -> PerArm<f32> {
         let curve = ThrustCurve::from_params(&self.params);
         let ratio = self.watched.voltage as f32 / self.params.battery_nominal;
@@ -235,7 +233,6 @@ impl<'a> Bench<'a> {
             .map(|command| curve.thrust(command as f32, ratio))
     }
 
-    /// Commanded force of each tendon, N.
     fn tension(&self) -> PerArm<f64> {
         let mut force = [0.0; 4];
         let pins = self.pins.servos.into_iter().zip(self.watched.tilt);
@@ -384,7 +381,7 @@ impl Aircraft for Bench<'_> {
     }
 }
 
-/// Sticks of a radio frame; `None` for other frames.
+/// `None` for frames without sticks.
 fn sticks(protocol: RcProtocol, mut frame: &[u8]) -> Option<Sticks> {
     match protocol {
         RcProtocol::Crsf => match CrsfParser::default().next_packet(&mut frame) {
@@ -395,7 +392,7 @@ fn sticks(protocol: RcProtocol, mut frame: &[u8]) -> Option<Sticks> {
     }
 }
 
-/// A byte as a word on the receiver's line: SBUS adds even parity as the top bit.
+/// SBUS adds even parity as the top bit.
 fn on_line(protocol: RcProtocol, byte: u8) -> u16 {
     let parity = match protocol {
         RcProtocol::Crsf => 0,
@@ -404,7 +401,7 @@ fn on_line(protocol: RcProtocol, byte: u8) -> u16 {
     u16::from(byte) | parity << 8
 }
 
-/// One arm's grip as logged: `grip: arm 1 holds 947 N/m2 with 34 N, closed in 5.6 s`.
+/// Parses `grip: arm 1 holds 947 N/m2 with 34 N, closed in 5.6 s`.
 fn told_grip(text: &str) -> Option<(usize, ArmGrip)> {
     let (arm, rest) = text.strip_prefix("grip: arm ")?.split_once(" holds ")?;
     let (pressure, rest) = rest.split_once(" N/m2 with ")?;
@@ -421,7 +418,7 @@ fn told_grip(text: &str) -> Option<(usize, ArmGrip)> {
     Some((arm, grip))
 }
 
-/// Missed deadlines as logged: `imu: 3 overruns in 12000 runs; worst: …`.
+/// Parses `imu: 3 overruns in 12000 runs; worst: …`.
 fn told_overruns(text: &str) -> Option<(&str, u32)> {
     let (task, rest) = text.split_once(": ")?;
     let (count, _) = rest.split_once(" overruns in ")?;

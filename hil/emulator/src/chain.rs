@@ -1,6 +1,5 @@
-//! Instructions of the control path on the flashed image, by symbol: names the share of everything around the laws.
-//!
-//! Inlined functions count where they were inlined: a task's own share includes its links and records.
+//! Instructions of the control path on the flashed image, by symbol. Inlined functions count where they were inlined: a
+//! task's own share includes its links and records.
 
 mod groups;
 
@@ -23,7 +22,6 @@ pub struct Window {
 /// Functions of the image by address.
 #[derive(Debug, Default)]
 pub struct Functions {
-    /// First address, end, and name.
     all: Vec<(u64, u64, String)>,
 }
 
@@ -31,7 +29,7 @@ impl Functions {
     /// The functions of the ELF in `bytes`.
     ///
     /// # Errors
-    /// One line: no ELF file.
+    /// Not an ELF file.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let file = object::File::parse(bytes).map_err(|e| format!("the image is no ELF file: {e}"))?;
         let functions = file
@@ -59,7 +57,7 @@ impl Functions {
             .map(|(begin, ..)| *begin)
     }
 
-    /// Every possible address of an instruction.
+    /// Every possible address.
     pub fn halfwords(&self) -> impl Iterator<Item = u64> {
         self.all
             .iter()
@@ -87,13 +85,13 @@ pub type Counts = BTreeMap<usize, u64>;
 /// A counted step.
 #[derive(Clone, Debug, Default)]
 pub struct Step {
-    /// From the data-ready handler to that of the transfer's end.
+    /// From data-ready handler to transfer-end handler.
     pub reading: Counts,
-    /// From there to the start of the motor frame.
+    /// From there to the motor frame.
     pub acting: Counts,
-    /// The core's instruction count at the end of the transfer.
+    /// Instruction count at the end of the transfer.
     pub received: u64,
-    /// The core's count from there to the frame: the sum of `acting`.
+    /// From there to the frame: the sum of `acting`.
     pub passed: u64,
 }
 
@@ -124,13 +122,13 @@ impl Share {
 }
 
 impl Counted {
-    /// From the end of the transfer to the frame, by the core's count.
+    /// From transfer to frame.
     #[must_use]
     pub fn acting(&self) -> Share {
         Share::of(self.steps.iter().map(|step| step.passed))
     }
 
-    /// Tables: from the end of the transfer to the frame by part and function, and before it by part.
+    /// Tables by part and function after the transfer, by part before.
     #[must_use]
     pub fn tables(&self, functions: &Functions) -> String {
         let mut text = format!("{} steps, instructions of each\n\n", self.steps.len());

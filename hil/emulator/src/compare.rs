@@ -1,8 +1,7 @@
 //! The same flight on host and chip, phase by phase.
 //!
-//! The attitude error is against the controller's target on the host, and against the sticks on the chip, which does
-//! not report its target. On the chip the world feels the pins a millisecond later, and the self-test before
-//! calibration makes the pilot meet gusts at other places.
+//! The attitude error is against the controller's target on the host, against the sticks on the chip, which does not
+//! report a target. The chip's pins act a millisecond later, and its self-test shifts pilot against gusts.
 
 use serde_json::{Value, json};
 use sophie_report::terminal::table::{Align, Table};
@@ -17,7 +16,7 @@ fn outcome(record: &FlightRecord) -> &'static str {
     }
 }
 
-/// A table for people: each line on the host, then on the chip.
+/// Each line on the host, then on the chip.
 #[must_use]
 pub fn lines(host: &FlightRecord, chip: &FlightRecord) -> Vec<String> {
     use Align::{Left, Right};
@@ -88,7 +87,7 @@ fn grips(host: &FlightRecord, chip: &FlightRecord) -> Table {
     table
 }
 
-/// The host's flight for programs; the chip's is beside it.
+/// As JSON; the chip's is beside it.
 #[must_use]
 pub fn value(host: &FlightRecord) -> Value {
     json!({

@@ -16,19 +16,19 @@ pub struct Firmware {
     pub path: PathBuf,
     /// Contents of the file.
     pub bytes: Vec<u8>,
-    /// Address of the log's control block.
+    /// Address of the control block.
     pub rtt: u64,
-    /// Parameter flash: first address and end.
+    /// First address and end.
     pub params: (u64, u64),
-    /// Task addresses, by the names in `src/firmware/tasks.rs`.
+    /// Addresses, by names in `src/flight` and `src/firmware`.
     pub tasks: BTreeMap<String, u64>,
     /// Format of the log.
     pub table: Table,
     /// Target board.
     pub board: &'static EmulatedBoard,
-    /// Loader that runs before it; `None`: none.
+    /// Runs before it.
     pub loader: Option<Loader>,
-    /// Steps with counted instructions; `None`: none.
+    /// Steps with counted instructions.
     pub count: Option<Window>,
 }
 
@@ -36,7 +36,7 @@ impl Firmware {
     /// Reads an image for `board`.
     ///
     /// # Errors
-    /// One line: the file, what is wrong, and what is required.
+    /// One line: the file, the fault, the requirement.
     pub fn read(path: &Path, board: &'static EmulatedBoard) -> Result<Self, String> {
         let bytes = std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
         let wrong = |what: String| format!("{}: {what}", path.display());
@@ -108,7 +108,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
             board.chip
         ));
     }
-    // The name in the first log line: other boards' images also start at this address.
+    // By the name in the first log line, as other boards' images share the address.
     let named = |name: &[u8]| {
         let mut data = file
             .sections()
@@ -129,7 +129,7 @@ fn check(file: &object::File<'_>, board: &EmulatedBoard) -> Result<(), String> {
     Ok(())
 }
 
-/// The task whose pool is named `symbol`: a mangled name has its length before each part.
+/// Task of the pool `symbol`: mangled names have each part's length before it.
 fn task(symbol: &str) -> Option<String> {
     let (_, rest) = symbol.strip_suffix("4POOL")?.rsplit_once("5tasks")?;
     let name = rest.trim_start_matches(|c: char| c.is_ascii_digit());
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_task_is_found_by_its_pool() {
-        let pool = "_RNvNvNtNtCs1qUga5DPFW4_6sophie8firmware5tasks9commander4POOL";
+        let pool = "_RNvNvNtCs1qUga5DPFW4_13sophie_flight5tasks9commander4POOL";
         assert_eq!(task(pool).as_deref(), Some("commander"));
         assert_eq!(task("_RNvNvCs1qUga5DPFW4_6sophie14___embassy_main4POOL"), None);
     }

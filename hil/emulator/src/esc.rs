@@ -1,10 +1,10 @@
-//! A motor controller: decodes edges into a command, and stops without frames.
+//! A motor controller: decodes edges into a command, stops without frames.
 
 use sophie_control::params::MotorProtocol;
 use sophie_drivers::dshot::{THROTTLE_MAX, THROTTLE_MIN};
 use sophie_drivers::dshot_decoder::{Decoder, LineError};
 
-/// Silence after which a controller stops its motor, ns (assumed; controllers differ between 0.1 and 0.5 s).
+/// Silence that stops the motor, ns (assumed; controllers differ between 0.1 and 0.5 s).
 const SILENCE: u64 = 250_000_000;
 
 /// Protocol.
@@ -12,7 +12,7 @@ const SILENCE: u64 = 250_000_000;
 pub enum Line {
     /// DShot, kbit/s.
     DShot(u32),
-    /// Pulses from this many µs (stop) to twice as many.
+    /// From this many µs (stop) to twice as many.
     Pulse(u32),
 }
 
@@ -37,7 +37,7 @@ pub struct EscStats {
     pub frames: u64,
     /// Invalid frames or pulses.
     pub bad: u64,
-    /// Shortest and longest time between frames, ns; `None` before the second.
+    /// Shortest and longest between frames, ns.
     pub interval: Option<[u64; 2]>,
 }
 
@@ -47,7 +47,6 @@ pub struct Esc {
     line: Line,
     decoder: Decoder,
     rose: Option<u64>,
-    /// First edge of the frame under way.
     began: Option<u64>,
     command: f64,
     heard: Option<u64>,
@@ -74,7 +73,7 @@ impl Esc {
         }
     }
 
-    /// Level change to `high` at `at` ns; returns the first edge's time of a complete frame.
+    /// Takes a change to `high` at `at` ns; returns the start of a completed frame.
     pub fn edge(&mut self, at: u64, high: bool) -> Option<u64> {
         if high {
             self.rose = Some(at);
@@ -90,7 +89,7 @@ impl Esc {
                     Ok(frame) => throttle(frame.value()),
                     Err(error) => {
                         self.stats.bad += 1;
-                        // A truncated frame: this pulse is the first of the next one.
+                        // A truncated frame: this pulse begins the next one.
                         self.began = matches!(error, LineError::Short(_)).then_some(rose);
                         return None;
                     }
@@ -127,7 +126,7 @@ impl Esc {
     }
 }
 
-/// The command of a DShot value; values below the throttle stop the motor.
+/// Values below the throttle range stop the motor.
 fn throttle(value: u16) -> f64 {
     f64::from(value.saturating_sub(THROTTLE_MIN)) / f64::from(THROTTLE_MAX - THROTTLE_MIN)
 }
@@ -138,7 +137,7 @@ mod tests {
 
     use super::*;
 
-    /// Sends `bits` at `at`, 3333 ns each; returns the complete frame's result.
+    /// 3333 ns a bit.
     fn send(esc: &mut Esc, at: u64, bits: u16, count: u32) -> Option<u64> {
         let mut done = None;
         for n in 0..count {

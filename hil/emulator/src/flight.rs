@@ -16,18 +16,18 @@ pub struct Flight {
     pub record: FlightRecord,
     /// Record of the emulated board.
     pub board: Finished,
-    /// Emulation gaps that are not allowed; with any, the flight proves nothing.
+    /// Disallowed emulation gaps: the flight then proves nothing.
     pub gaps: Vec<Gap>,
 }
 
 impl Flight {
-    /// The mission was flown, without gaps of the emulation.
+    /// Mission flown without gaps.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.record.outcome.accomplished && self.gaps.is_empty()
     }
 
-    /// Digest of log and pins: equal digests mean equal runs.
+    /// Digest of log and pins; equal for equal runs.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut digest = crate::wires::Digest::default();
@@ -37,7 +37,7 @@ impl Flight {
     }
 }
 
-/// Flies `scenario` with `firmware` on a board as in `setup`. `logged` receives each line of the log.
+/// Flies `scenario` with `firmware` on a board as in `setup`; `logged` receives log lines.
 ///
 /// # Errors
 /// One line: why the scenario cannot be flown, or the emulator failed.

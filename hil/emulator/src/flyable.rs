@@ -1,4 +1,4 @@
-//! Checks that the image can fly a scenario: parameters are stored for it, but some settings are built in.
+//! Checks that the image can fly a scenario: some settings are built in.
 
 use sophie_control::wrench::Configuration;
 use sophie_sim::mixers::Variant;

@@ -23,7 +23,7 @@ struct Entry {
 /// The gaps of `found` that no entry allows.
 ///
 /// # Errors
-/// One line: the list cannot be read, or an entry gives no reason.
+/// One line: the list cannot be read, or an entry has no reason.
 pub fn not_allowed(found: &[Gap]) -> Result<Vec<&Gap>, String> {
     judged(ALLOWED, found)
 }

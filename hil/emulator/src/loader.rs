@@ -1,12 +1,12 @@
-//! A loader that jumps to the firmware with its own vector table still active, like the chip's USB loader.
+//! A loader that jumps to the firmware with its own vector table active, as the chip's USB loader does.
 
 use object::{Object, ObjectSection};
 
 use crate::elf::Firmware;
 
-/// Address of the loader: flash of every emulated chip outside firmware and parameters.
+/// Flash of every emulated chip outside firmware and parameters.
 const AT: u32 = 0x080E_0000;
-/// Words of its vector table: a power of two, more than any chip's vectors.
+/// Words of the vector table: a power of two, more than any chip's.
 const VECTORS: u32 = 256;
 /// Vector table offset register (ARMv7-M, B3.2.5).
 const VTOR: u32 = 0xE000_ED08;
@@ -21,8 +21,7 @@ pub struct Loader {
 }
 
 impl Firmware {
-    /// Puts a loader before the firmware: the chip starts in it; all its vectors lead to an endless loop, and it jumps
-    /// to the firmware.
+    /// Puts a loader, whose vectors all lead to an endless loop, before the firmware.
     ///
     /// # Errors
     /// One line: the image has no vector table.
@@ -35,7 +34,6 @@ impl Firmware {
         let firmware = u32::from_le_bytes(std::array::from_fn(|n| vector[n]));
 
         let trap = AT + 4 * VECTORS;
-        // Thumb bit of a vector.
         let [looping, entry] = [trap | 1, (trap + 4) | 1];
         vector.copy_from_slice(&entry.to_le_bytes());
         let mut bytes: Vec<u8> = (0..VECTORS).flat_map(|_| looping.to_le_bytes()).collect();

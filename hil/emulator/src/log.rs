@@ -5,7 +5,7 @@ use defmt_decoder::{DecodeError, StreamDecoder, Table};
 /// A line of the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Emulated time of reading, ms: at most one after it was written.
+    /// Time of reading, ms: at most one after writing.
     pub ms: u64,
     /// The firmware's time stamp.
     pub stamp: String,
@@ -30,7 +30,7 @@ pub struct Log<'a> {
 }
 
 impl<'a> Log<'a> {
-    /// A decoder for an image with `table`.
+    /// For an image with `table`.
     #[must_use]
     pub fn new(table: &'a Table) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl<'a> Log<'a> {
         }
     }
 
-    /// Adds bytes read at `ms`; returns completed lines.
+    /// Takes bytes read at `ms`; returns completed lines.
     pub fn take(&mut self, ms: u64, bytes: &[u8]) -> Vec<Line> {
         let mut lines = Vec::new();
         if bytes.is_empty() {

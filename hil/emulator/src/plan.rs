@@ -12,15 +12,15 @@ pub enum Trouble {
     Board(BoardFault),
     /// Lead of an arm's pressure sensor (0 to 3) broken, shorted to its neighbour, or mended.
     Fsr(usize, Option<FsrBreak>),
-    /// The receiver is silent (true) or sends.
+    /// Silent (true) or sending.
     RadioSilent(bool),
-    /// Bits flipped in one of this many bytes from the receiver; 0: none.
+    /// Bit errors in one of this many bytes from the receiver; 0: none.
     RadioBits(u32),
     /// Share of the battery voltage at its divider.
     BatteryShare(f64),
 }
 
-/// Troubles with their times, and the state of the radio's line.
+/// Troubles with their times, and the radio line's state.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     troubles: Vec<(u64, Trouble)>,
@@ -31,7 +31,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// A plan of these troubles, with times in ms since power-on.
+    /// `troubles` have times in ms since power-on.
     #[must_use]
     pub fn new(troubles: impl IntoIterator<Item = (u64, Trouble)>) -> Self {
         let mut troubles: Vec<_> = troubles.into_iter().collect();
@@ -42,7 +42,7 @@ impl Plan {
         }
     }
 
-    /// Applies what is due at `ms`.
+    /// Applies troubles due at `ms`.
     pub fn apply(&mut self, ms: u64, sensors: &mut Sensors, faults: &mut Vec<BoardFault>) {
         while let Some((at, trouble)) = self.troubles.get(self.next)
             && *at <= ms

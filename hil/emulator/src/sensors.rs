@@ -1,4 +1,4 @@
-//! Voltages and samples on the board's wires, with the errors of the simulated board's sensors.
+//! Voltages and samples on the wires, with the simulated board's sensor errors.
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -31,15 +31,14 @@ pub struct Sensors {
     rng: Pcg64Mcg,
     arm_clock: f64,
     gravity: PerArm<Vec3>,
-    /// 12-bit counts at the pressure sensors' pins.
+    /// 12 bits.
     pub pressure_counts: PerArm<u16>,
-    /// Factor on the battery voltage at its divider; 1: intact.
+    /// Factor on the battery voltage; 1: intact.
     pub battery_share: f64,
 }
 
 impl Sensors {
-    /// Sensors with errors drawn from `rng` in the order of [`sophie_sim::board::Board::configured`]: one seed, one
-    /// vehicle.
+    /// Draws errors in the order of [`sophie_sim::board::Board::configured`]: equal seeds, equal vehicles.
     #[must_use]
     pub fn new(params: &Params, rng: &mut Pcg64Mcg) -> Self {
         let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
@@ -69,14 +68,13 @@ impl Sensors {
         }
     }
 
-    /// Steps the plant by a millisecond and writes the sensors' outputs to `wires`.
+    /// Steps the plant by a millisecond and sets `wires`.
     pub fn step(&mut self, plant: &mut Plant, actuators: &sophie_sim::plant::Actuators, wires: &mut Wires) {
         for _ in 0..STEPS_PER_MS {
             let (rate, force) = (plant.pose().omega, plant.specific_force());
             plant.step(actuators);
             let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
             for k in 1..=self.samples {
-                // The part samples faster than the plant steps: linear interpolation.
                 let share = f64::from(k) / f64::from(self.samples);
                 let rotors = plant.rotor_speed();
                 let reading = self

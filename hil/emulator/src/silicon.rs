@@ -15,7 +15,7 @@ pub struct Look {
     pub ok: bool,
 }
 
-/// Parses a line of the log: `silicon: NAME: READ, expected EXPECTED: ok`, or `: not ok`.
+/// Parses `silicon: NAME: READ, expected EXPECTED: ok`, or `: not ok`.
 #[must_use]
 pub fn told(text: &str) -> Option<Look> {
     let (name, rest) = text.strip_prefix("silicon: ")?.split_once(": ")?;

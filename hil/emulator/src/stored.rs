@@ -1,4 +1,4 @@
-//! Parameters in flash as the console's `save` leaves them, written on the host by the firmware's code.
+//! Parameters in flash as the console's `save` leaves them, by the firmware's code.
 
 use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
@@ -55,7 +55,7 @@ impl<const WORD: usize, const SECTOR: usize> NorFlash for Sectors<WORD, SECTOR> 
 /// The `length` bytes of a board's parameter sectors after a save of `params`.
 ///
 /// # Errors
-/// One line: they cannot be stored there.
+/// One line: they do not fit.
 pub fn sectors(board: Kind, length: usize, params: &Params) -> Result<Vec<u8>, String> {
     match board {
         Kind::MatekH743 => saved::<32, 0x2_0000>(length, params),

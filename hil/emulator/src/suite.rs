@@ -1,7 +1,5 @@
-//! The image of a board's tests (`hil/rig`): list of tests, and entry into one.
-//!
-//! A probe answers the image's request for a command line with the address of a test. Here the first instructions of
-//! the requesting function are replaced by calls of the tests' setup and of the test.
+//! The image of a board's tests (`hil/rig`). Instead of a probe that answers with a test's address, calls of setup and
+//! test replace the start of the requesting function.
 
 use std::collections::BTreeMap;
 
@@ -13,21 +11,19 @@ use crate::elf::Firmware;
 /// Function that requests the command line.
 const ASKING: &str = "__embedded_test_start";
 const SETUP: &str = "_embedded_test_setup";
-/// Section of test descriptions: address of the function, and its module.
+/// Section of test descriptions: function address and module.
 const TESTS: &str = ".embedded_test";
-/// Version of that description.
 const VERSION: (&str, u8) = ("EMBEDDED_TEST_VERSION", 1);
 
 /// A test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Test {
-    /// Module and function, as a probe shows it.
+    /// Module and function.
     pub name: String,
     /// Passes only by a panic.
     pub should_panic: bool,
     /// Run only on request.
     pub ignored: bool,
-    /// Address of its function.
     entry: u32,
 }
 
@@ -41,7 +37,7 @@ struct Described {
 /// The tests of `image`, by name.
 ///
 /// # Errors
-/// One line: the image holds no tests, or describes them differently.
+/// One line: it has no tests, or other descriptions.
 pub fn tests(image: &Firmware) -> Result<Vec<Test>, String> {
     let file = parsed(&image.bytes)?;
     let section = file
@@ -117,10 +113,10 @@ pub fn entering(image: &Firmware, test: &Test) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Thumb code at `address` that calls `setup` and jumps to `test`.
+/// Thumb code at `address`: calls `setup`, jumps to `test`.
 fn enter(address: u64, setup: u32, test: u32) -> Vec<u8> {
     const NOP: u16 = 0xBF00;
-    // ldr r0, [pc, #4]; blx r0; ldr r0, [pc, #4]; bx r0: the loads' words follow the four, if aligned.
+    // ldr r0, [pc, #4]; blx r0; ldr r0, [pc, #4]; bx r0: the literals follow, if aligned.
     const CALLS: [u16; 4] = [0x4801, 0x4780, 0x4801, 0x4700];
     let aligned = address.is_multiple_of(4);
     let lead = if aligned { None } else { Some(NOP) };
@@ -157,7 +153,7 @@ fn file_offset(file: &object::File<'_>, address: u64) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// The word that a load at `at` of the code fetches (ARMv7-M, A7.7.44).
+    /// Literal fetched by a load at `at` (ARMv7-M, A7.7.44).
     fn loaded(code: &[u8], address: u64, at: usize) -> u32 {
         let half = u16::from_le_bytes([code[at], code[at + 1]]);
         assert_eq!(half >> 8, 0x48);

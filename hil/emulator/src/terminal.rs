@@ -14,20 +14,20 @@ const AT_ONCE: usize = 64;
 pub struct Sockets {
     /// Console, both ways.
     pub console: Option<Terminal>,
-    /// Board's output to its receiver; input is dropped, as the line is the pilot's.
+    /// Output to the receiver; input is dropped, as the pilot has the line.
     pub telemetry: Option<Terminal>,
     /// MAVLink, both ways.
     pub mavlink: Option<Terminal>,
 }
 
-/// A listener on the loopback interface with one connection, the latest.
+/// A loopback listener; the latest connection counts.
 pub struct Terminal {
     listener: TcpListener,
     user: Option<TcpStream>,
 }
 
 impl Terminal {
-    /// A listener on `port`, as requested by `option`.
+    /// A listener on `port`; errors name `option`.
     ///
     /// # Errors
     /// One line: the port, and why it is unavailable.

@@ -1,4 +1,4 @@
-//! Measured arm tilt against the mixer's static model, from the motors' pins.
+//! Measured arm tilt against the mixer's static model.
 
 use sophie_control::params::Params;
 use sophie_control::tilt::TiltModel;
@@ -57,8 +57,8 @@ impl Tilts {
         self.model.tilt().map(f64::from)
     }
 
-    /// Adds a millisecond with the commanded thrusts (N), gravity at each arm's sensor (arm axes) and the body's roll
-    /// (rad); `flies`: the arms hang free.
+    /// Adds a millisecond: commanded thrusts (N), gravity at the arms' sensors (arm axes), body roll (rad); `flies`:
+    /// arms hang free.
     pub fn step(&mut self, thrusts: &PerArm<f32>, arms: &PerArm<[f64; 3]>, body_roll: f64, flies: bool) {
         self.model.step(thrusts, 1e-3);
         for ((measured, [_, y, z]), side) in self.measured.iter_mut().zip(arms).zip(SIDE) {
@@ -84,7 +84,6 @@ mod tests {
         }
         assert_eq!(tilts.error.mean(), None);
         let model = tilts.modelled()[0];
-        // Rolled by 0.2; the left arm 0.1 above the model, the right one at it.
         let at = |angle: f64| [0.0, 9.8 * angle.sin(), 9.8 * angle.cos()];
         let arms = SIDE.map(|side| {
             let above = if side > 0.0 { 0.1 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Data between the emulated board and the world, independent of the emulator.
+//! Data between emulated board and world, independent of the emulator.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,16 @@ use sophie_control::wrench::PerArm;
 use crate::chain::Counted;
 use crate::esc::EscStats;
 
-/// The world's inputs to the board for the next millisecond.
+/// Inputs for the next millisecond.
 #[derive(Clone, Debug, Default)]
 pub struct Wires {
-    /// Inertial samples, spread evenly over the millisecond: body rate (rad/s), specific force (m/s²), body axes.
+    /// Evenly spread samples: body rate (rad/s), specific force (m/s²), body axes.
     pub imu: Vec<([f64; 3], [f64; 3])>,
-    /// Gravity at each arm's sensor, m/s², arm axes: forward, right, down.
+    /// Gravity at each arm's sensor, m/s², arm axes (forward, right, down).
     pub arms: PerArm<[f64; 3]>,
-    /// Voltage at the pads of pressure 1 to 4 (V), battery voltage (V) and current (A).
+    /// Pads of pressure 1 to 4 (V), battery voltage (V) and current (A).
     pub analog: [f64; 6],
-    /// Words from the receiver, with parity as the top bit where its line has one.
+    /// Parity, if any, is the top bit.
     pub receiver: Vec<u16>,
     /// Bytes typed at the console.
     pub console: Vec<u8>,
@@ -26,54 +26,53 @@ pub struct Wires {
     pub faults: Vec<BoardFault>,
 }
 
-/// A fault or event of the board; faults last unless stated otherwise.
+/// A fault or event; faults last unless stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardFault {
     /// Inertial sensor unplugged (true) or plugged in.
     ImuUnplugged(bool),
-    /// Data-ready line of the inertial sensor cut (true) or joined; its bus works.
+    /// Data-ready of the inertial sensor cut (true) or joined; its bus works.
     DataReadyCut(bool),
-    /// Bits flipped in the inertial sensor's next word.
+    /// Bits flipped in its next word.
     ImuWord(u8),
-    /// A divider of 1 to n at the pad of a pressure sensor, 0 to 3.
+    /// Divider of 1 to n at pressure sensor 0 to 3.
     PadDivider(usize, u32),
-    /// Sensor of an arm, 0 to 3, unplugged (true) or plugged in.
+    /// Sensor of arm 0 to 3 unplugged (true) or plugged in.
     ArmUnplugged(usize, bool),
-    /// The chips on an arm bus, 0 or 1, hold the clock low for this many µs after each byte; 0: none.
+    /// Arm bus 0 or 1: clock stretched by this many µs after each byte; 0: none.
     ClockHeld(usize, u32),
-    /// The processor's supply fails (false) or returns.
+    /// Fails (false) or returns.
     Supply(bool),
-    /// The task of this name in `src/firmware/tasks.rs` hangs in what it awaits.
+    /// The task (name in `src/flight` or `src/firmware`) hangs in its await.
     TaskHung(&'static str),
-    /// The task of this name recurses endlessly at its next run.
+    /// The task recurses endlessly at its next run.
     StackOverflow(&'static str),
-    /// The task of this name faults at its next run, at hard fault priority: the processor locks up (ARMv7-M B1.5.15),
-    /// as by a fault within that handler.
+    /// The task faults at hard fault priority: the processor locks up (ARMv7-M B1.5.15).
     LockUp(&'static str),
-    /// The parameter flash is overwritten, as by foreign firmware.
+    /// Parameter flash overwritten, as by foreign firmware.
     CorruptParameters,
-    /// The parameter flash begins as ArduPilot leaves it.
+    /// Parameter flash begins as ArduPilot leaves it.
     ForeignParameters,
-    /// Option bytes of a new chip: no brown-out level. Before the first instruction only.
+    /// As of a new chip: no brown-out level. Before the first instruction only.
     FactoryOptions,
     /// A processor of the first revision.
     FirstRevision,
-    /// The crystal does not start. Before the first instruction only.
+    /// Crystal does not start. Before the first instruction only.
     NoCrystal,
-    /// The core's PLL never locks. Before the first instruction only.
+    /// Core PLL never locks. Before the first instruction only.
     NoPll,
-    /// The processor stands still (true) or runs; only the watchdog is left.
+    /// Processor halted (true) or running; the watchdog runs.
     Hang(bool),
-    /// A pulse on the reset pin.
+    /// A pulse.
     ResetPin,
 }
 
-/// The board's outputs in the last millisecond.
+/// Outputs in the last millisecond.
 #[derive(Clone, Debug, Default)]
 pub struct Pins {
     /// Time since power-on, ms.
     pub ms: u64,
-    /// Motor commands as decoded by the controllers, 0..1.
+    /// As decoded by the controllers, 0..1.
     pub motors: PerArm<f64>,
     /// Servo pulses, µs; 0: none.
     pub servos: PerArm<f64>,
@@ -85,9 +84,9 @@ pub struct Pins {
     pub mavlink: FarEnd,
     /// Bytes of the log, as in the probe's buffer.
     pub log: Vec<u8>,
-    /// Pin levels of state light, fault light and buzzer.
+    /// State light, fault light and buzzer.
     pub signals: [bool; 3],
-    /// Processor resets: time (ns since power-on) and cause.
+    /// Time (ns since power-on) and cause.
     pub resets: Vec<(u64, String)>,
 }
 
@@ -103,23 +102,23 @@ pub struct FarEnd {
 /// Results of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// What the emulator could not do, or reported as wrong.
+    /// What the emulator lacked or found wrong.
     pub gaps: Vec<Gap>,
     /// Instructions executed.
     pub instructions: u64,
     /// Input of each motor controller.
     pub escs: PerArm<EscStats>,
-    /// Latency from data-ready to the first edge of the motor frame, µs.
+    /// Data-ready to motor frame, µs.
     pub latency_us: Latency,
     /// The motors' pins at the processor's last standstill.
     pub hung: Option<Hung>,
-    /// Erases per flash sector, by first address.
+    /// Per sector, by first address.
     pub erases: BTreeMap<u64, u32>,
     /// The outputs around resets.
     pub outputs: Vec<Output>,
-    /// Servo pulses at the end, µs; 0: none.
+    /// At the end, µs; 0: none.
     pub servos: PerArm<f64>,
-    /// Digest of every edge at the motors' pins, every servo pulse and telemetry byte.
+    /// Digest of motor edges, servo pulses and telemetry.
     pub pins_digest: u64,
     /// Steps with counted instructions.
     pub counted: Counted,
@@ -132,9 +131,9 @@ pub struct Output {
     pub what: String,
     /// Processor pin.
     pub pin: String,
-    /// The processor pulls it up until the firmware drives it.
+    /// Pulled up until the firmware drives it.
     pub pulled_up: bool,
-    /// Time from each start until the firmware drives it, µs; `None`: never.
+    /// From each start until driven, µs; `None`: never.
     pub after_us: Vec<Option<f64>>,
 }
 
@@ -150,10 +149,10 @@ impl Output {
     }
 }
 
-/// The motors' pins during a standstill of the processor.
+/// Motor pins during a standstill of the processor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hung {
-    /// Time to the last rising edge at any of them, µs; 0 without one.
+    /// Time to the last rising edge, µs; 0 without one.
     pub last_rise_us: f64,
     /// Pins high at the end.
     pub high: PerArm<bool>,

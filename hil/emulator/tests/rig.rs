@@ -1,5 +1,4 @@
-//! A board's tests (`hil/rig`) on the emulated board: all pass on a sound rig, and each fails on a rig with the defect
-//! that it is there to find.
+//! The tests of `hil/rig` on the emulated board: each passes on a sound rig and fails with its defect.
 
 #![allow(missing_docs)]
 
@@ -12,7 +11,7 @@ use sophie_emulator::emulator::rig::{Defect, read, run};
 use sophie_emulator::gaps;
 use sophie_emulator::suite::{self, Test};
 
-/// The image: the one that `SOPHIE_RIG_ELF` names, or a new one.
+/// From `SOPHIE_RIG_ELF`, or built.
 static IMAGE: LazyLock<(Firmware, Vec<Test>)> = LazyLock::new(|| {
     let path = std::env::var_os("SOPHIE_RIG_ELF").map_or_else(build, PathBuf::from);
     let image = read(&path).expect("the tests' image");
@@ -33,7 +32,6 @@ fn build() -> PathBuf {
     PathBuf::from(printed.lines().last().expect("the path of the ELF"))
 }
 
-/// Status and last words of the test called `name` on a rig with `defect`.
 fn verdict(name: &str, defect: Defect) -> (Option<u32>, String) {
     let (image, tests) = &*IMAGE;
     let test = tests.iter().find(|test| test.name == name).expect(name);
@@ -49,7 +47,7 @@ fn verdict(name: &str, defect: Defect) -> (Option<u32>, String) {
     (ended.status, last)
 }
 
-/// The tests that a defect makes fail, each with a part of what it then says.
+/// Tests that fail with a defect, and part of their messages.
 type Found = (Defect, &'static [(&'static str, &'static str)]);
 
 const TRIED: [Found; 8] = [
@@ -116,14 +114,13 @@ const TRIED: [Found; 8] = [
     ),
 ];
 
-/// What the image alone decides: nothing outside the chip can make them fail.
+/// Unaffected by any defect of the rig.
 const WITHIN: [&str; 3] = [
     "t00_clock::the_core_runs_at_its_clock",
     "t00_clock::the_time_base_never_runs_back",
     "t11_copies::a_copy_is_exact_and_nothing_around_it_changes",
 ];
 
-/// Each test that is tried with `defect` passes on a sound rig and fails with it, saying what is wrong.
 fn found(defect: Defect) {
     for (name, words) in TRIED.iter().filter(|(d, _)| *d == defect).flat_map(|(_, f)| *f) {
         let (status, told) = verdict(name, Defect::None);

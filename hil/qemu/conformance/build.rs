@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 /// Memory of QEMU's mps2-an386 and mps2-an500, and of the emulated core. As on the boards the stack lies at the bottom,
-/// above unmapped addresses. The file is named board.x because the workspace's memory.x, which the linker finds first,
-/// includes that.
+/// above unmapped addresses. Named board.x because the workspace's memory.x, which the linker finds first, includes
+/// that.
 const MEMORY: &str = "\
 MEMORY
 {

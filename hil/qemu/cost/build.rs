@@ -4,8 +4,8 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::{env, fs};
 
-/// Memory of QEMU's mps2-an386 and mps2-an500. The file is named board.x because the workspace's memory.x, which the
-/// linker finds first, includes that.
+/// Memory of QEMU's mps2-an386 and mps2-an500. Named board.x because the workspace's memory.x, which the linker finds
+/// first, includes that.
 const MEMORY: &str = "\
 MEMORY
 {

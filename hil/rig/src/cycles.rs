@@ -2,7 +2,7 @@
 
 use cortex_m::peripheral::{DWT, Peripherals};
 
-/// Starts the counter. Called once, before anything else takes the core's peripherals.
+/// Starts the counter, before anything else takes the core's peripherals.
 ///
 /// # Panics
 /// When called later.

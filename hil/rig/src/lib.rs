@@ -1,10 +1,8 @@
 //! Shared code of the tests on a real board, run by a probe. `tests/rig/` has the tests, `hil/README.md` the wiring.
+//! Empty on the host.
 //!
-//! The board crate is the firmware's, so the tests use the drivers, pins and timers that fly. Each test starts from a
-//! reset.
-//!
-//! A missing jumper or external part is logged in a line that begins with `ignored:`, and the test passes; with the
-//! feature `wired` it fails. Empty on the host.
+//! The tests use the firmware's board crate: drivers, pins and timers that fly. Each starts from a reset. A missing
+//! jumper or part is logged as `ignored:` and passes; with the feature `wired` it fails.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg(target_os = "none")]
@@ -27,13 +25,12 @@ sophie_boards::ends_with!(verdict::end_of_run);
 /// Watchdog feed period; the shortest time-out is 200 ms.
 const MEAL: Duration = Duration::from_millis(50);
 
-/// Starts the flight and steady level and feeds the watchdog from the latter while the test runs; returns the flight
-/// level for the test. Called once.
+/// Starts flight and steady level and feeds the watchdog from the latter; returns the flight level. Called once.
 pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
     defmt::info!("{=str}", sophie_boards::NAME);
     resumable_test::leave(resumable_test::ResumableTest::Test);
     let (flight, steady) = start_levels();
-    // Only a second call could fail, at which `start_levels` panics.
+    // Fails only in a second call, at which `start_levels` panics.
     if let Ok(feeder) = feed(watchdog) {
         steady.spawn(feeder);
     }

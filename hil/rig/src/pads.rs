@@ -4,7 +4,7 @@ use sophie_boards::{Pad, Pupdr, WIRING};
 
 use crate::cycles;
 
-/// Checks that the second pad follows the first against its own pull, both ways.
+/// Whether the second pad follows the first against its pull, both ways.
 pub fn joined([from, to]: [Pad; 2]) -> bool {
     let (driver, listener) = (from.take(), to.take());
     let follows = |high| {

@@ -1,14 +1,14 @@
-//! Pulses on a pad, timed by the core's cycle counter.
+//! Pulses on a pad, timed by the cycle counter.
 
 use heapless::Vec;
 
 use crate::cycles;
 use sophie_boards::{Pad, WIRING};
 
-/// Most pulses of a recording: two DShot frames.
+/// Two DShot frames.
 pub const MOST: usize = 32;
 
-/// A pulse on a pad, in core cycles.
+/// In core cycles.
 #[derive(Clone, Copy, defmt::Format)]
 pub struct Pulse {
     /// Rising edge, from the start of the recording.
@@ -17,14 +17,14 @@ pub struct Pulse {
     pub high: u32,
 }
 
-/// Whole pulses on `pad` during the next `us` µs, at most [`MOST`]. Does not yield; without interrupts an edge's error
-/// is a turn of the loop, some ten cycles.
+/// Whole pulses on `pad` in the next `us` µs, at most [`MOST`]. Does not yield; without interrupts the error of an edge
+/// is some ten cycles.
 pub fn record(pad: Pad, us: u32) -> Vec<Pulse, MOST> {
     let length = us * (WIRING.core_hz / 1_000_000);
     let mut pulses = Vec::new();
     let start = cycles::now();
     let mut was_high = pad.is_high();
-    // A pulse under way at the start has no rise.
+    // A pulse that has already begun is skipped.
     let mut rise = None;
     loop {
         let high = pad.is_high();

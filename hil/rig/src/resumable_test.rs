@@ -1,7 +1,5 @@
-//! The remaining part of a test that a reset interrupts, in memory that outlives the reset.
-//!
-//! The probe names the test once, before the first part. The second part therefore starts from the tests' setup, and
-//! reports its own result.
+//! A test's state across its reset, in retained memory. The probe names the test only before the first part: the second
+//! starts from the tests' setup and reports its own result.
 
 use core::cell::RefCell;
 
@@ -26,7 +24,7 @@ pub enum ResumableTest {
     Stored(f32),
 }
 
-/// Marks words that hold a test ("RIG" and layout version).
+/// Marks valid words ("RIG" and layout version).
 const MAGIC: u32 = 0x5249_4701;
 
 static MEMORY: Mutex<RefCell<Option<Memory>>> = Mutex::new(RefCell::new(None));
@@ -59,13 +57,13 @@ impl ResumableTest {
     }
 }
 
-/// Returns what the reset interrupted, and its cause. Called once, before all else.
+/// Takes the interrupted test and the reset cause. Called once, first.
 ///
 /// # Panics
 /// If the watchdog interrupted a test that feeds it.
 pub fn begin() -> (ResumableTest, ResetCause) {
     cycles::start();
-    // The probe reads a test's verdict while the core is halted.
+    // The probe reads the verdict while the core is halted.
     stop_with_core();
     let cause = take_reset_cause();
     let (kept, memory) = retained::start(cause);

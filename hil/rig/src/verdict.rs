@@ -4,10 +4,10 @@ use core::fmt;
 
 use defmt::Display2Format;
 
-/// Reports a missing part or jumper `what`, with its place. The test then has no result.
+/// Reports that `what` is missing; the test then has no result.
 ///
 /// # Panics
-/// With the feature `wired`, where everything must be present.
+/// With the feature `wired`.
 pub fn absent(what: fmt::Arguments<'_>) {
     if cfg!(feature = "wired") {
         panic!("not found: {what}");
@@ -15,12 +15,12 @@ pub fn absent(what: fmt::Arguments<'_>) {
     defmt::warn!("ignored: not found: {}", Display2Format(&what));
 }
 
-/// Passes a test after its reset, when the probe no longer waits for its return.
+/// Passes a test after its reset, when the probe does not wait for its return.
 pub fn passed() -> ! {
     semihosting::process::exit(0)
 }
 
-/// A panic or fault ends the test without a reset of the chip: the motors stop and the probe gets the verdict.
+/// Ends the test at a panic or fault, without reset: the motors stop, the probe gets the verdict.
 pub fn end_of_run(message: fmt::Arguments<'_>) -> ! {
     cortex_m::interrupt::disable();
     sophie_boards::stop_motors();

@@ -63,12 +63,11 @@ fn headings(s: &mut Section, jobs: &[Job], flights: &[Flown], k: f64) {
     );
 }
 
-/// The right-half-plane zero.
 fn mechanism(s: &mut Section, p: &Printed, k: f64) {
     let hover = p.mass() * sophie_sim::plant::GRAVITY / 4.0;
     let at = AtThrust::new(p.text.infill_percent, k, hover);
     let (frozen, slow) = (at.frozen(-1.0), at.quasi_static(-1.0));
-    // k_f (s² + 2ζωs + ω²) + (k_s - k_f) ω² = 0: the zeros of the yaw moment over thrust.
+    // k_f (s² + 2ζωs + ω²) + (k_s - k_f) ω² = 0: zeros of yaw moment over thrust.
     let omega = core::f64::consts::TAU * f64::from(Params::default().notch_hz);
     let zeta = 0.15;
     let inner = (zeta * zeta - slow / frozen) * omega * omega;

@@ -31,14 +31,14 @@ const MIXERS: [Compared; 5] = [
 /// Places in [`MIXERS`].
 pub const RIGID: usize = 0;
 pub const PAPER: usize = 1;
-/// Rigid mixer with its yaw gain over 1 - C_ψ: its loop is as fast as the flexible mixer's.
+/// Rigid mixer, yaw gain over 1 - C_ψ: as fast as the flexible one.
 pub const FAIR: usize = 2;
 pub const FLEXIBLE: usize = 3;
 pub const SIGN_AWARE: usize = 4;
 
 const INFILLS: [f64; 6] = [4.0, 5.0, 6.0, 6.9, 8.0, 10.0];
 const GAINS: [f64; 5] = [1.0, 2.0, 3.5, 5.03, 7.75];
-/// Yaw error (° RMS) at which a map's shade is bad.
+/// Yaw error at which a map's shade is bad, ° RMS.
 const POOR: f64 = 6.0;
 
 const fn flown_in(configuration: Configuration) -> &'static [usize] {
@@ -79,14 +79,14 @@ impl Job {
     }
 }
 
-/// RMS errors of a flight, degrees; `None` if the vehicle was lost.
+/// RMS errors of a flight, degrees; `None` if lost.
 pub struct Outcome {
     pub roll: Option<f64>,
     pub yaw: Option<f64>,
     lost: bool,
 }
 
-/// All flights: mismatched arms at all gains, modelled ones at the stack's.
+/// Mismatched arms at all gains, modelled ones at the stack's.
 pub struct Grid {
     jobs: Vec<Job>,
     outcomes: Vec<Outcome>,
@@ -128,7 +128,7 @@ impl Grid {
         at.and_then(|i| self.outcomes.get(i))
     }
 
-    /// Flights of the map that a mixer survives, in words.
+    /// Flights that a mixer survives, in words.
     pub fn kept(&self, configuration: Configuration, mixer: usize) -> String {
         let of = |j: &Job| j.configuration == configuration && j.mixer == mixer && j.mismatched;
         let flights = || self.jobs.iter().zip(&self.outcomes).filter(|(j, _)| of(j));

@@ -1,4 +1,4 @@
-//! Beyond the paper: every mixer over infill, gain and configuration; the arm sensors' gain; the softest airframe.
+//! Beyond the paper: every mixer over infill, gain and configuration; arm sensor gain; the softest airframe.
 
 mod configuration_a;
 mod grid;
@@ -15,18 +15,17 @@ use super::model::Section;
 use super::printed::Printed;
 use grid::{FAIR, FLEXIBLE, Grid, Job, PAPER, RIGID, SIGN_AWARE};
 
-/// Compliance of a real set of arms over the model's.
+/// Compliance of real arms over the model's.
 const ARM_GAIN: [f64; 4] = [1.15, 0.85, 0.9, 1.1];
-/// Tilt of a real set of arms less the model's, degrees.
+/// Tilt of real arms less the model's, degrees.
 const ARM_OFFSET: [f64; 4] = [3.0, -3.0, 2.0, -2.0];
 
-/// Replaces the arms by a real set, softer and bent against the model.
 fn mismatch(s: &mut Scenario) {
     s.vehicle.arm_gain = ARM_GAIN;
     s.vehicle.arm_offset = ARM_OFFSET.map(f64::to_radians);
 }
 
-/// Hover in gusts, a roll of 15° to either side, a turn of 30°, a push of 1.5 N, in 20 s.
+/// In 20 s: hover in gusts, a roll of 15° to either side, a turn of 30°, a push of 1.5 N.
 fn programme(t: f64) -> Wish {
     let mut wish = Wish::default();
     match t {
@@ -60,7 +59,7 @@ pub fn section(p: &Printed) -> Section {
     s
 }
 
-/// Cases of the map flown by each mixer, and the cost of mismatched arms.
+/// Cases flown by each mixer, and the cost of mismatched arms.
 fn finding(grid: &Grid, infill: f64, k: f64) -> String {
     let kept = |configuration, mixer| grid.kept(configuration, mixer);
     let yaw = |mixer: usize, mismatched: bool| {

@@ -10,7 +10,6 @@ use super::super::model::{Section, Table, num};
 use super::{mismatch, programme};
 
 const INFILLS: [f64; 3] = [5.0, 6.9, 10.0];
-/// Seeds 1 to this.
 const SEEDS: u64 = 4;
 
 struct Job {
@@ -19,7 +18,6 @@ struct Job {
     seed: u64,
 }
 
-/// RMS heading error, degrees; `None` if lost.
 fn yaw_error(job: &Job, k: f64) -> Option<f64> {
     let mut v = in_gusts(vehicle(Configuration::B, k, job.infill, Variant::Flexible));
     mismatch(&mut v);

@@ -17,16 +17,14 @@ use super::programme;
 struct Soft {
     name: &'static str,
     infill: f64,
-    /// Damping ratio of the arms.
     zeta: f64,
     notch: bool,
-    /// Yaw rate gain, 1/s.
     yaw_gain: f32,
     /// Thrust of level arms over the largest.
     level_share: f64,
 }
 
-/// Indices in [`cases`]: soft arms with a high yaw gain, with and without the notch.
+/// Indices in [`cases`]: soft arms, high yaw gain, with and without notch.
 const FAST: usize = 6;
 const FAST_BARE: usize = 7;
 
@@ -85,7 +83,7 @@ impl Soft {
         v.params.arm_level_share = self.level_share as f32;
         v.params.rate_yaw_p = self.yaw_gain;
         if !self.notch {
-            // Zeros on the poles: the notch passes all.
+            // Zeros on the poles: the notch passes everything.
             v.params.notch_zeta_zero = v.params.notch_zeta_pole;
         }
         fly(&v, None, 20.0, programme)
@@ -96,9 +94,7 @@ struct Outcome {
     /// RMS errors, degrees; `None` if lost.
     roll: Option<f64>,
     yaw: Option<f64>,
-    /// Largest arm tilt, degrees.
     tilt: f64,
-    /// Fastest sink, m/s.
     sink: f64,
     lost: Cell,
 }
@@ -171,7 +167,7 @@ fn table(cases: &[Soft], outcomes: &[Outcome]) -> Table {
     t
 }
 
-/// Largest T cos α over the rotor's range, over the weight, with α0 = 0: the lift that runs out.
+/// Largest T cos α over the weight, α0 = 0.
 fn largest_lift(p: &Printed, k: f64, infill: f64) -> f64 {
     let top = f64::from(Params::default().thrust_max);
     let (a, b) = literal(&p.table_1, infill);

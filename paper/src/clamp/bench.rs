@@ -31,7 +31,7 @@ impl OnBench {
         holds(&self.closed)
     }
 
-    /// Steady force, kgcm; `None` if the arm does not hold.
+    /// Steady force, kgcm; NaN if the arm does not hold.
     pub fn held_force(&self) -> f64 {
         if self.holds() {
             kgcm(self.closed.steady)
@@ -55,7 +55,7 @@ pub fn grid(p: &Printed) -> Vec<OnBench> {
     })
 }
 
-/// The first seed's closing with a servo, with the mean closure time of all seeds.
+/// The first seed's closing, with the mean closure time of all seeds.
 pub fn mean_closing(infill: f64, diameter: f64, servo: ServoSpec, thrust: f64) -> Closed {
     let mut first = once(infill, diameter, servo, thrust, 1);
     let others = (2..=SEEDS).map(|seed| once(infill, diameter, servo, thrust, seed).closure);

@@ -8,7 +8,7 @@ use super::super::printed::Printed;
 use super::bench::{INFILLS, OnBench};
 use super::table_4::{as_printed, paired};
 
-/// Infill (%) and diameter (m) of the drawn closings: nearest to Table IV's forces.
+/// Infill (%) and diameter (m), nearest to Table IV's forces.
 const SHOWN: [(f64, f64); 4] = [(6.0, 0.35), (6.9, 0.35), (6.9, 0.25), (6.0, 0.20)];
 
 /// Draws them.

@@ -1,4 +1,4 @@
-//! Fig. 10 and Table IV: an arm closes on pipes of several diameters, on the bench and in flight.
+//! Fig. 10 and Table IV: closings on several pipes, on the bench and in flight.
 
 mod bench;
 mod figures;
@@ -64,7 +64,7 @@ fn closings(all: &[OnBench]) -> Table {
     t
 }
 
-/// Correlation of times and forces over pipes, which the text says rise together.
+/// Correlation of times and forces, which the text says rise together.
 fn rising_together(s: &mut Section, p: &Printed, all: &[OnBench]) -> f64 {
     let held = || all.iter().filter(|c| c.holds());
     let over_pipes: Vec<(f64, f64)> = held()

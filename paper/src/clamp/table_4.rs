@@ -54,7 +54,7 @@ pub fn compare(s: &mut Section, p: &Printed, all: &[OnBench]) {
     s.compare("Table IV", rows);
 }
 
-/// Correlation of the printed times and forces beside `over_pipes`, that of the bench.
+/// Correlation of printed times and forces beside the bench's `over_pipes`.
 pub fn correlations(p: &Printed, over_pipes: f64) -> Comparison {
     Comparison {
         what: format!("correlation of t and U, here over pipes at ρ {} %", INFILLS[0]),

@@ -9,7 +9,7 @@ use sophie_sim::parallel;
 use super::super::flights::{curve, error, in_gusts, lost_when, named, or_lost, swing, vehicle};
 use super::super::model::{Axis, Chart, Look, Section, Series, Table, num};
 
-/// Time shown of the rotors' swing, s.
+/// Shown time, s.
 const WINDOW: f64 = 3.0;
 
 struct Flies {
@@ -116,7 +116,7 @@ impl Hovers {
         t
     }
 
-    /// Heading and thrust over time; `hover` is the thrust per rotor, N.
+    /// Heading and thrust over time; `hover`: thrust per rotor, N.
     pub fn figure(&self, s: &mut Section, hover: f64) {
         s.figure(
             &format!(

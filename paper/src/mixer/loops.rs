@@ -1,4 +1,4 @@
-//! Inversion at a frozen arm angle: Algorithm 1's one-step loop and the limit cycle.
+//! Inversion at a frozen arm angle: Algorithm 1's one-step loop, and the limit cycle.
 
 use std::f64::consts::TAU;
 
@@ -16,10 +16,10 @@ use super::super::printed::Printed;
 use super::super::statics::{AtThrust, frozen_bound, root};
 
 const ZETA: f64 = 0.15;
-/// Initial yaw pattern of a loop, N.
+/// Yaw pattern, N.
 const START: f32 = 0.02;
 
-/// Yaw patterns (N) of the one-step loop: T(k+1) = M(α(T(k)))⁻¹ w from hover with a pattern of `start` N.
+/// Yaw patterns (N) of T(k+1) = M(α(T(k)))⁻¹ w from hover with `start` N.
 fn one_step_loop(infill: f64, gain_k: f64, start: f32, steps: usize) -> Vec<f64> {
     let p = Params::default();
     let model = ArmModel::new(infill as f32, gain_k as f32, 0.5 * p.thrust_max);
@@ -45,7 +45,7 @@ fn one_step_loop(infill: f64, gain_k: f64, start: f32, steps: usize) -> Vec<f64>
     out
 }
 
-/// Range of rotor 1's thrust (N) under a constant small yaw demand, in the mixer's model of motor and arm.
+/// Range of rotor 1's thrust (N) under a small yaw demand, in the mixer's model of motor and arm.
 fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
     let p = Params {
         gain_k: gain_k as f32,
@@ -78,17 +78,16 @@ fn mixer_swing(variant: Variant, gain_k: f64) -> f64 {
 struct Hover {
     infill: f64,
     gain_k: f64,
-    /// Thrust per rotor, N.
+    /// N per rotor.
     thrust: f64,
 }
 
 impl Hover {
-    /// Factor of one step of Algorithm 1 on a yaw pattern.
+    /// Factor of a step of Algorithm 1 on a yaw pattern.
     fn multiplier(&self, infill: f64, gain_k: f64) -> f64 {
         AtThrust::new(infill, gain_k, self.thrust).one_step(1.0)
     }
 
-    /// Gain K above which the multiplier exceeds `bound`.
     fn gain_of(&self, bound: f64) -> f64 {
         let over = |k: f64| self.multiplier(self.infill, k).abs() - bound;
         root(0.1, 9.0, over).unwrap_or(f64::NAN)
@@ -147,9 +146,8 @@ pub fn show(s: &mut Section, p: &Printed, thrust: f64) {
 }
 
 struct Multipliers {
-    /// Closed form and loop per infill.
     series: Vec<Series>,
-    /// Largest relative difference of the two.
+    /// Largest relative difference of closed form and loop.
     worst: f64,
 }
 
@@ -176,7 +174,6 @@ impl Multipliers {
     }
 }
 
-/// Yaw pattern over the loop's steps, for several gains.
 fn patterns(hover: &Hover) -> Chart {
     let of_gain = |(k, colour): (f64, usize)| {
         let run = one_step_loop(hover.infill, k, START, 30);
@@ -194,7 +191,7 @@ fn patterns(hover: &Hover) -> Chart {
     }
 }
 
-/// Range of rotor 1's thrust over the gain, with the closed form's onset at `k_cycles`.
+/// Range of rotor 1's thrust over gain; the closed form's onset is `k_cycles`.
 fn swings(gains: &[f64], infill: f64, k_cycles: f64) -> Chart {
     let swing = |name: &str, colour: usize, variant: Variant| {
         let points = parallel::each(gains, |k| (*k, mixer_swing(variant, *k)));

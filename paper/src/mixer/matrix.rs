@@ -1,4 +1,4 @@
-//! The printed mixer matrix, corrections of it, and their ranks.
+//! The printed mixer matrix, its corrections and their ranks.
 
 use sophie_control::params::Params;
 use sophie_control::wrench::{FORE, SIDE, YAW};
@@ -10,7 +10,6 @@ use super::super::statics::{AtThrust, root};
 /// Rows f_z, τ_φ, τ_θ, τ_ψ over C_T.
 type Matrix = [[f64; 4]; 4];
 
-/// The matrix at arm tilt `tilt` rad, with a yaw row.
 fn matrix(tilt: f64, yaw: [f64; 4]) -> Matrix {
     let p = Params::default();
     let (d, b) = (f64::from(p.arm_d), f64::from(p.arm_b));
@@ -24,11 +23,11 @@ fn matrix(tilt: f64, yaw: [f64; 4]) -> Matrix {
 
 struct Rank {
     rank: usize,
-    /// |determinant| over that of the rigid, level frame.
+    /// |determinant| over the rigid, level frame's.
     determinant: f64,
 }
 
-/// Rank and |determinant| by elimination with row pivoting; rows over the lengths of the rigid, level frame's.
+/// By elimination with row pivoting; rows over the rigid, level frame's lengths.
 fn rank(mut m: Matrix) -> Rank {
     let p = Params::default();
     for (row, unit) in m.iter_mut().zip([1.0, p.arm_d, p.arm_b, p.torque_ratio]) {
@@ -60,8 +59,8 @@ struct Named {
     matrix: Matrix,
 }
 
-/// The printed matrix, the readings of its yaw row, and those with the sideways thrust: in hover, and at the thrust per
-/// rotor (N) where the divisor of a frozen inverse changes sign.
+/// The printed matrix, readings of its yaw row, and those with sideways thrust: in hover, and at the thrust per rotor
+/// (N) where the frozen inverse's divisor changes sign.
 fn all(p: &Printed, hover: &AtThrust, reversal: f64) -> [Named; 6] {
     let k_q = f64::from(Params::default().torque_ratio);
     let tilt = hover.sin.atan2(hover.cos);
@@ -87,7 +86,6 @@ fn all(p: &Printed, hover: &AtThrust, reversal: f64) -> [Named; 6] {
     ]
 }
 
-/// The default vehicle's arm at a thrust (N).
 fn at(thrust: f64) -> AtThrust {
     AtThrust::new(6.9, f64::from(Params::default().gain_k), thrust)
 }

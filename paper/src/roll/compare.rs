@@ -20,7 +20,6 @@ pub fn with_flights(s: &mut Section, p: &Printed, flights: &Flights) {
     );
 }
 
-/// A row of Table III beside the flights of its infill.
 struct Row<'a> {
     row: &'a Roll,
     flights: &'a Flights,
@@ -38,7 +37,7 @@ impl Row<'_> {
         }
     }
 
-    /// Δα_max, with the step's hardness from ΔT/T = `share`.
+    /// Δα_max; ΔT/T = `share` sets the step's hardness.
     fn delta_alpha(&self, share: f64) -> [Comparison; 3] {
         let fitted = self.flights.fitted;
         let command = format!("hardness of the step from ΔT/T = {share} at ρ 8 %, K from this column");
@@ -68,7 +67,6 @@ impl Row<'_> {
         ]
     }
 
-    /// κ by the exact force.
     fn kappa(&self) -> [Comparison; 2] {
         let kappa = |what: &str, arms| {
             let found = self.flights.found(RIGID_HARD, self.row.infill_percent, arms);
@@ -82,7 +80,7 @@ impl Row<'_> {
         ]
     }
 
-    /// What a softer command saves of φ + Δα.
+    /// Reduction of φ + Δα by a softer command.
     fn ratio(&self) -> [Comparison; 2] {
         let ratio = |what: &str, arms| {
             let of = |case| self.flights.found(case, self.row.infill_percent, arms);

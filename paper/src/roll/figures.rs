@@ -33,7 +33,6 @@ pub fn columns(s: &mut Section, p: &Printed, flights: &Flights) {
     );
 }
 
-/// A flown number by infill and kind of arms.
 type Flown<'a> = dyn Fn(f64, Arms) -> Option<f64> + 'a;
 
 fn column_series(p: &Printed, fitted: Arms, printed: &dyn Fn(&Roll) -> f64, here: &Flown<'_>) -> Vec<Series> {
@@ -128,7 +127,6 @@ impl Drawn<'_> {
         curves.collect()
     }
 
-    /// Mean tilts of left and right arms under the flexible mixer.
     fn tilts(&self) -> Vec<Series> {
         let mut series = vec![];
         for (case, look, word) in [

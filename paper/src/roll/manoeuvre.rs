@@ -1,4 +1,4 @@
-//! The roll manoeuvre, what Table III asks of it, and the searches for its two free numbers.
+//! The roll manoeuvre, Table III's numbers, and the searches for its two free ones.
 
 use std::f32::consts::TAU;
 
@@ -20,7 +20,7 @@ pub const SECONDS: f64 = 3.0;
 /// The roll command.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Command {
-    /// A step with this rate gain (1/s), attitude gain 12 1/s, no prefilter: as hard as the paper's.
+    /// Step with this rate gain (1/s), attitude gain 12 1/s, no prefilter: hard as the paper's.
     Hard(f64),
     /// The stack's own gains and prefilter.
     Soft,
@@ -31,7 +31,7 @@ pub enum Command {
 pub enum Arms {
     /// Massless, damping ratio 0.7: the paper's statics.
     Static,
-    /// Massless, with the damping ratio that gives the printed Δα at ρ 8 %.
+    /// Massless, damped to the printed Δα at ρ 8 %.
     Fitted(f64),
     /// With tip mass, as in every other flight.
     Heavy,
@@ -93,13 +93,13 @@ pub fn manoeuvre(job: Job, angle: f64) -> Flown {
 pub struct Found {
     /// Largest Δα, rad.
     pub delta_alpha: f64,
-    /// Largest ΔT over the thrust of a left and a right rotor.
+    /// Largest ΔT over the thrust of both rotors.
     pub thrust_share: f64,
     /// Largest φ + Δα, rad.
     pub effective: f64,
     /// Largest roll, rad.
     pub roll: f64,
-    /// Largest sideways force of the leaning arms over that of the rolled thrust.
+    /// Largest sideways force of leaning arms over that of the rolled thrust.
     pub kappa: f64,
 }
 
@@ -117,13 +117,13 @@ pub fn found(flown: &Flown) -> Option<Found> {
     })
 }
 
-/// Sideways force of the leaning thrusts, N, right positive.
+/// Sideways force, N, right positive.
 pub fn sideways(m: &Moment) -> f64 {
     let side = |i: usize| if i < 2 { 1.0 } else { -1.0 };
     (0..4).map(|i| side(i) * m.thrust[i] * m.tilt[i].sin()).sum()
 }
 
-/// Rate gain (1/s) at which a step with massless arms reaches ΔT/T = `share` at ρ 8 %.
+/// Rate gain (1/s) for ΔT/T = `share` at ρ 8 %, massless arms.
 pub fn hard_gain(angle: f64, share: f64) -> f64 {
     let reached = |gain: f64| {
         let job = Job {
@@ -146,7 +146,7 @@ pub fn hard_gain(angle: f64, share: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Damping ratio of massless arms at which the hard step gives the printed Δα_max at ρ 8 %.
+/// Damping ratio of massless arms for the printed Δα_max of the hard step at ρ 8 %.
 pub fn fitted_damping(p: &Printed, angle: f64, command: Command) -> f64 {
     let printed = p
         .table_3

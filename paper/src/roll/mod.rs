@@ -1,4 +1,4 @@
-//! Figs. 7 and 8, Table III: the 25° roll manoeuvre, its arms and its sideways force.
+//! Figs. 7 and 8, Table III: the 25° roll, its arms and sideways force.
 
 mod compare;
 mod figures;
@@ -29,15 +29,15 @@ const FLEXIBLE_SOFT: usize = 2;
 struct Flights {
     cases: [Case; 3],
     infills: Vec<f64>,
-    /// Massless arms with the damping ratio that meets Table III at ρ 8 %.
+    /// Massless, damped to Table III at ρ 8 %.
     fitted: Arms,
-    /// Case and manoeuvre per flight.
+    /// Case, and flight.
     jobs: Vec<(usize, Job)>,
     flown: Vec<Flown>,
 }
 
 impl Flights {
-    /// Flies the hard step with rate gain `gain` (1/s), and the stack's own command to Table III's roll.
+    /// Flies the hard step with rate gain `gain` (1/s), and the stack's command to Table III's roll.
     fn fly(p: &Printed, gain: f64) -> Self {
         let angle = p.text.roll_deg.to_radians();
         let hard = Command::Hard(gain);
@@ -80,7 +80,6 @@ impl Flights {
         self.of(case, infill, arms).and_then(found)
     }
 
-    /// Largest Δα, degrees.
     fn bent(&self, case: usize, infill: f64, arms: Arms) -> f64 {
         let found = self.found(case, infill, arms);
         found.map_or(f64::NAN, |f| f.delta_alpha.to_degrees())

@@ -3,13 +3,13 @@
 use super::super::model::{Class, Comparison, Section};
 use super::super::printed::Printed;
 
-/// Compares the columns of Table III with each other.
+/// Compares Table III's columns with each other.
 pub fn against_itself(s: &mut Section, p: &Printed) {
     let rows = kappa_rows(p).into_iter().chain(ratio_rows(p));
     s.compare("Table III against itself", rows.collect());
 }
 
-/// The column of κ against its two equations.
+/// κ against its two equations.
 fn kappa_rows(p: &Printed) -> Vec<Comparison> {
     let (angle, share) = (p.text.roll_deg.to_radians(), p.text.delta_thrust_share);
     let mut rows = vec![];
@@ -38,7 +38,7 @@ fn kappa_rows(p: &Printed) -> Vec<Comparison> {
     rows
 }
 
-/// The ratios against the largest possible in a roll to 25°.
+/// Ratios against the largest possible in a roll to 25°.
 fn ratio_rows(p: &Printed) -> Vec<Comparison> {
     let mut rows = vec![];
     for row in &p.table_3 {
@@ -57,12 +57,12 @@ fn ratio_rows(p: &Printed) -> Vec<Comparison> {
     rows
 }
 
-/// κ by Eq. 11, from a Δα (rad) between two pairs with ΔT/(T1+T3) = `share`, at the roll `roll` (rad).
+/// κ by Eq. 11, from Δα (rad) between two pairs with ΔT/(T1+T3) = `share`, at `roll` (rad).
 pub fn eq_11(delta_alpha: f64, share: f64, roll: f64) -> f64 {
     delta_alpha * share / roll.sin()
 }
 
-/// Exact: (T1 sin α1 - T3 sin α3) over (T1 cos α1 + T3 cos α3) sin φ, arms symmetric about level.
+/// (T1 sin α1 - T3 sin α3) over (T1 cos α1 + T3 cos α3) sin φ, arms symmetric about level.
 fn exact(delta_alpha: f64, share: f64, roll: f64) -> f64 {
     let (t1, t3) = (0.5 * (1.0 + share), 0.5 * (1.0 - share));
     let half = 0.5 * delta_alpha;

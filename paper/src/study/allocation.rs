@@ -11,11 +11,10 @@ use sophie_sim::mixers::{Law, Situation, WithLimits};
 /// An allocation for study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Studied {
-    /// Algorithm 1 with the sideways thrust in its yaw row: α from the last step's thrust, the whole effectiveness at
-    /// that α inverted.
+    /// Algorithm 1 with sideways thrust in its yaw row: inverse effectiveness at α of the last step's thrust.
     Verbatim,
-    /// The quasi-static Jacobian with either sign of its yaw row; yaw is given up only where that authority is small:
-    /// what configuration A needs.
+    /// Quasi-static Jacobian with either sign of its yaw row, as configuration A needs; gives up yaw only at small
+    /// authority.
     SignAware,
 }
 
@@ -26,8 +25,7 @@ impl Studied {
     }
 }
 
-/// Yaw authority over k_q at which [`Studied::SignAware`] gives yaw up and has all of it: in A it crosses zero during
-/// spool-up.
+/// Yaw authority over k_q at which [`Studied::SignAware`] has none and all: in A it crosses zero during spool-up.
 const FADE: (f32, f32) = (0.5, 1.2);
 
 /// The law of a [`Studied`] allocation.
@@ -49,7 +47,7 @@ impl StudiedLaw {
         }
     }
 
-    /// Inverse at Algorithm 1's α; the collective is memoryless.
+    /// Inverse at Algorithm 1's α; memoryless collective.
     fn verbatim(&self, w: Wrench) -> Split {
         let tilt = self.last.map(|t| self.algorithm_1.angle(t, 1.0));
         let Some(inverse) = Inverse::new(&Effectiveness::frozen(&self.geometry, &tilt)) else {
@@ -66,7 +64,7 @@ impl StudiedLaw {
         Split { patterns, fade: 1.0 }
     }
 
-    /// Inverse of the Jacobian about the low-passed thrusts; the collective continues from them.
+    /// Inverse of the Jacobian about the low-passed thrusts, from which the collective continues.
     fn sign_aware(&self, w: Wrench, s: &Situation<'_>) -> Split {
         let (thrusts, tilt) = (s.tilt.thrusts(), s.tilt.tilt());
         let mut e = Effectiveness::quasi_static(&self.geometry, &tilt, &s.tilt.follow());
@@ -92,7 +90,7 @@ impl StudiedLaw {
         for (c, thrust) in collective.iter_mut().zip(&thrusts) {
             *c += thrust;
         }
-        // Without yaw nothing else corrects the last thrusts' part of its pattern.
+        // Without yaw nothing else corrects the last thrusts' yaw pattern.
         let left = 0.25 * collective.iter().zip(&YAW).map(|(t, y)| t * y).sum::<f32>();
         for (c, y) in collective.iter_mut().zip(&YAW) {
             *c -= (1.0 - fade) * left * y;
@@ -105,7 +103,7 @@ impl StudiedLaw {
     }
 }
 
-/// Singular effectiveness: the collective alone.
+/// Collective only: the effectiveness is singular.
 fn without_moments(w: Wrench) -> Split {
     let patterns = Patterns {
         collective: [0.25 * w.thrust; 4],

@@ -1,7 +1,5 @@
-//! Experiments outside of missions: setpoints straight into the control loops, and the plant's response to a small
-//! change of thrust.
-//!
-//! Tasks, laws and plant are those that fly; pilot and commander are left out.
+//! Experiments outside missions: setpoints straight into the control loops, and the plant's response to a small change
+//! of thrust. Tasks, laws and plant are those that fly.
 
 pub mod allocation;
 pub mod perturbation;

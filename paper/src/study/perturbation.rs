@@ -1,5 +1,4 @@
-//! The plant's response to a small change of thrust: moments on a vehicle with arms at rest under given thrusts, from
-//! the plant's parts, without the flight stack's formulas.
+//! The plant's moments after a small change of thrust with settled arms, from its parts alone.
 
 use glam::{DQuat, DVec3};
 use sophie_control::wrench::PerArm;
@@ -12,7 +11,7 @@ use sophie_sim::plant::{GRAVITY, STEP};
 
 /// Settling time of the arms, s: 20 periods of a heavily damped mode.
 const REST: f64 = 2.0;
-/// Damping ratio meanwhile; the equilibrium does not depend on it.
+/// Meanwhile; the equilibrium does not depend on it.
 const DAMPING: f64 = 0.7;
 
 /// A vehicle under trial thrusts.
@@ -22,18 +21,18 @@ pub struct Trial {
     pub infill: f64,
     /// Gain on the elastic term of Eq. 1; 0 for rigid arms.
     pub gain_k: f64,
-    /// Sense of rotation: +1 for configuration B, -1 for A.
+    /// +1 for configuration B, -1 for A.
     pub chi: f64,
 }
 
 impl Trial {
-    /// Force along -z (N) and moments about x, y, z (N·m) at the rotors' `thrusts` (N), arms at rest.
+    /// Force along -z (N) and moments (N·m) at `thrusts` (N) with settled arms.
     #[must_use]
     pub fn wrench(&self, thrusts: PerArm<f64>) -> [f64; 4] {
         let spec = BodySpec::default();
         let body = Body::new(&spec, false);
         let rotor = RotorSpec::default();
-        // The plant has no rigid arms: nominal ones are held level instead.
+        // The plant has no rigid arms: nominal ones are held level.
         let arm_spec = ArmSpec::new(self.infill, self.gain_k.max(1e-3), 1.0, 0.0, DAMPING);
         let mut arms: PerArm<Arm> = std::array::from_fn(|i| Arm::new(i, arm_spec));
         for (arm, thrust) in arms.iter_mut().zip(thrusts) {

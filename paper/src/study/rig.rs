@@ -1,4 +1,4 @@
-//! Experiments on the flight level alone: take-off, `wish`, and the truth every millisecond.
+//! Experiments on the flight level alone: take-off, `wish`, the truth every millisecond.
 
 use glam::DVec3;
 use sophie_control::wrench::PerArm;
@@ -11,13 +11,13 @@ use sophie_tasks::links::Setpoint;
 
 use super::allocation::Studied;
 
-/// Rest before take-off, s: the gyroscope is calibrated.
+/// For the gyroscope's calibration, s.
 const REST: f64 = 4.0;
 /// From take-off to the experiment, s.
 pub const SETTLE: f64 = 6.0;
-/// Largest thrust of the height hold, N.
+/// Limit of the height hold, N.
 const THRUST_MAX: f64 = 40.0;
-/// Time from take-off in which the heading may slip, s: yaw is gated during spool-up.
+/// s: yaw is gated, and the heading may slip.
 const SPOOL_UP: f64 = 2.0;
 /// Roll or pitch of a lost vehicle, rad.
 const UPSET: f64 = 1.4;
@@ -26,7 +26,7 @@ const SPUN: f64 = 1.05;
 /// Yaw rate of a lost vehicle, rad/s.
 const SPIN: f64 = 4.0;
 
-/// Demand and disturbance at a time (s) of the experiment.
+/// Demand and disturbance at a time of the experiment.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wish {
     /// Roll, rad.
@@ -46,18 +46,17 @@ pub struct Moment {
     pub t: f64,
     /// True roll, pitch, yaw, rad.
     pub attitude: [f64; 3],
-    /// Roll and pitch aimed at; heading asked for: the initial one plus every turn since, regardless of the controller;
-    /// rad.
+    /// Roll, pitch and heading, rad; heading is the initial one plus every turn since, regardless of the controller.
     pub target: [f64; 3],
     /// True velocity, m/s, NED.
     pub velocity: DVec3,
     /// True body rates, rad/s.
     pub rate: DVec3,
-    /// True tilt of each arm, rad.
+    /// rad.
     pub tilt: PerArm<f64>,
-    /// Tilt by the arm's sensor, rad; NaN if none.
+    /// By the arm's sensor, rad; NaN if none.
     pub tilt_measured: PerArm<f64>,
-    /// Bias of each arm learnt by the mixer, rad.
+    /// Arm bias learnt by the mixer, rad.
     pub bias: PerArm<f64>,
     /// True thrust, N.
     pub thrust: PerArm<f64>,
@@ -70,11 +69,10 @@ pub struct Moment {
 pub struct Flown {
     /// Every millisecond of the experiment.
     pub moments: Vec<Moment>,
-    /// Time of the loss, s from the start of the experiment; negative before.
+    /// Time of the loss from the start, s; negative before.
     pub lost: Option<f64>,
 }
 
-/// The vehicle of `scenario`, with `studied` as its mixer.
 fn rig(scenario: &Scenario, studied: Option<Studied>) -> Rig {
     let (variant, configuration) = (scenario.mixer, scenario.vehicle.configuration);
     match studied {
@@ -83,7 +81,7 @@ fn rig(scenario: &Scenario, studied: Option<Studied>) -> Rig {
     }
 }
 
-/// Upset, spinning, or, where a heading is kept, far off it.
+/// Upset, spinning, or far off a kept heading.
 fn lost(rig: &Rig, heading: Option<f64>) -> bool {
     let [roll, pitch, yaw] = rig.plant.euler();
     let off = heading.map_or(0.0, |wanted| (yaw - wanted).sin().atan2((yaw - wanted).cos()));
@@ -92,7 +90,7 @@ fn lost(rig: &Rig, heading: Option<f64>) -> bool {
     upset || !omega.is_finite() || omega.z.abs() > SPIN
 }
 
-/// Truth and measurements `t` s into the experiment, `heading` (rad) asked for.
+/// At `t` s, with the demanded `heading` (rad).
 fn moment(rig: &Rig, t: f64, heading: f64) -> Moment {
     let wide = |v: PerArm<f32>| v.map(f64::from);
     let mix = rig.links.mix.latest().map(|m| m.value).unwrap_or_default();
@@ -112,16 +110,13 @@ fn moment(rig: &Rig, t: f64, heading: f64) -> Moment {
     }
 }
 
-/// rad.
 fn aimed_heading(rig: &Rig) -> f64 {
     let target = rig.links.target.latest();
     rig.plant.euler()[2] + target.map_or(0.0, |v| f64::from(v.value.ahead))
 }
 
-/// Hovers `scenario`'s vehicle at 3 m under a simple height hold, then follows `wish` for `seconds`. The scenario's
-/// steps are not flown; `studied` replaces its mixer.
-///
-/// Deterministic to the bit.
+/// Hovers `scenario`'s vehicle at 3 m, then follows `wish` for `seconds` instead of its steps; `studied` replaces the
+/// mixer. Deterministic to the bit.
 pub fn fly(scenario: &Scenario, studied: Option<Studied>, seconds: f64, wish: impl Fn(f64) -> Wish) -> Flown {
     let mut rig = rig(scenario, studied);
     for _ in 0..(REST * 1e3) as usize {

@@ -1,8 +1,7 @@
 //! Random touches of the pipe: beside the crown, leaning, drifting, cancelled at any time.
 //!
-//! The whole stack flies on a receiver's bytes. The vehicle hovers high up, is moved over the pipe while it leans (no
-//! sensor measures where it is), and sinks onto it. The mode logic does the rest, until a pilot who sees the vehicle
-//! leave the pipe climbs away after his reaction time.
+//! The whole stack flies on a receiver's bytes. The vehicle hovers, is moved over the pipe while it leans (no sensor
+//! measures position), and sinks onto it. A pilot who sees it leave the pipe climbs away.
 
 use std::collections::VecDeque;
 
@@ -19,30 +18,30 @@ use sophie_sim::plant::Plant;
 use sophie_sim::plant::contact::{ArmSkin, BELLY_Z, STATIONS};
 use sophie_sim::scenario::Scenario;
 
-/// Deadline of calibration and arming, s.
+/// s.
 const ARMED_BY: f64 = 12.0;
 /// Hover before the touch, and the lean at its end, s.
 const HOVER: f64 = 2.0;
 const LEANING: f64 = 0.8;
-/// Height of the hover, m.
+/// m.
 const HEIGHT: f64 = 12.0;
-/// Clearance over the pipe at the start, m.
+/// Over the pipe at the start, m.
 const CLEARANCE: f64 = 0.01;
-/// From there to the end, s.
+/// Time from there, s.
 const DURATION: f64 = 14.0;
 /// Of the pilot, s.
 const REACTION: f64 = 0.35;
-/// Throttle of the set-down, and the rate of that stick, 1/s.
+/// Throttle of the set-down, and its slew rate, 1/s.
 const SET_DOWN: f64 = 0.40;
 const EASE: f64 = 0.5;
 /// Lean (rad) and depth below the touch height (m) at which the pilot sees it slide.
 const SEEN_LEAN: f64 = 0.5;
 const SEEN_DEPTH: f64 = 0.06;
-/// Depth below the touch height of a lost vehicle, m: the ground under the lowest pipe.
+/// Below the touch height, m: the ground under the lowest pipe.
 const LOST_DEPTH: f64 = 0.95;
-/// Height over the touch height of a vehicle clear of the pipe, m.
+/// Height over the touch height clear of the pipe, m.
 const CLEAR: f64 = 0.4;
-/// Time on the pipe before the arms open, s.
+/// On the pipe before the arms open, s.
 const STAY: f64 = 2.0;
 const RELEASE: f64 = 0.25;
 
@@ -65,21 +64,21 @@ pub struct Touch {
     pub gust: f64,
     /// Throttle while the arms close.
     pub throttle: f64,
-    /// Perch switch off this long after the touch, s; infinite: never.
+    /// Time from touch to perch switch off, s; infinite: never.
     pub cancel: f64,
     /// Seed of sensor errors and gusts.
     pub seed: u64,
 }
 
 impl Touch {
-    /// Within ±150 mm, ±25°, pipes of 0.2 to 0.4 m, friction 0.3 to 0.8; half of them cancelled.
+    /// Within ±150 mm, ±25°, pipes of 0.2 to 0.4 m, friction 0.3 to 0.8; half cancelled.
     #[must_use]
     pub fn random(seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let mut within = |from: f64, to: f64| from + (to - from) * rng.random::<f64>();
         let diameter = within(0.2, 0.4);
         Self {
-            // On a thinner pipe this range would miss.
+            // Within the width of a thinner pipe.
             offset: within(-0.15, 0.15).clamp(-0.48 * diameter, 0.48 * diameter),
             lean: within(-25.0, 25.0).to_radians(),
             sink: within(0.05, 0.4),
@@ -100,7 +99,7 @@ impl Touch {
 /// How a touch ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// Gripped on the pipe; with the switch off, leaning too far to let go.
+    /// On the pipe; with the switch off, leaning too far to let go.
     Perched,
     /// In the air after a perch.
     Released,
@@ -129,7 +128,7 @@ pub struct Touched {
 
 struct Hand {
     sticks: Sticks,
-    /// Modes displayed over the last reaction time.
+    /// Modes displayed within the reaction time.
     display: VecDeque<Mode>,
     perched: f64,
     releases: bool,
@@ -164,7 +163,6 @@ impl Try {
         }
     }
 
-    /// One millisecond with these sticks.
     fn step(&mut self, sticks: &Sticks) {
         self.ms += 1;
         self.stack.step_world(&mut self.plant);
@@ -173,7 +171,6 @@ impl Try {
             self.elapsed -= 1.0 / FRAME_HZ;
             self.stack.receive(&rc_frame(sticks));
         }
-        // Tasks in virtual time always run.
         let _ = self.stack.run_until(self.ms * 1000);
     }
 
@@ -181,14 +178,13 @@ impl Try {
         self.plant.euler()[0]
     }
 
-    /// Throttle to climb at `rate` m/s.
     fn climb(&self, rate: f64) -> f32 {
         let hover =
             f64::from(self.scenario.params.mass) * 9.81 / (4.0 * f64::from(self.scenario.params.thrust_max));
         (hover + 0.25 * (rate + self.plant.pose().velocity.z)).clamp(0.2, 0.9) as f32
     }
 
-    /// Arms and hovers, leaning at the end; false if it would not arm.
+    /// Arms and hovers, leaning at the end; false if arming fails.
     fn take_off(&mut self, lean: f64) -> bool {
         let mut sticks = Sticks::default();
         while self.stack.mode() != Mode::Armed {
@@ -211,7 +207,7 @@ impl Try {
         true
     }
 
-    /// Puts the vehicle over the pipe; returns the down coordinate of its centre of mass at the touch, m.
+    /// Returns the down coordinate at the touch, m.
     fn put_over(&mut self, touch: &Touch) -> f64 {
         let world = &self.scenario.world;
         let [north, east] = world.pipe_position;
@@ -231,7 +227,7 @@ impl Try {
     }
 }
 
-/// Centre of mass below the pipe's axis (negative above) when the first point of belly or arms touches, m.
+/// Distance of the centre of mass below the pipe's axis (negative above) at the first contact of belly or arms, m.
 fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f64 {
     let belly = [-0.03, 0.03].map(|y| DVec3::new(0.0, y, BELLY_Z));
     let arms = (0..4).flat_map(|arm| STATIONS.map(|s| ArmSkin::new(arm).point(tilt[arm], s).0));
@@ -246,7 +242,7 @@ fn touch_height(attitude: DQuat, offset: f64, radius: f64, tilt: [f64; 4]) -> f6
         .fold(-BELLY_Z, f64::min)
 }
 
-/// Flies a touch; `None` if the vehicle would not arm.
+/// `None` if arming fails.
 #[must_use]
 pub fn fly(touch: &Touch) -> Option<Touched> {
     let mut flight = Try::new(touch);

@@ -1,7 +1,7 @@
 //! Virtual time: embassy clock and executor of one flight, confined to its thread.
 //!
 //! The clock stands still while tasks run and jumps to the next alarm when all wait. It is thread-local behind the
-//! process-wide embassy-time driver: flights in parallel threads are independent.
+//! process-wide embassy-time driver: parallel flights are independent.
 
 use std::cell::{Cell, RefCell};
 use std::future::Future;
@@ -52,13 +52,13 @@ unsafe impl critical_section::Impl for OneThread {
     unsafe fn release(_state: ()) {}
 }
 
-/// Clock and executor of a flight; one at a time per thread.
+/// Clock and executor of a flight; one per thread at a time.
 pub struct VirtualTime {
     executor: &'static raw::Executor,
 }
 
 impl VirtualTime {
-    /// A clock at 0 and an executor without tasks; clears this thread's state of an earlier flight.
+    /// Clears the thread's state of an earlier flight.
     #[must_use]
     #[allow(
         clippy::new_without_default,
@@ -69,7 +69,7 @@ impl VirtualTime {
         NEXT.set(u64::MAX);
         QUEUE.set(Queue::new());
         PENDED.set(false);
-        // Leaked: the flight's wakers may point to it for the life of the process.
+        // Leaked: wakers may point to it for the life of the process.
         Self {
             executor: Box::leak(Box::new(raw::Executor::new(core::ptr::null_mut()))),
         }
@@ -83,7 +83,7 @@ impl VirtualTime {
         }
     }
 
-    /// Runs the tasks, from alarm to alarm, until the clock shows `until_us`.
+    /// Runs the tasks from alarm to alarm until `until_us`.
     pub fn run_until(&self, until_us: u64) {
         self.settle();
         loop {
@@ -91,7 +91,7 @@ impl VirtualTime {
             NOW.set(now);
             QUEUE.with_borrow_mut(|queue| NEXT.set(queue.next_expiration(now)));
             self.settle();
-            // Alarms due now are served before the clock advances.
+            // Alarms due now come before the clock advances.
             if now >= until_us && NEXT.get() > until_us {
                 break;
             }

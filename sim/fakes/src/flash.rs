@@ -1,4 +1,4 @@
-//! NOR flash in memory: bits change from 1 to 0 only, pages are erased whole, power can be cut within a step.
+//! NOR flash in memory: bits change only from 1 to 0, pages are erased whole, power can fail within a step.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use embedded_storage_async::nor_flash::{
 pub struct Cells {
     /// Contents.
     pub bytes: Vec<u8>,
-    /// Words written since their erase: a 32-byte word with its checksum takes one write only.
+    /// Words written since their erase: a 32-byte word with its checksum takes one write.
     written: Vec<bool>,
     /// Words written plus pages erased.
     pub steps: usize,
@@ -123,7 +123,6 @@ impl<const WRITE: usize, const PAGE: usize> NorFlash for Flash<WRITE, PAGE> {
             }
             cells.steps += 1;
             cells.erases += 1;
-            // A cut erase has reached a part of the page.
             let end = if cut { page + PAGE / 2 } else { page + PAGE };
             cells.bytes[page..end].fill(0xFF);
             cells.written[page / WRITE..end / WRITE].fill(false);
@@ -144,7 +143,7 @@ impl<const WRITE: usize, const PAGE: usize> NorFlash for Flash<WRITE, PAGE> {
                 return Err(FlashError);
             }
             let at = start + i * WRITE;
-            // A cut write has reached a part of the word.
+            // A cut write programs half of the bits.
             let cut = cells.cut_at == Some(cells.steps);
             cells.steps += 1;
             if WRITE > 8 && cells.written[at / WRITE] {

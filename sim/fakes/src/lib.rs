@@ -1,4 +1,4 @@
-//! Test doubles for hardware: scripted ports, and a flash whose power fails.
+//! Test doubles for hardware: scripted ports, and a flash with power cuts.
 
 mod flash;
 mod ports;

@@ -9,14 +9,13 @@ use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
 use crate::law::{Law, Situation};
 
-/// Damping ratio of the arm mode in [`DynamicTilt`] (assumed).
+/// Arm mode of [`DynamicTilt`] (assumed).
 const ARM_DAMPING: f32 = 0.15;
 
-/// Motor lag and bending mode of one arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct DynamicTilt {
     motor: LowPass,
-    /// Thrust with the arm's present tilt as static tilt, N.
+    /// Thrust whose static tilt is the present one, N.
     load: f32,
     speed: f32,
     omega: f32,
@@ -40,7 +39,7 @@ impl DynamicTilt {
     }
 }
 
-/// T = M(α)⁻¹ w, with α from a model of motor lag and arm mode.
+/// T = M(α)⁻¹ w, α from a model of motor lag and arm mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frozen {
     geometry: Geometry,
@@ -49,7 +48,7 @@ pub struct Frozen {
 }
 
 impl Frozen {
-    /// The law for the vehicle of the parameters, idle rotors.
+    /// With the parameters' vehicle, rotors idle.
     pub fn new(configuration: Configuration, p: &Params) -> Self {
         Self {
             geometry: Geometry::from_params(p, configuration),

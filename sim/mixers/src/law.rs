@@ -1,4 +1,4 @@
-//! The interface of an allocation law, and the limits around it.
+//! Interface of an allocation law, and the limits around it.
 
 use sophie_control::mixer::{Allocation, Conditions, Limits, Mix, Split};
 use sophie_control::params::Params;
@@ -10,7 +10,7 @@ use sophie_control::wrench::{PerArm, Wrench};
 pub struct Situation<'a> {
     /// Modelled arm tilt and low-passed thrusts.
     pub tilt: &'a TiltModel,
-    /// Yaw is asked for, and the thrust suffices for it.
+    /// Yaw is demanded, and thrust suffices for it.
     pub yaw: bool,
     /// Battery voltage over nominal, 0.5..1.
     pub battery_ratio: f32,
@@ -21,11 +21,11 @@ pub trait Law {
     /// Patterns for the wrench `w` (N, N·m, finite), and the share of yaw with authority.
     fn split(&self, w: Wrench, s: &Situation<'_>) -> Split;
 
-    /// Takes the sent thrusts (N) and the step time `dt` (s).
+    /// Takes the sent thrusts (N) of a step of `dt` s.
     fn follow(&mut self, _thrusts: &PerArm<f32>, _dt: f32) {}
 }
 
-/// A law with the limits and tilt model of the allocation that flies.
+/// Adds limits and tilt model of the allocation that flies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithLimits<L> {
     law: L,

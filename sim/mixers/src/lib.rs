@@ -1,7 +1,5 @@
-//! The allocations of `--mixer` and scenario files: three for study, and the one that flies.
-//!
-//! Each is a [`Law`] that splits a wrench into patterns of thrust; [`WithLimits`] adds the limits of rotors and yaw and
-//! the arms' tilt model of the flexible allocation.
+//! Allocations of `--mixer` and scenario files: three for study, one that flies. Each [`Law`] splits a wrench into
+//! patterns of thrust; [`WithLimits`] adds limits and the flexible allocation's tilt model.
 
 #![no_std]
 
@@ -25,11 +23,11 @@ use sophie_control::wrench::{Configuration, PerArm, Wrench};
 pub enum Variant {
     /// Rigid arms.
     Rigid,
-    /// Algorithm 1 with the printed matrix, its singular yaw row corrected: tilt enters the thrust row only.
+    /// Algorithm 1 with the printed matrix, its singular yaw row corrected; tilt only in the thrust row.
     Paper,
-    /// The whole effectiveness inverted at the frozen arm angle; limit-cycles.
+    /// Inverse effectiveness at the frozen arm angle; limit-cycles.
     Frozen,
-    /// The quasi-static Jacobian about the low-passed thrust: the one that flies.
+    /// Quasi-static Jacobian about the low-passed thrust: the one that flies.
     #[default]
     Flexible,
 }

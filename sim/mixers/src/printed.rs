@@ -1,4 +1,4 @@
-//! The paper's Algorithm 1 in the printed matrix, its singular yaw row corrected.
+//! Algorithm 1 with the printed matrix, its singular yaw row corrected.
 
 use sophie_control::deflection::{Algorithm1, ArmModel};
 use sophie_control::effectiveness::Geometry;
@@ -8,7 +8,7 @@ use sophie_control::wrench::{Configuration, PerArm, Wrench};
 
 use crate::law::{Law, Situation};
 
-/// Tilt by the last step's thrust; enters the thrust row only.
+/// Tilt by the last step's thrust, only in the thrust row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Printed {
     geometry: Geometry,
@@ -17,7 +17,7 @@ pub struct Printed {
 }
 
 impl Printed {
-    /// The law for the vehicle of the parameters, idle rotors.
+    /// With the parameters' vehicle, rotors idle.
     pub fn new(configuration: Configuration, p: &Params) -> Self {
         Self {
             geometry: Geometry::from_params(p, configuration),

@@ -48,14 +48,14 @@ fn hover_shares_the_weight_and_lifts_it() {
 
 #[test]
 fn the_rigid_mixer_yaws_too_much_by_one_plus_c() {
-    // C is about -3.9 at K 7.75, ρ 6.9: the arms answer a yaw command in the same sense.
+    // C is about -3.9 at K 7.75, ρ 6.9: the arms amplify a yaw command.
     let w = Wrench { yaw: 0.01, ..HOVER };
     let (_, mix) = settled(Variant::Rigid, w);
     let p = Params::default();
     let model = ArmModel::from_params(&p);
     let g = Geometry::from_params(&p, Configuration::B);
     let got = g.wrench(&mix.thrusts, &mix.thrusts.map(|t| model.angle(t)));
-    // C = 1 - (dM/dδ) / (dM₀/dδ), along the yaw pattern about hover, with and without following arms.
+    // C = 1 - (dM/dδ) / (dM₀/dδ) along the yaw pattern about hover, arms following and not.
     let yaw = |step: f32, tilt: &dyn Fn(f32) -> f32| {
         let thrusts = YAW.map(|sign| 4.425 + step * sign);
         g.wrench(&thrusts, &thrusts.map(tilt)).yaw
@@ -71,7 +71,7 @@ fn the_rigid_mixer_yaws_too_much_by_one_plus_c() {
 
 #[test]
 fn the_frozen_inverse_limit_cycles_where_c_is_large() {
-    // Motor lag and static arm around the allocation, with a constant small yaw demand.
+    // Motor lag and static arm around the allocation, small constant yaw demand.
     let swing = |variant, gain_k| {
         let p = Params {
             gain_k,
@@ -129,7 +129,7 @@ fn yaw_beyond_its_limit_is_reported_as_not_given() {
 
 #[test]
 fn yaw_moves_no_rotor_by_more_than_its_limit() {
-    // The rotors have room for 2.56 N (flexible) and 3.1 N (rigid) of yaw each: only the limit acts.
+    // Room for 2.56 N (flexible) and 3.1 N (rigid) of yaw each: only the limit acts.
     let limit = Params::default().yaw_thrust_max;
     for (variant, yaw) in [
         (Variant::Flexible, 0.8),

@@ -1,4 +1,4 @@
-//! Rows of the batteries: how long the vehicle hovers and how long it holds, by the plant's own batteries and rotors.
+//! Check rows of the batteries: times of hover and of holding.
 
 use super::grip::TriedArm;
 use super::hover::Built;
@@ -9,17 +9,16 @@ use crate::plant::rotor::Rotor;
 use crate::plant::servo_power::{MG996R, endurance};
 use crate::scenario::{Scenario, Step};
 
-/// Step in which the battery is emptied, s.
+/// s.
 const STEP: f64 = 1.0;
-/// Longest time that is looked at, s: three hours.
+/// s: three hours.
 const LONGEST: f64 = 10_800.0;
-/// Seconds in a minute.
 const MINUTE: f64 = 60.0;
 
-/// Time of hover from the battery's charge until the failsafe lands.
+/// Time of hover until the failsafe lands.
 ///
-/// Value: time until the voltage under the current of four rotors in hover is down to `battery_critical`, min. Limit: what
-/// the mission surely takes in the air. A battery at that voltage has no time.
+/// Value: min until the voltage under the current of four hovering rotors falls to `battery_critical`. Limit: the
+/// mission's least time in the air.
 pub fn flight(scenario: &Scenario, built: &Built) -> Row {
     let v = &scenario.vehicle;
     let rotor = Rotor::turning(0, f64::from(v.configuration.chi()), v.rotor, built.hover);
@@ -42,7 +41,7 @@ pub fn flight(scenario: &Scenario, built: &Built) -> Row {
     .advise("charge the battery, fit a larger one, or plan a shorter flight")
 }
 
-/// Time that the pilot's steps take in the air at least, s.
+/// Least time of the pilot's steps in the air, s.
 fn in_the_air(scenario: &Scenario) -> f64 {
     let mut height = 0.0;
     let times = scenario.steps.iter().map(|step| match *step {
@@ -63,8 +62,8 @@ fn in_the_air(scenario: &Scenario) -> f64 {
 
 /// Time for which the servos' battery holds the grip.
 ///
-/// Value: its charge over the currents of the closed arms' servos at the torque that they hold with, min. Limit: what the
-/// mission holds. Servos without load draw their idle current.
+/// Value: charge over the closed arms' servo currents at their holding torque, min. Limit: the mission's time on the
+/// pipe.
 pub fn inspection(scenario: &Scenario, tries: &[TriedArm]) -> Row {
     let current: f64 = tries.iter().map(|arm| MG996R.at(arm.tried.steady)).sum();
     let held: f64 = scenario
@@ -92,7 +91,7 @@ mod tests {
     fn hover_time_by_hand_and_none_of_an_empty_battery() {
         let mut s = Scenario::default_mission();
         let row = flight(&s, &Built::of(&s));
-        // 192 W and 0.6 A at about 15 V are 13.4 A: 8.1 min to the last drop of 1.8 Ah.
+        // 192 W and 0.6 A at about 15 V are 13.4 A: 8.1 min for all of 1.8 Ah.
         assert!(row.pass && (7.0..8.2).contains(&row.value), "{row:?}");
         s.vehicle.battery_charge = 0.0;
         assert!(flight(&s, &Built::of(&s)).value.abs() < 1e-9);
@@ -106,7 +105,7 @@ mod tests {
             Step::Hover { seconds: 5.0 },
             Step::Land,
         ];
-        // At 0.7 m/s up and 0.5 m/s down.
+        // 0.7 m/s up and 0.5 m/s down.
         assert!((in_the_air(&s) - 29.0).abs() < 1e-9);
     }
 }

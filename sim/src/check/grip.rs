@@ -1,4 +1,4 @@
-//! Rows of the grip: the gripper that flies closes each arm on the pipe.
+//! Check rows of the grip: the gripper that flies closes each arm on the pipe.
 
 use glam::{DQuat, DVec3};
 use sophie_control::grip::ArmState;
@@ -12,26 +12,26 @@ use crate::plant::tendon::{ServoSpec, TendonSpec};
 use crate::plant::{STEP, arm_spec};
 use crate::scenario::{Scenario, Step};
 
-/// Throttle while closing of a mission that names none, as a scenario file's default.
+/// Closing throttle of a mission that names none: a scenario file's default.
 const THROTTLE: f64 = 0.3;
-/// Step of the tilt at which an arm is looked for that presses on the pipe, rad, and their number: down to -2 rad.
+/// Tilt step, rad, and number of steps in the search for an arm that presses on the pipe: down to -2 rad.
 const TILT_STEP: f64 = 1e-3;
 const DEEPEST: u32 = 2000;
 
-/// Share of the provable force that is kept for a touch beside the crown and for a sensor that reads low: the arm is tried
-/// centred and with a true sensor, and flights have taken up to 4.4 % more (docs/design-check.md).
+/// Reserve of the provable force: arms are tried centred with a true sensor, and flights have taken up to 4.4 % more
+/// (docs/design-check.md).
 const RESERVE: f64 = 0.05;
 
 /// An arm that was tried.
 #[derive(Clone, Copy, Debug)]
 pub struct TriedArm {
-    /// Which, 0 to 3.
+    /// Index, 0 to 3.
     pub arm: usize,
-    /// What became of it.
+    /// Its result.
     pub tried: Tried,
 }
 
-/// Tries every arm that the scenario closes; arms that are alike are tried once.
+/// Tries every arm that the scenario closes; equal arms once.
 #[must_use]
 pub fn tries(scenario: &Scenario) -> Vec<TriedArm> {
     let mut done: Vec<(BenchArm, TriedArm)> = Vec::new();
@@ -68,11 +68,11 @@ fn bench(scenario: &Scenario, arm: usize) -> BenchArm {
     }
 }
 
-/// Force of each arm's grip against what the gripper may ask for.
+/// Force of each arm's grip against the gripper's limit.
 ///
-/// Value: the largest force that the gripper asks of the tendon while the arm holds the grip pressure and its rotor stops,
-/// N; of an arm that it gives up, what the static balance takes with the rotor turning, where that is more.
-/// Limit: the force below which the gripper's law proves a grip, less a reserve of 5 %. A row passes only where that law says that the arm holds.
+/// Value: the largest force asked of the tendon while holding the grip pressure and stopping the rotor, N; for an arm
+/// given up, the static balance with the rotor turning if that is more. Limit: the largest force of a proven grip, less
+/// 5 %. Passes only if the gripper holds the arm.
 pub fn rows(scenario: &Scenario, tries: &[TriedArm]) -> Vec<Row> {
     let limit = (1.0 - RESERVE) * f64::from(Config::from_params(&scenario.params).provable());
     let row = |tried: &TriedArm| {
@@ -97,7 +97,6 @@ pub fn rows(scenario: &Scenario, tries: &[TriedArm]) -> Vec<Row> {
     tries.iter().map(row).collect()
 }
 
-/// What to do about an arm that does not hold.
 fn advice(tried: &Tried) -> String {
     let why = match (tried.grip.fault, tried.grip.state) {
         (Some(fault), _) => format!("the gripper gives it up ({})", fault.text()),
@@ -107,8 +106,8 @@ fn advice(tried: &Tried) -> String {
     format!("{why}: fit softer arms or a stronger servo, or choose a larger pipe")
 }
 
-/// Force (N) on the tendon of `arm` that holds it at the pressure `target` (Pa) on the scenario's pipe, the body level
-/// on its crown and the rotor at `thrust` (N): the static balance of rotor, spring, skin and tendon.
+/// Tendon force (N) that holds `arm` at the pressure `target` (Pa), body level on the crown, rotor at `thrust` (N):
+/// static balance of rotor, spring, skin and tendon.
 pub fn needed(scenario: &Scenario, arm: usize, thrust: f64, target: f64) -> Option<f64> {
     let radius = 0.5 * scenario.world.pipe_diameter;
     let pipe = Pipe {
@@ -170,7 +169,7 @@ mod tests {
         (s.params.infill, s.params.gain_k) = (8.0, 6.0);
         let stiff = rows(&s, &tries(&s));
         assert!(stiff.iter().all(|row| !row.pass), "{stiff:?}");
-        // Centred it would hold, with 156 of the 157 N that are proven; in flight it did not.
+        // Centred it would hold, with 156 of the 157 N that can be proven; in flight it did not.
         (s.vehicle.infill, s.vehicle.gain_k, s.world.pipe_diameter) = (8.337, 4.38, 0.28);
         (s.params.infill, s.params.gain_k) = (8.337, 4.38);
         let tried = tries(&s);

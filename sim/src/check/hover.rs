@@ -1,4 +1,4 @@
-//! The vehicle as built, in hover and at full thrust.
+//! The vehicle in hover and at full thrust.
 
 use sophie_control::effectiveness::{Effectiveness, Geometry};
 use sophie_control::wrench::PerArm;
@@ -8,11 +8,11 @@ use crate::plant::contact::{ARM_LENGTH, ARM_X};
 use crate::plant::{GRAVITY, arm_spec};
 use crate::scenario::{Scenario, Vehicle};
 
-/// Halvings in the search for the thrust of hover: to 1e-6 of the largest.
+/// For the hover thrust: to 1e-6 of the largest.
 const HALVINGS: u32 = 20;
-/// Change of thrust over which an arm's compliance is taken, N.
+/// For an arm's compliance, N.
 const THRUST_STEP: f64 = 1e-3;
-/// Largest tilt that the stack's small-angle sines take, rad.
+/// Limit of the stack's small-angle sines, rad.
 const TILT_MAX: f64 = 0.7;
 
 /// The vehicle of a scenario.
@@ -23,7 +23,7 @@ pub struct Built {
     chi: f64,
     /// Weight, N.
     pub weight: f64,
-    /// Thrust of a rotor in hover, N; that of level arms where not even all of it carries the vehicle.
+    /// Of a rotor in hover, N; with level arms if full thrust cannot carry the vehicle.
     pub hover: f64,
 }
 
@@ -50,7 +50,7 @@ impl Built {
         built
     }
 
-    /// Lift of four rotors at `thrust` N each, N: Σ T cos α(T). Level arms give all of it, arms at 60 degrees half.
+    /// Lift of four rotors at `thrust` N each, N: Σ T cos α(T).
     #[must_use]
     pub fn lift(&self, thrust: f64) -> f64 {
         self.arms
@@ -59,7 +59,7 @@ impl Built {
             .sum()
     }
 
-    /// Thrust of each rotor (N, at most `most`) that lifts `lift` N; `None` where none does.
+    /// In N, at most `most`, if any suffices.
     fn thrust_of(&self, lift: f64, most: f64) -> Option<f64> {
         let (mut low, mut high) = (0.0, most);
         if self.lift(high) < lift {
@@ -76,9 +76,8 @@ impl Built {
         Some(high)
     }
 
-    /// Yaw moment for each newton more on the rotors that turn it one way and less on the others, once the arms have
-    /// followed, m: positive where it turns as the stack's configuration expects. The stack's own effectiveness on the
-    /// plant's arms; k_q for arms that do not bend.
+    /// Yaw moment per newton of differential thrust with settled arms, m, from the stack's effectiveness; positive as
+    /// the configuration expects, k_q for stiff arms.
     #[must_use]
     pub fn yaw_effect(&self, thrust: f64) -> PerArm<f64> {
         let tilt = self.tilt(thrust);
@@ -91,7 +90,7 @@ impl Built {
             .map(|y| self.chi * f64::from(y))
     }
 
-    /// Stability derivative of yaw, C = 1 - y / k_q: below 0 bending arms help a yaw command, above 1 they turn it round.
+    /// C = 1 - y / k_q: below 0 bending arms amplify a yaw command, above 1 they reverse it.
     #[must_use]
     pub fn yaw_derivative(&self, thrust: f64) -> f64 {
         let effect = self.yaw_effect(thrust);
@@ -99,8 +98,8 @@ impl Built {
         1.0 - mean / f64::from(self.geometry.drag.abs())
     }
 
-    /// Lowest frequency of an arm's bending mode in hover, Hz, the body held: √(k/m)/2π with k = dT/dα / L the tangent
-    /// stiffness at the tip, N/m, and m the tip's mass.
+    /// Lowest bending mode in hover, body held, Hz: √(k/m)/2π, k = dT/dα / L the tangent stiffness at the tip, N/m, m
+    /// its mass.
     #[must_use]
     pub fn arm_mode(&self) -> f64 {
         let slope = |arm: &ArmSpec| {
@@ -111,7 +110,7 @@ impl Built {
         (softest / ARM_LENGTH / crate::plant::arm::TIP_MASS).sqrt() / std::f64::consts::TAU
     }
 
-    /// Tilts of the arms at `thrust` N, rad, within what the stack's sines take.
+    /// rad, limited to `TILT_MAX`.
     fn tilt(&self, thrust: f64) -> PerArm<f32> {
         self.arms
             .map(|arm| arm.static_tilt(thrust).clamp(-TILT_MAX, TILT_MAX) as f32)
@@ -126,14 +125,14 @@ mod tests {
     #[test]
     fn stiff_arms_have_the_stiff_frame_s_lift_and_yaw() {
         let mut s = Scenario::default_mission();
-        // 0.1 deg/N at K 1, level at half of the thrust: next to stiff.
+        // 0.1 deg/N at K 1, level at half thrust: nearly stiff.
         s.vehicle.arm_coefficients = [0.1, 0.0, 0.0, 0.0];
         s.vehicle.gain_k = 1.0;
         let built = Built::of(&s);
         assert!(
             (built.lift(5.0) / 20.0 - 1.0).abs() < 1e-5 && (built.hover - 0.25 * built.weight).abs() < 1e-4
         );
-        // What is left of the bending: b T dα/dT = 0.178 · 4.43 · 0.001745 = 1.4 mm of 16.
+        // Remaining effect of bending: b T dα/dT = 0.178 · 4.43 · 0.001745 = 1.4 mm of 16.
         assert!(
             built.yaw_effect(4.43).iter().all(|y| (y - 0.0174).abs() < 2e-4),
             "{:?}",
@@ -145,7 +144,7 @@ mod tests {
     fn the_derivative_has_the_paper_s_sign_and_the_mode_is_the_plant_s() {
         let mut s = Scenario::default_mission();
         let built = Built::of(&s);
-        // By hand in the paper's study: -3.89 without what the lean takes of the drag.
+        // By hand in the paper's study: -3.89 without the lean's effect on the drag.
         assert!(
             (built.yaw_derivative(4.425) + 3.89).abs() < 0.05,
             "{}",

@@ -1,8 +1,5 @@
-//! Whether a vehicle can fly its mission, before it does: rows of what it has against what it needs.
-//!
-//! Everything is computed from the scenario's plant and parameters by the plant's parts and the laws that fly: the rotors'
-//! thrust, the arms' statics, the mixer's patterns, the loops as they answer, the gripper as it closes. No number of either
-//! is written down again. `docs/design-check.md` explains each row.
+//! Whether a vehicle can fly its mission: what it has against what the mission needs, computed by the plant's parts and
+//! the laws that fly. `docs/design-check.md` explains each row.
 
 mod endurance;
 mod grip;
@@ -19,16 +16,15 @@ use self::hover::Built;
 pub use self::row::{Limit, Row};
 use crate::scenario::{Scenario, Step};
 
-/// What the check found.
+/// Result of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// The rows, in the order in which a builder looks at them.
+    /// Rows in a builder's order.
     pub rows: Vec<Row>,
 }
 
 impl Check {
-    /// Checks the vehicle of `scenario` for its mission. The rows of grip and pipe are there only for missions that touch
-    /// one.
+    /// Checks the vehicle of `scenario` for its mission; rows of grip and pipe only for missions that touch one.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let built = Built::of(scenario);
@@ -53,13 +49,13 @@ impl Check {
         Self { rows }
     }
 
-    /// Every row passes.
+    /// Whether every row passes.
     #[must_use]
     pub fn can_fly(&self) -> bool {
         self.rows.iter().all(|row| row.pass)
     }
 
-    /// The rows that do not.
+    /// Rows that do not pass.
     pub fn failing(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| !row.pass)
     }

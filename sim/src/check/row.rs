@@ -1,16 +1,16 @@
-//! A row of the check: a value, what it must be, and what to do where it is not.
+//! A row of the check: value, limit and advice.
 
-/// What a value must be.
+/// Required range of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
-    /// This or more.
+    /// Minimum.
     AtLeast(f64),
-    /// This or less.
+    /// Maximum.
     AtMost(f64),
 }
 
 impl Limit {
-    /// The number.
+    /// Its number.
     #[must_use]
     pub fn value(self) -> f64 {
         match self {
@@ -27,7 +27,7 @@ impl Limit {
         }
     }
 
-    /// A value that is no number keeps no limit.
+    /// NaN keeps no limit.
     fn kept_by(self, value: f64) -> bool {
         match self {
             Self::AtLeast(least) => value >= least,
@@ -39,22 +39,22 @@ impl Limit {
 /// One row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What is looked at.
+    /// Quantity.
     pub name: String,
-    /// What it is; not finite where there is no such value.
+    /// Not finite where there is no such value.
     pub value: f64,
     /// Unit of value and limit; empty for a pure number.
     pub unit: &'static str,
-    /// What it must be.
+    /// Required range.
     pub limit: Limit,
-    /// The vehicle can fly by this row.
+    /// The value keeps the limit.
     pub pass: bool,
-    /// What to do where it cannot.
+    /// What to do if it does not.
     pub advice: String,
 }
 
 impl Row {
-    /// A row that passes where the value keeps its limit.
+    /// A row that passes if `value` keeps `limit`.
     #[must_use]
     pub fn new(name: impl Into<String>, value: f64, unit: &'static str, limit: Limit) -> Self {
         Self {
@@ -67,7 +67,7 @@ impl Row {
         }
     }
 
-    /// The same with what to do where it fails.
+    /// Adds the advice for a failure.
     #[must_use]
     pub fn advise(self, advice: impl Into<String>) -> Self {
         Self {
@@ -76,13 +76,13 @@ impl Row {
         }
     }
 
-    /// The value, with its unit.
+    /// Value with unit.
     #[must_use]
     pub fn shown(&self) -> String {
         with_unit(self.value, self.unit)
     }
 
-    /// The limit, with its unit: `at least 1.38`.
+    /// Limit with unit: `at least 1.38`.
     #[must_use]
     pub fn limit_shown(&self) -> String {
         format!(
@@ -92,7 +92,7 @@ impl Row {
         )
     }
 
-    /// What a row that fails says: `thrust to weight 1.13, at least 1.38 needed`.
+    /// Text of a failed row: `thrust to weight 1.13, at least 1.38 needed`.
     #[must_use]
     pub fn shortfall(&self) -> String {
         let word = match self.limit {
@@ -103,7 +103,7 @@ impl Row {
     }
 }
 
-/// Three digits of a number, with its unit.
+/// Three digits.
 fn with_unit(value: f64, unit: &str) -> String {
     let number = match value.abs() {
         v if !v.is_finite() => "none".to_owned(),

@@ -1,20 +1,19 @@
-//! Rows of the control loops: what they bear before they oscillate, and the arms' own mode beside them.
+//! Check rows of the control loops: their margins, and the arms' bending mode.
 
 use super::hover::Built;
 use super::loops::{AXES, Margins};
 use super::row::{Limit, Row};
 
-/// Factor by which a loop's gain may be wrong: inertias are known to 30 %, and 0.7 of one is 1.43 of the gain.
+/// Inertias are known to 30 %, and 0.7 of one is 1.43 of the gain.
 const GAIN_MARGIN: f64 = 1.0 / 0.7;
-/// Phase that a loop must have left, degrees: an ESC frame, bus and frame interval of 4 ms that no model has take 9
-/// degrees of a crossover at 40 rad/s, a motor 30 % slower than stated as much again.
+/// Degrees: an ESC frame, bus and frame interval of 4 ms outside the model take 9 at a crossover of 40 rad/s, a motor
+/// 30 % slower than stated as much again.
 const PHASE_MARGIN: f64 = 18.0;
-/// Parameters that set the gain of each axis.
 const GAINS: [&str; 3] = ["rate_p", "rate_p", "rate_yaw_p"];
-/// Parameters that set the share of the attitude in it.
+/// Parameters that set the attitude's share in the gain.
 const ATTITUDE_GAINS: [&str; 3] = ["attitude_p", "attitude_p", "attitude_yaw_p"];
 
-/// All rows of the loops with these margins about roll, pitch and yaw.
+/// All rows of the loops with `margins` about roll, pitch and yaw.
 pub fn rows(margins: &[Margins; 3], built: &Built) -> Vec<Row> {
     let mut rows = Vec::new();
     for (axis, margin) in margins.iter().enumerate() {
@@ -31,7 +30,7 @@ pub fn rows(margins: &[Margins; 3], built: &Built) -> Vec<Row> {
                 GAINS[axis]
             )),
         );
-        // A loop that never has a gain of 1 controls nothing.
+        // A loop whose gain never reaches 1 controls nothing.
         let phase = if margin.crossover > 0.0 {
             margin.phase.to_degrees()
         } else {
@@ -54,10 +53,8 @@ pub fn rows(margins: &[Margins; 3], built: &Built) -> Vec<Row> {
     rows
 }
 
-/// The arms' bending mode against the bandwidth of roll and pitch.
-///
-/// Value: √(k/m)/2π, Hz, the softest arm, the body held. Below the frequency up to which a loop acts, the tips lag by half
-/// a turn and the loop shakes the body between them.
+/// √(k/m)/2π of the softest arm, body held, Hz, against the bandwidth of roll and pitch: beyond the mode the
+/// tips lag by half a turn, and a loop of more bandwidth shakes the body between them.
 fn arm_mode(margins: &[Margins; 3], built: &Built) -> Row {
     let [roll, pitch, _] = margins;
     let bandwidth = roll.crossover.max(pitch.crossover) / std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! The check as a whole: what flies passes, what cannot is refused in the right terms, and no scenario makes it panic.
+//! The whole check: what flies passes, what cannot is refused with its reason, nothing panics.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -8,7 +8,6 @@ use super::*;
 use crate::scenario::Overrides;
 use crate::scenario::keys::{KEYS, Kind};
 
-/// Random scenarios that are tried.
 const DRAWS: usize = 60;
 
 fn parse(text: &str) -> Scenario {
@@ -80,7 +79,7 @@ fn a_mission_without_a_pipe_has_no_rows_of_it() {
     );
 }
 
-/// A scenario with about half of the vehicle's and the world's numbers and `params` parameters drawn from their ranges.
+/// Draws about half of the vehicle's and world's numbers and `params` parameters from their ranges.
 fn draw(rng: &mut Pcg64Mcg, params: f64) -> String {
     let mut text = String::new();
     for table in ["vehicle", "world"] {
@@ -114,7 +113,7 @@ fn draw(rng: &mut Pcg64Mcg, params: f64) -> String {
     text += "[params]\n";
     for row in Params::TABLE.iter().filter(|row| row.choices.is_empty()) {
         if rng.random::<f64>() < params {
-            // A corner as often as the inside.
+            // Corners as often as the inside.
             let value = match rng.random_range(0..4) {
                 0 => row.min,
                 1 => row.max,

@@ -1,4 +1,4 @@
-//! Rows of the rotors' strength.
+//! Check rows of rotor thrust.
 
 use sophie_control::mode::{ESCAPE_LEAN, ESCAPE_LIFT, release_thrust};
 use sophie_control::support::RESTING_FORCE;
@@ -9,22 +9,21 @@ use crate::plant::contact::{ARM_LENGTH, ARM_X};
 use crate::plant::rotor::NOMINAL_VOLTAGE;
 use crate::scenario::Scenario;
 
-/// Share of the weight beyond it that a vehicle needs to stop sinking: 0.5 m/s² stops the failsafe's 0.8 m/s in 0.65 m.
+/// Share of the weight in reserve to stop sinking: 0.5 m/s² stops the failsafe's 0.8 m/s in 0.65 m.
 const BRAKE: f64 = 0.05;
-/// Gusts beyond this many times their RMS come once in hours.
+/// Gusts beyond this many times their RMS occur once in hours.
 pub(super) const GUST_FACTOR: f64 = 3.0;
-/// Share of the gusts' force that is vertical, as the plant has it.
+/// Vertical share of the gust force, as in the plant.
 const VERTICAL: f64 = 0.5;
-/// Share of the stick beyond which the throttle has no travel left to climb with.
+/// Stick share beyond which too little travel is left to climb.
 const STICK_MOST: f64 = 0.85;
 
 /// Thrust to weight at the nominal voltage.
 ///
-/// Value: Σ T cos α(T) / W with all rotors at their largest thrust and the arms bent by it. Two things take more than the
-/// weight. The failsafe lands at `battery_critical`, where a rotor gives only the share s of its thrust (plant); it must
-/// stop the vehicle's sinking and meet gusts there: (1 + brake + gusts) / s. The escape from a pipe lifts with
-/// 1.35 of the weight at a lean of 8 degrees, with a full battery: 1.35 / cos 8°. The larger of both is needed; the second
-/// only where the mission touches a pipe. Without gusts and with a critical voltage at the nominal one 1.05 is left.
+/// Value: Σ T cos α(T) / W, all rotors at their largest thrust. Limit: the larger of two. The failsafe lands at
+/// `battery_critical`, where a rotor gives the share s of its thrust (plant), and must stop sinking and meet gusts:
+/// (1 + brake + gusts) / s. The escape from a pipe lifts with 1.35 of the weight at a lean of 8 degrees, battery full:
+/// 1.35 / cos 8°.
 pub fn to_weight(scenario: &Scenario, built: &Built, perches: bool) -> Row {
     let rotor = &scenario.vehicle.rotor;
     let ratio = built.lift(rotor.thrust_max) / built.weight;
@@ -35,7 +34,6 @@ pub fn to_weight(scenario: &Scenario, built: &Built, perches: bool) -> Row {
         .advise("make it lighter, or fit stronger rotors")
 }
 
-/// Share of the full thrust that is left at the voltage at which the failsafe lands.
 fn critical_share(scenario: &Scenario) -> f64 {
     let (rotor, critical) = (
         &scenario.vehicle.rotor,
@@ -44,7 +42,7 @@ fn critical_share(scenario: &Scenario) -> f64 {
     rotor.steady_thrust(1.0, critical) / rotor.steady_thrust(1.0, NOMINAL_VOLTAGE)
 }
 
-/// Thrust that gusts take in all, N: their vertical force, and what four rotors need against their moments.
+/// Thrust against gusts, N: their vertical force, and what four rotors need against their moments.
 fn gusts(scenario: &Scenario) -> f64 {
     let w = &scenario.world;
     let moments = w.gust_moment * (1.0 / ARM_LENGTH + 1.0 / ARM_X);
@@ -53,8 +51,8 @@ fn gusts(scenario: &Scenario) -> f64 {
 
 /// Share of the throttle stick in hover.
 ///
-/// Value: T / T_max, T the thrust of a rotor in hover and T_max what the stack takes for the largest: the stick gives the
-/// collective in proportion. A vehicle without arms' tilt has W / (4 T_max).
+/// Value: T / T_max, T a rotor's thrust, T_max the parameter: collective is proportional to the stick. Without
+/// tilt W / (4 T_max).
 pub fn hover_throttle(scenario: &Scenario, built: &Built) -> Row {
     let throttle = built.hover / f64::from(scenario.params.thrust_max);
     Row::new(
@@ -66,10 +64,10 @@ pub fn hover_throttle(scenario: &Scenario, built: &Built) -> Row {
     .advise("make it lighter, fit stronger rotors, or set thrust_max to what they give")
 }
 
-/// Weight that is left on the pipe at the least throttle at which the arms are opened.
+/// Weight left on the pipe at the lowest throttle that opens the arms.
 ///
-/// Value: W - 4 T with T as the stack's [`release_thrust`] asks for, N. Below [`RESTING_FORCE`] the stack does not take the
-/// vehicle for resting, and it lifts off with closed arms. Rotors of no thrust leave the whole weight.
+/// Value: W - 4 T, N, T from [`release_thrust`]. Below [`RESTING_FORCE`] resting is not detected, and the vehicle lifts
+/// off with closed arms.
 pub fn release(scenario: &Scenario, built: &Built) -> Row {
     let left = built.weight - f64::from(release_thrust(&scenario.params));
     Row::new(
@@ -107,7 +105,7 @@ mod tests {
             s.params.battery_critical = 14.8;
         };
         assert!((row(calm, false).limit.value() - 1.05).abs() < 1e-6);
-        // On a pipe the escape needs more: 1.35 / cos 8° = 1.363.
+        // Escape: 1.35 / cos 8° = 1.363.
         assert!((row(calm, true).limit.value() - 1.363).abs() < 1e-3);
     }
 

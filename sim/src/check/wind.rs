@@ -1,15 +1,14 @@
-//! Row of the wind in which the vehicle keeps its place.
+//! Check row of the wind.
 
 use super::hover::Built;
 use super::row::{Limit, Row};
 use super::thrust::GUST_FACTOR;
 use crate::scenario::Scenario;
 
-/// Steady force of wind against which the vehicle keeps its place and height.
+/// Steady wind force against which the vehicle keeps place and height.
 ///
-/// Value: W tan θ, N, θ the largest lean: at most the stick's, and where the lift carries the weight still, L cos θ >= W.
-/// Limit: the gusts' horizontal force, three times their RMS on both axes. By the plant's drag of 0.3 N s/m a wind of v
-/// pushes with 0.3 v. A vehicle that only just lifts its weight leans by nothing and holds against nothing.
+/// Value: W tan θ, N, θ the largest lean with L cos θ >= W within the stick's limit. Limit: three times the RMS of the
+/// gusts' horizontal force on both axes. By the plant's drag of 0.3 N s/m a wind of v pushes with 0.3 v.
 pub fn row(scenario: &Scenario, built: &Built) -> Row {
     let lift = built.lift(scenario.vehicle.rotor.thrust_max);
     let upright = (built.weight / lift).clamp(0.0, 1.0).acos();
@@ -38,7 +37,6 @@ mod tests {
         let built = Built::of(&s);
         let weak = row(&s, &built).value;
         let lift = built.lift(8.3);
-        // Pythagoras: what the lift has beside the weight.
         assert!(
             (weak - (lift * lift - built.weight * built.weight).sqrt()).abs() < 0.05,
             "{weak}"

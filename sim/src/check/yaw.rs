@@ -1,4 +1,4 @@
-//! Rows of yaw: the arms bend with thrust, and what a rotor adds to yaw bends with them.
+//! Check rows of yaw, which bending arms change.
 
 use sophie_control::mixer::{Allocation, Conditions, YAW_FLOOR};
 use sophie_control::wrench::{PerArm, Wrench, YAW};
@@ -9,18 +9,18 @@ use super::row::{Limit, Row};
 use super::thrust::GUST_FACTOR;
 use crate::scenario::Scenario;
 
-/// Shares of the thrust of hover at which the demand is looked at.
+/// Evaluated thrusts in shares of hover thrust.
 const NEAR_HOVER: [f64; 3] = [0.8, 1.0, 1.2];
-/// Thrusts looked at between the yaw gate and the largest.
+/// Between the yaw gate and the largest thrust.
 const POINTS: u32 = 12;
-/// Share of the largest thrust up to which rotors have room for yaw.
+/// Share of the largest thrust up to which yaw has room.
 const TOP: f64 = 0.95;
-/// Yaw moment that is tried, N·m: a tenth of a newton a rotor on a stiff frame.
+/// N·m: a tenth of a newton a rotor on a stiff frame.
 const TRIED: f32 = 0.006;
-/// Time steps in which the mixer's model settles, s: far beyond its slowest filter; and their number.
+/// Step of the mixer's model, s, far beyond its slowest filter, and number of steps.
 const SETTLE: f32 = 1e3;
 const SETTLE_STEPS: u32 = 4;
-/// Time in which the heading must come to its fastest turn, s.
+/// Time to reach the fastest turn, s.
 const TURN_TIME: f64 = 1.0;
 
 /// All rows of yaw.
@@ -32,15 +32,15 @@ pub fn rows(scenario: &Scenario, built: &Built) -> Vec<Row> {
     ]
 }
 
-/// Thrusts of a rotor at which yaw is used, N: from where the stack's gate opens up to nearly all.
+/// Rotor thrusts that use yaw, N: from the stack's gate to [`TOP`].
 fn range(scenario: &Scenario) -> impl Iterator<Item = f64> {
     let low = f64::from(scenario.params.yaw_gate_thrust.max(scenario.params.thrust_idle));
     let high = (TOP * scenario.vehicle.rotor.thrust_max).max(low);
     (0..=POINTS).map(move |i| low + (high - low) * f64::from(i) / f64::from(POINTS))
 }
 
-/// Moment (N·m) that comes of a demand for 1 N·m at `thrust` N a rotor, once the arms have followed: the mixer's own
-/// answer, through the plant's arms. 1 where the mixer knows them; negative where they turn the demand round.
+/// Moment (N·m) for a demand of 1 N·m at `thrust` N a rotor: the mixer's output through the plant's settled arms. 1
+/// where the mixer knows the arms; negative where they reverse the demand.
 fn given(scenario: &Scenario, built: &Built, thrust: f64) -> f64 {
     let change = yaw_thrusts(scenario, thrust);
     let effect = built.yaw_effect(thrust);
@@ -53,7 +53,7 @@ fn given(scenario: &Scenario, built: &Built, thrust: f64) -> f64 {
     moment.sum()
 }
 
-/// Thrust (N) that the mixer adds to each rotor for 1 N·m of yaw about a collective of `thrust` N a rotor.
+/// Thrust (N) added to each rotor for 1 N·m of yaw at a collective of `thrust` N a rotor.
 fn yaw_thrusts(scenario: &Scenario, thrust: f64) -> PerArm<f64> {
     let mut mixer = Mixer::new(scenario.mixer, scenario.vehicle.configuration, &scenario.params);
     let conditions = Conditions {
@@ -79,16 +79,14 @@ fn yaw_thrusts(scenario: &Scenario, thrust: f64) -> PerArm<f64> {
         };
         mixer.allocate(&wrench, conditions).thrusts
     };
-    // The first opens the gate.
+    // Opens the gate.
     at(0.0);
     let (more, less) = (at(TRIED), at(-TRIED));
     std::array::from_fn(|i| f64::from(more[i] - less[i]) / f64::from(2.0 * TRIED))
 }
 
-/// Least share of a yaw demand that is given about hover.
-///
-/// Value: moment over demand, the least from 0.8 to 1.2 of the thrust of hover; 1 where the mixer knows the arms. Limit:
-/// the share of the stiff frame's authority at which the mixer itself fades yaw.
+/// Smallest moment over yaw demand from 0.8 to 1.2 of hover thrust; 1 where the mixer knows the arms. Limit: share of
+/// the stiff frame's authority at which the mixer fades yaw.
 fn share(scenario: &Scenario, built: &Built) -> Row {
     let most = TOP * scenario.vehicle.rotor.thrust_max;
     let shares = NEAR_HOVER.map(|share| given(scenario, built, (share * built.hover).min(most)));
@@ -97,10 +95,8 @@ fn share(scenario: &Scenario, built: &Built) -> Row {
         .advise("fit configuration B, stiffer arms or the flexible mixer, or state the arms as they are")
 }
 
-/// Largest stability derivative over the throttle range, from where yaw is used up.
-///
-/// Value: C = 1 - y/k_q, y the yaw moment for each newton of pattern once the arms have followed. Stiff arms have 0; above 1
-/// a yaw command turns the vehicle the other way.
+/// Largest C = 1 - y/k_q over the throttle range that uses yaw, y the yaw moment per newton of pattern with settled
+/// arms. 0 for stiff arms; above 1 a command is reversed.
 fn derivative(scenario: &Scenario, built: &Built) -> Row {
     let worst = range(scenario)
         .map(|t| built.yaw_derivative(t))
@@ -109,8 +105,8 @@ fn derivative(scenario: &Scenario, built: &Built) -> Row {
         .advise("fit configuration B or stiffer arms, or raise yaw_gate_thrust: bending arms turn yaw round")
 }
 
-/// Yaw moment that the rotors can give in hover, N·m: the mixer's pattern up to what yaw may add to one rotor, or the
-/// rotors have room for; against gusts and the fastest turn within a second. Nothing where yaw is given up.
+/// Yaw moment in hover, N·m: the mixer's pattern up to `yaw_thrust_max` or the rotors' room, against gusts and the
+/// fastest turn within a second. 0 where the mixer gives up yaw.
 fn authority(scenario: &Scenario, built: &Built) -> Row {
     let (p, v) = (&scenario.params, &scenario.vehicle);
     let pattern = yaw_thrusts(scenario, built.hover);
@@ -157,7 +153,6 @@ mod tests {
         assert!(given_by(Variant::Rigid, a, 7.75) < -1.0);
         let literal = given_by(Variant::Rigid, a, 1.0);
         assert!((0.3..0.7).contains(&literal), "{literal}");
-        // In A the flexible mixer gives yaw up rather than turn it round.
         s.vehicle.configuration = a;
         let built = Built::of(&s);
         assert!(!authority(&s, &built).pass && !share(&s, &built).pass && !derivative(&s, &built).pass);

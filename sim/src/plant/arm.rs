@@ -1,8 +1,8 @@
 //! One soft arm as a rigid link on a virtual hinge at the centre line, with Eq. 1 as its spring.
 //!
-//! Eq. 1 gives the tilt at rest on a level bench, the arm's own weight included. Its inverse is the spring: the moment
-//! that holds the tilt α is L (T_s(α) - m g cos α), T_s the thrust with the static tilt α. Tangent stiffness and tip
-//! mass give the mode's frequency: 5 Hz in hover at ρ 6.9 %, K 7.75.
+//! Eq. 1 gives the tilt at rest on a level bench, the arm's weight included. Inverted, it is the spring: the moment
+//! that holds the tilt α is L (T_s(α) - m g cos α), T_s the thrust with the static tilt α. With the tip mass its mode
+//! is 5 Hz in hover at ρ 6.9 %, K 7.75.
 
 use glam::DVec3;
 use sophie_control::wrench::{FORE, SIDE};
@@ -10,23 +10,22 @@ use sophie_control::wrench::{FORE, SIDE};
 use super::GRAVITY;
 use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
 
-/// Tip mass: motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
+/// Motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
 /// A1, A2, B1, B2 of Eq. 1 (paper, Table I).
 pub const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
-/// Thrust of the level arm, N: half of the largest of the paper's rotors.
+/// N: half of the paper's largest.
 const LEVEL_THRUST: f64 = 4.15;
-/// Thrust of the damping ratio, N: hover.
+/// N: the damping ratio holds here.
 const HOVER_THRUST: f64 = 4.425;
-/// Least share of the compliance at rest, kept at large thrusts, where Eq. 1's parabola turns.
+/// Over the compliance at rest, for large thrusts, where Eq. 1's parabola turns.
 const LEAST_COMPLIANCE: f64 = 0.15;
 
 /// An arm as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmSpec {
-    /// Tilt without thrust, rad.
     offset: f64,
-    /// Coefficients of the nominal arm, rad/N and rad/N².
+    /// Of the nominal arm, rad/N and rad/N².
     nominal: (f64, f64),
     /// rad/N.
     linear: f64,
@@ -34,14 +33,14 @@ pub struct ArmSpec {
     quadratic: f64,
     /// Thrust beyond which the spring is linear, N.
     knee: f64,
-    /// Damping, N·m·s/rad.
+    /// N·m·s/rad.
     damping: f64,
 }
 
 /// An arm's print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmPrint {
-    /// A1, A2, B1, B2 of Eq. 1: °/N, °/(N %), °/N², °/(N² %).
+    /// A1, A2, B1, B2: °/N, °/(N %), °/N², °/(N² %).
     pub coefficients: [f64; 4],
     /// %.
     pub infill: f64,
@@ -56,8 +55,8 @@ pub struct ArmPrint {
 }
 
 impl ArmSpec {
-    /// Arm of infill `infill` (%), gain `gain_k` on Eq. 1's elastic term, hover damping ratio `zeta`; against the
-    /// nominal arm compliance factor `gain`, tilt offset `offset` (rad).
+    /// Infill in %, gain K, damping ratio `zeta` in hover; compliance factor `gain` and tilt `offset` (rad) against the
+    /// nominal arm.
     #[must_use]
     pub fn new(infill: f64, gain_k: f64, gain: f64, offset: f64, zeta: f64) -> Self {
         Self::of(&ArmPrint {
@@ -84,7 +83,7 @@ impl ArmSpec {
         let nominal_linear = (gain_k * (a1 + a2 * infill)).to_radians();
         let nominal_quadratic = (gain_k * (b1 + b2 * infill)).to_radians();
         let (linear, quadratic) = (nominal_linear * gain, nominal_quadratic * gain);
-        // Limited as the spring is: an arm stiff at 4.425 N may still be soft in the hover of a light vehicle.
+        // Limited as the spring is: an arm stiff at 4.425 N may be soft in a light vehicle's hover.
         let slope = (linear + 2.0 * quadratic * HOVER_THRUST).max(LEAST_COMPLIANCE * linear);
         let stiffness = ARM_LENGTH / slope;
         let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
@@ -102,7 +101,7 @@ impl ArmSpec {
         }
     }
 
-    /// The same arm, with the nominal one level at `thrust` N.
+    /// Sets α0 so that the nominal arm is level at `thrust` N.
     #[must_use]
     pub fn level_at(self, thrust: f64) -> Self {
         Self {
@@ -111,7 +110,7 @@ impl ArmSpec {
         }
     }
 
-    /// Static tilt (rad) on a level bench at `thrust` (N).
+    /// Static tilt (rad) on a level bench at `thrust` N.
     #[must_use]
     pub fn static_tilt(&self, thrust: f64) -> f64 {
         let curved = thrust.clamp(0.0, self.knee);
@@ -119,8 +118,8 @@ impl ArmSpec {
         self.offset + (self.linear + self.quadratic * curved) * curved + slope * (thrust - curved)
     }
 
-    /// Inverse: the thrust (N) with the static tilt `tilt` (rad). Linear below 0 N and beyond the knee (outside Eq. 1's
-    /// measurements; assumed).
+    /// Thrust (N) with this static tilt (rad). Linear below 0 N and beyond the knee (outside Eq. 1's measurements;
+    /// assumed).
     #[must_use]
     pub fn static_load(&self, tilt: f64) -> f64 {
         let e = tilt - self.offset;
@@ -131,7 +130,7 @@ impl ArmSpec {
         if e >= e_knee {
             return self.knee + (e - e_knee) / (self.linear * LEAST_COMPLIANCE);
         }
-        // Root of q T² + l T = e that vanishes with e, in the form that also holds for q = 0.
+        // Root of q T² + l T = e that vanishes with e, also for q = 0.
         2.0 * e / (self.linear + (self.linear * self.linear + 4.0 * self.quadratic * e).sqrt())
     }
 }
@@ -153,14 +152,14 @@ pub struct Arm {
     pub rate: f64,
     sin: f64,
     cos: f64,
-    /// Generalised force on the tilt in this step, N·m.
+    /// Generalised force on the tilt, N·m.
     pub generalised: f64,
     /// Thrust in this step, N.
     pub thrust: f64,
 }
 
 impl Arm {
-    /// Arm `index`, 0 to 3, at rest without thrust, limited by the ground under the belly.
+    /// Arm `index`, 0 to 3, at rest without thrust, its droop limited by the ground.
     #[must_use]
     pub fn new(index: usize, spec: ArmSpec) -> Self {
         let on_ground = -((BELLY_Z - HINGE_Z) / ARM_LENGTH).asin();
@@ -188,7 +187,7 @@ impl Arm {
         )
     }
 
-    /// Direction of thrust and of the tip's motion with growing tilt: unit vector, body.
+    /// Direction of thrust and of tip motion with growing tilt: unit vector, body.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         DVec3::new(0.0, self.side * self.sin, -self.cos)
@@ -200,15 +199,15 @@ impl Arm {
         DVec3::new(0.0, -self.side * self.cos, -self.sin)
     }
 
-    /// Velocity-dependent acceleration of the tip (m/s²) on a body turning at `omega`.
+    /// Velocity-dependent acceleration of the tip (m/s²), body turning at `omega`.
     #[must_use]
     pub fn bias_acceleration(&self, omega: DVec3) -> DVec3 {
         omega.cross(omega.cross(self.tip())) + 2.0 * omega.cross(self.normal() * (ARM_LENGTH * self.rate))
             - self.outward() * (ARM_LENGTH * self.rate * self.rate)
     }
 
-    /// Sums the generalised force: thrust (N), external moments (N·m), spring, damping and, if `coupled`, the tip's
-    /// weight under `gravity` (m/s², body).
+    /// Sums the generalised force: thrust (N), external moments (N·m), spring, damping, and if `coupled` the tip's
+    /// weight (`gravity` m/s², body).
     pub fn load(&mut self, thrust: f64, moment: f64, gravity: DVec3, coupled: bool) {
         let load = self.spec.static_load(self.tilt);
         let weight = if coupled {
@@ -220,7 +219,7 @@ impl Arm {
         self.generalised = ARM_LENGTH * (thrust - load) + weight + moment - self.spec.damping * self.rate;
     }
 
-    /// Advances by `dt` s at the acceleration `acceleration` (rad/s²) of the tilt.
+    /// Advances by `dt` s at the tilt's `acceleration` (rad/s²).
     pub fn integrate(&mut self, dt: f64, acceleration: f64) {
         self.rate += acceleration * dt;
         self.tilt += self.rate * dt;
@@ -263,7 +262,7 @@ mod tests {
 
     #[test]
     fn the_mode_is_at_five_hertz_in_hover() {
-        // Counts zero crossings about hover, body fixed and level.
+        // Zero crossings about hover, body fixed and level.
         let mut arm = Arm::new(
             0,
             ArmSpec {

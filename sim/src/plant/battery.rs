@@ -1,14 +1,13 @@
-//! The flight battery: a 4S lithium pack with a resistance.
+//! The flight battery: 4S lithium with a resistance.
 
-/// Charge when full, A·s: 1800 mAh (paper).
+/// A·s: 1800 mAh (paper).
 const CAPACITY: f64 = 1.8 * 3600.0;
-/// Resistance of pack and leads, Ω (assumed).
+/// Pack and leads, Ω (assumed).
 const RESISTANCE: f64 = 0.035;
-/// Cells in series.
 const CELLS: f64 = 4.0;
-/// Current of the electronics, A (assumed).
+/// A (assumed).
 const ELECTRONICS: f64 = 0.6;
-/// Open voltage per cell, V, at 0, 10, 20, ... 100 % of charge (typical LiPo).
+/// V per cell, per 10 % of charge from 0 (typical LiPo).
 const OPEN_VOLTAGE: [f64; 11] = [3.27, 3.69, 3.73, 3.77, 3.80, 3.84, 3.87, 3.95, 4.02, 4.11, 4.20];
 
 /// The battery's state.
@@ -59,7 +58,6 @@ mod tests {
         let mut b = Battery::new(1.0);
         assert!((b.voltage() + ELECTRONICS * RESISTANCE - 16.8).abs() < 1e-9);
         b.step(CAPACITY / 20.0, 10.0 - ELECTRONICS);
-        // Half a capacity drawn at 10 A.
         assert!(
             (b.voltage() - (4.0 * 3.84 - 0.35)).abs() < 1e-9,
             "{}",

@@ -1,8 +1,8 @@
 //! Equations of motion of the body with four hinged tip masses.
 //!
-//! A tip slides freely along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
-//! generalised force on its hinge to the body as -Q/L along n. The remaining 6×6 system is solved by its 3×3 blocks;
-//! the tilts' accelerations follow one by one.
+//! A tip slides along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
+//! generalised force on its hinge as -Q/L along n. The remaining 6×6 system is solved by 3×3 blocks, then each tilt's
+//! acceleration.
 
 use glam::{DMat3, DVec3};
 
@@ -14,7 +14,7 @@ use super::contact::{ARM_LENGTH, ARM_X, HINGE_Z, Pose};
 pub struct BodySpec {
     /// Mass of the vehicle, kg.
     pub mass: f64,
-    /// Inertia of the vehicle with level arms: roll, pitch, yaw, kg·m².
+    /// Roll, pitch, yaw with level arms, kg·m².
     pub inertia: [f64; 3],
 }
 
@@ -36,7 +36,7 @@ pub struct BodyState {
     pub pose: Pose,
 }
 
-/// Load on the vehicle at the origin, body axes.
+/// Load at the origin, body axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
     /// N.
@@ -75,9 +75,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// Body of `spec`; `coupled` gives the arms their tip masses, otherwise all mass is the body's.
-    ///
-    /// Its centre of mass is set so that the whole vehicle's, with level arms, is the origin.
+    /// `coupled` gives the arms their tip masses, otherwise the body has all mass. The vehicle's centre of mass with
+    /// level arms is the origin.
     #[must_use]
     pub fn new(spec: &BodySpec, coupled: bool) -> Self {
         let whole = DVec3::from_array(spec.inertia);
@@ -103,8 +102,7 @@ impl Body {
         }
     }
 
-    /// Accelerations under an external `load` that excludes gravity (`gravity`, m/s², body) and thrusts (from the
-    /// loaded `arms`).
+    /// Accelerations under `gravity` (m/s², body), the thrusts of the loaded `arms`, and all other `load`.
     #[must_use]
     pub fn accelerate(&self, pose: &Pose, load: Load, gravity: DVec3, arms: [&Arm; 4]) -> Accelerations {
         let w = pose.omega;
@@ -126,13 +124,13 @@ impl Body {
 
         let mut m = MassMatrix::new(self.mass, self.centre, self.inertia);
         for arm in arms {
-            // The hinge holds the tip along x and along the arm: m (1 - n nᵀ) = Σ m u uᵀ over these two directions u,
+            // The hinge holds the tip along x and along the arm: m (1 - n nᵀ) = Σ m u uᵀ over these directions u,
             // acting at the origin through (u, r × u).
             let (r, n, along) = (arm.tip(), arm.normal(), arm.outward());
             m.add_tip(r, along);
             let bias = arm.bias_acceleration(w);
             let held = (DVec3::X * bias.x + along * along.dot(bias)) * TIP_MASS;
-            // Thrust and weight of the tip, less what accelerates it along its free direction.
+            // Thrust and weight of the tip, less its acceleration along the free direction.
             let free = arm.generalised / ARM_LENGTH;
             let f = n * (arm.thrust - free) + gravity * TIP_MASS - held;
             force += f;
@@ -151,9 +149,8 @@ impl Body {
     }
 }
 
-/// 6×6 mass matrix by blocks: linear `a`, coupling (rows linear, columns angular) `c`, angular `j`.
-///
-/// Entries are written out: a tip adds to few, and this takes a third of the plant's time.
+/// 6×6 mass matrix by blocks: linear `a`, coupling (rows linear, columns angular) `c`, angular `j`. Entries are written
+/// out, as a tip adds to few: this takes a third of the plant's time.
 struct MassMatrix {
     mass: f64,
     ayy: f64,
@@ -164,7 +161,7 @@ struct MassMatrix {
 }
 
 impl MassMatrix {
-    /// The rigid part alone, centre of mass at `centre`.
+    /// Rigid part, centre of mass at `centre`.
     fn new(mass: f64, centre: DVec3, inertia: DMat3) -> Self {
         let DVec3 { x, y, z } = centre * mass;
         let c = [
@@ -182,7 +179,7 @@ impl MassMatrix {
         }
     }
 
-    /// Adds a tip at `r` held along x and along the unit vector `along` in the y-z plane.
+    /// Adds a tip at `r`, held along x and the unit vector `along` in the y-z plane.
     fn add_tip(&mut self, r: DVec3, along: DVec3) {
         let (ey, ez) = (along.y, along.z);
         let lever_x = DVec3::new(0.0, r.z, -r.y);
@@ -201,7 +198,6 @@ impl MassMatrix {
         self.j.z_axis += tx * lever_x.z + t * lever.z;
     }
 
-    /// Linear and angular acceleration under `force` and `moment`.
     fn solve(&self, force: DVec3, moment: DVec3) -> (DVec3, DVec3) {
         let inv_x = 1.0 / self.mass;
         let inv_det = 1.0 / (self.ayy * self.azz - self.ayz * self.ayz);
@@ -248,12 +244,12 @@ mod tests {
         }
     }
 
-    /// Steps a free vehicle from drooping arms; returns its end and the angular momentum about the world origin.
+    /// Returns the end and the angular momentum about the world origin.
     fn fly(thrust: f64, moment: DVec3, seconds: f64, omega: DVec3) -> (Pose, [Arm; 4], DVec3) {
         run(arms(), thrust, |_| moment, seconds, omega)
     }
 
-    /// A hovering vehicle with arms at rest: `moment` for `on` s, free until `seconds`.
+    /// From hover with arms at rest: `moment` for `on` s, free until `seconds`.
     fn pulse(moment: DVec3, on: f64, seconds: f64) -> (Pose, [Arm; 4], DVec3) {
         let mut arms = arms();
         let rest = ArmSpec::new(6.9, 7.75, 1.0, 0.0, 0.15).static_tilt(4.425);
@@ -299,7 +295,7 @@ mod tests {
             let h = pose.omega * (0.5 * STEP);
             pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
         }
-        // Angular momentum about the origin, body axes.
+        // About the origin, body axes.
         let mut momentum = body.inertia * pose.omega
             + body.mass * body.centre.cross(pose.attitude.conjugate() * pose.velocity);
         for arm in &arms {
@@ -319,19 +315,17 @@ mod tests {
         for arm in &arms {
             assert!((arm.tilt - expected).abs() < 1e-4, "{} {expected}", arm.tilt);
         }
-        // Falls while the arms rise, then keeps its speed.
         assert!(pose.velocity.x.abs() < 1e-9 && pose.velocity.y.abs() < 1e-9);
         assert!(pose.omega.length() < 1e-9);
     }
 
     #[test]
     fn free_fall_turns_no_arm_and_keeps_angular_momentum() {
-        // Without thrust gravity makes no angular momentum about the centre of mass.
         let (_, _, start) = fly(0.0, DVec3::ZERO, 0.0, DVec3::new(1.0, 0.5, -0.7));
         let body = Body::new(&BodySpec::default(), true);
         let omega = DVec3::new(1.0, 0.5, -0.7);
         let (pose, arms, end) = fly(0.0, DVec3::ZERO, 0.4, omega);
-        // About the centre of mass: less its own momentum.
+        // Less the momentum of the centre of mass.
         let centre = |pose: &Pose, arms: &[Arm; 4]| {
             let mut c = body.mass * body.centre;
             let mut p =
@@ -364,7 +358,7 @@ mod tests {
 
     #[test]
     fn a_short_roll_or_pitch_moment_leaves_its_momentum_in_the_whole_inertia() {
-        // After the pulse the tips swing until damped; what remains is one turn rate: 0.1 s · M / I.
+        // The tips swing until damped; a turn rate of 0.1 s · M / I remains.
         for (axis, inertia) in [(0, 0.021), (1, 0.044)] {
             let mut moment = DVec3::ZERO;
             moment[axis] = 0.01;

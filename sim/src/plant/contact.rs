@@ -1,17 +1,16 @@
-//! Contact with the ground and the pipe.
+//! Contact with ground and pipe.
 //!
 //! Points in body axes (FRD, origin at the centre of mass): spring and damper along the normal, push only; a bristle
-//! along the surface that sticks up to Coulomb's limit. Loads are generalised forces: force and moment on the body
-//! (about its centre of mass, body axes), moment on the arm's tilt α. Stiffnesses are those of soft printed parts
-//! (assumed), stable with semi-implicit steps of 0.5 ms.
+//! along the surface that sticks up to Coulomb's limit. Loads are force and moment on the body, body axes, and moment
+//! on the arm's tilt α. Stiffnesses are those of soft printed parts (assumed), stable with semi-implicit steps of 0.5
+//! ms.
 
 use glam::{DQuat, DVec2, DVec3};
 use sophie_control::wrench::{FORE, SIDE};
 
 /// Belly pads below the centre of mass, m, body z (assumed).
 pub const BELLY_Z: f64 = 0.04;
-/// Arms' underside at the root, m, body z: 5 mm above the belly pads (assumed), about what they sink beside a pipe's
-/// crown.
+/// Arms' underside at the root, m, body z: 5 mm above the belly pads (assumed), about their indentation beside a crown.
 pub const UNDERSIDE_Z: f64 = 0.035;
 /// Arms' neutral line at the hinge, m, body z (assumed).
 pub const HINGE_Z: f64 = 0.02;
@@ -19,11 +18,11 @@ pub const HINGE_Z: f64 = 0.02;
 pub const ARM_LENGTH: f64 = 0.178;
 /// Arms from the centre of mass along body x, m.
 pub const ARM_X: f64 = 0.178;
-/// Contact points of the skin, m along the arm from its root; the pressure sensor is at the last.
+/// Contact points of the skin, m from the arm's root; the pressure sensor is at the last.
 pub const STATIONS: [f64; 3] = [0.06, 0.11, 0.16];
-/// Skin of a station, width and length, m.
+/// Width and length, m.
 const STATION_SIZE: (f64, f64) = (0.03, 0.05);
-/// Pressure per depth of the skin, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
+/// Pressure over indentation, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
 pub const SKIN_STIFFNESS: f64 = 5.0e5;
 
 /// Pose and motion of the body.
@@ -33,24 +32,24 @@ pub struct Pose {
     pub position: DVec3,
     /// Body to world.
     pub attitude: DQuat,
-    /// Velocity of the centre of mass, NED, m/s.
+    /// Of the centre of mass, NED, m/s.
     pub velocity: DVec3,
     /// Angular rate, body, rad/s.
     pub omega: DVec3,
 }
 
 impl Pose {
-    /// World position of the body point `r`.
+    /// World position of `r`, body.
     pub fn point(&self, r: DVec3) -> DVec3 {
         self.position + self.attitude * r
     }
 
-    /// World velocity of the body point `r` that moves at `relative` in body axes.
+    /// World velocity of the body point `r` that moves at `relative`, body axes.
     pub fn point_velocity(&self, r: DVec3, relative: DVec3) -> DVec3 {
         self.velocity + self.attitude * (self.omega.cross(r) + relative)
     }
 
-    /// A world vector in body axes.
+    /// World to body axes.
     pub fn to_body(&self, world: DVec3) -> DVec3 {
         self.attitude.conjugate() * world
     }
@@ -76,14 +75,14 @@ pub struct Pipe {
 /// A contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// The plane z = 0, with its coefficient of friction.
+    /// The plane z = 0; coefficient of friction.
     Ground(f64),
     /// A pipe.
     Pipe(Pipe),
 }
 
 impl Surface {
-    /// Depth (m) and outward normal at `point` (m, NED); `None` outside.
+    /// Depth (m) and outward normal at `point` (m, NED), if inside.
     fn probe(&self, point: DVec3) -> Option<(f64, DVec3)> {
         match self {
             Self::Ground(_) => (point.z > 0.0).then_some((point.z, DVec3::NEG_Z)),
@@ -117,7 +116,7 @@ impl Surface {
 pub struct Pad {
     /// Along the normal, N/m.
     pub stiffness: f64,
-    /// Along the normal, N·s/m; full from a depth of 1 mm, so that a touch has no step.
+    /// Along the normal, N·s/m; full from 1 mm of depth: no step at the touch.
     pub damping: f64,
     /// Along the surface, N/m.
     pub bristle: f64,
@@ -132,14 +131,13 @@ const BELLY: Pad = Pad {
     bristle: 4.0e3,
     bristle_damping: 42.0,
 };
-/// A station of the skin.
 const SKIN: Pad = Pad {
     stiffness: SKIN_STIFFNESS * STATION_SIZE.0 * STATION_SIZE.1,
     damping: 8.0,
     bristle: 400.0,
     bristle_damping: 4.0,
 };
-/// An arm's tip of 77 g: 22 Hz, damping ratio 0.5; without friction.
+/// Tip of 77 g: 22 Hz, damping ratio 0.5, no friction.
 const TIP: Pad = Pad {
     stiffness: 1.5e3,
     damping: 10.0,
@@ -167,7 +165,7 @@ pub struct PointMotion {
     pub velocity: DVec3,
 }
 
-/// State of a contact point: the deflection of its bristle.
+/// A contact point with its bristle's deflection.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactPoint {
     bristle: DVec3,
@@ -192,7 +190,7 @@ impl ContactPoint {
         let mut tangential = -(deflection * pad.bristle + slip * pad.bristle_damping);
         if tangential.length() > limit {
             tangential *= limit / tangential.length();
-            // A sliding bristle keeps the deflection that friction can hold.
+            // Sliding keeps the deflection that friction can hold.
             if deflection.length() * pad.bristle > limit {
                 deflection *= limit / (deflection.length() * pad.bristle);
             }
@@ -289,9 +287,8 @@ impl ArmSkin {
         }
     }
 
-    /// Body position (m) of the point `s` m along the underside at tilt `alpha` rad, and its derivative by α (m/rad).
-    ///
-    /// The underside is an arc of constant curvature, level at its root, at α at its end.
+    /// Body position (m) of the point `s` m along the underside at tilt `alpha` rad, and its derivative by α (m/rad),
+    /// on an arc of constant curvature, level at its root, at α at its end.
     pub fn point(&self, alpha: f64, s: f64) -> (DVec3, DVec3) {
         let u = alpha * s / ARM_LENGTH;
         let (y, z, dy, dz) = if u.abs() < 1e-3 {
@@ -319,7 +316,7 @@ impl ArmSkin {
         )
     }
 
-    /// Advances by `dt` s at tilt `alpha` rad and rate `alpha_rate` rad/s.
+    /// Advances by `dt` s at tilt (rad) and rate (rad/s).
     pub fn step(&mut self, dt: f64, alpha: f64, alpha_rate: f64, pose: &Pose, pipe: &Pipe) -> SkinLoad {
         let mut load = SkinLoad::default();
         let mut stations = self.stations;
@@ -339,7 +336,7 @@ impl ArmSkin {
             load.force_body += force;
             load.moment_body += r.cross(force);
             load.moment_alpha += force.dot(by_alpha);
-            // The last station's stays: the sensor is there.
+            // The last station's remains: the sensor is there.
             load.pressure = touch.normal / (STATION_SIZE.0 * STATION_SIZE.1);
         }
         self.stations = stations;

@@ -4,11 +4,11 @@ use glam::DVec3;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-/// Correlation time of the force, s (assumed).
+/// Correlation time, s (assumed).
 const FORCE_TIME: f64 = 1.0;
-/// Correlation time of the moment, s (assumed).
+/// Correlation time, s (assumed).
 const MOMENT_TIME: f64 = 0.3;
-/// Plant steps per gust step: 125 Hz is fast against both times.
+/// Plant steps; 125 Hz is fast against both times.
 const DIVIDER: u32 = 16;
 
 /// A gust with its own random numbers.
@@ -24,7 +24,7 @@ pub struct Gust {
 }
 
 impl Gust {
-    /// Gusts of `force_rms` N (world axes; half of it vertically) and `moment_rms` N·m (body axes).
+    /// `force_rms` in N (world axes; half of it vertically), `moment_rms` in N·m (body axes).
     #[must_use]
     pub fn new(force_rms: f64, moment_rms: f64, rng: Pcg64Mcg) -> Self {
         Self {

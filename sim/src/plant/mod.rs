@@ -1,8 +1,8 @@
-//! The vehicle and its world in `f64`: six degrees of freedom, four soft arms that carry their own tip mass,
-//! rotors, battery, tendons, contacts.
+//! The vehicle and its world in `f64`: six degrees of freedom, four soft arms with tip masses, rotors, battery,
+//! tendons, contacts.
 //!
-//! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 30 Hz. Body axes FRD, world NED, as in
-//! the flight stack; nothing of the flight stack is used here but constants that describe the same hardware.
+//! Semi-implicit Euler at 2 kHz: the fastest contact and arm modes are below 30 Hz. Body axes FRD, world NED. Shares
+//! with the flight stack only constants of the hardware.
 
 pub mod arm;
 pub mod battery;
@@ -34,11 +34,10 @@ pub const GRAVITY: f64 = 9.806_65;
 const GROUND_FRICTION: f64 = 0.7;
 /// Linear air drag, N·s/m (assumed).
 pub const DRAG: f64 = 0.3;
-/// Distance of the origin from a surface beyond which no part of the vehicle reaches it, m: an arm's length,
-/// the depth of its hinge and some margin.
+/// Distance of the origin from a surface within which parts may touch it, m: arm, depth of its hinge and a margin.
 const NEAR: f64 = 0.25;
 
-/// What the flight stack drives.
+/// Inputs from the flight stack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Actuators {
     /// Command of each motor, 0..1.
@@ -47,7 +46,6 @@ pub struct Actuators {
     pub servos: PerArm<f64>,
 }
 
-/// One arm with all that hangs on it.
 #[derive(Clone, Debug)]
 struct Limb {
     arm: Arm,
@@ -70,9 +68,9 @@ pub struct Plant {
     pipe_belly: Belly,
     pipe: Pipe,
     coupled: bool,
-    /// Push at the centre of mass, N, NED, from outside.
+    /// External force at the centre of mass, N, NED.
     pub push: DVec3,
-    /// Moment from outside, N·m, body.
+    /// External moment, N·m, body.
     pub moment: DVec3,
     specific_force: DVec3,
 }
@@ -93,7 +91,7 @@ pub fn arm_spec(vehicle: &Vehicle, arm: usize) -> ArmSpec {
 }
 
 impl Plant {
-    /// The vehicle of `scenario` at rest on the ground at the origin, nose to the north.
+    /// At rest on the ground at the origin, nose north.
     #[must_use]
     pub fn new(scenario: &Scenario, rng: Pcg64Mcg) -> Self {
         let (v, w) = (&scenario.vehicle, &scenario.world);
@@ -146,7 +144,7 @@ impl Plant {
         let voltage = self.battery.voltage();
         let gravity_body = pose.to_body(DVec3::new(0.0, 0.0, GRAVITY));
 
-        // Everything from outside on the body: gravity is added by the solver.
+        // External forces on the body: the solver adds gravity.
         let mut load = Load {
             force: pose.to_body(self.push - pose.velocity * DRAG + self.gust.force()),
             moment: self.gust.moment() + self.moment,
@@ -203,8 +201,8 @@ impl Plant {
         pose.attitude = (pose.attitude * DQuat::from_xyzw(h.x, h.y, h.z, 1.0)).normalize();
     }
 
-    /// Puts the vehicle at `position` (m, NED) with `velocity` (m/s, NED), attitude and arms as they are: none of its
-    /// sensors feels it. For studies.
+    /// Moves the vehicle to `position` (m, NED) with `velocity` (m/s, NED), keeping attitude and arms, unseen by its
+    /// sensors. For studies.
     pub fn place(&mut self, position: DVec3, velocity: DVec3) {
         self.state.pose.position = position;
         self.state.pose.velocity = velocity;
@@ -228,7 +226,7 @@ impl Plant {
         ]
     }
 
-    /// Specific force at the body's origin, m/s², body.
+    /// At the body's origin, m/s², body.
     #[must_use]
     pub fn specific_force(&self) -> DVec3 {
         self.specific_force
@@ -258,7 +256,7 @@ impl Plant {
         self.limbs.each_ref().map(|l| l.tendon.tension())
     }
 
-    /// Contact pressure at each arm's sensor, Pa.
+    /// Contact pressure at the sensors, Pa.
     #[must_use]
     pub fn pressure(&self) -> PerArm<f64> {
         self.limbs.each_ref().map(|l| l.pressure)

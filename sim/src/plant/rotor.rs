@@ -4,13 +4,13 @@ use sophie_control::wrench::YAW;
 
 use glam::DVec3;
 
-/// Thrust over the square of the speed, N·s² (assumed).
+/// Thrust over squared speed, N·s² (assumed).
 pub const THRUST_COEFFICIENT: f64 = 1.5e-5;
-/// Voltage to which it belongs, V: 4S nominal.
+/// Reference voltage, V: 4S nominal.
 pub const NOMINAL_VOLTAGE: f64 = 14.8;
-/// Share of the voltage that the winding takes at full speed (assumed).
+/// Share of the voltage that drops in the winding at full speed (assumed).
 const RESISTIVE_SHARE: f64 = 0.25;
-/// Shaft power of hover over electric power (assumed).
+/// Shaft power over electric power in hover (assumed).
 const EFFICIENCY: f64 = 0.55;
 /// 2 ρ A of a 10-inch propeller, kg/m: momentum theory's induced power is T^1.5 / √(2 ρ A).
 const DISC: f64 = 2.0 * 1.225 * 0.0507;
@@ -18,11 +18,11 @@ const DISC: f64 = 2.0 * 1.225 * 0.0507;
 /// Motor and propeller as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotorSpec {
-    /// Thrust of full command at the nominal voltage, N.
+    /// At full command and nominal voltage, N.
     pub thrust_max: f64,
     /// Drag torque over thrust, m.
     pub torque_ratio: f64,
-    /// Time constant of the speed, s.
+    /// Of the speed, s.
     pub time_constant: f64,
 }
 
@@ -40,14 +40,14 @@ impl Default for RotorSpec {
 }
 
 impl RotorSpec {
-    /// Thrust (N) of the command `command` (0..1) at `voltage` V, once the speed is steady.
+    /// Steady thrust (N) at `command` (0..1) and `voltage` V.
     #[must_use]
     pub fn steady_thrust(&self, command: f64, voltage: f64) -> f64 {
         self.thrust_max * steady_share(command, voltage).powi(2)
     }
 }
 
-/// Steady speed over full speed, x: u V/V0 = (1 - s) x + s x², the winding's drop with the torque's square.
+/// Steady speed over full speed, x: u V/V0 = (1 - s) x + s x², since the winding's drop goes with torque.
 fn steady_share(command: f64, voltage: f64) -> f64 {
     let drive = command.clamp(0.0, 1.0) * voltage / NOMINAL_VOLTAGE;
     let s = RESISTIVE_SHARE;
@@ -59,15 +59,15 @@ fn steady_share(command: f64, voltage: f64) -> f64 {
 #[derive(Clone, Copy, Debug)]
 pub struct Rotor {
     spec: RotorSpec,
-    /// Speed of full command at the nominal voltage, rad/s.
+    /// Speed at full command and nominal voltage, rad/s.
     full_speed: f64,
-    /// Sense of the drag moment against the thrust direction: its sign about body z.
+    /// Sign of the drag moment about body z, against the thrust direction.
     spin: f64,
     speed: f64,
 }
 
 impl Rotor {
-    /// Rotor `index`, 0 to 3, of configuration B (`chi` +1) or A (-1), at a stop.
+    /// Rotor `index`, 0 to 3, of configuration B (`chi` +1) or A (-1), stopped.
     #[must_use]
     pub fn new(index: usize, chi: f64, spec: RotorSpec) -> Self {
         Self {
@@ -78,7 +78,7 @@ impl Rotor {
         }
     }
 
-    /// Rotor `index` as [`Rotor::new`], already turning with the thrust `thrust` N.
+    /// As [`Rotor::new`], turning with `thrust` N.
     #[must_use]
     pub fn turning(index: usize, chi: f64, spec: RotorSpec, thrust: f64) -> Self {
         Self {
@@ -87,7 +87,7 @@ impl Rotor {
         }
     }
 
-    /// Advances by `dt` s under the command `command` (0..1) at `voltage` V; returns the thrust, N.
+    /// Advances by `dt` s under `command` (0..1) at `voltage` V; returns the thrust, N.
     pub fn step(&mut self, dt: f64, command: f64, voltage: f64) -> f64 {
         let target = steady_share(command, voltage) * self.full_speed;
         self.speed += (target - self.speed) * (dt / self.spec.time_constant);
@@ -106,13 +106,13 @@ impl Rotor {
         self.speed
     }
 
-    /// Moment of the drag on the body, N·m, body, with the thrust along `normal`.
+    /// Drag moment on the body, N·m, body, with the thrust along `normal`.
     #[must_use]
     pub fn drag_moment(&self, normal: DVec3) -> DVec3 {
         normal * (-self.spin * self.spec.torque_ratio * self.thrust())
     }
 
-    /// Current from the battery at `voltage` V, A.
+    /// Battery current at `voltage` V, A.
     #[must_use]
     pub fn current(&self, voltage: f64) -> f64 {
         let t = self.thrust();

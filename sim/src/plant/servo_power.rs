@@ -1,20 +1,20 @@
-//! What the tendon servos draw from their own battery while they hold.
+//! Power of the tendon servos from their battery while they hold.
 
 /// Charge of the servos' battery, A·s: 2S 1200 mAh (paper).
 pub const CAPACITY: f64 = 1.2 * 3600.0;
 
-/// Current of a servo over its torque: a line from no load to stall, as of a DC motor.
+/// Servo current over torque: linear from no load to stall, as of a DC motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoCurrent {
-    /// Torque at which it stalls, N·m.
+    /// Stall torque, N·m.
     pub stall: f64,
-    /// Current there, A.
+    /// Stall current, A.
     pub at_stall: f64,
     /// Current without load, A.
     pub idle: f64,
 }
 
-/// MG996R at 6 V (datasheet: 11 kgcm), the only servo whose currents are known.
+/// At 6 V (datasheet: 11 kgcm), the only servo with known currents.
 pub const MG996R: ServoCurrent = ServoCurrent {
     stall: 11.0 * 0.098_066_5,
     at_stall: 2.5,
@@ -22,14 +22,14 @@ pub const MG996R: ServoCurrent = ServoCurrent {
 };
 
 impl ServoCurrent {
-    /// Current (A) while it holds `torque` N·m.
+    /// Current (A) while holding `torque` N·m.
     #[must_use]
     pub fn at(&self, torque: f64) -> f64 {
         self.idle + (self.at_stall - self.idle) * torque / self.stall
     }
 }
 
-/// Time (s) for which a full battery feeds servos that draw `current` A together.
+/// Time (s) for which a full battery feeds `current` A.
 #[must_use]
 pub fn endurance(current: f64) -> f64 {
     CAPACITY / current

@@ -1,8 +1,7 @@
 //! Servo, reel and tendon of one arm.
 //!
-//! A hobby servo winds a nylon thread along the arm's underside. The thread only pulls; it is slack until the reel has
-//! taken up what the arm's tilt gives. Numbers are those of the vehicle as built; the flight stack's are in the
-//! parameters.
+//! The servo winds a nylon thread along the arm's underside, which only pulls, and is slack until the reel has wound
+//! the length that the tilt frees. Numbers are the vehicle's; the flight stack's are parameters.
 
 use std::f64::consts::PI;
 
@@ -11,11 +10,11 @@ use sophie_control::tendon::{REFERENCE_TILT, Reel};
 
 use crate::scenario::ServoProfile;
 
-/// Deadband, µs (digital servos state 2 to 5; MG996R datasheet 5).
+/// µs (digital servos state 2 to 5; MG996R datasheet 5).
 const DEADBAND_US: f64 = 2.0;
-/// Pulse widths taken for a command, µs.
+/// µs.
 const PULSE_LIMITS_US: (f64, f64) = (450.0, 2550.0);
-/// Share of the stall torque held by gear friction without a pulse (assumed).
+/// Over the stall torque, without pulses (assumed).
 const GEAR_FRICTION: f64 = 0.35;
 
 /// A servo as built.
@@ -25,18 +24,18 @@ pub struct ServoSpec {
     pub stall: f64,
     /// No-load speed, rad/s.
     pub slew: f64,
-    /// Travel from `release_us` to `full_us`, rad.
+    /// From `release_us` to `full_us`, rad.
     pub range: f64,
-    /// Pulse of the release position, µs.
+    /// Release position, µs.
     pub release_us: f64,
-    /// Pulse after the travel `range`, µs; below `release_us` for a servo that turns the other way.
+    /// Pulse after the travel `range`, µs; below `release_us` for a reversed servo.
     pub full_us: f64,
-    /// Period of the pulses obeyed, s: 20 ms for an analog servo.
+    /// Period of accepted pulses, s: 20 ms for an analog servo.
     pub frame: f64,
 }
 
 impl ServoSpec {
-    /// This servo on arm `arm` (0..=3), with pulses and frames exactly as the parameters state.
+    /// This servo on `arm` (0..=3), with pulses and frames of the parameters.
     #[must_use]
     pub fn measured(self, params: &Params, arm: usize) -> Self {
         let reel = Reel::from_params(params, arm);
@@ -60,7 +59,7 @@ impl From<ServoProfile> for ServoSpec {
             frame: 0.02,
         };
         match profile {
-            // 35 kgcm (paper); speed of the MG996R it names; the 270° version of such servos.
+            // 35 kgcm (paper); speed of the MG996R it names; 270° version.
             ServoProfile::Paper => Self {
                 stall: 3.432,
                 range: 4.71,
@@ -79,17 +78,17 @@ impl From<ServoProfile> for ServoSpec {
 /// Reel and tendon as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonSpec {
-    /// Radius of the reel, m (assumed).
+    /// m (assumed).
     pub reel_radius: f64,
-    /// Tendon from the arm's neutral line, m (assumed).
+    /// From the arm's neutral line, m (assumed).
     pub lever: f64,
-    /// Stiffness along the tendon, N/m: 1 mm nylon, 0.25 m, E 2.5 GPa (derived, 30 %).
+    /// Along the tendon, N/m: 1 mm nylon, 0.25 m, E 2.5 GPa (derived, 30 %).
     pub stiffness: f64,
-    /// Damping along the tendon, N·s/m: loss factor 0.1 at 8 Hz (assumed).
+    /// Along the tendon, N·s/m: loss factor 0.1 at 8 Hz (assumed).
     pub damping: f64,
-    /// Tilt at which the tendon is just taut with the servo at release, rad.
+    /// Tilt at which the tendon is just taut at release, rad.
     pub reference_tilt: f64,
-    /// Excess length of the thread, m; negative: too short.
+    /// Excess length, m; negative: too short.
     pub slack_error: f64,
 }
 
@@ -119,7 +118,7 @@ pub struct Tendon {
 }
 
 impl Tendon {
-    /// A tendon with its servo at the release position.
+    /// Servo at the release position.
     pub fn new(servo: ServoSpec, spec: TendonSpec) -> Self {
         Self {
             servo,
@@ -133,9 +132,7 @@ impl Tendon {
     }
 
     /// Advances by `dt` s under pulses of `pulse_us` µs (0: none) at tilt `alpha` rad; returns the moment on the tilt,
-    /// N·m (never positive: the tendon pulls the tip down).
-    ///
-    /// Without pulses gear friction holds 35 % of the stall torque and slips beyond.
+    /// N·m (never positive). Without pulses gear friction holds 35 % of the stall torque and slips beyond.
     pub fn step(&mut self, dt: f64, pulse_us: f64, alpha: f64) -> f64 {
         self.to_next_frame -= dt;
         if self.to_next_frame <= 0.0 {
@@ -169,7 +166,7 @@ impl Tendon {
         self.tension
     }
 
-    /// Torque on the servo's shaft, N·m.
+    /// On the servo's shaft, N·m.
     pub fn servo_torque(&self) -> f64 {
         self.tension * self.spec.reel_radius
     }
@@ -179,7 +176,7 @@ impl Tendon {
         self.position
     }
 
-    /// Commanded angle, rad; the previous one for a change within the deadband.
+    /// Commanded angle, rad; unchanged within the deadband.
     fn commanded(&self, pulse_us: f64) -> Option<f64> {
         if !(pulse_us >= PULSE_LIMITS_US.0 && pulse_us <= PULSE_LIMITS_US.1) {
             return None;
@@ -198,8 +195,8 @@ impl Tendon {
         }
     }
 
-    /// Servo speed, rad/s: linear from no-load speed to zero at stall, backwards beyond (a DC motor); at most what
-    /// reaches the target within `dt`.
+    /// Speed, rad/s: linear from no-load speed to zero at stall, backwards beyond (a DC motor); at most what reaches
+    /// the target within `dt`.
     fn speed(&self, dt: f64) -> f64 {
         let ServoSpec { stall, slew, .. } = self.servo;
         let load = self.servo_torque() / stall;
@@ -240,8 +237,8 @@ mod tests {
 
     #[test]
     fn the_tension_by_hand() {
-        // 1700 µs: 1150/1900 · 4.71 rad = 2.85079 rad on 15 mm are 42.762 mm; at -1 rad 25 mm · 1.4 = 35 mm are taken
-        // up: 7.762 mm of stretch, 62.09 N, 1.552 N·m on the arm, 0.931 N·m on the servo.
+        // 1150/1900 · 4.71 rad = 2.85079 rad on 15 mm are 42.762 mm; at -1 rad 25 mm · 1.4 = 35 mm are taken up: 7.762
+        // mm of stretch, 62.09 N, 1.552 N·m on the arm, 0.931 N·m on the servo.
         let mut t = paper();
         let moment = run(&mut t, 1700.0, -1.0, 3.0);
         assert!(
@@ -299,7 +296,7 @@ mod tests {
         let angle = t.servo_angle();
         run(&mut t, 0.0, -1.0, 3.0);
         assert!((t.servo_angle() - angle).abs() < 1e-12);
-        // The arm is forced up: the gears slip beyond 0.35 · 3.432 N·m.
+        // The arm is forced up: gears slip beyond 0.35 · 3.432 N·m.
         run(&mut t, 0.0, -0.6, 3.0);
         assert!(t.servo_angle() < angle && (t.servo_torque() - 1.2012).abs() < 1e-2);
     }

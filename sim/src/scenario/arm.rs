@@ -1,7 +1,7 @@
-//! Whether a scenario's numbers give arms for the plant and for the stack's model.
+//! Whether a scenario's numbers give arms for plant and stack model.
 //!
-//! Eq. 1 is a parabola in the thrust; the simulated arm's spring is its inverse, which needs a tilt that rises with
-//! thrust; the allocation divides by that slope.
+//! Eq. 1 is a parabola in the thrust; the spring is its inverse, which needs a rising tilt, and the allocation
+//! divides by the slope.
 
 use toml::Spanned;
 use toml::de::DeTable;
@@ -11,14 +11,14 @@ use super::read::{Result, Source, Value};
 use super::{Scenario, Vehicle};
 use crate::plant::{GRAVITY, arm_spec};
 
-/// Least slope of the tilt without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast
-/// for the plant's step of 0.5 ms.
+/// Slope without thrust, rad/N (0.1 deg/N): at 0.02 the lightest vehicle's bending mode is too fast for the plant's
+/// step of 0.5 ms.
 const LEAST_RISE: f64 = 0.1 * DEGREE;
-/// Largest tilt of a free arm at zero or full thrust, rad: beyond it the rotor pushes inward more than up.
+/// Of a free arm at zero or full thrust, rad: beyond it the rotor pushes more inward than up.
 const LARGEST_TILT: f64 = 90.0 * DEGREE;
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
-/// Keys of the simulated arm, in the order of their blame.
+/// Keys of the simulated arm, in the order in which errors name them.
 const BUILT: [&str; 8] = [
     "arm_coefficients",
     "arm_level_share",
@@ -39,7 +39,7 @@ struct Slope {
     linear: f64,
     /// Half of its change with thrust, rad/N².
     quadratic: f64,
-    /// Thrust of a rotor in hover, N.
+    /// N.
     hover: f64,
 }
 
@@ -54,7 +54,7 @@ impl Slope {
         }
     }
 
-    /// Fault of an arm with `gain` times the nominal elastic term, and what is allowed.
+    /// Fault with `gain` times the nominal elastic term, and what is allowed.
     fn fault(&self, gain: f64) -> Option<String> {
         let at = |thrust: f64| gain * (self.linear + 2.0 * self.quadratic * thrust);
         let (still, hover) = (at(0.0), at(self.hover));
@@ -76,7 +76,6 @@ impl Slope {
     }
 }
 
-/// Fault of the arms of `vehicle`, and what is allowed.
 fn unbuilt(vehicle: &Vehicle) -> Option<String> {
     let v = vehicle;
     let slope = Slope::new(v.arm_coefficients, v.infill, v.gain_k, v.body.mass);
@@ -99,10 +98,10 @@ fn unbuilt(vehicle: &Vehicle) -> Option<String> {
 }
 
 impl Source<'_> {
-    /// Refuses a vehicle or parameters whose numbers are each allowed but give no arm.
+    /// Refuses numbers that are each allowed but give no arm.
     pub(super) fn arms(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         if let Some(allowed) = unbuilt(&scenario.vehicle) {
-            // The defaults are valid at every infill and gain of the command line: the file has one of these keys.
+            // The defaults are valid at every infill and gain of the command line: the file has a key.
             let (key, value) = named(root, "vehicle", &BUILT).ok_or_else(|| self.no_key(&allowed))?;
             return Err(self.bad(&key, value, allowed));
         }
@@ -127,7 +126,7 @@ impl Source<'_> {
     }
 }
 
-/// The first of `keys` that `table` of the file has, by its full name.
+/// The first of `keys` in the file's `table`, by its full name.
 fn named<'t, 'i>(
     root: &'t Spanned<DeTable<'i>>,
     table: &str,

@@ -12,7 +12,7 @@ use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
 
-/// The default mission as a scenario file, every key at its default.
+/// The default mission, every key at its default.
 pub const MISSION: &str = include_str!("../../../tests/scenarios/mission.toml");
 
 impl Default for Vehicle {
@@ -68,7 +68,7 @@ impl Default for Expect {
 }
 
 impl Scenario {
-    /// The default mission: arm, take off, roll, perch on the pipe, hold, release, land, disarm.
+    /// Arm, take off, roll, perch, hold, release, land, disarm.
     pub fn default_mission() -> Self {
         Self::default_mission_with(&Overrides::default())
     }
@@ -82,7 +82,6 @@ impl Scenario {
         }
     }
 
-    /// All defaults, without steps.
     pub(super) fn empty() -> Self {
         Self {
             name: String::new(),
@@ -100,7 +99,7 @@ impl Scenario {
     }
 }
 
-/// Steps of files that name none.
+/// Steps of files without any.
 pub(super) fn default_steps() -> Vec<Step> {
     static STEPS: OnceLock<Vec<Step>> = OnceLock::new();
     STEPS.get_or_init(|| read_steps::steps_of(MISSION)).clone()

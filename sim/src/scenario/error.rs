@@ -16,19 +16,19 @@ pub struct Place {
 pub enum ScenarioError {
     /// Missing, a directory, too large or otherwise unreadable.
     Unreadable {
-        /// File as the user named it.
+        /// As the user named it.
         file: String,
-        /// The operating system's reason, or ours.
+        /// The operating system's reason, or the reader's.
         why: String,
     },
     /// Not UTF-8.
     NotText {
-        /// The first bad byte.
+        /// First bad byte.
         at: Place,
     },
     /// Not TOML.
     Syntax {
-        /// The first error.
+        /// First error.
         at: Place,
         /// The parser's message.
         message: String,
@@ -39,9 +39,9 @@ pub enum ScenarioError {
         at: Place,
         /// The key with its table.
         key: String,
-        /// Value given.
+        /// As given.
         value: String,
-        /// The nearest allowed keys.
+        /// Nearest allowed keys.
         nearest: Vec<String>,
     },
     /// A required key is missing.
@@ -59,18 +59,18 @@ pub enum ScenarioError {
         at: Place,
         /// The key with its table.
         key: String,
-        /// Value given, as written.
+        /// As written.
         value: String,
         /// What it may be.
         allowed: String,
     },
-    /// A step that is impossible in the state after the steps before it.
+    /// A step that is impossible after the steps before it.
     StepOrder {
         /// Where it is.
         at: Place,
-        /// Key of the step, such as `steps[3]`.
+        /// Such as `steps[3]`.
         key: String,
-        /// Name of the step.
+        /// Name.
         step: String,
         /// When it is possible, and the vehicle's state.
         allowed: String,
@@ -135,7 +135,7 @@ impl fmt::Display for ScenarioError {
 
 impl std::error::Error for ScenarioError {}
 
-/// `text` without control characters or runs of blanks, at most `limit` characters.
+/// Without control characters and runs of blanks, at most `limit` characters.
 pub(super) fn one_line(text: &str, limit: usize) -> String {
     let words = text.split(|c: char| c.is_whitespace() || c.is_control());
     let line = words.filter(|w| !w.is_empty()).collect::<Vec<_>>().join(" ");

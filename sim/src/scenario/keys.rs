@@ -1,4 +1,4 @@
-//! Every key of a scenario file: name, kind, range. Names carry the units; the conversion to SI is here alone.
+//! Every key of a scenario file: name with unit, kind, range. Only here are units converted to SI.
 
 use core::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use super::{Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
-    /// Name with its table, such as `vehicle.infill`.
+    /// With its table, such as `vehicle.infill`.
     pub name: &'static str,
     /// What it takes.
     pub kind: Kind,
@@ -41,7 +41,7 @@ pub struct Range {
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// Unit for messages; may be empty.
+    /// For messages; may be empty.
     pub unit: &'static str,
     /// SI value of one unit.
     pub si: f64,
@@ -58,7 +58,7 @@ impl Range {
         }
     }
 
-    /// The same range with the SI value of its unit.
+    /// The range with its unit in SI.
     pub const fn times(self, si: f64) -> Self {
         Self { si, ..self }
     }
@@ -68,7 +68,7 @@ impl Range {
         (value >= self.min && value <= self.max).then_some(value * self.si)
     }
 
-    /// The range for messages: `4 to 10 %`.
+    /// For messages: `4 to 10 %`.
     pub fn allowed(&self) -> String {
         format!("{} to {} {}", self.min, self.max, self.unit)
             .trim_end()
@@ -87,15 +87,15 @@ pub const SERVOS: &[&str] = &["paper", "mg996r"];
 
 /// Infill that Eq. 1 of the paper covers.
 pub const INFILL: Range = Range::new(4.0, 10.0, "%");
-/// Gain on the elastic term of Eq. 1: 1 is the literal equation, Table III needs 5.0 to 8.4.
+/// Gain on Eq. 1's elastic term: 1 is the literal equation, Table III needs 5.0 to 8.4.
 pub const GAIN_K: Range = Range::new(1.0, 10.0, "");
 
-/// Largest seed: whole numbers up to it are exact as TOML floats.
+/// Whole numbers up to it are exact as TOML floats.
 const SEED_MAX: f64 = 9e15;
 /// Allowed seeds, for messages.
 pub const SEED_ALLOWED: &str = "a whole number from 0 to 9e15";
 
-/// The seed of a number in a file or on a command line.
+/// The seed of a number from a file or command line.
 pub fn seed(number: f64) -> Option<u64> {
     let whole = number.fract() == 0.0 && (0.0..=SEED_MAX).contains(&number);
     whole.then_some(number as u64)
@@ -247,7 +247,7 @@ pub const KEYS: &[Key] = &[
     number!("vehicle.mass_kg", Range::new(1.0, 3.0, "kg"), vehicle.body.mass),
     Key {
         name: "vehicle.inertia_kgm2",
-        // The arms' tip masses alone give 0.010, 0.010 and 0.020.
+        // Tip masses alone give 0.010, 0.010 and 0.020.
         kind: Kind::PerAxis(
             [
                 Range::new(0.012, 0.1, "kg m2"),
@@ -312,5 +312,5 @@ pub const KEYS: &[Key] = &[
     },
 ];
 
-/// Tables of a scenario file; `steps` is a list.
+/// Tables of a file; `steps` is a list.
 pub const TABLES: &[&str] = &["vehicle", "world", "pilot", "params", "expect"];

@@ -12,18 +12,16 @@ use super::Scenario;
 use super::error::{Place, ScenarioError};
 use super::read::Source;
 
-/// Larger than any scenario; refuses devices and wrong files.
+/// Refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// Settings of the command line, which override the file's.
-///
-/// Values must be within the ranges of [`keys`](super::keys). The stack's parameters follow them like the file's
-/// vehicle; the file's `[params]` overrides both.
+/// Command line settings, within the ranges of [`keys`](super::keys), override the file's vehicle; the stack's
+/// parameters follow, but for the file's `[params]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Infill, %.
     pub infill: Option<f64>,
-    /// Gain on the elastic term of Eq. 1.
+    /// On Eq. 1's elastic term.
     pub gain_k: Option<f64>,
     /// Sense of rotation.
     pub configuration: Option<Configuration>,
@@ -52,41 +50,13 @@ impl Overrides {
 }
 
 impl Scenario {
-    /// Reads a scenario file; the default `name` is the file's.
+    /// Reads a file, whose name is the default `name`.
     ///
     /// # Errors
     /// One line: file, line, key, value, what is allowed.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let file = path.display().to_string();
-        let unreadable = |why: String| ScenarioError::Unreadable {
-            file: file.clone(),
-            why,
-        };
-        if path.is_dir() {
-            return Err(unreadable("it is a directory; allowed is a TOML file".to_owned()));
-        }
-        let mut bytes = Vec::new();
-        File::open(path)
-            .and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-            .map_err(|error| unreadable(error.to_string()))?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(unreadable(
-                "it is longer than 1 MiB; allowed is a short TOML file".to_owned(),
-            ));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let good = error
-                .as_bytes()
-                .get(..error.utf8_error().valid_up_to())
-                .unwrap_or_default();
-            let line = 1 + good.iter().filter(|b| **b == b'\n').count();
-            ScenarioError::NotText {
-                at: Place {
-                    file: file.clone(),
-                    line,
-                },
-            }
-        })?;
+        let text = read_text(path, &file)?;
         let mut scenario = Self::parse(&text, &file, overrides)?;
         if scenario.name.is_empty() {
             scenario.name = path
@@ -97,11 +67,44 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Parses a scenario; `file` is its name for messages.
+    /// Parses a scenario; messages name `file`.
     ///
     /// # Errors
     /// As [`Scenario::load`].
     pub fn parse(text: &str, file: &str, overrides: &Overrides) -> Result<Self, ScenarioError> {
         Source { file, text }.scenario(overrides)
     }
+}
+
+/// The text of the file at `path`, which messages call `file`.
+pub(super) fn read_text(path: &Path, file: &str) -> Result<String, ScenarioError> {
+    let unreadable = |why: String| ScenarioError::Unreadable {
+        file: file.to_owned(),
+        why,
+    };
+    if path.is_dir() {
+        return Err(unreadable("it is a directory; allowed is a TOML file".to_owned()));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(|error| unreadable(error.to_string()))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(unreadable(
+            "it is longer than 1 MiB; allowed is a short TOML file".to_owned(),
+        ));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = error
+            .as_bytes()
+            .get(..error.utf8_error().valid_up_to())
+            .unwrap_or_default();
+        let line = 1 + good.iter().filter(|b| **b == b'\n').count();
+        ScenarioError::NotText {
+            at: Place {
+                file: file.to_owned(),
+                line,
+            },
+        }
+    })
 }

@@ -1,7 +1,7 @@
 //! A mission: vehicle, world, pilot, steps, seed.
 //!
-//! Scenarios are TOML files; `tests/scenarios/mission.toml` has every key with its default. Keys name their units;
-//! values here are SI.
+//! Scenarios are TOML files with units in the keys; values here are SI. `tests/scenarios/mission.toml` has every key
+//! with its default.
 
 mod arm;
 mod defaults;
@@ -11,6 +11,7 @@ mod load;
 mod nearest;
 mod read;
 mod read_steps;
+pub mod settings;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -35,11 +36,11 @@ pub struct Scenario {
     pub name: String,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Longest simulated time, s; the flight fails beyond it.
+    /// Simulated time beyond which the flight fails, s.
     pub time_limit: f64,
     /// The vehicle as built.
     pub vehicle: Vehicle,
-    /// Parameters of the flight stack: the builder's model of the vehicle.
+    /// Flight stack parameters: the builder's model of the vehicle.
     pub params: Params,
     /// Allocation used by the stack.
     pub mixer: sophie_mixers::Variant,
@@ -60,21 +61,21 @@ pub struct Scenario {
 pub struct Vehicle {
     /// Arm infill, %.
     pub infill: f64,
-    /// Gain on the elastic term of Eq. 1.
+    /// On Eq. 1's elastic term.
     pub gain_k: f64,
     /// Configuration of the rotors' senses.
     pub configuration: Configuration,
     /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): Table I or a fitted arm.
     pub arm_coefficients: [f64; 4],
-    /// Thrust at which the nominal arm is level over the rotor's largest; sets α0.
+    /// Thrust of a level nominal arm over the largest; sets α0.
     pub arm_level_share: f64,
     /// Factor on each arm's elastic tilt; nominal 1.
     pub arm_gain: PerArm<f64>,
     /// Offset of each arm's tilt, rad; nominal 0.
     pub arm_offset: PerArm<f64>,
-    /// Arms carry their tip mass (true) or follow the thrust alone, as in the paper's statics (false).
+    /// Arms carry tip masses (true) or follow thrust alone, as in the paper's statics (false).
     pub coupled_arms: bool,
-    /// Damping ratio of the bending mode in hover.
+    /// Of the bending mode in hover.
     pub arm_damping: f64,
     /// Battery charge at power-up, 0..1.
     pub battery_charge: f64,
@@ -95,20 +96,20 @@ pub enum ServoProfile {
     Mg996r,
 }
 
-/// Air and pipe. The origin is the take-off point, on the ground, nose north.
+/// Air and pipe. Origin: the take-off point, on the ground, nose north.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// RMS gust force per axis, N.
+    /// RMS per axis, N.
     pub gust_force: f64,
-    /// RMS gust moment per axis, N·m.
+    /// RMS per axis, N·m.
     pub gust_moment: f64,
-    /// Outer diameter of the pipe, m.
+    /// Outer, m.
     pub pipe_diameter: f64,
-    /// North and east of the perch spot, m. The pipe runs north-south.
+    /// North and east of the perch spot, m; the pipe runs north-south.
     pub pipe_position: [f64; 2],
-    /// Height of the pipe's top over the ground, m.
+    /// Height, m.
     pub pipe_top: f64,
-    /// Coefficient of friction, vehicle on pipe.
+    /// Coefficient, vehicle on pipe.
     pub pipe_friction: f64,
 }
 
@@ -117,30 +118,30 @@ pub struct World {
 pub struct Pilot {
     /// Reaction delay, s.
     pub delay: f64,
-    /// Bandwidth of the pilot's sticks, Hz.
+    /// Of the sticks, Hz.
     pub bandwidth: f64,
-    /// RMS error of the seen position, m.
+    /// RMS, m.
     pub eye_noise: f64,
 }
 
 /// A step of the mission.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// Wait for the calibration, then arm with switch and stick gesture.
+    /// Wait for calibration, arm with switch and stick gesture.
     Arm,
-    /// Climb to a height over the ground.
+    /// Climb to a height.
     TakeOff {
-        /// Height, m.
+        /// m.
         height: f64,
     },
     /// Hold the spot.
     Hover {
-        /// Duration, s.
+        /// s.
         seconds: f64,
     },
-    /// The paper's roll manoeuvre: +angle, -angle, level; each side ends once reached.
+    /// The paper's roll manoeuvre: +angle, -angle, level; a side ends once reached.
     Roll {
-        /// Roll angle, rad.
+        /// rad.
         angle: f64,
         /// Longest time per side, s.
         seconds: f64,
@@ -149,54 +150,54 @@ pub enum Step {
     FlyToPipe,
     /// Descend onto the pipe until contact.
     Touch,
-    /// Set the throttle and start closing; done once the arms close.
+    /// Set the throttle and start closing, until the arms close.
     Clamp {
-        /// Throttle while closing, 0..1; about 0.3 in the paper.
+        /// 0..1; about 0.3 in the paper.
         throttle: f64,
     },
-    /// Set the throttle, start closing, wait for the proven grip and stopped motors.
+    /// Set the throttle, close, wait for the proven grip and stopped motors.
     Perch {
-        /// Throttle while closing, 0..1.
+        /// 0..1.
         throttle: f64,
     },
     /// Stay clamped under a push.
     Hold {
-        /// Duration, s.
+        /// s.
         seconds: f64,
-        /// Sideways push at the centre of mass, N, during the middle third.
+        /// Sideways at the centre of mass in the middle third, N.
         push: f64,
     },
-    /// Spool up and turn the perch switch off; done once displayed.
+    /// Spool up and turn the perch switch off, until displayed.
     Open,
-    /// Spool up, release the tendons, wait for free arms, lift off by 1 m.
+    /// Spool up, release the tendons, wait for free arms, climb 1 m.
     Release,
-    /// Fly to a point relative to the take-off point.
+    /// Fly to a point.
     FlyTo {
-        /// North, m.
+        /// From take-off, m.
         north: f64,
-        /// East, m.
+        /// From take-off, m.
         east: f64,
-        /// Height over the ground, m.
+        /// Over the ground, m.
         height: f64,
     },
     /// Descend to the ground below.
     Land,
     /// Disarm and wait for stopped motors.
     Disarm,
-    /// Transmitter off: no frames, display dark. Done once the display shows the mode again.
+    /// Transmitter off (no frames, display dark), until the display shows the mode again.
     RadioOff {
-        /// Duration, s.
+        /// s.
         seconds: f64,
     },
-    /// Reset of the board; done once the display shows it disarmed.
+    /// Reset of the board, until displayed as disarmed.
     Reset {
-        /// Cause: decides whether retained memory is lost.
+        /// Decides whether retained memory is lost.
         cause: StartCause,
-        /// From the start of the step, s.
+        /// Delay, s.
         after: f64,
         /// Time without power, s.
         off: f64,
-        /// Sideways push at the centre of mass, N, during the step.
+        /// Sideways at the centre of mass during the step, N.
         push: f64,
     },
 }

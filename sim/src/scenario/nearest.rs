@@ -1,14 +1,14 @@
 //! The allowed keys nearest to a mistyped one.
 
-/// At most three of `candidates` nearest to `key` (both with their table, as in `vehicle.infill`), nearest first; at
-/// least one if there are candidates.
+/// Up to three of `candidates` nearest to `key` (both with their table, as in `vehicle.infill`), nearest first; at
+/// least one if there are any.
 pub(super) fn nearest<'a>(key: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut ranked: Vec<(usize, &str)> = candidates.map(|c| (distance(key, c), c)).collect();
     ranked.sort();
     let Some(&(best, _)) = ranked.first() else {
         return Vec::new();
     };
-    // Two errors worse than the best is no likely meaning.
+    // Two errors more than the best are unlikely.
     ranked
         .iter()
         .filter(|(d, _)| *d <= best + 2)
@@ -17,15 +17,14 @@ pub(super) fn nearest<'a>(key: &str, candidates: impl Iterator<Item = &'a str>) 
         .collect()
 }
 
-/// Distance of the names, plus one if the tables differ.
 fn distance(a: &str, b: &str) -> usize {
     let split = |key| <str>::rsplit_once(key, '.').unwrap_or(("", key));
     let ((table_a, name_a), (table_b, name_b)) = (split(a), split(b));
     edits(name_a, name_b) + usize::from(table_a != table_b)
 }
 
-/// Edits (insert, delete, replace) from `a` to `b`; an added unit counts one, a name too long for a typing
-/// error the letters of the longer name.
+/// Edits (insert, delete, replace) from `a` to `b`; an added unit counts one, a name too long for a typing error its
+/// letters.
 fn edits(a: &str, b: &str) -> usize {
     if b.strip_prefix(a).is_some_and(|rest| rest.starts_with('_')) {
         return 1;

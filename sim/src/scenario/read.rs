@@ -1,25 +1,22 @@
-//! From a scenario's text to a [`Scenario`].
-//!
-//! The document is read against the tables in [`keys`](super::keys) and [`steps`](super::steps), not through derived
-//! structs: every message must name key, value and what is allowed.
+//! Reads a [`Scenario`] against the tables in [`keys`](super::keys) and [`steps`](super::steps), not through derived
+//! structs: messages must name key, value and what is allowed.
 
 use core::ops::Range as Span;
 
-use sophie_control::params::{Params, Renamed};
-use sophie_tasks::parameters::Allowed;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Place, ScenarioError};
 use super::keys::{self, KEYS, Key, Kind, Range, TABLES};
 use super::nearest::nearest;
+use super::settings::Setting;
 use super::{Overrides, Scenario, defaults};
 use crate::plant::tendon::ServoSpec;
 
 pub(super) type Result<T> = core::result::Result<T, ScenarioError>;
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
-/// A text with its name, for messages.
+/// A text and its name in messages.
 pub(super) struct Source<'a> {
     pub file: &'a str,
     pub text: &'a str,
@@ -81,7 +78,10 @@ impl Source<'_> {
         overrides.apply(&mut scenario);
         believe_the_vehicle(&mut scenario);
         if let Some(table) = params {
-            self.params(table, &mut scenario.params)?;
+            for Setting { row, value, .. } in self.settings(table)? {
+                // In its range: never an error.
+                let _ = scenario.params.set(row.name, value);
+            }
         }
         self.pipe_clear_of_the_ground(&root, &scenario)?;
         self.arms(&root, &scenario)?;
@@ -163,41 +163,13 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// A number in its range, as SI.
+    /// A number within `range`, in SI.
     pub(super) fn number(&self, key: &str, value: &Value<'_>, range: &Range) -> Result<f64> {
         let si = as_number(value).and_then(|v| range.to_si(v));
         si.ok_or_else(|| self.bad(key, value, range.allowed()))
     }
 
-    fn params(&self, table: &DeTable<'_>, params: &mut Params) -> Result<()> {
-        for (name, span, value) in in_order(table) {
-            let key = format!("params.{name}");
-            let renamed = Renamed::find(name);
-            if let Some(new) = renamed.map(|r| r.new).filter(|new| table.contains_key(*new)) {
-                return Err(self.bad(&key, value, format!("one of the two, it is params.{new} now")));
-            }
-            let Some(row) = Params::row(renamed.map_or(name, |r| r.new)) else {
-                let known = Params::TABLE.iter().map(|row| format!("params.{}", row.name));
-                return Err(self.unknown(&key, &span, value, known));
-            };
-            let named = value.get_ref().as_str().and_then(|name| row.choice_named(name));
-            let number = named
-                .map(|choice| choice.value)
-                .or(as_number(value).map(|n| n as f32));
-            let number = match (renamed, named) {
-                (Some(renamed), None) => number.map(|number| renamed.convert(number)),
-                _ => number,
-            };
-            let set = number.and_then(|number| params.set(row.name, number).ok());
-            set.ok_or_else(|| {
-                let now = renamed.map_or(String::new(), |r| format!(" as params.{}", r.new));
-                self.bad(&key, value, format!("{}{now}", Allowed(row)))
-            })?;
-        }
-        Ok(())
-    }
-
-    /// A pipe must leave room below it, whichever of its keys is set.
+    /// Requires room below the pipe.
     fn pipe_clear_of_the_ground(&self, root: &Spanned<DeTable<'_>>, scenario: &Scenario) -> Result<()> {
         let lowest = scenario.world.pipe_diameter + 0.2;
         if scenario.world.pipe_top >= lowest {
@@ -220,7 +192,7 @@ pub(super) fn table<'t, 'i>(root: &'t Spanned<DeTable<'i>>, name: &str) -> Optio
     content.get_ref().as_table()
 }
 
-/// The stack's parameters follow the vehicle unless the file sets them.
+/// The stack's parameters follow the vehicle unless the file has them.
 fn believe_the_vehicle(scenario: &mut Scenario) {
     let Scenario { params, vehicle, .. } = scenario;
     params.infill = vehicle.infill as f32;
@@ -242,7 +214,7 @@ fn believe_the_vehicle(scenario: &mut Scenario) {
     params.servo_range = servo.range as f32;
 }
 
-/// Entries in the file's order: the first mistake is reported.
+/// In the file's order: the first mistake is reported.
 pub(super) fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usize>, &'t Value<'i>)> {
     let mut entries: Vec<_> = table
         .iter()
@@ -252,7 +224,7 @@ pub(super) fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t str, Span<usi
     entries
 }
 
-fn as_number(value: &Value<'_>) -> Option<f64> {
+pub(super) fn as_number(value: &Value<'_>) -> Option<f64> {
     match value.get_ref() {
         DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|v| v as f64),
         DeValue::Float(f) => f.as_str().parse().ok(),

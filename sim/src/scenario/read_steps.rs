@@ -8,7 +8,6 @@ use super::read::{Result, Source, Value, in_order};
 use super::steps::{STEPS, StepKind, Whereabouts};
 
 impl Source<'_> {
-    /// The list, each step possible after the one before.
     pub(super) fn steps(&self, list: &Value<'_>) -> Result<Vec<Step>> {
         let items = list.get_ref().as_array().map(|a| a.iter()).unwrap_or_default();
         let mut steps = Vec::new();
@@ -78,7 +77,6 @@ impl Source<'_> {
     }
 }
 
-/// Steps of a valid text.
 pub(super) fn steps_of(text: &str) -> Vec<Step> {
     let source = Source { file: "", text };
     let Ok(root) = source.document() else {

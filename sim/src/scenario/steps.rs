@@ -1,4 +1,4 @@
-//! The steps of a scenario file: names, numbers, and allowed order.
+//! Steps of a scenario file: names, numbers, allowed order.
 
 use core::f64::consts::PI;
 
@@ -12,7 +12,7 @@ pub struct StepKind {
     pub name: &'static str,
     /// Its numbers.
     pub numbers: &'static [StepNumber],
-    /// Makes the step from its numbers (SI), in their order.
+    /// Makes the step from its numbers, SI.
     pub build: fn([f64; 3]) -> Step,
 }
 
@@ -33,8 +33,8 @@ const fn number(key: &'static str, range: Range, default: f64) -> StepNumber {
 const HEIGHT: Range = Range::new(0.5, 30.0, "m");
 const PLACE: Range = Range::new(-50.0, 50.0, "m");
 const PERCH_THROTTLE: StepNumber = number("throttle_percent", Range::new(5.0, 60.0, "%").times(0.01), 30.0);
-/// Longest radio silence after which the vehicle surely flies on, s: the link turns stale after 0.5 s; 1 s later only
-/// the sticks end the failsafe.
+/// Longest radio silence after which the vehicle surely still flies, s: the link turns stale after 0.5 s; 1 s later
+/// only sticks end the failsafe.
 const FLIES_ON: f64 = 1.4;
 
 const RESET: &[StepNumber] = &[
@@ -152,7 +152,7 @@ pub const STEPS: &[StepKind] = &[
 ];
 
 impl Step {
-    /// Name of the step in scenario files and flight records.
+    /// Name in scenario files and flight records.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Arm => "arm",
@@ -189,12 +189,12 @@ pub(super) enum Whereabouts {
     Opening,
     /// Clamped, after a restart.
     Hanging,
-    /// Without a pilot so long that it sinks, or has landed.
+    /// Without pilot until it sinks or has landed.
     Sinking,
 }
 
 impl Whereabouts {
-    /// State after `step`, or the reason why it is impossible: when it may be done.
+    /// State after `step`, or when the step is possible.
     pub(super) fn after(self, step: &Step) -> Result<Self, String> {
         use Whereabouts::*;
         let (from, to): (&[Self], Self) = match step {
@@ -216,7 +216,7 @@ impl Whereabouts {
                 InAir => (&[InAir], Sinking),
                 _ => (&[Closing, Clamped, Opening, Hanging], Hanging),
             },
-            // Over the pipe there is no ground below: the vehicle must fly away first.
+            // Over the pipe there is no ground below.
             Step::Land => (&[InAir], OnGroundArmed),
             Step::Disarm => (&[OnGroundArmed, Sinking], OnGroundDisarmed),
             Step::RadioOff { seconds } if self == InAir && *seconds > FLIES_ON => (&[InAir], Sinking),

@@ -3,19 +3,19 @@
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
-/// Reference of the converter, V.
+/// Of the converter, V.
 const REFERENCE: f64 = 3.3;
 /// Volts at a pin per count.
 pub const PIN_VOLTS_PER_COUNT: f64 = REFERENCE / 4095.0;
-/// Divider ratio (reference board: 10 kΩ over 1 kΩ).
+/// Reference board: 10 kΩ over 1 kΩ.
 const DIVIDER: f64 = 11.0;
-/// Current sensor, A/V (reference board).
+/// Reference board, A/V.
 const AMPS_PER_VOLT: f64 = 40.0;
-/// Largest gain error of divider and current sensor.
+/// Largest, of divider and current sensor.
 const GAIN_ERROR: (f64, f64) = (0.01, 0.03);
-/// Largest offset of the current sensor, A.
+/// Largest, of the current sensor, A.
 const OFFSET: f64 = 0.3;
-/// RMS noise, counts: motors share the supply.
+/// RMS, counts: motors share the supply.
 const NOISE: f64 = 2.0;
 
 /// Volts of battery per count.
@@ -32,7 +32,7 @@ pub struct BatteryInputs {
 }
 
 impl BatteryInputs {
-    /// The inputs of a board with errors drawn from `rng`.
+    /// Errors drawn from `rng`.
     pub fn new(rng: &mut impl Rng) -> Self {
         let mut within = |size: f64| Uniform::new(-size, size).map_or(0.0, |u| u.sample(rng));
         Self {

@@ -1,4 +1,4 @@
-//! The sensor at an arm's tip: the BNO055's fused gravity vector, after its datasheet.
+//! Sensor at an arm's tip: the BNO055's fused gravity vector, after its datasheet.
 
 use std::collections::VecDeque;
 
@@ -11,15 +11,15 @@ use sophie_control::wrench::SIDE;
 
 /// Fusion steps per second (datasheet).
 pub const RATE_HZ: f64 = 100.0;
-/// Latency of the output in steps: 20 ms (assumed).
+/// Steps: 20 ms (assumed).
 const LATENCY: usize = 2;
-/// One count, m/s² (datasheet).
+/// m/s² (datasheet).
 const LSB: f64 = 0.01;
-/// Noise of the fused vector, m/s² (assumed).
+/// Of the fused vector, m/s² (assumed).
 const NOISE: f64 = 0.03;
-/// Largest mounting error, rad (assumed, 0.5°).
+/// Largest error, rad (assumed, 0.5°).
 const MOUNTING: f64 = 0.0087;
-/// Share of the motion's acceleration leaking into the vector, and its time constant, s (assumed).
+/// Share of the acceleration that leaks into the vector, and its time constant, s (assumed).
 const LEAK: (f64, f64) = (0.1, 0.3);
 
 /// One arm's sensor.
@@ -33,7 +33,7 @@ pub struct ArmImu {
 }
 
 impl ArmImu {
-    /// The sensor of arm `arm`, 0 to 3, with a random mounting error.
+    /// Sensor of `arm`, 0 to 3, with a random mounting error.
     #[must_use]
     pub fn new(arm: usize, mut rng: Pcg64Mcg) -> Self {
         let mounting = rng.random_range(-MOUNTING..MOUNTING);
@@ -46,8 +46,8 @@ impl ArmImu {
         }
     }
 
-    /// One fusion step, arm tilt `tilt` rad, body at `attitude` under `specific_force` (m/s², body); returns the
-    /// delayed gravity vector, m/s², arm axes.
+    /// A fusion step at tilt `tilt` rad, body at `attitude` under `specific_force` (m/s², body); returns delayed
+    /// gravity, m/s², arm axes.
     pub fn sample(&mut self, attitude: DQuat, tilt: f64, specific_force: DVec3) -> Vec3 {
         let down = attitude.conjugate() * DVec3::new(0.0, 0.0, 9.806_65);
         let motion = -specific_force - down;
@@ -83,7 +83,7 @@ mod tests {
         assert!(old.y.abs() < 0.25, "{old:?}");
         imu.sample(DQuat::IDENTITY, 0.5, rest);
         let new = imu.sample(DQuat::IDENTITY, 0.5, rest);
-        // Left arm, tip up: turned by +0.5 rad about x, so gravity appears at y = g sin 0.5.
+        // Left arm, tip up: +0.5 rad about x, so y = g sin 0.5.
         assert!(
             (f64::from(new.y) - 9.806_65 * 0.5f64.sin()).abs() < 0.25,
             "{new:?}"

@@ -1,36 +1,35 @@
 //! A force-sensing resistor under an arm's skin, with divider and converter.
 //!
-//! Interlink FSR 406 after datasheet and integration guide: no conductance below 0.1 N, then about proportional to the
-//! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep. The sum is the paper's error of about 50 N/m²
-//! at 950 N/m².
+//! Interlink FSR 406 after datasheet and integration guide: no conductance below 0.1 N, then about proportional to
+//! force (10 kΩ at 1 N), with part-to-part spread, hysteresis and creep: in all the paper's error of about 50 N/m² at
+//! 950 N/m².
 
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
-/// Active area, m²: 38 mm square (datasheet).
+/// m²: 38 mm square (datasheet).
 const AREA: f64 = 0.038 * 0.038;
-/// Actuation force, N (datasheet).
+/// N (datasheet).
 const THRESHOLD: f64 = 0.1;
-/// Conductance at 1 N, S (guide, about 10 kΩ).
+/// S at 1 N (guide, about 10 kΩ).
 const GAIN: f64 = 1e-4;
-/// Largest gain error once calibrated in the arm (assumed; 6 % from the reel, datasheet).
+/// Largest gain error, calibrated in the arm (assumed; 6 % from the reel, datasheet).
 const PART_ERROR: f64 = 0.04;
-/// Least exponent of the force, up to 1 (assumed; the guide's log-log plot is straight near 1).
+/// Smallest exponent of the force, up to 1 (assumed; the guide's log-log plot is straight near 1).
 const EXPONENT_MIN: f64 = 0.97;
-/// Half width of the hysteresis over the force (assumed for slow changes; datasheet 10 % over the whole range).
+/// Half width of the hysteresis over force (assumed for slow changes; datasheet 10 % over the whole range).
 const HYSTERESIS: f64 = 0.015;
 /// RMS and time constant of the creep, s (assumed; datasheet below 5 % per decade of time).
 const CREEP: (f64, f64) = (0.008, 20.0);
-/// RMS noise over the conductance (assumed).
+/// RMS over the conductance (assumed).
 const NOISE: f64 = 0.004;
-/// Divider's resistor to ground, Ω, and its largest error.
+/// Resistor to ground, Ω, and its largest error.
 const DIVIDER: (f64, f64) = (10_000.0, 0.01);
-/// RMS converter noise, counts.
+/// RMS, counts.
 const ADC_NOISE: f64 = 1.2;
 
-/// Largest relative error of the pressure in the vehicle: limits of gain and divider, hysteresis, three times the
-/// creep's RMS, and 1 % by the exponent at the grip pressure. Summed, not averaged: 9.9 % with the limits above, 94 Pa
-/// at 950 Pa, where the paper states about 50 Pa without saying whether typical or largest.
+/// Largest relative error of the pressure: limits of gain and divider, hysteresis, three times the creep's RMS, and 1 %
+/// by the exponent at the grip pressure. Sum 9.9 %, 94 Pa at 950 Pa; the paper's 50 Pa may be typical or largest.
 pub const LARGEST_ERROR: f64 = PART_ERROR + DIVIDER.1 + HYSTERESIS + 3.0 * CREEP.0 + 0.01;
 
 /// A fault of a sensor.
@@ -72,7 +71,7 @@ impl FsrSensor {
         self.broken = broken;
     }
 
-    /// 12-bit counts at the true pressure `pressure` (Pa), `dt` s after the last sample.
+    /// 12-bit counts at the true `pressure` (Pa), `dt` s after the last sample.
     pub fn sample(&mut self, pressure: f64, dt: f64, rng: &mut impl Rng) -> u16 {
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let force = pressure.max(0.0) * AREA;
@@ -92,7 +91,7 @@ impl FsrSensor {
                 load / (1.0 + load)
             }
         };
-        // Noise is that of a divider; a grounded or railed pin has none.
+        // Divider noise; a grounded or railed pin has none.
         let noise = if x > 0.0 && x < 1.0 {
             ADC_NOISE * normal()
         } else {

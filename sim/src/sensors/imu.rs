@@ -10,27 +10,26 @@ use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
 
-/// Default sample rate, Hz.
+/// Default, samples/s.
 const RATE_HZ: f64 = 4000.0;
-/// Gyro noise, rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
+/// rad/s at 4 kHz: 2.8 mdps/√Hz over 2 kHz (datasheet).
 const GYRO_NOISE: f64 = 2.8e-3 * (std::f64::consts::PI / 180.0) * 44.7;
-/// Accelerometer noise, m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
+/// m/s² at 4 kHz: 70 µg/√Hz over 2 kHz (datasheet).
 const ACCEL_NOISE: f64 = 70e-6 * 9.806_65 * 44.7;
-/// Largest gyro bias, rad/s: ±0.5 dps (datasheet).
+/// Largest, rad/s: ±0.5 dps (datasheet).
 const GYRO_BIAS: f64 = 0.5 * (std::f64::consts::PI / 180.0);
-/// Largest accelerometer bias, m/s²: ±20 mg (datasheet).
+/// Largest, m/s²: ±20 mg (datasheet).
 const ACCEL_BIAS: f64 = 0.020 * 9.806_65;
-/// Largest error of the bench calibration, m/s²: a bench level to 0.25° (assumed).
+/// Largest, m/s²: a bench level to 0.25° (assumed).
 const BENCH_ERROR: f64 = 0.04;
-/// Vibration at rotor speed per rotor at 600 rad/s: rad/s and m/s² (assumed; soft arms isolate).
+/// Per rotor at 600 rad/s, rad/s and m/s² (assumed; soft arms isolate).
 const VIBRATION: (f64, f64) = (0.01, 0.25);
 
 /// The sensor with its errors.
 #[derive(Clone, Debug)]
 pub struct Imu {
-    /// Samples per second.
     rate: f64,
-    /// Noise relative to 4 kHz: it grows with the band, half the rate.
+    /// Relative to 4 kHz: it grows with the band, half the rate.
     noise: f64,
     /// Resolution of gyro, rad/s, and accelerometer, m/s².
     lsb: (f64, f64),
@@ -68,7 +67,7 @@ impl Imu {
         }
     }
 
-    /// Accelerometer bias measured on a level bench, m/s², with the bench's error.
+    /// Accelerometer bias as measured on a level bench, with its error, m/s².
     pub fn bench_bias(&mut self) -> DVec3 {
         self.accel_bias
             + DVec3::from_array(std::array::from_fn(|_| {
@@ -76,8 +75,8 @@ impl Imu {
             }))
     }
 
-    /// A sample of body rate (rad/s) and specific force (m/s²) with the rotors at `rotors` rad/s, one sample late, as
-    /// from the part's own filter.
+    /// Body rate (rad/s) and specific force (m/s²) with rotors at `rotors` rad/s, a sample late as from the part's
+    /// filter.
     pub fn sample(&mut self, rate: DVec3, specific_force: DVec3, rotors: &[f64; 4]) -> ImuReading {
         let (mut shake_gyro, mut shake_accel) = (DVec3::ZERO, DVec3::ZERO);
         for (i, (phase, speed)) in self.phase.iter_mut().zip(rotors).enumerate() {
@@ -103,7 +102,7 @@ impl Imu {
         std::mem::replace(&mut self.pipeline, ImuReading { gyro, accel })
     }
 
-    /// Adds noise of `noise` rms, rounds to counts of `lsb`, saturates at full scale.
+    /// Adds `noise` RMS, rounds to `lsb`, saturates at full scale.
     fn measure(&mut self, truth: DVec3, noise: f64, lsb: f64) -> Vec3 {
         let mut axis = |x: f64| {
             let n: f64 = StandardNormal.sample(&mut self.rng);

@@ -17,7 +17,7 @@ use sophie_fakes::{
     links_with,
 };
 
-/// Period of the channel frames, ms.
+/// ms.
 const FRAME_MS: u64 = 10;
 
 /// A vehicle with scripted parts.

@@ -18,6 +18,7 @@ pub(super) enum Command<'a> {
     Save,
     Restart,
     Timing,
+    Version,
     Silicon,
     BrownOut,
     SetBrownOut,
@@ -35,7 +36,7 @@ pub(super) enum Command<'a> {
 }
 
 /// Name and arguments, and what it does.
-pub(super) const HELP: [(&str, &str); 20] = [
+pub(super) const HELP: [(&str, &str); 21] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
     (
@@ -50,6 +51,7 @@ pub(super) const HELP: [(&str, &str); 20] = [
     ("save", "stores the parameters and restarts; only while disarmed"),
     ("restart", "restarts without storing; only while disarmed"),
     ("timing", "rate and worst times of every task"),
+    ("version", "the firmware and its board"),
     ("silicon", "what the start looked at in the chip"),
     (
         "brownout [set]",
@@ -118,6 +120,7 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("save", [None, ..]) => Command::Save,
         ("restart", [None, ..]) => Command::Restart,
         ("timing", [None, ..]) => Command::Timing,
+        ("version", [None, ..]) => Command::Version,
         ("silicon", [None, ..]) => Command::Silicon,
         ("brownout", [None, ..]) => Command::BrownOut,
         ("brownout", [Some("set"), None, ..]) => Command::SetBrownOut,

@@ -1,4 +1,4 @@
-//! Retained state: what is read back, and what torn or stale copies give.
+//! Reading back retained state, torn and stale copies.
 
 use proptest::prelude::*;
 
@@ -60,7 +60,7 @@ fn every_single_wrong_bit_is_found_out() {
             let mut bad = good;
             bad[word] ^= 1 << bit;
             assert_eq!(RetainedState::from_words(&bad), None, "word {word} bit {bit}");
-            // The copy before takes its place.
+            // The other copy takes its place.
             let before = RetainedState {
                 grip_memory: GripMemory::HeldByGears(ArmChoice::All),
                 ..held()

@@ -1,4 +1,4 @@
-//! The converter's counts as pressures, volts and amperes; rates and silence.
+//! Counts as pressures, volts and amperes; rates and silence.
 
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::fsr::FsrFault;
@@ -10,7 +10,7 @@ use sophie_tasks::ports::AnalogFrame;
 use crate::rig::Rig;
 use sophie_fakes::{Answer, FakeAnalog};
 
-/// Light sensors, 16 V and 9.09 A: by the default scales 0.01 V and 0.01 A · 40/11 a count.
+/// Light sensors, 16 V and 9.09 A: the default scales are 0.01 V and 0.01 A · 40/11 a count.
 const FRAME: AnalogFrame = AnalogFrame {
     fsr: [0; 4],
     battery_voltage: 1600,
@@ -24,7 +24,6 @@ fn started() -> (Rig, FakeAnalog) {
     (rig, port)
 }
 
-/// The arm's sensor is sound and reads `pressure`, Pa.
 fn near(contact: Contact, arm: usize, pressure: f32) -> bool {
     contact.arms[arm].is_ok_and(|p| (p - pressure).abs() < 0.1)
 }
@@ -61,7 +60,7 @@ fn counts_become_volts_amperes_and_charge() {
 
 #[test]
 fn the_batterys_scales_are_the_parameters() {
-    // CUAV's power module, in place of 11 and 40.
+    // CUAV's power module, instead of 11 and 40.
     let params = Params {
         battery_divider: 18.0,
         battery_a_per_v: 24.0,
@@ -72,7 +71,7 @@ fn the_batterys_scales_are_the_parameters() {
     rig.time.spawn(analog::run(rig.links, port.clone()));
     rig.run(2000);
     let battery = rig.links.battery.fresh().unwrap();
-    // The pins have 16 V / 11 and, by the counts, 250 / 1600 of it.
+    // The pins have 16 V / 11 and 250 / 1600 of it.
     let volts = 16.0 / 11.0;
     assert!(
         (battery.voltage - 18.0 * volts).abs() < 1e-3,
@@ -89,7 +88,7 @@ fn the_batterys_scales_are_the_parameters() {
 #[test]
 fn each_sensor_has_its_own_pressure_and_fault_and_is_believed_again_after_a_fifth_of_a_second() {
     let (mut rig, port) = started();
-    // x = 1000/4095: x/((1 - x)·10 kΩ) is 32.31 µS, over 100 µS/N and 1444 mm² that is 223.8 Pa. 4050 counts are a short.
+    // x = 1000/4095: x/((1 - x)·10 kΩ) is 32.31 µS, 223.8 Pa at 100 µS/N and 1444 mm². 4050 counts are a short.
     let short = [1000, 4050, 0, 1000];
     port.frame.set(AnalogFrame { fsr: short, ..FRAME });
     rig.run(20);
@@ -138,7 +137,7 @@ fn a_sensor_whose_range_ends_below_the_grip_is_reported_from_the_start() {
         ..Params::default()
     };
     let (mut rig, port) = (Rig::with(params), FakeAnalog::default());
-    // 1000 counts are 223.8 Pa bare (x = 0.2442); behind 1:2 x is 0.4884, 661.1 Pa; with a half of the range 0.1221, 96.3 Pa.
+    // 1000 counts are 223.8 Pa bare (x = 0.2442), 661.1 Pa behind 1:2 (0.4884), 96.3 Pa with half the range (0.1221).
     port.frame.set(AnalogFrame {
         fsr: [1000; 4],
         ..FRAME

@@ -1,4 +1,4 @@
-//! When the arms' tilts were measured.
+//! Age of the arms' tilts.
 
 use embassy_time::Instant;
 use sophie_control::params::{ArmSign, Params};
@@ -33,8 +33,7 @@ fn each_tilt_carries_the_time_at_which_its_own_sensor_was_asked() {
         [Some(5000), Some(4590), Some(4180), Some(3770)]
     );
     assert_eq!(rig.links.arms.latest().unwrap().at.as_micros(), 100_000);
-    // The second sensor hangs and is given up after 20 ms: a round of 21.23 ms, by which the third and fourth are younger
-    // than the first.
+    // The second sensor hangs for 20 ms of 21.23 ms: the third and fourth are younger than the first.
     port.1[1].answer.set(Answer::Hangs);
     rig.run_with(27, level);
     assert_eq!(ages_us(rig.links), [Some(22_000), None, Some(1590), Some(1180)]);
@@ -46,7 +45,6 @@ fn each_tilt_grows_old_by_itself() {
     let (mut rig, port) = (Rig::new(), FakeArms::default());
     rig.time.spawn(arms::run(rig.links, port.clone()));
     rig.run_with(105, level);
-    // No round ends any more.
     port.0.answer.set(Answer::Hangs);
     let known = |rig: &Rig| rig.links.tilts().values().map(|tilt| tilt.is_some());
     // Asked at 100.00, 100.41, 100.82 and 101.23 ms.

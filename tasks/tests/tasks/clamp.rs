@@ -1,4 +1,4 @@
-//! The clamp task's answers to commands and to old inputs.
+//! The clamp task's response to commands and stale inputs.
 
 use embassy_time::Instant;
 use sophie_control::fsr::FsrFault;
@@ -24,7 +24,6 @@ struct World {
     command: Option<ClampCommand>,
     pressure: PerArm<f32>,
     fault: PerArm<bool>,
-    /// Arms whose tilt is known.
     seen: PerArm<bool>,
     contact: bool,
     mix: MixOutput,
@@ -54,7 +53,7 @@ impl World {
         contact
     }
 
-    /// Arms that bend by 0.020152 rad/N, with a tension equal to the force.
+    /// Arms that bend by 0.020152 rad/N, tension equal to force.
     fn speak(&self, links: &Links, at: Instant) {
         let force = force(links).unwrap_or([0.0; 4]);
         if let Some(command) = self.command {
@@ -73,7 +72,7 @@ impl World {
     }
 }
 
-/// Forces of the newest order, however old.
+/// Of the newest order, of any age.
 fn force(links: &Links) -> Option<PerArm<f32>> {
     links
         .tendons
@@ -107,12 +106,12 @@ impl Bench {
 #[test]
 fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
     for (kept, command, found) in [
-        // 80 Pa count as pressing.
+        // More than 80 Pa press.
         (&[500.0][..], ClampCommand::Release, true),
         (&[500.0], CLOSE, true),
         (&[85.0], ClampCommand::Release, true),
         (&[75.0], ClampCommand::Release, false),
-        // Pulled off by hand before the command.
+        // Pulled off by hand.
         (&[500.0, 0.0], ClampCommand::Release, false),
         // Never kept.
         (&[], ClampCommand::Release, false),
@@ -128,7 +127,6 @@ fn arms_that_pressed_while_they_were_kept_are_told_to_the_servos_as_found() {
         bench.run(30, &World::new(command, 500.0));
         assert_eq!(fresh(bench.0.links).unwrap().found, found, "{kept:?} {command:?}");
     }
-    // One arm is enough.
     let mut bench = Bench::new();
     let mut world = World::new(ClampCommand::Keep, 0.0);
     world.pressure[2] = 300.0;
@@ -145,12 +143,12 @@ fn nothing_is_sent_before_the_first_command_and_forces_are_held_without_one() {
     world.command = None;
     bench.run(500, &world);
     assert!(bench.0.links.tendons.latest().is_none() && bench.0.links.grip.latest().is_none());
-    // 34.74 N/s (0.7 rad/s of a bending of 0.020152 rad/N) from 1 N on: 101 steps in a second.
+    // 34.74 N/s (0.7 rad/s at 0.020152 rad/N) from 1 N: 101 steps in a second.
     world.command = Some(CLOSE);
     let force = bench.run(1000, &world);
     assert!(force.iter().all(|f| (f - 34.74).abs() < 1.5), "{force:?}");
-    // The command is stale after 200 ms; forces and judgement then stay and age. The grip is unknown 100 ms after the
-    // last judged pressure, the servos stay 200 ms after it.
+    // Stale after 200 ms; forces and judgement then age: 100 ms after the last judged pressure the grip is unknown,
+    // after 200 ms the servos stay.
     world.command = None;
     let held = bench.run(200, &world);
     let stopped = bench.0.links.grip.latest().unwrap().at;
@@ -213,7 +211,7 @@ fn only_rotors_that_run_are_met_by_the_tendons() {
     bench.run(2000, &world);
     world.pressure = [950.0; 4];
     let before = bench.run(3000, &world);
-    // With standing rotors the mixer's last thrust is void: 0.178/0.025·2.5 N less.
+    // Standing rotors void the last thrust: 0.178/0.025·2.5 N less.
     world.mix.running = false;
     let after = bench.run(1000, &world);
     for (before, after) in before.iter().zip(after) {
@@ -279,14 +277,14 @@ fn without_pressures_forces_follow_the_command_and_say_so() {
     let mut world = World::new(CLOSE, 500.0);
     let before = bench.run(500, &world);
     world.contact = false;
-    // The last pressures, of 499 ms, are fresh up to 519 ms.
+    // The last pressures, of 499 ms, are fresh to 519 ms.
     bench.run(60, &world);
     let links = bench.0.links;
     let order = links.tendons.latest().unwrap();
     assert!(matches!(order.value, TendonOrder::Blind(_)), "{order:?}");
-    // Time of the newest command, not of a conversion: the last step was at 550.6 ms.
+    // Time of the newest command: the last step was at 550.6 ms.
     assert_eq!(order.at.as_millis(), 550);
-    // Every arm is faulty by a judgement of now.
+    // All are faulty by a fresh judgement.
     assert!(links.grip.fresh().is_some() && bench.states() == [ArmState::Faulty; 4]);
     let held = force(links).unwrap();
     assert!(held[0] >= before[0]);

@@ -1,4 +1,4 @@
-//! The commander's use of the links: late deadlines, the rotors' lift, warnings.
+//! The commander's links: late deadlines, the rotors' lift, warnings.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::arming::ArmingInhibit;
@@ -16,7 +16,7 @@ use sophie_tasks::timing::Run;
 
 use crate::rig::Rig;
 
-/// A vehicle hanging still in the air, or standing: 1 g along its thrust axis.
+/// A vehicle at 1 g, hovering or standing.
 #[derive(Clone, Copy)]
 struct World {
     sticks: Sticks,
@@ -55,7 +55,6 @@ struct Bench {
     world: World,
 }
 
-/// Rotors at `thrust` N each on arms tilted by `tilt` rad.
 fn running(thrust: f32, tilt: f32) -> MixOutput {
     MixOutput {
         running: true,
@@ -66,7 +65,7 @@ fn running(thrust: f32, tilt: f32) -> MixOutput {
 }
 
 impl Bench {
-    /// On the ground, disarmed, without inhibits.
+    /// On the ground, without inhibits.
     fn starting(params: Params, cause: StartCause) -> Self {
         let start = Start { cause, ..Start::COLD };
         let rig = Rig::starting(params, start);
@@ -102,7 +101,6 @@ impl Bench {
         self.rig.links.status.fresh().unwrap().warning
     }
 
-    /// Makes the arming gesture for 1.2 s.
     fn arms(&mut self) -> bool {
         self.world.sticks.arm_switch = true;
         self.world.sticks.yaw = 1.0;
@@ -122,7 +120,6 @@ impl Bench {
         bench
     }
 
-    /// `misses` periods of `task` without a run.
     fn late(&self, task: TaskId, misses: u32) {
         let now = Instant::now();
         let run = Run {
@@ -151,7 +148,7 @@ fn a_flight_level_that_misses_more_than_ten_deadlines_in_a_second_refuses_arming
         assert_eq!(bench.inhibits(), [ArmingInhibit::Overruns], "{task:?}");
         assert!(!bench.arms(), "{task:?}");
         assert_eq!(bench.mode(), Mode::Disarmed);
-        // A clean window of 1 s, whatever its phase, permits arming.
+        // A clean window of 1 s permits arming.
         bench.world.sticks = Sticks::default();
         bench.run(1000);
         assert_eq!(bench.inhibits(), []);
@@ -185,7 +182,7 @@ fn ten_misses_in_a_second_and_any_number_below_the_flight_level_refuse_nothing()
 #[test]
 fn a_flight_level_that_stays_late_stays_refused() {
     let mut bench = Bench::new();
-    // 20 a second, spread evenly: no clean moment after the first window.
+    // 20 a second, evenly.
     for i in 0..100 {
         bench.late(TaskId::Control, 1);
         bench.run(50);
@@ -193,7 +190,6 @@ fn a_flight_level_that_stays_late_stays_refused() {
             assert_eq!(bench.inhibits(), [ArmingInhibit::Overruns], "{} ms", 50 * i);
         }
     }
-    // Misses in flight end nothing.
     let mut bench = Bench::flying();
     bench.late(TaskId::Control, 1000);
     bench.run(2000);
@@ -202,8 +198,7 @@ fn a_flight_level_that_stays_late_stays_refused() {
 
 #[test]
 fn what_the_rotors_lift_is_their_thrust_along_the_body_axis() {
-    // At 1 g the vehicle feels 17.7 N; more than 3 N of it that the rotors do not lift, with the perch switch on, is
-    // the pipe.
+    // At 1 g the vehicle feels 17.7 N; more than 3 N not lifted by the rotors mean the pipe.
     for (name, mix, touched) in [
         ("4·4.425 N on level arms", running(4.425, 0.0), false),
         (
@@ -257,11 +252,11 @@ fn what_must_be_known_is_said_where_it_matters() {
             StartCause::Watchdog,
             "restarted by the watchdog",
         ),
-        // 85 % of 2.0 N m are less than the 2.452 wanted.
+        // 85 % of 2.0 N m are less than the wanted 2.452.
         (weak, StartCause::PowerOn, "servo weaker than the force limit"),
         (infill(5.9), StartCause::PowerOn, "infill below what was flown"),
         (infill(6.0), StartCause::PowerOn, ""),
-        // The restart is more urgent.
+        // The restart has priority.
         (infill(5.9), StartCause::Fault, "restarted after a fault"),
     ] {
         let mut bench = Bench::starting(params, cause);
@@ -304,7 +299,7 @@ fn a_link_that_falls_silent_counts_as_none() {
 fn pressures_that_are_held_are_a_fault_of_every_sensor() {
     let mut bench = Bench::new();
     let last = bench.rig.links.contact.latest().unwrap();
-    // All else is still sent, with the present pressures.
+    // All else is sent.
     let world = bench.world;
     // 11 ms old at the next step.
     bench.rig.run_with(10, |links, at| {

@@ -56,6 +56,10 @@ impl Chip for Board {
         self.restarts.set(self.restarts.get() + 1);
     }
 
+    fn board(&self) -> &'static str {
+        "table"
+    }
+
     fn looks(&self) -> &[Look] {
         &[]
     }
@@ -221,7 +225,11 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
     assert_eq!(listed.len(), 2);
     assert!(listed[0].starts_with("  estimator_kp ") && listed[1].starts_with("  estimator_ki "));
     assert_eq!(bench.says("list").len(), Params::TABLE.len());
-    assert_eq!(bench.says("help").len(), 20);
+    assert_eq!(
+        bench.says("version"),
+        [concat!("SOPHIE ", env!("CARGO_PKG_VERSION"), " on table")]
+    );
+    assert_eq!(bench.says("help").len(), 21);
 }
 
 #[test]

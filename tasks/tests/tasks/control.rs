@@ -23,7 +23,7 @@ const ESCAPE: Setpoint = Setpoint::Escape {
     thrust: 24.0,
 };
 
-/// 0.5 rad/s of roll rate, asked for and absent.
+/// 0.5 rad/s of roll rate, demanded and absent.
 const ROLLING: Setpoint = Setpoint::Rate {
     rate: Vec3::new(0.5, 0.0, 0.0),
     thrust: 10.0,
@@ -32,7 +32,7 @@ const ROLLING: Setpoint = Setpoint::Rate {
 struct Bench {
     rig: Rig,
     q: Quat,
-    /// The mixer's report; `None`: silent.
+    /// Report of the mixer; `None`: silent.
     mix: Option<MixOutput>,
 }
 
@@ -72,7 +72,6 @@ impl Bench {
         self.rig.links.demand.latest().unwrap().value
     }
 
-    /// `ms` steps, the setpoint renewed in each.
     fn run(&mut self, ms: u64, setpoint: Setpoint) -> Demand {
         for _ in 0..ms {
             let (links, at) = (self.rig.links, Instant::now());
@@ -83,7 +82,6 @@ impl Bench {
         self.demand()
     }
 
-    /// The resulting wrench; yaw is usable.
     fn wrench(&mut self, ms: u64, setpoint: Setpoint) -> Wrench {
         match self.run(ms, setpoint) {
             Demand::Wrench(wrench) => wrench,
@@ -100,7 +98,6 @@ fn near(a: f32, b: f32) -> bool {
 fn a_setpoint_silent_for_50_ms_stops_the_rotors() {
     let mut bench = Bench::new();
     bench.run(1, LEVEL);
-    // 1 to 50 ms old.
     for age in 1..60 {
         let (links, at) = (bench.rig.links, Instant::now());
         bench.speak(links, at);
@@ -145,7 +142,7 @@ fn a_rate_that_is_not_there_is_asked_for_and_integrated_only_where_it_is_given()
         near(wrench.roll, 0.189) && wrench.pitch == 0.0 && wrench.thrust == 10.0,
         "{wrench:?}"
     );
-    // A mixer that is silent, gave nothing, or reported more than 10 ms ago gives nothing.
+    // Nothing is given by a mixer that is silent, gave nothing, or is older than 10 ms.
     let nothing = MixOutput {
         given: Given {
             roll_pitch: 0.0,
@@ -176,7 +173,7 @@ fn what_was_integrated_outlives_a_change_between_rate_and_angle_and_no_stop_or_e
     for (between, then, left) in [
         (None, LEVEL, 0.084),
         (None, rest, 0.084),
-        // An integral wound up against the pipe would throw the vehicle to that side.
+        // A wound-up integral would throw the vehicle to that side.
         (None, ESCAPE, 0.0),
         (Some(ESCAPE), LEVEL, 0.0),
         (Some(idle), rest, 0.0),
@@ -215,7 +212,7 @@ fn on_the_pipe_moments_fade_with_the_thrust_and_yaw_is_given_up() {
         assert!(near(wrench.roll, most) && near(wrench.pitch, -most), "{wrench:?}");
         assert!(wrench.thrust == thrust && wrench.yaw == 0.0);
     }
-    // No integration while the vehicle leans on something: 4.5·0.05·10·0.021 N m.
+    // Nothing is integrated: 4.5·0.05·10·0.021 N m.
     let lean = Setpoint::Resting {
         roll: 0.05,
         pitch: 0.0,

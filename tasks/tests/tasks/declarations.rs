@@ -1,37 +1,13 @@
 //! What is declared of tasks and links, and the tables of the docs that follow from it.
-//!
-//! `WRITE_DOCS=1 cargo test --package sophie-tasks --test tasks declarations` rewrites the tables.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use embassy_time::Duration;
 use sophie_tasks::links::Links;
 use sophie_tasks::schedule::{TaskId, Watch};
 use sophie_tasks::supervisor::least_runs;
 
-const REWRITE: &str = "WRITE_DOCS";
-
-/// The part of `page` between the marks of `name` is `table`, or becomes it.
-pub fn holds(page: &str, name: &str, table: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(page);
-    let text = std::fs::read_to_string(&path).unwrap();
-    let (begin, end) = (
-        format!("<!-- {name}: begin -->\n"),
-        format!("<!-- {name}: end -->"),
-    );
-    let from = text.find(&begin).unwrap() + begin.len();
-    let to = from + text[from..].find(&end).unwrap();
-    if std::env::var_os(REWRITE).is_some() {
-        std::fs::write(&path, format!("{}{table}{}", &text[..from], &text[to..])).unwrap();
-    } else {
-        assert_eq!(
-            &text[from..to],
-            table,
-            "{page}: {REWRITE}=1 cargo test --package sophie-tasks --test tasks rewrites it"
-        );
-    }
-}
+const TEST: &str = "--package sophie-tasks --test tasks declarations";
 
 /// In the unit in which it is a whole number: `2 ms`, `600 us`.
 fn shown(time: Duration) -> String {
@@ -60,7 +36,7 @@ fn the_table_of_the_tasks_is_their_declaration() {
             "| `{name}` | {level} | {period} | {phase} | {deadline} | {watched} | {what} |"
         );
     }
-    holds("timing.md", "tasks", &table);
+    sophie_pages::hold("timing", &[("tasks", table)], TEST);
 }
 
 #[test]
@@ -77,7 +53,7 @@ fn the_table_of_the_links_is_their_declaration() {
             "| `{name}` | `{message}` | {from} | {to} | {period} | {stale} | {meaning} |"
         );
     }
-    holds("architecture.md", "links", &table);
+    sophie_pages::hold("architecture", &[("links", table)], TEST);
 }
 
 #[test]

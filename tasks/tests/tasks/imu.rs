@@ -1,4 +1,4 @@
-//! From the inertial part's batches to samples of 1 kHz.
+//! Batches of the inertial part become samples at 1 kHz.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -15,10 +15,10 @@ use sophie_tasks::ports::{IMU_BATCH, Imu, ImuReading, PortError};
 
 use crate::rig::Rig;
 
-/// Time that the transfer takes after data-ready, µs.
+/// Transfer time after data-ready, µs.
 const TRANSFER_US: u64 = 40;
 
-/// A part of `rate_hz`, read `batch` samples at a time, turning evenly about x.
+/// A part of `rate_hz`, read `batch` samples at a time, turning about x.
 #[derive(Clone)]
 struct Part {
     rate_hz: f32,
@@ -104,7 +104,7 @@ fn samples_come_at_1_khz_from_every_rate_and_batch_stamped_with_their_data_ready
                 "{rate_hz} {batch}: {sample:?}"
             );
             assert_eq!(sample.at.as_micros() % 1000, 0);
-            // The transfer of the last millisecond's sample has only begun.
+            // The newest transfer has just begun.
             assert_eq!((at - sample.at).as_micros(), 1000);
         });
         assert_eq!(
@@ -150,14 +150,13 @@ fn the_time_since_the_sample_before_is_told_up_to_five_milliseconds() {
         rig.run_with(20, |links, _| {
             longest = longest.max(links.imu.latest().unwrap().value.dt)
         });
-        // A part silent for 3 ms is asked again; its samples are lost.
+        // After 3 ms the part is asked again.
         assert!(
             (longest - dt).abs() < 1e-5 || gap > 1500 && longest <= 5e-3,
             "{gap}: {longest}"
         );
         assert!(gap == 0 || longest > 1.9e-3, "{gap}: {longest}");
     }
-    // 100 errors with pauses of 1 ms: more than the limit.
     let part = Part::new(1000.0, 1);
     let mut rig = started(Params::default(), &part);
     rig.run(10);
@@ -191,7 +190,7 @@ fn the_third_error_is_reported_and_taken_back_after_a_tenth_of_a_second_without(
         assert!(rig.links.hardware().iter().eq(inhibit), "{error:?}");
         rig.run(15);
         assert!(rig.links.hardware().is_empty(), "{error:?}");
-        // Counted from zero: two do not count.
+        // Counted from zero again.
         part.errors.set((2, Some(error)));
         rig.run(20);
         assert!(rig.links.hardware().is_empty(), "{error:?}");

@@ -1,4 +1,4 @@
-//! The newest value, and who waits for the next.
+//! The newest value, and those waiting for the next.
 
 use core::future::Future;
 use core::pin::pin;
@@ -52,7 +52,6 @@ impl Woken {
     }
 }
 
-/// Polls once as the task `of`.
 fn poll_as<F: Future>(of: &Arc<Woken>, future: F) -> Poll<F::Output> {
     pin!(future).poll(&mut Context::from_waker(&Waker::from(of.clone())))
 }
@@ -68,7 +67,7 @@ fn a_value_wakes_all_who_wait_and_no_other() {
         assert!(poll_as(task, receiver.changed()).is_pending());
     }
     link.send(5);
-    // The second value wakes those who have asked again.
+    // The second value wakes those that have asked again.
     assert_eq!(poll_as(&tasks[1], receivers[1].changed()), Poll::Ready(5));
     assert!(poll_as(&tasks[1], receivers[1].changed()).is_pending());
     link.send(6);
@@ -84,12 +83,12 @@ fn who_waits_is_woken_even_when_more_tasks_have_asked_than_there_is_room() {
     let waiting = Arc::<Woken>::default();
     let mut receiver = link.receiver().unwrap();
     assert!(poll_as(&waiting, receiver.changed()).is_pending());
-    // Waits given up leave their tasks behind.
+    // Abandoned waits leave their tasks behind.
     for _ in 0..RECEIVERS {
         let given_up = Arc::<Woken>::default();
         assert!(poll_as(&given_up, link.receiver().unwrap().changed()).is_pending());
     }
-    // Evicted for want of room, it was woken to ask again.
+    // Evicted for lack of room, it was woken to ask again.
     assert_eq!(waiting.times(), 1);
     assert!(poll_as(&waiting, receiver.changed()).is_pending());
     link.send(1);

@@ -20,7 +20,7 @@ fn a_message_is_fresh_up_to_its_limit_and_not_a_microsecond_longer() {
     rig.time.run_until(50_001);
     assert_eq!(rig.links.setpoint.fresh(), None);
     assert_eq!(rig.links.setpoint.latest().map(|m| m.value), Some(Setpoint::Idle));
-    // A stamp from the future, by another level's clock, is no older than now.
+    // A stamp from the future, by another level's clock, counts as now.
     rig.links
         .setpoint
         .send(Instant::from_micros(50_100), Setpoint::Stop);

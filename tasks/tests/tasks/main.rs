@@ -1,4 +1,4 @@
-//! Each task by itself, on scripted ports, in virtual time.
+//! Each task alone, on scripted ports, in virtual time.
 
 mod analog;
 mod arms;

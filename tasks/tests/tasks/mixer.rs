@@ -40,7 +40,6 @@ impl Bench {
         self.0.links.battery.send(Instant::now(), battery);
     }
 
-    /// With arm angles at 100 Hz, `age_ms` old.
     fn with_arms(&mut self, ms: u64, demand: Demand, tilt: PerArm<Option<f32>>, age_ms: u64) -> MixOutput {
         let mut i = 0;
         self.0.run_with(ms, |links, at| {
@@ -79,14 +78,13 @@ fn stopped_rotors_get_nothing_idle_ones_a_quarter_of_a_newton_and_hover_its_weig
 
 #[test]
 fn a_sagging_battery_gets_larger_commands_for_the_same_thrust() {
-    // 4.425 of 8.3 N = r²(0.75 u² + 0.25 u): u is 0.693 at the nominal voltage and 0.785 at 0.9 of it.
+    // 4.425 of 8.3 N = r²(0.75 u² + 0.25 u): u is 0.693 at nominal voltage, 0.785 at 0.9 of it.
     let mut bench = Bench::new();
     assert!(near(bench.run(3000, HOVER).commands, 0.693, 3e-3));
     bench.battery(0.9);
     assert!(near(bench.run(1, HOVER).commands, 0.785, 3e-3));
-    // A stale voltage is still the best guess.
     assert!(near(bench.run(5000, HOVER).commands, 0.785, 3e-3));
-    // Full thrust is then 8.3 N·0.9².
+    // Full thrust is 8.3 N·0.9².
     let most = bench.run(
         3000,
         Demand::Wrench(Wrench {
@@ -105,7 +103,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     let mut bench = Bench::new();
     let tilt = bench.run(3000, HOVER).tilt;
     let felt = tilt.map(|t| Some(t + 0.1));
-    // 2 % of what is left, 20 times in 0.2 s: 0.1·(1 - 0.98^20) = 0.0332 rad.
+    // 2 % of the rest, 20 times in 0.2 s: 0.1·(1 - 0.98^20) = 0.0332 rad.
     let learnt = bench.with_arms(200, HOVER, felt, 0);
     assert!(near(learnt.tilt_bias, 0.0332, 2e-3), "{:?}", learnt.tilt_bias);
     assert!(
@@ -121,7 +119,6 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     bench.run(3000, HOVER);
     let rested = bench.with_arms(1000, Demand::Resting(WEIGHT), felt, 0);
     assert!(rested.tilt_bias == [0.0; 4] && rested.yaw_gated);
-    // The demand decides, not the present setpoint.
     let resting = Setpoint::Resting {
         roll: 0.0,
         pitch: 0.0,
@@ -130,7 +127,6 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
     bench.0.links.setpoint.send(Instant::now(), resting);
     assert!(bench.with_arms(200, HOVER, felt, 0).tilt_bias[3] > 0.03);
 
-    // A reading older than 100 ms teaches nothing.
     for (age, learns) in [(90, true), (110, false)] {
         let mut bench = Bench::new();
         bench.run(3000, HOVER);
@@ -141,7 +137,6 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
         );
     }
 
-    // Only an arm without a reading learns nothing.
     let mut bench = Bench::new();
     bench.run(3000, HOVER);
     let bias = bench
@@ -155,8 +150,7 @@ fn every_arm_learns_from_each_of_its_readings_once_and_not_while_it_rests() {
 
 #[test]
 fn a_step_takes_the_time_between_two_samples() {
-    // From idle to hover the low-passed thrust follows with 5 Hz: 1/(2π·5) = 32 ms. Steps of 4 ms are as fast in time
-    // as steps of 1 ms, and so is the yaw gate.
+    // The low-passed thrust follows with 5 Hz, 32 ms: steps of 4 ms and of 1 ms open the yaw gate at the same time.
     let opens = |step_ms: u64| {
         let mut bench = Bench::new();
         bench.run(100, Demand::Idle);

@@ -1,13 +1,9 @@
 //! The warnings on the pilot's page, each with what he is to do.
-//!
-//! `WRITE_DOCS=1 cargo test --package sophie-tasks --test tasks pilot_page` rewrites the table.
 
 use std::fmt::Write;
 
 use sophie_tasks::start::StartCause;
 use sophie_tasks::warning::Warning;
-
-use crate::declarations::holds;
 
 fn to_do(warning: Warning) -> &'static str {
     match warning {
@@ -35,7 +31,8 @@ fn every_warning_is_on_the_pilots_page() {
     for warning in Warning::ALL {
         let _ = writeln!(table, "| {} | {} |", warning.text(), to_do(warning));
     }
-    holds("pilot.md", "warnings", &table);
+    let test = "--package sophie-tasks --test tasks pilot_page";
+    sophie_pages::hold("pilot", &[("warnings", table)], test);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! State kept for the run after a reset.
+//! State retained over a reset.
 
 use embassy_time::Instant;
 use sophie_control::grip::{ArmGrip, GripState};
@@ -55,14 +55,13 @@ fn speak(links: &Links, running: bool, calibrated: bool) {
     links.attitude.send(now, attitude);
 }
 
-/// State found after a reset.
 fn found(memory: &FakeMemory) -> Start {
     Start::new(StartCause::Watchdog, &memory.copies())
 }
 
 #[test]
 fn a_grip_is_kept_without_what_met_the_rotors_and_with_the_faults_that_last() {
-    // 2 N of thrust take 0.178/0.025·2 = 14.24 N of a tendon: 50 N leave 35.76 N, and 5 N none.
+    // 2 N of thrust take 0.178/0.025·2 = 14.24 N of a tendon: 50 N leave 35.76 N, 5 N none.
     for (running, force) in [
         (true, [35.76, 36.76, 37.76, 0.0]),
         (false, [50.0, 51.0, 52.0, 5.0]),
@@ -108,7 +107,7 @@ fn copies_are_written_by_turns_and_numbered_on_from_the_run_before() {
     };
     let (rig, memory) = (Rig::starting(Params::default(), start), FakeMemory::default());
     let mut store = RetainedStore::new(rig.links, memory.clone());
-    // Without messages the copies of the run before stay, by even and odd numbers.
+    // Without messages the last run's copies stay, by even and odd numbers.
     for (sequence, writes) in [(8, [1, 0]), (9, [1, 1]), (10, [2, 1]), (11, [2, 2])] {
         store.keep(rig.links);
         assert_eq!(memory.0.get().1, writes);

@@ -1,4 +1,4 @@
-//! Links of a task under test, a virtual clock, and the world's part of every millisecond.
+//! A task's links, a virtual clock, and the world's part of every millisecond.
 
 use embassy_time::Instant;
 use sophie_clock::VirtualTime;

@@ -1,4 +1,4 @@
-//! From forces to pulses: their absence, speed and standstill.
+//! Pulses for forces: when there are none, their speed, standing still.
 
 use embassy_time::{Duration, Instant};
 use sophie_control::grip_memory::GripMemory;
@@ -14,7 +14,6 @@ use sophie_tasks::timing::Quantity;
 use crate::rig::Rig;
 use sophie_fakes::FakeServos;
 
-/// Tilt of a closed arm, rad.
 const CLOSED: f32 = -1.2;
 
 fn started(start: Start) -> (Rig, FakeServos) {
@@ -23,7 +22,7 @@ fn started(start: Start) -> (Rig, FakeServos) {
     (rig, port)
 }
 
-/// Pulse of the angle `angle`, rad, µs: 550 to 2450 µs are 4.71 rad.
+/// Pulse of `angle` (rad), µs: 550 to 2450 µs are 4.71 rad.
 fn pulse(angle: f32) -> f32 {
     550.0 + 1900.0 * angle / 4.71
 }
@@ -77,7 +76,7 @@ fn arms_found_wound_pay_out_slowly_from_where_their_tendons_are_taut() {
             pulse(angle)
         );
     }
-    // Home after 0.89 s, for good, although the arms are still reported as found.
+    // Home for good after 0.89 s, though the arms are still reported as found.
     assert!(pulses.len() == 60 && near(pulses[59], 550.0));
 }
 
@@ -88,7 +87,6 @@ fn arms_not_found_wound_are_at_release_from_the_first_pulse_on() {
         speak(links, at, Some(forces(0.0, false)), CLOSED)
     });
     let mut pulses = port.pulses.borrow().clone();
-    // Frames before the first force have no pulse.
     pulses.retain(|p| *p != [0.0; 4]);
     assert!(
         pulses.len() >= 9 && pulses.iter().all(|p| near(*p, 550.0)),
@@ -108,14 +106,13 @@ fn forces_wind_at_nine_tenths_of_the_servos_speed_and_old_ones_hold() {
         angle.iter().all(|a| (a - 15.5 * 0.1109).abs() < 0.06),
         "{angle:?}"
     );
-    // It takes up 2.667 rad and stretches by 60 N/(8 kN/m)/15 mm = 0.5 rad.
+    // Takes up 2.667 rad and stretches by 60 N/(8 kN/m)/15 mm = 0.5 rad.
     rig.run_with(2000, |links, at| {
         speak(links, at, Some(forces(60.0, false)), CLOSED)
     });
     assert!(near(port.now(), pulse(3.167)), "{:?}", port.now());
     let tension = rig.links.tension.fresh().unwrap();
     assert!(tension.iter().all(|t| (t - 60.0).abs() < 0.5), "{tension:?}");
-    // Silent for more than 200 ms: nothing moves.
     rig.run_with(250, |links, at| speak(links, at, None, CLOSED));
     let held = port.now();
     rig.run_with(1000, |links, at| speak(links, at, None, -0.6));
@@ -171,7 +168,7 @@ fn after_a_restart_the_drives_go_on_where_they_were_unless_only_the_gears_know()
     }
 }
 
-/// Sends an order each 10 ms for pressures converted `age` ms before; `servos` reads it 0.9 ms later.
+/// Each 10 ms an order for pressures `age` ms old; `servos` reads it 0.9 ms later.
 fn ordered(rig: &mut Rig, ms: u64, age: u64, order: fn(TendonForces) -> TendonOrder) {
     rig.run_with(ms, |links, at| {
         links.arms.send(at, ArmAngles::at(at, [Some(CLOSED); 4]));
@@ -192,14 +189,13 @@ fn the_time_from_conversion_to_pulse_is_recorded_once_for_each_conversion_that_b
     let timing = rig.links.contact_timing();
     // Frames of 20 ms to 980 ms overtake the orders in between.
     assert_eq!((timing.runs, timing.overruns), (49, 0));
-    // Up to the frame after the clamp's step, of a conversion that the step just missed.
+    // To the frame after the clamp's step, for a just missed conversion.
     assert_eq!(timing.deadline_us, 3500);
     let take = |quantity| rig.links.take_contact_histogram(quantity);
     let [late, frame, all] = [Quantity::Lateness, Quantity::Execution, Quantity::Response].map(take);
     assert_eq!((late.min(), late.max()), (1900, 1900));
     assert_eq!((frame.min(), frame.max()), (520, 520));
     assert_eq!((all.min(), all.max(), all.count()), (2420, 2420, 49));
-    // No new conversion, no new entry.
     rig.run_with(100, |links, at| speak(links, at, None, CLOSED));
     assert_eq!(rig.links.contact_timing().runs, 50);
 }
@@ -253,7 +249,7 @@ fn forces_of_old_pressures_hold_although_they_were_sent_just_now() {
     ordered(&mut rig, 300, 4, TendonOrder::Measured);
     let held = port.now();
     assert!(held[0] > 1000.0, "{held:?}");
-    // Fresh orders for pressures converted 201 ms ago.
+    // Fresh orders for pressures 201 ms old.
     ordered(&mut rig, 20, 201, TendonOrder::Measured);
     let held = port.now();
     let runs = rig.links.contact_timing().runs;

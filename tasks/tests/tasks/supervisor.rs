@@ -1,4 +1,4 @@
-//! The watchdog is fed only while everything runs that flying needs.
+//! The watchdog is fed only while every task needed for flight runs.
 
 use embassy_time::{Duration, Instant};
 use sophie_tasks::deadline::TaskId;
@@ -9,7 +9,7 @@ use sophie_tasks::timing::Run;
 use crate::rig::Rig;
 use sophie_fakes::{FakeMemory, FakeWatchdog};
 
-/// Watched tasks and their least runs in 100 ms: half of what the rate gives.
+/// Watched tasks and their least runs in 100 ms, half of nominal.
 const WATCHED: [(TaskId, u32); 9] = [
     (TaskId::Imu, 50),
     (TaskId::Estimator, 50),
@@ -58,8 +58,8 @@ impl Bench {
         }
     }
 
-    /// Runs for `ms`, a multiple of 100, with the least runs of every task but `other`, whose runs per 100 ms are
-    /// given; returns how often the watchdog was fed over the last 100 ms.
+    /// Runs for `ms`, a multiple of 100, with the least runs of every task but `other` (runs per 100 ms); returns the
+    /// feeds of the last 100 ms.
     fn run(&mut self, ms: u64, other: Option<(TaskId, u32)>) -> usize {
         let (calibrated, attitude, mix) = (self.calibrated, self.attitude, self.mix);
         let mut burst = self.ms;
@@ -108,11 +108,10 @@ fn before_calibration_the_flight_level_may_be_silent_and_the_others_may_not() {
         bench.calibrated = false;
         let fed = bench.run(4000, Some((task, 0)));
         assert_eq!(fed, if place < 5 { 10 } else { 0 }, "{task:?}");
-        // No excuse once calibrated,
         bench.calibrated = true;
         bench.run(200, Some((task, 0)));
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
-        // not even for one no longer calibrated.
+        // Once calibrated, no excuse.
         bench.calibrated = false;
         assert_eq!(bench.run(200, Some((task, 0))), 0, "{task:?}");
     }
@@ -134,7 +133,7 @@ fn a_stale_attitude_or_mix_leaves_it_unfed_at_once() {
         let mut bench = Bench::new();
         assert_eq!(bench.run(4000, None), 10);
         lost(&mut bench);
-        // Stale after 5 and 10 ms: one or two looks may still be in time.
+        // Stale after 5 and 10 ms: one or two checks may still be in time.
         assert!(bench.run(100, None) <= 2);
         assert_eq!(bench.run(100, None), 0);
     }

@@ -1,9 +1,8 @@
-//! What is recorded of a run.
+//! Records of runs.
 
 use embassy_time::{Duration, Instant};
 use sophie_tasks::timing::{Quantity, Record, Run, Timing};
 
-/// A run released at 1 s, with its lateness and its end, µs.
 fn run(late: u64, end: u64, deadline: u64, skipped: u32) -> Run {
     let at = |us: u64| Instant::from_micros(1_000_000 + us);
     Run {
@@ -20,10 +19,10 @@ fn totals_count_runs_and_misses_and_keep_the_worst() {
     let mut record = Record::new();
     assert_eq!(record.totals(), Timing::default());
     assert!(!record.add(&run(30, 130, 200, 0)));
-    // To the microsecond in time, and one beyond.
+    // Just in time, and 1 µs late.
     assert!(!record.add(&run(10, 200, 200, 0)));
     assert!(record.add(&run(20, 201, 200, 0)));
-    // Three periods passed, and the run was late as well: four. Three alone.
+    // Three periods skipped and the run late: four. Three alone.
     assert!(record.add(&run(0, 500, 400, 3)));
     assert!(record.add(&run(0, 100, 400, 3)));
     assert_eq!(
@@ -37,7 +36,7 @@ fn totals_count_runs_and_misses_and_keep_the_worst() {
             deadline_us: 400,
         }
     );
-    // A clock that seems to go backwards makes no time of it.
+    // A clock that seems to go backwards adds no time.
     assert!(!record.add(&Run {
         started: Instant::from_micros(0),
         ..run(0, 0, 100, 0)
@@ -77,7 +76,7 @@ fn a_run_that_is_noted_is_seen_by_readers_and_lost_by_none() {
     ];
     for (i, run) in runs.iter().enumerate() {
         assert_eq!(added.add(run), noted.note(run), "{run:?}");
-        // Settled by whoever comes first: who sends the frame, the next run, a reader.
+        // Settled by sender, next run or reader.
         match i {
             0 => noted.settle(),
             1 => {}

@@ -1,12 +1,12 @@
-//! Largest attitude errors: with the setpoint at rest (control error) and moving (lag behind a command).
+//! Largest attitude errors: with the setpoint at rest (control error) and moving (lag).
 
 use sophie_sim::record::{FlightRecord, SAMPLE_HZ, Sample};
 
-/// Settling time after the setpoint comes to rest, s: twice that of a roll of 25°.
+/// s: twice that of a roll of 25°.
 const SETTLE: f64 = 1.0;
-/// Largest change of a resting setpoint within that time, rad: 2°, more than stick noise.
+/// Largest change of a resting setpoint meanwhile, rad: 2°, more than stick noise.
 const REST: f64 = 0.035;
-/// Thrust asked of some rotor from which the vehicle counts as flown, N; as in the steps' table.
+/// Thrust asked of a rotor in flight, N, as in the steps' table.
 const FLOWN: f64 = 1.0;
 
 const AXES: [&str; 2] = ["roll", "pitch"];
@@ -20,7 +20,7 @@ pub struct Worst<'a> {
     pub axis: &'static str,
     /// When, s.
     pub t: f64,
-    /// Step under way, from 1, and its name; none between steps.
+    /// Number from 1, and name; none between steps.
     pub step: Option<(usize, &'a str)>,
 }
 
@@ -38,7 +38,7 @@ pub fn attitude_errors(record: &FlightRecord) -> AttitudeErrors<'_> {
     let mut errors = AttitudeErrors::default();
     for (axis, name) in AXES.into_iter().enumerate() {
         let of = |s: &Sample| s.attitude_setpoint.get(axis).copied().unwrap_or(f64::NAN);
-        // Since when the setpoint has been near its value then.
+        // Start of rest, and the setpoint then.
         let mut rested: Option<(f64, f64)> = None;
         for s in &record.samples {
             let setpoint = of(s);
@@ -78,7 +78,7 @@ mod tests {
     use super::super::synthetic;
     use super::*;
 
-    /// Roll setpoint steps by 0.8 rad at 20 s, followed with 0.1 s lag and 0.05 rad error; a gust of 0.2 rad at 30 s.
+    /// Roll setpoint steps by 0.8 rad at 20 s, followed with 0.1 s lag and 0.05 rad error; gust of 0.2 rad at 30 s.
     fn stepped() -> FlightRecord {
         let mut record = synthetic::record();
         for s in &mut record.samples {

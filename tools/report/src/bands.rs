@@ -8,7 +8,7 @@ use super::time_axis::{LEFT, Span};
 /// Height of one band, px.
 pub const BAND: f64 = 17.0;
 
-/// Two bands below the panels: state of the stack, number of the step.
+/// State of the stack and number of the step, below the panels.
 pub fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
     let mut out = String::new();
     let mut start = 0;
@@ -53,7 +53,6 @@ pub fn bands(record: &FlightRecord, span: Span, top: f64) -> String {
 }
 
 struct Block<'a> {
-    /// When it began and ended, s.
     from: f64,
     to: f64,
     class: &'a str,

@@ -5,17 +5,17 @@ use sophie_sim::record::{FlightRecord, Sample};
 use super::moments::KeyMoment;
 use super::svg::{Rect, line, path, rect, short, text};
 
-/// Size of a drawing, px.
+/// Pixels.
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 300.0;
-/// Centre of mass on the drawing, px, when at the view's centre.
+/// Where the view's centre is drawn, px.
 const ANCHOR: (f64, f64) = (160.0, 122.0);
-/// px for a metre.
+/// Pixels per metre.
 const SCALE: f64 = 380.0;
-/// Height of the ground strip, px.
+/// Pixels.
 const GROUND: f64 = 16.0;
 
-/// Geometry of the vehicle, m, as in the plant.
+/// Vehicle, m, as in the plant.
 const ARM_LENGTH: f64 = 0.178;
 const ARM_X: f64 = 0.178;
 const UNDERSIDE_Z: f64 = 0.035;
@@ -44,7 +44,6 @@ pub fn draw(record: &FlightRecord, moment: &KeyMoment<'_>) -> String {
         "",
     );
     svg += &view.pipe(record);
-    // Front arms are far.
     for arm in [0, 2] {
         svg += &view.arm(arm, "far");
     }
@@ -59,7 +58,7 @@ pub fn draw(record: &FlightRecord, moment: &KeyMoment<'_>) -> String {
 
 struct View<'a> {
     sample: &'a Sample,
-    /// World point (east, height) at the anchor.
+    /// East and height at the anchor, m.
     centre: (f64, f64),
     /// Body to world, rows east and down.
     rows: [[f64; 3]; 2],
@@ -83,7 +82,6 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Pixel of a world point, m.
     fn world(&self, east: f64, height: f64) -> (f64, f64) {
         (
             ANCHOR.0 + (east - self.centre.0) * SCALE,
@@ -91,7 +89,6 @@ impl<'a> View<'a> {
         )
     }
 
-    /// Pixel of a body point (FRD, m).
     fn body_point(&self, r: [f64; 3]) -> (f64, f64) {
         let along = |row: [f64; 3]| row.iter().zip(r).map(|(a, b)| a * b).sum::<f64>();
         let [east, down] = self.rows.map(along);
@@ -183,7 +180,7 @@ impl<'a> View<'a> {
         arrow(self.body_point(a), self.body_point(b), class)
     }
 
-    /// The ground: in place if in view, else below a break with the height beside it.
+    /// In place if in view, else below a break with the height beside it.
     fn ground(&self) -> String {
         let (_, level) = self.world(0.0, 0.0);
         let (below, _) = self.world(self.sample.position[1], 0.0);
@@ -230,7 +227,7 @@ impl<'a> View<'a> {
             return String::new();
         }
         let (x, y) = self.body_point([0.0; 3]);
-        // The push to the right comes from the left, above the arms.
+        // The push comes from the left, above the arms.
         let y = y - 6.0;
         arrow((x - 84.0, y), (x - 24.0, y), "push")
             + &text(x - 88.0, y + 4.0, "small end halo", &format!("{newtons} N"))
@@ -247,7 +244,7 @@ fn arrow((x1, y1): (f64, f64), (x2, y2): (f64, f64), class: &str) -> String {
     )
 }
 
-/// A bent arm: an arc of constant curvature, level at its root, at its tilt at the tip.
+/// An arc of constant curvature, level at its root, at its tilt at the tip.
 #[derive(Clone, Copy)]
 struct Arm {
     x: f64,
@@ -266,7 +263,7 @@ impl Arm {
         }
     }
 
-    /// Body point at the share `u` of the length, `lift` m above the underside.
+    /// Body point at share `u` of the length, `lift` m above the underside.
     fn point(self, u: f64, lift: f64) -> [f64; 3] {
         let angle = self.tilt * u;
         let (sin, cos) = angle.sin_cos();
@@ -283,7 +280,7 @@ impl Arm {
         ]
     }
 
-    /// The point `distance` m outward of `r` along the tip's direction.
+    /// `distance` m outward of `r` along the tip's direction.
     fn beside(self, r: [f64; 3], distance: f64) -> [f64; 3] {
         let (sin, cos) = self.tilt.sin_cos();
         [r[0], r[1] + self.side * distance * cos, r[2] - distance * sin]

@@ -48,7 +48,7 @@ fn series(record: &FlightRecord, f: impl Fn(&Sample) -> f64) -> Vec<f64> {
     record.samples.iter().map(f).collect()
 }
 
-/// One curve per arm, converted from SI by `unit`.
+/// A curve per arm, converted from SI by `unit`.
 pub fn arm_series(
     record: &FlightRecord,
     f: impl Fn(&Sample) -> &[f64; 4],

@@ -8,7 +8,7 @@ use super::plot::{Panel, Trace, figure};
 use super::time_axis::Span;
 use super::units::tension_kgcm;
 
-/// Tendon force and contact pressure of the four arms.
+/// Tendon force and pressure of the arms.
 pub fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String) -> Figure {
     let p = &record.scenario.params;
     let (aim, tolerance) = (f64::from(p.grip_pressure), f64::from(p.grip_tolerance));
@@ -24,7 +24,7 @@ pub fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String
         .iter()
         .flat_map(|s| s.tension)
         .fold(0.0, |a: f64, v| a.max(force(v)));
-    // The limit is shown only near the curves; otherwise it flattens them.
+    // Shown only near the curves, which it would flatten.
     let near = largest > 0.5 * limit;
     let tension = Panel {
         axis: "tendon force (kgcm)".into(),
@@ -64,7 +64,7 @@ pub fn grip(record: &FlightRecord, span: Span, title: &'static str, note: String
     }
 }
 
-/// The first closing, with a margin on both sides.
+/// First closing, with margins.
 pub fn closing(record: &FlightRecord) -> Option<(Span, String)> {
     let phase = record.phases.iter().find(|p| p.name == "perch")?;
     let times: Vec<String> = record

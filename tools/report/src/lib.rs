@@ -1,4 +1,4 @@
-//! Output of a flight: on disk (page, log for plots, summary for programs) and on the terminal.
+//! Output of a flight: page, log for plots, summary for programs, terminal.
 
 mod attitude_error;
 mod bands;

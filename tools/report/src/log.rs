@@ -1,7 +1,7 @@
 //! `flight.mcap`: every sample, for Foxglove and PlotJuggler.
 //!
-//! Times are simulated nanoseconds from power-up. Frames are Foxglove's: `world` is north, west, up from the take-off
-//! point, `vehicle` forward, left, up.
+//! Times are simulated nanoseconds from power-up. Frames are Foxglove's: `world` is north, west, up from take-off,
+//! `vehicle` forward, left, up.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -15,13 +15,13 @@ use super::summary::tidy;
 use super::units::deg;
 use super::{scene, schemas};
 
-/// Rate of the 3D scene, Hz; samples have their full rate.
+/// Hz; samples have their full rate.
 const SCENE_HZ: f64 = 20.0;
 
 /// The file's content.
 ///
 /// # Errors
-/// One line, if the writer fails.
+/// If the writer fails.
 pub fn mcap(record: &FlightRecord) -> Result<Vec<u8>, String> {
     write(record).map_err(|error| format!("flight.mcap: cannot be made: {error}"))
 }

@@ -12,11 +12,11 @@ pub struct KeyMoment<'a> {
     pub sample: &'a Sample,
     /// Sideways push then, N.
     pub push: f64,
-    /// The view is centred on the pipe, not on the vehicle.
+    /// View centred on the pipe instead of the vehicle.
     pub at_pipe: bool,
 }
 
-/// Hover, roll, touch, clamped, hold and released, as far as the flight came; the end if it failed.
+/// Hover, roll, touch, clamped, hold and released, as far as flown; the end of a failed flight.
 pub fn key_moments(record: &FlightRecord) -> Vec<KeyMoment<'_>> {
     type Pick = fn(&FlightRecord, &Phase) -> Option<usize>;
     let wanted: [(&str, &str, bool, Pick); 6] = [
@@ -63,7 +63,6 @@ pub fn key_moments(record: &FlightRecord) -> Vec<KeyMoment<'_>> {
     moments
 }
 
-/// Index of the sample at `t`, or the last.
 fn at(record: &FlightRecord, t: f64) -> Option<usize> {
     let last = record.samples.len().checked_sub(1)?;
     Some(record.samples.partition_point(|s| s.t < t).min(last))
@@ -93,7 +92,6 @@ fn steepest(record: &FlightRecord, phase: &Phase) -> Option<usize> {
         .map(|(i, _)| i)
 }
 
-/// The last moment with the vehicle close over the pipe.
 fn lifted_off(record: &FlightRecord, phase: &Phase) -> Option<usize> {
     let close = record.scenario.world.pipe_top + 0.16;
     let near = during(record, phase)

@@ -206,7 +206,7 @@ pub(super) mod tests {
     use super::super::synthetic;
     use super::*;
 
-    /// All elements are closed, in order, with nothing outside of them.
+    /// Requires closed elements, in order, with nothing outside.
     pub fn well_formed(text: &str) {
         let mut open: Vec<&str> = vec![];
         let mut rest = text;
@@ -270,7 +270,6 @@ pub(super) mod tests {
             let commanded = (start + 1.0..end - 0.5).contains(&s.t);
             s.thrust_asked = [4.0; 4];
             s.attitude_setpoint = [if commanded { 0.5 } else { 0.0 }, 0.0, 0.0];
-            // 0.2 s behind, then within 0.02 rad.
             let late = (start + 1.2..end - 0.3).contains(&s.t);
             s.attitude = [if late { 0.52 } else { 0.02 }, 0.0, 0.0];
         }

@@ -1,4 +1,4 @@
-//! Panels of curves over a common time axis, with a band of modes and steps below.
+//! Panels of curves over a common time axis, with modes and steps below.
 
 use sophie_sim::record::FlightRecord;
 
@@ -7,7 +7,7 @@ use super::scale::{thin, tick_step, ticks};
 use super::svg::{Rect, line, path, rect, short, text};
 use super::time_axis::{LEFT, RIGHT, Span, WIDTH};
 
-/// Distance between two panels, px.
+/// px.
 const GAP: f64 = 22.0;
 
 /// One curve.
@@ -32,7 +32,7 @@ pub struct Panel<'a> {
     pub levels: Vec<f64>,
     /// Values to include.
     pub include: Vec<f64>,
-    /// Smallest span of the axis: noise must not fill a panel.
+    /// Smallest span: noise must not fill a panel.
     pub span: f64,
     /// Times marked at the top of the panel.
     pub marks: Vec<(f64, f64)>,
@@ -116,37 +116,8 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
     for t in times {
         out += &line(span.x(*t), top, span.x(*t), bottom, "grid");
     }
-    let rows = if panel.height < 125.0 { 5 } else { 6 };
-    for v in ticks(low, high, rows) {
-        out += &line(
-            left,
-            y(v),
-            right,
-            y(v),
-            if v == 0.0 { "grid zero" } else { "grid" },
-        );
-        out += &text(left - 7.0, y(v) + 4.0, "tick end", &short(v, 3));
-    }
-    for level in &panel.levels {
-        out += &line(left, y(*level), right, y(*level), "level");
-    }
-    for (a, b) in panel
-        .marks
-        .iter()
-        .filter(|(a, b)| *b >= span.from && *a <= span.to)
-    {
-        let (a, b) = (span.x(a.max(span.from)), span.x(b.min(span.to)));
-        out += &rect(
-            Rect {
-                x: a,
-                y: top,
-                width: (b - a).max(1.5),
-                height: 5.0,
-            },
-            "mark",
-            "",
-        );
-    }
+    out += &scale(panel, low, high, y);
+    out += &marks(span, panel, top);
     for trace in &panel.traces {
         let points = thin(record, span, &trace.values)
             .into_iter()
@@ -156,6 +127,38 @@ fn draw_panel(record: &FlightRecord, span: Span, panel: &Panel<'_>, top: f64, ti
     let (x, middle) = (17.0, top + panel.height / 2.0);
     let turned = format!("transform=\"rotate(-90 {x} {})\"", short(middle, 1));
     out + &text(x, middle, "title mid", &panel.axis).replacen("<text", &format!("<text {turned}"), 1)
+}
+
+/// The vertical axis: gridlines with their values, then the dashed levels.
+fn scale(panel: &Panel<'_>, low: f64, high: f64, y: impl Fn(f64) -> f64) -> String {
+    let (left, right) = (LEFT, WIDTH - RIGHT);
+    let rows = if panel.height < 125.0 { 5 } else { 6 };
+    let mut out = String::new();
+    for v in ticks(low, high, rows) {
+        let class = if v == 0.0 { "grid zero" } else { "grid" };
+        out += &line(left, y(v), right, y(v), class);
+        out += &text(left - 7.0, y(v) + 4.0, "tick end", &short(v, 3));
+    }
+    for level in &panel.levels {
+        out += &line(left, y(*level), right, y(*level), "level");
+    }
+    out
+}
+
+/// The marked times within `span`, along the top.
+fn marks(span: Span, panel: &Panel<'_>, top: f64) -> String {
+    let within = |(a, b): &&(f64, f64)| *b >= span.from && *a <= span.to;
+    let mark = |(a, b): &(f64, f64)| {
+        let (a, b) = (span.x(a.max(span.from)), span.x(b.min(span.to)));
+        let place = Rect {
+            x: a,
+            y: top,
+            width: (b - a).max(1.5),
+            height: 5.0,
+        };
+        rect(place, "mark", "")
+    };
+    panel.marks.iter().filter(within).map(mark).collect()
 }
 
 /// Bounds of the vertical axis, rounded out to ticks.

@@ -4,7 +4,7 @@ use sophie_sim::record::FlightRecord;
 
 use super::time_axis::Span;
 
-/// Columns of a thinned curve: about two per pixel.
+/// About two per pixel.
 const COLUMNS: usize = 460;
 
 /// Smallest and largest value per column, in their order.
@@ -76,7 +76,6 @@ mod tests {
         assert!(thinned.len() <= 2 * COLUMNS);
         assert!(thinned.iter().any(|(_, v)| *v == 7.0) && thinned.iter().any(|(_, v)| *v == -5.0));
         assert!(thinned.windows(2).all(|w| w[0].0 < w[1].0));
-        // Gaps stay.
         let gap = thin(&record, Span::all(&record), &vec![f64::NAN; record.samples.len()]);
         assert!(!gap.is_empty() && gap.iter().all(|(_, v)| v.is_nan()));
     }

@@ -6,15 +6,15 @@ use sophie_sim::record::{FlightRecord, Sample};
 use super::log::stamp;
 use super::summary::tidy;
 
-/// Geometry of the vehicle, m.
+/// Vehicle, m.
 const ARM_LENGTH: f64 = 0.178;
 const ARM_X: f64 = 0.178;
 const HINGE_Z: f64 = 0.02;
 const ROTOR_RADIUS: f64 = 0.127;
 const ROTOR_LIFT: f64 = 0.05;
-/// Drawn pipe length, m.
+/// m, drawn.
 const PIPE_LENGTH: f64 = 2.0;
-/// Colours of the arms, as in the report.
+/// As in the report.
 const COLOURS: [[f64; 3]; 4] = [
     [0.0, 0.45, 0.70],
     [0.84, 0.37, 0.0],
@@ -22,7 +22,7 @@ const COLOURS: [[f64; 3]; 4] = [
     [0.69, 0.33, 0.61],
 ];
 
-/// Vehicle frame. NED and FRD become north-west-up and forward-left-up: y and z change sign.
+/// Vehicle frame: from NED and FRD, y and z change sign.
 pub fn transform(s: &Sample) -> Value {
     let [(sr, cr), (sp, cp), (sy, cy)] = s.attitude.map(|angle| (0.5 * angle).sin_cos());
     let (w, x) = (cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy);
@@ -33,7 +33,6 @@ pub fn transform(s: &Sample) -> Value {
         "parent_frame_id": "world",
         "child_frame_id": "vehicle",
         "translation": point(north, -east, -down),
-        // Rounded: further digits are noise.
         "rotation": { "x": tidy(x), "y": tidy(-y), "z": tidy(-z), "w": tidy(w) },
     })
 }
@@ -43,7 +42,7 @@ pub fn fixed(record: &FlightRecord) -> Value {
     let world = &record.scenario.world;
     let [north, east] = world.pipe_position;
     let d = world.pipe_diameter;
-    // A cylinder stands on end: a quarter turn about y lays it along north.
+    // A cylinder stands on end: a quarter turn about y lays it north.
     let half = core::f64::consts::FRAC_1_SQRT_2;
     let pipe = json!({
         "pose": {
@@ -121,7 +120,7 @@ pub fn vehicle(s: &Sample) -> Value {
     })
 }
 
-/// Point (forward, left, up) at the share `u` of an arm bent to an arc, `lift` m along its normal.
+/// Point (forward, left, up) at share `u` of a bent arm, `lift` m along its normal.
 fn arm_point(x: f64, side: f64, tilt: f64, u: f64, lift: f64) -> Value {
     let (sin, cos) = (tilt * u).sin_cos();
     let (out, up) = if tilt.abs() < 1e-4 {

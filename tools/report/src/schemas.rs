@@ -1,7 +1,5 @@
-//! JSON schemas of the channels in `flight.mcap`.
-//!
-//! Ours are plain numbers and arrays, so that plotting tools can pick `/truth.tilt[0]`; the `foxglove.` ones are the
-//! parts used of Foxglove's own, which its panels recognise.
+//! JSON schemas of the channels in `flight.mcap`. Own ones are plain numbers and arrays for plotting tools
+//! (`/truth.tilt[0]`); `foxglove.` ones are the used parts of Foxglove's, recognised by its panels.
 
 use serde_json::{Value, json};
 
@@ -12,7 +10,7 @@ pub enum Field {
     Number,
     /// North, east, down or roll, pitch, yaw.
     Three,
-    /// One number per arm: 1 front left, 2 rear left, 3 front right, 4 rear right.
+    /// Per arm: 1 front left, 2 rear left, 3 front right, 4 rear right.
     Arms,
     /// A word.
     Word,

@@ -18,7 +18,7 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// A number with at most `digits` decimals, without trailing zeros.
+/// At most `digits` decimals, no trailing zeros.
 pub fn short(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = if text.contains('.') {
@@ -33,7 +33,7 @@ pub fn short(value: f64, digits: usize) -> String {
     }
 }
 
-/// Path data through `points` (px), broken at non-finite ones.
+/// Path through `points` (px), broken at non-finite ones.
 pub fn path(points: impl IntoIterator<Item = (f64, f64)>) -> String {
     let mut data = String::new();
     let mut pen_down = false;

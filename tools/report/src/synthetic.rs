@@ -72,32 +72,63 @@ pub fn record() -> FlightRecord {
     }
 }
 
-fn sample(t: f64, phases: &[Phase]) -> Sample {
-    let index = phases.iter().position(|p| t < p.end).unwrap_or(phases.len() - 1);
-    let u = (t - phases[index].start) / (phases[index].end - phases[index].start);
-    let noise = |k: f64| (t * 37.0 * k).sin() * (t * 91.7 + k).sin();
+/// Where the flight is.
+struct Course {
+    mode: Mode,
+    /// m.
+    height: f64,
+    /// Distance north, m.
+    north: f64,
+    /// How far the arms are closed, 0 to 1.
+    closed: f64,
+    /// Mean of the rotors, N.
+    thrust: f64,
+}
+
+/// At `t` s, the share `u` of step `index`.
+fn course(t: f64, index: usize, u: f64) -> Course {
     let ramp = |a: f64, b: f64| a + (b - a) * u * u * (3.0 - 2.0 * u);
-    let (mode, height, north, closed, mean) = match index {
-        0 if t < 2.0 => (Mode::Calibrating, 0.04, 0.0, 0.0, 0.0),
-        0 => (Mode::Disarmed, 0.04, 0.0, 0.0, 0.0),
-        1 => (Mode::Flight, ramp(0.04, 3.0), 0.0, 0.0, 4.5),
-        2 | 3 => (Mode::Flight, 3.0, 0.0, 0.0, 4.43),
-        4 => (Mode::Flight, ramp(3.0, 2.5), ramp(0.0, 3.0), 0.0, 4.4),
-        5 => (Mode::Flight, ramp(2.5, 1.54), 3.0, 0.0, 4.3),
-        6 if u < 0.2 => (Mode::Contact, 1.54, 3.0, 0.0, 2.5),
-        6 => (Mode::Clamping, 1.54, 3.0, ((u - 0.2) / 0.55).min(1.0), 2.5),
-        7 => (Mode::Perched, 1.54, 3.0, 1.0, 0.0),
-        8 => (
+    let at = |mode, height, north, closed, thrust| Course {
+        mode,
+        height,
+        north,
+        closed,
+        thrust,
+    };
+    match index {
+        0 if t < 2.0 => at(Mode::Calibrating, 0.04, 0.0, 0.0, 0.0),
+        0 => at(Mode::Disarmed, 0.04, 0.0, 0.0, 0.0),
+        1 => at(Mode::Flight, ramp(0.04, 3.0), 0.0, 0.0, 4.5),
+        2 | 3 => at(Mode::Flight, 3.0, 0.0, 0.0, 4.43),
+        4 => at(Mode::Flight, ramp(3.0, 2.5), ramp(0.0, 3.0), 0.0, 4.4),
+        5 => at(Mode::Flight, ramp(2.5, 1.54), 3.0, 0.0, 4.3),
+        6 if u < 0.2 => at(Mode::Contact, 1.54, 3.0, 0.0, 2.5),
+        6 => at(Mode::Clamping, 1.54, 3.0, ((u - 0.2) / 0.55).min(1.0), 2.5),
+        7 => at(Mode::Perched, 1.54, 3.0, 1.0, 0.0),
+        8 => at(
             Mode::Releasing,
             ramp(1.54, 2.54),
             3.0,
             (1.0 - u * 2.0).max(0.0),
             4.5,
         ),
-        9 => (Mode::Flight, ramp(2.54, 2.0), ramp(3.0, 0.0), 0.0, 4.4),
-        10 => (Mode::Landed, ramp(2.0, 0.04), 0.0, 0.0, 4.3),
-        _ => (Mode::Disarmed, 0.04, 0.0, 0.0, 0.0),
-    };
+        9 => at(Mode::Flight, ramp(2.54, 2.0), ramp(3.0, 0.0), 0.0, 4.4),
+        10 => at(Mode::Landed, ramp(2.0, 0.04), 0.0, 0.0, 4.3),
+        _ => at(Mode::Disarmed, 0.04, 0.0, 0.0, 0.0),
+    }
+}
+
+fn sample(t: f64, phases: &[Phase]) -> Sample {
+    let index = phases.iter().position(|p| t < p.end).unwrap_or(phases.len() - 1);
+    let u = (t - phases[index].start) / (phases[index].end - phases[index].start);
+    let noise = |k: f64| (t * 37.0 * k).sin() * (t * 91.7 + k).sin();
+    let Course {
+        mode,
+        height,
+        north,
+        closed,
+        thrust: mean,
+    } = course(t, index, u);
     let roll_target = if index == 3 {
         0.436 * (u * TAU).sin().signum()
     } else {

@@ -1,4 +1,4 @@
-//! Worst-case bounds of every deadline from the longest measured executions; method and assumptions in docs/timing.md.
+//! Worst-case bounds of every deadline from the longest measured executions (docs/timing.md).
 
 use std::fmt::Write;
 
@@ -8,21 +8,21 @@ use crate::capture::Capture;
 use crate::replay::{Replay, Task};
 use crate::rta::{Load, rate_monotonic_bound, response, utilisation};
 
-/// Execution of an interrupt that wakes a task, µs on the reference board: 400 instructions.
+/// Wakes a task; µs on the reference board: 400 instructions.
 const INTERRUPT: f64 = 1.0;
-/// Longest stretch with interrupts masked, µs on the reference board: encoding of the longest log line.
+/// Longest with interrupts masked, µs on the reference board: encoding of the longest log line.
 const BLOCKING: f64 = 5.0;
-/// A clock of whole µs shortens an execution by less than this, µs.
+/// A clock of whole µs shortens an execution by less.
 const RESOLUTION: f64 = 1.0;
-/// A task that follows each sample counts as paused after so many of its periods without a wake.
+/// Periods without a wake after which a sample-driven task counts as paused.
 const PAUSE: f64 = 10.0;
-/// The task that logs the trace; absent from the image that flies.
+/// Logs the trace; absent from the image that flies.
 const TRACER: &str = "trace";
-/// The task whose bus wait begins every run of the flight level.
+/// Its bus wait begins every run of the flight level.
 const FIRST: &str = "imu";
 
-/// A board and its time for 1 µs of the reference board: by clock and, on an M4F, by the instructions of the control
-/// path (docs/cost.md).
+/// Boards, and their time for 1 µs of the reference board: by clock, and on an M4F by the control path's instructions
+/// (docs/cost.md).
 const BOARDS: [(&str, f64); 3] = [
     ("matek-h743", 1.0),
     ("cuav-v5", 400.0 / 216.0),
@@ -31,11 +31,11 @@ const BOARDS: [(&str, f64); 3] = [
 
 struct Set {
     loads: Vec<Load>,
-    /// Index in `loads` and deadline in µs.
+    /// Index in `loads`, and deadline, µs.
     deadlines: Vec<(usize, f64)>,
 }
 
-/// Bounds of every task with a deadline, for each board.
+/// Bounds of every deadline, for each board.
 #[must_use]
 pub fn analyse(capture: &Capture, replay: &Replay) -> String {
     let set = if replay.polls.is_empty() {
@@ -99,7 +99,7 @@ pub fn analyse(capture: &Capture, replay: &Replay) -> String {
     text
 }
 
-/// Runs since the flight level works without a pause: before, the sensor is tested and no task has its period.
+/// Runs since the flight level's last pause: before, the sensor is tested and no task has its period.
 fn at_work(replay: &Replay) -> Replay {
     let flight = replay.tasks.iter().filter(|t| t.level == Some(Level::Flight));
     let start = flight.filter_map(after_the_last_pause).max().unwrap_or(0);
@@ -145,8 +145,8 @@ fn of_trace(capture: &Capture, replay: &Replay) -> Set {
             set.deadlines
                 .push((set.loads.len(), f64::from(seconds.deadline())));
         }
-        // A release may take several runs of the trace, with waits that its record includes. For the first task each
-        // sample is a release.
+        // A release may take several runs, with waits that its record includes. For the first task each sample is a
+        // release.
         let released = seconds
             .map(|s| 1e6 / s.rate().max(1e-3))
             .filter(|_| task.name != FIRST);
@@ -168,7 +168,7 @@ fn of_trace(capture: &Capture, replay: &Replay) -> Set {
     set
 }
 
-/// Interrupts that wake tasks, with their rates.
+/// With their rates.
 fn interrupts(replay: &Replay) -> Set {
     let vectors = replay.wakes.iter().filter(|(exception, _)| **exception >= 16);
     let loads = vectors.map(|(exception, &count)| Load {
@@ -185,7 +185,7 @@ fn interrupts(replay: &Replay) -> Set {
     }
 }
 
-/// Without a trace: whole runs, preemption and waits included, as executions.
+/// Without trace: whole runs, with preemption and waits, count as executions.
 fn of_seconds(capture: &Capture) -> Set {
     let mut set = Set {
         loads: Vec::new(),
@@ -224,7 +224,7 @@ fn scaled(loads: &[Load], factor: f64) -> Vec<Load> {
     loads.iter().map(scale).collect()
 }
 
-/// Pairs against the rate-monotonic order: the more urgent has the longer period.
+/// Pairs against the rate-monotonic order.
 fn inversions(loads: &[Load]) -> String {
     let mut text = String::new();
     for above in loads.iter().filter(|l| l.level > 0) {
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn the_test_of_the_sensor_at_the_start_is_no_part_of_the_work() {
-        // All are polled once at the start; then the sensor is tested; samples come after 1 s.
+        // All are polled at the start; then the sensor is tested; samples come after 1 s.
         let samples = (0..100).map(|n| 1_000_000 + 1000 * n);
         let imu = [run(10, 5), run(20_000, 460), run(220_000, 400)];
         let task = |name: &str, runs: Vec<Run>| Task {

@@ -9,13 +9,13 @@ use crate::trace::Trace;
 /// A capture, read.
 #[derive(Debug, Default)]
 pub struct Capture {
-    /// The logging board, if the file has its greeting.
+    /// The board, if the log has its greeting.
     pub board: Option<String>,
     /// Each task's seconds, in order of appearance.
     pub tasks: Vec<Task>,
     /// The chain's seconds.
     pub chain: Vec<Chain>,
-    /// Seconds of the contact chain; none without a pulse that answers a pressure.
+    /// Seconds with pulses that answer a pressure.
     pub contact: Vec<Contact>,
     /// The executors' events, if logged.
     pub trace: Trace,
@@ -33,10 +33,10 @@ pub struct Task {
 }
 
 impl Capture {
-    /// Reads a file; `elf` is the image that wrote it, needed only for the log's own bytes.
+    /// Reads a file; `elf` is its image, needed only for raw logs.
     ///
     /// # Errors
-    /// One line: what is wrong with the files and what is wanted.
+    /// One line: what is wrong with the files and what is required.
     pub fn read(path: &Path, elf: Option<&Path>) -> Result<Self, String> {
         let messages = source::read(path, elf)?;
         let mut capture = Self::default();
@@ -143,7 +143,7 @@ impl Task {
     }
 }
 
-/// Quantiles over several seconds: median of the medians, worst of the others.
+/// Over several seconds: median of medians, worst of the others.
 #[must_use]
 pub fn worst(seconds: &[Quantiles]) -> Quantiles {
     let mut halves: Vec<u32> = seconds.iter().map(|q| q.p50).collect();

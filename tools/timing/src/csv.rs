@@ -1,4 +1,4 @@
-//! A capture as CSV: a line per run of a trace, else one per task and second.
+//! A capture as CSV: a line per run of a trace, else per task and second.
 
 use std::fmt::Write;
 

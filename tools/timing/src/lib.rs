@@ -1,8 +1,6 @@
-//! Timing from a board's log.
-//!
-//! [`source`] turns any file into messages; [`live`] reads the records that every firmware logs each second, [`trace`]
-//! the executor events of one built with the feature `trace`; [`capture::Capture`] is both. [`table`], [`csv`] and
-//! [`page`] show it, [`analyse`] bounds the deadlines.
+//! Timing from a board's log. [`source`] reads files; [`live`] has every firmware's records, [`trace`] executor events
+//! of one with the feature `trace`, [`capture::Capture`] both. [`table`], [`csv`] and [`page`] show it, [`analyse`]
+//! bounds the deadlines.
 
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

@@ -1,10 +1,10 @@
-//! Timing records of every firmware: each task and chain once a second, and missed deadlines.
+//! Timing records of every firmware: tasks and chains each second, and missed deadlines.
 
 /// A timing line that cannot be parsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Garbled;
 
-/// Median, 99 % and maximum of a second's runs, µs.
+/// Of a second's runs, µs: median, 99 %, maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Quantiles {
     /// Half of them.
@@ -34,7 +34,7 @@ pub struct Record {
     pub missed: u32,
 }
 
-/// One second of the chain from data-ready to motor frame.
+/// A second of the chain from data-ready to motor frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chain {
     /// Frames.
@@ -45,7 +45,7 @@ pub struct Chain {
     pub times: Quantiles,
 }
 
-/// One second of the chain from contact pressure conversion to the answering servo pulse.
+/// A second of the chain from pressure conversion to servo pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
     /// Conversions answered by a pulse.
@@ -54,7 +54,7 @@ pub struct Contact {
     pub command: Quantiles,
     /// Shortest time to the pulse, µs.
     pub min: u32,
-    /// From the conversion to the start of the pulse, the servo frame's wait included.
+    /// From conversion to pulse, with the wait for the servo frame.
     pub pulse: Quantiles,
     /// Deadline of the pulse, µs after the conversion.
     pub deadline: u32,
@@ -73,7 +73,7 @@ pub enum Line {
     Contact(Contact),
 }
 
-/// Parses a timing line; `None` for any other line.
+/// Parses a timing line, if it is one.
 ///
 /// # Errors
 /// A garbled timing line.

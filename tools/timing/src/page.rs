@@ -1,11 +1,11 @@
-//! The capture as a self-contained page: tables, and a zoomable timeline.
+//! The capture as a self-contained page: tables, zoomable timeline.
 
 use std::fmt::Write;
 
 use crate::capture::Capture;
 use crate::replay::Replay;
 
-/// Most polls in a timeline: browsers cannot show more.
+/// Most that browsers show in a timeline.
 const POLLS: usize = 300_000;
 
 const STYLE: &str = include_str!("timeline.css");
@@ -34,7 +34,7 @@ pub fn html(capture: &Capture, replay: &Replay, tables: &str) -> String {
     page
 }
 
-/// Rows, bars `[row, from, begin, end, share of the deadline or -1]`, and a sentence about them.
+/// Rows, bars `[row, from, begin, end, share of the deadline or -1]`, and a sentence.
 fn polls(replay: &Replay) -> (String, String, String) {
     let start = replay.polls.iter().map(|p| p.ready).min().unwrap_or(0);
     let mut bars = String::new();

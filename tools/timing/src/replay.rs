@@ -1,4 +1,4 @@
-//! Events played back: polls, preemptions, and the runs of polls.
+//! Played-back events: polls, preemptions, runs of polls.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -7,7 +7,7 @@ use sophie_tasks::deadline::Level;
 use crate::stats::Sorted;
 use crate::trace::{Event, Kind, Trace};
 
-/// Least ratio of the gaps between runs to those between polls of one run.
+/// Smallest ratio of gaps between runs to those within one.
 const APART: f64 = 4.0;
 
 /// A poll of a task.
@@ -17,7 +17,7 @@ pub struct Poll {
     pub task: usize,
     /// Wake, µs.
     pub ready: u64,
-    /// Exception of the wake; 0 for another task of thread mode.
+    /// Exception of the wake; 0: another task of thread mode.
     pub waker: u16,
     /// Start, µs.
     pub begin: u64,
@@ -27,20 +27,20 @@ pub struct Poll {
     pub preempted: u64,
 }
 
-/// Work for one cause: one poll, or several with bus waits in between.
+/// Work for one cause: polls with bus waits in between.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
     /// Wake, µs.
     pub ready: u64,
-    /// Start of its first poll, µs.
+    /// Of the first poll, µs.
     pub begin: u64,
-    /// End of its last poll, µs.
+    /// Of the last poll, µs.
     pub end: u64,
     /// Processor time, µs.
     pub execution: u64,
     /// Time of higher levels within its polls, µs.
     pub preempted: u64,
-    /// From the ends of its polls to the next wake, µs.
+    /// From ends of polls to the next wake, µs.
     pub waited: u64,
 }
 
@@ -49,7 +49,7 @@ pub struct Run {
 pub struct Task {
     /// Name, or address.
     pub name: String,
-    /// Level; `None` if it was never named.
+    /// `None` if never named.
     pub level: Option<Level>,
     /// Its runs, in order.
     pub runs: Vec<Run>,
@@ -77,9 +77,9 @@ pub struct Replay {
     pub preemptions: BTreeMap<(usize, usize), Preemption>,
     /// Count of wakes by exception.
     pub wakes: BTreeMap<u16, u32>,
-    /// Time covered by the events, µs.
+    /// By the events, µs.
     pub covered: u64,
-    /// Part of it in which no executor ran, µs.
+    /// Time without any executor, µs.
     pub idle: u64,
 }
 
@@ -90,11 +90,11 @@ enum Frame {
 
 struct Player {
     replay: Replay,
-    /// Task by address.
+    /// By address.
     index: HashMap<u32, usize>,
-    /// Active frames, the outermost first.
+    /// Outermost first.
     stack: Vec<Frame>,
-    /// Time and exception of each ready task's wake.
+    /// Time and exception of each wake.
     ready: HashMap<usize, (u64, u16)>,
     quiet_since: Option<u64>,
     last: Option<u64>,
@@ -124,7 +124,7 @@ impl Player {
         }
     }
 
-    /// Events are missing here: active frames may have ended unseen.
+    /// After lost events active frames may have ended.
     fn cut(&mut self) {
         self.stack.clear();
         self.ready.clear();
@@ -155,7 +155,6 @@ impl Player {
         }
     }
 
-    /// The task at this address; unnamed if the trace has no name.
     fn task(&mut self, address: u32) -> usize {
         let tasks = &mut self.replay.tasks;
         *self.index.entry(address).or_insert_with(|| {
@@ -239,7 +238,6 @@ impl Replay {
         self.polls.push(poll);
     }
 
-    /// Groups polls to runs.
     fn group(&mut self) {
         for (number, task) in self.tasks.iter_mut().enumerate() {
             let polls: Vec<&Poll> = self.polls.iter().filter(|p| p.task == number).collect();
@@ -288,8 +286,8 @@ impl Task {
     }
 }
 
-/// Least gap, µs, before a new run: the middle of the widest step on a logarithmic scale with a twentieth of the gaps
-/// on either side; without such a step every poll is a run.
+/// Smallest gap before a new run, µs: the middle of the widest logarithmic step with a twentieth of the gaps on either
+/// side; without one every poll is a run.
 fn threshold(gaps: Vec<u64>) -> f64 {
     let mut gaps: Vec<f64> = gaps.into_iter().map(|g| (g as f64).max(1.0)).collect();
     gaps.sort_by(f64::total_cmp);

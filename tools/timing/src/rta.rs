@@ -4,9 +4,8 @@
 //!
 //! w = C + S + B + Σ ceil((w + J_k) / T_k) C_k over every k that may go first
 //!
-//! Tasks of one level do not preempt each other and have no order: each may go first and counts as more urgent, which
-//! also bounds the wait for one that has begun. S is the task's wait for a bus, B the time for which lower levels mask
-//! interrupts.
+//! Tasks of one level do not preempt each other and have no order: each counts as more urgent, which also bounds the
+//! wait for a running one. S is the task's wait for a bus, B the time for which lower levels mask interrupts.
 
 /// A task or an interrupt; times in µs.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,11 +24,11 @@ pub struct Load {
     pub waited: f64,
 }
 
-/// Iterations after which no bound exists.
+/// Iterations after which no bound is assumed to exist.
 const ROUNDS: usize = 10_000;
 
-/// Largest response of `loads[index]`, µs after its release, with `blocking` from below; `None` if it exceeds the
-/// period, beyond which the next release would wait too.
+/// Largest response of `loads[index]`, µs after release, with `blocking` from below; `None` beyond the period, after
+/// which the next release would wait too.
 #[must_use]
 pub fn response(loads: &[Load], index: usize, blocking: f64) -> Option<f64> {
     let own = loads.get(index)?;
@@ -60,8 +59,8 @@ pub fn utilisation(loads: &[Load]) -> f64 {
     loads.iter().map(|l| l.execution / l.period).sum()
 }
 
-/// Utilisation up to which any `count` independent tasks with rate-monotonic priorities meet deadlines equal to their
-/// periods (Liu and Layland 1973).
+/// Utilisation up to which any `count` independent rate-monotonic tasks meet deadlines equal to their periods (Liu and
+/// Layland 1973).
 #[must_use]
 pub fn rate_monotonic_bound(count: usize) -> f64 {
     let n = count.max(1) as f64;
@@ -83,7 +82,7 @@ mod tests {
         }
     }
 
-    /// Burns and Wellings, Real-Time Systems and Programming Languages, task set of the worked recurrence.
+    /// Burns and Wellings, Real-Time Systems and Programming Languages: task set of the worked recurrence.
     fn burns_wellings() -> Vec<Load> {
         vec![load(0, 3.0, 7.0), load(1, 3.0, 12.0), load(2, 5.0, 20.0)]
     }
@@ -98,7 +97,7 @@ mod tests {
     #[test]
     fn blocking_waiting_and_jitter_lengthen_it() {
         let mut loads = burns_wellings();
-        // By hand: w = 3 + 1 + ceil((w + 0) / 7) 3 = 7; a jitter of 1 brings in the second release: 10.
+        // w = 3 + 1 + ceil((w + 0) / 7) 3 = 7; a jitter of 1 adds the second release: 10.
         assert_eq!(response(&loads, 1, 1.0), Some(7.0));
         loads[0].jitter = 1.0;
         assert_eq!(response(&loads, 1, 1.0), Some(10.0));

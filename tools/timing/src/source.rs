@@ -1,4 +1,4 @@
-//! Messages of a file: text of `probe-rs run` or the bench, or the log's own bytes.
+//! Messages of a file: text of `probe-rs run` or the bench, or a raw log.
 
 use std::path::Path;
 
@@ -13,10 +13,10 @@ pub struct Messages {
     pub broken: Option<String>,
 }
 
-/// Reads `capture`; `elf` is the image that wrote it, needed only for the log's own bytes.
+/// Reads `capture`; `elf` is its image, needed only for raw logs.
 ///
 /// # Errors
-/// One line: what is wrong with either file and what is wanted.
+/// One line: what is wrong with either file and what is required.
 pub fn read(capture: &Path, elf: Option<&Path>) -> Result<Messages, String> {
     let bytes = load(capture)?;
     let image = elf.map(load).transpose()?;
@@ -46,7 +46,7 @@ fn load(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))
 }
 
-/// Text has line ends and no unprintable characters; the last character may be cut.
+/// Line ends and no unprintable characters; the last character may be cut.
 fn is_text(bytes: &[u8]) -> bool {
     let readable = match std::str::from_utf8(bytes) {
         Ok(_) => true,
@@ -66,7 +66,6 @@ fn text(bytes: &[u8]) -> Messages {
     Messages { lines, broken }
 }
 
-/// `line` without terminal colours.
 fn plain(line: &str) -> String {
     let mut plain = String::new();
     let mut rest = line;
@@ -130,7 +129,6 @@ mod tests {
     #[test]
     fn bytes_are_no_text() {
         assert!(is_text("0.1 INFO µs\n".as_bytes()));
-        // Cut within a character.
         assert!(is_text(&"0.1 µ".as_bytes()[..5]));
         assert!(!is_text(&[0x00, 0x12, 0xff]));
     }

@@ -18,7 +18,7 @@ impl Sorted {
         self.0.len()
     }
 
-    /// The time not exceeded by `share` (0 to 1) of them; `None` without any.
+    /// The time not exceeded by `share` (0 to 1) of them, if any.
     #[must_use]
     pub fn quantile(&self, share: f64) -> Option<f64> {
         let rank = (self.0.len() as f64 * share).ceil() as usize;
@@ -51,7 +51,7 @@ impl Sorted {
         Some((squares / self.0.len() as f64).sqrt())
     }
 
-    /// Count per octave, `(from, to, count)`, µs, without empty ones; below 1 µs is one octave.
+    /// Count per octave, `(from, to, count)`, µs, without empty ones; below 1 µs is one.
     #[must_use]
     pub fn octaves(&self) -> Vec<(f64, f64, usize)> {
         let mut octaves: Vec<(f64, f64, usize)> = Vec::new();

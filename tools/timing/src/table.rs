@@ -7,7 +7,6 @@ use crate::live::{Contact, Quantiles};
 use crate::replay::{Replay, Task};
 use crate::stats::Sorted;
 
-/// Width of the longest bar.
 const BAR: usize = 40;
 
 /// The tables of a capture.
@@ -26,7 +25,6 @@ pub fn tables(capture: &Capture, replay: &Replay) -> String {
     text
 }
 
-/// Tables of the records logged each second.
 fn seconds(capture: &Capture) -> String {
     let mut text =
         String::from("\nEach second's records: half / 99 % / all runs, us from release (docs/timing.md)\n\n");
@@ -64,7 +62,7 @@ fn seconds(capture: &Capture) -> String {
     text + &contact(&capture.contact)
 }
 
-/// Table of the chain from contact pressure to servo pulse; empty without records.
+/// From contact pressure to servo pulse; empty without records.
 fn contact(seconds: &[Contact]) -> String {
     let (Some(min), Some(last)) = (seconds.iter().map(|c| c.min).min(), seconds.last()) else {
         return String::new();
@@ -82,7 +80,6 @@ fn quantiles(q: Quantiles) -> String {
     format!("{} / {} / {}", q.p50, q.p99, q.max)
 }
 
-/// Table of the trace's runs.
 fn runs(capture: &Capture, replay: &Replay) -> String {
     let idle = 100.0 * replay.idle as f64 / replay.covered.max(1) as f64;
     let mut text = format!(
@@ -128,7 +125,6 @@ fn exact(times: &Sorted) -> String {
     format!("{:.0} / {:.0} / {:.0}", told(0.5), told(0.99), told(1.0))
 }
 
-/// Table of the preemptions.
 fn preemptions(replay: &Replay) -> String {
     let mut text = String::from("\nPreemptions: who, by whom, how often, longest and in all (us)\n\n");
     let name = |n: usize| replay.tasks.get(n).map_or("?", |t| t.name.as_str());
@@ -149,7 +145,6 @@ fn preemptions(replay: &Replay) -> String {
     text
 }
 
-/// Histogram of each task's responses.
 fn histograms(replay: &Replay) -> String {
     let mut text = String::from("\nResponses, us from the wake\n");
     for task in replay.tasks.iter().filter(|t| !t.runs.is_empty()) {

@@ -1,13 +1,13 @@
-//! The executors' events, as a firmware with the feature `trace` logs them.
+//! Executor events of a firmware with the feature `trace`.
 //!
-//! `trace task ADDRESS LEVEL NAME` names a task, `trace NUMBER: [bytes]` holds events from the NUMBERth since the start
-//! on, eight bytes each (format: `boards/src/cortex_m/trace.rs`), `trace lost COUNT` counts those lost by the board.
+//! `trace task ADDRESS LEVEL NAME` names a task; `trace NUMBER: [bytes]` holds events from the NUMBERth since the
+//! start, eight bytes each (format: `boards/src/cortex_m/trace.rs`); `trace lost COUNT` counts lost ones.
 
 use sophie_tasks::deadline::Level;
 
 use crate::live::Garbled;
 
-/// Bits of an address kept by an event.
+/// Address bits in an event.
 const ADDRESS: u32 = 0x000F_FFFC;
 
 /// What happened.
@@ -63,7 +63,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Takes a log line; true if it was of the trace.
+    /// Takes a line; true if it was of the trace.
     ///
     /// # Errors
     /// A garbled trace line.
@@ -182,7 +182,6 @@ mod tests {
             exception: 54,
         };
         assert_eq!(trace.events[0], expected);
-        // Across the wrap.
         assert_eq!(trace.events[1].at, expected.at + 3);
     }
 

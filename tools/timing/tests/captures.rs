@@ -1,4 +1,4 @@
-//! The captures of docs/timing, written by the emulated board, from file to tables.
+//! Captures of docs/timing, from file to tables.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,6 @@ fn capture(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// A file of this test with `content`.
 fn file(name: &str, content: &[u8]) -> PathBuf {
     let path = std::env::temp_dir().join(format!("sophie-timing-{}-{name}", std::process::id()));
     std::fs::write(&path, content).unwrap();
@@ -29,7 +28,6 @@ fn a_flight_keeps_every_deadline() {
     assert!(capture.tasks.iter().all(|t| t.missed() == 0));
     let mixer = capture.tasks.iter().find(|t| t.name == "mixer").unwrap();
     assert!((mixer.rate() - 1000.0).abs() < 1.0, "{}", mixer.rate());
-    // As docs/timing.md states.
     assert!(
         capture
             .chain
@@ -49,7 +47,7 @@ fn a_trace_becomes_tables_a_timeline_and_a_sheet() {
     let period = |name| of(name).periods().mean().unwrap();
     assert!((period("imu") - 250.0).abs() < 1.0 && (period("mixer") - 1000.0).abs() < 1.0);
     assert!(replay.idle as f64 > 0.7 * replay.covered as f64);
-    // Nothing preempts the most urgent level; only more urgent levels preempt.
+    // Only more urgent levels preempt.
     for (victim, by) in replay.preemptions.keys() {
         assert!(replay.tasks[*by].level < replay.tasks[*victim].level);
     }
@@ -63,7 +61,7 @@ fn a_trace_becomes_tables_a_timeline_and_a_sheet() {
     assert!(sheet.lines().all(|l| l.split(',').count() == 8));
 }
 
-/// Rows of a table: cells without ticks.
+/// Cells without ticks.
 fn rows(lines: &[&str]) -> Vec<Vec<String>> {
     let cell = |c: &str| c.trim().replace(['`', ','], "");
     lines
@@ -86,14 +84,14 @@ fn the_page_s_bounds_are_those_of_the_traces_beside_it() {
     assert_eq!(head[..2], ["task", "deadline us"]);
     assert!(head.len() > 2 && body.len() > 5);
     for (column, title) in head.iter().enumerate().skip(2) {
-        // Such as `f405` of `trace-f405.txt`.
+        // `f405` of `trace-f405.txt`.
         let (board, trace) = title
             .split_once(" of ")
             .unwrap_or_else(|| panic!("of which trace is {title}?"));
         let log = Capture::read(&capture(trace), None).unwrap();
         let told = analyse(&log, &Replay::of(&log.trace));
         let boards = told.lines().find(|l| l.starts_with("task ")).unwrap();
-        // Each board's column ends with its title; "scaled" belongs to the title.
+        // A column ends with its title, to which "scaled" belongs.
         let boards = boards.replace(", scaled", "--scaled");
         let titles: Vec<&str> = boards.split_whitespace().skip(5).collect();
         let at = titles

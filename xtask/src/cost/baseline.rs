@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Count;
 use crate::{Error, build};
 
-/// Permitted relative increase of a stage: compilers differ.
+/// Permitted relative increase: compilers differ.
 const TOLERANCE: f64 = 0.03;
 
 #[derive(Clone, Copy, Deserialize, Serialize)]
@@ -25,7 +25,7 @@ fn path() -> PathBuf {
     build::root().join("hil/qemu/cost/baseline.toml")
 }
 
-/// Compares with the baseline and reports decreases.
+/// Compares with the baseline, reports decreases.
 ///
 /// # Errors
 /// Every increase, one per line.

@@ -1,5 +1,5 @@
-//! Bounds of a Cortex-M4's cycles for the control path: every instruction that QEMU executes, with the times of the
-//! core's manual, and the worst case of a flash with wait states.
+//! Bounds of a Cortex-M4's cycles for the control path: the manual's times of every instruction that QEMU executes, and
+//! the worst case of a flash with wait states.
 
 use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, BufReader};
@@ -12,15 +12,15 @@ use crate::build::Recipe;
 use crate::image::Image;
 use crate::{Error, build};
 
-/// Stages in order, each a function of the counting image.
+/// Functions of the counting image, in order.
 const STAGES: [&str; 4] = ["filter", "estimator", "control", "mixing"];
-/// Steps of calibration at rest, not counted (`hil/qemu/cost/src/inputs.rs`), and counted steps.
+/// Uncounted steps of calibration (`hil/qemu/cost/src/inputs.rs`), and counted steps.
 const REST: u32 = 2500;
 const STEPS: u32 = 1000;
-/// Bytes per access to the F405's flash, and wait cycles at 168 MHz (RM0090 §3.5).
+/// Bytes per access to the F405's flash; wait cycles at 168 MHz (RM0090 §3.5).
 const LINE: u64 = 16;
 const WAIT: u64 = 5;
-/// Bytes of an M7's instruction cache line.
+/// Bytes, M7.
 const CACHE_LINE: u64 = 32;
 
 #[derive(Default)]
@@ -35,10 +35,10 @@ struct Sum {
     code: HashSet<u64>,
 }
 
-/// Runs the counting images in single steps; prints their flash reads, and the bounds of an M4F.
+/// Single-steps the counting images; prints their flash reads and the bounds of an M4F.
 ///
 /// # Errors
-/// No toolchain or no QEMU, or an image did not reach the counted steps.
+/// No toolchain or QEMU, or an image did not reach the counted steps.
 pub fn cycles() -> Result<(), Error> {
     for core in &CORES {
         let elf = build::image(&Recipe {
@@ -59,7 +59,7 @@ pub fn cycles() -> Result<(), Error> {
         row("lines of 16 bytes", sum.lines);
         let code = sum.code.len() as u64 * CACHE_LINE;
         println!("code: {code} bytes, in lines of {CACHE_LINE}");
-        // An M7 executes at most two at a time, and its caches are larger than the code.
+        // An M7 executes at most two at a time, and its caches hold the code.
         if core.name == "M4F" {
             let missed = sum.most + WAIT * (sum.lines + sum.constants);
             row("cycles, at least", sum.least);
@@ -109,7 +109,7 @@ fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
                 sum.code.insert(from / CACHE_LINE);
                 sum.least += u64::from(least);
                 sum.most += u64::from(most);
-                // An instruction may lie across two lines.
+                // An instruction may cross lines.
                 let last = (next - 1) / LINE;
                 sum.lines += u64::from(from / LINE != last) + u64::from(at / LINE != last);
                 sum.constants += u64::from(earlier.constant);
@@ -117,7 +117,7 @@ fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
             if inside == Some(at) {
                 inside = None;
             } else if inside.is_none() && stages.contains(&at) {
-                // The call's own cycles are its caller's.
+                // The call's cycles are its caller's.
                 inside = Some(next);
                 steps += u32::from(stages.first() == Some(&at));
                 if steps > REST + STEPS {
@@ -148,7 +148,7 @@ fn stages(image: &Image) -> Result<Vec<u64>, Error> {
     STAGES.iter().map(begin).collect()
 }
 
-/// The instruction's address in a line of QEMU's log: `Trace 0: HOST [BASE/ADDRESS/FLAGS/...] SYMBOL`.
+/// Address in a line of QEMU's log: `Trace 0: HOST [BASE/ADDRESS/FLAGS/...] SYMBOL`.
 fn address(line: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(line).ok()?.strip_prefix("Trace ")?;
     let (_, parts) = text.split_once('[')?;

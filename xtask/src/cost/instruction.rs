@@ -1,22 +1,21 @@
-//! Cycles of a Cortex-M4 (FPU) instruction by its encoding: ARM DDI 0439B, tables 3-1 and 7-1.
-//!
-//! Decodes only what determines the time; encodings are those of ARMv7-M (DDI 0403E, A5).
+//! Cycles of a Cortex-M4 (FPU) instruction by its encoding: ARM DDI 0439B, tables 3-1 and 7-1; encodings of ARMv7-M
+//! (DDI 0403E, A5), as far as they determine the time.
 
-/// Fewest and most cycles of a pipeline refill after a taken branch.
+/// Fewest and most cycles after a taken branch.
 const REFILL: [u32; 2] = [1, 3];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruction {
     /// Length, 2 or 4 bytes.
     pub bytes: u64,
-    /// Fewest and most cycles if the next instruction follows.
+    /// Fewest and most cycles if no branch is taken.
     pub cycles: [u32; 2],
-    /// Reads a constant from between the instructions, thus from flash.
+    /// Reads a constant between instructions, thus from flash.
     pub constant: bool,
 }
 
 impl Instruction {
-    /// The instruction of two halfwords; the second belongs to the next instruction if this one is short.
+    /// Of two halfwords; the second is the next instruction's after a short one.
     pub fn of(first: u16, second: u16) -> Self {
         if first >> 11 >= 0b11101 {
             let (cycles, constant) = long(first, second);
@@ -35,7 +34,7 @@ impl Instruction {
         }
     }
 
-    /// Fewest and most cycles, with the pipeline refill if the branch is `taken`.
+    /// Fewest and most cycles, with the refill if `taken`.
     pub fn cycles(&self, taken: bool) -> [u32; 2] {
         let [least, most] = self.cycles;
         let [quick, slow] = if taken { REFILL } else { [0, 0] };
@@ -43,7 +42,7 @@ impl Instruction {
     }
 }
 
-/// A load or store of one word shares its second cycle with a neighbour of its kind.
+/// A load or store of a word shares its second cycle with a neighbour of its kind.
 const SINGLE: [u32; 2] = [1, 2];
 const PLAIN: [u32; 2] = [1, 1];
 
@@ -60,14 +59,14 @@ fn short(i: u16) -> ([u32; 2], bool) {
         0b11000 | 0b11001 => (several((i & 0xFF).count_ones()), false),
         // PUSH, POP.
         0b10110 | 0b10111 if i >> 9 & 0b11 == 0b10 => (several((i & 0x1FF).count_ones()), false),
-        // IT, which may be folded into the instruction before.
+        // IT, which may fold into the instruction before.
         0b10111 if i >> 8 == 0xBF && i & 0xF != 0 => ([0, 1], false),
         _ => (PLAIN, false),
     }
 }
 
 fn long(first: u16, second: u16) -> ([u32; 2], bool) {
-    // The group is in bits 12 to 9 of the first halfword, and some below.
+    // The group: bits 12 to 9 of the first halfword, and some below.
     match first >> 9 & 0xF {
         0b0100 if first >> 6 & 1 == 1 => {
             // LDRD, STRD; TBB and TBH, which load before they branch.
@@ -76,7 +75,7 @@ fn long(first: u16, second: u16) -> ([u32; 2], bool) {
         }
         0b0100 => (several(second.count_ones()), false),
         0b0110 | 0b0111 | 0b1110 | 0b1111 => float(first, second),
-        // Single loads and stores; a base of PC is a constant.
+        // Single loads and stores; base PC is a constant.
         0b1100 => (SINGLE, first & 0xF == 0xF),
         // SDIV, UDIV.
         0b1101 if first & 0xFFD0 == 0xFB90 && second & 0xF0 == 0xF0 => ([2, 12], false),
@@ -91,7 +90,7 @@ fn float(first: u16, second: u16) -> ([u32; 2], bool) {
     }
     if first & 0xFE00 == 0xEC00 {
         let words = u32::from(second & 0xFF);
-        // VLDR and VSTR do not write back and have an offset; several registers take a cycle each.
+        // VLDR and VSTR have an offset without write-back; several registers take a cycle each.
         let single = first >> 8 & 1 == 1 && first >> 5 & 1 == 0;
         let double = second >> 8 & 1 == 1;
         return match (single, double) {
@@ -104,7 +103,7 @@ fn float(first: u16, second: u16) -> ([u32; 2], bool) {
     if second >> 4 & 1 == 1 {
         return (PLAIN, false);
     }
-    // One cycle longer if the next instruction uses the result.
+    // A cycle more if the next instruction uses the result.
     let with_use = |cycles| ([cycles, cycles + 1], false);
     match (first >> 7 & 1, first >> 4 & 0b11) {
         // VMLA, VMLS, VNMLA, VNMLS; VMUL; VADD, VSUB.
@@ -113,7 +112,7 @@ fn float(first: u16, second: u16) -> ([u32; 2], bool) {
         // VDIV; VFNMA, VFNMS, VFMA, VFMS.
         (1, 0b00) => with_use(14),
         (1, 0b01 | 0b10) => with_use(3),
-        // VSQRT; other one-operand instructions take one cycle.
+        // VSQRT; others of one operand take a cycle.
         (_, _) if first & 0xF == 1 && second >> 6 & 0b11 == 0b11 => with_use(14),
         _ => with_use(1),
     }
@@ -123,7 +122,6 @@ fn float(first: u16, second: u16) -> ([u32; 2], bool) {
 mod tests {
     use super::*;
 
-    /// Expects these `cycles` of the instruction of the halfwords `code`.
     fn takes(what: &str, code: [u16; 2], bytes: u64, expected: [u32; 2], constant: bool) {
         let [first, second] = code;
         let instruction = Instruction {

@@ -60,7 +60,7 @@ pub struct Count {
 /// Builds and runs the image of each core, then acts as in `then`.
 ///
 /// # Errors
-/// No toolchain or no QEMU, the cores' motor commands differ, or a stage costs more.
+/// No toolchain or QEMU, different motor commands, or a costlier stage.
 pub fn cost(then: Then) -> Result<(), Error> {
     if then == Then::Cycles {
         return cycles::cycles();
@@ -79,7 +79,6 @@ pub fn cost(then: Then) -> Result<(), Error> {
         counts.extend(run.counts);
         commands.extend(run.commands);
     }
-    // By stage or whole, on either core, the bits must be equal, or something else was counted.
     if commands.windows(2).any(|pair| pair.first() != pair.last()) {
         return Err(format!("the motor commands differ: {}", commands.join(", ")).into());
     }

@@ -14,7 +14,7 @@ pub struct Run {
 
 pub fn command(core: &Core, elf: &Path) -> Command {
     let mut command = Command::new("qemu-system-arm");
-    // An instruction lasts 2^7 ns, some ticks of the machine's timer, with which the image counts.
+    // An instruction lasts 2^7 ns, some ticks of the timer with which the image counts.
     command.args(["-machine", core.machine, "-nographic", "-icount", "shift=7"]);
     command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
     command.arg(elf).stdin(Stdio::null());

@@ -1,6 +1,6 @@
-//! The stages: names, cost targets, and the best peer's cost.
+//! Stages: names, cost targets, the best peer's cost.
 
-/// M4F's permitted cost over the target on an M7.
+/// Permitted cost of an M4F over an M7's target.
 pub const M4F_ALLOWANCE: f64 = 1.3;
 /// Largest ratio of the costliest call to the mean.
 pub const SPREAD: f64 = 1.05;

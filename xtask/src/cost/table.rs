@@ -9,7 +9,7 @@ use super::stages::{M4F_ALLOWANCE, SPREAD, STAGES, Stage};
 use super::{CORES, Count};
 use crate::{Error, build};
 
-/// Marks of the generated part of docs/cost.md.
+/// Marks in docs/cost.md.
 const BEGIN: &str = "<!-- cargo xtask cost --tighten writes from here -->\n";
 const END: &str = "<!-- to here -->\n";
 
@@ -26,7 +26,7 @@ pub struct Row {
     target: Option<f64>,
     best_peer: &'static str,
     met: bool,
-    /// The costliest call is close enough to the mean.
+    /// Costliest call close enough to the mean.
     constant: bool,
 }
 
@@ -57,7 +57,7 @@ pub fn rows(counts: &[Count]) -> Vec<Row> {
     rows.collect()
 }
 
-/// The table as Markdown: a line per stage, the cores side by side.
+/// Markdown: a line per stage, cores side by side.
 pub fn markdown(counts: &[Count]) -> String {
     let mut text = String::from("| stage |");
     for core in &CORES {
@@ -99,7 +99,7 @@ pub fn markdown(counts: &[Count]) -> String {
 /// Writes the table into docs/cost.md.
 ///
 /// # Errors
-/// The document is missing or has lost the marks.
+/// The document or its marks are missing.
 pub fn write(counts: &[Count]) -> Result<(), Error> {
     let path = build::root().join("docs/cost.md");
     let text = fs::read_to_string(&path)?;

@@ -94,7 +94,7 @@ fn cut_off() {
     running.wait().unwrap();
     assert!(half("a.bin.part"));
     assert!(!bench.file("a.bin").exists());
-    // An unfinished backup is not in the way.
+    // An unfinished backup is no obstacle.
     bench.mood("");
     bench.calls();
     bench.run("backup f405 @a.bin").done();
@@ -179,7 +179,7 @@ fn cuav_first() {
     bench.run(&format!("{flash} --backup @old.bin")).done();
     bench.run(&format!("{flash} --no-backup")).done();
     assert_eq!(bench.calls().len(), 4);
-    // Others are restored over USB with their makers' published firmware.
+    // Others are restored over USB with their makers' firmware.
     for chip in [&F405, &MATEK] {
         let bench = Bench::new(&format!("free-{}", chip.board), chip);
         bench

@@ -80,7 +80,7 @@ impl Bench {
         ended(self.command(line).env("PATH", "/nowhere").output().unwrap())
     }
 
-    /// Takes the calls so far, the folder's name as `@`.
+    /// Takes the calls so far, with `@` for the folder.
     pub fn calls(&self) -> Vec<String> {
         let calls = fs::read_to_string(self.file(CALLS)).unwrap_or_default();
         let _ = fs::remove_file(self.file(CALLS));
@@ -92,7 +92,7 @@ impl Bench {
         fs::read(self.file(MEMORY)).unwrap()
     }
 
-    /// The address at which the chip's loader started the firmware, or the word `reset`.
+    /// Address at which the loader started the firmware, or `reset`.
     pub fn started(&self) -> Option<String> {
         fs::read_to_string(self.file(STARTED)).ok()
     }
@@ -115,7 +115,7 @@ impl Drop for Bench {
 }
 
 impl Ended {
-    /// It was refused or failed with `status` and one line that contains `told`.
+    /// Requires `status` and one line with `told`.
     pub fn complains(&self, status: i32, told: &str) {
         assert_eq!(self.status, Some(status), "{}", self.complaint);
         assert!(self.complaint.contains(told), "{}", self.complaint);

@@ -1,4 +1,4 @@
-//! The boards' chips after the manuals, independent of xtask's table.
+//! The chips after the manuals, independent of xtask's table.
 
 use std::ops::Range;
 
@@ -77,7 +77,7 @@ impl Chip {
         self.sectors.iter().sum::<usize>() * 1024
     }
 
-    /// The sectors that hold any of `addresses`, as offsets in the flash.
+    /// Sectors that hold any of `addresses`, as flash offsets.
     pub fn touched(&self, addresses: Range<usize>) -> Range<usize> {
         let (mut start, mut first, mut last) = (0, self.size(), 0);
         for kib in self.sectors {
@@ -90,7 +90,7 @@ impl Chip {
         first..last
     }
 
-    /// Contents before the test: another firmware without erased bytes, and stored parameters.
+    /// Another firmware without erased bytes, and stored parameters.
     pub fn used(&self) -> Vec<u8> {
         let mut flash: Vec<u8> = (0..self.size())
             .map(|at| (at * 7 + at / 251) as u8 & 0x7F)

@@ -1,20 +1,19 @@
-//! Minimal images that pass xtask's checks: a board's vectors, start-up, code, constants, initial values and statics.
+//! Minimal images that pass xtask's checks.
 
 use crate::chips::{Chip, FLASH};
 
-/// Bytes of code: on the f405 it ends in the fifth sector.
+/// Bytes; on the f405 the code ends in the fifth sector.
 const CODE: usize = 0x4800;
 const CONSTANTS: usize = 0x130;
 const VALUES: usize = 0x24;
-/// Bytes of statics, and address of retained data, on every board.
+/// Bytes of statics; address of retained data.
 const STATICS: u32 = 0x400;
 const RETAINED: u32 = 0x2001_FC00;
-/// Unused bytes between code and constants.
 const GAP: u32 = 12;
 
 pub struct Fixture {
     pub elf: Vec<u8>,
-    /// Expected flash afterwards: address and bytes of each segment.
+    /// Flash afterwards: address and bytes of each segment.
     pub segments: Vec<(usize, Vec<u8>)>,
 }
 
@@ -23,10 +22,8 @@ struct Section {
     kind: u32,
     flags: u32,
     address: u32,
-    /// Load address.
     loaded: u32,
     bytes: Vec<u8>,
-    /// Length without contents.
     length: u32,
 }
 
@@ -52,7 +49,7 @@ pub fn image(chip: &Chip) -> Fixture {
     for ((_, number), handler) in chip.levels.iter().zip(levels) {
         vectors[16 + number] = handler | 1;
     }
-    // ldr r0, =VTOR; ldr r1, =table; str r1, [r0]; b .; followed by the words.
+    // ldr r0, =VTOR; ldr r1, =table; str r1, [r0]; b .; then the words.
     let mut code: Vec<u8> = (0..CODE).map(|at| (at * 13 + at / 255) as u8 & 0x7F).collect();
     let start: [u16; 4] = [0x4801, 0x4902, 0x6001, 0xE7FE];
     for (at, half) in start.iter().enumerate() {
@@ -185,7 +182,7 @@ fn elf(entry: u32, sections: &[Section], symbols: &[(String, u32, u32, u8)]) -> 
         let at = strings.len() as u32;
         strings.extend(name.bytes().chain([0]));
         table.extend([at, *address, *size].iter().flat_map(|word| word.to_le_bytes()));
-        // Global, of its kind; in the section that holds it, or absolute.
+        // In the section that holds it, or absolute.
         let holds = |s: &Section| (s.address..s.address + s.length).contains(address);
         let section = sections
             .iter()
@@ -217,7 +214,7 @@ fn elf(entry: u32, sections: &[Section], symbols: &[(String, u32, u32, u8)]) -> 
     file.extend(headers.iter().flatten().flat_map(|word| word.to_le_bytes()));
 
     let mut head = b"\x7FELF\x01\x01\x01\0\0\0\0\0\0\0\0\0".to_vec();
-    // Executable, for Arm, version 1.
+    // Executable, Arm, version 1.
     head.extend([2, 0, 40, 0, 1, 0, 0, 0]);
     head.extend(
         [entry, 52, place, 0x0500_0400]

@@ -1,6 +1,5 @@
-//! `cargo xtask flash`, `backup` and `restore` as run by a user, with stand-ins for probe-rs and dfu-util.
-//!
-//! The stand-ins are this binary under their names, first on PATH. They keep a flash in a file and record their calls.
+//! `cargo xtask flash`, `backup` and `restore` with stand-ins for probe-rs and dfu-util: this binary under their names,
+//! first on PATH, with a flash in a file and a record of calls.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

@@ -10,14 +10,14 @@ use crate::chips::{self, Chip, FLASH};
 
 /// Variable with the stand-ins' folder.
 pub const FOLDER: &str = "STAND_INS";
-/// Files in it: flash, calls, board, error mode, start address.
+/// Files: flash, calls, board, error mode, start address.
 pub const MEMORY: &str = "flash.bin";
 pub const CALLS: &str = "calls";
 pub const BOARD: &str = "board";
 pub const MOOD: &str = "mood";
 pub const STARTED: &str = "started";
 
-/// dfu-util's exit status for wrong arguments and for a failed device (sysexits.h).
+/// dfu-util's exit status for wrong arguments and failed devices (sysexits.h).
 const USAGE: u8 = 64;
 const DEVICE: u8 = 74;
 
@@ -33,7 +33,7 @@ fn chip() -> &'static Chip {
     chips::find(text(BOARD).trim())
 }
 
-/// Records the call; returns the words, and the number of calls with the first of them.
+/// Records the call; returns its words, and the number of calls with the first one.
 fn called(program: &str) -> (Vec<String>, usize) {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let line = format!("{program} {}\n", words.join(" "));
@@ -52,7 +52,7 @@ fn called(program: &str) -> (Vec<String>, usize) {
     (words, count)
 }
 
-/// Erases the sectors of `bytes` and writes them; a bit that was not erased stays 0.
+/// Erases the sectors of `bytes` and writes; unerased bits stay 0.
 fn program(address: usize, bytes: &[u8]) {
     let path = folder().join(MEMORY);
     let mut flash = fs::read(&path).unwrap();
@@ -182,7 +182,6 @@ pub fn probe_rs() -> ExitCode {
             if mood == "run fails" {
                 return ExitCode::FAILURE;
             }
-            // Writes the segments by sector: the image is known.
             for (address, bytes) in joined(crate::fixture::image(chip()).segments) {
                 program(address, &bytes);
             }
@@ -196,7 +195,7 @@ pub fn probe_rs() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Joins segments that share a sector: probe-rs erases once.
+/// Segments that share a sector: probe-rs erases once.
 fn joined(segments: Vec<(usize, Vec<u8>)>) -> Vec<(usize, Vec<u8>)> {
     let mut joined: Vec<(usize, Vec<u8>)> = Vec::new();
     for (address, bytes) in segments {
@@ -223,7 +222,6 @@ fn read(mood: &str, count: usize, file: &str, address: usize, length: usize) -> 
     }
     fs::write(file, bytes).unwrap();
     if mood == "read hangs" {
-        // Until the test has seen enough.
         for _ in 0..200 {
             if text(MOOD) != mood {
                 break;

@@ -22,12 +22,12 @@ pub fn tests() -> Vec<Trial> {
     ]
 }
 
-/// Sectors that the images erase: on the f405 the first, fourth and fifth; on the Matek the first.
+/// The f405's first, fourth and fifth sector, the Matek's first.
 const F405_ERASED: &[Range<usize>] = &[0x0800_0000..0x0800_4000, 0x0800_C000..0x0802_0000];
 #[allow(clippy::single_range_in_vec_init, reason = "one range, not its addresses")]
 const MATEK_ERASED: &[Range<usize>] = &[0x0800_0000..0x0802_0000];
 
-/// The flash holds the image, and is unchanged outside `erased` (addresses).
+/// Requires the image in flash, unchanged outside `erased` (addresses).
 fn flashed(bench: &Bench, erased: &[Range<usize>]) {
     let (flash, used) = (bench.memory(), bench.chip.used());
     for (address, bytes) in &bench.image.segments {
@@ -46,7 +46,7 @@ fn stretch(bench: &Bench, address: &str) -> Vec<u8> {
 fn f405_over_usb() {
     let bench = Bench::new("f405-usb", &F405);
     bench.run("flash f405 --dfu --elf @image.elf").done();
-    // The table last, since the chip is started where the last call wrote; nothing in the parameters' sectors.
+    // The table last, where the chip starts; nothing in the parameters' sectors.
     assert_eq!(
         bench.calls(),
         [
@@ -59,7 +59,7 @@ fn f405_over_usb() {
     flashed(&bench, F405_ERASED);
     let params = 0x4000..0xC000;
     assert!(bench.memory()[params.clone()] == F405.used()[params]);
-    // Code, constants and initial values share a sector: one file, whole flash words.
+    // Code, constants and initial values share a sector: one file of whole flash words.
     let code = stretch(&bench, "0x0800c000");
     assert!(
         code.len().is_multiple_of(32) && code.len() < 0x5000,
@@ -188,7 +188,6 @@ fn breaks_off() {
         assert_eq!((bench.calls().len(), bench.started()), (1 + part, None));
         let params = 0x4000..0xC000;
         assert!(bench.memory()[params.clone()] == F405.used()[params]);
-        // A repetition completes it.
         bench.mood("");
         bench.run("flash f405 --dfu --elf @image.elf").done();
         flashed(&bench, F405_ERASED);
@@ -227,7 +226,7 @@ fn no_image() {
         &crate::fixture::image(&MATEK).elf,
         "the vector table has 166 entries, f405 has 98",
     );
-    // Code where parameters are stored: its sector would be erased.
+    // In the parameters' sector, which would be erased.
     let early = Chip {
         text: 0x0800_3F00,
         ..F405.clone()
@@ -236,7 +235,7 @@ fn no_image() {
         &crate::fixture::image(&early).elf,
         "lie in the sectors of the parameters' flash",
     );
-    // Start-up without the store of the vector table.
+    // Without the store of the vector table's address.
     let mut elf = bench.image.elf.clone();
     let store = [0x01, 0x48, 0x02, 0x49, 0x01, 0x60];
     let at = (0..elf.len() - 6).find(|at| elf[*at..*at + 6] == store);

@@ -2,14 +2,13 @@ use super::*;
 use crate::bench::Spin;
 
 const THRUST: f32 = 10.0;
-/// All was given: nothing keeps the integrals from moving.
 const GIVEN: Feedback = Feedback {
     roll_pitch: 1.0,
     yaw: 1.0,
     yaw_gated: false,
 };
 
-/// The loops with the attitude that they are given: level and at rest.
+/// The loops at a given attitude: level, at rest.
 struct Bench {
     control: Control,
     attitude: Attitude,
@@ -29,7 +28,6 @@ impl Bench {
         }
     }
 
-    /// Runs `steps` with what was given at `at_us` µs.
     fn run(&mut self, steps: usize, setpoint: Setpoint, at_us: u64) -> Demand {
         let command = Command { setpoint, at_us };
         let mut demand = Demand::Stop;
@@ -77,7 +75,7 @@ fn a_direction_is_aimed_at_once_for_each_time_it_was_given() {
     bench.run(2000, roll_to(0.2), 1000);
     let aimed = bench.control.target().down.y;
     assert!((aimed - 0.198_67).abs() < 1e-4, "{aimed}");
-    // Of the same time it is the same direction, whatever it says; of another it is not.
+    // A direction is taken once for each time.
     bench.run(2000, roll_to(-0.2), 1000);
     assert!((bench.control.target().down.y - aimed).abs() < 1e-6);
     bench.run(2000, roll_to(-0.2), 2000);
@@ -88,8 +86,7 @@ fn a_direction_is_aimed_at_once_for_each_time_it_was_given() {
 fn the_attitude_loop_starts_from_the_present_attitude_and_aims_anew() {
     let mut bench = Bench::new();
     bench.run(2000, roll_to(0.2), 1000);
-    // Turned by hand to 0.4 rad while the rotors idle: nothing is left of the direction filtered before, though it comes
-    // with the same time.
+    // Turned by hand to 0.4 rad while idle: the filtered direction is gone, though the time is the same.
     bench.run(1, Setpoint::Idle, 2000);
     bench.attitude.q = crate::vector::Quat::from_euler(0.4, 0.0, 0.0);
     bench.run(1, roll_to(0.2), 1000);
@@ -145,7 +142,7 @@ fn an_escape_forgets_what_was_wound_up_when_it_begins_and_not_while_it_lasts() {
     bench.run(499, escape_to(0.0), 0);
     let lasting = bench.control.rate.integral().x;
     assert!((lasting - wound).abs() < 0.02, "{lasting}, {wound}");
-    // A second one is a beginning.
+    // A second escape is an activation.
     bench.run(1, roll_to(0.0), 0);
     bench.run(1, escape_to(0.0), 0);
     assert!(bench.control.rate.integral().x > -0.01);

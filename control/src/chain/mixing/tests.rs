@@ -2,7 +2,6 @@ use super::*;
 use crate::math::GRAVITY;
 use crate::wrench::{Configuration, Wrench};
 
-/// A mixer in hover, and the time.
 struct Bench {
     mixing: Mixing,
     weight: f32,
@@ -41,7 +40,7 @@ impl Bench {
         mix
     }
 
-    /// Arms that are all 0.1 rad higher than the model has them, except one without a reading.
+    /// Readings 0.1 rad above the model, none for arm `without`.
     fn arms(&self, without: usize) -> Surroundings {
         let mut tilt = self.mixing.allocation.tilt().tilt().map(|tilt| Some(tilt + 0.1));
         tilt[without] = None;
@@ -72,7 +71,7 @@ fn one_arm_a_step_learns_from_each_reading_once() {
         }
         last = bias;
     }
-    // A reading that comes before all have had their turn begins with the first arm again.
+    // An early reading starts again at the first arm.
     let arms = bench.arms(2);
     bench.run(1, &hover, &arms);
     let arms = bench.arms(0);

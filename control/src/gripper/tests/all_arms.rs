@@ -1,4 +1,4 @@
-//! The four arms together, and bounds that hold for any input.
+//! The four arms together, and bounds for any input.
 
 use proptest::prelude::*;
 
@@ -47,7 +47,7 @@ fn every_chosen_arm_must_hold_and_every_arm_be_free() {
     );
     out = drive(&mut gripper, [false; 4], [0.0, 0.0, 300.0, 0.0], 5.0);
     assert!(!out.released && !out.proven);
-    // Only with both in the tolerance at once, not one after the other.
+    // Both must be in the tolerance at once, not in turn.
     let mut gripper = Gripper::default();
     for (pressures, proven) in [
         ([0.0; 4], false),

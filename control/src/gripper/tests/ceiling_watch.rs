@@ -1,11 +1,11 @@
-//! The ceiling watch apart from the controller.
+//! The ceiling watch alone.
 
 use super::DT;
 use crate::gripper::Config;
 use crate::gripper::ceiling_watch::{CeilingSample, CeilingWatch};
 use crate::params::Params;
 
-/// Raises pressure (from 300 Pa), tension and force (from 50 N) by so much in 2 s; true for a ceiling.
+/// Raises pressure (from 300 Pa), tension and force (from 50 N) by this much in 2 s; true for a ceiling.
 fn seen(watch: &mut CeilingWatch, pressure: f32, tension: f32, force: f32) -> bool {
     let cfg = Config::from_params(&Params::default());
     (0..=200).any(|step| {

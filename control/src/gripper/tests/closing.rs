@@ -10,7 +10,6 @@ fn the_approach_rises_with_the_arm_s_stiffness() {
     assert!(close(cfg.bend_per_force, 0.020_152, 1e-5) && close(cfg.approach_rate, 34.74, 0.02));
     let mut arm = ArmGripper::default();
     let grip = run(&mut arm, &cfg, 0.0, 1.0);
-    // From the least force on.
     assert!(
         grip.state == ArmState::Closing && close(grip.force, 34.74, 1.1),
         "{grip:?}"
@@ -23,7 +22,7 @@ fn a_touch_takes_the_tendon_s_own_force_over_without_a_kick() {
     let mut arm = ArmGripper::default();
     run(&mut arm, &cfg, 0.0, 1.5);
     let asked = arm.force;
-    // The tendon has 12 N less than asked; the pressure jumps to 300 Pa and stays.
+    // The tendon lacks 12 N; the pressure jumps to 300 Pa.
     let mut last = asked;
     for _ in 0..50 {
         let i = ArmInput {
@@ -34,8 +33,8 @@ fn a_touch_takes_the_tendon_s_own_force_over_without_a_kick() {
         assert!((force - last).abs() < 2.0, "{last} {force}");
         last = force;
     }
-    // The surplus is gone (two filters at 25 rad/s, 0.5 s); the integral has added at most 0.05·650·0.5 = 16 N, of
-    // which 40 % in the reference's first two time constants, and P 0.0035·560.
+    // The surplus is gone (two filters at 25 rad/s, 0.5 s); the integral has added at most 0.05·650·0.5 = 16 N, 40 % of
+    // it in the reference's first two time constants, and P 0.0035·560.
     assert!((-9.0..4.0).contains(&(last - asked)), "{}", last - asked);
 }
 
@@ -44,7 +43,7 @@ fn a_resumed_grip_goes_on_from_its_force_without_a_kick() {
     let cfg = config();
     let before = holding(&cfg).force;
     let mut arm = ArmGripper::resume(before, None);
-    // At first nothing is known, then the tilt comes before the drive's tension, 4 N more by the new attitude.
+    // The tilt precedes the drive's tension, 4 N more by the new attitude.
     let has = before + 4.0;
     for (pressure, tension, tilt, seconds, force, stays) in [
         (Pressure::Stale, None, None, 0.05, before, true),
@@ -77,7 +76,6 @@ fn a_resumed_arm_that_does_not_touch_goes_on_closing() {
     let mut arm = ArmGripper::resume(30.0, None);
     let grip = run(&mut arm, &cfg, 0.0, 0.5);
     assert!(close(grip.force, 30.0 + 0.3 * 34.74, 1.0) && grip.state == ArmState::Closing);
-    // It opens as any other.
     for _ in 0..100 {
         arm.step(&cfg, &released(input(&cfg, &arm, 0.0)), DT);
     }
@@ -134,7 +132,7 @@ fn the_integral_waits_at_the_limit() {
     let cfg = config();
     let mut arm = ArmGripper::default();
     run(&mut arm, &cfg, 0.0, 1.5);
-    // 6.2 Pa/N, 830 Pa at the limit, which is reached and reported.
+    // 6.2 Pa/N give 830 Pa at the limit, which is reported.
     let mut grip = ArmGrip::default();
     for _ in 0..3000 {
         let pressure = 150.0 + 6.2 * math::clamp(arm.force - 52.0, 0.0, 1e3);
@@ -144,7 +142,7 @@ fn the_integral_waits_at_the_limit() {
         grip.state == ArmState::ForceLimited && close(grip.force, cfg.limit, 1e-2),
         "{grip:?}"
     );
-    // Left at once when the pressure comes, without 30 s of unwinding.
+    // Leaves the limit at once, without 30 s of unwinding.
     assert!(run(&mut arm, &cfg, 1200.0, 0.3).force < cfg.limit - 2.0);
 }
 
@@ -180,7 +178,7 @@ fn release_falls_at_its_rate_and_ends_free() {
         assert!(time < 5.0);
     }
     assert!(close(time, from / 80.0, 0.03));
-    // Pressed: not free. Light and wound back: free after the dwell.
+    // Pressed; light and wound back.
     for (pressure, state) in [(500.0, ArmState::Releasing), (0.0, ArmState::Free)] {
         let mut grip = ArmGrip::default();
         for _ in 0..50 {

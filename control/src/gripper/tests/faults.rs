@@ -1,4 +1,4 @@
-//! An arm's faults: seen, force held, and ended when allowed.
+//! An arm's faults: detected, force held, ended when allowed.
 
 use super::*;
 
@@ -14,14 +14,14 @@ fn a_fault_that_stays_until_release_outlives_a_restart() {
     assert!(run(&mut arm, &cfg, 950.0, 0.1).fault.is_none());
 }
 
-/// Reading (Pa) of a pad of which the converter sees a `part` of the voltage: with P = pressure / 692.5 Pa the pad has
-/// P / (1 + P) of the supply.
+/// Reading (Pa) of a pad of which the converter sees a `part` of the voltage: at P = pressure / 692.5 Pa the pad has P
+/// / (1 + P) of the supply.
 fn behind(part: f32, pressure: f32) -> f32 {
     let x = part * pressure / (692.5 + pressure);
     692.5 * x / (1.0 - x)
 }
 
-/// Closes an arm on a skin of 70 Pa/N, met at 52 N, its sensor read through `sensor`.
+/// Closes an arm on a skin of 70 Pa/N, met at 52 N, read through `sensor`.
 fn closing_on_a_skin(sensor: impl Fn(f32) -> f32) -> (ArmGripper, ArmGrip) {
     let cfg = config();
     let mut arm = ArmGripper::default();
@@ -37,7 +37,7 @@ fn closing_on_a_skin(sensor: impl Fn(f32) -> f32) -> (ArmGripper, ArmGrip) {
 fn a_sensor_that_cannot_read_the_grip_pressure_stops_the_winding() {
     let (_, grip) = closing_on_a_skin(|pressure| pressure);
     assert!(grip.state == ArmState::Holding, "{grip:?}");
-    // Behind 1:2 the reading ends at 692 Pa; by 40 N of tension on the skin it rises by less than 6 Pa/N.
+    // Behind 1:2 the reading ends at 692 Pa; from 40 N of tension on the skin it rises by less than 6 Pa/N.
     let (mut arm, grip) = closing_on_a_skin(|pressure| behind(0.5, pressure));
     assert!(
         grip.fault == Some(GripFault::Ceiling) && grip.force < 52.0 + 50.0,
@@ -62,7 +62,7 @@ fn a_sensor_that_has_read_the_grip_pressure_has_the_range() {
     let cfg = config();
     let mut arm = holding(&cfg);
     let force = arm.force;
-    // The load pulls the arm off the pipe as fast as the tendon pulls it back.
+    // The load pulls as fast as the tendon.
     let grip = run(&mut arm, &cfg, 700.0, 3.0);
     assert!(grip.force > force + 20.0 && grip.fault.is_none(), "{grip:?}");
 }
@@ -73,7 +73,7 @@ fn a_rotor_that_starts_is_no_ceiling() {
     let mut arm = ArmGripper::default();
     let mut grip = ArmGrip::default();
     for step in 0..1500 {
-        // 0.1 s after the touch the rotor asks for 5 N, 35.6 N of the tendon's, which the skin does not feel.
+        // 0.1 s after the touch the rotor gives 5 N, 35.6 N of the tendon's.
         let thrust = if step > 160 { 5.0 } else { 0.0 };
         let pressure = 70.0 * math::clamp(arm.force - cfg.per_thrust * thrust - 52.0, 0.0, 1e3);
         let i = ArmInput {
@@ -183,6 +183,6 @@ fn an_arm_that_stands_still_under_a_rising_force_without_pressure_is_faulty() {
         largest = if grip.force > largest { grip.force } else { largest };
     }
     assert!(arm.fault() == Some(GripFault::Unfelt) && largest < force + 20.0);
-    // Back to the force of before the vain rise.
+    // Back to the force before the vain rise.
     assert!(arm.force < force + 8.0);
 }

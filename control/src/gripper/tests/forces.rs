@@ -1,4 +1,4 @@
-//! Force rates, fallbacks and signs of the terms; every expected number follows from the constants' values.
+//! Force rates, fallbacks and signs of the terms, derived from the constants.
 
 use super::*;
 
@@ -6,7 +6,7 @@ struct Bench {
     cfg: Config,
     arm: ArmGripper,
     thrust: f32,
-    /// Tilt of an arm that no longer follows its tendon, rad.
+    /// Tilt of an arm that does not follow its tendon, rad.
     stuck_at: Option<f32>,
 }
 
@@ -25,7 +25,7 @@ impl Bench {
         -0.2 - 0.020_152 * self.arm.force
     }
 
-    /// Closes for one step with a tension equal to the force; returns the change of the force, N.
+    /// Closes for one step with the tension at the force; returns the change of force, N.
     fn step(&mut self, pressure: f32) -> f32 {
         let before = self.arm.force;
         let input = ArmInput {
@@ -45,7 +45,7 @@ impl Bench {
         self.arm.force
     }
 
-    /// An arm that has felt 950 Pa for 1.5 s, after 1.5 s of closing.
+    /// After 1.5 s of closing and 1.5 s at 950 Pa.
     fn holding(p: &Params) -> Self {
         let mut bench = Self::new(p);
         bench.run(0.0, 150);
@@ -61,8 +61,8 @@ fn near(a: f32, b: f32, tolerance: f32) -> bool {
 #[test]
 fn an_arm_that_lost_touch_pulls_harder_at_30_n_a_second() {
     let mut bench = Bench::holding(&Params::default());
-    // From 950 to 50 Pa the filter (80 rad/s: 4/9 of the way a step) is below 100 Pa after five steps: 900·(5/9)^5 =
-    // 48. Then the integral alone wants 0.05·900 = 45 N/s and gets 30 N/s.
+    // From 950 to 50 Pa the filter (80 rad/s: 4/9 of the way a step) passes 100 Pa after five steps: 900·(5/9)^5 = 48.
+    // Then the integral alone wants 0.05·900 = 45 N/s and gets 30 N/s.
     bench.run(50.0, 5);
     for step in 0..40 {
         let rise = bench.step(50.0);
@@ -119,7 +119,7 @@ fn a_touch_lost_for_good_falls_back_to_the_force_it_was_held_with() {
     let mut bench = Bench::new(&Params::default());
     bench.run(0.0, 150);
     let touched = bench.arm.force;
-    // 400 Pa too little on average for 2 s: 0.05·400 = 20 N/s, some 30 N more; then 2 s of the right pressure.
+    // 400 Pa short on average for 2 s: 0.05·400 = 20 N/s, some 30 N more; then 2 s at the right pressure.
     for step in 0..200 {
         bench.step(300.0 + 2.5 * step as f32);
     }
@@ -191,8 +191,8 @@ fn a_closed_arm_never_pays_out_below_one_newton() {
     // 5000 Pa against 950 Pa: the integral takes 200 N/s away, down to 1 N.
     let mut bench = Bench::holding(&Params::default());
     assert!(near(bench.run(5000.0, 500), 1.0, 1e-6));
-    // No wind-up: at 600 Pa the proportional term returns 0.0035·4400 = 15 N, the integral 0.05·350 = 17.5 N in the
-    // first second, less the cost of filters and rate limit.
+    // No wind-up: at 600 Pa the proportional term returns 0.0035·4400 = 15 N, the integral 0.05·350 = 17.5 N in 1 s,
+    // less the cost of filters and rate limit.
     let force = bench.run(600.0, 100);
     assert!((25.0..34.0).contains(&force), "{force}");
 }

@@ -1,4 +1,4 @@
-//! The gripper against scripted arms; expected numbers are derived by hand.
+//! The gripper against scripted arms.
 
 mod all_arms;
 mod ceiling_watch;
@@ -21,7 +21,7 @@ fn close(a: f32, b: f32, tolerance: f32) -> bool {
     (a - b).abs() <= tolerance
 }
 
-/// An arm that bends by its model, with a tension equal to the force.
+/// An arm that bends by its model, tension equal to force.
 fn input(cfg: &Config, arm: &ArmGripper, pressure: f32) -> ArmInput {
     ArmInput {
         close: true,
@@ -48,7 +48,6 @@ fn run(arm: &mut ArmGripper, cfg: &Config, pressure: f32, seconds: f32) -> ArmGr
     grip
 }
 
-/// An arm that holds at 950 Pa.
 fn holding(cfg: &Config) -> ArmGripper {
     let mut arm = ArmGripper::default();
     run(&mut arm, cfg, 0.0, 1.5);

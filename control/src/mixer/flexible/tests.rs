@@ -38,7 +38,7 @@ fn hover_shares_the_weight_and_lifts_it() {
 
 #[test]
 fn yaw_moves_no_rotor_by_more_than_its_limit_and_the_rest_is_reported() {
-    // Each rotor has room for 2.56 N of yaw: only the limit holds it back.
+    // Each rotor has room for 2.56 N of yaw.
     let limit = Params::default().yaw_thrust_max;
     let (m, _) = settled(HOVER);
     for yaw in [0.8, -0.8] {
@@ -121,7 +121,7 @@ fn yaw_is_gated_during_spool_up_and_never_kicks() {
 
 #[test]
 fn yaw_keeps_within_its_limit_on_every_rotor_of_a_rolling_vehicle() {
-    // Arms bent by different thrusts take different shares of a yaw command; the one that takes most is left or right.
+    // Arms bent differently take different shares of a yaw command.
     let limit = Params::default().yaw_thrust_max;
     for roll in [0.6, -0.6] {
         let w = Wrench { roll, ..HOVER };

@@ -1,4 +1,4 @@
-//! Orders of the bench: when they begin, what ends them, and that nothing turns or moves otherwise.
+//! Orders of the bench: beginning, end, and that nothing turns or moves otherwise.
 
 use proptest::prelude::*;
 
@@ -20,7 +20,6 @@ const PLACE: BenchOrder = BenchOrder::Place(Place {
 });
 
 impl Rig {
-    /// Disarmed, the arms known to be open.
     fn on_the_table() -> Self {
         let mut r = Self::new();
         r.inputs.motion = Some(Motion {
@@ -32,14 +31,13 @@ impl Rig {
         r
     }
 
-    /// The same with propellers that are said to be off.
     fn without_propellers() -> Self {
         let mut r = Self::on_the_table();
         assert_eq!(r.order(BenchOrder::PropellersOff), BenchState::Done);
         r
     }
 
-    /// Gives `order` under a new number; the answer after a step.
+    /// Gives `order` under a new number; returns the answer after a step.
     fn order(&mut self, order: BenchOrder) -> BenchState {
         let number = self.out.bench.number + 1;
         self.inputs.bench = Some(BenchRequest { number, order });
@@ -69,7 +67,6 @@ fn a_motor_turns_for_two_seconds_and_no_longer_however_often_it_is_renewed() {
     }
     let expected = (SPIN_TIME / DT + 0.5) as i32;
     assert!((turned - expected).abs() <= 1, "{turned} steps");
-    // Under a new number it turns again.
     assert_eq!(r.order(SPIN), BenchState::Running);
 }
 
@@ -85,7 +82,7 @@ fn whatever_speaks_against_it_refuses_an_order_and_ends_one_that_lasts() {
     ];
     for (why, spoil) in spoils {
         for order in [SPIN, PLACE] {
-            // A servo needs no motion.
+            // A servo needs no motion estimate.
             if (why, order) == (BenchRefusal::ImuSilent, PLACE) {
                 continue;
             }
@@ -102,7 +99,7 @@ fn whatever_speaks_against_it_refuses_an_order_and_ends_one_that_lasts() {
                 (r.out.rotors, r.out.tendons),
                 (Setpoint::Stop, ClampCommand::Release)
             );
-            // It does not come back by itself.
+            // The order does not resume by itself.
             r.sticks().arm_switch = false;
             r.inputs.hardware = ArmingInhibits::NONE;
             r.run(0.5);
@@ -118,7 +115,7 @@ fn whatever_speaks_against_it_refuses_an_order_and_ends_one_that_lasts() {
 fn propellers_are_confirmed_since_power_up_and_since_the_last_arming() {
     let mut r = Rig::on_the_table();
     assert_eq!(r.order(SPIN), BenchState::Refused(BenchRefusal::PropellersOn));
-    // A servo needs no word about propellers.
+    // A servo needs no answer about propellers.
     assert_eq!(r.order(PLACE), BenchState::Running);
     assert_eq!(r.order(BenchOrder::PropellersOff), BenchState::Done);
     assert_eq!(

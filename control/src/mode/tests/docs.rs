@@ -1,18 +1,13 @@
 //! `docs/modes.md` is printed from the code.
 
 extern crate std;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::string::{String, ToString};
 use std::vec::Vec;
-use std::{fs, println};
 
 use crate::arming::ArmingInhibit;
 use crate::mode::transitions::{Notice, Origin, TRANSITIONS, Transition};
 use crate::mode::*;
-
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/modes.md");
-const COMMAND: &str = "WRITE_DOCS=1 cargo test --package sophie-control mode::tests::docs";
 
 fn names(from: Origin) -> String {
     match from {
@@ -29,26 +24,6 @@ fn notice(row: &Transition) -> String {
         Notice::ShowOf(_) => "(the cause)".to_string(),
         Notice::Lasting(reason) => std::format!("{}, as long as it lasts", reason.text()),
     }
-}
-
-fn diagram() -> String {
-    let mut edges = BTreeMap::<(usize, usize), Vec<String>>::new();
-    let place = |mode| Mode::ALL.into_iter().position(|m| m == mode).unwrap();
-    for (i, row) in TRANSITIONS.iter().enumerate() {
-        let Origin::In(modes) = row.from else { continue };
-        for &from in modes {
-            if from != row.to.mode() {
-                let rows = edges.entry((place(from), place(row.to.mode()))).or_default();
-                rows.push((i + 1).to_string());
-            }
-        }
-    }
-    let mut text = String::from("```mermaid\nstateDiagram-v2\n    [*] --> CALIBRATING\n");
-    for ((from, to), rows) in edges {
-        let (from, to) = (Mode::ALL[from].name(), Mode::ALL[to].name());
-        writeln!(text, "    {from} --> {to}: {}", rows.join(" ")).unwrap();
-    }
-    text + "```\n"
 }
 
 fn transitions() -> String {
@@ -87,38 +62,12 @@ fn reasons() -> String {
     list.collect::<Vec<_>>().join(", ") + ".\n"
 }
 
-/// `page` with what stands between the markers of `part` replaced by `text`.
-pub(super) fn replaced(page: &str, part: &str, text: &str) -> String {
-    let (begin, end) = (
-        std::format!("<!-- {part} -->\n"),
-        std::format!("<!-- end of {part} -->"),
-    );
-    let (before, rest) = page
-        .split_once(&begin)
-        .expect("the page has the part's first marker");
-    let (_, after) = rest.split_once(&end).expect("and its last");
-    std::format!("{before}{begin}\n{text}\n{end}{after}")
-}
-
 #[test]
 fn the_page_of_the_modes_is_what_the_code_prints() {
-    let page = fs::read_to_string(PAGE).unwrap();
     let parts = [
-        ("diagram", diagram()),
         ("transitions", transitions()),
         ("reasons", reasons()),
         ("checks", checks()),
     ];
-    let printed = parts
-        .iter()
-        .fold(page.clone(), |page, (part, text)| replaced(&page, part, text));
-    if std::env::var_os("WRITE_DOCS").is_some() {
-        fs::write(PAGE, printed).unwrap();
-        println!("docs/modes.md written");
-    } else {
-        assert!(
-            page == printed,
-            "docs/modes.md differs from the code; rewrite it with: {COMMAND}"
-        );
-    }
+    sophie_pages::hold("modes", &parts, "--package sophie-control mode::tests::docs");
 }

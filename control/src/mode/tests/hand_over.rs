@@ -1,4 +1,4 @@
-//! Handed over between states: the collective, the held attitude, the failsafe's command.
+//! Hand-over between states: the collective, the held attitude, the failsafe's command.
 
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;

@@ -1,4 +1,4 @@
-//! Escapes, their start, course and end; arms that do not let go.
+//! Escapes: start, course and end; arms that do not let go.
 
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;
@@ -40,7 +40,7 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
         (-20.0, -0.5, true),
         (26.0, 0.0, true),
         (-26.0, 0.0, true),
-        // Rocking on the pads; coming back.
+        // Rocking on the pads; returning.
         (10.0, 0.5, false),
         (20.0, 0.1, false),
         (20.0, -0.5, false),
@@ -58,7 +58,7 @@ fn a_lean_that_grows_or_is_hopeless_ends_the_closing() {
             assert!(!ends || r.out.reason == Some(Reason::SlidesOff));
         }
     }
-    // Arms that hold need no rotors.
+    // Holding arms need no rotors.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);
@@ -112,7 +112,7 @@ fn an_escape_lifts_nearly_level_until_the_throttle_carries() {
         else {
             panic!("{:?}", r.out.rotors)
         };
-        // 8° of the 20° stay: away from the pipe, never across it.
+        // 8° of the 20° stay, away from the pipe.
         assert!((roll - deg(8.0 * side)).abs() < 1e-4 && pitch == 0.0 && yaw_rate == 0.0);
         assert_eq!(
             (r.out.tendons, r.out.grip_memory),
@@ -196,7 +196,7 @@ fn a_release_that_nothing_carries_is_an_escape() {
     r.expect(1.8, Mode::Releasing);
     assert_eq!(r.out.tendons, ClampCommand::Release);
     r.carried = false;
-    // 0.05 s of nothing, through the support's low pass of 5 Hz.
+    // 0.05 s without support, through its low pass of 5 Hz.
     let mut most = 0.0f32;
     for _ in 0..35 {
         r.step();
@@ -232,7 +232,7 @@ fn arms_that_do_not_come_free_are_not_pulled_at_for_ever() {
     assert_eq!(r.out.reason, None);
     r.expect(0.3, Mode::Releasing);
     assert_eq!(r.out.reason, Some(Reason::ArmsStuck));
-    // Arms called closed may be free: in the air it flies.
+    // Arms sensed as closed may be free.
     let mut r = Rig::escaping();
     r.leans(0.0, 0.0);
     r.carried = false;
@@ -285,7 +285,7 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
             r.out.reason
         );
     }
-    // The lean grows during spool-up: arms not yet open stay closed.
+    // The lean grows in spool-up.
     let mut r = Rig::releasing();
     r.run(1.0);
     r.leans(18.0, 0.0);
@@ -311,7 +311,7 @@ fn no_arm_lets_go_beyond_the_lean_at_which_the_belly_stays() {
     r.expect(0.5, Mode::Clamping);
     assert_eq!(r.out.reason, Some(Reason::LeansTooFar));
     r.expect(2.0, Mode::Perched);
-    // Upright: a release, the rotors carrying before the arms open.
+    // Upright: a release.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);

@@ -1,4 +1,4 @@
-//! Arms that a person opens on a vehicle at rest: no rotor starts before every one is proven free.
+//! Arms that a person opens on a vehicle at rest: no rotor starts before all are proven free.
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
@@ -8,7 +8,7 @@ use crate::rc::ArmChoice;
 
 #[test]
 fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
-    // The perch switch opens the arms some steps before the arming gesture is complete, in that very step, or after it.
+    // The switch opens the arms before, with or after the arming gesture.
     for (grip_memory, steps) in [
         GripMemory::Controlled(ArmChoice::All),
         GripMemory::HeldByGears(ArmChoice::All),
@@ -34,7 +34,7 @@ fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
             assert!(!r.out.rotors.spin(), "{grip_memory:?}, {steps}: step {step}");
         }
         if r.out.mode == Mode::Perched {
-            // Armed on the pipe before the switch was turned: off asks for a release, which takes throttle.
+            // Armed on the pipe first.
             assert!(steps > 0, "{grip_memory:?}, {steps}");
             continue;
         }
@@ -43,7 +43,7 @@ fn rotors_do_not_start_on_a_vehicle_that_is_letting_go() {
             (Mode::Disarmed, ClampCommand::Release)
         );
         assert_eq!(r.out.inhibits.first(), Some(ArmingInhibit::ArmsClosed));
-        // Proven free: the gesture, made again, arms.
+        // Proven free: a new gesture arms.
         r.grip(false, true, ArmState::Free, 0.0);
         r.arm();
         assert_eq!(r.out.mode, Mode::Armed);

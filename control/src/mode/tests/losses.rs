@@ -163,7 +163,7 @@ fn no_attitude_that_is_none_is_held_on_the_pipe_or_taken_for_a_touch() {
         calibrated: true,
         ..Motion::default()
     });
-    // Spooling down, the held attitude follows the present one: rotors called back must turn.
+    // The held attitude follows the present one in spool-down.
     let mut r = Rig::clamping();
     r.grip(true, false, ArmState::Holding, 950.0);
     r.run(0.5);

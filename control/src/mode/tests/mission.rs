@@ -1,4 +1,4 @@
-//! Every transition of a flight in which nothing goes wrong.
+//! Every transition of a flight without trouble.
 
 use super::rig::{DT, Rig};
 use crate::grip::ArmState;

@@ -1,7 +1,8 @@
-//! Tests of the mode logic: a vehicle in a world of two switches ([`rig`]), a flight in which nothing goes wrong
-//! ([`mission`]), and everything that does.
+//! The mode logic: a vehicle in a world of two switches ([`rig`]), a flight without trouble ([`mission`]), and every
+//! trouble.
 
 mod bench;
+mod diagram;
 mod docs;
 mod hand_over;
 mod leaving;

@@ -8,7 +8,6 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 use std::{format, fs};
 
-use super::docs::replaced;
 use crate::arming::{ArmingInhibit, GESTURE_TIME, TILT_MAX};
 use crate::grip_fault::GripFault;
 use crate::mode::*;
@@ -16,7 +15,6 @@ use crate::params::Params;
 use crate::rc::{CHANNELS, RAW_CENTRE, RAW_HIGH, RAW_LOW};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/pilot.md");
-const COMMAND: &str = "WRITE_DOCS=1 cargo test --package sophie-control mode::tests::pilot_page";
 
 fn in_mode(mode: Mode) -> &'static str {
     match mode {
@@ -207,7 +205,6 @@ fn numbers() -> [String; 14] {
 
 #[test]
 fn the_pilots_page_has_every_text_and_what_to_do() {
-    let page = fs::read_to_string(PAGE).unwrap();
     let faults = [
         GripFault::Stale,
         GripFault::Sensor,
@@ -241,17 +238,11 @@ fn the_pilots_page_has_every_text_and_what_to_do() {
             ),
         ),
     ];
-    let printed = parts
-        .iter()
-        .fold(page.clone(), |page, (part, text)| replaced(&page, part, text));
-    if std::env::var_os("WRITE_DOCS").is_some() {
-        fs::write(PAGE, printed).unwrap();
-    } else {
-        assert!(
-            page == printed,
-            "docs/pilot.md differs from the code; rewrite it with: {COMMAND}"
-        );
-    }
+    sophie_pages::hold(
+        "pilot",
+        &parts,
+        "--package sophie-control mode::tests::pilot_page",
+    );
 }
 
 #[test]

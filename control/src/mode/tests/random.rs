@@ -1,4 +1,4 @@
-//! Random pilots, sensors and grips against the invariants.
+//! Random pilots, sensors and grips against invariants.
 
 extern crate std;
 use crate::grip::ArmGrip;
@@ -144,7 +144,7 @@ proptest! {
                 prop_assert!((0.0..=4.0 * r.params.thrust_max).contains(&rotors.thrust()));
                 prop_assert!(sticks.is_none_or(|s| s.arm_switch) || !rotors.spin());
                 prop_assert!(reason.is_none_or(|r| r.text().len() <= 40));
-                // Only the switch, turned off, or carrying rotors open arms.
+                // Arms open only by the switch, turned off, or with carrying rotors.
                 if grip_memory.arms().is_some() && tendons == ClampCommand::Release {
                     prop_assert!([Mode::Releasing, Mode::Escaping].contains(&mode) || before == Mode::Escaping || sticks.is_some_and(|s| !s.perch_switch)
                         || r.inputs.grip.is_some_and(|g| g.released), "{before:?} -> {mode:?}");

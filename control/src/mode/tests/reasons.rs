@@ -1,4 +1,4 @@
-//! Reasons shown to the pilot, and which of two comes first.
+//! Reasons shown to the pilot, and their priority.
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
@@ -7,7 +7,7 @@ use crate::mode::*;
 #[test]
 fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
     let broken = ArmingInhibits::default().with(ArmingInhibit::ImuAbsent);
-    // Calibrating: a silent sensor, what is broken, or the need for rest.
+    // Calibrating: a silent sensor, a defect, or the need for rest.
     let mut r = Rig::new();
     r.expect(0.1, Mode::Calibrating);
     assert_eq!(r.out.reason, Some(Reason::KeepStill));
@@ -19,7 +19,7 @@ fn a_vehicle_on_the_ground_says_what_is_broken_and_what_keeps_it_from_arming() {
     r.step();
     assert_eq!(r.out.reason, Some(Reason::Check(ArmingInhibit::ImuStale)));
 
-    // Disarmed: what is broken at once, all else on an attempt to arm.
+    // Disarmed: a defect at once, all else on an attempt to arm.
     let mut r = Rig::armed();
     r.sticks().yaw = -1.0;
     r.expect(1.1, Mode::Disarmed);

@@ -1,4 +1,4 @@
-//! Starts on and off the pipe: nothing opens by itself, nothing turns before the pilot has armed.
+//! Starts on and off the pipe: nothing opens by itself, nothing turns before arming.
 
 use super::rig::Rig;
 use crate::arming::ArmingInhibit;
@@ -10,7 +10,7 @@ use crate::rc::ArmChoice;
 const ALL: ClampCommand = ClampCommand::Close { arms: ArmChoice::All };
 
 impl Rig {
-    /// Restarted with this grip, the switches where they were on the pipe.
+    /// Restarted with this grip, the switches as on the pipe.
     pub(super) fn restarted(grip_memory: GripMemory) -> Self {
         let mut r = Self::new();
         r.logic = ModeLogic::resume(&r.params, grip_memory);
@@ -29,7 +29,7 @@ impl Rig {
         });
     }
 
-    /// The pilot arms: switch off and on, yaw right for a second, the perch switch as it is.
+    /// Arms, with the perch switch unchanged.
     pub(super) fn arm(&mut self) {
         self.sticks().throttle = 0.0;
         self.sticks().arm_switch = false;
@@ -41,7 +41,6 @@ impl Rig {
         self.run(0.1);
     }
 
-    /// Runs for `seconds` with standing rotors and `tendons` in every step.
     fn stays(&mut self, seconds: f32, tendons: ClampCommand) {
         for _ in 0..(seconds * 100.0) as u32 {
             self.step();
@@ -49,7 +48,6 @@ impl Rig {
         }
     }
 
-    /// Powered on with arms pressed at `pressure` Pa.
     fn found(pressure: f32) -> Self {
         let mut r = Self::restarted(GripMemory::Unknown);
         r.grip(false, false, ArmState::Free, pressure);
@@ -113,7 +111,7 @@ fn the_perch_switch_that_was_left_on_opens_nothing_when_it_is_turned_off() {
             assert!(r.out.tendons != ClampCommand::Release && r.out.grip_memory == grip_memory);
             r.sticks().perch_switch = true;
             if !calibrated {
-                // Off and on so far; the next off is a wish, tested next.
+                // Off and on so far; the next off is a wish.
                 r.logic = ModeLogic::resume(&r.params, grip_memory);
             }
         }
@@ -222,7 +220,7 @@ fn every_other_check_still_counts_on_the_pipe() {
         ),
     ];
     for (edit, why) in cases {
-        // The pilot chooses the front pair: the grip's choice counts.
+        // The pilot's choice does not count.
         let mut r = Rig::restarted(GripMemory::Controlled(ArmChoice::Rear));
         r.sticks().arms = ArmChoice::Front;
         r.calibrated();

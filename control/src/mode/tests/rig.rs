@@ -1,4 +1,4 @@
-//! Test vehicle: the mode logic in a world that carries it or does not.
+//! The mode logic in a simple world that carries it or does not.
 
 use crate::grip::ArmGrip;
 use crate::grip::ArmState;
@@ -67,7 +67,7 @@ impl Rig {
         self.inputs.lift = self.out.rotors.thrust();
         if let Some(m) = &mut self.inputs.motion {
             let felt = if self.carried {
-                // The first step takes the speed away.
+                // The first step removes the speed.
                 GRAVITY + core::mem::take(&mut self.falling) / DT
             } else {
                 let felt = self.inputs.lift / self.params.mass;

@@ -1,4 +1,4 @@
-//! Every trouble in each state in which it can occur.
+//! Every trouble in each state where it can occur.
 
 use super::rig::Rig;
 use crate::arming::{ArmingInhibit, ArmingInhibits};
@@ -59,7 +59,7 @@ fn arming_is_refused_with_a_reason_that_can_be_read() {
     r.sticks().arms = ArmChoice::Front;
     r.run(0.1);
     assert!(r.out.inhibits.is_empty(), "a sensor that nobody needs");
-    // A rear sensor's range, then a front one's: arms 2 and 4 are the rear ones.
+    // Arms 2 and 4 are the rear ones.
     r.inputs.hardware = ArmingInhibits::NONE
         .with(ArmingInhibit::FsrRange2)
         .with(ArmingInhibit::FsrRange4);
@@ -155,7 +155,7 @@ fn a_person_opens_the_arms_of_a_disarmed_vehicle_on_purpose() {
     r.sticks().yaw = -1.0;
     r.expect(1.1, Mode::Disarmed);
     assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
-    // Only a lost grip forbids arming, which here leads back to the perch.
+    // Only a lost grip forbids arming.
     assert!(!r.out.inhibits.contains(ArmingInhibit::ArmsClosed));
     r.grip(false, false, ArmState::Touching, 100.0);
     r.run(0.1);
@@ -185,7 +185,7 @@ fn a_lost_radio_in_flight_sinks_and_stops_on_what_carries() {
     ));
     r.expect(20.0, Mode::Failsafe);
     r.carried = true;
-    // The remembered sink rate must fade first, and most of the weight be carried.
+    // The sink rate must fade first.
     r.expect(10.0, Mode::Disarmed);
     assert_eq!(r.out.reason, Some(Reason::RADIO_LOST));
 }
@@ -230,7 +230,7 @@ fn a_lost_radio_on_the_pipe_keeps_closing_and_holds() {
         ClampCommand::Close { arms: ArmChoice::All },
         "no proof, no battery, no radio: hold on"
     );
-    // A receiver that comes back with the switch off drops nothing: opening takes a new turn of it.
+    // A returning receiver with the switch off drops nothing: opening takes a new turn.
     let closed = ClampCommand::Close { arms: ArmChoice::All };
     for (perch_switch, tendons) in [(false, closed), (true, closed), (false, ClampCommand::Release)] {
         *r.sticks() = Sticks {
@@ -345,7 +345,7 @@ fn a_silent_data_ready_line_lands_under_the_pilots_sticks_even_if_it_comes_back(
         r.expect(6.0, Mode::Disarmed);
         assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
     }
-    // The radio is lost too, and comes back: down all the same.
+    // The radio is lost too, and returns.
     let mut r = Rig::flying();
     let sticks = r.inputs.sticks.take();
     r.expect(0.5, Mode::Failsafe);
@@ -353,7 +353,7 @@ fn a_silent_data_ready_line_lands_under_the_pilots_sticks_even_if_it_comes_back(
     r.inputs.sticks = sticks;
     r.expect(0.5, Mode::Failsafe);
     assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
-    // An empty battery is more pressing.
+    // An empty battery has priority.
     let mut r = Rig::flying();
     r.inputs.battery = Some(12.0);
     r.expect(BATTERY_TIME + 0.1, Mode::Failsafe);
@@ -364,7 +364,6 @@ fn a_silent_data_ready_line_lands_under_the_pilots_sticks_even_if_it_comes_back(
 
 #[test]
 fn a_silent_data_ready_line_on_the_pipe_stays_there() {
-    // The grip is finished, and the rotors stop on it.
     for make in [Rig::touched as fn() -> Rig, Rig::clamping] {
         let mut r = make();
         r.line_silent(true);
@@ -372,7 +371,7 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
         r.grip(true, false, ArmState::Holding, 950.0);
         r.run(0.5);
-        // No calling off once the arms hold.
+        // No cancelling once the arms hold.
         r.sticks().perch_switch = false;
         r.expect(3.0, Mode::Perched);
         assert_eq!(
@@ -391,17 +390,16 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     }
     assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
-    // The line is back, the wish stands.
     r.line_silent(false);
     r.expect(0.1, Mode::Releasing);
-    // Spooling up with closed arms: back onto the grip until the switch is turned again.
+    // Spooling up with closed arms: back onto the grip.
     r.run(0.5);
     assert_eq!(r.out.tendons, ClampCommand::Close { arms: ArmChoice::All });
     r.line_silent(true);
     r.expect(0.1, Mode::Clamping);
     r.expect(4.0, Mode::Perched);
     assert_eq!(r.out.reason, Some(Reason::LINE_SILENT));
-    // Arms already opening let go: the rotors carry, and the failsafe descends.
+    // Opening arms let go, and the failsafe descends.
     let mut r = Rig::releasing();
     r.run(2.0);
     assert_eq!(r.out.tendons, ClampCommand::Release);
@@ -416,7 +414,7 @@ fn a_silent_data_ready_line_on_the_pipe_stays_there() {
         (r.out.mode, r.out.reason),
         (Mode::Failsafe, Some(Reason::LINE_SILENT))
     );
-    // A closing without grip is given up and ends in the failsafe.
+    // A closing without grip ends in the failsafe.
     let mut r = Rig::clamping();
     r.line_silent(true);
     r.grip(false, false, ArmState::ForceLimited, 500.0);

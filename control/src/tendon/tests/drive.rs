@@ -1,4 +1,4 @@
-//! The drive: its speed, its observer, what it does without a tilt.
+//! The tendon drive: its speed, its observer, a missing tilt.
 
 use proptest::prelude::*;
 
@@ -47,13 +47,13 @@ fn the_observer_sees_through_the_lag_at_every_frame_rate() {
         );
         let mut drive = TendonDrive::new();
         let (dt, mut output) = (1.0 / rate, Drive::default());
-        // 25 ms in the sensor and on its way, and a whole frame: half until it is read, half until it acts.
+        // 25 ms in sensor and transit, and a frame.
         let age = 0.025 + dt;
         for i in 0..(2.0 * rate) as usize {
             let now = -0.2 - 0.5 * dt * i as f32;
             output = drive.step(&reel, 60.0, Some(now + 0.5 * age), dt);
         }
-        // What the filter's lag and the age hide of the arm's fall, 0.5 rad/s on 8000 N/m · 0.025 m.
+        // Hidden by filter lag and age: a fall at 0.5 rad/s on 8000 N/m · 0.025 m.
         let hidden = 100.0 * (2.0 / TILT_CUTOFF + age);
         assert!(
             close(output.tension, 60.0 - hidden, 0.5),
@@ -73,8 +73,7 @@ fn a_drive_resumes_where_it_was_and_a_wound_one_is_seeded_taut() {
     let before = drive.hold(&reel).pulse_us;
     let mut again = TendonDrive::new().resume(drive.angle());
     assert!(close(again.hold(&reel).pulse_us, before, 1e-3));
-    // Without a tilt, then with one that a new attitude shows off by 0.02 rad: the servo stays, and the tension that
-    // it then has keeps it there.
+    // Without a tilt, then with one off by 0.02 rad, the servo stays.
     let mut tension = 0.0;
     for tilt in [None, None, Some(-0.78), Some(-0.78)] {
         let output = again.hold_position(&reel, tilt, 0.02);
@@ -103,7 +102,7 @@ fn a_drive_resumes_where_it_was_and_a_wound_one_is_seeded_taut() {
 
 #[test]
 fn on_the_bench_a_servo_goes_to_any_pulse_slowly_and_back_without_a_jump() {
-    // Trimmed and mirrored alike, to both ends of what servos take.
+    // Trimmed, and mirrored, to both ends of servo pulses.
     let mirrored = Params {
         servo_release_2: 2000.0,
         servo_full_2: 700.0,
@@ -115,7 +114,7 @@ fn on_the_bench_a_servo_goes_to_any_pulse_slowly_and_back_without_a_jump() {
         (Reel::from_params(&mirrored, 1), 1300.0),
     ] {
         let (release, dt) = (reel.pulse(0.0), 0.02);
-        // BENCH_SPEED there, the speed of paying out on the way back, µs a step.
+        // BENCH_SPEED out, pay-out speed back, µs a step.
         let [slow, fast] = [1.0, 3.0].map(|speed| speed * dt * range / 4.71 + 1e-2);
         for goal in [500.0, 1500.0, 2500.0, 9000.0] {
             let mut drive = TendonDrive::new();
@@ -133,7 +132,6 @@ fn on_the_bench_a_servo_goes_to_any_pulse_slowly_and_back_without_a_jump() {
                 last = output.pulse_us;
             }
             assert!(close(last, release, 1e-3), "{goal}: {last}");
-            // At the release mark it is a drive like any other.
             assert_eq!(drive, TendonDrive::new());
         }
     }

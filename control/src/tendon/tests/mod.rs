@@ -1,4 +1,4 @@
-//! Reel and drive against numbers worked out by hand.
+//! Reel and drive against hand calculations.
 
 mod drive;
 mod reel;

@@ -38,10 +38,9 @@ fn the_reel_by_hand() {
     assert!(close(reel.force(3.0, -1.0), 80.0, 0.01));
     // 3/4.71 of 1900 µs above 550 µs.
     assert!(close(reel.pulse(3.0), 1760.2, 0.1));
-    // A drooping arm is slack, and one in flight up to the reference.
+    // A drooping arm is slack, a flying one up to the reference.
     assert!(reel.force(0.0, -0.46) == 0.0 && reel.force(0.0, 0.39) == 0.0);
     assert!(reel.force(0.0, 0.41) > 0.0);
-    // Limited to the travel.
     assert!(close(reel.angle(160.0, -2.5), 4.71, 1e-6));
 }
 
@@ -59,7 +58,6 @@ fn each_servo_has_its_own_pulses_trim_and_slew() {
     assert!(close(one.pulse(0.0), 550.0, 1e-3) && close(one.pulse(4.71), 2450.0, 1e-3));
     assert!(close(two.pulse(0.0), 530.0, 1e-3) && close(two.pulse(4.71), 2430.0, 1e-3));
     assert!(close(mirrored.pulse(0.0), 2310.0, 1e-3) && close(mirrored.pulse(4.71), 710.0, 1e-3));
-    // Half the travel is half the span, either way round.
     assert!(close(mirrored.pulse(2.355), 1510.0, 1e-3));
     assert!(close(slow.speed(0.0), 2.7, 1e-5) && close(one.speed(0.0), 5.544, 1e-5));
 }

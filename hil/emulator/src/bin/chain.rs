@@ -1,7 +1,7 @@
-//! `chain BOARD ELF [STEPS]`: flies the image to a hover on the emulated board and counts the instructions of this many
-//! steps of the control path, by part and function. `cargo xtask chain BOARD` builds both and calls it.
+//! `chain BOARD ELF [STEPS]`: hovers the image on the emulated board and counts instructions of STEPS control steps, by
+//! part and function (`cargo xtask chain BOARD`).
 //!
-//! Exit status: 0 when counted, 1 when the flight did not come that far, 2 for bad input.
+//! Exit status: 0 when counted, 1 when the flight ended early, 2 for bad input.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -16,9 +16,9 @@ use sophie_emulator::terminal::Sockets;
 use sophie_sim::record::Silent;
 use sophie_sim::scenario::{Overrides, Scenario, Step};
 
-/// Millisecond since power-on at which the vehicle hovers.
+/// Hover, ms since power-on.
 const HOVERS: u64 = 7500;
-/// Default and most steps: each of their instructions is a stop of the emulator.
+/// Default and most steps: the emulator stops at each instruction.
 const STEPS: usize = 100;
 const STEPS_MAX: usize = 2000;
 const SEED: u64 = 1;

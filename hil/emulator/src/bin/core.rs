@@ -1,5 +1,4 @@
-//! `core ELF m4f|m7`: runs the conformance image on the emulated core and prints its log. `cargo xtask conformance`
-//! builds it, runs this and QEMU, and compares.
+//! `core ELF m4f|m7`: runs the conformance image on the emulated core and prints its log (`cargo xtask conformance`).
 
 use std::path::Path;
 use std::process::ExitCode;

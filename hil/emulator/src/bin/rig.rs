@@ -1,5 +1,5 @@
-//! `rig ELF [NAME...]`: runs a board's tests (`hil/rig`) on the emulated board with every jumper and part. Names, or
-//! parts of them, select tests. `cargo xtask rig matek-h743 --emulated` builds both and calls it.
+//! `rig ELF [NAME...]`: runs a board's tests (`hil/rig`), or those with NAME in theirs, on the emulated board (`cargo
+//! xtask rig matek-h743 --emulated`).
 //!
 //! Exit status: 0 when every test passed, 1 when not, 2 for bad input.
 
@@ -42,7 +42,6 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(failed > 0))
 }
 
-/// Runs a test and prints its result, with the log if it failed.
 fn passes(image: &Firmware, test: &Test) -> bool {
     let verdict = run(image, test, Defect::None).and_then(|ended| {
         for line in &ended.lines {

@@ -1,6 +1,6 @@
-//! Assigns functions to parts of the control path, by path.
+//! Assigns functions to parts of the control path.
 
-/// Parts, with substrings of their functions' demangled names. The first match counts: a task's poll also names the
+/// Parts and substrings of their functions' demangled names. The first match counts: a task's poll also names the
 /// executor, and a driver's its bus.
 const GROUPS: [(&str, &[&str]); 11] = [
     ("laws", &["sophie_control::"]),
@@ -81,10 +81,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     GROUPS.iter().map(|(name, _)| *name)
 }
 
-/// The part of a function, by its demangled name.
+/// Part of a function, by its demangled name.
 #[must_use]
 pub fn group_of(function: &str) -> &'static str {
-    // A generic function belongs to the part of its arguments, except for the laws, which a task's poll names too.
+    // A generic function belongs to its arguments' part, except for laws, which a task's poll names too.
     let own = |pattern: &&str| function.contains(*pattern);
     let law = |function: &str| {
         let begin = function.trim_start_matches(['<', '&']);
@@ -106,7 +106,7 @@ mod tests {
         for (function, group) in [
             ("<sophie_control::mixer::Mixer>::allocate", "laws"),
             (
-                "<embassy_executor::raw::TaskStorage<sophie::firmware::tasks::__imu_task::__imu_task_inner_function::{closure#0}>>::poll",
+                "<embassy_executor::raw::TaskStorage<sophie_flight::tasks::__imu_task::__imu_task_inner_function::{closure#0}>>::poll",
                 "tasks, with what is inlined",
             ),
             ("<sophie_tasks::timing::Record>::add", "deadline records"),

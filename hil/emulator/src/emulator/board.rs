@@ -19,7 +19,6 @@ pub struct Wired<C> {
     pub(super) chip: C,
     pads: &'static Pads,
     core: rigless::emulator::CoreSpec,
-    /// Additional dividers at the pressure sensors' pads.
     dividers: [f64; 4],
 }
 
@@ -51,7 +50,7 @@ impl<C: Chip> Wired<C> {
         self.chip.imu(self.pads.imu)
     }
 
-    /// Turns a vector from body axes into the inertial sensor's.
+    /// Converts from body axes to the inertial sensor's.
     pub fn on_imu(&self, vector: [f64; 3]) -> [f64; 3] {
         (self.pads.imu_axes)(vector)
     }
@@ -70,7 +69,7 @@ impl<C: Chip> Wired<C> {
         self.chip.flip_imu_word(self.pads.imu, mask);
     }
 
-    /// The sensor of arm `arm`, 0 to 3.
+    /// Sensor of arm 0 to 3.
     pub fn arm(&mut self, arm: usize) -> Option<&mut Bno055> {
         let (bus, _) = *self.pads.arms.get(arm)?;
         self.chip.arm(bus, arm % 2)
@@ -82,7 +81,7 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// Makes the chips on an arm bus hold the clock for `us` µs after each byte; false where the emulator cannot.
+    /// Stretches an arm bus's clock by `us` µs after each byte; false if the emulator cannot.
     pub fn hold_clock(&mut self, bus: usize, us: u32) -> bool {
         self.chip.hold_clock(bus, u64::from(us) * 1000)
     }
@@ -102,14 +101,14 @@ impl<C: Chip> Wired<C> {
         }
     }
 
-    /// Puts a divider of 1:`divider` before the pin of pressure sensor `sensor`, 0 to 3.
+    /// Adds a divider of 1:`divider` before the pin of pressure sensor `sensor`, 0 to 3.
     pub fn divide(&mut self, sensor: usize, divider: u32) {
         if let Some(own) = self.dividers.get_mut(sensor) {
             *own = f64::from(divider.max(1));
         }
     }
 
-    /// Devices at the board's outputs, and their pins.
+    /// Devices and their pins.
     pub fn outputs(&self) -> Vec<(String, At)> {
         let (port, pin) = self.pads.imu_select;
         let select = At(usize::from(port.as_bytes()[port.len() - 1] - b'A'), pin);
@@ -152,7 +151,7 @@ impl<C: Chip> Wired<C> {
         self.chip.motor_edges()
     }
 
-    /// True where the timer drives the motor's pin.
+    /// Whether the timer drives the motor's pin.
     pub fn motors_driven(&mut self, now: VirtualNanos) -> [bool; 4] {
         let motors = self.pads.motors;
         motors
@@ -160,7 +159,7 @@ impl<C: Chip> Wired<C> {
             .map(|pin| self.chip.function(now, pin) == Some(motors.function))
     }
 
-    /// High time and period of each servo's pulse, ns; `None` without pulses.
+    /// High time and period, ns, if any.
     pub fn servo_pulses(&mut self, now: VirtualNanos) -> [Option<(u64, u64)>; 4] {
         self.pads.servos.map(|servo| {
             let driven = self.chip.function(now, servo.pin) == Some(servo.function);
@@ -173,7 +172,7 @@ impl<C: Chip> Wired<C> {
         self.pads.signals.map(|pin| self.chip.is_high(now, pin))
     }
 
-    /// The first words that ArduPilot leaves in this board's parameter sectors.
+    /// First words of the parameter sectors as ArduPilot leaves them.
     pub fn foreign(&self) -> &'static [u64] {
         self.pads.foreign
     }
@@ -231,7 +230,7 @@ impl<C: Chip> Board for Wired<C> {
     }
 }
 
-// No snapshot of a run is taken.
+// Runs take no snapshots.
 impl<C> Store for Wired<C> {
     fn store(&self, _: &mut Writer) -> Result<(), Error> {
         Err(Error::Failed)

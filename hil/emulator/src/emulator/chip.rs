@@ -1,6 +1,5 @@
-//! The bench's interface to a processor.
-//!
-//! The emulator has the same interfaces under a type per part; [`same_on_this_part!`] implements them for each part.
+//! The bench's interface to a processor. The emulator has a type per part; [`same_on_this_part!`] implements the common
+//! methods.
 
 use std::fmt::Debug;
 
@@ -30,60 +29,55 @@ pub enum Clock {
     Pll,
 }
 
-/// Crystal ready bit of the clock control register (RM0090 §7.3.1, RM0433 §8.7.2).
+/// In the clock control register (RM0090 §7.3.1, RM0433 §8.7.2).
 pub const CRYSTAL_READY: u64 = 1 << 17;
 /// Core PLL locked bit, in the same register.
 pub const PLL_LOCKED: u64 = 1 << 25;
 
 /// A processor with the bench's parts on its interfaces.
 pub trait Chip: Mcu + Debug + Send + 'static {
-    /// Connects the parts of `pads`.
     fn attach(&mut self, pads: &Pads);
     fn imu(&mut self, interface: usize) -> Option<&mut Imu>;
     /// Disconnects (true) or connects it.
     fn silence_imu(&mut self, interface: usize, silent: bool);
     /// Flips `mask` in its next word.
     fn flip_imu_word(&mut self, interface: usize, mask: u64);
-    /// The `nth` arm sensor on a bus.
     fn arm(&mut self, bus: usize, nth: usize) -> Option<&mut Bno055>;
     /// Disconnects (true) or connects it.
     fn silence_arm(&mut self, bus: usize, nth: usize, silent: bool);
     fn set_input(&mut self, channel: u8, millivolts: u32);
     fn line(&mut self, port: usize) -> Option<&mut Line>;
-    /// A pin's alternate function; `None` without one.
     fn function(&mut self, now: VirtualNanos, pin: At) -> Option<u8>;
     fn drive(&mut self, now: VirtualNanos, pin: At, level: Level);
-    /// The pin is an output, or a peripheral's other than the debug port's.
+    /// The pin is an output, or a peripheral's except the debug port's.
     fn drives(&mut self, now: VirtualNanos, pin: At) -> bool;
     fn pulls_up(&mut self, now: VirtualNanos, pin: At) -> bool;
     fn is_high(&mut self, now: VirtualNanos, pin: At) -> bool;
-    /// Takes the edges at the motor timer's outputs, oldest first.
+    /// Edges since the last call, oldest first.
     fn motor_edges(&mut self) -> Vec<Edge>;
-    /// High time and period of a servo's pulses, ns; `None` without pulses.
+    /// High time and period, ns, if any.
     fn servo_pulse(&mut self, servo: ServoPin) -> Option<(u64, u64)>;
-    /// PLLs set to a wrong range; `None` where there are no ranges.
+    /// PLLs in a wrong range, if there are ranges.
     fn pll_ranges(&self) -> Option<String> {
         None
     }
-    /// Times of an arm bus that breach its specification; `None` without such registers.
+    /// Times that breach the bus specification, if there are such registers.
     fn bus_times(&self, bus: usize) -> Option<String> {
         let _ = bus;
         None
     }
-    /// Makes the chips on a bus hold the clock for `hold` ns after each byte; false where the emulator cannot.
+    /// Stretches the clock by `hold` ns after each byte; false if the emulator cannot.
     fn hold_clock(&mut self, bus: usize, hold: u64) -> bool;
     /// Makes the next reset a brown-out.
     fn brown_out(&mut self);
     fn serial_setup(&self, port: usize) -> Setup;
-    /// Sets the option bytes, as a probe would.
     fn set_options(&mut self, options: Options);
-    /// Makes it a first revision.
     fn age(&mut self);
-    /// Stops a clock from the next reset of the clocks on.
+    /// From the next clock reset on.
     fn stop_clock(&mut self, clock: Clock);
-    /// The write changes flash while its data cache is on: reads would return old data.
+    /// Whether the write changes flash while its data cache is on.
     fn changes_cached_flash(&self, address: u64, value: u64) -> bool;
-    /// First address of the flash sector that the write begins to erase.
+    /// First address of the flash sector that the write erases.
     fn erased(&self, address: u64, value: u64) -> Option<u64>;
     /// The core, at `speed` instructions per clock cycle.
     ///
@@ -92,7 +86,7 @@ pub trait Chip: Mcu + Debug + Send + 'static {
     fn core(&self, speed: f64) -> Result<rigless::emulator::CoreSpec, String>;
 }
 
-/// Methods of [`Chip`] that are alike for every part; `$soc` is its module.
+/// Methods of [`Chip`] common to every part; `$soc` is its module.
 macro_rules! same_on_this_part {
     ($soc:ident) => {
         fn attach(&mut self, pads: &Pads) {

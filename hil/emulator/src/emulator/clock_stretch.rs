@@ -3,7 +3,7 @@
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::time::{EventId, VirtualNanos};
 
-/// Delays the ends of bytes on the wire by the time that a chip holds the clock.
+/// Delays ends of bytes while a chip stretches the clock.
 #[derive(Debug)]
 pub struct ClockStretch<D> {
     pub inner: D,

@@ -1,4 +1,4 @@
-//! Runs the conformance image on the emulator's core with the memory of QEMU's mps2 machines.
+//! Runs the conformance image on the emulated core with the memory of QEMU's mps2 machines.
 
 use std::num::{NonZeroU32, NonZeroU64};
 use std::path::Path;
@@ -13,22 +13,21 @@ use rigless::snapshot::{self, Reader, Store, Writer};
 use rigless::soc::{Bus, Cpu, Endian, Region};
 use rigless::time::{NO_DEADLINE, VirtualNanos};
 
-/// Memory of mps2-an386 and mps2-an500, as in the image's linker map.
+/// Memory of mps2-an386 and mps2-an500, as linked.
 const MEMORY: &[Region] = &[
     Region::flash("code", 0, 4 << 20),
     Region::ram("ram", 0x2000_0000, 4 << 20),
 ];
-/// Virtual time limit, ten times the image's duration.
+/// Ten times the usual virtual time.
 const LONGEST: VirtualNanos = VirtualNanos(10_000_000_000);
-/// Interrupt lines of both machines.
 const LINES: u16 = 32;
 
 /// A Cortex-M core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoreKind {
-    /// Cortex-M4 with FPv4 in single precision.
+    /// FPv4, single precision.
     M4F,
-    /// Cortex-M7 with FPv5 in double precision.
+    /// FPv5, double precision.
     M7,
 }
 
@@ -71,7 +70,7 @@ impl Board for Machine {
             variant,
             clock_hz: hz,
             interrupt_lines: NonZeroU32::new(u32::from(LINES)).expect("not zero"),
-            // As on an STM32; the image uses only priorities that differ in three bits.
+            // As on an STM32; the image's priorities differ in three bits.
             priority_bits: 4,
             refclk_divider: NonZeroU32::new(8).expect("not zero"),
             instructions_per_second: hz,
@@ -79,7 +78,7 @@ impl Board for Machine {
         };
         let mut config = Config::new(core, &[]);
         config.fpu = fpu;
-        // The code region is at zero itself, not only an alias.
+        // The code region itself is at zero, not an alias.
         config.vector_table = Some(0);
         vec![Target::new("core", &mut self.mcu, config.spec())]
     }
@@ -98,10 +97,10 @@ impl Driver<Machine> for Console {
     }
 }
 
-/// Output of the image at `elf` on the emulated core.
+/// Output of the image `elf` on the emulated core.
 ///
 /// # Errors
-/// An image that cannot be read or placed, that ends with a status other than 0, or that does not end.
+/// The image cannot be read or placed, does not end, or ends with a status other than 0.
 pub fn run(elf: &Path, kind: CoreKind) -> Result<String, Box<dyn std::error::Error>> {
     let cpu = Cpu::new("core", true, LINES, Endian::Little);
     let mcu = Bare::new(Bus::builder(cpu, MEMORY, []))?;

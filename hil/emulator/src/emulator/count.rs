@@ -1,15 +1,12 @@
-//! Counts the instructions of the control path on the running image: from data-ready to the end of the sensor's
-//! transfer, and from there to the start of the motor frame.
-//!
-//! Every instruction is watched while steps are counted, so each is known by its address, independent of the emulator's
-//! code generator.
+//! Counts the control path's instructions: from data-ready to the end of the sensor's transfer, and from there to the
+//! motor frame. Every instruction is watched by address, independent of the emulator's code generator.
 
 use rigless::emulator::{Access, AccessKind, Hit, Host, Watch};
 
 use crate::chain::{Counted, Functions, Step};
 use crate::elf::Firmware;
 
-/// Enable bit in the timer's first control register.
+/// In the timer's first control register.
 const ENABLE: u64 = 1;
 
 #[derive(Clone, Copy, Debug)]
@@ -22,14 +19,13 @@ pub struct Marks {
     pub motors: u64,
 }
 
-/// Counted part of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
-    /// Before data-ready, or after the start of the frame.
+    /// Before data-ready or after the frame's start.
     Neither,
     /// From data-ready to the end of the transfer.
     Reading,
-    /// From the end of the transfer to the start of the frame.
+    /// From the transfer's end to the frame's start.
     Acting,
 }
 
@@ -39,7 +35,6 @@ pub struct Counter {
     ready: u64,
     received: u64,
     motors: u64,
-    /// First millisecond, and number of steps.
     from_ms: u64,
     wanted: usize,
     watching: bool,
@@ -49,7 +44,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// A counter for `firmware`; `None` where nothing is to be counted.
+    /// A counter for `firmware`, if anything is to be counted.
     ///
     /// # Errors
     /// One line: what the image lacks.
@@ -76,7 +71,7 @@ impl Counter {
         }))
     }
 
-    /// Starts and stops watching at millisecond `ms` and at the wanted number of steps.
+    /// Starts at millisecond `ms`, stops after the wanted steps.
     pub fn on_millisecond(&mut self, ms: u64, host: &mut dyn Host) {
         let wanted = ms >= self.from_ms && self.counted.steps.len() < self.wanted;
         if wanted == self.watching {

@@ -95,7 +95,7 @@ where
         self.look(file, c.now());
     }
 
-    // As [`super::ignore_dma::IgnoreDma`]: a burst through DMAR serves its request itself.
+    // As in [`super::ignore_dma::IgnoreDma`]: a burst through DMAR serves its request itself.
     fn on_request(&mut self, _: RequestChange, _: &mut RegisterFile, _: &mut DeviceContext<'_>) {}
 
     fn on_clock(&mut self, hz: u64, file: &mut RegisterFile, c: &mut DeviceContext<'_>) {

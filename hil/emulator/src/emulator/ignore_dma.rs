@@ -5,8 +5,8 @@ use rigless::soc::RegisterSpec;
 use rigless::soc::stm32h743::peripherals::tim::{Family, Tim};
 use rigless::time::{EventId, VirtualNanos};
 
-/// Every model receives every request, and a timer looks each up among its wires: a third of the run's time per timer.
-/// A timer without requests, or served by the burst's register, may ignore them.
+/// Every model receives every request; a timer's look-up takes a third of the run's time. A timer without requests, or
+/// served by the burst register, may ignore them.
 #[derive(Debug)]
 pub struct IgnoreDma<F: Family>(pub Tim<F>);
 

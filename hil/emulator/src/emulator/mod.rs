@@ -1,6 +1,6 @@
-//! The emulated board, stepped by the millisecond. Nothing outside this module knows which emulator it is.
+//! The emulated board, stepped by the millisecond; hides the emulator.
 //!
-//! The emulator's core has its own thread and calls back at each stop, where the call waits for the next millisecond's
+//! The emulator's core has its own thread and calls back at each stop, where it waits for the next millisecond's
 //! [`Wires`]. The threads take turns, so a run is deterministic.
 
 mod board;
@@ -50,26 +50,26 @@ use crate::stored;
 use crate::wires::{BoardFault, Digest, FarEnd, Gap, Hung, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
-/// Registers of all ports of either processor: first address and end (RM0433 table 8, RM0090 table 1).
+/// Port registers of both processors (RM0433 table 8, RM0090 table 1).
 const PORTS: [std::ops::Range<u64>; 2] = [0x5802_0000..0x5802_2C00, 0x4002_0000..0x4002_2C00];
-/// Time from start until every pin must be configured, ns: the arms' buses wait for their chips.
+/// All pins must be configured by then, ns: the arms' buses wait for their chips.
 const START_UP: u64 = 1000 * MS;
-/// Longest latency from data-ready to motor frame distinguishable from a lost sample: the sample period, ns.
+/// Longer latencies from data-ready to motor frame are lost samples, ns.
 const SAMPLE: u64 = 250_000;
 
-/// Corrupted flash holds each word's address with these bits flipped.
+/// Corrupted flash holds each word's address, xored.
 const NOISE: u64 = 0x5A5A_5A5A;
 
-/// Bytes of the task header in embassy-executor 0.10; state bits "spawned" and "queued to run".
+/// Bytes of the task header in embassy-executor 0.10; its states "spawned" and "queued to run".
 const HEADER: u64 = 64;
 const SPAWNED: u64 = 1;
 const QUEUED: u64 = 1 << 8;
 
-/// Code that overflows the stack: `push {r0-r7, lr}`, repeated.
+/// Overflows the stack: `push {r0-r7, lr}`, repeated.
 const RECURSION: u64 = 0xE7FD_B5FF;
-/// Code that locks the processor up: `cpsid f` (priority of a hard fault) and `udf`.
+/// Locks the processor up: `cpsid f` (priority of a hard fault) and `udf`.
 const LOCK_UP: u64 = 0xDE00_B671;
-/// Its place, in bytes before the end of RAM, where no image has statics.
+/// Distance from the end of RAM, bytes: no image has statics there.
 const SPARE: u64 = 0x1000;
 
 /// Emulation settings.
@@ -89,7 +89,7 @@ pub struct Emulator {
 }
 
 impl Emulator {
-    /// The board with `firmware` in flash, powered, before its first instruction.
+    /// The board with `firmware`, powered, before its first instruction.
     ///
     /// # Errors
     /// One line: why the emulator refuses.
@@ -152,12 +152,11 @@ impl Emulator {
         Ok(emulator)
     }
 
-    /// Runs a millisecond with `wires`.
+    /// Runs a millisecond.
     ///
     /// # Errors
     /// One line: why the processor stopped.
     pub fn advance(&mut self, wires: Wires) -> Result<Pins, String> {
-        // A closed channel shows at the wait.
         if let Some(sender) = &self.wires {
             let _ = sender.send(wires);
         }
@@ -205,7 +204,6 @@ fn run<C: Chip>(
     let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
     let board = Wired::new(chip, pads, speed)?;
     let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
-    // The first stop is at power-on, for the wires of the first millisecond.
     session.run_until(VirtualNanos(1));
     let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| told(&e))?;
     let (at, instructions) = finished
@@ -251,7 +249,6 @@ fn run<C: Chip>(
     })
 }
 
-/// Everything that the emulator reports as not done.
 fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
     let mut gaps = Vec::new();
     let mut add = |kind, at: String, what: String| gaps.push(Gap { kind, at, what });
@@ -298,7 +295,6 @@ fn gaps<C: Chip>(session: &Session<Wired<C>>) -> Vec<Gap> {
     gaps
 }
 
-/// The world's end of the wires, called each millisecond.
 struct World {
     wires: Receiver<Wires>,
     pins: SyncSender<Pins>,
@@ -309,31 +305,26 @@ struct World {
     /// Required set-up of the receiver's port.
     receiver: serial::Setup,
     erases: BTreeMap<u64, u32>,
-    /// Flash writes with the data cache on.
     cached: u32,
-    /// Task addresses.
     tasks: BTreeMap<String, u64>,
     /// Flash: first address and end.
     flash: (u64, u64),
-    /// A RAM word that no image uses.
     spare: u64,
-    /// Faults that this part does not have.
+    /// Faults that the part cannot have.
     impossible: Vec<BoardFault>,
-    /// Supply down.
     dark: bool,
     escs: PerArm<Esc>,
     servos: PerArm<f64>,
     resets: usize,
     high: PerArm<bool>,
-    /// Start of the processor's standstill, ns.
+    /// Start of a standstill, ns.
     still: Option<u64>,
     hung: Option<Hung>,
     latency: Latency,
     digest: Digest,
-    /// Data-ready pulses of the last milliseconds, ns.
+    /// Recent data-ready, ns.
     pulses: Vec<u64>,
     outputs: Outputs,
-    /// Instruction counter of the control path, if requested.
     counter: Option<Counter>,
 }
 
@@ -349,7 +340,6 @@ impl World {
         let resets: Vec<_> = new.iter().map(|r| (r.at.0, format!("{:?}", r.cause))).collect();
         self.resets += resets.len();
         if !resets.is_empty() && !self.dark {
-            // A reset ends a standstill of the processor.
             host.hold(false);
         }
 
@@ -382,7 +372,7 @@ impl World {
         }
     }
 
-    /// Takes the motors' edges until `now`; `reset` is the time of a reset within this millisecond.
+    /// Takes edges until `now`; `reset`: time of a reset within this millisecond.
     fn motors<C: Chip>(&mut self, board: &mut Wired<C>, now: VirtualNanos, reset: u64) {
         let driven = board.motors_driven(now);
         for edge in board.motor_edges() {
@@ -391,7 +381,6 @@ impl World {
             if edge.at >= reset {
                 self.started();
             }
-            // A pin not driven by the timer does not show its edges.
             if !driven[edge.channel] {
                 continue;
             }
@@ -421,7 +410,6 @@ impl World {
         }
     }
 
-    /// Processor reset: pins float, and a standstill ends.
     fn started(&mut self) {
         self.still = None;
         self.high = [false; 4];
@@ -482,10 +470,10 @@ impl World {
         true
     }
 
-    /// Marks a task as queued outside its executor's queue, so it never runs again.
+    /// Marks a task as queued outside its executor's queue: it never runs again.
     fn hang(&self, name: &str, host: &mut dyn Host) -> bool {
         let mut word = |at: u64| host.read(at, Width::W32).unwrap_or(0);
-        // The executor's header has no fixed layout: the state word is "spawned" in every task.
+        // The executor's header has no fixed layout: the state word reads "spawned" in every task.
         let mut places = (0..HEADER).step_by(4);
         let state = places.find(|place| {
             self.tasks
@@ -498,12 +486,12 @@ impl World {
         host.write(task + state, Width::W32, SPAWNED | QUEUED).is_ok()
     }
 
-    /// Replaces the start of a task's function by the two instructions `code`.
+    /// Replaces the start of a task's function by `code`, two instructions.
     fn replace(&self, name: &str, code: u64, host: &mut dyn Host) -> bool {
         let Some(task) = self.tasks.get(name) else {
             return false;
         };
-        // The only address of code in the executor's header.
+        // The only code address in the executor's header.
         let (first, end) = self.flash;
         let in_flash = |word: u64| word & 1 == 1 && (first..end).contains(&word);
         let mut places = (0..HEADER).step_by(4).map(|place| task + place);
@@ -605,14 +593,13 @@ impl<C: Chip> Driver<Wired<C>> for World {
             session.board_mut().power_up(stop.at);
         }
         let pins = self.read(session, stop.at, host);
-        // Both ends close at the end of the run.
         self.pins.send(pins).ok()?;
         let wires = self.wires.recv().ok()?;
         self.write(session, stop, wires, host);
         if let Some(counter) = &mut self.counter {
             counter.on_millisecond(self.ms, host);
         }
-        // On a fixed grid, since a stop may come slightly late.
+        // On a fixed grid: a stop may come late.
         self.ms += 1;
         Some(VirtualNanos(self.ms * MS))
     }

@@ -7,13 +7,12 @@ use super::board::Wired;
 use super::chip::Chip;
 use crate::wires::Output;
 
-/// The outputs, checked at each write to a port's register.
+/// Checked at each write to a port's register.
 #[derive(Debug, Default)]
 pub struct Outputs {
-    /// Starts of the processor, including power-on, and time of the last, ns.
+    /// Number of starts, with power-on, and time of the last, ns.
     starts: usize,
     since: u64,
-    /// Outputs not yet driven.
     open: usize,
     pub found: Vec<Output>,
 }

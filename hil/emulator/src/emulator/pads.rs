@@ -1,8 +1,8 @@
-//! Pads of a board: which pin of the processor is wired to what.
+//! Which processor pin is wired to what.
 
 use std::fmt::{self, Display, Formatter};
 
-/// A pin of the processor: port (0 is A) and number.
+/// Port (0 is A) and number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct At(pub usize, pub u8);
 
@@ -12,30 +12,30 @@ impl Display for At {
     }
 }
 
-/// Four pins and the alternate function that makes them their timer's.
+/// Four pins of one timer.
 #[derive(Clone, Copy, Debug)]
 pub struct TimerPins {
-    /// Pins of the channels 1 to 4.
+    /// Channels 1 to 4.
     pub pins: [At; 4],
     /// Number of the alternate function.
     pub function: u8,
 }
 
-/// A servo's pin, and the timer whose pulses it gets.
+/// A servo's pin and timer channel.
 #[derive(Clone, Copy, Debug)]
 pub struct ServoPin {
-    /// The processor's pin.
+    /// Processor pin.
     pub pin: At,
-    /// Number of the alternate function that makes it the timer's.
+    /// Number of the alternate function.
     pub function: u8,
-    /// The timer's name.
+    /// Name of the timer.
     pub timer: &'static str,
-    /// Its channel, 1 to 4.
+    /// 1 to 4.
     pub channel: u8,
 }
 
 impl ServoPin {
-    /// The pin of `channel` of `timer`.
+    /// `channel` of `timer` on `pin`.
     pub const fn new(pin: At, function: u8, timer: &'static str, channel: u8) -> Self {
         Self {
             pin,
@@ -46,24 +46,24 @@ impl ServoPin {
     }
 }
 
-/// A pad that leads to the converter.
+/// A pad of the ADC.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalogPad {
-    /// The processor's pin.
+    /// Processor pin.
     pub pin: At,
-    /// Channel of the converter.
+    /// ADC channel.
     pub channel: u8,
-    /// Voltage at the pad over that at the pin: 1 without a divider on the board.
+    /// Voltage at the pad over the pin's: 1 without divider.
     pub divider: f64,
 }
 
 impl AnalogPad {
-    /// A pad that is the pin itself.
+    /// A pad without divider.
     pub const fn bare(pin: At, channel: u8) -> Self {
         Self::divided(pin, channel, 1.0)
     }
 
-    /// A pad with a divider of 1:`divider` before the pin.
+    /// With a divider of 1:`divider` before the pin.
     pub const fn divided(pin: At, channel: u8, divider: f64) -> Self {
         Self {
             pin,
@@ -72,42 +72,42 @@ impl AnalogPad {
         }
     }
 
-    /// Whole millivolts at the pin, which is what the emulator takes, where the pad has `volts`: 1.2 counts of 12 bits.
+    /// Millivolts at the pin (the emulator's unit, 1.2 counts of 12 bits) for `volts` at the pad.
     pub fn millivolts(&self, volts: f64) -> u32 {
         (volts / self.divider * 1e3).round().max(0.0) as u32
     }
 }
 
-/// What hangs on a board's pads, as `docs/wiring.md` wires them. Interfaces are counted as the emulator counts them.
+/// Pads as in `docs/wiring.md`, interfaces numbered as in the emulator.
 #[derive(Debug)]
 pub struct Pads {
     /// Name of the board.
     pub name: &'static str,
-    /// The first words that ArduPilot leaves in the sectors of the parameters (AP_FlashStorage: state and signature).
+    /// First words of the parameter sectors after ArduPilot (AP_FlashStorage: state and signature).
     pub foreign: &'static [u64],
-    /// Name of the emulator's part.
+    /// Name of the emulator's chip.
     pub part: &'static str,
     /// Crystal, Hz.
     pub crystal: u64,
-    /// Inertial sensor: serial interface, port and pin of its select, data-ready.
+    /// SPI interface of the inertial sensor.
     pub imu: usize,
-    /// Port, as the emulator names it, and pin of its select.
+    /// Emulator's port name and pin of its chip select.
     pub imu_select: (&'static str, u8),
-    /// Data-ready.
+    /// Data-ready pin of the sensor.
     pub imu_ready: At,
-    /// Body axes (forward, right, down) on the axes of the inertial sensor.
+    /// From body axes (forward, right, down) to the sensor's.
     pub imu_axes: fn([f64; 3]) -> [f64; 3],
-    /// Bus and address of the arms' sensors 1 to 4.
+    /// Bus and address, arms 1 to 4.
     pub arms: [(usize, u8); 4],
-    /// The pads of pressure 1 to 4, as the board is made.
+    /// 1 to 4.
     pub pressure: [AnalogPad; 4],
-    /// The pad of the battery's voltage.
+    /// Pad of the battery voltage.
     pub battery: AnalogPad,
-    /// The pin of the battery's current sensor: a volt is so many amperes.
+    /// Current sensor, scaled in amperes per volt.
     pub current: AnalogPad,
     /// Serial port of the receiver.
     pub receiver: usize,
-    /// Where the port sends to the receiver, with its alternate function; SBUS leaves it alone.
+    /// With its alternate function; unused with SBUS.
     pub receiver_out: (At, u8),
     /// Serial port of the console.
     pub console: usize,
@@ -115,20 +115,18 @@ pub struct Pads {
     pub mavlink: usize,
     /// The motors.
     pub motors: TimerPins,
-    /// Servos 1 to 4.
+    /// 1 to 4.
     pub servos: [ServoPin; 4],
-    /// Pins of the buses with their alternate functions. The emulator's interfaces are not wired to pins: a firmware
-    /// that forgot one would still talk.
+    /// With alternate functions. The emulator's interfaces work without pins: a flight would not show a missing one.
     pub buses: &'static [(At, u8)],
-    /// Lines that rest high: the I2C buses by their pull-ups, the receiver's line by the receiver.
+    /// Idle high: I2C by pull-ups, the receiver's line by the receiver.
     pub resting_high: &'static [At],
     /// State light, fault light, buzzer.
     pub signals: [At; 3],
 }
 
 impl Pads {
-    /// Channels of the converter and the millivolts at their pins, for volts at the pads of pressure 1 to 4, the battery's
-    /// voltage (V) and its current (A).
+    /// ADC channels and millivolts for volts at the pads of pressure 1 to 4, battery voltage (V) and current (A).
     pub fn analog(&self, values: [f64; 6]) -> impl Iterator<Item = (u8, u32)> {
         let inputs = self.pressure.into_iter().chain([self.battery, self.current]);
         inputs
@@ -136,7 +134,7 @@ impl Pads {
             .map(|(pad, volts)| (pad.channel, pad.millivolts(volts)))
     }
 
-    /// Every pin that must carry an alternate function, with its number; `answers` the receiver both ways.
+    /// Pins with their alternate functions; `answers`: the receiver's output is used.
     pub fn functions(&self, answers: bool) -> impl Iterator<Item = (At, u8)> {
         let motors = self.motors.pins.map(|pin| (pin, self.motors.function));
         let servos = self.servos.map(|servo| (servo.pin, servo.function));

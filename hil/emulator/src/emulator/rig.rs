@@ -22,26 +22,25 @@ use crate::log::{Line, Log};
 use crate::suite::{self, Test};
 use crate::wires::Gap;
 
-/// Virtual time limit of a test.
+/// Virtual time limit.
 const LONGEST: u64 = 30_000 * MS;
 const SPEED: f64 = 1.0;
-/// Registers of all ports: first address and end.
 const PORTS: std::ops::Range<u64> = 0x5802_0000..0x5802_2C00;
-/// Duration and period of a stalling processor's stalls, ns: not in step with 1 kHz.
+/// Duration and period, ns: not in step with 1 kHz.
 const STALL: u64 = 600_000;
 const STALL_EVERY: u64 = 1_700_000;
 /// Wrong crystal, Hz, at which the chip still starts.
 const CRYSTAL: u64 = 6_000_000;
-/// Parameter flash: first address and end.
+/// Parameter flash.
 const PARAMETERS: std::ops::Range<u64> = 0x081C_0000..0x0820_0000;
-/// Half the supply, V, at every analog input.
+/// Half the supply, V.
 const HALF: f64 = 1.65;
-/// The same from resistors that differ by 20 %.
+/// The same from resistors 20 % apart.
 const UNEQUAL: f64 = 1.5;
-/// Inertial samples per millisecond, and 1 g in millionths.
+/// Inertial samples per millisecond; 1 g in millionths.
 const SAMPLES: u64 = 4;
 const G: i32 = 1_000_000;
-/// Specific force at an arm's sensor at rest, marking up, m/s².
+/// At an arm's sensor, marking up, m/s².
 const UP: [f64; 3] = [0.0, 0.0, 9.806_65];
 
 /// Jumpers: motor 1 to servo 3, servo 1 to servo 4, receiver output to input.
@@ -66,7 +65,7 @@ pub enum Defect {
     NoJumpers,
     /// Divider of unequal resistors.
     Divider,
-    /// The processor stands still for a third of the time, 0.6 ms at once.
+    /// Stands still for a third of the time, 0.6 ms at once.
     Stalls,
     /// The watchdog's clock stands still.
     Watchdog,
@@ -77,7 +76,7 @@ pub enum Defect {
 /// Result of a test.
 #[derive(Debug)]
 pub struct Ended {
-    /// Exit status of the image; `None` if it did not end within 30 s.
+    /// Exit status; `None` if the test did not end within 30 s.
     pub status: Option<u32>,
     /// Its log.
     pub lines: Vec<Line>,
@@ -85,7 +84,7 @@ pub struct Ended {
     pub gaps: Vec<Gap>,
 }
 
-/// Reads the test image of the reference board, the only one with a rig here.
+/// Reads the reference board's test image, the only rig here.
 ///
 /// # Errors
 /// One line: what is wrong with the file.
@@ -93,7 +92,7 @@ pub fn read(path: &Path) -> Result<Firmware, String> {
     Firmware::read(path, boards::find(MATEK.name)?)
 }
 
-/// Runs `test` of `image` from power-on on a rig with `defect`.
+/// Runs `test` from power-on on a rig with `defect`.
 ///
 /// # Errors
 /// One line: why the emulator refuses.
@@ -127,16 +126,12 @@ pub fn run(image: &Firmware, test: &Test, defect: Defect) -> Result<Ended, Strin
     })
 }
 
-/// The parts at the board's pads, called by the emulator.
 struct Rig {
     defect: Defect,
-    /// Next update, ns.
     next: u64,
     rtt: Rtt,
-    /// Log read so far, with times.
     log: Vec<(u64, Vec<u8>)>,
     resets: usize,
-    /// Counts inertial samples, wrapping.
     samples: u8,
 }
 
@@ -163,7 +158,7 @@ impl Rig {
         }
     }
 
-    /// Feeds a millisecond of inertial samples at rest, never two equal.
+    /// Feeds a millisecond of samples at rest, all different.
     fn shake(&mut self, board: &mut Wired<H743>, now: u64) {
         let Some(imu) = board.imu() else { return };
         for nth in 0..SAMPLES {
@@ -177,7 +172,6 @@ impl Rig {
         }
     }
 
-    /// Transfers each jumper's level.
     fn carry(&self, board: &mut Wired<H743>, now: VirtualNanos) {
         if self.defect == Defect::NoJumpers {
             return;
@@ -202,10 +196,9 @@ impl Rig {
     }
 }
 
-/// Erases the parameters without the chip.
 fn erase(host: &mut dyn Host) {
     for address in PARAMETERS.step_by(8) {
-        // Refused only where there is no flash.
+        // Fails only without flash there.
         let _ = host.program(address, Width::W64, u64::MAX);
     }
 }
@@ -242,7 +235,7 @@ impl Driver<Wired<H743>> for Rig {
         let board = session.board_mut();
         if self.next == 0 {
             self.set_up(board, stop.at);
-            // The last output comes right before the end, between stops.
+            // The last output comes just before the end, between stops.
             host.watch(Watch::Writes {
                 address: self.rtt.written(),
                 length: 4,

@@ -1,4 +1,4 @@
-//! The probe's side of the log: reads the firmware's buffer.
+//! Reads the firmware's log buffer as a probe does.
 
 use rigless::emulator::Host;
 use rigless::soc::Width;
@@ -10,7 +10,7 @@ const BUFFER: u64 = 4;
 const SIZE: u64 = 8;
 const WRITTEN: u64 = 12;
 const READ: u64 = 16;
-/// Largest plausible buffer: memory is undefined before the firmware sets it up.
+/// Largest plausible buffer: memory is undefined before set-up.
 const LARGEST: u64 = 1 << 16;
 
 #[derive(Debug)]
@@ -42,7 +42,7 @@ impl Rtt {
             bytes.push(byte as u8);
             read = (read + 1) % size;
         }
-        // Refused only without memory there, and then nothing was read.
+        // Refused only without memory, and then nothing was read.
         let _ = host.write(self.up + READ, Width::W32, read);
         bytes
     }

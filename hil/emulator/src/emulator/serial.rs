@@ -7,7 +7,7 @@ use sophie_control::params::RcProtocol;
 
 use crate::boards::Kind;
 
-/// Largest relative rate error of an asynchronous line.
+/// Tolerance of an asynchronous line.
 const RATE_ERROR: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,8 +48,8 @@ impl Setup {
         }
     }
 
-    /// Settings in the registers `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz, with the same fields on both
-    /// parts (RM0090 §30.6, RM0433 §48.8); the F4 has no bit 16 in its `CR2`.
+    /// From `BRR`, `CR1` and `CR2` of a port clocked at `clock` Hz. The parts share the fields (RM0090 §30.6, RM0433
+    /// §48.8), but the F4 lacks bit 16 of `CR2`.
     pub fn in_registers(clock: f64, brr: u64, cr1: u64, cr2: u64) -> Self {
         let oversampled_by_8 = cr1 >> 15 & 1 == 1;
         Self {

@@ -4,14 +4,13 @@ use sophie_emulator::chain::Window;
 
 use super::*;
 
-/// Most instructions of a step between the sensor's transfer and the motor frame.
+/// Most instructions of a step, from sensor transfer to motor frame.
 const MOST: u64 = 4780;
-/// The same on the small board, whose core lacks instructions for the minimum and the selection of floats.
+/// The F405's core lacks float minimum and selection.
 const MOST_SMALL: u64 = 5140;
 const STEPS: usize = 40;
 
-/// From the end of the sensor's transfer to the start of the motor frame no step executes more than `most`, and every
-/// instruction has its function.
+/// Requires at most `most` instructions per step from sensor transfer to motor frame, and a function for each.
 fn executes(image: &Path, board: &str, most: u64) {
     let mut firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
     firmware.count = Some(Window {

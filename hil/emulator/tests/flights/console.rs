@@ -10,7 +10,7 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Types `command` and reads until the console says `answer`; gives what it said.
+/// Returns what is read until `answer`.
 fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     user.write_all(command.as_bytes()).unwrap();
     let mut said = String::new();
@@ -23,7 +23,6 @@ fn type_in(user: &mut TcpStream, command: &str, answer: &str) -> String {
     said
 }
 
-/// The battery's voltage by `status`, once it has been measured.
 fn volts(user: &mut TcpStream) -> f64 {
     loop {
         let said = type_in(user, "status\r", "up for");
@@ -35,7 +34,7 @@ fn volts(user: &mut TcpStream) -> f64 {
     }
 }
 
-/// A free port with the board's listener.
+/// A free port and the board's listener on it.
 pub(super) fn terminal(option: &'static str) -> (u16, Terminal) {
     let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let port = free.local_addr().unwrap().port();
@@ -43,8 +42,7 @@ pub(super) fn terminal(option: &'static str) -> (u16, Terminal) {
     (port, Terminal::listen(option, port).unwrap())
 }
 
-/// A session at the console of a board that stays disarmed, for at most `seconds` s of its time: the flight, and
-/// what `session` gives.
+/// Runs `session` on a disarmed board for at most `seconds` s of its time.
 fn at_the_console<T: Send + 'static>(
     firmware: &Firmware,
     seconds: f64,
@@ -79,10 +77,10 @@ fn at_the_console<T: Send + 'static>(
     (flight, given)
 }
 
-/// Presses the key until the console answers: what comes before it has started is lost, as on a real line.
+/// Presses the key until answered: input before the console starts is lost.
 pub(super) fn wake(user: &mut TcpStream) {
     let mut bytes = [0; 64];
-    // Long enough for a restart, on a machine that is busy.
+    // Covers a restart on a busy machine.
     user.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
     while matches!(user.read(&mut bytes), Ok(count) if count > 0) {}
     loop {
@@ -91,7 +89,7 @@ pub(super) fn wake(user: &mut TcpStream) {
             break;
         }
     }
-    // An answer that does not come ends the test, whatever the load of the machine.
+    // Ends the test without an answer, whatever the machine's load.
     user.set_read_timeout(Some(Duration::from_secs(300))).unwrap();
 }
 
@@ -106,23 +104,22 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
         type_in(user, "set infill 8\r", "in force after save");
         type_in(user, "set battery_divider 22\r", "in force after save");
         type_in(user, "save\r", "saved; restarting");
-        // The board restarts: what is typed meanwhile is lost.
         wake(user);
         let after = volts(user);
         (type_in(user, "list infill\r", "4 to 10 %"), before, after)
     };
     let (flight, (listed, before, after)) = at_the_console(&firmware, 32.0, None, Some(telemetry), session);
-    // CRSF frames, one of them with the mode, marked as one that does not arm.
+    // CRSF frames, one with the mode, marked as not armable.
     let mut telemetry = Vec::new();
     listener.read_to_end(&mut telemetry).unwrap();
     assert_eq!(telemetry.first(), Some(&0xC8), "{telemetry:02x?}");
     let said = String::from_utf8_lossy(&telemetry);
     assert!(said.contains("!DISARMED"), "{said}");
     assert!(listed.contains("* infill") && listed.contains(" 8 "), "{listed}");
-    // A full battery behind 1:11, and by a divider that the parameter states twice as large.
+    // A full battery behind 1:11, then with the parameter's divider doubled.
     assert!((16.0..17.0).contains(&before), "{before} V");
     assert!((after / before - 2.0).abs() < 0.01, "{before} V, then {after} V");
-    // Two more than the calibration.
+    // Two besides the calibration.
     assert!(
         told(&flight, 0.0, "parameters: 3 from storage").is_some(),
         "{}",
@@ -134,12 +131,12 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
         log(&flight)
     );
     assert_eq!(flight.board.resets.len(), 1, "{:?}", flight.board.resets);
-    // The set was appended: no sector is worn by a save.
+    // The set was appended: a save erases no sector.
     assert!(flight.board.run.erases.is_empty());
     assert_eq!(flight.gaps, []);
 }
 
-/// On a new chip the level is set at the console, once; the next start finds it.
+/// On a new chip the level is set at the console once; the next start finds it.
 fn the_brown_out_level_is_set(image: &Path, board: &str) {
     let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
     let session = |user: &mut TcpStream| {
@@ -163,7 +160,6 @@ fn the_brown_out_level_is_set(image: &Path, board: &str) {
         after.contains("brown-out level 3, expected 3"),
         "{board}: {after}"
     );
-    // Refused before, and no more after.
     let refused = told(&flight, 0.0, "arming blocked: brown-out level not set");
     assert!(refused.is_some(), "{board}: {}", log(&flight));
     let [(ms, _)] = &flight.board.resets[..] else {
@@ -171,7 +167,7 @@ fn the_brown_out_level_is_set(image: &Path, board: &str) {
     };
     let restarted = told(&flight, *ms * 1e-3, "start after Software");
     let restarted = restarted.unwrap_or_else(|| panic!("{board}: {}", log(&flight)));
-    // What was said up to the reset may be read with its time.
+    // Lines from before the reset may have its time.
     let again = told(&flight, restarted, "brown-out level not set");
     assert_eq!(again, None, "{board}: {}", log(&flight));
     assert_eq!(flight.gaps, [], "{board}");
@@ -201,7 +197,7 @@ fn a_motor_a_servo_live_numbers_and_the_self_test_are_tried_at_the_console() {
         type_in(user, "propellers off\r", "motors may be tried");
         type_in(user, "motor 2\r", "motor 2 at 8 % for 2 s; any key stops it");
         type_in(user, "", "motor 2 stopped\r\n> ");
-        // A row of it, then the key.
+        // One row, then the key.
         type_in(user, "watch imu\r", "m/s2");
         type_in(user, "", " -9.");
         type_in(user, "q", "\n> ");
@@ -210,10 +206,9 @@ fn a_motor_a_servo_live_numbers_and_the_self_test_are_tried_at_the_console() {
         tested
     };
     let (flight, tested) = at_the_console(&firmware, 40.0, None, None, session);
-    // The radio alone is silent.
     assert!(tested.contains("\n1 of 17 failed"), "{tested}");
     assert!(tested.contains("\nFAIL  receiver           silent"), "{tested}");
-    // By the frames at the pins: one motor for two seconds, the others never.
+    // Frames at the pins: one motor for two seconds, the others none.
     let asked = |s: &&Sample| s.thrust_asked[1] > 0.0;
     let times: Vec<f64> = samples(&flight, 0.0, 14.0).filter(asked).map(|s| s.t).collect();
     let (Some(first), Some(last)) = (times.first(), times.last()) else {

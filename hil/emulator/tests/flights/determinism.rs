@@ -1,6 +1,6 @@
 use super::*;
 
-/// Armed and off the ground when the time is over.
+/// Ends armed and off the ground.
 fn start(seed: u64) -> Scenario {
     Scenario {
         seed,
@@ -9,7 +9,7 @@ fn start(seed: u64) -> Scenario {
     }
 }
 
-/// Equal seeds give equal runs to the last edge at a pin, other seeds others.
+/// Requires equal runs, to the last edge, for equal seeds only.
 fn repeats(fly: impl Fn(&Scenario) -> Flight) {
     let [first, second, other] = [1, 1, 2].map(|seed| fly(&start(seed)));
     assert!(told(&first, 0.0, "FLIGHT").is_some(), "{}", log(&first));

@@ -1,21 +1,20 @@
-//! Parts that fail at their wires: effect on log and pins.
+//! Hardware faults at the wires: effect on log and pins.
 
 use sophie_emulator::wires::BoardFault;
 use sophie_sim::sensors::fsr::FsrBreak;
 
 use super::*;
 
-/// A hover of at most `seconds` s with an airborne trouble, on the reference board.
+/// On the H743, airborne when the trouble starts.
 fn with(trouble: Trouble, seconds: f64) -> Flight {
     sound_before(fly(&hover(seconds), 1.0, &[(AIRBORNE, trouble)]))
 }
 
-/// The same on the small board.
+/// On the F405.
 fn with_small(trouble: Trouble, seconds: f64) -> Flight {
     sound_before(fly_small(&hover(seconds), &[(AIRBORNE, trouble)]))
 }
 
-/// Requires that the flight was in the air before its trouble.
 fn sound_before(flight: Flight) -> Flight {
     assert!(
         told(&flight, 0.0, "FLIGHT").is_some_and(|t| t < AIRBORNE),
@@ -37,13 +36,13 @@ fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board
     );
     let t = told(&flight, AIRBORNE, "DISARMED: inertial sensor silent");
     assert!(t.is_some_and(|t| t < AIRBORNE + 0.3), "{}", log(&flight));
-    // Until the pilot has read it and ends the flight, 0.3 s after the loss.
+    // Until the pilot reads it and ends the flight, 0.3 s after the loss.
     assert!(
         stopped(&flight, AIRBORNE + 0.1, f64::INFINITY),
         "{}",
         log(&flight)
     );
-    // Without a flight level the supervisor does not feed the watchdog.
+    // Without flight level the supervisor does not feed the watchdog.
     assert!(
         told(&flight, AIRBORNE, "start after Watchdog").is_some(),
         "{}",
@@ -51,8 +50,8 @@ fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board
     );
 }
 
-/// The watchdog resets the processor, which reports it, within `within` s; no motor runs from `stopped_by` s after the
-/// trouble on. No frame follows without software: the controllers stop by themselves.
+/// Requires a reported watchdog reset within `within` s and no running motor from `stopped_by` s after the trouble:
+/// without software no frame follows, and the controllers stop.
 fn ended_by_the_watchdog(flight: &Flight, within: f64, stopped_by: f64) {
     let [(ms, cause)] = &flight.board.resets[..] else {
         panic!("{:?}\n{}", flight.board.resets, log(flight))
@@ -77,14 +76,14 @@ const CUT: Trouble = Trouble::Board(BoardFault::DataReadyCut(true));
 const JOINED: Trouble = Trouble::Board(BoardFault::DataReadyCut(false));
 const LINE: &str = "inertial sensor: data-ready line silent";
 
-/// Requires a normal landing with its reason after a cut line in hover at [`AIRBORNE`].
+/// Requires a normal landing with its reason after the line is cut in hover.
 fn lands_without_data_ready(flight: &Flight) {
     let t = told(flight, AIRBORNE, &format!("FAILSAFE: {LINE}"));
     assert!(t.is_some_and(|t| t < AIRBORNE + 0.4), "{}", log(flight));
     let down =
         told(flight, AIRBORNE, &format!("DISARMED: {LINE}")).unwrap_or_else(|| panic!("{}", log(flight)));
     assert!(running(flight, AIRBORNE - 0.5, down - 0.1), "{}", log(flight));
-    // At most the descent's speed, 10 degrees from level, and down from 3 m.
+    // At most descent speed, 10 degrees from level, and down from 3 m.
     for s in samples(flight, AIRBORNE, down) {
         let [.., sink] = s.velocity;
         let [roll, pitch, _] = s.attitude.map(f64::to_degrees);
@@ -95,7 +94,7 @@ fn lands_without_data_ready(flight: &Flight) {
     for task in FLIGHT_LEVEL {
         assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(flight));
     }
-    // 87 us with the line on the small board; polling adds a quarter of a period of 250 us and the status' transfer.
+    // 87 us with the line; polling adds a quarter of 250 us and the status' transfer.
     let latency = flight.board.run.latency_us;
     assert!(latency.worst < 170.0, "{latency:?}");
     assert!(flight.board.resets.is_empty(), "{:?}", flight.board.resets);
@@ -202,7 +201,7 @@ fn a_pulled_reset_pin_is_told_as_such() {
 #[test]
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_bus_whose_clock_is_held_keeps_the_background_only() {
-    // 300 us per byte: reading one sensor takes 4 ms.
+    // 300 us per byte: reading a sensor takes 4 ms.
     let troubles = [(AIRBORNE, Trouble::Board(BoardFault::ClockHeld(0, 300)))];
     let flight = fly(&hover(AIRBORNE + 3.0), 1.0, &troubles);
     assert!(
@@ -225,7 +224,7 @@ fn a_task_that_hangs_ends_in_a_reset_by_the_watchdog_with_the_motors_stopped() {
     ended_by_the_watchdog(&flight, 1.0, 0.2);
 }
 
-/// In a hover a task's stack overflows: the motors stop, and the next start reports why.
+/// Requires that a stack overflow in hover stops the motors and the next start reports it.
 fn overflows(task: &'static str, small: bool) {
     let trouble = Trouble::Board(BoardFault::StackOverflow(task));
     let troubles = [(AIRBORNE, trouble)];
@@ -258,8 +257,7 @@ fn overflows(task: &'static str, small: bool) {
         "{}",
         log(&flight)
     );
-    // The emulator passes and lists accesses to unmapped memory, so the fault comes when a return address is read
-    // there.
+    // The emulator allows accesses to unmapped memory: the fault comes when a return address is read there.
     let bottom = if small { 0x1000_0000 } else { 0x2000_0000 };
     let below = |gap: &&sophie_emulator::wires::Gap| {
         let at = u64::from_str_radix(gap.at.trim_start_matches("0x"), 16).unwrap_or_default();
@@ -319,7 +317,7 @@ fn a_shorted_pressure_sensor_speaks_before_the_arms_close() {
 #[test]
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_cut_pressure_sensor_proves_no_grip_and_the_rotors_keep_turning() {
-    // In still air: the pilot touches at the first try.
+    // In still air the pilot touches at the first try.
     let mut scenario = Scenario {
         time_limit: 56.0,
         ..scenario("perch-short.toml")
@@ -327,7 +325,7 @@ fn a_cut_pressure_sensor_proves_no_grip_and_the_rotors_keep_turning() {
     (scenario.world.gust_force, scenario.world.gust_moment) = (0.0, 0.0);
     let flight = fly_small(&scenario, &[(20.0, Trouble::Fsr(1, Some(FsrBreak::Open)))]);
     let closing = told(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
-    // A sound grip is proven four seconds later.
+    // A sound grip is proven after four seconds.
     for never in ["grip proven", "PERCHED"] {
         assert_eq!(told(&flight, closing, never), None, "{}", log(&flight));
     }

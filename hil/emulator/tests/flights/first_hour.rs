@@ -1,4 +1,4 @@
-//! The first hour as its page says it: its commands are typed at the emulated board's console, and its answers compared.
+//! Types the commands of the first-hour page at the emulated board's console and compares the answers.
 
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
@@ -12,11 +12,10 @@ use super::script::{Key, Typed, differs, typed};
 use super::*;
 
 const PAGE: &str = "docs/first-hour.md";
-/// The transmitter stays off for so long, s: until after the page's last `save`.
+/// s: until after the page's last `save`.
 const RADIO_OFF: f64 = 22.0;
-/// What asks for the next command.
 const PROMPT: &str = "\r\n> ";
-/// Times that `status` is typed anew, some 25 ms each, until the battery is measured or the transmitter switched on.
+/// Repetitions of `status`, some 25 ms each.
 const TRIES: usize = 1000;
 
 #[test]
@@ -33,7 +32,7 @@ fn the_commands_of_the_page_have_the_answers_of_the_page_and_lead_to_the_first_h
         script.len()
     });
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
-    // A board out of its bag: no level set, nothing stored but what a level bench has measured.
+    // A new board: no level set, nothing stored but the bench's level calibration.
     let mut scenario = hop();
     scenario.steps.insert(0, Step::RadioOff { seconds: RADIO_OFF });
     let plan = Plan::new([(0, Trouble::Board(BoardFault::FactoryOptions))]);
@@ -51,7 +50,7 @@ fn the_commands_of_the_page_have_the_answers_of_the_page_and_lead_to_the_first_h
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
-/// Types a command and compares the answer with the page's; one that may take a while is typed again.
+/// Types a command and compares the answer; repeats one that takes time.
 fn type_in(user: &mut TcpStream, step: &Typed) {
     let mut last = String::new();
     let restarts = step.restarts();
@@ -60,7 +59,6 @@ fn type_in(user: &mut TcpStream, step: &Typed) {
         last = heard(user, step);
         if differs(step, &last).is_none() {
             if restarts {
-                // The board restarts: what is typed meanwhile is lost.
                 wake(user);
             }
             return;
@@ -73,11 +71,11 @@ fn type_in(user: &mut TcpStream, step: &Typed) {
     );
 }
 
-/// Types the command and its keys; what the board says until its prompt, or until it restarts.
+/// Types the command and its keys; returns the output until prompt or restart.
 fn heard(user: &mut TcpStream, step: &Typed) -> String {
     user.write_all(format!("{}\r", step.command).as_bytes()).unwrap();
     let mut said = String::new();
-    // Prompts that were asked for before come first.
+    // Prompts of earlier commands come first.
     let Some(mut from) = until(user, &mut said, 0, &step.command) else {
         return said;
     };
@@ -93,7 +91,7 @@ fn heard(user: &mut TcpStream, step: &Typed) -> String {
     said
 }
 
-/// Reads on until `text` was said after the first `from` bytes: where it ends; `None` where a prompt came before it.
+/// End of `text` after the first `from` bytes; `None` if a prompt comes first.
 fn until(user: &mut TcpStream, said: &mut String, from: usize, text: &str) -> Option<usize> {
     let mut bytes = [0; 64];
     loop {

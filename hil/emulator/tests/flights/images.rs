@@ -1,6 +1,5 @@
 use super::*;
 
-/// The error for an image with `bytes`.
 fn refused(name: &str, bytes: &[u8]) -> String {
     let path = std::env::temp_dir().join(format!("sophie-image-{}-{name}", std::process::id()));
     std::fs::write(&path, bytes).unwrap();
@@ -28,7 +27,6 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
     let good = std::fs::read(image()).unwrap();
     assert!(Firmware::read(image(), board).is_ok());
     assert!(!refused("half", &good[..good.len() / 2]).is_empty());
-    // Names of symbols and sections, made unreadable one at a time.
     for (name, wanted) in [
         ("_SEGGER_RTT", "has no log"),
         (".vector_table", "has no vector table"),
@@ -67,7 +65,6 @@ fn an_image_that_a_loader_jumps_to_takes_its_vectors_from_its_own_table() {
         firmware.behind_a_loader().unwrap();
         let flight = fly_image(&firmware, &hover(5.0), 1.0, &[]);
         let log = log(&flight);
-        // Interrupts are served: time runs, the sensor answers, every task keeps its rate.
         assert!(told(&flight, 0.0, "DISARMED").is_some(), "{board}\n{log}");
         assert!(
             flight.board.resets.is_empty(),

@@ -1,8 +1,7 @@
-//! Flights of the images that `cargo xtask firmware BOARD` builds, on the emulated boards.
+//! Flights of the firmware images on the emulated boards. What they share is tested on one; flights of the F405 take
+//! half the time.
 //!
-//! What is common to the boards is tried on one of them; the small one's flights take half the time of the other's.
-//!
-//! The images are taken from the variables `SOPHIE_ELF` (matek-h743) and `SOPHIE_ELF_F405`, or built.
+//! Images are named by `SOPHIE_ELF` (matek-h743) and `SOPHIE_ELF_F405`, or built.
 
 #![allow(missing_docs)]
 
@@ -34,14 +33,14 @@ use sophie_emulator::terminal::Sockets;
 use sophie_sim::record::{Sample, Silent};
 use sophie_sim::scenario::{Overrides, Scenario, Step};
 
-/// Tasks of the flight level: none of them may ever miss a deadline.
+/// May never miss a deadline.
 const FLIGHT_LEVEL: [&str; 5] = ["imu", "estimator", "control", "mixer", "motors"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap()
 }
 
-/// The image of a board: what `variable` names, or built.
+/// The image that `variable` names, or a built one.
 fn image_of(board: &str, variable: &str) -> PathBuf {
     if let Some(path) = std::env::var_os(variable) {
         return path.into();
@@ -60,13 +59,11 @@ fn image_of(board: &str, variable: &str) -> PathBuf {
     text.lines().last().unwrap().into()
 }
 
-/// The image of the reference board.
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
     IMAGE.get_or_init(|| image_of("matek-h743", "SOPHIE_ELF"))
 }
 
-/// The image of the small board.
 fn small_image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
     IMAGE.get_or_init(|| image_of("f405", "SOPHIE_ELF_F405"))
@@ -77,10 +74,9 @@ fn scenario(name: &str) -> Scenario {
     Scenario::load(&path, &Overrides::default()).unwrap()
 }
 
-/// In the air since a second of a hover.
+/// A hover has been in the air for a second by then, s.
 const AIRBORNE: f64 = 7.5;
 
-/// The hover, of at most `seconds` s.
 fn hover(seconds: f64) -> Scenario {
     Scenario {
         time_limit: seconds,
@@ -88,7 +84,7 @@ fn hover(seconds: f64) -> Scenario {
     }
 }
 
-/// The shortest flight that ends on the ground by itself: up a metre, long enough in the air for what goes wrong, down.
+/// The shortest flight with landing, 3 s in the air for a fault.
 fn hop() -> Scenario {
     Scenario {
         steps: vec![
@@ -102,13 +98,13 @@ fn hop() -> Scenario {
     }
 }
 
-/// Flies `scenario` on the reference board while `troubles` happen, each at its time in s.
+/// On the H743; `troubles` with times in s.
 fn fly(scenario: &Scenario, speed: f64, troubles: &[(f64, Trouble)]) -> Flight {
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
     fly_image(&firmware, scenario, speed, troubles)
 }
 
-/// Flies `scenario` on the small board while `troubles` happen, each at its time in s.
+/// On the F405.
 fn fly_small(scenario: &Scenario, troubles: &[(f64, Trouble)]) -> Flight {
     let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();
     fly_image(&firmware, scenario, 1.0, troubles)
@@ -130,13 +126,12 @@ fn fly_image(firmware: &Firmware, scenario: &Scenario, speed: f64, troubles: &[(
     .unwrap()
 }
 
-/// The log, for the message of a failed assertion.
 fn log(flight: &Flight) -> String {
     let lines = flight.board.lines.iter();
     lines.map(|line| format!("{line}\n")).collect()
 }
 
-/// Time in s of the first line at `from` s or later that contains `text`.
+/// Time (s) of the first line with `text` from `from` s on.
 fn told(flight: &Flight, from: f64, text: &str) -> Option<f64> {
     let lines = flight.board.lines.iter();
     let mut times = lines
@@ -150,12 +145,11 @@ fn samples(flight: &Flight, from: f64, to: f64) -> impl Iterator<Item = &Sample>
     all.filter(move |s| (from..to).contains(&s.t))
 }
 
-/// Every motor's pin says stop, throughout; false for a flight that ended before.
+/// False if the flight ended before.
 fn stopped(flight: &Flight, from: f64, to: f64) -> bool {
     samples(flight, from, to).count() > 5 && samples(flight, from, to).all(|s| s.thrust_asked == [0.0; 4])
 }
 
-/// Every motor's pin asks for thrust, throughout.
 fn running(flight: &Flight, from: f64, to: f64) -> bool {
     samples(flight, from, to).all(|s| s.thrust_asked.iter().all(|t| *t > 0.0))
 }

@@ -4,7 +4,7 @@ use sophie_timing::live::{self, Contact, Line};
 
 use super::*;
 
-/// Each second's record of the chain from pressure to pulse.
+/// Each second's record of the pressure chain.
 fn contact(flight: &Flight) -> Vec<Contact> {
     let lines = flight.board.lines.iter();
     let read = lines.filter_map(|line| live::parse(&line.text));
@@ -15,10 +15,10 @@ fn contact(flight: &Flight) -> Vec<Contact> {
     .collect()
 }
 
-/// Every conversion answered by a servo has its pulse within the deadline, in at least `seconds` of the flight.
+/// Requires a pulse within the deadline for every answered conversion, over at least `seconds` of the flight.
 fn answers_contact_in_time(flight: &Flight, seconds: usize) {
     let all = contact(flight);
-    // Servos at 50 Hz; the first and last record cover partial seconds.
+    // Servos at 50 Hz; first and last record are partial seconds.
     let whole = all.iter().filter(|second| second.pulses >= 49);
     assert!(whole.count() >= seconds, "{all:?}");
     for second in &all {
@@ -33,7 +33,6 @@ fn answers_contact_in_time(flight: &Flight, seconds: usize) {
     println!("contact: {command:?} us to the command, {pulse:?} us to the pulse at most");
 }
 
-/// The mission was flown, and the emulator vouches for it.
 fn accomplished(flight: &Flight) {
     assert!(
         flight.passed(),
@@ -86,8 +85,8 @@ fn the_small_board_flies_in_time() {
     assert!(flight.board.resets.is_empty() && flight.board.malformed == 0);
 }
 
-/// Arm sensor buses as slow as clock stretching makes them, and at least a log line every 50 ms: sensors lost and
-/// found, buses freed by clocks, pressure sensors cut and mended.
+/// Arm buses as slow as clock stretching makes them, and a log line at least every 50 ms: sensors lost and found, buses
+/// freed, pressure sensors cut and mended.
 fn background_at_its_worst() -> Vec<(f64, Trouble)> {
     let mut troubles = Vec::new();
     for bus in 0..2 {
@@ -102,7 +101,7 @@ fn background_at_its_worst() -> Vec<(f64, Trouble)> {
     troubles
 }
 
-/// Zero overruns of the flight level, and frames within `longest` us of data-ready, at most `jitter` later than the
+/// Requires no overruns of the flight level, and frames within `longest` µs of data-ready, at most `jitter` over the
 /// mean.
 fn in_time(flight: &Flight, longest: f64, jitter: f64) {
     assert_eq!(flight.gaps, [], "{}", log(flight));

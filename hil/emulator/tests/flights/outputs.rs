@@ -4,7 +4,6 @@ use sophie_emulator::wires::{BoardFault, Output};
 
 use super::*;
 
-/// Two seconds with a pulse on the reset pin after one.
 fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
     let flight = fly(&hover(2.2), &[(1.0, Trouble::Board(BoardFault::ResetPin))]);
     for output in &flight.board.run.outputs {
@@ -24,14 +23,13 @@ fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
     flight
 }
 
-/// Longest time until the firmware drives the outputs with this prefix, ms.
 fn longest_ms(outputs: &[Output], what: &str) -> f64 {
     let these = outputs.iter().filter(|output| output.what.starts_with(what));
     let times = these.flat_map(|output| output.after_us.iter().flatten());
     times.fold(0.0, |longest: f64, us| longest.max(us * 1e-3))
 }
 
-/// The chip pulls up only the named outputs, and all but the lights are driven in time, before the clocks run.
+/// Requires that the chip pulls up only the named outputs, and all but the lights are driven before the clocks run.
 fn in_order(flight: &Flight, pulled_up: &[&str], limit_ms: f64) {
     let outputs = &flight.board.run.outputs;
     assert_eq!(outputs.len(), 12);

@@ -4,14 +4,13 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// The Matek's former pads of sensors 1 and 3, AirS and VB2, and their dividers (ArduPilot `MatekH743`, PX4
+/// The Matek's former pads of sensors 1 and 3, AirS and VB2, with their dividers (ArduPilot `MatekH743`, PX4
 /// `matek/h743-slim`).
 const OLD_PADS: [(f64, Trouble); 2] = [
     (0.0, Trouble::Board(BoardFault::PadDivider(0, 2))),
     (0.0, Trouble::Board(BoardFault::PadDivider(2, 11))),
 ];
 
-/// The short perch in still air, over in a minute.
 fn perch(seconds: f64) -> Scenario {
     let mut scenario = Scenario {
         time_limit: seconds,
@@ -26,7 +25,7 @@ fn perch(seconds: f64) -> Scenario {
 fn with_the_old_pads_the_perch_fails_by_the_arm_whose_sensor_reads_too_little() {
     let flight = fly(&perch(60.0), 1.0, &OLD_PADS);
     let closing = told(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
-    // Behind 1:11 at most 69 N/m2 can be read: the arm presses beyond its limit.
+    // Behind 1:11 it reads at most 69 N/m2, and the arm presses beyond its limit.
     let outcome = &flight.record.outcome;
     assert!(
         !outcome.accomplished && outcome.reason.starts_with("pressure on arm 3 reached"),

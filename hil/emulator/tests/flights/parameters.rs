@@ -5,7 +5,7 @@ use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// The first seconds of a flight: armed and off the ground.
+/// Ends armed and off the ground.
 fn start(change: impl FnOnce(&mut Scenario)) -> Scenario {
     let mut scenario = Scenario {
         time_limit: 7.0,
@@ -22,10 +22,10 @@ fn the_image_flies_what_is_stored() {
         s.params.motor_protocol = MotorProtocol::Dshot600;
     });
     let flight = fly(&scenario, 1.0, &[]);
-    // Both, and the calibration of the accelerometer's three axes.
+    // These two and the accelerometer's three axes.
     let taken = told(&flight, 0.0, "parameters: 5 from storage");
     assert!(taken.is_some(), "{}", log(&flight));
-    // Airborne with an inverted line with parity, and motor frames at twice the rate.
+    // Airborne with inverted line and parity, and motor frames at twice the rate.
     assert!(told(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
     for esc in flight.board.run.escs {
         assert!(esc.frames > 5000 && esc.bad == 0, "{esc:?}");
@@ -74,7 +74,7 @@ fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
         log(&flight)
     );
     assert!(stopped(&flight, 0.0, f64::INFINITY));
-    // Frames at the default rate, which controllers for the stored one reject.
+    // Frames have the default rate, which controllers for the stored one reject.
     assert!(flight.board.run.escs.iter().all(|esc| esc.frames == 0));
     assert_eq!(flight.gaps, []);
 }

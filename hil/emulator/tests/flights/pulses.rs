@@ -1,15 +1,14 @@
-//! Pulse protocols: pulse rate, and no new pulse once the software stands still.
+//! Pulse protocols: rate, and no new pulse once the software stands still.
 
 use sophie_control::params::MotorProtocol;
 use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Standstill of the processor in the air; end of the flight, before the watchdog's reset.
+/// In the air; the flight ends before the watchdog's reset.
 const STILL: f64 = AIRBORNE - 0.5;
 const END: f64 = STILL + 0.18;
 
-/// The hover with controllers of `protocol`, until the processor stands still.
 fn hung(protocol: MotorProtocol, small: bool) -> Flight {
     let mut scenario = hover(END);
     scenario.params.motor_protocol = protocol;
@@ -29,8 +28,8 @@ fn hung(protocol: MotorProtocol, small: bool) -> Flight {
     flight
 }
 
-/// Frames are within `interval` µs of each other and valid; none begins later than `last` µs after the processor has
-/// stopped; the pins are low then.
+/// Requires frames within `interval` µs of each other, all valid; none later than `last` µs after the standstill; then
+/// low pins.
 fn ends(protocol: MotorProtocol, interval: [f64; 2], last: f64) {
     for small in [false, true] {
         let flight = hung(protocol, small);
@@ -47,7 +46,7 @@ fn ends(protocol: MotorProtocol, interval: [f64; 2], last: f64) {
 #[test]
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_pulse_is_the_last_one_when_the_software_stands_still() {
-    // At most 400 Hz; 100 Hz without mixes. A pulse under way ends, and none follows.
+    // At most 400 Hz; 100 Hz without mixes. A started pulse ends, none follows.
     ends(MotorProtocol::Pwm, [2500.0, 13_000.0], 0.0);
 }
 
@@ -59,6 +58,6 @@ fn so_is_a_short_pulse() {
 
 #[test]
 fn so_is_a_digital_frame() {
-    // Its bits follow by DMA.
+    // DMA completes the frame.
     ends(MotorProtocol::Dshot300, [900.0, 13_000.0], 120.0);
 }

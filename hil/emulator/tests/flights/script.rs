@@ -1,27 +1,21 @@
-//! A page's sessions at the console: what is typed, and what must be answered.
-//!
-//! They stand in blocks marked `console`. A line that begins with `> ` is typed, the lines after it are the answer, in
-//! which `…` stands for any text of that line, alone for any lines.
+//! Console sessions of a page: blocks marked `console`, in which a line after `> ` is typed and the lines below are the
+//! answer. `…` stands for any text within a line, and alone for any lines.
 
-/// A line of an answer that stands for any key; what the command has said until it was pressed may be more than the
-/// page shows.
+/// A line at which any key is pressed; the command may print more before it than the page shows.
 const ANY_KEY: &str = "(any key)";
 
-/// A command with its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Typed {
-    /// Line of the page.
     pub line: usize,
     pub command: String,
     pub answer: Vec<String>,
 }
 
-/// What a page has to type, in its order.
 pub(super) fn typed(page: &str) -> Vec<Typed> {
     let mut script = Vec::<Typed>::new();
     let mut inside = false;
     for (number, line) in (1..).zip(page.lines()) {
-        // A block may stand in a list.
+        // A block may be indented in a list.
         let text = line.trim();
         if text.starts_with("```") {
             inside = text == "```console";
@@ -38,7 +32,7 @@ pub(super) fn typed(page: &str) -> Vec<Typed> {
     script
 }
 
-/// What is pressed while a command runs, and the text for which that waits.
+/// A key pressed while a command runs, once it has printed `after`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Key<'a> {
     pub after: &'a str,
@@ -46,15 +40,14 @@ pub(super) struct Key<'a> {
 }
 
 impl Typed {
-    /// The board restarts with the last line of the answer.
     pub fn restarts(&self) -> bool {
         self.answer
             .last()
             .is_some_and(|line| line.ends_with("restarting"))
     }
 
-    /// The keys of the answer, in their order: what follows a question, Enter where it is asked for, any key where one
-    /// ends the command, and `(any key)`, which stands in a line of its own.
+    /// Keys in order: the one after a question, Enter where asked for, any key where one ends the command or at
+    /// [`ANY_KEY`].
     pub fn keys(&self) -> impl Iterator<Item = Key<'_>> {
         let before = std::iter::once("").chain(self.answer.iter().map(String::as_str));
         before
@@ -78,13 +71,12 @@ impl Typed {
     }
 }
 
-/// The longest text of a pattern between its `…`.
 fn longest(pattern: &str) -> &str {
     let parts = pattern.split('…').map(str::trim);
     parts.max_by_key(|part| part.len()).unwrap_or_default()
 }
 
-/// What is wrong with `said`, from the echo of the command to the next prompt; `None` when it is the page's answer.
+/// How `said` (command echo to next prompt) differs from the page's answer; `None` if it does not.
 pub(super) fn differs(step: &Typed, said: &str) -> Option<String> {
     let echoed = said.split_once(&step.command).map_or(said, |(_, rest)| rest);
     let lines: Vec<&str> = echoed.lines().map(str::trim).collect();
@@ -99,7 +91,6 @@ pub(super) fn differs(step: &Typed, said: &str) -> Option<String> {
     })
 }
 
-/// The lines are those of the answer, in which `…` and `(any key)` stand for any lines.
 fn fit(lines: &[&str], answer: &[String]) -> bool {
     let Some((pattern, rest)) = answer.split_first() else {
         return lines.is_empty();
@@ -112,7 +103,7 @@ fn fit(lines: &[&str], answer: &[String]) -> bool {
         .is_some_and(|(line, lines)| fits(line, pattern) && fit(lines, rest))
 }
 
-/// The line is the pattern, whose `…` stand for any text. Blanks in a row count as one.
+/// Runs of blanks count as one.
 fn fits(line: &str, pattern: &str) -> bool {
     let single = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let (line, pattern) = (single(line), single(pattern));
@@ -127,7 +118,6 @@ fn fits(line: &str, pattern: &str) -> bool {
         };
         (rest, last) = (after, Some(part));
     }
-    // The last part must end the line; an empty one takes what is left.
     match last {
         None => rest.is_empty(),
         Some(part) => line.ends_with(part),

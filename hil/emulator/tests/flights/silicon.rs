@@ -1,17 +1,17 @@
-//! The start-up's checks of the chip, and its behaviour where a clock fails.
+//! Start-up checks of the chip, and failed clocks.
 
 use sophie_emulator::silicon::{self, Look};
 use sophie_emulator::wires::BoardFault;
 
 use super::*;
 
-/// Both boards, each with the required state of its caches as logged.
+/// With the logged state of their caches.
 const BOARDS: [(&str, [&str; 2]); 2] = [
     ("matek-h743", ["caches", "I+ D-"]),
     ("f405", ["flash acceleration", "prefetch+ I+ D+"]),
 ];
 
-/// `seconds` s on the ground, disarmed, with `fault` from before the first instruction.
+/// `seconds` s disarmed on the ground, with `fault` from before the first instruction.
 fn on_the_bench(board: &str, seconds: f64, fault: Option<BoardFault>) -> Flight {
     let scenario = Scenario {
         time_limit: seconds,
@@ -96,7 +96,7 @@ fn a_first_revision_flies_without_prefetch_or_not_at_all() {
 
 #[test]
 fn another_firmwares_parameters_are_named_with_what_to_do() {
-    // The emulator does not let the F405's flash be written.
+    // The emulated F405's flash cannot be written.
     let flight = on_the_bench("matek-h743", 1.5, Some(BoardFault::ForeignParameters));
     for words in [
         "the storage holds ArduPilot's data; 'save' at the console replaces them",
@@ -108,7 +108,7 @@ fn another_firmwares_parameters_are_named_with_what_to_do() {
     assert_eq!(look(&flight, "stored data of").read, "ArduPilot");
 }
 
-/// A failed clock causes a message and a reset, repeatedly, with the motors' pins low.
+/// Requires a message and repeated resets, motor pins low.
 fn never_starts(board: &str, fault: BoardFault, message: &str, by: &str) {
     let flight = on_the_bench(board, 1.2, Some(fault));
     assert!(

@@ -1,6 +1,6 @@
 //! Folds long results into one number.
 
-/// FNV-1a over 32-bit words, with a count: `<count> words <hash>`.
+/// FNV-1a over 32-bit words: `<count> words <hash>`.
 #[derive(Clone, Copy)]
 pub struct Fold {
     words: u32,
@@ -54,7 +54,7 @@ impl Noise {
         self.0
     }
 
-    /// The next number in -1..1; exact in binary, so equal on every machine.
+    /// Next number in -1..1, exact in binary: equal on every machine.
     pub fn unit(&mut self) -> f32 {
         (self.word() >> 8) as f32 * (2.0 / 16_777_216.0) - 1.0
     }

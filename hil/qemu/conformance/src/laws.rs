@@ -1,4 +1,4 @@
-//! The control laws on flight-like inputs, folded by stage: bit-identical on every machine.
+//! Control laws on flight-like inputs, hashed by stage: bit-identical on every machine.
 
 use core::fmt::Arguments;
 
@@ -11,14 +11,12 @@ use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, Wrench};
 use sophie_mixers::{Mixer, Variant};
 
-/// Inputs per function of the maths module.
 const INPUTS: u32 = 4096;
-/// Control steps per mixer: 3 s of flight, after calibration at rest.
+/// 3 s of flight after calibration.
 const STEPS: u32 = 3000;
 const REST: u32 = 3000;
 const READINGS: usize = 4;
 const RATE_HZ: f32 = 4000.0;
-/// Steps per kind of setpoint.
 const STRETCH: u32 = 250;
 
 type Function = fn(f32) -> f32;
@@ -60,7 +58,7 @@ fn functions(print: &mut dyn FnMut(Arguments<'_>)) {
     print(format_args!("math atan2: {fold}"));
 }
 
-/// Sensor to motor command, open loop: noise around a swaying attitude.
+/// Open loop: noise around a swaying attitude.
 fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     let params = Params::default();
     let mut noise = Noise::new(3);
@@ -111,7 +109,7 @@ fn flight(print: &mut dyn FnMut(Arguments<'_>), name: &str, variant: Variant) {
     print(format_args!("{name} mixer: {mixed}"));
 }
 
-/// Setpoint of a step: mostly attitudes; also rates, the pipe and off it, a wrench.
+/// Setpoints: mostly attitudes; also rates, the pipe and off it, a wrench.
 fn setpoint(stretch: u32, noise: &mut Noise) -> Setpoint {
     let [roll, pitch, yaw_rate] = [0.5 * noise.unit(), 0.5 * noise.unit(), 0.5 * noise.unit()];
     let thrust = 18.0 + 16.0 * noise.unit();

@@ -24,7 +24,7 @@ impl Machine for Bare {
         interrupt::free(|cs| LEFT.borrow(cs).replace(left));
     }
 
-    /// Continues with the next scenario instead of a reset.
+    /// Continues with the next scenario.
     fn reset() -> ! {
         faults::go_on()
     }
@@ -34,7 +34,6 @@ pub fn with_kept<R>(show: impl FnOnce(&Left) -> R) -> R {
     interrupt::free(|cs| show(&LEFT.borrow(cs).borrow()))
 }
 
-/// The end of a run as in the firmware.
 fn stop_and_restart(message: Arguments<'_>) -> ! {
     sophie_fault::stop_and_restart::<Bare>(message)
 }

@@ -1,11 +1,9 @@
 //! Logs how a Cortex-M core runs exceptions, floats and the control laws.
 //!
-//! The same ELF runs on QEMU and on the emulated core that flies the firmware; equal logs verify that core
-//! independently. On the host only the laws run and print the same lines: the host's tests of the control laws then
-//! hold for the chip.
+//! Equal logs of one ELF on QEMU and on the emulated core verify that core. The host runs the laws alone: with equal
+//! lines, host tests hold for the chip.
 //!
-//! A line is `<group>: <result>`; long results are hashed, short ones are spelled out, so that a difference can be
-//! located.
+//! A line is `<group>: <result>`; long results are hashed, short ones spelled out to locate a difference.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,7 +1,5 @@
-//! The flight step from raw readings to motor commands: its stages, its laws, and the whole.
-//!
-//! Each is a function that is not inlined, with inputs and outputs in memory, as a task calls it. The stages are those
-//! of [`FlightChain`] in its order; a law runs on its own copy, so nothing is composed here.
+//! The flight step's stages, its laws, and the whole: functions that are not inlined, with inputs and outputs in
+//! memory. The stages are those of [`FlightChain`]; laws run on their own copies.
 
 use core::hint::black_box;
 
@@ -27,7 +25,7 @@ pub fn at_rest() -> FlightChain {
 #[inline(never)]
 pub fn nothing(_: &mut (), _: &u32) {}
 
-/// Stage 1: one batch through the inertial sensor's filter.
+/// Stage 1: a batch through the gyro filter.
 #[inline(never)]
 pub fn filter(c: &mut FlightChain, i: &Inputs) {
     c.sense(i.at_us, &i.batch);
@@ -39,13 +37,13 @@ pub fn estimator(c: &mut FlightChain, _: &Inputs) {
     c.estimate();
 }
 
-/// Stage 3: the demand, with loop switching and resting limits.
+/// Stage 3: demand, with loop switching and resting limits.
 #[inline(never)]
 pub fn control(c: &mut FlightChain, i: &Inputs) {
     c.control(&i.command);
 }
 
-/// Stage 4: commands from the demand, with the arms' readings.
+/// Stage 4: commands from demand and arm readings.
 #[inline(never)]
 pub fn mixing(c: &mut FlightChain, i: &Inputs) {
     c.mix(&i.surroundings);
@@ -57,7 +55,7 @@ pub fn whole(c: &mut FlightChain, i: &Inputs) {
     c.step(i.at_us, &i.batch, &i.command, &i.surroundings);
 }
 
-/// The chain's laws on their own copies, with inputs and outputs.
+/// The chain's laws, with inputs and outputs.
 pub struct Laws {
     flow: Flow,
     axes: AxisFilter,
@@ -113,7 +111,7 @@ pub fn aim(l: &mut Laws, i: &Inputs) {
     l.attitude.aim(i.sticks);
 }
 
-/// Wanted rates from the attitude, and the logged target. With yaw given up, the heading follows.
+/// Rates, and the logged target. With yaw given up, the heading follows.
 #[inline(never)]
 pub fn attitude(l: &mut Laws, _: &Inputs) {
     let a = &l.flow.attitude;
@@ -130,7 +128,7 @@ pub fn rate(l: &mut Laws, i: &Inputs) {
     l.moment = l.rate.step(l.wanted, a.rate, feedback, !i.resting, a.dt);
 }
 
-/// Thrusts from a wrench: Jacobian from the tilt, allocation, desaturation.
+/// Thrusts from a wrench: Jacobian, allocation, desaturation.
 #[inline(never)]
 pub fn allocation(l: &mut Laws, i: &Inputs) {
     if let Demand::Wrench(wrench) | Demand::Resting(wrench) = l.flow.demand {
@@ -143,7 +141,7 @@ pub fn allocation(l: &mut Laws, i: &Inputs) {
     }
 }
 
-/// Tilt and slope of the four arms from the thrusts sent.
+/// Tilt and slope of the arms from the sent thrusts.
 #[inline(never)]
 pub fn tilt(l: &mut Laws, _: &Inputs) {
     l.allocation.follow(&l.mix.thrusts, l.flow.attitude.dt);

@@ -28,20 +28,19 @@ impl Tally {
     }
 }
 
-/// Instructions of one run of `work`, plus those of reading the counter and of the call.
-///
-/// Not inlined and called with different functions, so that all are called alike.
+/// Instructions of `work`, the call and reading the counter. Not inlined and called with several functions: all are
+/// called alike.
 #[inline(never)]
 pub fn gross<S, I>(work: fn(&mut S, &I), state: &mut S, input: &I) -> u32 {
     let before = clock::now();
-    // Nothing may move across, or it would be miscounted.
+    // Keeps instructions from moving across.
     compiler_fence(Ordering::SeqCst);
     work(state, input);
     compiler_fence(Ordering::SeqCst);
     instructions(before.wrapping_sub(clock::now()))
 }
 
-/// Instructions between two readings of the downward counter that differ by `ticks`: 128 ns each, a tick is 40 ns.
+/// 128 ns an instruction, 40 ns a tick.
 const fn instructions(ticks: u32) -> u32 {
     (ticks * 5 + 8) / 16
 }
@@ -74,7 +73,7 @@ mod clock {
         unsafe { VALUE.read_volatile() }
     }
 
-    /// Executes 2 `rounds` instructions, `rounds` > 0, and one to load that number.
+    /// Executes 2 `rounds` instructions (`rounds` > 0) and one to load it.
     #[inline(never)]
     pub fn known_loop(_: &mut (), rounds: &u32) {
         // SAFETY: counts its own register down to zero.

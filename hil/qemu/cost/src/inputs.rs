@@ -1,7 +1,6 @@
-//! Inputs of the control path: flight-like numbers that take every branch, equal on every machine.
-//!
-//! Half-second stretches: hover, gusts, hard turns, saturated rotors, low thrust with yaw given up, a sagging battery.
-//! Rates and sticks are held for a while, with noise. A few readings are NaN.
+//! Inputs of the control path that take every branch, equal on every machine: half-second stretches of hover, gusts,
+//! hard turns, saturated rotors, low thrust with yaw given up, a sagging battery. Rates and sticks are held for a
+//! while, with noise. A few readings are NaN.
 
 use sophie_conformance::fold::Noise;
 use sophie_control::attitude::AttitudeSetpoint;
@@ -10,16 +9,14 @@ use sophie_control::math::GRAVITY;
 use sophie_control::setpoint::Setpoint;
 use sophie_control::vector::Vec3;
 
-/// Inertial readings per control step: 4 kHz.
+/// 4 kHz.
 pub const READINGS: usize = 4;
-/// Steps at rest, in which the estimator calibrates.
+/// The estimator calibrates.
 pub const REST: u32 = 2500;
 pub const FLIGHT: u32 = 12_000;
-/// Steps per stretch.
 const STRETCH: u32 = 500;
-/// Steps for which rate and sticks are held.
 const HOLD: u32 = 40;
-/// Step of ten with new sticks; the first four have the arms' sensors.
+/// Step of ten with new sticks; arms are read in the first four.
 const STICKS: usize = 5;
 /// One reading in this many is NaN.
 const BAD: u32 = 4001;
@@ -30,17 +27,17 @@ pub struct Inputs {
     pub at_us: u64,
     /// Raw rates (rad/s) and specific forces (m/s²).
     pub batch: [ImuReading; READINGS],
-    /// Command of the sticks, renewed in one step of ten.
+    /// Stick command, renewed in one step of ten.
     pub command: Command,
-    /// Its direction, and whether it is renewed in this step.
+    /// Its attitude, and whether it is new.
     pub sticks: AttitudeSetpoint,
     pub renewed: bool,
     pub resting: bool,
     /// Battery voltage over nominal.
     pub battery_ratio: f32,
-    /// Battery ratio and the arms' sensors, each read in one step of ten.
+    /// Battery ratio and arm readings, each in one step of ten.
     pub surroundings: Surroundings,
-    /// The arm read in this step, and its tilt, rad.
+    /// Arm read in this step, and its tilt, rad.
     pub arm: Option<(usize, f32)>,
 }
 
@@ -81,9 +78,9 @@ const STRETCHES: [Stretch; 9] = [
     // Around the yaw gate, and down to zero.
     stretch(0.5, 0.2, 0.3, (8.0, 3.0), 1.1),
     stretch(2.0, 0.5, 0.8, (2.0, 2.0), 1.2),
-    // Anything, on a nearly empty battery.
+    // Extremes on a nearly empty battery.
     stretch(3.0, 1.5, 2.0, (17.0, 17.0), 0.7),
-    // On the pipe: yaw given up, integrators held, moments limited. Then off it.
+    // On the pipe (yaw given up, integrators held, moments limited), then off it.
     Stretch {
         kind: Kind::Resting,
         ..stretch(0.3, 0.3, 0.1, (6.0, 5.0), 0.95)
@@ -141,7 +138,7 @@ impl Sequence {
         }
         let noise = if resting { 0.01 } else { s.noise };
         let batch = core::array::from_fn(|_| self.read(noise));
-        // 1 ms, and up to 2 % more or less.
+        // 1 ms ± 2 %.
         self.at_us += (1000.0 + 20.0 * self.noise.unit()) as u64;
         let turn = (step % 10) as usize;
         let sticks = AttitudeSetpoint {
@@ -179,7 +176,7 @@ impl Sequence {
         }
     }
 
-    /// A reading around the held rate, `noise` rad/s and five times as many m/s² off.
+    /// A reading off the held rate by `noise` rad/s and five times as many m/s².
     fn read(&mut self, noise: f32) -> ImuReading {
         self.reading += 1;
         let mut gyro = self.rate + self.vector() * noise;

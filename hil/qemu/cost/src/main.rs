@@ -1,10 +1,10 @@
-//! Counts the instructions per call of every stage of the control path, on the core that it is built for.
+//! Counts instructions per call of every stage of the control path on the target core.
 //!
-//! Under QEMU with `-icount shift=7` an instruction lasts 128 ns, 3.2 ticks of the board's timer, so two readings give
-//! the number of instructions between them exactly. Cycles of caches, flash or a division (fourteen) are not included.
+//! Under QEMU with `-icount shift=7` an instruction lasts 128 ns, 3.2 ticks of the board's timer: two readings give
+//! their number exactly, without the cycles of caches, flash or a division (fourteen).
 //!
-//! Every stage is a separate call on the output of the stage before; then the whole step is counted on the same inputs
-//! and must give the same motor commands. The host prints only those, for comparison.
+//! Every stage is called on the previous output; the whole step, counted on the same inputs, must give the same motor
+//! commands. The host prints only those.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

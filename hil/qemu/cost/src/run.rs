@@ -12,7 +12,7 @@ use crate::inputs::{FLIGHT, Inputs, REST, Sequence};
 
 type Part<S> = (&'static str, fn(&mut S, &Inputs));
 
-/// Stages in the order of the data, each after its laws.
+/// Stages in order, each after its laws.
 const FILTER: Part<FlightChain> = ("filter", chain::filter);
 const ESTIMATOR: Part<FlightChain> = ("estimator", chain::estimator);
 const CONTROL: Part<FlightChain> = ("control", chain::control);
@@ -23,7 +23,7 @@ const BEFORE_CONTROL: [Part<Laws>; 4] = [
     ("attitude", chain::attitude),
     ("rate", chain::rate),
 ];
-/// Laws of mixing. The tilt follows the thrusts, so it comes after the allocation.
+/// Laws of mixing; the tilt follows the allocated thrusts.
 const BEFORE_MIXING: [Part<Laws>; 4] = [
     ("allocation", chain::allocation),
     ("tilt", chain::tilt),
@@ -31,7 +31,7 @@ const BEFORE_MIXING: [Part<Laws>; 4] = [
     ("arm-sensor", chain::arm_sensor),
 ];
 
-/// Counts everything; prints a line per stage: `stage NAME CALLS TOTAL MIN MAX`.
+/// Counts and prints a line per stage: `stage NAME CALLS TOTAL MIN MAX`.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     counter::start();
     let overhead = overhead();
@@ -56,7 +56,6 @@ fn overhead() -> u32 {
     nothing
 }
 
-/// Counts by part, and the overhead of a call.
 struct Counts {
     overhead: u32,
     tallies: [(&'static str, Tally); 12],
@@ -71,10 +70,9 @@ impl Counts {
         Self { overhead, tallies }
     }
 
-    /// Runs a part; counts it if `due`.
     fn call<S>(&mut self, (name, work): Part<S>, state: &mut S, inputs: &Inputs, due: bool) {
         let count = gross(work, state, inputs) - self.overhead;
-        // The arms' sensors are read in four steps of ten, the sticks in one.
+        // Arm sensors are due in four steps of ten, sticks in one.
         let due = due
             && match name {
                 "arm-sensor" => inputs.arm.is_some(),
@@ -142,7 +140,7 @@ fn whole(overhead: u32) -> (Fold, Tally) {
     (fold, tally)
 }
 
-/// The batch gave a step: not with a NaN reading, which leaves one too few.
+/// The batch gave a step: a NaN reading leaves one too few.
 fn stepped(chain: &FlightChain, inputs: &Inputs) -> bool {
     chain.flow.at_us == inputs.at_us
 }

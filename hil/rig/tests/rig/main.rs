@@ -1,4 +1,4 @@
-//! The tests of a board: `cargo xtask rig BOARD`. Wiring: `hil/README.md`.
+//! Tests of a real board: `cargo xtask rig BOARD`. Wiring: `hil/README.md`.
 //!
 //! | test | what | jumper or part |
 //! |---|---|---|
@@ -11,7 +11,7 @@
 //! | [`t50_dshot`] | motor frames, bit by bit | motor 1 to servo 3 |
 //! | [`t51_servo`] | servo pulses | servo 1 to servo 4 |
 //! | [`t60_receiver`] | the receiver's line, both ways at once | its output to its input |
-//! | [`t70_watchdog`] | the bite, and the memory that outlives it | none |
+//! | [`t70_watchdog`] | watchdog reset and retained memory | none |
 //! | [`t80_storage`] | a parameter outlives a reset | none |
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -44,7 +44,7 @@ fn main() {
     println!("these tests run on a board: cargo xtask rig BOARD");
 }
 
-/// Before every test, and before the second half of one that a reset cut in two.
+/// Runs before every test and before the second half of one that a reset divides.
 #[cfg(target_os = "none")]
 #[embedded_test::setup]
 fn setup() {

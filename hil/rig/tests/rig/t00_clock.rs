@@ -1,6 +1,5 @@
-//! The core's clock against the time base, which divide one crystal separately, and the time base against itself. A
-//! wrong crystal shows only against other oscillators: the inertial sensor's (`t20_imu`) and the watchdog's
-//! (`t70_watchdog`).
+//! Core clock against time base, divided from one crystal, and time base against itself. A wrong crystal shows only
+//! against the inertial sensor (`t20_imu`) and the watchdog (`t70_watchdog`).
 
 #[embedded_test::tests]
 mod tests {
@@ -10,9 +9,9 @@ mod tests {
 
     /// Measuring time; a tick of the time base is 1 µs.
     const SPAN: Duration = Duration::from_millis(100);
-    /// Two half turns of the time base's 16-bit counter, 32.8 ms each.
+    /// Two half turns of the 16-bit counter, 32.8 ms each.
     const TURN: Duration = Duration::from_millis(70);
-    /// Longest delay of the interrupt that counts half turns.
+    /// Longest delay of the half-turn interrupt.
     const WAIT: u32 = 100;
 
     #[test]
@@ -30,7 +29,7 @@ mod tests {
             WIRING.core_hz
         );
     }
-    /// Nor while the interrupt that counts its turns waits: the flight level reads it in interrupts.
+    /// Nor while its interrupt waits: the flight level reads it in interrupts.
     #[test]
     async fn the_time_base_never_runs_back() {
         let board = sophie_boards::take().await;

@@ -8,7 +8,7 @@ mod tests {
     use sophie_rig::keep_alive;
 
     const PERIOD: Duration = Duration::from_millis(1);
-    /// Latest alarm in an idle processor, µs. A period of the fastest task is 1000.
+    /// Latest alarm in an idle processor, µs; the fastest task's period is 1000.
     const LATE_MAX: u32 = 20;
 
     static BEATS: AtomicU32 = AtomicU32::new(0);
@@ -16,7 +16,7 @@ mod tests {
 
     #[test]
     async fn a_millisecond_lasts_a_millisecond() {
-        // The other parts go at once: held over a wait, they would take 1.2 KiB of RAM.
+        // Drops the other ports: held over a wait, they take 1.2 KiB of RAM.
         keep_alive(sophie_boards::take().await.watchdog);
         let worst = worst_lateness(1000).await;
         defmt::info!("alarms: {=u32} us late at worst", worst);
@@ -46,7 +46,6 @@ mod tests {
         }
     }
 
-    /// Largest lateness of `periods` periods, µs.
     async fn worst_lateness(periods: u32) -> u32 {
         let start = Instant::now();
         let mut ticker = Ticker::every(PERIOD);

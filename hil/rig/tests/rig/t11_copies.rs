@@ -1,15 +1,14 @@
-//! Copies of words (`boards/src/cortex_m/copy.rs`): the compiler calls them for messages and slices.
+//! Copies of words (`boards/src/cortex_m/copy.rs`), which the compiler calls for messages and slices.
 
 #[embedded_test::tests]
 mod tests {
     use core::hint::black_box;
 
-    /// Words of the longest copy: three turns of its loop and every rest.
+    /// Three turns of the longest copy's loop and every remainder.
     const WORDS: usize = 32;
-    /// What must not be touched.
     const UNTOUCHED: u8 = 0xA5;
 
-    /// Bytes on a word, with a word around them.
+    /// Aligned bytes between two guard words.
     #[derive(Clone, Copy)]
     #[repr(C, align(4))]
     struct Framed<const N: usize> {
@@ -18,7 +17,7 @@ mod tests {
         after: [u8; 4],
     }
 
-    // Without the board, whose future would take 6 KiB of RAM: nothing runs that wants its clocks.
+    // Runs without the board, whose future would take 6 KiB of RAM: its clocks are not needed.
     #[test]
     fn a_copy_is_exact_and_nothing_around_it_changes() {
         let from: [u32; WORDS] = core::array::from_fn(|i| 0x0102_0304_u32.wrapping_mul(2 * i as u32 + 1));

@@ -1,5 +1,5 @@
-//! The vehicle's inertial sensor. Its own oscillator is good to 1 or 2 %, so a wrong crystal of the board shows in its
-//! sample rate. The board lies still, in any orientation.
+//! The inertial sensor. Its oscillator is good to 1 or 2 %, so a wrong crystal shows in its sample rate. The board lies
+//! still, in any orientation.
 
 #[embedded_test::tests]
 mod tests {
@@ -7,7 +7,7 @@ mod tests {
     use sophie_rig::keep_alive;
     use sophie_tasks::ports::Imu;
 
-    /// Limit from the first call to samples.
+    /// From the first call to samples.
     const START_UP: Duration = Duration::from_secs(2);
     const SPAN: Duration = Duration::from_secs(1);
 
@@ -27,7 +27,7 @@ mod tests {
         panic!("no sample: {:?}", last.err())
     }
 
-    /// The driver compares WHO_AM_I and reads back every register that it writes: a sample means that all were right.
+    /// The driver checks WHO_AM_I and reads back every register before it samples.
     #[test]
     async fn it_answers_by_its_name_and_feels_gravity() {
         let mut board = sophie_boards::take().await;

@@ -1,4 +1,4 @@
-//! The arms' inertial sensors: those plugged in identify themselves, run, and measure gravity. They lie still.
+//! The arms' sensors: those plugged in identify themselves, run, and measure gravity at rest.
 
 #[embedded_test::tests]
 mod tests {
@@ -6,7 +6,7 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::{ArmImus, PortError};
 
-    /// Reset, configuration, and the seconds of rest in which the gyroscope calibrates.
+    /// Reset, configuration, and rest for the gyroscope's calibration.
     const START_UP: Duration = Duration::from_secs(10);
 
     #[test]

@@ -8,7 +8,7 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Analog;
 
-    /// Longest conversion of all inputs: a quarter of the 2 ms between readings.
+    /// Longest conversion of all inputs: a quarter of the 2 ms period.
     const LONGEST: Duration = Duration::from_micros(500);
     /// Half of full scale, and 2 % of it, counts.
     const HALF: u16 = 2048;
@@ -35,13 +35,13 @@ mod tests {
         assert!(worst <= LONGEST, "{} us", worst.as_micros());
     }
 
-    /// A divider of two equal resistors, 1 to 10 kOhm, from 3.3 V to ground, its middle at the pad.
+    /// Divider of two equal resistors, 1 to 10 kOhm, from 3.3 V to ground, its middle at the pad.
     #[test]
     async fn half_the_supply_is_half_the_scale() {
         let mut board = sophie_boards::take().await;
         keep_alive(board.watchdog);
         let (pad, _) = WIRING.divider;
-        // Without a divider the pad keeps its last charge.
+        // Without a divider the pad keeps its charge.
         let mut counts = [0; 2];
         for (counts, high) in counts.iter_mut().zip([false, true]) {
             let taken = pad.take();

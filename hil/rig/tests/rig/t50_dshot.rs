@@ -1,4 +1,4 @@
-//! Motor frames, read bit by bit through a jumper. The speed controllers are unplugged.
+//! Motor frames, read bit by bit through a jumper. ESCs unplugged.
 
 #[embedded_test::tests]
 mod tests {
@@ -13,13 +13,13 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Motors;
 
-    /// Commands of motor 1: stop, least throttle, patterns between, full.
+    /// Motor 1: stop, least throttle, patterns, full.
     const COMMANDS: [f32; 5] = [0.0, 0.001, 0.333, 0.667, 1.0];
 
-    /// The line while `command` is sent, in cycles.
+    /// In cycles.
     async fn sent(motors: &mut sophie_boards::MotorsPort, command: f32) -> heapless::Vec<Pulse, MOST> {
-        // Frame and lead-in of the slowest protocol take 120 µs. The frame leaves by itself: no interrupt may come
-        // between two reads of the line.
+        // Frame and lead-in of the slowest protocol take 120 µs. DMA sends the frame: interrupts may be off while the
+        // line is read.
         let (_, line) = join(motors.write([command, 0.0, 0.0, 0.0]), async {
             critical_section::with(|_| record(WIRING.motor[1], 150))
         })

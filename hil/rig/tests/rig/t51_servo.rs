@@ -1,4 +1,4 @@
-//! Servo pulses at the end of a jumper. The servos are unplugged.
+//! Servo pulses through a jumper. Servos unplugged.
 
 #[embedded_test::tests]
 mod tests {
@@ -9,7 +9,7 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::Servos;
 
-    /// Commanded widths, µs.
+    /// µs.
     const WIDTHS: [f32; 3] = [550.0, 1500.0, 2450.0];
 
     #[test]

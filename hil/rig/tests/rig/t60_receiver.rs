@@ -1,5 +1,4 @@
-//! The receiver's line, looped back: telemetry output comes in as from a receiver, at 420 kbaud. The receiver is
-//! unplugged.
+//! The receiver's line looped back: telemetry at 420 kbaud comes in again. Receiver unplugged.
 
 #[embedded_test::tests]
 mod tests {
@@ -11,10 +10,10 @@ mod tests {
     use sophie_rig::{absent, keep_alive};
     use sophie_tasks::ports::{SerialInput, SerialOutput};
 
-    /// Length of a receiver's frame with sixteen channels.
+    /// A frame with sixteen channels.
     const LENGTH: usize = 26;
     const FRAMES: u8 = 100;
-    /// Time limit; a frame takes 0.6 ms.
+    /// A frame takes 0.6 ms.
     const LONGEST: Duration = Duration::from_millis(10);
 
     fn frame(number: u8) -> [u8; LENGTH] {
@@ -47,7 +46,7 @@ mod tests {
         if !joined(WIRING.receiver) {
             return absent(format_args!("jumper from {} to {}", out.name, into.name));
         }
-        // Starts the ring, and discards what the search for the jumper left on the line.
+        // Starts the ring, and discards what the jumper search left.
         let _ = with_timeout(LONGEST, board.receiver.read(&mut [0; LENGTH])).await;
         for number in 0..FRAMES {
             let sent = frame(number);

@@ -1,15 +1,15 @@
-//! The watchdog resets an unfed board within the time for which the supervisor is designed, and retained memory
-//! outlives it. Its clock is no crystal's: a factor of two in the board's clocks would show.
+//! The watchdog resets an unfed board in time, and retained memory survives. Its clock has no crystal: a factor of two
+//! in the board's clocks would show.
 
 use core::ops::RangeInclusive;
 
 use embassy_futures::block_on;
 use sophie_rig::keep_alive;
 
-/// Last feed to reset, µs: 300 ms at 32 kHz, of a clock of 17 to 47 kHz (datasheets of the F4 and F7, LSI).
+/// Last feed to reset, µs: 300 ms at 32 kHz, from a clock of 17 to 47 kHz (datasheets of the F4 and F7, LSI).
 const BITE: RangeInclusive<u32> = 200_000..=570_000;
 
-/// The part after the reset: `us` is the last time recorded by the first part.
+/// After the reset; `us`: last time recorded before.
 pub fn bitten(us: u32) -> ! {
     // The log needs the time base.
     let board = block_on(sophie_boards::take());
@@ -27,8 +27,8 @@ mod tests {
 
     #[test]
     async fn it_bites_a_board_that_stands_still() {
-        // Taking the board starts the watchdog at its longest count: only a feed sets the board's period, some cycles
-        // of its slow clock after the start.
+        // Taking the board starts the watchdog at its longest count: a feed sets the board's period, some cycles of its
+        // slow clock after the start.
         let mut board = sophie_boards::take().await;
         Timer::after_millis(5).await;
         board.watchdog.feed();

@@ -1,5 +1,4 @@
-//! A parameter is stored, outlives a reset, and is restored. If power is cut in between, the trim of servo 4 is off by
-//! 1 µs.
+//! A parameter survives a reset and is restored. A power cut in between leaves the trim of servo 4 off by 1 µs.
 
 use embassy_executor::Executor;
 use sophie_control::params::Params;
@@ -7,7 +6,6 @@ use sophie_rig::keep_alive;
 use sophie_tasks::ports::Storage;
 use static_cell::StaticCell;
 
-/// Stored parameters; all must be readable.
 async fn stored(storage: &mut impl Storage) -> Params {
     let mut params = *storage.defaults();
     let loaded = storage.load(&mut params).await;
@@ -25,17 +23,16 @@ async fn store(storage: &mut impl Storage, params: &Params) {
     );
 }
 
-/// A neighbour of `trim`, µs, within the parameter's range.
 fn next_to(trim: f32) -> f32 {
     if trim > 0.0 { trim - 1.0 } else { trim + 1.0 }
 }
 
-/// The part after the reset: restores the trim `was`.
+/// After the reset: restores the trim `was`.
 pub fn restarted(was: f32) -> ! {
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     let executor = EXECUTOR.init(Executor::new());
     executor.run(|background| {
-        // Unique: called once after a reset.
+        // Called once after a reset.
         if let Ok(task) = put_back(was) {
             background.spawn(task);
         }

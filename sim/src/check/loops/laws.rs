@@ -1,4 +1,4 @@
-//! The laws' answer to a body rate: gyro filter, rate loop and attitude loop, each the code that flies.
+//! The laws' response to a body rate: gyro filter, rate loop and attitude loop, as flown.
 
 use sophie_control::attitude::{AttitudeLoop, AttitudeSetpoint};
 use sophie_control::chain::{CONTROL_RATE_HZ, ImuReading};
@@ -11,13 +11,12 @@ use super::response::{Complex, Response, difference, quotient};
 
 /// Step of the laws, s.
 const DT: f32 = 1.0 / CONTROL_RATE_HZ;
-/// Rate (rad/s) and angle (rad) of the impulses: small, where nothing is limited.
+/// Impulses in rad/s and rad, small enough to reach no limit.
 const RATE: f32 = 0.1;
 const ANGLE: f32 = 0.01;
-/// Steps in which the gyro's filter and the rate loop settle: 20 Hz and a notch at 1 Hz.
+/// Settling of gyro filter and rate loop: 20 Hz and a notch at 1 Hz.
 const FILTER_STEPS: usize = 500;
 const LOOP_STEPS: usize = 4000;
-/// Nothing is given up.
 const ALL_GIVEN: Feedback = Feedback {
     roll_pitch: 1.0,
     yaw: 1.0,
@@ -27,23 +26,23 @@ const ALL_GIVEN: Feedback = Feedback {
 /// The laws about roll, pitch and yaw.
 #[derive(Clone, Debug)]
 pub struct Laws {
-    /// Rate that the filter gives for one that is measured.
+    /// Filtered over measured rate.
     filter: Response,
     axes: [AxisLaws; 3],
 }
 
 #[derive(Clone, Debug)]
 struct AxisLaws {
-    /// Moment against a rate, N·m·s/rad.
+    /// Moment over measured rate, N·m·s/rad.
     by_rate: Response,
-    /// Moment for a rate that is asked for, N·m·s/rad.
+    /// Moment over rate setpoint, N·m·s/rad.
     by_setpoint: Response,
-    /// Rate that is asked for against an angle, 1/s.
+    /// Rate setpoint over angle, 1/s.
     attitude: f64,
 }
 
 impl Laws {
-    /// The laws that `params` describe.
+    /// Identifies the laws with `params`.
     #[must_use]
     pub fn of(params: &Params) -> Self {
         let (by_rate, by_setpoint) = (rate_loop(params, false), rate_loop(params, true));
@@ -57,8 +56,8 @@ impl Laws {
         }
     }
 
-    /// Moment against a rate about `axis` at `angle` rad a step, N·m·s/rad: F (C_r + C_s p T / (1 - z⁻¹)), the angle
-    /// being the sum of the rates.
+    /// Moment over rate about `axis` at `angle` rad a step, N·m·s/rad: F (C_r + C_s p T / (1 - z⁻¹)), since the angle
+    /// sums the rates.
     #[must_use]
     pub fn at(&self, axis: usize, angle: f64) -> Complex {
         let law = &self.axes[axis];
@@ -68,7 +67,7 @@ impl Laws {
     }
 }
 
-/// The gyro's filter as a board runs it: samples on the line between two steps, each a sample late.
+/// As on a board: samples interpolated between two steps, each a sample late.
 fn filter(params: &Params) -> Response {
     let rate = params.imu_rate.number();
     let per_step = (rate / CONTROL_RATE_HZ).max(1.0) as usize;
@@ -78,7 +77,7 @@ fn filter(params: &Params) -> Response {
         accel: Vec3::ZERO,
     };
     let (mut newest, mut waiting) = (reading(0.0), reading(0.0));
-    // Settled on nothing before the impulse comes.
+    // Settles before the impulse.
     filter.batch(&[waiting], Vec3::ZERO, &mut newest);
     let mut last = 0.0;
     let answer: Vec<f64> = (0..FILTER_STEPS)
@@ -97,8 +96,7 @@ fn filter(params: &Params) -> Response {
     Response::of(&answer)
 }
 
-/// Moments (N·m·s/rad) after an impulse of the rate, or of the rate that is asked for, about all axes at once: the
-/// loop's axes know nothing of each other.
+/// Moments (N·m·s/rad) after an impulse of measured rate or setpoint, about all axes at once: they are independent.
 fn rate_loop(params: &Params, setpoint: bool) -> [Vec<f64>; 3] {
     let mut law = RateLoop::new(params, CONTROL_RATE_HZ);
     let mut answers: [Vec<f64>; 3] = Default::default();
@@ -123,7 +121,7 @@ fn rate_loop(params: &Params, setpoint: bool) -> [Vec<f64>; 3] {
     answers
 }
 
-/// Rate (rad/s) that the attitude loop asks for against a turn about `axis` by 1 rad: a turn of [`ANGLE`] is tried.
+/// Rate setpoint (rad/s) per rad of turn about `axis`, from a turn of [`ANGLE`].
 fn attitude(params: &Params, axis: usize) -> f64 {
     let mut law = AttitudeLoop::new(params);
     law.reset(Quat::IDENTITY);
@@ -149,10 +147,10 @@ mod tests {
         // p 10 1/s, i 8 1/s², attitude 4.5 1/s: at 1 rad/s (10 + 8/j)(1 + 4.5/j) 0.021 = (-26 - 53 j) 0.021.
         let slow = laws.at(0, 1e-3) / 0.021;
         assert!((slow - Complex::new(-26.0, -53.0)).length() < 0.3, "{slow}");
-        // Yaw: (3 + 1.5/j)(1 + 1.2/j) 0.063 = (1.2 - 5.1 j) 0.063, the notch being none.
+        // Yaw: (3 + 1.5/j)(1 + 1.2/j) 0.063 = (1.2 - 5.1 j) 0.063, without notch.
         let yaw = laws.at(2, 1e-3) / 0.063;
         assert!((yaw - Complex::new(1.2, -5.1)).length() < 0.03, "{yaw}");
-        // At the filter's cut-off of 90 Hz 0.707 of 0.21 is left of the gain, and the phase is beyond -90°.
+        // At the filter's cut-off of 90 Hz the gain is 0.707 of 0.21 and the phase beyond -90°.
         let fast = laws.at(0, std::f64::consts::TAU * 0.09);
         assert!(
             (fast.length() / 0.21 - 0.707).abs() < 0.02 && fast.to_angle() < -1.6,

@@ -1,27 +1,27 @@
-//! Stability and margins of a loop by its gain over the frequency.
+//! Stability and margins of a loop from its gain over frequency.
 
 use super::response::{Complex, difference};
 use sophie_control::chain::CONTROL_RATE_HZ;
 use std::f64::consts::{PI, TAU};
 
-/// What a loop can bear.
+/// Margins of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
-    /// Factor by which the gain may rise or fall before the loop oscillates, the nearer of both; below 1 for one that does:
-    /// the share of its gain at which it would not.
+    /// Factor by which the gain may rise or fall, the nearer of both; below 1 for an oscillating loop: the share of its
+    /// gain at which it is stable.
     pub gain: f64,
-    /// Phase that may be lost before it does, rad; negative for one that oscillates.
+    /// Loss of phase at which it oscillates, rad; negative if it does.
     pub phase: f64,
-    /// Highest frequency at which the gain is 1, rad/s: the loop's bandwidth; 0 for a loop without.
+    /// Highest frequency at which the gain is 1, rad/s (bandwidth); 0 if there is none.
     pub crossover: f64,
 }
 
 impl Margins {
-    /// The margins of the loop whose gain at each frequency (rad/s, rising) is in `curve`.
+    /// Margins from the gains `curve` over rising frequencies (rad/s).
     ///
-    /// Closed, the loop divides by 1 + L. With a factor 1 - z⁻¹ for each integrator of L all poles of
-    /// F = (1 + L)(1 - z⁻¹)ⁿ are inside the unit circle, so F turns about 0 as often as the closed loop has poles outside:
-    /// along half of the circle, from a real number to another, by π for each. A loop is stable if F does not turn.
+    /// The closed loop divides by 1 + L. With a factor 1 - z⁻¹ for each of L's n integrators all poles of
+    /// F = (1 + L)(1 - z⁻¹)ⁿ are inside the unit circle, so along half of it, from a real number to another, F turns
+    /// about 0 by π for each pole of the closed loop outside. A loop is stable if F does not turn.
     #[must_use]
     pub fn of(curve: &[(f64, Complex)]) -> Self {
         let stable = turned(curve).abs() < PI;
@@ -50,7 +50,7 @@ impl Margins {
                 crossover,
             }
         } else {
-            // Where it would not oscillate lies beyond the nearest crossing that it has passed.
+            // The stable gain lies beyond the nearest crossing passed.
             let passed = if down > 0.0 { down } else { 1.0 / up };
             Self {
                 gain: passed.min(1.0),
@@ -61,8 +61,8 @@ impl Margins {
     }
 }
 
-/// Integrators of a loop: the slope of its gain at the lowest frequencies. Turn rate, angle and the rate loop's integral
-/// are three, fewer where a gain is 0.
+/// Slope of the gain at the lowest frequencies. Turn rate, angle and the rate loop's integral are integrators, fewer
+/// where a gain is 0.
 fn integrators(curve: &[(f64, Complex)]) -> u32 {
     let Some(((low, a), (high, b))) = curve.first().zip(curve.get(1)) else {
         return 0;
@@ -96,7 +96,6 @@ mod tests {
     use super::super::response::quotient;
     use super::*;
 
-    /// The margins of a loop given over s = jω.
     fn margins(gain: impl Fn(Complex) -> Complex) -> Margins {
         let curve: Vec<_> = frequencies().map(|w| (w, gain(Complex::new(0.0, w)))).collect();
         Margins::of(&curve)
@@ -131,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_gain_too_small_for_its_integrals_oscillates_as_well() {
-        // k (s + 1)² / s³ needs k > 1/2: below, the integrals' phase is not made up for.
+        // k (s + 1)² / s³ needs k > 1/2: below, the integrators' phase is not made up for.
         for (k, gain) in [(0.25, 0.5), (2.0, 4.0)] {
             let m = margins(|s| {
                 let (zero, pole) = (s + Complex::X, one_over(s));

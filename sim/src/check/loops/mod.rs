@@ -1,9 +1,8 @@
-//! The control loops in hover, taken from what flies: no transfer function of plant or laws is written down here.
+//! The control loops in hover, identified from the code that flies.
 //!
-//! A loop is opened between control and mixer. `vehicle` has the body rates that follow a moment (allocation, thrust
-//! curve and the plant with its motors and tip masses), `laws` the moment that follows a body rate (filter, attitude
-//! and rate loop). Both are identified by an impulse of one step of 1 ms, and their product is the loop's gain
-//! L(e^{jωT}) at the frequency ω. [`margins`] reads its margins.
+//! A loop is opened between control and mixer. `vehicle` has the response of body rates to a moment (allocation, thrust
+//! curve, plant), `laws` that of the moment to a body rate (filter, attitude and rate loop). Each is identified by an
+//! impulse of one step of 1 ms; their product is the loop's gain L(e^{jωT}), which gives the [`margins`].
 
 mod laws;
 mod margins;
@@ -19,12 +18,12 @@ use sophie_control::chain::CONTROL_RATE_HZ;
 
 use crate::scenario::Scenario;
 
-/// Lowest frequency looked at, rad/s: below every integral's corner.
+/// Lowest frequency, rad/s: below every integral's corner.
 const LOWEST: f64 = 1e-3;
-/// Frequencies in a decade: 3 % from one to the next, which finds a margin to 1 %.
+/// 3 % apart, which finds a margin to 1 %.
 const PER_DECADE: f64 = 60.0;
 
-/// The margins about roll, pitch and yaw of the vehicle of `scenario` in hover.
+/// Margins about roll, pitch and yaw of the vehicle of `scenario` in hover.
 #[must_use]
 pub fn margins(scenario: &Scenario) -> [Margins; 3] {
     let laws = Laws::of(&scenario.params);
@@ -34,7 +33,7 @@ pub fn margins(scenario: &Scenario) -> [Margins; 3] {
         let curve: Vec<_> = frequencies()
             .map(|omega| {
                 let angle = omega / f64::from(CONTROL_RATE_HZ);
-                // What is measured at the end of a step acts in the next one.
+                // A measurement at the end of a step acts in the next one.
                 let delay = Complex::from_angle(-angle);
                 let gain = vehicle.at(angle).rotate(laws.at(axis, angle)).rotate(delay);
                 (omega, gain)
@@ -44,7 +43,7 @@ pub fn margins(scenario: &Scenario) -> [Margins; 3] {
     })
 }
 
-/// Frequencies from [`LOWEST`] to half of the control rate, rad/s.
+/// From [`LOWEST`] to half the control rate, rad/s.
 fn frequencies() -> impl Iterator<Item = f64> {
     let top = std::f64::consts::PI * f64::from(CONTROL_RATE_HZ);
     let count = ((top / LOWEST).log10() * PER_DECADE) as i32;

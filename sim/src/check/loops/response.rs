@@ -1,34 +1,34 @@
-//! Responses to an impulse, and what they make of a frequency.
+//! Impulse responses and their gain over frequency.
 
 use glam::DVec2;
 
-/// A complex number: x real, y imaginary; [`DVec2::rotate`] is the product.
+/// x real, y imaginary; [`DVec2::rotate`] is the product.
 pub type Complex = DVec2;
 
-/// Quotient of two complex numbers.
+/// `a / b`.
 #[must_use]
 pub fn quotient(a: Complex, b: Complex) -> Complex {
     a.rotate(Complex::new(b.x, -b.y)) / b.length_squared()
 }
 
-/// 1 - z⁻¹ on the unit circle at `angle` (rad a step): what a sum over all steps divides by.
+/// 1 - z⁻¹ at `angle` rad a step: the reciprocal of a sum over all steps.
 #[must_use]
 pub fn difference(angle: f64) -> Complex {
     Complex::new(1.0, 0.0) - Complex::from_angle(-angle)
 }
 
-/// A linear response, held as the steps of its answer to an impulse: what settles at a value other than 0, as the turn
-/// rate after a push or an integral, has steps that end.
+/// A linear response, stored as differences of its impulse answer, which end even where the answer settles at a value
+/// other than 0 (turn rate after a push, integrals).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     steps: Vec<f64>,
 }
 
-/// Share of the largest step below which a tail is cut off.
+/// Share of the largest difference where the tail is cut off.
 const TAIL: f64 = 1e-6;
 
 impl Response {
-    /// Of the answer `answer` (one value a step) to an impulse of 1 in its first step.
+    /// `answer`: one value a step after an impulse of 1 in the first.
     #[must_use]
     pub fn of(answer: &[f64]) -> Self {
         let mut last = 0.0;
@@ -70,7 +70,7 @@ mod tests {
             let expected = quotient(Complex::new(2.0, 0.0), difference(angle));
             assert!((sum.at(angle) - expected).length() < 1e-9 * expected.length());
         }
-        // Slowly, a sum of 2 a step of 1 ms is an integral: 2000 / (jω).
+        // At low frequency a sum of 2 a step of 1 ms is an integral: 2000 / (jω).
         let (omega, gain) = (1.0, sum.at(1e-3));
         assert!((gain.length() * omega / 2000.0 - 1.0).abs() < 1e-3 && gain.to_angle() < -1.56);
     }

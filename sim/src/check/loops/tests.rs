@@ -1,4 +1,4 @@
-//! The loops as identified, against a vehicle simple enough for a formula.
+//! The identified loops against a vehicle simple enough for a formula.
 
 use super::*;
 
@@ -10,7 +10,7 @@ fn stiff_level_arms_leave_the_motor_and_the_inertia() {
     s.vehicle.gain_k = 1.0;
     s.params.gain_k = 1.0;
     (s.params.arm_a1, s.params.arm_a2, s.params.arm_b1, s.params.arm_b2) = (0.1, 0.0, 0.0, 0.0);
-    // The plant's curve of command to thrust is not the stack's: the gain is the slope of the one at the other.
+    // The plant's curve of command to thrust is not the stack's: the gain is the slope of one at the other.
     let hovering = Hovering::of(&s);
     for (axis, inertia) in [0.021, 0.044, 0.063].into_iter().enumerate() {
         let response = hovering.response(axis);

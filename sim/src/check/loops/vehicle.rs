@@ -1,4 +1,4 @@
-//! The vehicle's answer to a moment in hover: allocation, thrust curve and plant, pushed by one step's moment.
+//! The hovering vehicle's response to a moment of one step, through allocation, thrust curve and plant.
 
 use glam::DVec3;
 use rand::SeedableRng;
@@ -21,27 +21,27 @@ use crate::scenario::{Scenario, World};
 /// Names of the axes.
 pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// Step of the laws, s, and steps of the plant in it.
+/// s, and plant steps in it.
 const DT: f64 = 1.0 / CONTROL_RATE_HZ as f64;
 const PLANT_STEPS: u32 = (DT / STEP) as u32;
-/// Time in which rotors and arms come to their place in hover, steps.
+/// Settling of rotors and arms in hover, steps.
 const TRIM_STEPS: u64 = 3000;
-/// Gains while they do, 1/s: as gentle as holds an attitude, whatever gains are judged.
+/// Just enough to hold an attitude meanwhile, 1/s, whatever gains are judged.
 const GENTLE: [f32; 4] = [1.5, 3.0, 0.5, 1.0];
-/// Steps between two readings of the arms' sensors.
+/// Per reading of the arm sensors.
 const ARM_STEPS: u64 = 10;
-/// Largest share of the full thrust that is taken to hover: beyond it rotors cannot answer, and the row on thrust says so.
+/// Largest share of full thrust for hover: beyond it rotors cannot respond, and the thrust row reports it.
 const HOVER_SHARE: f64 = 0.9;
-/// Largest moments of the impulses, N·m for 1 ms: 0.7 N a rotor about roll and pitch, less than yaw is allowed of a stiff
-/// frame; and the share of the room that the rotors have which they take at most.
+/// Largest impulses, N·m for 1 ms: 0.7 N a rotor about roll and pitch, less than yaw's limit on a stiff frame; and
+/// their largest share of the rotors' room.
 const PUSH: [f64; 3] = [0.5, 0.5, 0.05];
 const ROOM_SHARE: f64 = 0.2;
-/// Longest time that a response is followed, steps, and the share of its largest change below which it has ended.
+/// Longest response, steps, and the share of its largest change at which it ends.
 const LONGEST: usize = 5000;
 const ENDED: f64 = 1e-3;
-/// Steps for which it must stay below: the slowest arm's mode, 1 Hz, turns twice in it.
+/// Steps to stay below it: two periods of the slowest arm mode, 1 Hz, fit in.
 const QUIET: usize = 300;
-/// Where it hovers, m, NED: off the ground and the pipe.
+/// m, NED: off ground and pipe.
 const PLACE: DVec3 = DVec3::new(0.0, 0.0, -1000.0);
 
 /// A vehicle that hovers in still air.
@@ -51,13 +51,13 @@ pub struct Hovering {
     mixing: Mixing<Mixer>,
     params: Params,
     wrench: Wrench,
-    /// Share of the largest impulses for which the rotors have room.
+    /// Scale of the impulses for which the rotors have room.
     push: f64,
     at_us: u64,
 }
 
 impl Hovering {
-    /// The vehicle of `scenario`, held level by the laws with gentle gains until arms and rotors have settled.
+    /// Held level with gentle gains until arms and rotors have settled.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let calm = Scenario {
@@ -136,7 +136,6 @@ impl Hovering {
         }
     }
 
-    /// A step of the laws' rate under `wrench`.
     fn step(&mut self, wrench: Wrench, mix: &mut MixOutput) {
         self.at_us += 1000;
         let surroundings = Surroundings {
@@ -152,12 +151,12 @@ impl Hovering {
         for _ in 0..PLANT_STEPS {
             self.plant.step(&actuators);
         }
-        // Drag on what speed a lean makes turns the vehicle over within seconds, which the loops never let happen.
+        // Drag on the speed that a lean builds up would turn the vehicle over within seconds; the loops prevent that.
         self.plant.place(PLACE, DVec3::ZERO);
     }
 
-    /// Body rate about `axis` (0 to 2) after a moment of 1 N·m in one step, rad/(s·N·m): half the difference of two runs
-    /// pushed to either side, so that whatever both do drops out.
+    /// Body rate about `axis` (0 to 2) after 1 N·m in one step, rad/(s·N·m): half the difference of opposite pushes,
+    /// which cancels common drift.
     #[must_use]
     pub fn response(&self, axis: usize) -> Response {
         let push = PUSH[axis] * self.push;
@@ -181,7 +180,6 @@ impl Hovering {
     }
 }
 
-/// `wrench` with `moment` (N·m) more about `axis`.
 fn pushed(wrench: Wrench, axis: usize, moment: f32) -> Wrench {
     let mut pushed = wrench;
     match axis {

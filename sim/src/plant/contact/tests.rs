@@ -28,17 +28,16 @@ fn the_pads_path_is_differentiated_right() {
             }
         }
     }
-    // By hand: straight arm, station 0.16 m: 0.16 m out, and s²/2L = 71.91 mm of rise per radian.
+    // Straight arm, station 0.16 m: 0.16 m out; s²/2L = 71.91 mm of rise per radian.
     let (r, by_alpha) = ArmSkin::new(2).point(0.0, 0.16);
     assert!((r - DVec3::new(0.178, 0.16, UNDERSIDE_Z)).length() < 1e-9);
     assert!((by_alpha - DVec3::new(0.0, 0.0, -0.071_91)).length() < 1e-5);
-    // Left arms point to -y, rear ones sit at -x.
     assert!(ArmSkin::new(1).point(0.0, 0.16).0.y < 0.0 && ArmSkin::new(1).point(0.0, 0.16).0.x < 0.0);
 }
 
 #[test]
 fn an_arm_bent_to_the_pipe_s_curvature_lies_on_it() {
-    // The root touches the crown; the arc of radius R is the pipe's.
+    // Root on the crown, arc radius R of the pipe.
     let radius = 0.15;
     let skin = ArmSkin::new(0);
     for s in STATIONS {
@@ -50,7 +49,7 @@ fn an_arm_bent_to_the_pipe_s_curvature_lies_on_it() {
 
 #[test]
 fn the_virtual_work_of_the_skin_is_consistent() {
-    // Power of generalised and point forces agree; only the arm moves.
+    // Power of generalised and point forces agree while only the arm moves.
     let pipe = Pipe {
         north: 0.0,
         half_length: 1.0,
@@ -62,11 +61,8 @@ fn the_virtual_work_of_the_skin_is_consistent() {
     let mut skin = ArmSkin::new(3);
     let alpha = -ARM_LENGTH / 0.15 - 0.1;
     let load = skin.step(DT, alpha, 0.0, &at(DVec3::ZERO), &pipe);
-    // Normal forces push the arm up and the body off the pipe.
     assert!(load.moment_alpha > 0.0 && load.force_body.z < 0.0 && load.pressure > 0.0);
-    // An arm off the pipe.
     assert!(ArmSkin::new(3).step(DT, -0.3, 0.0, &at(DVec3::ZERO), &pipe) == SkinLoad::default());
-    // An arm beyond the pipe's end.
     let away = Pipe { north: 5.0, ..pipe };
     assert!(skin.step(DT, alpha, 0.0, &at(DVec3::ZERO), &away) == SkinLoad::default());
 }
@@ -79,7 +75,7 @@ fn a_body_comes_to_rest_at_its_weight_s_depth_and_stays_on_a_slope_of_friction()
     let mut load = BodyLoad::default();
     for i in 0..6000 {
         load = belly.step(DT, &pose, &Surface::Ground(0.5));
-        // 4 N from 1.5 s on: below 0.5 · 17.65 N.
+        // 4 N from 1.5 s on, below 0.5 · 17.65 N.
         let side = if i > 3000 { push } else { 0.0 };
         let a = load.force_body / mass + DVec3::new(0.0, side / mass, 9.806_65);
         pose.velocity += a * DT;
@@ -92,7 +88,7 @@ fn a_body_comes_to_rest_at_its_weight_s_depth_and_stays_on_a_slope_of_friction()
         pose.position.z
     );
     assert!((load.normal - 17.652).abs() < 0.01);
-    // Deflection of the bristles: 4 N on 16 kN/m.
+    // Bristles: 4 N on 16 kN/m.
     assert!((pose.position.y - 0.25e-3).abs() < 2e-5, "{}", pose.position.y);
     assert!(pose.velocity.length() < 1e-4);
 }
@@ -113,7 +109,6 @@ fn beyond_the_friction_it_slides_with_coulomb_s_force() {
         );
     }
     assert!((touch.normal - 4.0).abs() < 1e-9 && (touch.force.y + 2.0).abs() < 1e-9);
-    // A fast departure cuts the damper off.
     let motion = PointMotion {
         position,
         velocity: DVec3::new(0.0, 0.0, -1.0),
@@ -125,12 +120,11 @@ fn beyond_the_friction_it_slides_with_coulomb_s_force() {
 #[test]
 fn a_drooping_tip_pushes_its_arm_up() {
     let mut tip = ArmTip::new(2);
-    // Hinge 20 mm under the body, arm drooping by 0.46 rad: 99 mm under it, body at 90 mm.
+    // Hinge 20 mm under the body, tip 99 mm under it at 0.46 rad, body at 90 mm.
     let load = tip.step(DT, -0.46, 0.0, &at(DVec3::new(0.0, 0.0, -0.09)));
     // 9.02 mm deep, 1500 N/m; lever L cos α.
     let force = 1500.0 * (HINGE_Z + ARM_LENGTH * 0.46_f64.sin() - 0.09);
     assert!((load.force_body - DVec3::new(0.0, 0.0, -force)).length() < 1e-9);
     assert!((load.moment_alpha - force * ARM_LENGTH * 0.46_f64.cos()).abs() < 1e-9);
-    // A right arm's push up rolls to the left.
     assert!(load.moment_body.x < 0.0);
 }

@@ -153,7 +153,6 @@ fn every_number_takes_its_bounds_and_nothing_beyond() {
             } else {
                 format!("[{table}]\n")
             };
-            // Room for the largest pipe.
             let room = if name == "pipe_diameter_m" {
                 "pipe_top_m = 5\n"
             } else {
@@ -190,7 +189,7 @@ fn a_vehicle_that_loads_can_be_stepped() {
         for key in KEYS.iter().filter(|key| key.name.starts_with("vehicle.")) {
             let mut any = |range: &keys::Range| rng.random_range(range.min..=range.max);
             let value = match &key.kind {
-                // Most arms near the paper's: others rarely rise with thrust.
+                // Mostly near the paper's: others rarely rise with thrust.
                 Kind::PerArm(..) if key.name.ends_with("coefficients") && draw % 8 != 0 => {
                     let mut near = |x: f64| x * rng.random_range(0.2..3.0);
                     format!("{:?}", crate::plant::arm::TABLE_1.map(&mut near))

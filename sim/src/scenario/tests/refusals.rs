@@ -245,7 +245,6 @@ fn long_and_odd_values_stay_on_one_line() {
 
 #[test]
 fn no_damage_to_a_file_makes_more_than_one_line() {
-    // A fixed generator: repeatable damage.
     let mut state = 1_u64;
     let mut random = |below: usize| {
         state = state
@@ -330,7 +329,6 @@ fn coefficients_that_give_no_arm_are_refused_with_their_key() {
         line.starts_with("perch.toml:2: params.arm_a1 = -1: allowed a tilt that rises without thrust"),
         "{line}"
     );
-    // The paper's arm passes at every infill and gain.
     for infill in [4.0, 6.9, 10.0] {
         for gain_k in [1.0, 7.75, 10.0] {
             let overrides = Overrides {

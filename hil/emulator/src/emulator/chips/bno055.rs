@@ -28,20 +28,20 @@ mod reg {
     pub const SYS_TRIGGER: u8 = 0x3F;
     pub const AXIS_MAP_CONFIG: u8 = 0x41;
     pub const AXIS_MAP_SIGN: u8 = 0x42;
-    /// Registers writable only in configuration mode, except mode and trigger.
+    /// Writable only in configuration mode, except mode and trigger.
     pub const SETTINGS: core::ops::RangeInclusive<u8> = 0x3B..=0x6A;
 }
 
 const MS: u64 = 1_000_000;
-/// Boot time from power-on and from a reset, ns.
+/// From power-on and from a reset, ns.
 const BOOT: [u64; 2] = [400 * MS, 650 * MS];
-/// Into configuration mode, and out of it, ns.
+/// Into and out of configuration mode, ns.
 const SWITCH: [u64; 2] = [19 * MS, 7 * MS];
-/// Fusion period, ns.
+/// ns.
 const FUSION: u64 = 10 * MS;
-/// Time at rest per step of the gyroscope's calibration, ns (assumed).
+/// Rest per step of the gyroscope's calibration, ns (assumed).
 const CALIBRATION: u64 = 1000 * MS;
-/// Registers 0 to 6: chip, accelerometer, magnetometer, gyroscope, software revision, boot loader.
+/// From register 0: chip, accelerometer, magnetometer, gyroscope, software revision, boot loader.
 const IDENTITY: [u8; 7] = [0xA0, 0xFB, 0x32, 0x0F, 0x11, 0x03, 0x15];
 const RESET_VALUES: [(u8, u8); 6] = [
     (0x36, 0x0F),
@@ -59,13 +59,11 @@ pub struct Bno055 {
     page: u8,
     pointer: u8,
     first: bool,
-    /// End of booting, ns.
     boots_at: u64,
     /// Next mode and its time, ns.
     switch: Option<(u8, u64)>,
-    /// Start of the present mode, ns.
+    /// ns.
     since: u64,
-    /// Fusion results since then.
     fused: u64,
     /// Specific force at rest (up), m/s², chip axes.
     pub up: [f64; 3],
@@ -74,7 +72,7 @@ pub struct Bno055 {
 store!(Bno055);
 
 impl Bno055 {
-    /// A chip powered at time 0.
+    /// Powered at time 0.
     pub fn new(address: u8) -> Self {
         let mut chip = Self {
             address,
@@ -108,7 +106,6 @@ impl Bno055 {
         self.registers[usize::from(reg::OPR_MODE)] & 0x0F
     }
 
-    /// Updates the registers to `now`.
     fn settle(&mut self, now: u64) {
         if let Some((mode, at)) = self.switch
             && at <= now

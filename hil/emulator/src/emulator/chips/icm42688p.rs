@@ -1,5 +1,5 @@
 //! The emulator's ICM-42688-P with additions after DS-000347 rev. 1.8: data-ready pulses on INT1 (§12.5, §14.50), the
-//! self-test (§14.52; factory codes after the maker's application note), and separate samples for every data-ready.
+//! self-test (§14.52; factory codes after the maker's application note), a separate sample per data-ready.
 
 use std::collections::VecDeque;
 
@@ -23,22 +23,22 @@ mod reg {
 
 /// Address bit of a read (§9.6).
 const READ: u8 = 0x80;
-/// PWR_MGMT0: gyroscope in low-noise mode, required for samples at its rate.
+/// PWR_MGMT0: low-noise mode, as sampling requires.
 const GYRO_ON: u8 = 0x0C;
-/// INT_SOURCE0: data-ready routed to INT1.
+/// INT_SOURCE0.
 const DATA_READY_ON_INT1: u8 = 0x08;
-/// Factory codes, gyroscope and accelerometer: the response to actuation.
+/// Factory codes of gyroscope and accelerometer: response to actuation.
 const CODES: [[u8; 3]; 2] = [[101, 97, 106], [118, 121, 109]];
-/// Response of code 1, counts at 250 °/s and 2 g full scale; each further code adds 1 %.
+/// Response of code 1, counts at 250 °/s and 2 g full scale; each code adds 1 %.
 const CODE_BASE: f64 = 2620.0;
-/// Counts per °/s and per g at the ranges of the test.
+/// Counts per °/s and per g during the test.
 const TEST_COUNTS: [f64; 2] = [32_768.0 / 250.0, 32_768.0 / 2.0];
-/// Samples kept: far more than a millisecond's.
+/// Far more than a millisecond's samples.
 const QUEUE: usize = 64;
 
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Sample {
-    /// Start of validity, ns of emulated time.
+    /// Start of validity, ns.
     pub at: u64,
     /// Angular rate, thousandths of °/s.
     pub rate: [i32; 3],
@@ -49,11 +49,11 @@ pub struct Sample {
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Imu {
     inner: Icm42688p,
-    /// Data-ready pulses that arrived since power-on.
+    /// Since power-on.
     pub pulses: u64,
     /// Line cut: the part samples, no pulse arrives.
     pub line_cut: bool,
-    /// Ready times of samples not yet read, ns.
+    /// Ready times of unread samples, ns.
     pub pulsed: Vec<u64>,
     samples: VecDeque<Sample>,
     now: Sample,
@@ -67,7 +67,7 @@ pub struct Imu {
     next: Option<(EventId, VirtualNanos)>,
 }
 
-/// A transfer under way: address byte, and data bytes so far.
+/// Address byte, and data bytes so far.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Transfer {
     address: u8,
@@ -100,7 +100,7 @@ impl Default for Imu {
 }
 
 impl Imu {
-    /// Queues a sample; the oldest are dropped if not read.
+    /// Queues a sample; drops the oldest if full.
     pub fn feed(&mut self, sample: Sample) {
         if self.samples.len() >= QUEUE {
             self.samples.pop_front();
@@ -117,7 +117,7 @@ impl Imu {
         }
         let mut senses = [self.now.rate, self.now.force];
         for (sensor, axes) in senses.iter_mut().enumerate() {
-            // Bits 0 to 2 actuate the gyroscope, 3 to 5 the accelerometer, whose supply is bit 6.
+            // Bits 0 to 2 actuate the gyroscope, 3 to 5 the accelerometer, with supply bit 6.
             let powered = sensor == 0 || self.actuated & 0x40 != 0;
             for (axis, value) in axes.iter_mut().enumerate() {
                 if powered && self.actuated & (1 << (3 * sensor + axis)) != 0 {
@@ -131,7 +131,7 @@ impl Imu {
         self.inner.set_acceleration(ax, ay, az);
     }
 
-    /// Sample period, ns; `None` while none are signalled.
+    /// ns; `None` without data-ready.
     fn period(&self) -> Option<u64> {
         let period = match self.rate_code & 0x0F {
             3 => 125_000,
@@ -185,7 +185,7 @@ impl Imu {
     }
 }
 
-/// Factory response, counts of the test.
+/// Counts.
 fn response(code: u8) -> f64 {
     CODE_BASE * 1.01f64.powi(i32::from(code) - 1)
 }

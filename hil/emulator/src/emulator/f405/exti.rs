@@ -11,7 +11,7 @@ impl Device for Syscfg {
     type Register = syscfg::Register;
 }
 
-/// The port (0 is A) whose pin `line` raises interrupt line `line` (§9.2.3 to §9.2.6).
+/// Port (0 is A) of the pin that raises interrupt line `line` (§9.2.3 to §9.2.6).
 pub fn routed_to(line: u8, file: &RegisterFile) -> usize {
     let register = match line / 4 {
         0 => syscfg::Register::Exticr1,
@@ -22,7 +22,7 @@ pub fn routed_to(line: u8, file: &RegisterFile) -> usize {
     (file.get(register) >> (4 * (line % 4)) & 0xF) as usize
 }
 
-/// Place of each vector in the instance's table, and its lines (table 62, the F405's).
+/// Table index and lines of each vector (table 62, F405).
 const VECTORS: [(usize, u64); 7] = [
     (1, 1 << 0),
     (2, 1 << 1),
@@ -75,7 +75,7 @@ impl Device for Exti {
         match register {
             exti::Register::Pr => {
                 self.pending &= !value;
-                // Clearing the pending bit also clears the software trigger (§12.3.5).
+                // Clearing a pending bit also clears the software trigger (§12.3.5).
                 let software = file.get(exti::Register::Swier) & !value;
                 file.set(exti::Register::Swier, software);
                 self.raise(file, c);

@@ -1,7 +1,5 @@
-//! The emulator's I2C interface, with no acknowledge for the last byte of a DMA read.
-//!
-//! On the part, the DMA controller signals the last byte to the interface (RM0090 §27.3.7, bit LAST). Otherwise the
-//! emulator's interface reads on, and the next transfer finds one byte too many.
+//! The emulator's I2C interface, without acknowledge for the last byte of a DMA read. The part's DMA controller signals
+//! that byte (RM0090 §27.3.7, bit LAST); otherwise the emulator reads one byte too many.
 
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::soc::Width;
@@ -12,9 +10,8 @@ use rigless::time::{EventId, VirtualNanos};
 #[derive(Debug)]
 pub struct DmaI2c {
     pub inner: I2c,
-    /// Register of the receiving DMA stream's remaining count.
+    /// Register of the DMA stream's remaining count.
     remaining: u64,
-    /// Ends of bytes that wait for that count.
     ends: Vec<EventId>,
 }
 

@@ -1,15 +1,15 @@
-//! The two-channel timer TIM12 (RM0090 §19.4), of which the emulator has registers but no model.
+//! The two-channel timer TIM12 (RM0090 §19.4), which the emulator does not model.
 
 use rigless::soc::st::tim::{Counter, Family, Kind, Part};
 use rigless::soc::stm32f427::generated::tim9::Register;
 use rigless::soc::stm32f427::peripherals::tim::{PART, Tim};
 
-/// Timer clock on the slow bus, Hz, from the board's start; the emulator's clock tree does not reach it.
+/// Clock on the slow bus, Hz; the emulator's clock tree does not reach the timer.
 const CLOCK: u64 = 84_000_000;
-/// The timer's bit in the slow bus's clock register.
+/// Its bit in the slow bus's clock register.
 pub const ENABLED: u64 = 1 << 6;
 
-/// Layout of TIM9 and TIM12: two channels, counting up.
+/// TIM9 and TIM12: two channels, counting up.
 #[derive(Debug, Clone, Copy)]
 pub struct TwoChannels;
 

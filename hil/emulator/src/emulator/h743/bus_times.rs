@@ -1,13 +1,13 @@
 //! Checks an I2C's times against fast mode: the emulator's chips answer at any.
 
-/// Times of a `TIMINGR` at a kernel clock of `hz` that breach fast mode (UM10204 table 10, by RM0433 §47.4.5).
+/// Times of a `TIMINGR` at `hz` that breach fast mode (UM10204 table 10, by RM0433 §47.4.5).
 pub fn wrong(timing: u64, hz: f64) -> Option<String> {
     let field = |shift: u32, bits: u32| (timing >> shift & ((1 << bits) - 1)) as f64;
     let cycle = 1e9 / hz;
     let tick = (field(28, 4) + 1.0) * cycle;
     let (low, high) = ((field(0, 8) + 1.0) * tick, (field(8, 8) + 1.0) * tick);
     let limits = [
-        // Slowest edge, 300 ns, and 100 ns.
+        // Slowest edge, 300 ns, plus 100 ns.
         ("data set-up", (field(20, 4) + 1.0) * tick, 400.0, f64::INFINITY),
         // Plus analog filter and synchroniser: 50 to 260 ns, 3 to 4 cycles.
         (

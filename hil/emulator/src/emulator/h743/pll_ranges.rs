@@ -1,4 +1,4 @@
-//! Checks the PLLs' ranges against their frequencies: the emulator's PLLs lock in any range, real ones do not.
+//! Checks the PLLs' ranges: the emulator's lock in any, real ones do not.
 
 /// Clock registers: `CR`, `PLLCKSELR`, `PLLCFGR` and each PLL's `DIVR`.
 pub struct Settings {
@@ -8,13 +8,13 @@ pub struct Settings {
     pub multipliers: [u64; 3],
 }
 
-/// Reference frequencies of the input ranges, MHz (RM0433 §8.7.12).
+/// Of the input ranges, MHz (RM0433 §8.7.12).
 const INPUTS: [[f64; 2]; 4] = [[1.0, 2.0], [2.0, 4.0], [4.0, 8.0], [8.0, 16.0]];
-/// Frequencies of the wide and medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
+/// Wide and medium oscillator, MHz (RM0433 §8.5.5, datasheet of revision V).
 const WIDE: [f64; 2] = [192.0, 836.0];
 const MEDIUM: [f64; 2] = [150.0, 420.0];
 
-/// The first enabled PLL outside its range, with a source of `hz`.
+/// The first enabled PLL outside its range, sourced with `hz`.
 pub fn wrong(settings: &Settings, hz: f64) -> Option<String> {
     (0..3).find_map(|nth| one(settings, nth, hz * 1e-6).map(|what| format!("PLL{}: {what}", nth + 1)))
 }
@@ -50,7 +50,6 @@ fn one(settings: &Settings, nth: usize, mhz: f64) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// The first PLL alone, from 8 MHz.
     fn first(divider: u64, multiplier: u64, input: u64, medium: u64) -> Option<String> {
         let settings = Settings {
             control: 1 << 24,
@@ -66,7 +65,7 @@ mod tests {
         assert_eq!(first(1, 100, 3, 0), None);
         assert_eq!(first(4, 100, 1, 0), None);
         for ((divider, multiplier, input, medium), told) in [
-            // A former setting of the firmware: 200 MHz of the medium oscillator, from 8 MHz.
+            // A former setting: 200 MHz of the medium oscillator, from 8 MHz.
             (
                 (1, 25, 3, 1),
                 "PLL1: reference of the medium oscillator 8 MHz, its range is 1 to 2",

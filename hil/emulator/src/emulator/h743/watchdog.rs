@@ -1,4 +1,4 @@
-//! The independent watchdog, missing in the emulator's H743: its F427's under the H743's registers.
+//! The independent watchdog, missing in the emulator's H743: its F427's, under the H743's registers.
 
 use rigless::device::{Device, DeviceContext, RegisterFile};
 use rigless::soc::Layout;
@@ -7,7 +7,7 @@ use rigless::soc::stm32f427::peripherals::iwdg::Iwdg as F4Iwdg;
 use rigless::soc::stm32h743::generated::iwdg as h7;
 use rigless::time::EventId;
 
-/// IWDG1. Registers 0 to 3 are alike on both parts; the fifth, the window, is stored without effect.
+/// IWDG1. Registers 0 to 3 are alike; the fifth, the window, has no effect.
 #[derive(Debug, Default)]
 pub struct Watchdog(F4Iwdg);
 

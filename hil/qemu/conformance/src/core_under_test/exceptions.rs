@@ -1,7 +1,7 @@
 //! Order of events in nesting, priorities, masks, tail-chaining, faults, sleep, and floats across interrupts.
 //!
-//! An event is an interrupt's number when its handler starts, the negative number when it ends, or a number from 1000
-//! on for a line of the scenario.
+//! Events: an interrupt's number at its handler's start, the negative number at its end; numbers from 1000 on are
+//! lines of the scenario.
 
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments};
@@ -15,7 +15,7 @@ use cortex_m::register::{basepri, basepri_max, control};
 use cortex_m_rt::exception;
 
 const EVENTS: usize = 128;
-/// Interrupts and priorities. The upper bits count: four on one machine, three on the other.
+/// The machines use the upper four and three bits.
 const PRIORITIES: [(u16, u8); 7] = [
     (1, 0x40),
     (2, 0x20),
@@ -28,9 +28,9 @@ const PRIORITIES: [(u16, u8); 7] = [
 
 static LOG: [AtomicI32; EVENTS] = [const { AtomicI32::new(0) }; EVENTS];
 static LENGTH: AtomicUsize = AtomicUsize::new(0);
-/// Interrupt that a handler pends once before it ends; 0: none.
+/// Pended by a handler once before its end; 0: none.
 static CHAIN: [AtomicI32; 8] = [const { AtomicI32::new(0) }; 8];
-/// Status of the last usage fault, and number of usage faults.
+/// Status of the last usage fault, and their number.
 static FAULT_STATUS: AtomicU32 = AtomicU32::new(0);
 static FAULTS: AtomicU32 = AtomicU32::new(0);
 
@@ -51,7 +51,7 @@ fn event(number: i32) {
     }
 }
 
-/// Pends an interrupt; if enabled, it has run on return.
+/// If enabled, it has run on return.
 fn pend(line: u16) {
     NVIC::pend(Line(line));
     dsb();
@@ -108,7 +108,7 @@ fn SysTick() {
 }
 
 global_asm!(
-    // Spoils every caller-saved float register, and saves the others as a compiler would.
+    // Spoils caller-saved float registers.
     ".syntax unified",
     ".thumb_func",
     ".global conformance_spoil_floats",
@@ -223,7 +223,6 @@ pub fn run(print: &mut dyn FnMut(Arguments<'_>)) {
     }
 }
 
-/// A lower interrupt pends a higher one, and the reverse.
 fn nesting(_: &mut cortex_m::Peripherals) {
     chain(1, 2);
     chain(2, 4);
@@ -231,7 +230,7 @@ fn nesting(_: &mut cortex_m::Peripherals) {
     event(1000);
 }
 
-/// All released together: by priority, equal ones by number.
+/// Released together: by priority, then by number.
 fn ties(_: &mut cortex_m::Peripherals) {
     cortex_m::interrupt::disable();
     [7, 4, 3, 6, 1, 2, 5].into_iter().for_each(pend);
@@ -247,7 +246,7 @@ fn base_priority(_: &mut cortex_m::Peripherals) {
     unsafe { basepri::write(0x50) };
     [7, 4, 3, 1, 2].into_iter().for_each(pend);
     event(1003);
-    // Only raises: 0x80 is lower and is ignored.
+    // 0x80 is lower and ignored.
     basepri_max::write(0x80);
     event(i32::from(basepri::read()));
     // SAFETY: as above.
@@ -271,7 +270,7 @@ fn fault_mask(_: &mut cortex_m::Peripherals) {
     event(1008);
 }
 
-/// A supervisor call runs at once; PendSV, pended before it, runs last.
+/// PendSV runs last, though pended first.
 fn supervisor_call(_: &mut cortex_m::Peripherals) {
     cortex_m::interrupt::disable();
     SCB::set_pendsv();
@@ -285,7 +284,6 @@ fn supervisor_call(_: &mut cortex_m::Peripherals) {
     event(1010);
 }
 
-/// Interrupts that spoil the float registers do not change a sum.
 fn floats(_: &mut cortex_m::Peripherals) {
     let sum = |interrupted: bool| {
         let mut s = 0.0f32;
@@ -293,7 +291,7 @@ fn floats(_: &mut cortex_m::Peripherals) {
             let v = core::hint::black_box(1.5f32) * f32::from(k);
             if interrupted {
                 NVIC::pend(Line(if k % 2 == 0 { 1 } else { 7 }));
-                // Pended directly before the next operation, so that the frame holds half a sum.
+                // Pended just before the next operation: the frame holds half a sum.
             }
             s += v / (s + 0.75);
             isb();
@@ -302,14 +300,13 @@ fn floats(_: &mut cortex_m::Peripherals) {
     };
     let alone = sum(false);
     let interrupted = sum(true);
-    // Only the number of a hundred handlers' events is logged.
     let events = LENGTH.swap(0, Relaxed);
     event(events as i32);
     event(alone.to_bits() as i32);
     event(interrupted.to_bits() as i32);
 }
 
-/// The core's mark that floats are in use, before and after an interrupt that uses them.
+/// CONTROL.FPCA before and after an interrupt that uses floats.
 fn lazy_frame(_: &mut cortex_m::Peripherals) {
     let active = || i32::from(control::read().fpca() == control::Fpca::Active);
     // SAFETY: clears the mark that floats are in use; none is live across it.
@@ -356,7 +353,6 @@ fn usage_faults(core: &mut cortex_m::Peripherals) {
 }
 
 fn sleep(core: &mut cortex_m::Peripherals) {
-    // An event before the wait ends it at once.
     sev();
     wfe();
     event(1030);

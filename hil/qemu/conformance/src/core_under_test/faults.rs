@@ -1,5 +1,5 @@
-//! Ends of runs: stack overflow, unmapped address, a fault during a fault's report. Uses the flight handlers
-//! (`sophie-fault`); where the firmware restarts the chip, the image continues with the next line.
+//! Ends of runs: stack overflow, unmapped address, a fault during a fault's report. The flight handlers
+//! (`sophie-fault`) continue with the next line instead of a restart.
 
 use core::arch::{asm, global_asm};
 use core::fmt::{self, Arguments, Write};
@@ -9,15 +9,14 @@ use core::sync::atomic::{AtomicBool, AtomicU32};
 
 use cortex_m::asm::{dsb, isb};
 
-/// First address of the guard below the stack, and log2 of its bytes. QEMU's machines ignore accesses to unmapped
-/// memory, so memory protection replaces it.
+/// Guard below the stack: first address, log2 of its bytes. Replaces unmapped memory, which QEMU's machines ignore.
 const NOWHERE: u32 = 0x1FFF_F000;
 const NOWHERE_SIZE: u32 = 12;
-/// Memory protection: on, also in fault handlers, and only where a region requires it (ARMv7-M, B3.5).
+/// On, also in fault handlers, only in defined regions (ARMv7-M, B3.5).
 const PROTECTED: u32 = 0b111;
 /// Stack bytes left to the handler.
 const HANDLER: usize = 8192;
-/// Words of an exception frame, and places of return address and program status.
+/// Words of an exception frame; index of return address and program status.
 const FRAME: usize = 8;
 const PC: usize = 6;
 const STATUS: usize = 7;
@@ -30,7 +29,7 @@ static CONFORMANCE_STACK: AtomicU32 = AtomicU32::new(0);
 global_asm!(
     ".syntax unified",
     ".fpu fpv4-sp-d16",
-    // Calls the function in r0, and returns even when that ends the run.
+    // Calls the function in r0; returns even if that ends the run.
     ".thumb_func",
     ".global conformance_try",
     "conformance_try:",
@@ -121,13 +120,11 @@ pub fn go_on() -> ! {
     }
 }
 
-/// Prints a line per scenario, and calls `done`.
-///
-/// The handler begins at the top of the stack, so nothing there can be returned to.
+/// Prints a line per scenario, then calls `done`; cannot return: the handler overwrites the top of the stack.
 pub fn run(print: &mut dyn FnMut(Arguments<'_>), done: fn() -> !) -> ! {
     let room = black_box([0u8; HANDLER]);
     try_all(print, done);
-    // Never reached; keeps the room.
+    // Keeps the room; never reached.
     black_box(&room);
     done()
 }
@@ -201,7 +198,6 @@ extern "C" fn nothing_there() {
     black_box(read_nowhere());
 }
 
-/// A message whose formatting faults.
 struct Unreadable;
 
 impl fmt::Display for Unreadable {

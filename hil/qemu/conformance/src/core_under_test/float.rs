@@ -6,8 +6,7 @@ use cortex_m::register::fpscr::{self, Fpscr};
 
 use sophie_conformance::fold::{Fold, Noise};
 
-/// Critical operands: zeros, subnormals, the ends of the range, infinities, quiet and signalling NaNs, halves that
-/// round, and the ends of the integers.
+/// Zeros, subnormals, ends of the range, infinities, quiet and signalling NaNs, rounding halves, ends of the integers.
 const AWKWARD: [u32; 32] = [
     0x0000_0000, // 0
     0x8000_0000, // -0
@@ -50,10 +49,10 @@ const ROUNDING: [(&str, u32); 4] = [("rn", 0), ("rp", 1), ("rm", 2), ("rz", 3)];
 const ROUNDING_AT: u32 = 22;
 const FLUSH: u32 = 1 << 24;
 const DEFAULT_NAN: u32 = 1 << 25;
-/// Flags of operations, and the condition flags of a comparison.
+/// Flags of operations and of comparisons.
 const LEFT: u32 = 0xF000_009F;
 
-/// An instruction on the operands `a`, `b` and `c`; operands and result are bits.
+/// Operands and result are bits.
 type Operation = unsafe extern "C" fn(a: u32, b: u32, c: u32) -> u32;
 
 macro_rules! instructions {
@@ -195,7 +194,7 @@ fn modes(print: &mut dyn FnMut(Arguments<'_>), name: &str, operation: Operation,
             let mode = bits << ROUNDING_AT | special;
             for (i, &a) in operands.iter().enumerate() {
                 for (j, &b) in operands.iter().enumerate() {
-                    // For fused instructions every third operand once with every pair suffices.
+                    // Fused instructions: one third operand per pair suffices.
                     let c = operands.get((7 * i + 3 * j) % OPERANDS).copied().unwrap_or(0);
                     let (result, left) = at(mode, operation, [a, b, c]);
                     results.add(result);
@@ -207,7 +206,6 @@ fn modes(print: &mut dyn FnMut(Arguments<'_>), name: &str, operation: Operation,
     }
 }
 
-/// One operation in `mode` with cleared flags: result and flags.
 #[inline(never)]
 fn at(mode: u32, operation: Operation, [a, b, c]: [u32; 3]) -> (u32, u32) {
     // SAFETY: any mode is allowed; until `run` restores it no other floating-point arithmetic is done.

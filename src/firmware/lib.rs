@@ -1,15 +1,22 @@
-//! The firmware besides `sophie_tasks`: static task wrappers, levels, start-up log, lights and log. Chip code is in
-//! [`sophie_boards`].
+//! The firmware besides the tasks' code: start, levels, background tasks, lights and log.
+//!
+//! A package of its own, since generic code and futures are compiled with the package that makes them concrete: these
+//! for size, those of [`sophie_flight`] for speed (`Cargo.toml`). Chip code is in [`sophie_boards`]. The host has none
+//! of it.
+
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg(target_os = "none")]
 
 mod grip;
 mod levels;
 mod lights;
 mod report;
-pub mod tasks;
+mod tasks;
 mod timing;
 #[cfg(feature = "trace")]
-pub mod trace;
+mod trace;
 
+use embassy_executor::Spawner;
 use sophie_control::grip_memory::GripMemory;
 use sophie_control::params::Params;
 use sophie_tasks::links::Links;
@@ -20,22 +27,41 @@ use static_cell::StaticCell;
 
 use sophie_boards::retained::{self, Kept, Memory, ResetCause};
 
-pub use self::levels::Levels;
+use self::levels::Levels;
 
 sophie_boards::ends_with!(sophie_boards::stop_and_restart);
 
 static LINKS: StaticCell<Links> = StaticCell::new();
 
+/// The image's entry: starts the board and spawns every task.
+#[embassy_executor::main(entry = "cortex_m_rt::entry")]
+async fn main(background: Spawner) {
+    let (beginning, memory) = begin();
+    // Before the clocks: where one never comes, what the run before ended with says so.
+    greet(&beginning);
+    // Parameters before ports: what a pin does may depend on them.
+    let board = sophie_boards::take().await;
+    let links = links(board.params, beginning.start);
+    loaded(links, board.loaded);
+    looked(links, board.chip.looks);
+    let at_rest = beginning.cause == ResetCause::PowerOn;
+    let levels = Levels::new(background);
+
+    if tasks::spawn(&levels, links, board, memory, at_rest).is_err() {
+        sophie_boards::stop_and_restart(format_args!("a task was spawned twice"));
+    }
+}
+
 /// State at start-up, before clocks and log run.
-pub struct Beginning {
-    pub cause: ResetCause,
+struct Beginning {
+    cause: ResetCause,
     /// State that the tasks resume from.
-    pub start: Start,
+    start: Start,
     kept: Kept,
 }
 
 /// Takes the reset cause, the last run's state and the memory for the next. Called once, before all else.
-pub fn begin() -> (Beginning, Memory) {
+fn begin() -> (Beginning, Memory) {
     let cause = sophie_boards::take_reset_cause();
     let (kept, memory) = retained::start(cause);
     let start = Start::new(cause.told(kept.last_words.is_some()), &kept.copies);
@@ -43,17 +69,18 @@ pub fn begin() -> (Beginning, Memory) {
 }
 
 /// The links, without messages. Called once.
-pub fn links(params: Params, start: Start) -> &'static Links {
+fn links(params: Params, start: Start) -> &'static Links {
     LINKS.init_with(|| Links::starting(params, start))
 }
 
 /// Logs version, board, reset cause and what the last run left.
-pub fn greet(beginning: &Beginning) {
+fn greet(beginning: &Beginning) {
     let Beginning { cause, start, kept } = beginning;
     defmt::info!(
         "SOPHIE {=str} on {=str}, start after {}",
         env!("CARGO_PKG_VERSION"),
-        sophie_boards::NAME,
+        // As one text in the image, by which programs know whose it is.
+        core::hint::black_box(sophie_boards::NAME),
         cause
     );
     if kept.faults > 0 {
@@ -80,7 +107,7 @@ pub fn greet(beginning: &Beginning) {
 }
 
 /// Logs the result of reading the parameters; unreadable storage inhibits arming.
-pub fn loaded(links: &Links, loaded: Loaded) {
+fn loaded(links: &Links, loaded: Loaded) {
     defmt::info!("parameters: {=u16} from storage", loaded.taken);
     if loaded.refused > 0 {
         defmt::warn!(
@@ -102,7 +129,7 @@ pub fn loaded(links: &Links, loaded: Loaded) {
 }
 
 /// Inhibits arming for failed checks of the chip.
-pub fn looked(links: &Links, looks: &[Look]) {
+fn looked(links: &Links, looks: &[Look]) {
     for look in looks {
         if let (Some(inhibit), false) = (look.inhibits, look.ok) {
             links.report(inhibit, true);

@@ -1,0 +1,102 @@
+//! `sophie params`: what is done at a board's console.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use sophie_console::parameters::{self, Difference};
+use sophie_console::session::Session;
+use sophie_console::{Failure, file};
+use sophie_report::terminal::{complain, console};
+use sophie_sim::scenario::settings::{self, Setting};
+
+use super::args::{ParamsArgs, ParamsVerb};
+use super::{FAILED, PROGRAM, REFUSED};
+
+/// Writes, compares or sets a board's parameters.
+pub fn params(args: &ParamsArgs) -> ExitCode {
+    let done = match args.verb {
+        ParamsVerb::Dump => dump(args).map(|()| true),
+        // Status 1 says that they differ and nothing else.
+        ParamsVerb::Diff => diff(args).map_err(|failure| Failure::Input(failure.to_string())),
+        ParamsVerb::Load => load(args).map(|()| true),
+    };
+    status(done)
+}
+
+/// The exit status, after the line that says why.
+fn status(done: Result<bool, Failure>) -> ExitCode {
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(FAILED),
+        Err(failure) => {
+            complain(PROGRAM, &failure.to_string());
+            ExitCode::from(match failure {
+                Failure::Input(_) => REFUSED,
+                Failure::Board(_) => FAILED,
+            })
+        }
+    }
+}
+
+fn dump(args: &ParamsArgs) -> Result<(), Failure> {
+    let mut session = args.line.session()?;
+    let rows = parameters::listed(&mut session)?;
+    let unsaved = parameters::unsaved(&mut session)?;
+    if let Some(line) = unsaved.first() {
+        let more = unsaved.len();
+        complain(
+            PROGRAM,
+            &format!(
+                "{}: {more} of them not saved at the board yet: {line}",
+                session.port()
+            ),
+        );
+    }
+    let text = parameters::text(&identity(&mut session)?, &rows);
+    if args.file == Path::new("-") {
+        return console::print(text.trim_end()).map_err(Failure::Input);
+    }
+    file::replace(&args.file, &text)?;
+    say(&format!(
+        "written: {}, {} parameters",
+        args.file.display(),
+        rows.len()
+    ))
+}
+
+fn diff(args: &ParamsArgs) -> Result<bool, Failure> {
+    let settings = read(&args.file)?;
+    let mut session = args.line.session()?;
+    let rows = parameters::listed(&mut session)?;
+    let different = parameters::differences(&settings, &rows);
+    let lines: Vec<String> = different.iter().map(Difference::text).collect();
+    if !lines.is_empty() {
+        say(&lines.join("\n"))?;
+    }
+    Ok(different.is_empty())
+}
+
+fn load(args: &ParamsArgs) -> Result<(), Failure> {
+    let settings = read(&args.file)?;
+    let mut session = args.line.session()?;
+    parameters::load(&mut session, &settings, &mut |line| {
+        // A closed pipe is no reason to leave the board half-way.
+        let _ = console::print(line);
+    })
+}
+
+/// The parameters of the file, all of them checked.
+fn read(file: &Path) -> Result<Vec<Setting>, Failure> {
+    settings::read(file).map_err(|error| Failure::Input(error.to_string()))
+}
+
+/// The firmware and its board.
+fn identity(session: &mut Session) -> Result<String, Failure> {
+    let said = session.command("version")?;
+    let line = said.into_iter().find(|line| line.starts_with("SOPHIE "));
+    Ok(line.unwrap_or_else(|| "an earlier firmware".to_owned()))
+}
+
+fn say(line: &str) -> Result<(), Failure> {
+    console::print(line).map_err(Failure::Input)
+}

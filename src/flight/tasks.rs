@@ -1,0 +1,91 @@
+//! The wrappers. Each is spawned once, by the firmware.
+
+use sophie_boards::retained::Memory;
+use sophie_control::arming::ArmingInhibit;
+use sophie_control::mixer::Flexible;
+use sophie_control::wrench::Configuration;
+use sophie_drivers::rc_decoder::Decoder;
+use sophie_tasks::links::Links;
+
+/// Most attempts at the inertial sensor's self-test per start.
+const SELF_TESTS: u8 = 3;
+
+/// Inertial sensor.
+///
+/// `self_test` actuates it first (1.5 s): only where the vehicle must be at rest, never after a reset in flight. A
+/// failed one is repeated, since a vehicle being carried also fails; the last verdict counts.
+#[embassy_executor::task]
+pub async fn imu(links: &'static Links, mut port: sophie_boards::ImuPort, self_test: bool) -> ! {
+    for _ in 0..if self_test { SELF_TESTS } else { 0 } {
+        let result = port.self_test().await;
+        links.report(ArmingInhibit::ImuSelfTest, result.is_err());
+        match result {
+            Ok(_) => {
+                defmt::info!("imu: self-test passed");
+                break;
+            }
+            Err(fault) => defmt::error!("imu: {=str} ({})", fault.what(), fault),
+        }
+    }
+    sophie_tasks::imu::run(links, port).await
+}
+
+/// Attitude estimator.
+#[embassy_executor::task]
+pub async fn estimator(links: &'static Links) {
+    sophie_tasks::estimator::run(links).await;
+}
+
+/// Attitude and rate control.
+#[embassy_executor::task]
+pub async fn control(links: &'static Links) {
+    sophie_tasks::control::run(links).await;
+}
+
+/// Allocation.
+#[embassy_executor::task]
+pub async fn mixer(links: &'static Links) {
+    sophie_tasks::mixer::run(links, |p| Flexible::new(Configuration::default(), p)).await;
+}
+
+/// Motor output.
+#[embassy_executor::task]
+pub async fn motors(links: &'static Links, port: sophie_boards::MotorsPort) {
+    sophie_tasks::motors::run(links, port).await;
+}
+
+/// Pressure sensors and battery.
+#[embassy_executor::task]
+pub async fn analog(links: &'static Links, port: sophie_boards::AnalogPort) -> ! {
+    sophie_tasks::analog::run(links, port).await
+}
+
+/// Clamp loops.
+#[embassy_executor::task]
+pub async fn clamp(links: &'static Links) -> ! {
+    sophie_tasks::clamp::run(links).await
+}
+
+/// Servo output.
+#[embassy_executor::task]
+pub async fn servos(links: &'static Links, port: sophie_boards::ServosPort) -> ! {
+    sophie_tasks::servos::run(links, port).await
+}
+
+/// Receiver.
+#[embassy_executor::task]
+pub async fn rc(links: &'static Links, port: sophie_boards::ReceiverLine) -> ! {
+    sophie_tasks::rc::run(links, port, Decoder::from_params(&links.params)).await
+}
+
+/// Mode logic.
+#[embassy_executor::task]
+pub async fn commander(links: &'static Links) -> ! {
+    sophie_tasks::commander::run(links).await
+}
+
+/// Deadline supervision and watchdog. Also keeps the state that outlives a reset.
+#[embassy_executor::task]
+pub async fn supervisor(links: &'static Links, port: sophie_boards::WatchdogPort, memory: Memory) -> ! {
+    sophie_tasks::supervisor::run(links, port, memory).await
+}

@@ -1,0 +1,255 @@
+//! `sophie params`: a board's parameters as a file, against one, and from one.
+
+use std::fs;
+use std::time::{Duration, Instant};
+
+use sophie_control::params::Params;
+use sophie_control::rc::Sticks;
+
+use super::board::{Board, Hands};
+use super::command::{Temp, refused};
+use super::{Done, run};
+
+/// `params VERB FILE` at the board.
+fn params(temp: &Temp, board: &Board, verb: &str, file: &str) -> Done {
+    run(temp, &["params", verb, file, "--port", &board.name()])
+}
+
+#[test]
+fn a_boards_parameters_are_dumped_compared_and_set() {
+    let (temp, board) = (Temp::new("params-whole"), Board::new(Hands::default()));
+    let dumped = params(&temp, &board, "dump", "p.toml");
+    assert_eq!((dumped.status, &*dumped.complaint), (Some(0), ""), "{dumped:?}");
+    let text = fs::read_to_string(temp.0.join("p.toml")).unwrap();
+    assert!(
+        text.starts_with(concat!(
+            "# Parameters of SOPHIE ",
+            env!("CARGO_PKG_VERSION"),
+            " on table"
+        )),
+        "{text}"
+    );
+    assert_eq!(text.matches(" = ").count(), Params::TABLE.len());
+    // As stdout has it.
+    let piped = params(&temp, &board, "dump", "-");
+    assert_eq!(piped.said, text);
+    let same = params(&temp, &board, "diff", "p.toml");
+    assert_eq!((same.status, &*same.said, &*same.complaint), (Some(0), "", ""));
+
+    let changed = text
+        .replace("infill = 6.9 ", "infill = 8 ")
+        .replace("motor_protocol = \"dshot300\"", "motor_protocol = \"pwm\"")
+        .replace("setpoint_lpf_hz = 1.5915494", "setpoint_cutoff = 20");
+    temp.file("p.toml", changed.as_bytes());
+    let wanted =
+        "motor_protocol 300 -> 400 pwm\ninfill 6.9 -> 8 %\nsetpoint_lpf_hz 1.5915494 -> 3.183099 Hz\n";
+    let different = params(&temp, &board, "diff", "p.toml");
+    assert_eq!(
+        (different.status, &*different.said),
+        (Some(1), wanted),
+        "{different:?}"
+    );
+    let loaded = params(&temp, &board, "load", "p.toml");
+    let count = Params::TABLE.len();
+    let said = format!("{wanted}saved; the board has restarted\nall {count} are in force\n");
+    assert_eq!((loaded.status, &*loaded.said), (Some(0), &*said), "{loaded:?}");
+    let stored = board.stored();
+    assert_eq!((stored.infill, stored.get("motor_protocol")), (8.0, Some(400.0)));
+    let again = params(&temp, &board, "load", "p.toml");
+    assert_eq!(
+        again.said,
+        format!("nothing to change: all {count} are in force\n"),
+        "{again:?}"
+    );
+    assert_eq!(params(&temp, &board, "diff", "p.toml").status, Some(0));
+}
+
+#[test]
+fn a_bad_file_is_refused_before_the_board_is_asked() {
+    let temp = Temp::new("params-bad");
+    for (text, why) in [
+        ("[params]\ninfil = 8\n", "nearest allowed params.infill"),
+        (
+            "[params]\ninfill = 12\n",
+            "p.toml:2: params.infill = 12: allowed 4 to 10 %",
+        ),
+        (
+            "[params]\ninfill = 8\nrate_p = \"high\"\n",
+            "p.toml:3: params.rate_p",
+        ),
+        ("[vehicle]\ninfill = 8\n", "unknown key: nearest allowed params"),
+        ("", "[params] is missing"),
+    ] {
+        temp.file("p.toml", text.as_bytes());
+        // No port is there: the file comes first.
+        for verb in ["diff", "load"] {
+            let line = refused(&temp, &["params", verb, "p.toml", "--port", "tcp:127.0.0.1:1"]);
+            assert!(line.contains(why), "{line}");
+        }
+    }
+    let line = refused(
+        &temp,
+        &["params", "load", "none.toml", "--port", "tcp:127.0.0.1:1"],
+    );
+    assert!(line.contains("none.toml"), "{line}");
+    for (port, patience) in [("COM1", "0"), ("COM1", "nan"), ("tcp:nowhere", "5")] {
+        let args = ["params", "dump", "-", "--port", port, "--patience", patience];
+        let line = refused(&temp, &args);
+        assert!(line.contains("allowed "), "{line}");
+    }
+}
+
+#[test]
+fn a_port_without_a_board_is_told_in_one_line() {
+    let temp = Temp::new("params-port");
+    for port in ["/dev/no-such-port", "tcp:127.0.0.1:1"] {
+        let done = run(&temp, &["params", "dump", "p.toml", "--port", port]);
+        done.complains(2, &format!("sophie: {port}: cannot be opened: "));
+    }
+    let board = Board::new(Hands {
+        mute: true,
+        ..Hands::default()
+    });
+    let begun = Instant::now();
+    let done = run(
+        &temp,
+        &[
+            "params",
+            "dump",
+            "p.toml",
+            "--port",
+            &board.name(),
+            "--patience",
+            "1",
+        ],
+    );
+    let line = format!(
+        "sophie: {}: no console answers within 1 s, nothing came; expected its prompt",
+        board.name()
+    );
+    done.complains(2, &line);
+    assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+    assert!(!temp.0.join("p.toml").exists(), "a file was begun");
+}
+
+#[test]
+fn a_board_that_falls_silent_leaves_no_file_and_its_parameters_alone() {
+    let temp = Temp::new("params-silent");
+    let board = Board::new(Hands {
+        dies_at: Some("rate_yaw_p"),
+        ..Hands::default()
+    });
+    let args = [
+        "params",
+        "dump",
+        "p.toml",
+        "--port",
+        &board.name(),
+        "--patience",
+        "1",
+    ];
+    run(&temp, &args).complains(1, "fell silent for 1 s after 'list': expected its prompt");
+    assert_eq!(fs::read_dir(&temp.0).unwrap().count(), 0);
+    // A comparison has no answer then: its status 1 is kept for a difference.
+    board.hands(|hands| hands.mute = false);
+    temp.file("p.toml", b"[params]\ninfill = 8\n");
+    let args = [
+        "params",
+        "diff",
+        "p.toml",
+        "--port",
+        &board.name(),
+        "--patience",
+        "1",
+    ];
+    run(&temp, &args).complains(2, "fell silent");
+    // In the midst of a load: nothing is stored.
+    board.hands(|hands| (hands.mute, hands.dies_at) = (false, Some("infill 6.9 -> 8")));
+    let args = [
+        "params",
+        "load",
+        "p.toml",
+        "--port",
+        &board.name(),
+        "--patience",
+        "1",
+    ];
+    run(&temp, &args).complains(1, "fell silent for 1 s after 'set infill 8'");
+    assert!(board.stored() == Params::DEFAULT);
+    // The next one finds what the first has left behind, and ends it.
+    board.hands(|hands| (hands.mute, hands.dies_at) = (false, None));
+    let done = run(&temp, &args);
+    assert_eq!(
+        done.said, "saved; the board has restarted\nall 1 are in force\n",
+        "{done:?}"
+    );
+    assert_eq!((done.status, board.stored().infill), (Some(0), 8.0));
+}
+
+#[test]
+fn the_line_may_be_in_any_state_and_lose_bytes() {
+    let (temp, board) = (Temp::new("params-line"), Board::new(Hands::default()));
+    temp.file("p.toml", b"[params]\ninfill = 8\nrate_p = 11\n");
+    // Half a line must not be obeyed, and what runs must end.
+    for left in [
+        &b"set infill 9"[..],
+        b"save",
+        b"watch imu\r",
+        b"calibrate level\r",
+        b"set infill 9\x1B[",
+    ] {
+        board.type_and_leave(left);
+        let done = params(&temp, &board, "diff", "p.toml");
+        assert_eq!(done.said, "infill 6.9 -> 8 %\nrate_p 10 -> 11 1/s\n", "{done:?}");
+    }
+    board.hands(|hands| hands.loses = Some(37));
+    let done = params(&temp, &board, "load", "p.toml");
+    assert!(
+        done.status == Some(0) && done.said.ends_with("all 2 are in force\n"),
+        "{done:?}"
+    );
+    assert_eq!((board.stored().infill, board.stored().rate_p), (8.0, 11.0));
+    let others = Params {
+        infill: 6.9,
+        rate_p: 10.0,
+        ..board.stored()
+    };
+    assert!(others == Params::DEFAULT, "another parameter was set");
+}
+
+#[test]
+fn what_the_board_refuses_or_does_not_keep_is_status_1() {
+    let (temp, board) = (Temp::new("params-refused"), Board::new(Hands::default()));
+    temp.file("p.toml", b"[params]\ninfill = 8\n");
+    // A change of somebody else's is not saved along.
+    board.type_and_leave(b"set rate_p 11\r");
+    params(&temp, &board, "load", "p.toml")
+        .complains(1, "neither saved nor in the file: rate_p 10 -> 11 1/s");
+    board.type_and_leave(b"reset rate_p\r");
+    board.hands(|hands| hands.broken = true);
+    let done = params(&temp, &board, "load", "p.toml");
+    done.complains(
+        1,
+        "the board refused: not saved: the storage does not keep what is written",
+    );
+    // The working copy is as it was.
+    assert_eq!(
+        params(&temp, &board, "diff", "p.toml").said,
+        "infill 6.9 -> 8 %\n"
+    );
+    board.hands(|hands| (hands.broken, hands.forgets) = (false, true));
+    params(&temp, &board, "load", "p.toml").complains(1, "read back after the restart: infill 6.9 -> 8 %");
+    // Armed by the pilot's gesture.
+    board.hands(|hands| (hands.sticks, hands.forgets) = (Some(Sticks::default()), false));
+    board.until("nothing forbids arming");
+    let arming = Sticks {
+        arm_switch: true,
+        yaw: 1.0,
+        ..Sticks::default()
+    };
+    board.hands(|hands| hands.sticks = Some(arming));
+    board.until("\nARMED");
+    let done = params(&temp, &board, "load", "p.toml");
+    done.complains(1, "the board refused: not saved while ARMED: disarm first");
+    assert!(board.stored() == Params::DEFAULT);
+}

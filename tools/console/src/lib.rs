@@ -1,0 +1,28 @@
+//! The builder's side of the console: a [session](session) over a serial port or TCP, and [parameter files](parameters).
+//!
+//! Whatever is typed is a command of docs/console.md. The line may be in any state and lose bytes; the board may restart
+//! or fall silent. Every failure is one line that names the port and what was expected.
+
+pub mod file;
+pub mod parameters;
+pub mod port;
+pub mod session;
+
+use std::fmt;
+
+/// Why something was not done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// A file, an option or a port that cannot be used: exit status 2.
+    Input(String),
+    /// The board refused, fell silent or has something else in force: exit status 1.
+    Board(String),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input(line) | Self::Board(line) => f.write_str(line),
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! Parameters of a board as a file, against a file, and from a file.
+//!
+//! The file is the `[params]` of a scenario. Values are compared as the console shows them, which reads back to the bit
+//! but for numbers of more than seven digits.
+
+use std::fmt::Write;
+
+use sophie_control::params::Params;
+use sophie_sim::scenario::settings::Setting;
+use sophie_tasks::decimal::{self, Decimal};
+
+use crate::Failure;
+use crate::session::{Session, restarts};
+
+/// Times that a list is asked for whose rows are damaged or missing.
+const TRIES: u32 = 3;
+
+/// A parameter as the board has it in its working copy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Listed {
+    /// Its name.
+    pub name: String,
+    /// The number, as the console shows it.
+    pub value: String,
+    /// What it takes, with the unit.
+    pub allowed: String,
+    /// It is not the board's default.
+    pub changed: bool,
+}
+
+/// A parameter that the file has otherwise than the board.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// What the file has.
+    pub setting: Setting,
+    /// What the board has; `None` where its firmware has no such parameter.
+    pub board: Option<String>,
+}
+
+impl Difference {
+    /// `infill 6.9 -> 8 %`: from the board's to the file's.
+    pub fn text(&self) -> String {
+        let row = self.setting.row;
+        let new = shown(&self.setting);
+        let name = row.choice(self.setting.value).map_or("", |choice| choice.name);
+        let mut text = match &self.board {
+            Some(old) => format!("{} {old} -> {new}", row.name),
+            None => format!(
+                "{}: the board has no such parameter, the file has {new}",
+                row.name
+            ),
+        };
+        for behind in [name, if row.unit == "1" { "" } else { row.unit }] {
+            if !behind.is_empty() {
+                let _ = write!(text, " {behind}");
+            }
+        }
+        text
+    }
+}
+
+/// The number of a setting, as the console shows it.
+fn shown(setting: &Setting) -> String {
+    Decimal(setting.value).to_string()
+}
+
+/// What the board has, in its order.
+///
+/// # Errors
+/// One line: the line is lost, or what the board lists is no list.
+pub fn listed(session: &mut Session) -> Result<Vec<Listed>, Failure> {
+    let mut before = None;
+    for _ in 0..TRIES {
+        let lines = session.command("list")?;
+        let rows: Option<Vec<Listed>> = lines.iter().map(|line| row(line)).collect();
+        let Some(rows) = rows.filter(|rows| !rows.is_empty()) else {
+            continue;
+        };
+        // A firmware may know fewer parameters than this program; it lists the same ones twice then.
+        let whole = Params::TABLE
+            .iter()
+            .all(|row| rows.iter().any(|listed| listed.name == row.name));
+        if whole || before.as_ref() == Some(&rows) {
+            return Ok(rows);
+        }
+        before = Some(rows);
+    }
+    let port = session.port();
+    Err(Failure::Board(format!(
+        "{port}: 'list' is damaged on its way each time"
+    )))
+}
+
+/// One row of `list`: mark, name, number, what is allowed.
+fn row(line: &str) -> Option<Listed> {
+    let changed = match line.split_at_checked(2)?.0 {
+        "* " => true,
+        "  " => false,
+        _ => return None,
+    };
+    let (name, rest) = line.get(2..)?.split_once(' ')?;
+    let (value, allowed) = rest.trim_start().split_once(' ')?;
+    decimal::parse(value)?;
+    Some(Listed {
+        name: name.to_owned(),
+        value: value.to_owned(),
+        allowed: allowed.trim().to_owned(),
+        changed,
+    })
+}
+
+/// The changes that the board has not saved, as it says them.
+///
+/// # Errors
+/// The line is lost.
+pub fn unsaved(session: &mut Session) -> Result<Vec<String>, Failure> {
+    let mut lines = session.command("changes")?;
+    // The last line counts them.
+    let last = lines.pop().unwrap_or_default();
+    let fits = match last.split_once(" change") {
+        Some(("no", "s")) => lines.is_empty(),
+        Some((count, _)) => count.parse() == Ok(lines.len()),
+        None => false,
+    };
+    if !fits {
+        let port = session.port();
+        return Err(Failure::Board(format!(
+            "{port}: 'changes' is answered with '{last}'; expected 'no changes' or their count"
+        )));
+    }
+    Ok(lines)
+}
+
+/// A parameter file with all that the board has; `board` is said in its first line.
+pub fn text(board: &str, rows: &[Listed]) -> String {
+    let mut text = format!(
+        "# Parameters of {board}, by `sophie params dump`; `sophie params load` sets them. What a file leaves out stays\n\
+         # as it is.\n[params]\n"
+    );
+    for Listed {
+        name,
+        value,
+        allowed,
+        changed,
+    } in rows
+    {
+        let named = Params::row(name)
+            .zip(decimal::parse(value))
+            .and_then(|(row, value)| row.choice(value))
+            .map_or("", |choice| choice.name);
+        let value = match named {
+            "" => value.clone(),
+            named => format!("\"{named}\""),
+        };
+        let mark = if *changed { "; not the default" } else { "" };
+        let _ = writeln!(text, "{:34} # {allowed}{mark}", format!("{name} = {value}"));
+    }
+    text
+}
+
+/// Where the file differs from the board, in the file's order.
+pub fn differences(settings: &[Setting], rows: &[Listed]) -> Vec<Difference> {
+    let board = |setting: &Setting| {
+        let row = rows.iter().find(|listed| listed.name == setting.row.name);
+        row.map(|listed| listed.value.clone())
+    };
+    let all = settings.iter().map(|setting| Difference {
+        setting: *setting,
+        board: board(setting),
+    });
+    all.filter(|difference| difference.board.as_deref() != Some(&shown(&difference.setting)))
+        .collect()
+}
+
+/// Sets what differs, saves, and looks whether it is in force after the restart. `say` gets a line for each step.
+///
+/// # Errors
+/// One line: what the board refused, in which case its working copy is put back, or what it has instead.
+pub fn load(session: &mut Session, settings: &[Setting], say: &mut dyn FnMut(&str)) -> Result<(), Failure> {
+    let before = listed(session)?;
+    let waiting = unsaved(session)?;
+    let port = session.port().to_owned();
+    let ours = |line: &str| {
+        settings
+            .iter()
+            .any(|s| line.split(' ').next() == Some(s.row.name))
+    };
+    if let Some(other) = waiting.iter().find(|line| !ours(line)) {
+        return Err(Failure::Board(format!(
+            "{port}: the board has a change that is neither saved nor in the file: {other}; \
+             'save' or 'restart' at its console first"
+        )));
+    }
+    let different = differences(settings, &before);
+    if let Some(absent) = different.iter().find(|difference| difference.board.is_none()) {
+        return Err(Failure::Board(format!("{port}: {}", absent.text())));
+    }
+    if different.is_empty() && waiting.is_empty() {
+        say(&format!("nothing to change: all {} are in force", settings.len()));
+        return Ok(());
+    }
+    for difference in &different {
+        say(&difference.text());
+    }
+    for (done, difference) in different.iter().enumerate() {
+        if let Err(why) = set(session, difference) {
+            put_back(session, &different[..done]);
+            return Err(why);
+        }
+    }
+    if let Err(why) = save(session) {
+        put_back(session, &different);
+        return Err(why);
+    }
+    say("saved; the board has restarted");
+    let now = listed(session)?;
+    if let Some(other) = differences(settings, &now).first() {
+        return Err(Failure::Board(format!(
+            "{port}: read back after the restart: {}",
+            other.text()
+        )));
+    }
+    if let Some(line) = unsaved(session)?.first() {
+        return Err(Failure::Board(format!(
+            "{port}: not in force after the restart: {line}"
+        )));
+    }
+    say(&format!("all {} are in force", settings.len()));
+    Ok(())
+}
+
+fn set(session: &mut Session, difference: &Difference) -> Result<(), Failure> {
+    let name = difference.setting.row.name;
+    let said = session.command(&format!("set {name} {}", shown(&difference.setting)))?;
+    let last = said.last().map_or("", String::as_str);
+    if last.starts_with(&format!("{name} ")) && last.contains(" -> ") {
+        return Ok(());
+    }
+    let port = session.port();
+    Err(Failure::Board(format!(
+        "{port}: nothing is saved, the board refused: {last}"
+    )))
+}
+
+/// Sets the old values in the working copy, as far as the line allows.
+fn put_back(session: &mut Session, different: &[Difference]) {
+    for Difference { setting, board } in different {
+        if let Some(old) = board {
+            // What fails here is lost with the next restart anyhow.
+            let _ = session.command(&format!("set {} {old}", setting.row.name));
+        }
+    }
+}
+
+/// Stores the working copy and waits for the restarted board.
+///
+/// # Errors
+/// One line: what the board says of it, or the line is lost.
+pub fn save(session: &mut Session) -> Result<(), Failure> {
+    let said = session.restart("save")?;
+    if restarts(&said) {
+        return Ok(());
+    }
+    let (port, last) = (session.port(), said.last().map_or("nothing", String::as_str));
+    Err(Failure::Board(format!(
+        "{port}: nothing is saved, the board refused: {last}"
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use sophie_sim::scenario::settings;
+
+    use super::*;
+
+    #[test]
+    fn rows_of_a_list_are_read_and_damaged_ones_are_not() {
+        let read = row("* infill           8         4 to 10 %").unwrap();
+        assert_eq!(
+            (&*read.name, &*read.value, &*read.allowed, read.changed),
+            ("infill", "8", "4 to 10 %", true)
+        );
+        for line in [
+            "",
+            "* ",
+            "  infill",
+            "  infill           x         4 to 10 %",
+            "infill 8 4",
+            "? infill 8 4 to 10 %",
+        ] {
+            assert!(row(line).is_none(), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_dump_is_read_back_as_what_was_dumped() {
+        let rows: Vec<Listed> = Params::TABLE
+            .iter()
+            .map(|row| Listed {
+                name: row.name.to_owned(),
+                value: Decimal(row.default).to_string(),
+                allowed: sophie_tasks::parameters::Allowed(row).to_string(),
+                changed: false,
+            })
+            .collect();
+        let text = text("matek-h743", &rows);
+        let read = settings::parse(&text, "dump.toml").unwrap();
+        assert_eq!(read.len(), Params::TABLE.len());
+        assert!(differences(&read, &rows).is_empty());
+        assert!(text.contains("motor_protocol = \"dshot300\""), "{text}");
+        assert!(text.lines().all(|line| line.len() <= 160), "{text}");
+        let other = settings::parse("[params]\ninfill = 8\nmotor_protocol = \"pwm\"\n", "p.toml").unwrap();
+        let texts: Vec<String> = differences(&other, &rows).iter().map(Difference::text).collect();
+        assert_eq!(texts, ["infill 6.9 -> 8 %", "motor_protocol 300 -> 400 pwm"]);
+        let absent = differences(&other, &[]);
+        assert_eq!(
+            absent[0].text(),
+            "infill: the board has no such parameter, the file has 8 %"
+        );
+    }
+}
