@@ -6,7 +6,7 @@ use std::fmt::Write;
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
 /// What hangs on the board, and the resources of its file that carry it.
-const SIGNALS: [(&str, &[&str]); 14] = [
+const SIGNALS: [(&str, &[&str]); 15] = [
     (
         "motors 1 to 4",
         &[
@@ -35,6 +35,7 @@ const SIGNALS: [(&str, &[&str]); 14] = [
     ("arm sensors 3 and 4: data", &["right_arms.data"]),
     ("receiver: its output, its input", &["receiver.rx", "receiver.tx"]),
     ("console: adapter's TX, its RX", &["console.rx", "console.tx"]),
+    ("MAVLink: other end's TX, its RX", &["mavlink.rx", "mavlink.tx"]),
     (
         "battery: voltage, current",
         &["analog.battery_voltage", "analog.battery_current"],
@@ -65,6 +66,8 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("matek-h743", "PC6") => "TX6",
         ("matek-h743", "PE7") => "RX7",
         ("matek-h743", "PE8") => "TX7",
+        ("matek-h743", "PA10") => "RX1",
+        ("matek-h743", "PA9") => "TX1",
         ("matek-h743", "PC0" | "PC1") => "on board",
         ("matek-h743", "PA15") => "BZ-",
         ("cuav-v5", "PE9") => "AUX 4",
@@ -83,6 +86,8 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("cuav-v5", "PF1" | "PF0") => "I2C2",
         ("cuav-v5", "PD9") => "TELEM2 RX",
         ("cuav-v5", "PD8") => "TELEM2 TX",
+        ("cuav-v5", "PF6") => "FMU debug RX",
+        ("cuav-v5", "PE8") => "FMU debug TX",
         ("cuav-v5", "PD6") => "TELEM1 RX",
         ("cuav-v5", "PD5") => "TELEM1 TX",
         ("cuav-v5", "PA0" | "PA1") => "POWER1",

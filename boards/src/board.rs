@@ -15,7 +15,7 @@ pub use chosen::{
 use sophie_control::params::Params;
 use sophie_tasks::ports::Loaded;
 
-use crate::stm32::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, ThisChip};
+use crate::stm32::{BufferedInput, BufferedOutput, ReceiverLine, TelemetryLine, ThisChip};
 
 /// A board's ports for the tasks.
 pub struct Board {
@@ -34,9 +34,13 @@ pub struct Board {
     /// Receiver output.
     pub telemetry: TelemetryLine,
     /// Console input.
-    pub console_input: ConsoleInput,
+    pub console_input: BufferedInput,
     /// Console output.
-    pub console_output: ConsoleOutput,
+    pub console_output: BufferedOutput,
+    /// MAVLink input.
+    pub mavlink_input: BufferedInput,
+    /// MAVLink output.
+    pub mavlink_output: BufferedOutput,
     /// The running watchdog.
     pub watchdog: WatchdogPort,
     /// Lights and buzzer.

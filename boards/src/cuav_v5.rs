@@ -8,7 +8,8 @@
 //! | arm sensors 1 and 2, 3 and 4 | I2C1, I2C2 | DMA1 0 and 6, 2 and 7 | GPS, I2C2 |
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | ADC (PC4), CAP1 (PA5), RSSI (PB0), POWER2 current (PA3); POWER1 |
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
-//! | console | USART2 | none | TELEM1 |
+//! | console | UART7 | none | FMU debug |
+//! | MAVLink | USART2 | none | TELEM1 |
 //! | parameters, FRAM | SPI2 | none | on board |
 //! | lights, sounder | TIM9 | none | on board |
 //! | time | TIM5 | none | |
@@ -39,8 +40,8 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, Wiring, console_lines, drive, hold, i2c_bus, look, pad,
-    receiver_line, spi_config,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, Wiring, console_lines, drive, hold, i2c_bus, look,
+    mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -115,6 +116,7 @@ bind_interrupts! {
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
         USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
         USART3 => usart::InterruptHandler<peripherals::USART3>;
     }
@@ -188,6 +190,11 @@ assign_resources! {
         tx_dma: DMA1_CH3,
     }
     console: ConsoleParts {
+        uart: UART7,
+        rx: PF6,
+        tx: PE8,
+    }
+    mavlink: MavlinkParts {
         uart: USART2,
         rx: PD6,
         tx: PD5,
@@ -223,6 +230,8 @@ pub async fn take() -> Board {
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
+    let m = parts.mavlink;
+    let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
@@ -238,6 +247,8 @@ pub async fn take() -> Board {
         telemetry,
         console_input,
         console_output,
+        mavlink_input,
+        mavlink_output,
         lights: lights(parts.lights),
         storage,
         params,

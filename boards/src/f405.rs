@@ -10,6 +10,7 @@
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | PC0 to PC3; PA0 voltage, PA1 current |
 //! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
 //! | console | USART2 | none | PA3 in, PA2 out |
+//! | MAVLink | USART3 | none | PC11 in, PC10 out |
 //! | lights, buzzer | | none | PB12 state, PB13 fault, PA8 |
 //! | parameters | flash | none | sectors 1 and 2 |
 //! | time | TIM5 | none | |
@@ -41,7 +42,7 @@ use crate::cortex_m::levels_on;
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
     ReadyStamp, Selected, ServoPairs, ThisChip, Wiring, accelerator, console_lines, drive, i2c_bus, look,
-    pad, receiver_line, spi_config,
+    mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -106,6 +107,7 @@ bind_interrupts! {
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
         USART1 => usart::InterruptHandler<peripherals::USART1>;
         USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
+        USART3 => usart::BufferedInterruptHandler<peripherals::USART3>;
     }
 }
 
@@ -173,6 +175,11 @@ assign_resources! {
         rx: PA3,
         tx: PA2,
     }
+    mavlink: MavlinkParts {
+        uart: USART3,
+        rx: PC11,
+        tx: PC10,
+    }
     storage: StorageParts {
         flash: FLASH,
     }
@@ -198,6 +205,8 @@ pub async fn take() -> Board {
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
+    let m = parts.mavlink;
+    let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
@@ -213,6 +222,8 @@ pub async fn take() -> Board {
         telemetry,
         console_input,
         console_output,
+        mavlink_input,
+        mavlink_output,
         lights: lights(parts.lights),
         storage,
         params,

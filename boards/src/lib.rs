@@ -33,6 +33,6 @@ pub use cortex_m::{end::stop_and_restart, retained, retained::ResetCause, stack}
 pub use sophie_fault::ends_with;
 #[cfg(target_os = "none")]
 pub use stm32::{
-    ConsoleInput, ConsoleOutput, Pad, Pupdr, ReceiverLine, Taken, TelemetryLine, ThisChip, Wiring,
-    stop_with_core, take_reset_cause,
+    BufferedInput, BufferedOutput, MAVLINK_BYTES_PER_SECOND, Pad, Pupdr, ReceiverLine, Taken, TelemetryLine,
+    ThisChip, Wiring, restart, stop_with_core, take_reset_cause,
 };

@@ -9,6 +9,7 @@
 //! | pressure 1 to 4, battery | ADC1 | DMA2 4 | S1, S2, RSSI, CU2; on board |
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
 //! | console | UART7 | none | RX7, TX7 |
+//! | MAVLink | USART1 | none | RX1, TX1 |
 //! | parameters | flash | none | sectors 6 and 7 of bank 2 |
 //! | time | TIM2 | none | |
 //!
@@ -34,8 +35,8 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoTimer, ThisChip, Wiring, console_lines, drive, i2c_bus, look, pad,
-    receiver_line, spi_config,
+    ReadyStamp, Selected, ServoTimer, ThisChip, Wiring, console_lines, drive, i2c_bus, look, mavlink_lines,
+    pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -102,6 +103,7 @@ bind_interrupts! {
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
         UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
+        USART1 => usart::BufferedInterruptHandler<peripherals::USART1>;
         USART6 => usart::InterruptHandler<peripherals::USART6>;
     }
 }
@@ -169,6 +171,11 @@ assign_resources! {
         rx: PE7,
         tx: PE8,
     }
+    mavlink: MavlinkParts {
+        uart: USART1,
+        rx: PA10,
+        tx: PA9,
+    }
     storage: StorageParts {
         flash: FLASH,
     }
@@ -194,6 +201,8 @@ pub async fn take() -> Board {
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);
     let c = parts.console;
     let (console_input, console_output) = console_lines(c.uart, c.rx, c.tx, Irqs);
+    let m = parts.mavlink;
+    let (mavlink_input, mavlink_output) = mavlink_lines(m.uart, m.rx, m.tx, Irqs);
     Board {
         watchdog: Dog::start(parts.watchdog.dog),
         motors: motors(parts.motors, &params),
@@ -209,6 +218,8 @@ pub async fn take() -> Board {
         telemetry,
         console_input,
         console_output,
+        mavlink_input,
+        mavlink_output,
         lights: lights(parts.lights),
         storage,
         params,

@@ -7,6 +7,7 @@ pub mod check;
 pub mod crsf;
 pub mod flight;
 pub mod flight_level;
+pub mod live;
 pub mod parallel;
 pub mod pilot;
 pub mod plant;

@@ -1,5 +1,7 @@
 //! Options of the command line and their ranges.
 
+use std::net::{Ipv4Addr, SocketAddr};
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -25,6 +27,9 @@ struct Cli {
     #[command(flatten)]
     fly: FlyArgs,
 }
+
+/// Permitted seconds of flight in a second of real time: what a host can pace.
+const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 
 /// The subcommands, as messages name them.
 const VERBS: [&str; 7] = ["fly", "check", "bringup", "params", "paper", "fit-arm", "timing"];
@@ -138,7 +143,30 @@ pub struct FlyArgs {
     /// Print the summary as JSON on stdout, everything else on stderr.
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub live: LiveArgs,
 }
+
+/// How to fly in real time.
+#[derive(Args, Debug)]
+pub struct LiveArgs {
+    /// Fly at the pace of real time with MAVLink on UDP, then wait on the ground until Ctrl-C.
+    #[arg(long = "live")]
+    pub wanted: bool,
+    /// Seconds flown in a second of real time, 0.01 to 1000.
+    #[arg(long, value_name = "X", value_parser = speed, default_value = "1", requires = "wanted", allow_negative_numbers = true)]
+    pub speed: f64,
+    /// Where MAVLink is sent to; what is sent back is answered.
+    #[arg(long, value_name = "ADDR:PORT", value_parser = destination, default_value = "127.0.0.1:14550", requires = "wanted")]
+    pub mavlink: SocketAddr,
+    /// Who flies: none waits on the ground without a transmitter, and leaves no report.
+    #[arg(long, value_name = "none", value_parser = nobody, requires = "wanted", conflicts_with_all = ["json", "out"])]
+    pub pilot: Option<Nobody>,
+}
+
+/// No pilot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Nobody;
 
 /// What to check.
 #[derive(Args, Debug)]
@@ -354,6 +382,24 @@ fn seed(text: &str) -> Result<u64, String> {
     seed.ok_or_else(|| format!("allowed {}", keys::SEED_ALLOWED))
 }
 
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed| SPEEDS.contains(speed));
+    speed.ok_or_else(|| format!("allowed {} to {}", SPEEDS.start(), SPEEDS.end()))
+}
+
+fn destination(text: &str) -> Result<SocketAddr, String> {
+    let one = |to: &SocketAddr| {
+        let ip = to.ip();
+        to.port() != 0 && !ip.is_unspecified() && !ip.is_multicast() && ip != Ipv4Addr::BROADCAST
+    };
+    let to = text.parse().ok().filter(one);
+    to.ok_or_else(|| "allowed the address of one machine and its port, such as 127.0.0.1:14550".to_owned())
+}
+
+fn nobody(text: &str) -> Result<Nobody, String> {
+    word(text, &["none"]).map(|_| Nobody)
+}
+
 fn configuration(text: &str) -> Result<Configuration, String> {
     word(&text.to_uppercase(), keys::CONFIGURATIONS).map(keys::configuration)
 }
@@ -466,6 +512,28 @@ mod tests {
                 "invalid value 'best' for '--mixer <NAME>': allowed flexible, rigid, paper, frozen",
             ),
             (
+                "--live --speed 0",
+                "invalid value '0' for '--speed <X>': allowed 0.01 to 1000",
+            ),
+            (
+                "--live --speed nan",
+                "invalid value 'nan' for '--speed <X>': allowed 0.01 to 1000",
+            ),
+            (
+                "--live --mavlink 127.0.0.1",
+                "invalid value '127.0.0.1' for '--mavlink <ADDR:PORT>': allowed the address of one machine and its port, \
+                 such as 127.0.0.1:14550",
+            ),
+            (
+                "--live --mavlink 255.255.255.255:14550",
+                "invalid value '255.255.255.255:14550' for '--mavlink <ADDR:PORT>': allowed the address of one machine \
+                 and its port, such as 127.0.0.1:14550",
+            ),
+            (
+                "--live --pilot me",
+                "invalid value 'me' for '--pilot <none>': allowed none",
+            ),
+            (
                 "--arms 3",
                 "invalid value '3' for '--arms <2|4|rear>': allowed 4 or all, 2 or front, rear",
             ),
@@ -479,6 +547,13 @@ mod tests {
             "--infil 6",
             "--out",
             "--infill 6 --infill 7",
+            "--speed 2",
+            "--mavlink 127.0.0.1:14550",
+            "--pilot none",
+            "--live --pilot none --json",
+            "--live --mavlink 127.0.0.1:0",
+            "--live --mavlink 0.0.0.0:14550",
+            "--live --mavlink 224.0.0.1:14550",
         ] {
             let told = args(line).unwrap_err();
             assert!(

@@ -7,6 +7,7 @@
 mod args;
 mod builder;
 mod check;
+mod live;
 mod operate;
 mod study;
 mod timing;
@@ -18,6 +19,8 @@ use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain, finish, result};
 use sophie_sim::check::Check;
 use sophie_sim::flight::fly;
+use sophie_sim::record::FlightRecord;
+use sophie_sim::scenario::Scenario;
 
 use self::args::{FlyArgs, Task};
 
@@ -35,6 +38,7 @@ pub fn main() -> ExitCode {
         Err(message) => return message.show(),
     };
     let done = match task {
+        Task::Fly(args) if args.live.wanted => live::run(&args),
         Task::Fly(args) => run(&args),
         Task::Check(args) => check::run(&args),
         Task::Bringup(args) => return operate::bringup(&args),
@@ -55,13 +59,23 @@ fn run(args: &FlyArgs) -> Result<bool, String> {
     // Before the flight, so that a bad directory is reported at once.
     let out = OutDir::prepare(&args.out, &FILES)?;
     let console = Console::new(args.json);
-    console.say(&result::intro(&scenario));
+    introduce(&scenario, &console);
+    let record = console.watch(|observer| fly(&scenario, observer));
+    report(&record, &out, &console, args.json)
+}
+
+/// Says what is to be flown, and whether it can be.
+fn introduce(scenario: &Scenario, console: &Console) {
+    console.say(&result::intro(scenario));
     // Flown all the same: a study may want to see how it fails.
-    for row in Check::of(&scenario).failing() {
+    for row in Check::of(scenario).failing() {
         complain(PROGRAM, &format!("check: {}: {}", row.shortfall(), row.advice));
     }
-    let record = console.watch(|observer| fly(&scenario, observer));
-    finish(&record, None, &out, &console, args.json)?;
+}
+
+/// Writes and shows the report. True when the mission was accomplished.
+fn report(record: &FlightRecord, out: &OutDir, console: &Console, json: bool) -> Result<bool, String> {
+    finish(record, None, out, console, json)?;
     if !record.outcome.accomplished {
         let reason = console::one_line(&record.outcome.reason);
         complain(PROGRAM, &format!("not accomplished: {reason}"));

@@ -2,14 +2,23 @@
 //! the other levels are in [`sophie_flight`], compiled for speed.
 
 use embassy_executor::SpawnError;
+use embassy_sync::mutex::Mutex;
 use sophie_boards::Board;
 use sophie_boards::retained::Memory;
 use sophie_flight::tasks as flight;
-use sophie_tasks::links::Links;
-use sophie_tasks::ports::Look;
+use sophie_tasks::links::{Links, Raw};
+use sophie_tasks::mavlink::Line;
+use sophie_tasks::ports::{Look, Storage};
 use sophie_tasks::schedule::TaskId;
+use sophie_tasks::shared::SharedStorage;
+use static_cell::StaticCell;
 
 use super::Levels;
+
+/// The parameters' storage, for console and MAVLink.
+type StoragePort = SharedStorage<'static, sophie_boards::StoragePort>;
+
+static STORAGE: StaticCell<Mutex<Raw, sophie_boards::StoragePort>> = StaticCell::new();
 
 /// Spawns every task; `self_test`: the inertial sensor's, first. Called once.
 ///
@@ -41,9 +50,13 @@ pub fn spawn(
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
     let looks = board.chip.looks;
     let (input, output) = (board.console_input, board.console_output);
-    levels.spawn_unmeasured(
-        "console",
-        console(links, input, output, board.storage, board.chip)?,
+    let defaults = board.storage.defaults();
+    let storage: &'static _ = STORAGE.init(Mutex::new(board.storage));
+    let storage = || SharedStorage::new(storage, defaults);
+    levels.spawn_unmeasured("console", console(links, input, output, storage(), board.chip)?);
+    levels.spawn(
+        TaskId::Mavlink,
+        mavlink(links, board.mavlink_input, board.mavlink_output, storage())?,
     );
     levels.spawn_unmeasured("lights", lights(links, board.lights)?);
     levels.spawn_unmeasured("report", report(links, looks)?);
@@ -65,12 +78,25 @@ async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) ->
 #[embassy_executor::task]
 async fn console(
     links: &'static Links,
-    input: sophie_boards::ConsoleInput,
-    output: sophie_boards::ConsoleOutput,
-    storage: sophie_boards::StoragePort,
+    input: sophie_boards::BufferedInput,
+    output: sophie_boards::BufferedOutput,
+    storage: StoragePort,
     chip: sophie_boards::ThisChip,
 ) -> ! {
     sophie_tasks::console::run(links, input, output, storage, chip).await
+}
+
+#[embassy_executor::task]
+async fn mavlink(
+    links: &'static Links,
+    input: sophie_boards::BufferedInput,
+    output: sophie_boards::BufferedOutput,
+    storage: StoragePort,
+) -> ! {
+    let line = Line {
+        bytes_per_second: sophie_boards::MAVLINK_BYTES_PER_SECOND,
+    };
+    sophie_tasks::mavlink::run(links, input, output, storage, || sophie_boards::restart(), line).await
 }
 
 #[embassy_executor::task]

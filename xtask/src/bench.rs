@@ -14,12 +14,13 @@ const FIRST_BUILD: &str = "building the emulated board: minutes the first time, 
 
 /// Options of the emulator without a value, and with one.
 const ALONE: [&str; 2] = ["--json", "--factory"];
-const WITH_VALUE: [(&str, &str); 5] = [
+const WITH_VALUE: [(&str, &str); 6] = [
     ("--seed", "N"),
     ("--out", "DIR"),
     ("--speed", "SHARE"),
     ("--console", "PORT"),
     ("--telemetry", "PORT"),
+    ("--mavlink", "PORT"),
 ];
 
 pub struct Bench<'a> {

@@ -2,19 +2,21 @@
 //!
 //! | level | runs in | priority | may be delayed by |
 //! |---|---|---|---|
-//! | flight | an interrupt vector that no driver owns | 6 | drivers' interrupts (all at 0, microseconds each) |
-//! | steady | a second one | 7 | the flight level |
+//! | flight | an interrupt vector that no driver owns | 6 | drivers' interrupts (at 0, microseconds each) |
+//! | steady | a second one | 8 | the flight level; bytes of the MAVLink line (7) |
 //! | background | thread mode | none | both |
 //!
 //! Priorities 0 to 5 are the drivers': an executor there would delay the DMA, data-ready and timer interrupts that it
-//! needs.
+//! needs. Interrupts that may wait for the flight level, whatever arrives on their line, lie between the levels.
 
 use embassy_stm32::interrupt::Priority;
 
 /// Flight level priority.
 pub const FLIGHT: Priority = Priority::P6;
+/// Priority of drivers whose interrupts never delay the flight level.
+pub const BELOW_FLIGHT: Priority = Priority::P7;
 /// Steady level priority.
-pub const STEADY: Priority = Priority::P7;
+pub const STEADY: Priority = Priority::P8;
 
 /// Makes two of the board's interrupt vectors the flight and steady level.
 ///

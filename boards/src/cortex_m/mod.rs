@@ -15,6 +15,6 @@ pub mod trace;
 #[cfg(not(family = "f4"))]
 pub use cache::{enable_caches, enabled as caches, forget_cached, protected};
 pub(crate) use levels::levels_on;
-pub use levels::{FLIGHT, STEADY};
+pub use levels::{BELOW_FLIGHT, FLIGHT, STEADY};
 
 defmt::timestamp!("{=u64:us}", super::stm32::micros());

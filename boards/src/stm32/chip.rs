@@ -25,10 +25,15 @@ impl ThisChip {
     }
 }
 
+/// Restarts the chip, motors stopped first.
+pub fn restart() -> ! {
+    stop_motors();
+    reset()
+}
+
 impl Chip for ThisChip {
     fn restart(&mut self) {
-        stop_motors();
-        reset()
+        restart()
     }
 
     fn board(&self) -> &'static str {

@@ -47,7 +47,7 @@ mod tone;
 mod watchdog;
 
 pub use analog::AnalogInputs;
-pub use chip::ThisChip;
+pub use chip::{ThisChip, restart};
 pub use clock::{micros, start};
 pub use data_ready::{ReadyLine, ReadyStamp};
 pub use escs::{EscTimer, EscTimers};
@@ -58,7 +58,10 @@ pub use lights::{Lamp, Lights};
 pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
 pub use rails::{drive, hold};
 pub use reset::take_reset_cause;
-pub use serial::{ConsoleInput, ConsoleOutput, ReceiverLine, TelemetryLine, console_lines, receiver_line};
+pub use serial::{
+    BufferedInput, BufferedOutput, MAVLINK_BYTES_PER_SECOND, ReceiverLine, TelemetryLine, console_lines,
+    mavlink_lines, receiver_line,
+};
 pub use servo_pairs::ServoPairs;
 pub use servos::ServoTimer;
 pub use silicon::look;

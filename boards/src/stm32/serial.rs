@@ -1,7 +1,8 @@
-//! Serial lines of receiver and console.
+//! Serial lines of receiver, console and MAVLink.
 
 use embassy_stm32::gpio::Pull;
-use embassy_stm32::interrupt::typelevel::Binding;
+use embassy_stm32::interrupt::Priority;
+use embassy_stm32::interrupt::typelevel::{Binding, Interrupt};
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::{
     BufferedInterruptHandler, BufferedUart, BufferedUartRx, BufferedUartTx, Config, ConfigError, Instance,
@@ -15,15 +16,28 @@ use sophie_tasks::ports::{PortError, SerialInput, SerialOutput};
 use static_cell::ConstStaticCell;
 
 use super::Aligned;
+use crate::cortex_m::BELOW_FLIGHT;
 
 /// Time-out of a frame; the longest telemetry frame takes 1.6 ms at 420 kbaud.
 const LONGEST_FRAME: Duration = Duration::from_millis(20);
-/// Time-out of a line; the longest takes 20 ms at 115,200 baud, behind as long a buffer.
-const LONGEST_LINE: Duration = Duration::from_millis(200);
+/// Time-out of a write to a buffered line: the longest line of text takes 20 ms at 115,200 baud, the longest MAVLink
+/// frame 49 ms at 57,600, each behind a full buffer, 22 and 44 ms.
+const LONGEST_WRITE: Duration = Duration::from_millis(200);
 
 static DMA_RECEIVER: ConstStaticCell<Aligned<[u8; 512]>> = ConstStaticCell::new(Aligned([0; 512]));
 static CONSOLE_IN: ConstStaticCell<[u8; 128]> = ConstStaticCell::new([0; 128]);
 static CONSOLE_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
+/// 44 ms of the line: longer than the background level waits for anything but flash.
+static MAVLINK_IN: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
+static MAVLINK_OUT: ConstStaticCell<[u8; 256]> = ConstStaticCell::new([0; 256]);
+
+/// Priority of the console's interrupts: that of the drivers.
+const AS_DRIVERS: Priority = Priority::P0;
+/// Rate of the MAVLink line, baud: what SiK radios, PX4's TELEM1 and ArduPilot's serial ports start with. A byte takes
+/// 174 us, longer than the flight level holds the core at a stretch: with its interrupts below that level none is lost.
+const MAVLINK_BAUD: u32 = 57_600;
+/// What may be sent on it, bytes each second: four fifths of what it carries, so that a frame finds it free.
+pub const MAVLINK_BYTES_PER_SECOND: u32 = MAVLINK_BAUD / 10 * 4 / 5;
 
 fn receiver_config(protocol: RcProtocol) -> Config {
     let mut config = Config::default();
@@ -85,20 +99,63 @@ pub fn receiver_line<T: Instance, R: RxDma<T>, D: TxDma<T>>(
     )
 }
 
-/// Console line: 115,200 baud, 8N1; DMA streams are scarce.
+/// Console line: 115,200 baud, 8N1.
 pub fn console_lines<T: Instance>(
     uart: Peri<'static, T>,
     rx: Peri<'static, impl RxPin<T>>,
     tx: Peri<'static, impl TxPin<T>>,
     irqs: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
-) -> (ConsoleInput, ConsoleOutput) {
-    let mut config = Config::default();
-    config.baudrate = 115_200;
-    // An open input must not read as a character.
-    config.rx_pull = Pull::Up;
-    let uart = BufferedUart::new(uart, rx, tx, CONSOLE_OUT.take(), CONSOLE_IN.take(), irqs, config);
-    let (tx, rx) = accepted(uart).split();
-    (ConsoleInput(rx), ConsoleOutput(tx))
+) -> (BufferedInput, BufferedOutput) {
+    let line = BufferedLine {
+        baud: 115_200,
+        priority: AS_DRIVERS,
+        input: CONSOLE_IN.take(),
+        output: CONSOLE_OUT.take(),
+    };
+    line.open(uart, rx, tx, irqs)
+}
+
+/// MAVLink line: [`MAVLINK_BAUD`], 8N1, its interrupts between the flight and the steady level.
+pub fn mavlink_lines<T: Instance>(
+    uart: Peri<'static, T>,
+    rx: Peri<'static, impl RxPin<T>>,
+    tx: Peri<'static, impl TxPin<T>>,
+    irqs: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
+) -> (BufferedInput, BufferedOutput) {
+    let line = BufferedLine {
+        baud: MAVLINK_BAUD,
+        priority: BELOW_FLIGHT,
+        input: MAVLINK_IN.take(),
+        output: MAVLINK_OUT.take(),
+    };
+    line.open(uart, rx, tx, irqs)
+}
+
+/// A line moved by the processor through two rings, an interrupt a byte: DMA streams are scarce.
+struct BufferedLine {
+    baud: u32,
+    priority: Priority,
+    input: &'static mut [u8],
+    output: &'static mut [u8],
+}
+
+impl BufferedLine {
+    fn open<T: Instance>(
+        self,
+        uart: Peri<'static, T>,
+        rx: Peri<'static, impl RxPin<T>>,
+        tx: Peri<'static, impl TxPin<T>>,
+        irqs: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
+    ) -> (BufferedInput, BufferedOutput) {
+        let mut config = Config::default();
+        config.baudrate = self.baud;
+        // An open input must not read as a character.
+        config.rx_pull = Pull::Up;
+        T::Interrupt::set_priority(self.priority);
+        let uart = BufferedUart::new(uart, rx, tx, self.output, self.input, irqs, config);
+        let (tx, rx) = accepted(uart).split();
+        (BufferedInput(rx), BufferedOutput(tx))
+    }
 }
 
 /// All rates are in range: a refusal means wrong clocks, found on the bench.
@@ -131,21 +188,21 @@ impl SerialOutput for TelemetryLine {
     }
 }
 
-/// Console input.
-pub struct ConsoleInput(BufferedUartRx<'static>);
+/// Input of a buffered line.
+pub struct BufferedInput(BufferedUartRx<'static>);
 
-impl SerialInput for ConsoleInput {
+impl SerialInput for BufferedInput {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
         self.0.read(buffer).await.map_err(|_| PortError::Corrupt)
     }
 }
 
-/// Console output.
-pub struct ConsoleOutput(BufferedUartTx<'static>);
+/// Output of a buffered line.
+pub struct BufferedOutput(BufferedUartTx<'static>);
 
-impl SerialOutput for ConsoleOutput {
+impl SerialOutput for BufferedOutput {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
-        in_time(LONGEST_LINE, self.0.write_all(bytes)).await
+        in_time(LONGEST_WRITE, self.0.write_all(bytes)).await
     }
 }
 

@@ -27,7 +27,7 @@ use crate::plan::Plan;
 use crate::sensors::Sensors;
 use crate::terminal::Sockets;
 use crate::tilt::{TiltError, Tilts};
-use crate::wires::{BoardFault, Digest, Pins, Run, Wires};
+use crate::wires::{BoardFault, Digest, FarEnd, Pins, Run, Wires};
 
 /// Arms hang free from this height on, m.
 const AIRBORNE: f64 = 0.3;
@@ -44,6 +44,7 @@ pub struct Bench<'a> {
     pins: Pins,
     log: Log<'a>,
     sockets: Sockets,
+    mavlink_received: u64,
     told: Box<dyn FnMut(&Line) + 'a>,
     telemetry: VecDeque<u8>,
     display: Telemetry,
@@ -98,6 +99,8 @@ pub struct Finished {
     pub resets: Vec<(f64, String)>,
     /// Parts that could not be decoded.
     pub malformed: u32,
+    /// Bytes that MAVLink clients sent to the board.
+    pub mavlink_received: u64,
 }
 
 /// Settings of a run.
@@ -139,6 +142,7 @@ impl<'a> Bench<'a> {
             pins: Pins::default(),
             log: Log::new(&firmware.table),
             sockets,
+            mavlink_received: 0,
             told: Box::new(logged),
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
@@ -176,6 +180,7 @@ impl<'a> Bench<'a> {
             log: self.raw,
             resets: self.resets,
             malformed: self.log.malformed,
+            mavlink_received: self.mavlink_received,
         })
     }
 
@@ -288,10 +293,18 @@ impl Aircraft for Bench<'_> {
             if let Some(console) = &mut self.sockets.console {
                 self.wires.console = console.exchange(&self.pins.console);
             }
-            let bytes = std::mem::take(&mut self.pins.telemetry);
-            if let Some(listener) = &mut self.sockets.telemetry {
-                let _ = listener.exchange(&bytes);
+            if let Some(client) = &mut self.sockets.mavlink {
+                self.wires.mavlink = client.exchange(&self.pins.mavlink);
+                self.mavlink_received += self.wires.mavlink.len() as u64;
             }
+            let telemetry = FarEnd {
+                heard: std::mem::take(&mut self.pins.telemetry),
+                waiting: 0,
+            };
+            if let Some(listener) = &mut self.sockets.telemetry {
+                let _ = listener.exchange(&telemetry);
+            }
+            let bytes = telemetry.heard;
             self.display.take(&bytes);
             self.telemetry.extend(bytes);
             for (at, why) in std::mem::take(&mut self.pins.resets) {

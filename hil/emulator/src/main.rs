@@ -65,6 +65,9 @@ struct Args {
     /// Put what the board sends to its receiver on this port of 127.0.0.1.
     #[arg(long, value_name = "PORT")]
     telemetry: Option<u16>,
+    /// Put the board's MAVLink line on this port of 127.0.0.1.
+    #[arg(long, value_name = "PORT")]
+    mavlink: Option<u16>,
     /// Start with the option bytes of a new chip, whose brown-out level nobody has set.
     #[arg(long)]
     factory: bool,
@@ -122,6 +125,7 @@ fn run(args: &Args) -> Result<bool, String> {
     let sockets = Sockets {
         console: listen("--console", args.console)?,
         telemetry: listen("--telemetry", args.telemetry)?,
+        mavlink: listen("--mavlink", args.mavlink)?,
     };
     let out = OutDir::prepare(&args.out, &[&FILES[..], &LOG_FILES].concat())?;
     let console = Console::new(args.json);

@@ -20,7 +20,9 @@ pub struct Wires {
     pub receiver: Vec<u16>,
     /// Bytes typed at the console.
     pub console: Vec<u8>,
-    /// In this millisecond.
+    /// Bytes from a MAVLink client.
+    pub mavlink: Vec<u8>,
+    /// Faults and repairs in this millisecond.
     pub faults: Vec<BoardFault>,
 }
 
@@ -76,14 +78,25 @@ pub struct Pins {
     pub servos: PerArm<f64>,
     /// Bytes to the receiver.
     pub telemetry: Vec<u8>,
-    /// Bytes from the console.
-    pub console: Vec<u8>,
-    /// Log bytes, as in the probe's buffer.
+    /// The console.
+    pub console: FarEnd,
+    /// MAVLink.
+    pub mavlink: FarEnd,
+    /// Bytes of the log, as in the probe's buffer.
     pub log: Vec<u8>,
     /// State light, fault light and buzzer.
     pub signals: [bool; 3],
     /// Time (ns since power-on) and cause.
     pub resets: Vec<(u64, String)>,
+}
+
+/// The far end of a serial line both ways.
+#[derive(Clone, Debug, Default)]
+pub struct FarEnd {
+    /// Bytes from the board in the last millisecond.
+    pub heard: Vec<u8>,
+    /// Bytes towards the board that the line has not yet carried.
+    pub waiting: usize,
 }
 
 /// Results of a run.

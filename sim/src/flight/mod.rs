@@ -59,82 +59,133 @@ pub fn fly_with<A: Aircraft>(
     make: impl FnOnce(&mut Pcg64Mcg) -> A,
     observer: &mut dyn Observer,
 ) -> (FlightRecord, A) {
-    let wall = WallInstant::now();
-    let mut seeds = Pcg64Mcg::seed_from_u64(scenario.seed);
-    let mut plant = Plant::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
-    let mut stack = make(&mut seeds);
-    let mut pilot = Pilot::new(scenario, Pcg64Mcg::from_rng(&mut seeds));
-    let mut recorder = Recorder::new(scenario);
-    let mut judge = Judge::new(scenario);
-    let mut telemetry = [0u8; TELEMETRY_BYTES];
-    let mut uplink = Uplink::new(scenario);
+    let mut world = World::new(scenario, make);
+    let record = world.fly(scenario, observer);
+    (record, world.stack)
+}
 
-    let limit_ms = (scenario.time_limit * 1e3) as u64;
-    let mut outcome = Outcome {
-        accomplished: false,
-        reason: format!("time limit of {:.0} s reached", scenario.time_limit),
-    };
-    let mut began = (usize::MAX, 0.0);
-    let mut ms = 0;
-    while ms < limit_ms {
-        ms += 1;
-        let t = ms as f64 * 1e-3;
-        stack.step_world(&mut plant);
-        let received = stack.take_telemetry(&mut telemetry);
-        if !uplink.answers()
-            && let Some(said) = stack.status()
-        {
-            pilot.hear(said.mode, said.reason);
-        }
-        let output = pilot.step(1e-3, seen(&plant, t), &telemetry[..received]);
-        uplink.send(&output, &mut stack);
-        if let Err(why) = stack.run_until(ms * 1000) {
-            outcome.reason = format!("{why} (at {t:.1} s)");
-            break;
-        }
+/// Plant, aircraft and pilot in lockstep, a millisecond at a time.
+pub(crate) struct World<A> {
+    plant: Plant,
+    pub(crate) stack: A,
+    pilot: Pilot,
+    uplink: Uplink,
+    /// Since power-up, ms.
+    ms: u64,
+}
 
-        let step = scenario.steps.get(output.step).map(|s| (output.step, s));
-        if output.step != began.0 {
-            began = (output.step, t);
+impl<A: Aircraft> World<A> {
+    /// A world before power-up. `make` as in [`fly_with`].
+    pub(crate) fn new(scenario: &Scenario, make: impl FnOnce(&mut Pcg64Mcg) -> A) -> Self {
+        let mut seeds = Pcg64Mcg::seed_from_u64(scenario.seed);
+        Self {
+            plant: Plant::new(scenario, Pcg64Mcg::from_rng(&mut seeds)),
+            stack: make(&mut seeds),
+            pilot: Pilot::new(scenario, Pcg64Mcg::from_rng(&mut seeds)),
+            uplink: Uplink::new(scenario),
+            ms: 0,
         }
-        let judged = judge.step(&Snapshot {
-            ms,
-            step,
-            plant: &plant,
-            stack: &stack,
-        });
-        plant.push = push(step, t - began.1);
-        reset(step, began, ms, &mut stack);
-        let now = Snapshot {
-            ms,
-            step,
-            plant: &plant,
-            stack: &stack,
+    }
+
+    /// Steps by a millisecond. Without `transmitter` the pilot's sticks and display are cut off.
+    ///
+    /// # Errors
+    /// One line: why the aircraft cannot run on.
+    pub(crate) fn step(&mut self, transmitter: bool) -> Result<PilotOutput, String> {
+        self.ms += 1;
+        let mut telemetry = [0u8; TELEMETRY_BYTES];
+        let mut output = PilotOutput::default();
+        self.stack.step_world(&mut self.plant);
+        let received = self.stack.take_telemetry(&mut telemetry);
+        if transmitter {
+            if !self.uplink.answers()
+                && let Some(said) = self.stack.status()
+            {
+                self.pilot.hear(said.mode, said.reason);
+            }
+            let seen = seen(&self.plant, self.ms as f64 * 1e-3);
+            output = self.pilot.step(1e-3, seen, &telemetry[..received]);
+            self.uplink.send(&output, &mut self.stack);
+        }
+        let ran = self.stack.run_until(self.ms * 1000);
+        ran.map(|()| output)
+    }
+
+    /// Flies the steps of `scenario`.
+    pub(crate) fn fly(&mut self, scenario: &Scenario, observer: &mut dyn Observer) -> FlightRecord {
+        let wall = WallInstant::now();
+        let mut recorder = Recorder::new(scenario);
+        let mut judge = Judge::new(scenario);
+        let limit_ms = (scenario.time_limit * 1e3) as u64;
+        let mut outcome = Outcome {
+            accomplished: false,
+            reason: format!("time limit of {:.0} s reached", scenario.time_limit),
         };
-        recorder.step(&now, pilot.throttle(), observer);
-        if ms.is_multiple_of(PROGRESS_MS) {
-            observer.progress(t, stack.mode(), -plant.pose().position.z);
+        let mut began = (usize::MAX, 0.0);
+        while self.ms < limit_ms {
+            let stepped = self.step(true);
+            let (ms, t) = (self.ms, self.ms as f64 * 1e-3);
+            let output = match stepped {
+                Ok(output) => output,
+                Err(why) => {
+                    outcome.reason = format!("{why} (at {t:.1} s)");
+                    break;
+                }
+            };
+            let step = scenario.steps.get(output.step).map(|s| (output.step, s));
+            if output.step != began.0 {
+                began = (output.step, t);
+            }
+            let judged = judge.step(&self.snapshot(step));
+            self.plant.push = push(step, t - began.1);
+            reset(step, began, ms, &mut self.stack);
+            recorder.step(&self.snapshot(step), self.pilot.throttle(), observer);
+            if ms.is_multiple_of(PROGRESS_MS) {
+                observer.progress(t, self.stack.mode(), -self.plant.pose().position.z);
+            }
+            if let Some(reason) = judged {
+                outcome.reason = format!("{reason} (at {t:.1} s)");
+                break;
+            }
+            if let Some(end) = output.outcome {
+                outcome = end;
+                break;
+            }
         }
-        if let Some(reason) = judged {
-            outcome.reason = format!("{reason} (at {t:.1} s)");
-            break;
+        if !outcome.accomplished {
+            let step = scenario.steps.get(began.0);
+            outcome.reason += &why::detail(scenario, step, recorder.samples(), &outcome.reason);
         }
-        if let Some(end) = output.outcome {
-            outcome = end;
-            break;
+        let ending = Ending {
+            outcome,
+            t: self.ms as f64 * 1e-3,
+            wall_seconds: wall.elapsed().as_secs_f64(),
+        };
+        recorder.finish(scenario, &self.stack, ending, observer)
+    }
+
+    /// What the mission did to the vehicle ends: no push, a board that was off is on.
+    pub(crate) fn leave_alone(&mut self) {
+        self.plant.push = DVec3::ZERO;
+        if !self.stack.runs() {
+            self.stack.start(self.ms * 1000);
         }
     }
-    if !outcome.accomplished {
-        let step = scenario.steps.get(began.0);
-        outcome.reason += &why::detail(scenario, step, recorder.samples(), &outcome.reason);
+
+    /// False once the simulation has diverged.
+    pub(crate) fn is_finite(&self) -> bool {
+        let pose = self.plant.pose();
+        pose.position.is_finite() && pose.omega.is_finite()
     }
-    let ending = Ending {
-        outcome,
-        t: ms as f64 * 1e-3,
-        wall_seconds: wall.elapsed().as_secs_f64(),
-    };
-    let record = recorder.finish(scenario, &stack, ending, observer);
-    (record, stack)
+
+    fn snapshot<'a>(&'a self, step: Option<(usize, &'a Step)>) -> Snapshot<'a, A> {
+        Snapshot {
+            ms: self.ms,
+            step,
+            plant: &self.plant,
+            stack: &self.stack,
+        }
+    }
 }
 
 enum Uplink {

@@ -16,8 +16,12 @@ use super::aircraft::{Aircraft, Belief, Reset, Said};
 use crate::aim;
 use crate::board::{Board, Port};
 use crate::clock::VirtualTime;
+use crate::live::Live;
 use crate::plant::Plant;
 use crate::scenario::Scenario;
+
+/// The step of a reset that no step of the mission made.
+const NO_STEP: usize = usize::MAX;
 
 /// The stack of one flight.
 pub struct Stack {
@@ -35,6 +39,8 @@ pub struct Stack {
     /// Missed deadlines of earlier runs.
     overruns: u32,
     noise: Pcg64Mcg,
+    /// Real time and MAVLink clients; `None` in pure virtual time.
+    live: Option<Live>,
 }
 
 impl Stack {
@@ -42,6 +48,15 @@ impl Stack {
     ///
     /// Board and links are leaked: tasks borrow them as `'static`, like statics of a real board.
     pub fn new(scenario: &Scenario, rng: &mut Pcg64Mcg) -> Self {
+        Self::with(scenario, rng, None)
+    }
+
+    /// The same, at the pace and with the clients of `live`.
+    pub fn live(scenario: &Scenario, rng: &mut Pcg64Mcg, live: Live) -> Self {
+        Self::with(scenario, rng, Some(live))
+    }
+
+    fn with(scenario: &Scenario, rng: &mut Pcg64Mcg, live: Option<Live>) -> Self {
         let board: &'static Board = Box::leak(Box::new(Board::configured(&scenario.params, rng)));
         let params = calibrated(scenario.params, board);
         let mut stack = Self {
@@ -55,6 +70,7 @@ impl Stack {
             resets: 0,
             overruns: 0,
             noise: Pcg64Mcg::seed_from_u64(!scenario.seed),
+            live,
         };
         stack.spawn(0);
         stack
@@ -83,6 +99,9 @@ impl Stack {
         // Background.
         time.spawn(sophie_tasks::arms::run(links, Port(board)));
         time.spawn(sophie_tasks::telemetry::run(links, Port(board)));
+        if let Some(live) = &mut self.live {
+            live.spawn(&time, links);
+        }
         self.running = Some((time, us));
     }
 }
@@ -101,8 +120,19 @@ impl Aircraft for Stack {
     }
 
     fn run_until(&mut self, us: u64) -> Result<(), String> {
+        if let Some(live) = &mut self.live {
+            live.begin(us)?;
+        }
         if let Some((time, start)) = &self.running {
             time.run_until(us.saturating_sub(*start));
+        }
+        if let Some(live) = &mut self.live {
+            live.end();
+            if let Some(params) = live.restarts() {
+                self.params = params;
+                self.cut(StartCause::Software, NO_STEP, us as f64 * 1e-6);
+                self.start(us);
+            }
         }
         Ok(())
     }
@@ -170,6 +200,9 @@ impl Aircraft for Stack {
         self.overruns = self.overruns();
         self.running = None;
         self.board.reset();
+        if let Some(live) = &self.live {
+            live.reset();
+        }
         if cause.loses_memory() {
             let noise: [[u32; 16]; 2] =
                 core::array::from_fn(|_| core::array::from_fn(|_| self.noise.random()));

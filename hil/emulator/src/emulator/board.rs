@@ -143,6 +143,10 @@ impl<C: Chip> Wired<C> {
         self.chip.line(self.pads.console)
     }
 
+    pub fn mavlink(&mut self) -> Option<&mut Line> {
+        self.chip.line(self.pads.mavlink)
+    }
+
     pub fn motor_edges(&mut self) -> Vec<Edge> {
         self.chip.motor_edges()
     }
@@ -173,12 +177,18 @@ impl<C: Chip> Wired<C> {
         self.pads.foreign
     }
 
-    /// Pins with a wrong function, and a receiver port other than `receiver`.
+    /// Pins with a wrong function, a receiver's port that differs from `receiver`, MAVLink's from [`Setup::MAVLINK`].
     pub fn miswired(&mut self, now: VirtualNanos, receiver: Setup) -> Vec<(String, String)> {
         let mut found = Vec::new();
-        let port = self.chip.serial_setup(self.pads.receiver);
-        if !receiver.fits(&port) {
-            found.push(("receiver".to_owned(), format!("is {port}, wired for {receiver}")));
+        let lines = [
+            ("receiver", self.pads.receiver, receiver),
+            ("MAVLink", self.pads.mavlink, Setup::MAVLINK),
+        ];
+        for (name, port, wired) in lines {
+            let port = self.chip.serial_setup(port);
+            if !wired.fits(&port) {
+                found.push((name.to_owned(), format!("is {port}, wired for {wired}")));
+            }
         }
         if let Some(wrong) = self.chip.pll_ranges() {
             found.push(("RCC".to_owned(), wrong));

@@ -47,7 +47,7 @@ use crate::chain::Counted;
 use crate::elf::Firmware;
 use crate::esc::{self, Esc};
 use crate::stored;
-use crate::wires::{BoardFault, Digest, Gap, Hung, Latency, Pins, Run, Wires};
+use crate::wires::{BoardFault, Digest, FarEnd, Gap, Hung, Latency, Pins, Run, Wires};
 
 const MS: u64 = 1_000_000;
 /// Port registers of both processors (RM0433 table 8, RM0090 table 1).
@@ -356,7 +356,8 @@ impl World {
             servos.iter().for_each(|us| self.digest.word(us.to_bits()));
         }
         let telemetry = heard(board.receiver());
-        let console = heard(board.console());
+        let console = far_end(board.console());
+        let mavlink = far_end(board.mavlink());
         telemetry.iter().for_each(|byte| self.digest.byte(*byte));
         Pins {
             ms: self.ms,
@@ -364,6 +365,7 @@ impl World {
             servos,
             telemetry,
             console,
+            mavlink,
             log: self.rtt.drain(host),
             signals: board.signals(now),
             resets,
@@ -538,12 +540,22 @@ impl World {
         if let Some(line) = board.console() {
             line.outgoing.extend(wires.console.into_iter().map(u16::from));
         }
+        if let Some(line) = board.mavlink() {
+            line.outgoing.extend(wires.mavlink.into_iter().map(u16::from));
+        }
     }
 }
 
 fn heard(line: Option<&mut Line>) -> Vec<u8> {
     let words = line.map_or(Vec::new(), |line| std::mem::take(&mut line.incoming));
     words.into_iter().map(|word| word as u8).collect()
+}
+
+fn far_end(line: Option<&mut Line>) -> FarEnd {
+    FarEnd {
+        waiting: line.as_ref().map_or(0, |line| line.outgoing.len()),
+        heard: heard(line),
+    }
 }
 
 impl<C: Chip> Driver<Wired<C>> for World {

@@ -111,7 +111,9 @@ pub struct Pads {
     pub receiver_out: (At, u8),
     /// Serial port of the console.
     pub console: usize,
-    /// Motor pins.
+    /// Serial port of MAVLink.
+    pub mavlink: usize,
+    /// The motors.
     pub motors: TimerPins,
     /// 1 to 4.
     pub servos: [ServoPin; 4],

@@ -1,4 +1,5 @@
-//! Settings of a serial port from its registers: the emulator carries words at any rate and polarity.
+//! Settings of a serial port. The emulator carries words at any rate, without levels or polarity, so the settings of
+//! receiver and MAVLink are read from their ports' registers.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -20,15 +21,23 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// Required settings of the MAVLink line.
+    pub const MAVLINK: Self = Self::plain(57_600.0);
+
+    /// 8N1 at `rate` baud.
+    const fn plain(rate: f64) -> Self {
+        Self {
+            rate,
+            parity: false,
+            two_stops: false,
+            inverted: false,
+        }
+    }
+
     /// Required settings of a board's receiver line.
     pub fn of(protocol: RcProtocol, board: Kind) -> Self {
         match protocol {
-            RcProtocol::Crsf => Self {
-                rate: 420e3,
-                parity: false,
-                two_stops: false,
-                inverted: false,
-            },
+            RcProtocol::Crsf => Self::plain(420e3),
             RcProtocol::Sbus => Self {
                 rate: 100e3,
                 parity: true,

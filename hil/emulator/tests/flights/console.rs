@@ -65,6 +65,7 @@ fn at_the_console<T: Send + 'static>(
     let sockets = Sockets {
         console: Some(console),
         telemetry,
+        mavlink: None,
     };
     let setup = Setup {
         speed: 1.0,

@@ -41,7 +41,7 @@ fn the_commands_of_the_page_have_the_answers_of_the_page_and_lead_to_the_first_h
         plan,
         sockets: Sockets {
             console: Some(console),
-            telemetry: None,
+            ..Sockets::default()
         },
     };
     let flight = flight::fly(&firmware, &scenario, setup, |_| (), &mut Silent).unwrap();

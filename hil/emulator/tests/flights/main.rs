@@ -11,6 +11,7 @@ mod determinism;
 mod faults;
 mod first_hour;
 mod images;
+mod mavlink;
 mod missions;
 mod outputs;
 mod pads;

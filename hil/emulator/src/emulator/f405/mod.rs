@@ -49,8 +49,10 @@ use super::serial::Setup;
 const SUPPLY: u32 = 3300;
 /// Core clock, Hz.
 const CLOCK: f64 = 168e6;
-/// Clock of the receiver's port, Hz.
-const SERIAL_CLOCK: f64 = 84e6;
+/// Clocks of the serial ports, Hz: USART1 and USART6 have the faster one (RM0090 figure 16, table 1).
+const SERIAL_CLOCK: f64 = 42e6;
+const FAST_SERIAL_CLOCK: f64 = 84e6;
+const FAST_SERIAL: [&str; 2] = ["USART1", "USART6"];
 /// The servos' timer that has two channels.
 const SMALL_TIMER: &str = "TIM12";
 /// The motors' timer, and the one whose DMA request moves their frames (RM0090 table 43).
@@ -93,6 +95,7 @@ pub static PADS: Pads = Pads {
     receiver: 0,
     receiver_out: (At(0, 9), 7),
     console: 1,
+    mavlink: 2,
     motors: TimerPins {
         pins: [At(2, 6), At(2, 7), At(2, 8), At(2, 9)],
         function: 3,
@@ -114,15 +117,25 @@ pub static PADS: Pads = Pads {
         (At(0, 10), 7),
         (At(0, 2), 7),
         (At(0, 3), 7),
+        (At(2, 10), 7),
+        (At(2, 11), 7),
     ],
-    resting_high: &[At(1, 8), At(1, 9), At(1, 10), At(1, 11), At(0, 10), At(0, 3)],
+    resting_high: &[
+        At(1, 8),
+        At(1, 9),
+        At(1, 10),
+        At(1, 11),
+        At(0, 10),
+        At(0, 3),
+        At(2, 11),
+    ],
     signals: [At(1, 12), At(1, 13), At(0, 8)],
     foreign: &[0x5168_5BFC],
 };
 
 /// Instances that no firmware of ours uses, or that the F405 lacks. Whoever reaches one all the same finds it listed as
 /// unimplemented, and the run failed.
-const UNUSED: [&str; 27] = [
+const UNUSED: [&str; 26] = [
     "TIM1",
     "TIM2",
     "TIM3",
@@ -132,7 +145,6 @@ const UNUSED: [&str; 27] = [
     "SPI5",
     "SPI6",
     "I2C3",
-    "USART3",
     "USART6",
     "UART4",
     "UART5",
@@ -320,10 +332,16 @@ impl Chip for F405 {
     }
 
     fn serial_setup(&self, port: usize) -> Setup {
-        let file = self.inner.bus().registers(SERIAL_PORTS[port].instance);
+        let instance = SERIAL_PORTS[port].instance;
+        let clock = if FAST_SERIAL.contains(&instance) {
+            FAST_SERIAL_CLOCK
+        } else {
+            SERIAL_CLOCK
+        };
+        let file = self.inner.bus().registers(instance);
         let values = [Serial::Brr, Serial::Cr1, Serial::Cr2].map(|r| file.map_or(0, |file| file.get(r)));
         let [brr, cr1, cr2] = values;
-        Setup::in_registers(SERIAL_CLOCK, brr, cr1, cr2)
+        Setup::in_registers(clock, brr, cr1, cr2)
     }
 
     fn set_options(&mut self, options: Options) {

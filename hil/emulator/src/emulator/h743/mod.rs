@@ -38,7 +38,7 @@ use super::serial::Setup;
 const SUPPLY: u32 = 3300;
 /// Core clock, Hz.
 const CLOCK: f64 = 400e6;
-/// Clock of the receiver's port, Hz.
+/// Clock of the serial ports, Hz.
 const SERIAL_CLOCK: f64 = 100e6;
 /// Clock of the arms' buses, Hz.
 const BUS_CLOCK: f64 = 100e6;
@@ -88,6 +88,7 @@ pub static MATEK: Pads = Pads {
     receiver: 5,
     receiver_out: (At(2, 6), 7),
     console: 6,
+    mavlink: 0,
     motors: TimerPins {
         pins: [At(3, 12), At(3, 13), At(3, 14), At(3, 15)],
         function: 2,
@@ -109,8 +110,18 @@ pub static MATEK: Pads = Pads {
         (At(2, 7), 7),
         (At(4, 7), 7),
         (At(4, 8), 7),
+        (At(0, 9), 7),
+        (At(0, 10), 7),
     ],
-    resting_high: &[At(1, 6), At(1, 7), At(1, 10), At(1, 11), At(2, 7), At(4, 7)],
+    resting_high: &[
+        At(1, 6),
+        At(1, 7),
+        At(1, 10),
+        At(1, 11),
+        At(2, 7),
+        At(4, 7),
+        At(0, 10),
+    ],
     signals: [At(4, 4), At(4, 3), At(0, 15)],
     foreign: &[0x210D_99F1, 0x5168_5B62],
 };

@@ -1,0 +1,131 @@
+//! MAVLink clients at the emulated boards' line.
+
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpStream};
+
+use sophie_emulator::bench::Setup;
+use sophie_emulator::terminal::{Sockets, Terminal};
+
+use super::console::terminal;
+use super::*;
+
+#[path = "../../../../tests/common/clients.rs"]
+mod clients;
+
+/// What the line carries, bytes each second: 57,600 baud, ten bits a byte.
+const LINE_RATE: f64 = 5760.0;
+/// Change of the time from data-ready to the motor frame that a flood may make, us: its mean and its worst. It is 0; with
+/// the line's interrupts above the flight level it was 0.1 and 0.55.
+const MEAN_MOVED: f64 = 0.05;
+const WORST_MOVED: f64 = 0.2;
+
+/// A flight with `client` on the MAVLink line.
+fn fly_with_client(
+    firmware: &Firmware,
+    scenario: &Scenario,
+    radio: bool,
+    client: Option<Terminal>,
+) -> Flight {
+    let silent = (!radio).then_some((0, Trouble::RadioSilent(true)));
+    let setup = Setup {
+        speed: 1.0,
+        plan: Plan::new(silent),
+        sockets: Sockets {
+            mavlink: client,
+            ..Sockets::default()
+        },
+    };
+    flight::fly(firmware, scenario, setup, |_| (), &mut Silent).unwrap()
+}
+
+/// Sends as fast as the socket takes it, and reads what comes, until the board has gone: garbage, the start of frames
+/// of every length, frames with a wrong checksum.
+fn flood(port: u16) {
+    let mut client = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
+    let mut reader = client.try_clone().unwrap();
+    std::thread::spawn(move || while matches!(reader.read(&mut [0; 256]), Ok(count) if count > 0) {});
+    let mut state = 1_u32;
+    let mut bytes = Vec::new();
+    for length in 0..=u8::MAX {
+        bytes.extend([0xFD, length, 0, 0, length, 255, 190, 0, 0, 0]);
+        for _ in 0..=length {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            bytes.push((state >> 24) as u8);
+        }
+    }
+    while client.write_all(&bytes).is_ok() {}
+}
+
+/// Flies a hop on `board` without and with a flood on the MAVLink line.
+fn a_flood_moves_nothing(board: &str, image: &Path) {
+    let firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    let quiet = fly_with_client(&firmware, &hop(), true, None);
+    let (port, client) = terminal("--mavlink");
+    let client_thread = std::thread::spawn(move || flood(port));
+    let flooded = fly_with_client(&firmware, &hop(), true, Some(client));
+    client_thread.join().unwrap();
+    for flight in [&quiet, &flooded] {
+        assert!(
+            flight.passed(),
+            "{board}: {:?} {:?}\n{}",
+            flight.record.outcome,
+            flight.gaps,
+            log(flight)
+        );
+        for task in FLIGHT_LEVEL {
+            assert_eq!(
+                flight.board.overruns.get(task).copied().unwrap_or(0),
+                0,
+                "{board}: {task}"
+            );
+        }
+    }
+    let carried = flooded.board.mavlink_received as f64 / flooded.record.sim_seconds;
+    assert!(carried > 0.9 * LINE_RATE, "{board}: {carried} bytes each second");
+    let [before, after] = [&quiet, &flooded].map(|flight| flight.board.run.latency_us);
+    println!(
+        "{board}: {carried:.0} bytes/s; mean {:.2} to {:.2} us, worst {:.2} to {:.2} us",
+        before.mean(),
+        after.mean(),
+        before.worst,
+        after.worst
+    );
+    let moved = [after.mean() - before.mean(), after.worst - before.worst].map(f64::abs);
+    assert!(
+        moved[0] < MEAN_MOVED && moved[1] < WORST_MOVED,
+        "{board}: {before:?} {after:?}"
+    );
+}
+
+#[test]
+fn a_flood_at_line_rate_moves_no_deadline_figure_of_the_small_board() {
+    a_flood_moves_nothing("f405", small_image());
+}
+
+#[test]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
+fn nor_of_the_reference_board() {
+    a_flood_moves_nothing("matek-h743", image());
+}
+
+#[test]
+#[ignore = "wants pymavlink, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn pymavlink_hears_the_reference_board() {
+    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let (port, client) = terminal("--mavlink");
+    let listener =
+        std::thread::spawn(move || clients::listen(&format!("tcp:127.0.0.1:{port}"), 3, &["HEARTBEAT"]));
+    let flight = fly_with_client(&firmware, &hover(12.0), false, Some(client));
+    let heard = listener.join().unwrap_or_else(|_| panic!("{}", log(&flight)));
+    assert_eq!((&heard["bad"], &heard["lost"]), (&0.into(), &0.into()), "{heard}");
+    for beat in heard["messages"]["HEARTBEAT"].as_array().unwrap() {
+        // MAV_TYPE_QUADROTOR, MAV_AUTOPILOT_GENERIC; not armed.
+        assert_eq!(
+            (&beat["type"], &beat["autopilot"], &beat["system"]),
+            (&2.into(), &0.into(), &1.into()),
+            "{beat}"
+        );
+        assert_eq!(beat["base_mode"].as_u64().unwrap() >> 7, 0, "{beat}");
+    }
+    assert_eq!(flight.gaps, []);
+}

@@ -1,0 +1,109 @@
+//! A flight at the pace of real time, with MAVLink on a UDP socket.
+
+mod flight;
+mod line;
+mod pace;
+mod stored;
+mod udp;
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub use self::flight::LiveFlight;
+use self::line::{Line, LinePort};
+pub use self::pace::Pace;
+use self::stored::Stored;
+pub use self::udp::Udp;
+use crate::clock::VirtualTime;
+use sophie_control::params::Params;
+use sophie_tasks::links::Links;
+use sophie_tasks::mavlink;
+
+/// What ends a flight before its mission is over, in the report.
+const STOPPED: &str = "stopped from outside";
+/// What the server may send, bytes each second of flight: a wired network carries it many times over.
+const BYTES_PER_SECOND: u32 = 50_000;
+
+/// The real time and the MAVLink clients of a flight.
+pub struct Live {
+    pace: Pace,
+    udp: Udp,
+    line: &'static Line,
+    /// The parameters that the next start of the board takes.
+    stored: Option<&'static Cell<Params>>,
+    stop: Arc<AtomicBool>,
+    notice: fn(&str),
+}
+
+impl Live {
+    /// Paced by `pace` with clients at `udp`, until `stop` is set. `notice` receives what a user should know, in one
+    /// line.
+    ///
+    /// The line is leaked: tasks borrow it as `'static`, like the board.
+    #[must_use]
+    pub fn new(pace: Pace, udp: Udp, stop: Arc<AtomicBool>, notice: fn(&str)) -> Self {
+        Self {
+            pace,
+            udp,
+            line: Box::leak(Box::new(Line::new())),
+            stored: None,
+            stop,
+            notice,
+        }
+    }
+
+    /// Spawns the board's server. The first start stores `links`' parameters.
+    pub(crate) fn spawn(&mut self, time: &VirtualTime, links: &'static Links) {
+        let stored = *self
+            .stored
+            .get_or_insert_with(|| Box::leak(Box::new(Cell::new(links.params))));
+        let (line, port) = (self.line, LinePort(self.line));
+        let rate = mavlink::Line {
+            bytes_per_second: BYTES_PER_SECOND,
+        };
+        time.spawn(mavlink::run(
+            links,
+            port,
+            port,
+            Stored(stored),
+            || line.restart(),
+            rate,
+        ));
+    }
+
+    /// The parameters that the board restarts with, if it is to.
+    pub(crate) fn restarts(&self) -> Option<Params> {
+        self.stored.filter(|_| self.line.restarts()).map(Cell::get)
+    }
+
+    /// Loses what is on the line, as at a reset of the board.
+    pub(crate) fn reset(&self) {
+        self.line.clear();
+    }
+
+    /// Waits until `us` of virtual time is due, and takes in what clients have sent.
+    ///
+    /// # Errors
+    /// The flight is to stop.
+    pub(crate) fn begin(&mut self, us: u64) -> Result<(), String> {
+        if let Some(slow) = self.pace.wait(us) {
+            (self.notice)(&slow);
+        }
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(STOPPED.to_owned());
+        }
+        let line = self.line;
+        self.udp.receive(|datagram| line.receive(datagram));
+        Ok(())
+    }
+
+    /// Sends what the board has said.
+    pub(crate) fn end(&mut self) {
+        while let Some(frame) = self.line.said() {
+            if let Some(refused) = self.udp.send(&frame) {
+                (self.notice)(&refused);
+            }
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! `sophie fly --live`: a flight at the pace of real time, with MAVLink on UDP.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use sophie_report::terminal::console::Console;
+use sophie_report::terminal::output::OutDir;
+use sophie_report::terminal::{FILES, complain};
+use sophie_sim::live::{Live, LiveFlight, Pace, Udp};
+
+use super::args::{FlyArgs, LiveArgs};
+use super::{PROGRAM, introduce, report};
+
+/// Exit status after a second Ctrl-C, as a shell gives it.
+const INTERRUPTED: i32 = 130;
+
+/// Flies the mission, reports it and waits for Ctrl-C; without a pilot waits at once. False when the mission was not
+/// accomplished.
+pub fn run(args: &FlyArgs) -> Result<bool, String> {
+    let scenario = args.mission.scenario()?;
+    let LiveArgs {
+        speed,
+        mavlink,
+        pilot,
+        ..
+    } = args.live;
+    let udp = Udp::open(mavlink).map_err(|why| format!("--mavlink {why}"))?;
+    let stop = on_ctrl_c().map_err(|why| format!("Ctrl-C cannot be caught: {why}"))?;
+    let console = Console::new(args.json);
+    let clients = format!("MAVLink: {}", udp.shown());
+    let live = Live::new(Pace::new(speed), udp, Arc::clone(&stop), |line| {
+        complain(PROGRAM, line)
+    });
+    let mut flight = LiveFlight::new(&scenario, live);
+    let mut accomplished = true;
+    if pilot.is_none() {
+        let out = OutDir::prepare(&args.out, &FILES)?;
+        introduce(&scenario, &console);
+        console.say(&clients);
+        let record = console.watch(|observer| flight.fly(observer));
+        accomplished = report(&record, &out, &console, args.json)?;
+    } else {
+        console.say(&clients);
+    }
+    if !stop.load(Ordering::Relaxed) {
+        console.say("waits until Ctrl-C");
+        flight.wait();
+    }
+    Ok(accomplished)
+}
+
+/// A flag that Ctrl-C raises, or a polite end from outside; a second one ends the process.
+fn on_ctrl_c() -> io::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        // In this order: the first signal finds the flag down.
+        flag::register_conditional_shutdown(signal, INTERRUPTED, Arc::clone(&stop))?;
+        flag::register(signal, Arc::clone(&stop))?;
+    }
+    Ok(stop)
+}

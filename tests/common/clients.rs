@@ -1,0 +1,34 @@
+//! MAVLink clients that others wrote, as programs of their own.
+
+use std::path::Path;
+use std::process::Command;
+
+/// Longest wait for a message, s of wall time: an emulated board runs at half of real time, on a machine that is busy.
+const SECONDS: &str = "120";
+
+/// What pymavlink has heard on `connection` once each of `messages` came `count` times.
+pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::Value {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .find(|folder| folder.join(".ci").is_dir())
+        .unwrap();
+    let installed = Command::new(root.join(".ci/mavlink-clients")).output().unwrap();
+    assert!(
+        installed.status.success(),
+        "{}",
+        String::from_utf8_lossy(&installed.stderr)
+    );
+    let python = String::from_utf8(installed.stdout).unwrap();
+    let heard = Command::new(python.lines().last().unwrap())
+        .arg(root.join("tests/mavlink/listen.py"))
+        .args([connection, SECONDS, &count.to_string()])
+        .args(messages)
+        .output()
+        .unwrap();
+    assert!(
+        heard.status.success(),
+        "{}",
+        String::from_utf8_lossy(&heard.stderr)
+    );
+    serde_json::from_slice(&heard.stdout).unwrap()
+}
