@@ -23,7 +23,9 @@
     reason = "generated"
 )]
 pub mod dialect;
+pub mod files;
 pub mod frame;
+pub mod ftp;
 pub mod server;
 pub mod vehicle;
 
