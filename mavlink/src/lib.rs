@@ -25,7 +25,9 @@ pub mod commands;
     reason = "generated"
 )]
 pub mod dialect;
+pub mod files;
 pub mod frame;
+pub mod ftp;
 pub mod messages;
 pub mod parameters;
 pub mod parser;
