@@ -41,6 +41,8 @@ pub enum Request {
     ParamRead(PARAM_REQUEST_READ_DATA),
     /// A parameter's new value.
     ParamSet(PARAM_SET_DATA),
+    /// A request for a file.
+    File(FILE_TRANSFER_PROTOCOL_DATA),
 }
 
 /// What the checksum of message `id` begins with; `None` for those that are not taken.
@@ -54,6 +56,7 @@ pub const fn crc_extra(id: u32) -> Option<u8> {
         PARAM_REQUEST_LIST_DATA::ID => PARAM_REQUEST_LIST_DATA::EXTRA_CRC,
         PARAM_REQUEST_READ_DATA::ID => PARAM_REQUEST_READ_DATA::EXTRA_CRC,
         PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,
+        FILE_TRANSFER_PROTOCOL_DATA::ID => FILE_TRANSFER_PROTOCOL_DATA::EXTRA_CRC,
         _ => return None,
     })
 }
@@ -112,6 +115,10 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         PARAM_SET_DATA::ID => {
             let m: PARAM_SET_DATA = message(frame)?;
             (m.target_system, m.target_component, Request::ParamSet(m))
+        }
+        FILE_TRANSFER_PROTOCOL_DATA::ID => {
+            let m: FILE_TRANSFER_PROTOCOL_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::File(m))
         }
         _ => return None,
     };

@@ -442,6 +442,7 @@ pub fn arms(vehicle: &Vehicle, time_boot_ms: u32) -> SOPHIE_ARMS_DATA {
 pub fn autopilot_version() -> AUTOPILOT_VERSION_DATA {
     let can = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE;
     AUTOPILOT_VERSION_DATA {
         capabilities: can.bits().into(),

@@ -8,7 +8,9 @@ use sophie_control::params::Params;
 use crate::budget::{Budget, RESERVE};
 use crate::commands::{Command, Peer, Request, request};
 use crate::dialect::*;
+use crate::files::{FILES, GENERAL_CRC, GENERAL_URI};
 use crate::frame::Encoder;
+use crate::ftp::{Ftp, PAYLOAD};
 use crate::messages as make;
 use crate::parameters::{Parameters, Place, Refused};
 use crate::parser::{Frame, Parser};
@@ -50,6 +52,8 @@ enum Answer {
     /// A stream's message, once.
     Stream(u32),
     Version,
+    /// Where the description of the parameters is.
+    Metadata,
     /// This mode, and those behind it where all were asked for.
     Mode {
         index: u8,
@@ -68,6 +72,7 @@ impl Answer {
             Self::Parameter(_) => frame_bytes::<PARAM_VALUE_DATA>(),
             Self::Stream(id) => STREAMS.iter().find(|s| s.id == *id).map_or(0, |s| s.bytes),
             Self::Version => frame_bytes::<AUTOPILOT_VERSION_DATA>(),
+            Self::Metadata => frame_bytes::<COMPONENT_METADATA_DATA>(),
             Self::Mode { .. } => frame_bytes::<AVAILABLE_MODES_DATA>(),
         }
     }
@@ -95,6 +100,15 @@ impl From<Answer> for Reply {
     }
 }
 
+/// The files, and who reads them.
+struct Files {
+    ftp: Ftp,
+    /// Who asked last: pieces go there.
+    reader: Peer,
+    /// The answer that waits. Another request replaces it: who misses it asks again.
+    answer: Option<[u8; PAYLOAD]>,
+}
+
 /// The server of one link.
 pub struct Server {
     parser: Parser,
@@ -104,6 +118,7 @@ pub struct Server {
     texts: Texts,
     parameters: Parameters,
     answers: Deque<Answer, ANSWERS>,
+    files: Files,
     mode: Option<Mode>,
     /// When another's heartbeat came last, µs.
     heard_at: Option<u64>,
@@ -123,6 +138,14 @@ impl Server {
             texts: Texts::new(),
             parameters: Parameters::new(params),
             answers: Deque::new(),
+            files: Files {
+                ftp: Ftp::new(&FILES),
+                reader: Peer {
+                    system: 0,
+                    component: 0,
+                },
+                answer: None,
+            },
             mode: None,
             heard_at: None,
             restart_at: None,
@@ -183,6 +206,7 @@ impl Server {
             .or_else(|| self.send_answer(now, vehicle))
             .or_else(|| self.send_text(vehicle))
             .or_else(|| self.send_stream(now, vehicle))
+            .or_else(|| self.send_file())
             .or_else(|| self.send_listed())?;
         self.budget.spend(bytes);
         Some(self.encoder.frame())
@@ -218,6 +242,12 @@ impl Server {
             Answer::Parameter(place) => Some(encoder.encode(&self.parameters.value(place)?)),
             Answer::Stream(id) => stream(encoder, id, now, vehicle),
             Answer::Version => Some(encoder.encode(&make::autopilot_version())),
+            // Wraps after 49 days, as the standard's field does.
+            Answer::Metadata => Some(encoder.encode(&COMPONENT_METADATA_DATA {
+                time_boot_ms: (now / 1000) as u32,
+                file_crc: GENERAL_CRC,
+                uri: GENERAL_URI.into(),
+            })),
             Answer::Mode { index, all } => {
                 if all && usize::from(index) < Mode::ALL.len() {
                     self.answer(Answer::Mode {
@@ -251,6 +281,23 @@ impl Server {
             }
         }
         None
+    }
+
+    fn send_file(&mut self) -> Option<u32> {
+        if !self
+            .budget
+            .allows(frame_bytes::<FILE_TRANSFER_PROTOCOL_DATA>() + RESERVE)
+        {
+            return None;
+        }
+        let Files { ftp, reader, answer } = &mut self.files;
+        let payload = answer.take().or_else(|| ftp.piece())?;
+        Some(self.encoder.encode(&FILE_TRANSFER_PROTOCOL_DATA {
+            target_network: 0,
+            target_system: reader.system,
+            target_component: reader.component,
+            payload,
+        }))
     }
 
     fn send_listed(&mut self) -> Option<u32> {
@@ -317,6 +364,10 @@ impl Server {
                         .set(place, set.param_value, set.param_type, vehicle.at_rest(), now)
                 });
                 self.parameter(found, result);
+            }
+            Request::File(file) => {
+                self.files.answer = self.files.ftp.answer(&file.payload);
+                self.files.reader = from;
             }
         }
     }
@@ -428,6 +479,7 @@ fn once(id: f32, index: f32) -> Reply {
     };
     match id {
         AUTOPILOT_VERSION_DATA::ID => Answer::Version.into(),
+        COMPONENT_METADATA_DATA::ID => Answer::Metadata.into(),
         AVAILABLE_MODES_DATA::ID => match whole(index) {
             Some(0) => Answer::Mode { index: 1, all: true }.into(),
             Some(index) if index as usize <= Mode::ALL.len() => Answer::Mode {

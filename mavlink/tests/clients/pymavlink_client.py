@@ -2,13 +2,16 @@
 
 usage: pymavlink_client.py PORT, with the module `sophie` that mavgen made of mavlink/definitions on the path.
 """
+import json
+import lzma
 import math
 import os
 import sys
+import tempfile
 import time
 
 os.environ['MAVLINK20'] = '1'
-from pymavlink import mavutil  # noqa: E402
+from pymavlink import mavftp, mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common  # noqa: E402
 import sophie  # noqa: E402
 
@@ -97,8 +100,47 @@ def command(link, number, *params):
     return None if ack is None or ack.command != number else ack.result
 
 
+def crc32(content):
+    """MAVLink's checksum of a file: from 0, not inverted at the end."""
+    crc = 0
+    for byte in content:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0xEDB88320 if crc & 1 else 0)
+    return crc
+
+
+def fetched(link, uri):
+    """The file by the client's own transfer."""
+    ftp = mavftp.MAVFTP(link, 1, 1)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'file')
+        ftp.cmd_get([uri.removeprefix('mftp://'), path])
+        answer = ftp.process_ftp_reply('OpenFileRO', timeout=30)
+        if answer.error_code != 0 or not os.path.exists(path):
+            raise SystemExit(f'{uri}: not fetched, error {answer.error_code}')
+        with open(path, 'rb') as file:
+            return file.read()
+
+
+def compare_metadata(link, names):
+    check(command(link, 512, 397) == 0, 'request of COMPONENT_METADATA')
+    about = link.recv_match(type='COMPONENT_METADATA', blocking=True, timeout=3)
+    general = fetched(link, about.uri)
+    check(crc32(general) == about.file_crc, f'{about.uri}: checksum')
+    kinds = {kind['type']: kind for kind in json.loads(general)['metadataTypes']}
+    check(list(kinds) == [1], f'{kinds}')
+    content = lzma.decompress(fetched(link, kinds[1]['uri']))
+    check(crc32(content) == kinds[1]['fileCrc'], f'{kinds[1]["uri"]}: checksum')
+    described = {row['name']: row for row in json.loads(content)['parameters']}
+    check(set(described) == names, f'described, but none or the reverse: {set(described) ^ names}')
+    infill = described['infill']
+    check((infill['min'], infill['max'], infill['units']) == (4, 10, '%'), f'{infill}')
+    check(len(described['motor_protocol']['values']) == 5, 'choices of motor_protocol')
+
+
 def main():
-    link = mavutil.mavlink_connection(f'tcp:127.0.0.1:{sys.argv[1]}', source_system=255)
+    link = mavutil.mavlink_connection(f'tcp:127.0.0.1:{sys.argv[1]}', source_system=255, source_component=190)
     # The part of the standard that the vehicle was built with is the standard.
     shared = [number for number in sophie.mavlink_map if number in common.mavlink_map]
     check(len(shared) > 20, f'{len(shared)} messages of the standard')
@@ -139,6 +181,7 @@ def main():
     check(values and len(values) == values[0].param_count, f'{len(values)} parameters')
     names = {value.param_id: value.param_value for value in values.values()}
     check(abs(names.get('infill', 0) - 6.9) < 1e-5 and names.get('motor_protocol') == 300, 'values')
+    compare_metadata(link, set(names))
     for wanted, echoed in ((8.0, 8.0), (11.0, 8.0)):
         link.mav.param_set_send(1, 1, b'infill', wanted, 9)
         value = link.recv_match(type='PARAM_VALUE', blocking=True, timeout=3)
