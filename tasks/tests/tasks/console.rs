@@ -30,8 +30,8 @@ impl SerialOutput for Screen {
 /// Storage and restart that remember.
 #[derive(Clone, Default)]
 pub struct Board {
-    stored: Rc<Cell<Option<Params>>>,
-    restarts: Rc<Cell<u32>>,
+    pub stored: Rc<Cell<Option<Params>>>,
+    pub restarts: Rc<Cell<u32>>,
     /// What the board's own defaults are; the table's without.
     defaults: Option<&'static Params>,
 }
