@@ -26,6 +26,10 @@ pub struct Command {
 
 /// What a frame asks.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one at a time, on the stack, where nothing can be allocated"
+)]
 pub enum Request {
     /// Someone is there.
     Heartbeat,

@@ -44,6 +44,10 @@ struct PlainChip;
 impl Chip for PlainChip {
     fn restart(&mut self) {}
 
+    fn board(&self) -> &'static str {
+        "table"
+    }
+
     fn looks(&self) -> &[Look] {
         &[]
     }
