@@ -1,6 +1,6 @@
 //! The parameter protocol on the one table: every value is a float, read and set by name or place.
 //!
-//! What is set goes into a copy, which is stored [`SETTLE`] after the last change and is in force after a restart, as at
+//! What is set goes into a copy, which is stored `SETTLE` after the last change and is in force after a restart, as at
 //! the console: what flies is what was looked at on the ground.
 
 use sophie_control::params::{ParamError, Params};

@@ -1,6 +1,6 @@
 //! Frames out of a stream of bytes, however it is cut, garbled or flooded.
 //!
-//! Each byte costs at most [`CANDIDATES`] looks at what is buffered, so that a flood costs its line rate and no more.
+//! Each byte costs at most `CANDIDATES` looks at what is buffered, so that a flood costs its line rate and no more.
 
 use heapless::Vec;
 use mavlink_core::calculate_crc;

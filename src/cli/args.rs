@@ -53,7 +53,7 @@ enum Command {
     Bringup(BringupArgs),
     /// Write a board's parameters into a file, compare them with a file, or set them from a file.
     ///
-    /// FILE is the [params] of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows where FILE
+    /// FILE is the params table of a scenario file. `dump` writes all that the board has, - is stdout. `diff` shows where FILE
     /// differs from the board. `load` checks FILE as a whole, sets what differs, saves, restarts, and reads back.
     /// Exit status: 0 done or equal, 1 different, refused by the board or lost on the way, 2 bad file or port.
     Params(ParamsArgs),

@@ -1,7 +1,7 @@
 //! The firmware besides the tasks' code: start, levels, background tasks, lights and log.
 //!
 //! A package of its own, since generic code and futures are compiled with the package that makes them concrete: these
-//! for size, those of [`sophie_flight`] for speed (`Cargo.toml`). Chip code is in [`sophie_boards`]. The host has none
+//! for size, those of `sophie_flight` for speed (`Cargo.toml`). Chip code is in `sophie_boards`. The host has none
 //! of it.
 
 #![cfg_attr(target_os = "none", no_std)]

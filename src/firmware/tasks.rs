@@ -1,5 +1,5 @@
 //! Every task is spawned here. Those of the background are static executor tasks here too, compiled for size; those of
-//! the other levels are in [`sophie_flight`], compiled for speed.
+//! the other levels are in `sophie_flight`, compiled for speed.
 
 use embassy_executor::SpawnError;
 use embassy_sync::mutex::Mutex;

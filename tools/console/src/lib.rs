@@ -1,4 +1,4 @@
-//! The builder's side of the console: a [session](session) over a serial port or TCP, [parameter files](parameters) and
+//! The builder's side of the console: a [`session`] over a serial port or TCP, parameter files ([`parameters`]) and
 //! the guided [bring-up](bringup) of a vehicle.
 //!
 //! Whatever is typed is a command of docs/console.md. The line may be in any state and lose bytes; the board may restart

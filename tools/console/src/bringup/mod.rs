@@ -1,5 +1,5 @@
 //! The guided bring-up: each step says what hands do, types the console's own commands, judges the answer, and is written
-//! into the [protocol](protocol) before the next one begins.
+//! into the [`protocol`] before the next one begins.
 //!
 //! A step that measures also stores: it has passed when the board has restarted with its values in force. What was done
 //! when a run ends, however it ends, is neither lost nor asked for again.
