@@ -196,7 +196,7 @@ fn pymavlink_hears_the_vehicle() {
     let (socket, address) = station();
     drop(socket);
     let _flight = Flight::begin(&temp, &[&file, "--speed", "2", "--mavlink", &address]);
-    let heard = clients::listen(&format!("udpin:{address}"), 3, &["HEARTBEAT"]);
+    let heard = clients::listen(&format!("udpin:{address}"), 3, &["HEARTBEAT", "ATTITUDE"]);
     assert_eq!((&heard["bad"], &heard["lost"]), (&0.into(), &0.into()), "{heard}");
     for beat in heard["messages"]["HEARTBEAT"].as_array().unwrap() {
         // MAV_TYPE_QUADROTOR, MAV_AUTOPILOT_GENERIC.
@@ -205,5 +205,12 @@ fn pymavlink_hears_the_vehicle() {
             (&2.into(), &0.into(), &1.into()),
             "{beat}"
         );
+    }
+    // Before it is armed and in the first seconds of a climb: near level.
+    for attitude in heard["messages"]["ATTITUDE"].as_array().unwrap() {
+        for angle in ["roll", "pitch"] {
+            let lean = attitude[angle].as_f64().unwrap();
+            assert!(lean.abs() < 0.2, "{attitude}");
+        }
     }
 }

@@ -2,13 +2,20 @@
 //!
 //! Background: whatever arrives, or stays away, delays nothing that flies. A miss costs a late picture.
 
+use core::cell::RefCell;
 use core::pin::pin;
 
+use embassy_futures::join::join;
 use embassy_futures::select::{Either, select};
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
+use heapless::Vec;
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::params::Params;
 use sophie_control::tendon::Reel;
 use sophie_control::wrench::PerArm;
+use sophie_mavlink::parser::LONGEST;
 use sophie_mavlink::{Condition, Order, Server, Vehicle};
 
 use crate::deadline::{FixedRate, TaskId, Tick};
@@ -28,45 +35,95 @@ pub struct Line {
     pub bytes_per_second: u32,
 }
 
+/// The server of a line and the picture that it speaks of.
+struct Shared {
+    server: Server,
+    vehicle: Vehicle,
+}
+
+/// What takes and what sends share, in one task and never over an await.
+struct Link {
+    shared: RefCell<Shared>,
+    /// There may be something to send.
+    due: Signal<NoopRawMutex, ()>,
+}
+
+impl Link {
+    /// What `work` gives; `None` never comes, since no one else has it then.
+    fn with<R>(&self, work: impl FnOnce(&mut Server, &mut Vehicle) -> R) -> Option<R> {
+        let mut shared = self.shared.try_borrow_mut().ok()?;
+        let Shared { server, vehicle } = &mut *shared;
+        Some(work(server, vehicle))
+    }
+}
+
 /// Serves MAVLink on one line; never returns. `restart` restarts the board.
 pub async fn run(
     links: &Links,
     mut input: impl SerialInput,
-    mut output: impl SerialOutput,
+    output: impl SerialOutput,
     mut storage: impl Storage,
     mut restart: impl FnMut(),
     line: Line,
 ) -> ! {
-    let mut server = Server::new(links.params, line.bytes_per_second);
-    let reels = Reel::all(&links.params);
-    let mut rate = FixedRate::of(links, TaskId::Mavlink);
-    let mut vehicle = Vehicle::default();
-    loop {
-        let tick = listen(&mut rate, &mut input, &mut server, &vehicle).await;
-        let now = tick.started.as_micros();
-        vehicle = picture(links, &reels);
-        while let Some(frame) = server.send(now, &vehicle) {
-            // A frame that the line does not take is lost; the next one follows.
-            let _ = output.write(frame).await;
-        }
-        match server.order(now, &vehicle) {
-            Some(Order::Store) => {
-                let stored = store(links, &mut storage, &server).await;
-                server.stored(stored);
+    let link = Link {
+        shared: RefCell::new(Shared {
+            server: Server::new(links.params, line.bytes_per_second),
+            vehicle: Vehicle::default(),
+        }),
+        due: Signal::new(),
+    };
+    let serve = async {
+        let reels = Reel::all(&links.params);
+        let mut rate = FixedRate::of(links, TaskId::Mavlink);
+        loop {
+            let now = listen(&mut rate, &mut input, &link).await.started.as_micros();
+            let seen = picture(links, &reels);
+            let order = link.with(|server, vehicle| {
+                *vehicle = seen;
+                server.order(now, vehicle)
+            });
+            link.due.signal(());
+            match order.flatten() {
+                Some(Order::Store) => {
+                    let Some(params) = link.with(|server, _| *server.params()) else {
+                        continue;
+                    };
+                    let stored = store(links, &mut storage, &params).await;
+                    link.with(|server, _| server.stored(stored));
+                }
+                Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => restart(),
+                Some(Order::Restart) | None => (),
             }
-            Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => restart(),
-            Some(Order::Restart) | None => (),
+        }
+    };
+    join(serve, send(&link, output)).await.1
+}
+
+/// Sends as fast as the line takes it: a frame is made when there is room for it, of what is known then. The wait for
+/// the line is no part of the task's run.
+async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
+    let mut frame = Vec::<u8, LONGEST>::new();
+    loop {
+        link.due.wait().await;
+        loop {
+            let now = Instant::now().as_micros();
+            frame.clear();
+            let copied = link.with(|server, vehicle| {
+                let bytes = server.send(now, vehicle).unwrap_or_default();
+                frame.extend_from_slice(bytes)
+            });
+            if !matches!(copied, Some(Ok(()))) || frame.is_empty() {
+                break;
+            }
+            // A frame that the line does not take is lost; the next one follows.
+            let _ = output.write(&frame).await;
         }
     }
 }
 
 /// Hands what arrives to the server until the next run is due.
-async fn listen(
-    rate: &mut FixedRate<'_>,
-    input: &mut impl SerialInput,
-    server: &mut Server,
-    vehicle: &Vehicle,
-) -> Tick {
+async fn listen(rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &Link) -> Tick {
     let mut bytes = [0; CHUNK];
     let mut next = pin!(rate.next());
     loop {
@@ -74,7 +131,8 @@ async fn listen(
             Either::First(tick) => return tick,
             Either::Second(Ok(count)) if count > 0 => {
                 let arrived = bytes.get(..count).unwrap_or_default();
-                server.receive(arrived, Instant::now().as_micros(), vehicle);
+                let now = Instant::now().as_micros();
+                link.with(|server, vehicle| server.receive(arrived, now, vehicle));
                 // A line that is never silent must not starve the others of this level.
                 embassy_futures::yield_now().await;
             }
@@ -84,9 +142,9 @@ async fn listen(
 }
 
 /// Stores the server's parameters; arming is refused meanwhile.
-async fn store(links: &Links, storage: &mut impl Storage, server: &Server) -> Result<(), &'static str> {
+async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
     storing::hold_arming(links).await.map_err(|_| "disarm first")?;
-    storing::save(links, storage, server.params())
+    storing::save(links, storage, params)
         .await
         .map_err(|error| error.text())?;
     // What flies are the old ones until a restart, which the text asks for.

@@ -113,8 +113,9 @@ fn nor_of_the_reference_board() {
 fn pymavlink_hears_the_reference_board() {
     let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
     let (port, client) = terminal("--mavlink");
-    let listener =
-        std::thread::spawn(move || clients::listen(&format!("tcp:127.0.0.1:{port}"), 3, &["HEARTBEAT"]));
+    let listener = std::thread::spawn(move || {
+        clients::listen(&format!("tcp:127.0.0.1:{port}"), 3, &["HEARTBEAT", "ATTITUDE"])
+    });
     let flight = fly_with_client(&firmware, &hover(12.0), false, Some(client));
     let heard = listener.join().unwrap_or_else(|_| panic!("{}", log(&flight)));
     assert_eq!((&heard["bad"], &heard["lost"]), (&0.into(), &0.into()), "{heard}");
