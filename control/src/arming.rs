@@ -67,7 +67,7 @@ arming_checks! {
     /// No fresh attitude.
     ImuStale = "inertial sensor silent", "fresh attitudes";
     /// The gyro has not been calibrated at rest.
-    NotCalibrated = "not calibrated", "a second at rest";
+    NotCalibrated = "not calibrated", "two seconds at rest";
     /// The arm switch has been on since power-up.
     SwitchOnAtPowerUp = "arm switch on at power-up", "the pilot: arm switch off";
     /// The throttle stick is not at its low end.

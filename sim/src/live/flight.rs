@@ -31,7 +31,7 @@ impl<'a> LiveFlight<'a> {
     /// Flies the mission.
     pub fn fly(&mut self, observer: &mut dyn Observer) -> FlightRecord {
         let record = self.world.fly(self.scenario, observer);
-        // Sticks that nobody moves any more must not fly: without a transmitter the vehicle lands by itself.
+        // Sticks without a hand must not fly: without a transmitter the vehicle lands by itself.
         self.transmitter = record.outcome.accomplished && self.world.stack.mode() == Mode::Disarmed;
         record
     }

@@ -22,7 +22,7 @@ pub struct Pace {
     origin: f64,
     /// Wall and virtual time at the last measurement, s.
     measured: (f64, f64),
-    /// A host that is too slow is told of once.
+    /// A host that is too slow is reported once.
     told: bool,
 }
 
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     /// Runs `seconds` of virtual time at `speed` on a host that takes `cost(t)` s for each millisecond: wall time at
-    /// the end, the speeds told, and the largest virtual time run within any second of wall time.
+    /// the end, the speeds reported, and the largest virtual time run within any second of wall time.
     fn run(speed: f64, seconds: f64, cost: impl Fn(f64) -> f64) -> (f64, Vec<f64>, f64) {
         let (mut pace, mut wall, mut told, mut times) = (Pace::new(speed), 0.0, vec![], vec![]);
         for ms in 1..=(seconds * 1e3) as u64 {

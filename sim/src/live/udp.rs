@@ -18,7 +18,7 @@ pub struct Udp {
     socket: UdpSocket,
     destination: SocketAddr,
     client: Option<Client>,
-    /// The refusal of a send has been told of.
+    /// The refusal of a send has been reported.
     told: bool,
 }
 
