@@ -51,7 +51,7 @@ fn options_out_of_range_are_refused_in_one_line() {
 #[test]
 fn bad_files_are_refused_in_one_line_that_names_them() {
     let temp = Temp::new("files");
-    for (content, told) in [
+    for (content, message) in [
         (
             &b"[vehicle]\ninfill = 3.5"[..],
             ":2: vehicle.infill = 3.5: allowed 4 to 10 %",
@@ -77,7 +77,7 @@ fn bad_files_are_refused_in_one_line_that_names_them() {
     ] {
         let file = temp.file("bad.toml", content);
         let line = refused(&temp, &[&file]);
-        assert!(line.starts_with(&format!("sophie: {file}{told}")), "{line}");
+        assert!(line.starts_with(&format!("sophie: {file}{message}")), "{line}");
     }
     let line = refused(&temp, &["missing.toml"]);
     assert!(
@@ -128,13 +128,14 @@ fn a_full_stdout_is_an_error() {
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
         let output = command(&temp.0, args).stdout(full).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{args:?}");
-        let told = text(&output.stderr);
+        let printed = text(&output.stderr);
         assert!(
-            told.lines()
+            printed
+                .lines()
                 .last()
                 .unwrap()
                 .starts_with("sophie: stdout: cannot be written: "),
-            "{args:?}: {told}"
+            "{args:?}: {printed}"
         );
     }
 }
@@ -264,11 +265,11 @@ fn a_flight_writes_three_files_and_says_where() {
     let temp = Temp::new("hop");
     let hop = temp.file("hop.toml", HOP);
     let output = sophie(&temp, &["fly", &hop, "--seed", "5"]);
-    let told = text(&output.stdout);
-    assert_eq!(output.status.code(), Some(0), "{told}{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{printed}{}", text(&output.stderr));
     assert!(
-        output.stderr.is_empty() && !told.contains('\x1b'),
-        "plain lines where no terminal is: {told}"
+        output.stderr.is_empty() && !printed.contains('\x1b'),
+        "plain lines where no terminal is: {printed}"
     );
     for part in [
         "seed 5",
@@ -277,7 +278,7 @@ fn a_flight_writes_three_files_and_says_where() {
         "accomplished: ",
         "out/report.html",
     ] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(printed.contains(part), "{part}: {printed}");
     }
     let out = temp.0.join("out");
     let mut names: Vec<_> = fs::read_dir(&out)
@@ -315,16 +316,16 @@ fn a_mission_that_fails_ends_with_1_and_the_reason() {
     let late = temp.file("late.toml", &[b"time_limit_s = 3\n", HOP].concat());
     let output = sophie(&temp, &[&late]);
     assert_eq!(output.status.code(), Some(1));
-    let told = text(&output.stderr);
+    let printed = text(&output.stderr);
     assert!(
-        told.starts_with("sophie: not accomplished: ") && told.lines().count() == 1,
-        "{told}"
+        printed.starts_with("sophie: not accomplished: ") && printed.lines().count() == 1,
+        "{printed}"
     );
     assert!(text(&output.stdout).contains("NOT accomplished"));
     let summary = fs::read_to_string(temp.0.join("out/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     assert_eq!(summary["accomplished"], false);
-    assert!(told.contains(summary["reason"].as_str().unwrap()));
+    assert!(printed.contains(summary["reason"].as_str().unwrap()));
 }
 
 #[test]
@@ -356,7 +357,7 @@ fn a_board_s_log_becomes_tables_a_page_and_a_sheet() {
     let temp = Temp::new("timing");
     let log = board_log().display().to_string();
     let output = sophie(&temp, &["timing", &log, "--analyse", "--out", "there"]);
-    let (told, complaints) = (text(&output.stdout), text(&output.stderr));
+    let (printed, complaints) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.success() && complaints.is_empty(), "{complaints}");
     for part in [
         "data-ready to motor frame",
@@ -364,7 +365,7 @@ fn a_board_s_log_becomes_tables_a_page_and_a_sheet() {
         "f405",
         "there/timing.csv",
     ] {
-        assert!(told.contains(part), "no {part} in {told}");
+        assert!(printed.contains(part), "no {part} in {printed}");
     }
     let page = fs::read_to_string(temp.0.join("there/timing.html")).unwrap();
     assert!(page.contains("mixer") && page.ends_with("</html>\n"));

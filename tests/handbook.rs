@@ -55,7 +55,7 @@ fn a_broken_link_a_broken_anchor_and_a_missing_source_are_named() {
             .any(|p| Path::new(p) == path)
     };
     assert_eq!(faults(&pages(one), exists), [] as [&str; 0]);
-    for (broken, told) in [
+    for (broken, fault) in [
         ("[x](three.md)", "docs/one.md: three.md: no such file"),
         ("![x](drawing.svg)", "docs/one.md: drawing.svg: no such file"),
         (
@@ -70,7 +70,7 @@ fn a_broken_link_a_broken_anchor_and_a_missing_source_are_named() {
         ("`src/gone.rs`", "docs/one.md: `src/gone.rs`: no such file"),
         ("[x](two.md#There)", "docs/one.md: two.md#There: no such heading"),
     ] {
-        assert_eq!(faults(&pages(&format!("{one}\n{broken}\n")), exists), [told]);
+        assert_eq!(faults(&pages(&format!("{one}\n{broken}\n")), exists), [fault]);
     }
 }
 
@@ -110,13 +110,13 @@ fn the_pages_that_are_read_in_one_go_are_short() {
 fn the_lights_of_the_pilots_page_are_those_of_the_firmware() {
     let source = std::fs::read_to_string(root().join("src/firmware/lights.rs")).unwrap();
     let page = std::fs::read_to_string(root().join("docs/pilot.md")).unwrap();
-    let told: Vec<&str> = source
+    let listed: Vec<&str> = source
         .lines()
         .filter_map(|line| line.strip_prefix("//! "))
         .skip(1)
         .collect();
-    assert!(told.len() >= 8, "{told:?}");
-    for line in told {
+    assert!(listed.len() >= 8, "{listed:?}");
+    for line in listed {
         assert!(
             page.lines().any(|l| l == line),
             "docs/pilot.md has no line '{line}'"

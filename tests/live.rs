@@ -163,10 +163,10 @@ fn ctrl_c_in_the_air_ends_the_mission_with_a_report() {
     await_datagram(&socket, |datagram| heartbeat(datagram, true));
     let output = flight.end();
     assert_eq!(output.status.code(), Some(1));
-    let told = text(&output.stderr);
+    let message = text(&output.stderr);
     assert!(
-        told.contains("sophie: not accomplished: stopped from outside (at "),
-        "{told}"
+        message.contains("sophie: not accomplished: stopped from outside (at "),
+        "{message}"
     );
     assert!(written(&temp.0));
 }

@@ -40,14 +40,14 @@ fn text(bytes: &[u8]) -> String {
 /// Requires exit status 2, empty stdout, one line on stderr, no files.
 fn refused(temp: &Temp, args: &[&str]) -> String {
     let output = sophie(&temp.0, args);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
     assert!(
-        output.stdout.is_empty() && told.lines().count() == 1,
-        "{args:?}: {told}"
+        output.stdout.is_empty() && message.lines().count() == 1,
+        "{args:?}: {message}"
     );
     assert!(!temp.0.join("out").exists(), "{args:?}");
-    told.trim_end().to_owned()
+    message.trim_end().to_owned()
 }
 
 fn section<'a>(results: &'a Value, id: &str) -> &'a Value {
@@ -328,13 +328,14 @@ fn bench_data_in_other_units_are_not_fitted_as_if_they_were_right() {
     );
     write("short.csv", example(|x| (x[0] == 6.9 && x[1] < 3.6).then_some(x)));
     let output = sophie(&temp.0, &["fit-arm", "short.csv"]);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
     let warning = "thrust_n ends at 3.50 N, less than half of the 8.3 N that a rotor gives: above it the fit is a guess";
     assert!(
-        told.lines()
+        message
+            .lines()
             .any(|l| l.starts_with("sophie: warning: short.csv: ") && l.contains(warning)),
-        "{told}"
+        "{message}"
     );
     assert!(
         fs::read_to_string(temp.0.join("out/fit.html"))
@@ -360,8 +361,8 @@ fn a_coefficient_that_may_be_none_is_told() {
     });
     fs::write(temp.0.join("rough.csv"), rough).unwrap();
     let output = sophie(&temp.0, &["fit-arm", "rough.csv", "--json"]);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
     let results: Value = serde_json::from_slice(&output.stdout).unwrap();
     let names = column(&results, "fit", "Coefficients", 0);
     let (from, to) = (
@@ -376,15 +377,15 @@ fn a_coefficient_that_may_be_none_is_told() {
         let crosses = from[i].as_f64().unwrap() <= 0.0 && to[i].as_f64().unwrap() >= 0.0;
         let told_of = crosses && !["α0", "K"].contains(&name);
         crossing += usize::from(told_of);
-        let lines: Vec<&str> = told.lines().filter(|l| l.starts_with("sophie: ")).collect();
+        let lines: Vec<&str> = message.lines().filter(|l| l.starts_with("sophie: ")).collect();
         assert_eq!(
             lines.iter().any(|l| l.contains(&warning)),
             told_of,
-            "{name}: {told}"
+            "{name}: {message}"
         );
         assert_eq!(page.contains(&warning), told_of, "{name}");
     }
-    assert!(crossing > 0, "{told}");
+    assert!(crossing > 0, "{message}");
 }
 
 #[test]
@@ -411,7 +412,7 @@ fn wrong_input_is_told_in_one_line() {
     write("mixed.csv", "infill_percent,thrust_n,tilt_deg\n6;1;2\n");
     write("headless.csv", "6,1,2\n6,2,3\n");
     fs::write(temp.0.join("bytes.csv"), [0xff, 0xfe, 0x00]).unwrap();
-    for (args, told) in [
+    for (args, message) in [
         (&["paper", "x"][..], "unexpected argument 'x': allowed is no file"),
         (&["paper", "--out", "few.csv"], "--out few.csv: cannot be written"),
         (&["fit-arm"], "<BENCH.csv>"),
@@ -459,7 +460,7 @@ fn wrong_input_is_told_in_one_line() {
     ] {
         let line = refused(&temp, args);
         assert!(
-            line.starts_with("sophie: ") && line.contains(told),
+            line.starts_with("sophie: ") && line.contains(message),
             "{args:?}: {line}"
         );
     }

@@ -177,14 +177,14 @@ mod tests {
         for wait in &mut waits {
             line.silent(at(now), 4000.0);
             let from = now;
-            let mut told = false;
+            let mut this_time = false;
             while line.due().is_some() {
                 now += 250;
                 line.sample(at(now), true);
-                told |= line.reported();
+                this_time |= line.reported();
             }
             *wait = (now - from) / MS;
-            reported += u32::from(told);
+            reported += u32::from(this_time);
             now += 5000 * MS;
         }
         for (wait, patience) in waits

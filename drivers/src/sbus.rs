@@ -30,7 +30,7 @@ const BYTE: Duration = Duration::from_micros(120);
 /// Pause between frames. Receivers leave 4 ms or more, and none within a frame.
 const SILENCE: Duration = Duration::from_millis(3);
 /// Consecutive frames before sticks are accepted.
-const BELIEVED_FROM: u8 = 3;
+const TRUSTED_FROM: u8 = 3;
 
 /// A frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -273,10 +273,10 @@ impl RcDecoder for Decoder {
                 self.garbage();
                 continue;
             };
-            self.in_a_row = self.in_a_row.saturating_add(1).min(BELIEVED_FROM);
+            self.in_a_row = self.in_a_row.saturating_add(1).min(TRUSTED_FROM);
             self.state.frames = self.state.frames.wrapping_add(1);
             match frame.sticks() {
-                Ok(sticks) if self.in_a_row >= BELIEVED_FROM => {
+                Ok(sticks) if self.in_a_row >= TRUSTED_FROM => {
                     self.state.sticks = sticks;
                     news = true;
                 }

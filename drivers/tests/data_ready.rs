@@ -222,16 +222,16 @@ fn a_loose_contact_is_reported_and_samples_come_throughout() {
             let read = read_for(&mut driver, 5).await;
             part.borrow_mut().failure = Failure::None;
             assert!(read.errors.is_empty(), "{read:?}");
-            let mut told = false;
+            let mut this_time = false;
             for _ in 0..10 {
                 let read = read_for(&mut driver, 100).await;
                 assert!(
                     read.errors.is_empty() && read.gap < 600 && read.stamps.len() > 380,
                     "{read:?}"
                 );
-                told |= driver.line_silent();
+                this_time |= driver.line_silent();
             }
-            if told {
+            if this_time {
                 reported.push(nth);
             }
         }
@@ -255,7 +255,7 @@ fn the_imu_task_keeps_its_rate_over_a_cut_line_reports_it_and_takes_it_back() {
         part.borrow_mut().failure = Failure::LineCut;
         let reason = ArmingInhibit::ImuLineSilent;
         let mut last = links.imu.latest().unwrap().at;
-        let (mut longest, mut count, mut told) = (0, 0, None);
+        let (mut longest, mut count, mut reported) = (0, 0, None);
         for ms in 0..2000u32 {
             let _ = with_timeout(Duration::from_millis(1), task.as_mut()).await;
             let sample = links.imu.latest().unwrap();
@@ -263,14 +263,17 @@ fn the_imu_task_keeps_its_rate_over_a_cut_line_reports_it_and_takes_it_back() {
                 longest = longest.max((sample.at - last).as_micros());
                 (last, count) = (sample.at, count + 1);
             }
-            if told.is_none() && links.hardware().contains(reason) {
-                told = Some(ms);
+            if reported.is_none() && links.hardware().contains(reason) {
+                reported = Some(ms);
             }
         }
         // Readers regard a sample as stale after 5 ms.
         assert!(longest < 4600, "{longest} us");
         assert!((1960..2040).contains(&count), "{count}");
-        assert!(told.is_some_and(|ms| (195..215).contains(&ms)), "{told:?}");
+        assert!(
+            reported.is_some_and(|ms| (195..215).contains(&ms)),
+            "{reported:?}"
+        );
         assert!(links.hardware().iter().eq([reason]));
         part.borrow_mut().failure = Failure::None;
         let _ = with_timeout(Duration::from_millis(300), task.as_mut()).await;

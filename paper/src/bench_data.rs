@@ -38,18 +38,18 @@ const COLUMNS: [Column; 4] = [
 /// One line: file, line, column, value, what is allowed, and which other lines are bad.
 pub fn load(path: &Path) -> Result<Vec<Point>, String> {
     let file = path.display();
-    let told = |why: String| format!("{file}: {why}");
-    let size =
-        std::fs::metadata(path).map_err(|e| told(format!("cannot be read: {e}: allowed is a CSV file")))?;
+    let complaint = |why: String| format!("{file}: {why}");
+    let size = std::fs::metadata(path)
+        .map_err(|e| complaint(format!("cannot be read: {e}: allowed is a CSV file")))?;
     if size.is_dir() || size.len() > MAX_BYTES {
-        return Err(told(
+        return Err(complaint(
             "cannot be read: allowed is a CSV file of at most 16 MiB".to_owned(),
         ));
     }
     let bytes =
-        std::fs::read(path).map_err(|e| told(format!("cannot be read: {e}: allowed is a CSV file")))?;
+        std::fs::read(path).map_err(|e| complaint(format!("cannot be read: {e}: allowed is a CSV file")))?;
     let text = String::from_utf8(bytes)
-        .map_err(|_| told("is not text: allowed is a CSV file in UTF-8".to_owned()))?;
+        .map_err(|_| complaint("is not text: allowed is a CSV file in UTF-8".to_owned()))?;
     parse(&text, &file.to_string())
 }
 
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn a_bad_row_is_told_by_its_line_with_the_others() {
         let head = "infill_percent,thrust_n,tilt_deg\n";
-        for (rows, told) in [
+        for (rows, message) in [
             (
                 "6,2,1\n6,x,1\n",
                 "b.csv:3: thrust_n = 'x': allowed is a number from 0 to 100 N",
@@ -224,7 +224,7 @@ mod tests {
                 "b.csv:2: tilt_deg = 'NaN': allowed is a number from -90 to 90 deg (bad as well: lines 3)",
             ),
         ] {
-            assert_eq!(parse(&format!("{head}{rows}"), "b.csv").unwrap_err(), told);
+            assert_eq!(parse(&format!("{head}{rows}"), "b.csv").unwrap_err(), message);
         }
         assert!(
             parse("thrust_n,tilt_deg\n", "b")

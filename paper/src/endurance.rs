@@ -29,14 +29,14 @@ fn ideal_power(mass: f64, tilt: f64) -> f64 {
 }
 
 /// FT = η E / P(m), m = m0 + slope (ρ - ρ0).
-struct Fudge {
+struct Correction {
     efficiency: f64,
     /// kg per % of infill.
     slope: f64,
 }
 
 /// Gauss-Newton in ln FT over rows of Table V: ln FT = ln η E - ln P(m).
-fn fit(p: &Printed, energy: f64) -> Fudge {
+fn fit(p: &Printed, energy: f64) -> Correction {
     let rows: Vec<_> = p
         .table_5
         .iter()
@@ -61,7 +61,7 @@ fn fit(p: &Printed, energy: f64) -> Fudge {
         a += (ar * bb - br * ab) / det;
         slope += (br * aa - ar * ab) / det;
     }
-    Fudge {
+    Correction {
         efficiency: a.exp(),
         slope,
     }
@@ -71,7 +71,7 @@ struct Flight<'a> {
     printed: &'a Printed,
     /// J.
     energy: f64,
-    fudge: Fudge,
+    correction: Correction,
 }
 
 impl<'a> Flight<'a> {
@@ -80,13 +80,13 @@ impl<'a> Flight<'a> {
         Self {
             printed,
             energy,
-            fudge: fit(printed, energy),
+            correction: fit(printed, energy),
         }
     }
 
     /// Ideal, W, with the calibrated mass.
     fn power(&self, infill: f64) -> f64 {
-        let mass = self.printed.mass() + self.fudge.slope * (infill - self.printed.text.infill_percent);
+        let mass = self.printed.mass() + self.correction.slope * (infill - self.printed.text.infill_percent);
         ideal_power(mass, 0.0)
     }
 
@@ -97,7 +97,7 @@ impl<'a> Flight<'a> {
 
     /// min.
     fn fitted(&self, infill: f64) -> f64 {
-        self.fudge.efficiency * self.energy / 60.0 / self.power(infill)
+        self.correction.efficiency * self.energy / 60.0 / self.power(infill)
     }
 
     /// With usual losses on `share` of the charge, min.
@@ -131,7 +131,7 @@ fn power_of_hover(flight: &Flight<'_>) -> String {
     let Flight {
         printed: p,
         energy,
-        fudge,
+        correction,
     } = flight;
     let printed_mass = p
         .table_2
@@ -144,21 +144,23 @@ fn power_of_hover(flight: &Flight<'_>) -> String {
         "Power of hover: P = 4 T √(T/(2 ρ_air A)) / η, momentum theory for four 10-inch discs; {:.0} W ideal at {:.3} kg. \
          A battery of {:.0} mAh at {FLIGHT_VOLTAGE} V holds {:.1} Wh, so that hover without any loss lasts {ideal:.1} min. \
          Table V is met with η = {:.2} and a mass that grows by {:.0} g for each % of infill ({:.0} g of Table II are \
-         printed): the fudge factor. The honest prediction beside it has η = {FIGURE_OF_MERIT} · {DRIVE}, {ELECTRONICS} W of \
+         printed): the correction factor. The honest prediction beside it has η = {FIGURE_OF_MERIT} · {DRIVE}, {ELECTRONICS} W of \
          electronics, and lands with a fifth of the charge left.",
         ideal_power(p.mass(), 0.0),
         p.mass(),
         p.text.flight_battery_mah,
         energy / 3600.0,
-        fudge.efficiency,
-        1e3 * fudge.slope,
+        correction.efficiency,
+        1e3 * correction.slope,
         1e3 * printed_mass
     )
 }
 
 fn calibrated(flight: &Flight<'_>) -> Vec<Comparison> {
     let Flight {
-        printed: p, fudge, ..
+        printed: p,
+        correction,
+        ..
     } = flight;
     let row = |row: &Endurance| {
         let flown = row.infill_percent >= p.text.flyable_infill_percent;
@@ -175,8 +177,8 @@ fn calibrated(flight: &Flight<'_>) -> Vec<Comparison> {
             why: if flown {
                 format!(
                     "η {:.2} and {:.0} g/% by least squares over the rows from 6 % on",
-                    fudge.efficiency,
-                    1e3 * fudge.slope
+                    correction.efficiency,
+                    1e3 * correction.slope
                 )
             } else {
                 "the paper says that large deflections cost thrust; level at half throttle, the arms lean by 2° in hover and \
@@ -233,7 +235,7 @@ fn finding(flight: &Flight<'_>) -> String {
         "The printed flight times need {:.0} % of the battery's energy to reach the air; with usual losses it is {:.1} min at \
          ρ {} % where Table V's neighbours print {:.1} and {:.1}. Inspection times follow the steady force, but those \
          printed draw up to {:.1} A a servo, where an MG996R stalls at {:.1} A.",
-        100.0 * flight.fudge.efficiency,
+        100.0 * flight.correction.efficiency,
         flight.honest(p.text.infill_percent, USABLE),
         p.text.infill_percent,
         p.table_5.get(1).map_or(f64::NAN, |r| r.flight_min),

@@ -13,9 +13,7 @@ use super::model::{Axis, Chart, Look, Section, Series, Table, num};
 use super::printed::Printed;
 use super::roll::sideways;
 use sophie_sim::parallel;
-
-/// Of the plant, N·s/m; subtracted, so that only the equations differ.
-const DRAG: f64 = 0.3;
+use sophie_sim::plant::DRAG;
 
 /// Thrust along the body's -z, N.
 fn lift(m: &Moment) -> f64 {
@@ -66,6 +64,7 @@ fn truth(flown: &Flown, mass: f64) -> Vec<(Moment, DVec3)> {
     (5..m.len().saturating_sub(5))
         .map(|i| {
             let a = (m[i + 5].velocity - m[i - 5].velocity) / (m[i + 5].t - m[i - 5].t);
+            // The plant's drag is subtracted, so that only the equations differ.
             let force = a * mass + m[i].velocity * DRAG;
             (m[i], DVec3::new(force.y, force.x, force.z))
         })

@@ -67,7 +67,7 @@ impl Telemetry {
     }
 
     /// Sets mode and reason.
-    pub fn tell(&mut self, mode: Mode, reason: &str) {
+    pub fn report(&mut self, mode: Mode, reason: &str) {
         self.mode = Some(mode);
         if self.reason != reason {
             self.reason = reason.to_owned();
@@ -91,7 +91,7 @@ impl Telemetry {
         match packet {
             Packet::FlightMode(text) => {
                 if let Some((mode, reason)) = parse_mode_text(text.flight_mode()) {
-                    self.tell(mode, reason);
+                    self.report(mode, reason);
                 }
             }
             Packet::Battery(b) => self.battery_voltage = Some(0.1 * f64::from(b.voltage)),

@@ -161,8 +161,8 @@ fn a_radio_lost_on_the_perch_changes_nothing_there() {
                 .fold(0.0, f64::max);
             assert!(slip < 0.01, "slipped {slip} m");
         }
-        let told = record.events.iter().find(|e| e.text == "radio lost").unwrap();
-        assert!((0.45..0.6).contains(&(told.t - off)));
+        let lost = record.events.iter().find(|e| e.text == "radio lost").unwrap();
+        assert!((0.45..0.6).contains(&(lost.t - off)));
     });
 }
 

@@ -160,13 +160,13 @@ pub struct LiveArgs {
     #[arg(long, value_name = "ADDR:PORT", value_parser = destination, default_value = "127.0.0.1:14550", requires = "wanted")]
     pub mavlink: SocketAddr,
     /// Who flies: none waits on the ground without a transmitter, and leaves no report.
-    #[arg(long, value_name = "none", value_parser = nobody, requires = "wanted", conflicts_with_all = ["json", "out"])]
-    pub pilot: Option<Nobody>,
+    #[arg(long, value_name = "none", value_parser = no_pilot, requires = "wanted", conflicts_with_all = ["json", "out"])]
+    pub pilot: Option<NoPilot>,
 }
 
 /// No pilot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Nobody;
+pub struct NoPilot;
 
 /// What to check.
 #[derive(Args, Debug)]
@@ -291,7 +291,7 @@ impl Message {
     /// Shows it and gives the exit status.
     pub fn show(&self) -> ExitCode {
         match self.0.kind() {
-            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match console::told(self.0.print()) {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match console::written(self.0.print()) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(line) => super::refuse(&line),
             },
@@ -328,8 +328,8 @@ impl Message {
         }
         let text = self.0.to_string();
         let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
-        let told = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
-        let line = told.collect::<Vec<_>>().join("; ").replace(":; ", ": ");
+        let first = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
+        let line = first.collect::<Vec<_>>().join("; ").replace(":; ", ": ");
         line.strip_prefix("error: ").unwrap_or(&line).to_owned()
     }
 }
@@ -396,8 +396,8 @@ fn destination(text: &str) -> Result<SocketAddr, String> {
     to.ok_or_else(|| "allowed the address of one machine and its port, such as 127.0.0.1:14550".to_owned())
 }
 
-fn nobody(text: &str) -> Result<Nobody, String> {
-    word(text, &["none"]).map(|_| Nobody)
+fn no_pilot(text: &str) -> Result<NoPilot, String> {
+    word(text, &["none"]).map(|_| NoPilot)
 }
 
 fn configuration(text: &str) -> Result<Configuration, String> {
@@ -474,7 +474,7 @@ mod tests {
 
     #[test]
     fn refusals_are_one_line_that_says_what_is_allowed() {
-        for (line, told) in [
+        for (line, message) in [
             (
                 "--infill 3.5",
                 "invalid value '3.5' for '--rho <PERCENT>': allowed 4 to 10 %",
@@ -538,7 +538,7 @@ mod tests {
                 "invalid value '3' for '--arms <2|4|rear>': allowed 4 or all, 2 or front, rear",
             ),
         ] {
-            assert_eq!(args(line).unwrap_err(), told);
+            assert_eq!(args(line).unwrap_err(), message);
         }
         for line in [
             "--seed x",
@@ -555,10 +555,10 @@ mod tests {
             "--live --mavlink 0.0.0.0:14550",
             "--live --mavlink 224.0.0.1:14550",
         ] {
-            let told = args(line).unwrap_err();
+            let message = args(line).unwrap_err();
             assert!(
-                !told.contains('\n') && told.len() < 200 && !told.contains("Usage"),
-                "{told}"
+                !message.contains('\n') && message.len() < 200 && !message.contains("Usage"),
+                "{message}"
             );
         }
     }

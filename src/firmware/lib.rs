@@ -64,7 +64,7 @@ struct Beginning {
 fn begin() -> (Beginning, Memory) {
     let cause = sophie_boards::take_reset_cause();
     let (kept, memory) = retained::start(cause);
-    let start = Start::new(cause.told(kept.last_words.is_some()), &kept.copies);
+    let start = Start::new(cause.with_record(kept.last_words.is_some()), &kept.copies);
     (Beginning { cause, start, kept }, memory)
 }
 

@@ -18,10 +18,10 @@ use sophie_tasks::timing::{Quantity, Timing};
 #[derive(Default)]
 pub struct TimingReport {
     recorded: [u32; TaskId::COUNT],
-    told: [u32; TaskId::COUNT],
+    reported: [u32; TaskId::COUNT],
     /// The same of the chain from pressure to servo pulse.
     contact_recorded: u32,
-    contact_told: u32,
+    contact_reported: u32,
 }
 
 impl TimingReport {
@@ -38,10 +38,10 @@ impl TimingReport {
 
     /// Logs every task with new missed deadlines, with its worst times since the start.
     pub fn missed(&mut self, links: &Links) {
-        for (task, told) in TaskId::ALL.into_iter().zip(&mut self.told) {
-            tell(task.name(), &links.timing(task), told);
+        for (task, reported) in TaskId::ALL.into_iter().zip(&mut self.reported) {
+            report(task.name(), &links.timing(task), reported);
         }
-        tell("contact", &links.contact_timing(), &mut self.contact_told);
+        report("contact", &links.contact_timing(), &mut self.contact_reported);
     }
 
     /// The chain from pressure conversion to the resulting pulse.
@@ -117,9 +117,9 @@ impl TimingReport {
     }
 }
 
-fn tell(name: &str, t: &Timing, told: &mut u32) {
-    if t.overruns != *told {
-        *told = t.overruns;
+fn report(name: &str, t: &Timing, reported: &mut u32) {
+    if t.overruns != *reported {
+        *reported = t.overruns;
         defmt::warn!(
             "{=str}: {=u32} overruns in {=u32} runs; worst: {=u32} us late, {=u32} us response, {=u32} us execution",
             name,

@@ -69,8 +69,8 @@ pub async fn trace() -> ! {
             if count == 0 {
                 break;
             }
-            let told = bytes.get(..8 * count).unwrap_or_default();
-            defmt::info!("trace {=u32}: {=[u8]:02x}", sent, told);
+            let payload = bytes.get(..8 * count).unwrap_or_default();
+            defmt::info!("trace {=u32}: {=[u8]:02x}", sent, payload);
             sent = sent.wrapping_add(count as u32);
         }
         let now = trace::lost();

@@ -125,8 +125,8 @@ mod tests {
             sorted.sort_unstable();
             let rank = (sorted.len() * permille as usize).div_ceil(1000).max(1);
             let exact = sorted[rank - 1];
-            let told = histogram.quantile(permille);
-            prop_assert!(told >= exact && u64::from(told) * 4 <= u64::from(exact) * 5, "{} for {}", told, exact);
+            let estimate = histogram.quantile(permille);
+            prop_assert!(estimate >= exact && u64::from(estimate) * 4 <= u64::from(exact) * 5, "{} for {}", estimate, exact);
             prop_assert_eq!(histogram.count() as usize, times.len());
             prop_assert_eq!((histogram.min(), histogram.max()), (sorted[0], sorted[sorted.len() - 1]));
         }

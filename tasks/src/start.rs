@@ -77,14 +77,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn memory_is_believed_only_where_power_never_went() {
+    fn memory_is_trusted_only_where_power_never_went() {
         let retained = RetainedState {
             grip_memory: GripMemory::Controlled(ArmChoice::All),
             force: [50.0; 4],
             ..RetainedState::default()
         };
         let copy = retained.to_words(8).unwrap_or_default();
-        for (cause, believed) in [
+        for (cause, trusted) in [
             (StartCause::PowerOn, false),
             (StartCause::BrownOut, false),
             (StartCause::Watchdog, true),
@@ -92,8 +92,8 @@ mod tests {
             (StartCause::Software, true),
         ] {
             let start = Start::new(cause, &[copy, [0; 16]]);
-            assert_eq!(start.retained, believed.then_some(retained), "{cause:?}");
-            assert_eq!(start.sequence, if believed { 8 } else { 0 });
+            assert_eq!(start.retained, trusted.then_some(retained), "{cause:?}");
+            assert_eq!(start.sequence, if trusted { 8 } else { 0 });
             assert!(Start::new(cause, &[[7; 16]; 2]).retained.is_none());
             assert!(cause.warning().len() <= 40);
         }

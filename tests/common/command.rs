@@ -50,13 +50,13 @@ pub fn text(bytes: &[u8]) -> String {
 /// Requires exit status 2, empty stdout, one line on stderr (returned), no output directory.
 pub fn refused(temp: &Temp, args: &[&str]) -> String {
     let output = sophie(temp, args);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
     assert!(output.stdout.is_empty(), "{args:?}: {}", text(&output.stdout));
     assert!(
-        told.ends_with('\n') && told.lines().count() == 1 && told.len() < 500,
-        "{args:?}: {told}"
+        message.ends_with('\n') && message.lines().count() == 1 && message.len() < 500,
+        "{args:?}: {message}"
     );
     assert!(!temp.0.join("out").exists(), "{args:?} left an output directory");
-    told.trim_end().to_owned()
+    message.trim_end().to_owned()
 }

@@ -336,7 +336,7 @@ mod tests {
                 "{words:?}: {complaint}"
             );
         }
-        for (words, told) in [
+        for (words, message) in [
             (
                 &["flash", "f405", "--wet"] as &[&str],
                 "flash: `--wet` is not understood: allowed are --dfu, --trace, --data-cache, --elf FILE, --backup FILE, --no-backup, --dry",
@@ -386,7 +386,7 @@ mod tests {
                 "`fly` is not understood: allowed are firmware, flash, backup, restore, bench, chain, rig, sizes, cost, own-board, conformance, help",
             ),
         ] {
-            assert_eq!(Verb::parse(words).err().as_deref(), Some(told), "{words:?}");
+            assert_eq!(Verb::parse(words).err().as_deref(), Some(message), "{words:?}");
         }
     }
 

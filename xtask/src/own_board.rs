@@ -99,10 +99,12 @@ pub fn own_board() -> Result<(), Error> {
         .envs(toolchain.variables)
         .env("CARGO_TARGET_DIR", build::target_dir());
     let output = cargo.output()?;
-    let told = String::from_utf8_lossy(&output.stderr);
+    let complaint = String::from_utf8_lossy(&output.stderr);
     let wanted = format!("the feature {CHIPLESS} of boards/Cargo.toml names 0 chips");
-    if output.status.success() || !told.contains(&wanted) {
-        return Err(format!("a board whose feature names no chip is not refused for that:\n{told}").into());
+    if output.status.success() || !complaint.contains(&wanted) {
+        return Err(
+            format!("a board whose feature names no chip is not refused for that:\n{complaint}").into(),
+        );
     }
     eprintln!("{NAME}: builds with what its chip needs; a board that names no chip does not");
     Ok(())

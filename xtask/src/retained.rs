@@ -75,7 +75,7 @@ mod tests {
     fn what_outlives_a_reset_lies_where_nothing_writes() {
         let (place, elsewhere) = (0x2001_FC00, (0x2400_0000, 0x2400_7000));
         assert_eq!(complaint(place, false, elsewhere), None);
-        for (address, in_image, bss, told) in [
+        for (address, in_image, bss, words) in [
             (0x2400_0000, false, elsewhere, "lies at 0x24000000"),
             (place + 0x300, false, elsewhere, "lies at 0x2001ff00"),
             (place, true, elsewhere, "has contents"),
@@ -83,7 +83,7 @@ mod tests {
             (place, false, (place, place + 4), "start-up writes"),
         ] {
             let complaint = complaint(address, in_image, bss).unwrap_or_default();
-            assert!(complaint.contains(told), "{address:#x}: {complaint}");
+            assert!(complaint.contains(words), "{address:#x}: {complaint}");
         }
     }
 }

@@ -49,14 +49,14 @@ unsafe extern "C" fn HardFault() -> ! {
         "movw r3, #:lower16:_stack_start",
         "movt r3, #:upper16:_stack_start",
         "msr msp, r3",
-        "b {told}",
+        "b {record}",
         frame = const FRAME,
-        told = sym told,
+        record = sym record,
     )
 }
 
 /// Ends the run. `stacked`: address of the frame; `pc`, `lr`: from it, if readable.
-extern "C" fn told(stacked: u32, pc: u32, lr: u32) -> ! {
+extern "C" fn record(stacked: u32, pc: u32, lr: u32) -> ! {
     unsafe extern "C" {
         static _stack_start: u32;
         static _stack_end: u32;

@@ -21,7 +21,7 @@ use core::fmt::Arguments;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 /// Kept while the message is made.
-const UNTOLD: &str = "a fault, and another one while it was to be told";
+const NESTED: &str = "a fault, and another one while it was to be told";
 
 /// The run is ending; only a reset clears it.
 pub static ENDING: AtomicBool = AtomicBool::new(false);
@@ -45,7 +45,7 @@ pub fn stop_and_restart<M: Machine>(message: Arguments<'_>) -> ! {
     M::stop_motors();
     if !ENDING.load(Ordering::Relaxed) {
         ENDING.store(true, Ordering::Relaxed);
-        M::keep(format_args!("{UNTOLD}"));
+        M::keep(format_args!("{NESTED}"));
         M::keep(message);
     }
     M::reset()

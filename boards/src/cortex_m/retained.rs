@@ -32,7 +32,7 @@ pub enum ResetCause {
 
 impl ResetCause {
     /// The tasks' view; `fault` if the last run left a fault message.
-    pub fn told(self, fault: bool) -> StartCause {
+    pub fn with_record(self, fault: bool) -> StartCause {
         match self {
             Self::PowerOn => StartCause::PowerOn,
             Self::BrownOut => StartCause::BrownOut,

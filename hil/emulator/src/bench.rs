@@ -45,7 +45,7 @@ pub struct Bench<'a> {
     log: Log<'a>,
     sockets: Sockets,
     mavlink_received: u64,
-    told: Box<dyn FnMut(&Line) + 'a>,
+    on_line: Box<dyn FnMut(&Line) + 'a>,
     telemetry: VecDeque<u8>,
     display: Telemetry,
     status: Option<Status>,
@@ -143,7 +143,7 @@ impl<'a> Bench<'a> {
             log: Log::new(&firmware.table),
             sockets,
             mavlink_received: 0,
-            told: Box::new(logged),
+            on_line: Box::new(logged),
             telemetry: VecDeque::new(),
             display: Telemetry::default(),
             status: None,
@@ -191,7 +191,7 @@ impl<'a> Bench<'a> {
     }
 
     fn hear(&mut self, line: Line) {
-        (self.told)(&line);
+        (self.on_line)(&line);
         self.log_digest.word(line.ms);
         line.text.bytes().for_each(|byte| self.log_digest.byte(byte));
         if let Some((mode, reason)) = parse_mode_text(&line.text) {

@@ -58,8 +58,8 @@ mod tests {
         let list = "[[gap]]\nkind = 'unimplemented'\nat = 'TIM1.CR1'\nreason = 'unused'";
         assert_eq!(judged(list, &found).unwrap(), [&found[1]]);
         assert_eq!(judged("gap = []", &found).unwrap().len(), 2);
-        let told = judged(&list.replace("unused", " "), &found).unwrap_err();
-        assert!(told.contains("TIM1.CR1: reason is empty"), "{told}");
+        let complaint = judged(&list.replace("unused", " "), &found).unwrap_err();
+        assert!(complaint.contains("TIM1.CR1: reason is empty"), "{complaint}");
         assert!(judged("gap = 1", &found).is_err());
     }
 

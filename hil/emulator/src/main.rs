@@ -170,7 +170,7 @@ fn write(
 ) -> Result<(), String> {
     // A second's work beside minutes of emulation.
     let host = sophie_sim::flight::fly(scenario, &mut Silent);
-    let mut value = told(args, flight);
+    let mut value = summary(args, flight);
     value["host"] = compare::value(&host);
     let besides = Besides {
         name: "bench",
@@ -207,7 +207,7 @@ fn complain_of(flight: &Flight) {
 }
 
 /// The bench's results besides the flight, for programs.
-fn told(args: &Args, flight: &Flight) -> serde_json::Value {
+fn summary(args: &Args, flight: &Flight) -> serde_json::Value {
     let board = &flight.board;
     let run = &board.run;
     let intervals = run.escs.iter().filter_map(|esc| esc.interval);
@@ -228,7 +228,7 @@ fn told(args: &Args, flight: &Flight) -> serde_json::Value {
         "overruns": board.overruns,
         "flash_erases": run.erases.iter().map(|(sector, times)| (format!("{sector:#010x}"), times)).collect::<BTreeMap<_, _>>(),
         "resets": board.resets.iter().map(|(ms, why)| serde_json::json!({"t_s": ms * 1e-3, "cause": why})).collect::<Vec<_>>(),
-        "silicon": board.lines.iter().filter_map(|line| silicon::told(&line.text)).collect::<Vec<_>>(),
+        "silicon": board.lines.iter().filter_map(|line| silicon::parse(&line.text)).collect::<Vec<_>>(),
         "log_lines": board.lines.len(),
         "log_malformed": board.malformed,
         "gaps_allowed": run.gaps.len() - flight.gaps.len(),

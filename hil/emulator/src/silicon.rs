@@ -17,7 +17,7 @@ pub struct Look {
 
 /// Parses `silicon: NAME: READ, expected EXPECTED: ok`, or `: not ok`.
 #[must_use]
-pub fn told(text: &str) -> Option<Look> {
+pub fn parse(text: &str) -> Option<Look> {
     let (name, rest) = text.strip_prefix("silicon: ")?.split_once(": ")?;
     let (read, rest) = rest.split_once(", expected ")?;
     let (expected, verdict) = rest.rsplit_once(": ")?;
@@ -35,18 +35,18 @@ mod tests {
 
     #[test]
     fn a_line_of_the_log_is_understood() {
-        let look = told("silicon: bus clock: 168 MHz, PLL on crystal, expected PLL on crystal: ok").unwrap();
+        let look = parse("silicon: bus clock: 168 MHz, PLL on crystal, expected PLL on crystal: ok").unwrap();
         assert_eq!(
             (look.name.as_str(), look.read.as_str()),
             ("bus clock", "168 MHz, PLL on crystal")
         );
         assert!(look.ok);
-        let look = told("silicon: read-out protection: level 1, expected level 0: a probe can read: not ok")
+        let look = parse("silicon: read-out protection: level 1, expected level 0: a probe can read: not ok")
             .unwrap();
         assert_eq!(
             (look.expected.as_str(), look.ok),
             ("level 0: a probe can read", false)
         );
-        assert_eq!(told("started in 72 ms"), None);
+        assert_eq!(parse("started in 72 ms"), None);
     }
 }

@@ -61,8 +61,8 @@ impl Terminal {
             Ok(count) => *count == 0,
             Err(e) => is_end(e.kind()),
         };
-        let told = user.write_all(&line.heard);
-        if gone || told.is_err_and(|e| is_end(e.kind())) {
+        let sent = user.write_all(&line.heard);
+        if gone || sent.is_err_and(|e| is_end(e.kind())) {
             self.user = None;
         }
         typed[..read.unwrap_or(0)].to_vec()
@@ -93,10 +93,10 @@ mod tests {
     #[test]
     fn what_is_typed_and_said_crosses_and_a_user_may_go() {
         let (port, mut terminal) = terminal();
-        let told = Terminal::listen("--telemetry", port).err().unwrap();
+        let complaint = Terminal::listen("--telemetry", port).err().unwrap();
         assert!(
-            told.starts_with(&format!("--telemetry {port}: ")) && !told.contains('\n'),
-            "{told}"
+            complaint.starts_with(&format!("--telemetry {port}: ")) && !complaint.contains('\n'),
+            "{complaint}"
         );
         assert!(terminal.exchange(&said(b"lost")).is_empty());
         for _ in 0..2 {

@@ -26,8 +26,8 @@ fn build() -> PathBuf {
         .args(["xtask", "rig", "matek-h743", "--wired", "--build"])
         .output()
         .expect("cargo runs");
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{printed}");
     let printed = String::from_utf8_lossy(&output.stdout);
     PathBuf::from(printed.lines().last().expect("the path of the ELF"))
 }
@@ -123,14 +123,14 @@ const WITHIN: [&str; 3] = [
 
 fn found(defect: Defect) {
     for (name, words) in TRIED.iter().filter(|(d, _)| *d == defect).flat_map(|(_, f)| *f) {
-        let (status, told) = verdict(name, Defect::None);
-        assert_eq!(status, Some(0), "{name} on a sound rig: {told}");
-        let (status, told) = verdict(name, defect);
+        let (status, printed) = verdict(name, Defect::None);
+        assert_eq!(status, Some(0), "{name} on a sound rig: {printed}");
+        let (status, printed) = verdict(name, defect);
         assert!(
             status.is_some_and(|s| s != 0),
-            "{name} with {defect:?}: {status:?} {told}"
+            "{name} with {defect:?}: {status:?} {printed}"
         );
-        assert!(told.contains(words), "{name} with {defect:?}: {told}");
+        assert!(printed.contains(words), "{name} with {defect:?}: {printed}");
     }
 }
 
@@ -149,8 +149,8 @@ fn no_test_is_left_out() {
 #[test]
 fn the_clocks_keep_time() {
     for name in WITHIN {
-        let (status, told) = verdict(name, Defect::None);
-        assert_eq!(status, Some(0), "{name}: {told}");
+        let (status, printed) = verdict(name, Defect::None);
+        assert_eq!(status, Some(0), "{name}: {printed}");
     }
 }
 

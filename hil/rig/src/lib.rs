@@ -23,7 +23,7 @@ pub use verdict::{absent, passed};
 sophie_boards::ends_with!(verdict::end_of_run);
 
 /// Watchdog feed period; the shortest time-out is 200 ms.
-const MEAL: Duration = Duration::from_millis(50);
+const FEED_PERIOD: Duration = Duration::from_millis(50);
 
 /// Starts flight and steady level and feeds the watchdog from the latter; returns the flight level. Called once.
 pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
@@ -39,7 +39,7 @@ pub fn keep_alive(watchdog: WatchdogPort) -> SendSpawner {
 
 #[embassy_executor::task]
 async fn feed(mut watchdog: WatchdogPort) {
-    let mut ticker = Ticker::every(MEAL);
+    let mut ticker = Ticker::every(FEED_PERIOD);
     loop {
         watchdog.feed();
         ticker.next().await;

@@ -1,5 +1,6 @@
 //! Which servo suffices.
 
+use sophie_report::units::KGCM;
 use sophie_sim::parallel;
 use sophie_sim::plant::tendon::ServoSpec;
 use sophie_sim::scenario::ServoProfile;
@@ -7,9 +8,6 @@ use sophie_sim::scenario::ServoProfile;
 use super::super::model::{Section, Table, num};
 use super::super::printed::Printed;
 use super::bench::{OnBench, closing_thrust, holds, once};
-
-/// N·m per kgcm.
-const KGCM: f64 = 0.098_066_5;
 
 struct Tried {
     name: &'static str,

@@ -58,7 +58,7 @@ fn strength(scenario: &Scenario, step: Option<&Step>, samples: &[Sample], swings
 fn swings(samples: &[Sample]) -> Option<String> {
     let count = (SWING_TIME * SAMPLE_HZ) as usize;
     let last = samples.get(samples.len().saturating_sub(count)..)?;
-    let told = ["roll", "pitch"]
+    let swings = ["roll", "pitch"]
         .into_iter()
         .enumerate()
         .filter_map(|(axis, name)| {
@@ -74,7 +74,7 @@ fn swings(samples: &[Sample]) -> Option<String> {
             let rate = last.iter().map(|s| s.rate[axis].abs()).fold(0.0, f64::max);
             Some((name, sizes.into_iter().fold(0.0, f64::max), rate))
         });
-    let (name, size, rate) = told.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (name, size, rate) = swings.max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(format!(
         "{name} swings by {:.0} deg at up to {:.0} deg/s",
         size.to_degrees(),

@@ -23,7 +23,7 @@ pub struct Pace {
     /// Wall and virtual time at the last measurement, s.
     measured: (f64, f64),
     /// A host that is too slow is reported once.
-    told: bool,
+    reported: bool,
 }
 
 impl Pace {
@@ -35,7 +35,7 @@ impl Pace {
             began: None,
             origin: 0.0,
             measured: (0.0, 0.0),
-            told: false,
+            reported: false,
         }
     }
 
@@ -74,8 +74,8 @@ impl Pace {
         }
         self.measured = (wall, virtual_time);
         let reached = (virtual_time - virtual_before) / over;
-        let slow = reached < ENOUGH * self.speed && !self.told;
-        self.told |= slow;
+        let slow = reached < ENOUGH * self.speed && !self.reported;
+        self.reported |= slow;
         slow.then_some(reached)
     }
 }
@@ -87,62 +87,65 @@ mod tests {
     /// Runs `seconds` of virtual time at `speed` on a host that takes `cost(t)` s for each millisecond: wall time at
     /// the end, the speeds reported, and the largest virtual time run within any second of wall time.
     fn run(speed: f64, seconds: f64, cost: impl Fn(f64) -> f64) -> (f64, Vec<f64>, f64) {
-        let (mut pace, mut wall, mut told, mut times) = (Pace::new(speed), 0.0, vec![], vec![]);
+        let (mut pace, mut wall, mut reported, mut times) = (Pace::new(speed), 0.0, vec![], vec![]);
         for ms in 1..=(seconds * 1e3) as u64 {
             let t = ms as f64 * 1e-3;
             let (early, slow) = pace.look(t, wall);
             wall += early.max(0.0);
             assert!(t <= wall * speed + 1e-9, "{t} s is ahead of {wall} s");
-            told.extend(slow);
+            reported.extend(slow);
             times.push(wall);
             wall += cost(t);
         }
         let burst = times.iter().enumerate().map(|(first, from)| {
             times[first..].iter().take_while(|to| **to < from + 1.0).count() as f64 * 1e-3
         });
-        (wall, told, burst.fold(0.0, f64::max))
+        (wall, reported, burst.fold(0.0, f64::max))
     }
 
     #[test]
     fn virtual_time_follows_wall_time_at_any_speed() {
         for speed in [0.5, 1.0, 10.0] {
-            let (wall, told, burst) = run(speed, 8.0, |_| 0.2e-3 / speed);
+            let (wall, reported, burst) = run(speed, 8.0, |_| 0.2e-3 / speed);
             assert!((wall - 8.0 / speed).abs() < 1e-3, "{speed}: {wall} s");
             assert!(
-                told.is_empty() && burst < 1.01 * speed,
-                "{speed}: {told:?} {burst}"
+                reported.is_empty() && burst < 1.01 * speed,
+                "{speed}: {reported:?} {burst}"
             );
         }
     }
 
     #[test]
     fn a_stall_moves_the_pace_and_is_not_caught_up() {
-        let (wall, told, burst) = run(1.0, 8.0, |t| if (t - 4.0).abs() < 1e-6 { 0.15 } else { 0.0 });
+        let (wall, reported, burst) = run(1.0, 8.0, |t| if (t - 4.0).abs() < 1e-6 { 0.15 } else { 0.0 });
         assert!((wall - 8.15).abs() < 2e-3, "{wall} s");
         assert!(
-            told.is_empty() && burst < 1.0 + 2.0 * SLACK.as_secs_f64(),
-            "{told:?} {burst}"
+            reported.is_empty() && burst < 1.0 + 2.0 * SLACK.as_secs_f64(),
+            "{reported:?} {burst}"
         );
     }
 
     #[test]
     fn short_delays_are_caught_up() {
-        let (wall, told, _) = run(1.0, 8.0, |t| {
+        let (wall, reported, _) = run(1.0, 8.0, |t| {
             if (t * 1e3).round() % 100.0 == 0.0 {
                 5e-3
             } else {
                 0.0
             }
         });
-        assert!((wall - 8.0).abs() < 6e-3 && told.is_empty(), "{wall} s {told:?}");
+        assert!(
+            (wall - 8.0).abs() < 6e-3 && reported.is_empty(),
+            "{wall} s {reported:?}"
+        );
     }
 
     #[test]
     fn a_host_that_is_too_slow_is_told_of_once_with_what_it_reaches() {
-        let (wall, told, _) = run(4.0, 40.0, |_| 0.5e-3);
+        let (wall, reported, _) = run(4.0, 40.0, |_| 0.5e-3);
         assert!((19.9..20.2).contains(&wall), "{wall} s");
-        assert_eq!(told.len(), 1);
-        assert!((1.95..2.05).contains(&told[0]), "{told:?}");
+        assert_eq!(reported.len(), 1);
+        assert!((1.95..2.05).contains(&reported[0]), "{reported:?}");
         let mut pace = Pace::new(1e6);
         let began = Instant::now();
         let line = (1..).find_map(|ms| {

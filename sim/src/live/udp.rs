@@ -19,7 +19,7 @@ pub struct Udp {
     destination: SocketAddr,
     client: Option<Client>,
     /// The refusal of a send has been reported.
-    told: bool,
+    reported: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +47,7 @@ impl Udp {
             socket: socket.map_err(|e| format!("{destination}: cannot open a UDP socket: {e}"))?,
             destination,
             client: None,
-            told: false,
+            reported: false,
         })
     }
 
@@ -99,7 +99,7 @@ impl Udp {
                 ErrorKind::ConnectionRefused,
                 ErrorKind::ConnectionReset,
             ];
-            if !passes.contains(&why.kind()) && !std::mem::replace(&mut self.told, true) {
+            if !passes.contains(&why.kind()) && !std::mem::replace(&mut self.reported, true) {
                 return Some(format!("MAVLink: {to}: cannot be sent to: {why}"));
             }
         }
@@ -177,10 +177,10 @@ mod tests {
     fn a_refusal_of_the_host_is_told_of_once() {
         // Broadcasts are not enabled.
         let mut udp = Udp::open((Ipv4Addr::BROADCAST, 14550).into()).unwrap();
-        let told = udp.send(b"hello").unwrap();
+        let reported = udp.send(b"hello").unwrap();
         assert!(
-            told.starts_with("MAVLink: 255.255.255.255:14550: cannot be sent to: "),
-            "{told}"
+            reported.starts_with("MAVLink: 255.255.255.255:14550: cannot be sent to: "),
+            "{reported}"
         );
         assert_eq!(udp.send(b"hello"), None);
     }

@@ -9,9 +9,8 @@ use sophie_control::params::Params;
 use super::Seen;
 use super::perception::Foresight;
 use super::stick_dynamics::StickTarget;
+use crate::plant::GRAVITY;
 
-/// Gravity, m/s².
-const GRAVITY: f64 = 9.806_65;
 /// Distance to speed, 1/s.
 const POSITION_GAIN: f64 = 0.7;
 /// Fastest flight, m/s.

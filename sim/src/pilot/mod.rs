@@ -161,7 +161,7 @@ impl Pilot {
     /// Somebody reads the vehicle's log aloud: with a receiver that has no way back the display shows nothing.
     pub fn hear(&mut self, mode: Mode, reason: &str) {
         if self.mission.transmits() {
-            self.telemetry.tell(mode, reason);
+            self.telemetry.report(mode, reason);
         }
     }
 

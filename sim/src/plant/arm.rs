@@ -254,8 +254,8 @@ mod tests {
         for i in 0..70 {
             let t = 0.1 * f64::from(i);
             for (spec, model) in [(spec(), model), (spec().level_at(5.0), stronger)] {
-                let (built, believed) = (spec.static_tilt(t), f64::from(model.angle(t as f32)));
-                assert!((built - believed).abs() < 1e-5, "{t}: {built} {believed}");
+                let (built, modelled) = (spec.static_tilt(t), f64::from(model.angle(t as f32)));
+                assert!((built - modelled).abs() < 1e-5, "{t}: {built} {modelled}");
             }
         }
     }

@@ -30,7 +30,7 @@ const BUILT: [&str; 8] = [
     "mass_kg",
 ];
 /// Parameters of the stack's arm model.
-const BELIEVED: [&str; 7] = ["arm_a1", "arm_a2", "arm_b1", "arm_b2", "gain_k", "infill", "mass"];
+const STACK_PARAMS: [&str; 7] = ["arm_a1", "arm_a2", "arm_b1", "arm_b2", "gain_k", "infill", "mass"];
 
 struct Slope {
     infill: f64,
@@ -108,7 +108,7 @@ impl Source<'_> {
         let p = &scenario.params;
         let coefficients = [p.arm_a1, p.arm_a2, p.arm_b1, p.arm_b2].map(f64::from);
         let slope = Slope::new(coefficients, p.infill.into(), p.gain_k.into(), p.mass.into());
-        match (slope.fault(1.0), named(root, "params", &BELIEVED)) {
+        match (slope.fault(1.0), named(root, "params", &STACK_PARAMS)) {
             (Some(allowed), Some((key, value))) => Err(self.bad(&key, value, allowed)),
             _ => Ok(()),
         }

@@ -1,9 +1,11 @@
 //! Vehicle and pipe from behind, along the pipe: east right, up top.
 
+use sophie_sim::plant::contact::{ARM_LENGTH, ARM_X, BELLY_Z, UNDERSIDE_Z};
 use sophie_sim::record::{FlightRecord, Sample};
 
 use super::moments::KeyMoment;
 use super::svg::{Rect, line, path, rect, short, text};
+use super::units::ROTOR_RADIUS;
 
 /// Pixels.
 const WIDTH: f64 = 320.0;
@@ -15,13 +17,8 @@ const SCALE: f64 = 380.0;
 /// Pixels.
 const GROUND: f64 = 16.0;
 
-/// Vehicle, m, as in the plant.
-const ARM_LENGTH: f64 = 0.178;
-const ARM_X: f64 = 0.178;
-const UNDERSIDE_Z: f64 = 0.035;
+/// What the plant has no need of, m, drawn.
 const ARM_THICKNESS: f64 = 0.026;
-const BELLY_Z: f64 = 0.04;
-const ROTOR_RADIUS: f64 = 0.127;
 const MOTOR_HEIGHT: f64 = 0.035;
 /// Scale of thrust arrows, m/N.
 const THRUST_SCALE: f64 = 0.018;

@@ -1,16 +1,14 @@
 //! Vehicle, arms and pipe for Foxglove's 3D panel.
 
 use serde_json::{Value, json};
+use sophie_sim::plant::contact::{ARM_LENGTH, ARM_X, HINGE_Z};
 use sophie_sim::record::{FlightRecord, Sample};
 
 use super::log::stamp;
 use super::summary::tidy;
+use super::units::ROTOR_RADIUS;
 
-/// Vehicle, m.
-const ARM_LENGTH: f64 = 0.178;
-const ARM_X: f64 = 0.178;
-const HINGE_Z: f64 = 0.02;
-const ROTOR_RADIUS: f64 = 0.127;
+/// Rotor above the arm, m, drawn.
 const ROTOR_LIFT: f64 = 0.05;
 /// m, drawn.
 const PIPE_LENGTH: f64 = 2.0;

@@ -2,8 +2,11 @@
 
 use sophie_sim::record::FlightRecord;
 
+/// Of the 10-inch propellers, m, drawn.
+pub const ROTOR_RADIUS: f64 = 0.127;
+
 /// 1 kgcm in N·m.
-const KGCM: f64 = 0.098_066_5;
+pub const KGCM: f64 = 0.098_066_5;
 
 /// rad to degrees.
 pub fn deg(rad: f64) -> f64 {

@@ -67,11 +67,11 @@ pub fn analyse(capture: &Capture, replay: &Replay) -> String {
         for (_, factor) in BOARDS {
             let scale = factor / measured.1;
             let loads = scaled(&set.loads, scale);
-            let told = match response(&loads, index, BLOCKING * scale) {
+            let cell = match response(&loads, index, BLOCKING * scale) {
                 Some(bound) => format!("{bound:.0} ({:+.0} %)", 100.0 * (deadline - bound) / deadline),
                 None => "none".into(),
             };
-            let _ = write!(text, " {told:>18}");
+            let _ = write!(text, " {cell:>18}");
         }
         text.push('\n');
     }

@@ -20,15 +20,15 @@ pub struct Messages {
 pub fn read(capture: &Path, elf: Option<&Path>) -> Result<Messages, String> {
     let bytes = load(capture)?;
     let image = elf.map(load).transpose()?;
-    let told = |what: String| format!("{}: {what}", capture.display());
+    let complaint = |what: String| format!("{}: {what}", capture.display());
     if bytes.is_empty() {
-        return Err(told("is empty; wanted is a log".into()));
+        return Err(complaint("is empty; wanted is a log".into()));
     }
     if is_text(&bytes) {
         return Ok(text(&bytes));
     }
     let (Some(elf), Some(image)) = (elf, image) else {
-        return Err(told(
+        return Err(complaint(
             "is no text: give the image that logged these bytes with --elf".into(),
         ));
     };
@@ -37,7 +37,10 @@ pub fn read(capture: &Path, elf: Option<&Path>) -> Result<Messages, String> {
         .ok_or_else(|| format!("{}: has no table of log messages (.defmt)", elf.display()))?;
     let messages = raw(&bytes, &table);
     if messages.lines.is_empty() {
-        return Err(told(format!("nothing in it was logged by {}", elf.display())));
+        return Err(complaint(format!(
+            "nothing in it was logged by {}",
+            elf.display()
+        )));
     }
     Ok(messages)
 }

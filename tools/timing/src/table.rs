@@ -121,8 +121,8 @@ fn runs(capture: &Capture, replay: &Replay) -> String {
 }
 
 fn exact(times: &Sorted) -> String {
-    let told = |share| times.quantile(share).unwrap_or(0.0);
-    format!("{:.0} / {:.0} / {:.0}", told(0.5), told(0.99), told(1.0))
+    let at = |share| times.quantile(share).unwrap_or(0.0);
+    format!("{:.0} / {:.0} / {:.0}", at(0.5), at(0.99), at(1.0))
 }
 
 fn preemptions(replay: &Replay) -> String {

@@ -89,8 +89,8 @@ fn the_page_s_bounds_are_those_of_the_traces_beside_it() {
             .split_once(" of ")
             .unwrap_or_else(|| panic!("of which trace is {title}?"));
         let log = Capture::read(&capture(trace), None).unwrap();
-        let told = analyse(&log, &Replay::of(&log.trace));
-        let boards = told.lines().find(|l| l.starts_with("task ")).unwrap();
+        let message = analyse(&log, &Replay::of(&log.trace));
+        let boards = message.lines().find(|l| l.starts_with("task ")).unwrap();
         // A column ends with its title, to which "scaled" belongs.
         let boards = boards.replace(", scaled", "--scaled");
         let titles: Vec<&str> = boards.split_whitespace().skip(5).collect();
@@ -104,7 +104,7 @@ fn the_page_s_bounds_are_those_of_the_traces_beside_it() {
             "{title}"
         );
         for row in body {
-            let line = told
+            let line = message
                 .lines()
                 .find(|l| l.split_whitespace().next() == Some(&*row[0]))
                 .unwrap();
@@ -132,8 +132,8 @@ fn a_capture_that_is_cut_off_is_read_as_far_as_it_goes() {
                 Ok(capture) => {
                     let cut = whole[end - 1] != b'\n';
                     assert_eq!(capture.incomplete.is_some(), cut);
-                    let told = capture.incomplete.unwrap_or_default();
-                    assert!(!told.contains('\n'), "{told}");
+                    let message = capture.incomplete.unwrap_or_default();
+                    assert!(!message.contains('\n'), "{message}");
                 }
                 Err(line) => assert!(!line.contains('\n'), "{line}"),
             }
@@ -162,14 +162,14 @@ fn lines_that_were_lost_are_told() {
 #[test]
 fn what_is_no_capture_is_refused_in_one_line() {
     let image = file("no-elf", b"no image");
-    for (content, told) in [
+    for (content, message) in [
         (&b""[..], "is empty"),
         (b"0.1 INFO DISARMED\n", "none of a task's timing"),
         (&[0, 1, 2, 0xff], "is no text"),
     ] {
         let path = file("bad", content);
         let line = Capture::read(&path, None).unwrap_err();
-        assert!(line.contains(told) && !line.contains('\n'), "{line}");
+        assert!(line.contains(message) && !line.contains('\n'), "{line}");
         std::fs::remove_file(path).unwrap();
     }
     let bytes = file("raw", &[0, 1, 2, 0xff]);

@@ -89,14 +89,14 @@ fn execute(core: &Core, elf: &Path) -> Result<Sum, Error> {
     command.stdout(Stdio::null()).stderr(Stdio::piped());
     eprintln!("{}", build::shown(&command));
     let mut child = qemu::started(&mut command)?;
-    let told = BufReader::new(child.stderr.take().ok_or("QEMU has no stderr")?);
+    let trace = BufReader::new(child.stderr.take().ok_or("QEMU has no stderr")?);
 
     let mut decoded = HashMap::new();
     let mut sum = Sum::default();
     let mut steps = 0;
     let mut before: Option<(u64, Instruction)> = None;
     let mut inside: Option<u64> = None;
-    for line in told.split(b'\n') {
+    for line in trace.split(b'\n') {
         let Some(at) = address(&line?) else { continue };
         let instruction = *decoded
             .entry(at)

@@ -67,14 +67,14 @@ fn never_overwritten() {
 
 fn fails() {
     let bench = Bench::new("fails", &F405);
-    for (mood, told) in [
+    for (mood, message) in [
         ("read 1 fails", "probe-rs failed"),
         ("read 2 fails", "probe-rs failed"),
         ("short read", "has 524288 bytes; wanted are the 1048576 bytes"),
         ("reads differ", "two reads differ at 0x080ffffd"),
     ] {
         bench.mood(mood);
-        bench.run("backup f405 @a.bin").complains(1, told);
+        bench.run("backup f405 @a.bin").complains(1, message);
         assert_eq!(bench.files("a.bin"), [""; 0], "{mood}");
         bench.calls();
     }
@@ -118,7 +118,7 @@ fn no_backup() {
     let short = F405.used()[1..].to_vec();
     let mut other = F405.used();
     other[..8].fill(0);
-    for (name, bytes, told) in [
+    for (name, bytes, message) in [
         (
             "short.bin",
             short,
@@ -139,7 +139,7 @@ fn no_backup() {
         for dry in ["", " --dry"] {
             bench
                 .run(&format!("restore f405 @{name}{dry}"))
-                .complains(2, told);
+                .complains(2, message);
         }
     }
     bench
@@ -159,10 +159,10 @@ fn no_backup() {
 fn cuav_first() {
     let bench = Bench::new("cuav-first", &CUAV);
     let flash = "flash cuav-v5 --elf @image.elf";
-    let refused = |told: &str| {
+    let refused = |message: &str| {
         let ended = bench.run(&format!("{flash} --backup @old.bin"));
         ended.complains(2, "flash: this overwrites the only loader of the cuav-v5");
-        ended.complains(2, told);
+        ended.complains(2, message);
         assert!(
             ended.complaint.contains("`cargo xtask backup cuav-v5`"),
             "{}",

@@ -115,10 +115,10 @@ impl Drop for Bench {
 }
 
 impl Ended {
-    /// Requires `status` and one line with `told`.
-    pub fn complains(&self, status: i32, told: &str) {
+    /// Requires `status` and one line with `message`.
+    pub fn complains(&self, status: i32, message: &str) {
         assert_eq!(self.status, Some(status), "{}", self.complaint);
-        assert!(self.complaint.contains(told), "{}", self.complaint);
+        assert!(self.complaint.contains(message), "{}", self.complaint);
     }
 
     pub fn done(&self) {

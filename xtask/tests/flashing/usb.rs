@@ -129,7 +129,7 @@ fn dry_calls_nothing() {
 fn what_is_missing_is_named() {
     let bench = Bench::new("missing", &F405);
     fs::write(bench.file("old.bin"), F405.used()).unwrap();
-    for (line, told) in [
+    for (line, message) in [
         (
             "flash f405 --elf @image.elf",
             "probe-rs is not installed; see https://probe.rs",
@@ -141,7 +141,7 @@ fn what_is_missing_is_named() {
         ("backup f405 @a.bin", "probe-rs is not installed"),
         ("restore f405 @old.bin", "probe-rs is not installed"),
     ] {
-        bench.run_bare(line).complains(1, told);
+        bench.run_bare(line).complains(1, message);
     }
     bench.mood("no probe");
     for line in [
@@ -156,7 +156,7 @@ fn what_is_missing_is_named() {
 }
 
 fn wrong_chip() {
-    for (mood, told) in [
+    for (mood, message) in [
         (
             "no device",
             "finds no chip in its USB loader: take BOOT0 to 3.3 V",
@@ -170,7 +170,9 @@ fn wrong_chip() {
     ] {
         let bench = Bench::new(&mood.replace(' ', "-"), &F405);
         bench.mood(mood);
-        bench.run("flash f405 --dfu --elf @image.elf").complains(1, told);
+        bench
+            .run("flash f405 --dfu --elf @image.elf")
+            .complains(1, message);
         assert_eq!(bench.calls(), ["dfu-util -d 0483:df11 --list"], "{mood}");
         assert!(bench.memory() == F405.used(), "{mood}");
     }
@@ -209,11 +211,11 @@ fn no_loader_on_the_cuav() {
 
 fn no_image() {
     let bench = Bench::new("no-image", &F405);
-    let refused = |bytes: &[u8], told: &str| {
+    let refused = |bytes: &[u8], message: &str| {
         fs::write(bench.file("bad.elf"), bytes).unwrap();
         for how in ["", " --dfu"] {
             let ended = bench.run(&format!("flash f405{how} --elf @bad.elf"));
-            ended.complains(2, told);
+            ended.complains(2, message);
             assert!(
                 ended
                     .complaint

@@ -201,11 +201,11 @@ fn run<C: Chip>(
     images: &[Image],
     driver: World,
 ) -> Result<Run, String> {
-    let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
+    let failed = |e: &dyn std::fmt::Display| format!("emulator: {e}");
     let board = Wired::new(chip, pads, speed)?;
-    let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| told(&e))?;
+    let mut session = Session::new(Box::new(board), 0, NO_DEADLINE).map_err(|e| failed(&e))?;
     session.run_until(VirtualNanos(1));
-    let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| told(&e))?;
+    let mut finished = emulator::run(session, &Start::new(images), driver).map_err(|e| failed(&e))?;
     let (at, instructions) = finished
         .stop
         .map_or((VirtualNanos(0), 0), |s| (s.at, s.instruction_count));

@@ -97,11 +97,11 @@ pub fn read(path: &Path) -> Result<Firmware, String> {
 /// # Errors
 /// One line: why the emulator refuses.
 pub fn run(image: &Firmware, test: &Test, defect: Defect) -> Result<Ended, String> {
-    let told = |e: &dyn std::fmt::Display| format!("emulator: {e}");
+    let failed = |e: &dyn std::fmt::Display| format!("emulator: {e}");
     let bytes = suite::entering(image, test)?;
-    let images = [Image::new(&image.path, bytes, None).map_err(|e| told(&e))?];
+    let images = [Image::new(&image.path, bytes, None).map_err(|e| failed(&e))?];
     let mut session = Session::new(Box::new(Wired::new(H743::new()?, &MATEK, SPEED)?), 0, NO_DEADLINE)
-        .map_err(|e| told(&e))?;
+        .map_err(|e| failed(&e))?;
     session.run_until(VirtualNanos(1));
     let mut start = Start::new(&images);
     start.semihosting = true;
@@ -113,7 +113,7 @@ pub fn run(image: &Firmware, test: &Test, defect: Defect) -> Result<Ended, Strin
         resets: 0,
         samples: 0,
     };
-    let finished = emulator::run(session, &start, rig).map_err(|e| told(&e))?;
+    let finished = emulator::run(session, &start, rig).map_err(|e| failed(&e))?;
     let mut log = Log::new(&image.table);
     let mut lines = Vec::new();
     for (at, bytes) in &finished.driver.log {

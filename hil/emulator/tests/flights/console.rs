@@ -121,12 +121,12 @@ fn a_parameter_set_and_saved_at_the_console_is_in_force_after_the_restart() {
     assert!((after / before - 2.0).abs() < 0.01, "{before} V, then {after} V");
     // Two besides the calibration.
     assert!(
-        told(&flight, 0.0, "parameters: 3 from storage").is_some(),
+        logged_at(&flight, 0.0, "parameters: 3 from storage").is_some(),
         "{}",
         log(&flight)
     );
     assert!(
-        told(&flight, 0.0, "parameters: 5 from storage").is_some(),
+        logged_at(&flight, 0.0, "parameters: 5 from storage").is_some(),
         "{}",
         log(&flight)
     );
@@ -160,15 +160,15 @@ fn the_brown_out_level_is_set(image: &Path, board: &str) {
         after.contains("brown-out level 3, expected 3"),
         "{board}: {after}"
     );
-    let refused = told(&flight, 0.0, "arming blocked: brown-out level not set");
+    let refused = logged_at(&flight, 0.0, "arming blocked: brown-out level not set");
     assert!(refused.is_some(), "{board}: {}", log(&flight));
     let [(ms, _)] = &flight.board.resets[..] else {
         panic!("{board}: {:?}\n{}", flight.board.resets, log(&flight))
     };
-    let restarted = told(&flight, *ms * 1e-3, "start after Software");
+    let restarted = logged_at(&flight, *ms * 1e-3, "start after Software");
     let restarted = restarted.unwrap_or_else(|| panic!("{board}: {}", log(&flight)));
     // Lines from before the reset may have its time.
-    let again = told(&flight, restarted, "brown-out level not set");
+    let again = logged_at(&flight, restarted, "brown-out level not set");
     assert_eq!(again, None, "{board}: {}", log(&flight));
     assert_eq!(flight.gaps, [], "{board}");
 }

@@ -12,7 +12,7 @@ fn start(seed: u64) -> Scenario {
 /// Requires equal runs, to the last edge, for equal seeds only.
 fn repeats(fly: impl Fn(&Scenario) -> Flight) {
     let [first, second, other] = [1, 1, 2].map(|seed| fly(&start(seed)));
-    assert!(told(&first, 0.0, "FLIGHT").is_some(), "{}", log(&first));
+    assert!(logged_at(&first, 0.0, "FLIGHT").is_some(), "{}", log(&first));
     assert_eq!(first.board.lines, second.board.lines);
     assert_eq!(first.board.run.pins_digest, second.board.run.pins_digest);
     assert_eq!(first.digest(), second.digest());

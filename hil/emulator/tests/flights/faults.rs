@@ -17,7 +17,7 @@ fn with_small(trouble: Trouble, seconds: f64) -> Flight {
 
 fn sound_before(flight: Flight) -> Flight {
     assert!(
-        told(&flight, 0.0, "FLIGHT").is_some_and(|t| t < AIRBORNE),
+        logged_at(&flight, 0.0, "FLIGHT").is_some_and(|t| t < AIRBORNE),
         "{}",
         log(&flight)
     );
@@ -30,11 +30,11 @@ fn sound_before(flight: Flight) -> Flight {
 fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board() {
     let flight = with(Trouble::Board(BoardFault::ImuUnplugged(true)), AIRBORNE + 2.0);
     assert!(
-        told(&flight, AIRBORNE, "ICM-42688-P: no answer").is_some(),
+        logged_at(&flight, AIRBORNE, "ICM-42688-P: no answer").is_some(),
         "{}",
         log(&flight)
     );
-    let t = told(&flight, AIRBORNE, "DISARMED: inertial sensor silent");
+    let t = logged_at(&flight, AIRBORNE, "DISARMED: inertial sensor silent");
     assert!(t.is_some_and(|t| t < AIRBORNE + 0.3), "{}", log(&flight));
     // Until the pilot reads it and ends the flight, 0.3 s after the loss.
     assert!(
@@ -44,7 +44,7 @@ fn an_unplugged_inertial_sensor_is_named_stops_the_motors_and_restarts_the_board
     );
     // Without flight level the supervisor does not feed the watchdog.
     assert!(
-        told(&flight, AIRBORNE, "start after Watchdog").is_some(),
+        logged_at(&flight, AIRBORNE, "start after Watchdog").is_some(),
         "{}",
         log(&flight)
     );
@@ -60,7 +60,7 @@ fn ended_by_the_watchdog(flight: &Flight, within: f64, stopped_by: f64) {
     let after = ms * 1e-3 - AIRBORNE;
     assert!((0.2..within).contains(&after), "{after}");
     assert!(
-        told(flight, AIRBORNE, "start after Watchdog").is_some(),
+        logged_at(flight, AIRBORNE, "start after Watchdog").is_some(),
         "{}",
         log(flight)
     );
@@ -78,10 +78,10 @@ const LINE: &str = "inertial sensor: data-ready line silent";
 
 /// Requires a normal landing with its reason after the line is cut in hover.
 fn lands_without_data_ready(flight: &Flight) {
-    let t = told(flight, AIRBORNE, &format!("FAILSAFE: {LINE}"));
+    let t = logged_at(flight, AIRBORNE, &format!("FAILSAFE: {LINE}"));
     assert!(t.is_some_and(|t| t < AIRBORNE + 0.4), "{}", log(flight));
-    let down =
-        told(flight, AIRBORNE, &format!("DISARMED: {LINE}")).unwrap_or_else(|| panic!("{}", log(flight)));
+    let down = logged_at(flight, AIRBORNE, &format!("DISARMED: {LINE}"))
+        .unwrap_or_else(|| panic!("{}", log(flight)));
     assert!(running(flight, AIRBORNE - 0.5, down - 0.1), "{}", log(flight));
     // At most descent speed, 10 degrees from level, and down from 3 m.
     for s in samples(flight, AIRBORNE, down) {
@@ -116,17 +116,17 @@ fn a_cut_data_ready_line_is_landed_with_on_the_small_board() {
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_data_ready_line_that_is_cut_from_the_start_refuses_arming_until_it_is_joined() {
     let flight = fly(&hover(22.0), 1.0, &[(0.0, CUT), (8.0, JOINED)]);
-    let refused = told(&flight, 0.0, &format!("DISARMED: {LINE}"));
+    let refused = logged_at(&flight, 0.0, &format!("DISARMED: {LINE}"));
     assert!(refused.is_some_and(|t| t < 6.0), "{}", log(&flight));
     assert!(
-        told(&flight, 0.0, "self-test passed").is_some(),
+        logged_at(&flight, 0.0, "self-test passed").is_some(),
         "{}",
         log(&flight)
     );
     assert!(stopped(&flight, 0.0, 8.0), "{}", log(&flight));
-    let freed = told(&flight, 8.0, &format!("no longer blocked: {LINE}"));
+    let freed = logged_at(&flight, 8.0, &format!("no longer blocked: {LINE}"));
     assert!(freed.is_some_and(|t| t < 9.0), "{}", log(&flight));
-    assert!(told(&flight, 8.0, "FLIGHT").is_some(), "{}", log(&flight));
+    assert!(logged_at(&flight, 8.0, "FLIGHT").is_some(), "{}", log(&flight));
     assert_eq!(flight.board.overruns.get("imu"), None, "{}", log(&flight));
     assert_eq!(flight.gaps, []);
 }
@@ -152,14 +152,18 @@ fn a_silenced_arm_sensor_is_named_and_flown_without() {
         (AIRBORNE + 3.0, Trouble::Board(BoardFault::ArmUnplugged(2, false))),
     ];
     let flight = fly_small(&hop(), &troubles);
-    assert!(told(&flight, AIRBORNE, "BNO055").is_some(), "{}", log(&flight));
+    assert!(
+        logged_at(&flight, AIRBORNE, "BNO055").is_some(),
+        "{}",
+        log(&flight)
+    );
     assert!(flight.passed(), "{:?}\n{}", flight.record.outcome, log(&flight));
 }
 
 #[test]
 fn a_silent_receiver_ends_in_the_failsafe() {
     let flight = with_small(Trouble::RadioSilent(true), AIRBORNE + 3.0);
-    let t = told(&flight, AIRBORNE, "FAILSAFE: radio lost");
+    let t = logged_at(&flight, AIRBORNE, "FAILSAFE: radio lost");
     assert!(t.is_some_and(|t| t < AIRBORNE + 2.0), "{}", log(&flight));
 }
 
@@ -174,7 +178,11 @@ fn flipped_bits_on_the_receivers_line_are_flown_through() {
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_sagging_battery_ends_in_the_failsafe() {
     let flight = with_small(Trouble::BatteryShare(0.75), AIRBORNE + 10.0);
-    assert!(told(&flight, AIRBORNE, "battery").is_some(), "{}", log(&flight));
+    assert!(
+        logged_at(&flight, AIRBORNE, "battery").is_some(),
+        "{}",
+        log(&flight)
+    );
 }
 
 #[test]
@@ -187,7 +195,7 @@ fn a_processor_that_stands_still_is_reset_by_its_watchdog_with_the_motors_stoppe
 fn a_pulled_reset_pin_is_told_as_such() {
     let flight = with_small(Trouble::Board(BoardFault::ResetPin), AIRBORNE + 2.0);
     assert!(
-        told(&flight, AIRBORNE, "start after Pin").is_some(),
+        logged_at(&flight, AIRBORNE, "start after Pin").is_some(),
         "{}",
         log(&flight)
     );
@@ -247,7 +255,7 @@ fn overflows(task: &'static str, small: bool) {
         "restarted after a fault",
     ] {
         assert!(
-            told(&flight, AIRBORNE, text).is_some(),
+            logged_at(&flight, AIRBORNE, text).is_some(),
             "{text}\n{}",
             log(&flight)
         );
@@ -295,7 +303,7 @@ fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() 
     let flight = fly(&hover(AIRBORNE + 2.5), 1.0, &troubles);
     assert!(running(&flight, AIRBORNE - 0.5, AIRBORNE), "{}", log(&flight));
     assert!(
-        told(&flight, AIRBORNE, "start after BrownOut").is_some(),
+        logged_at(&flight, AIRBORNE, "start after BrownOut").is_some(),
         "{}",
         log(&flight)
     );
@@ -311,7 +319,7 @@ fn a_battery_that_sags_until_the_supply_breaks_down_stops_the_motors_for_good() 
 fn a_shorted_pressure_sensor_speaks_before_the_arms_close() {
     let troubles = [(2.0, Trouble::Fsr(1, Some(FsrBreak::Short)))];
     let flight = fly_small(&hover(4.0), &troubles);
-    assert!(told(&flight, 2.0, "pressure").is_some(), "{}", log(&flight));
+    assert!(logged_at(&flight, 2.0, "pressure").is_some(), "{}", log(&flight));
 }
 
 #[test]
@@ -324,10 +332,11 @@ fn a_cut_pressure_sensor_proves_no_grip_and_the_rotors_keep_turning() {
     };
     (scenario.world.gust_force, scenario.world.gust_moment) = (0.0, 0.0);
     let flight = fly_small(&scenario, &[(20.0, Trouble::Fsr(1, Some(FsrBreak::Open)))]);
-    let closing = told(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
+    let closing =
+        logged_at(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
     // A sound grip is proven after four seconds.
     for never in ["grip proven", "PERCHED"] {
-        assert_eq!(told(&flight, closing, never), None, "{}", log(&flight));
+        assert_eq!(logged_at(&flight, closing, never), None, "{}", log(&flight));
     }
     assert!(closing < 50.0, "{closing}");
     assert!(running(&flight, closing, f64::INFINITY), "{}", log(&flight));

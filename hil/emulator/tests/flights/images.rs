@@ -4,10 +4,13 @@ fn refused(name: &str, bytes: &[u8]) -> String {
     let path = std::env::temp_dir().join(format!("sophie-image-{}-{name}", std::process::id()));
     std::fs::write(&path, bytes).unwrap();
     let board = boards::find("matek-h743").unwrap();
-    let told = Firmware::read(&path, board).err().unwrap_or_default();
+    let complaint = Firmware::read(&path, board).err().unwrap_or_default();
     std::fs::remove_file(&path).unwrap();
-    assert!(!told.contains('\n') && told.contains(name), "{told}");
-    told
+    assert!(
+        !complaint.contains('\n') && complaint.contains(name),
+        "{complaint}"
+    );
+    complaint
 }
 
 #[test]
@@ -45,16 +48,16 @@ fn what_is_no_image_of_the_board_is_refused_in_one_line() {
 
 #[test]
 fn an_image_of_another_board_is_refused() {
-    let told = Firmware::read(small_image(), boards::find("matek-h743").unwrap())
+    let complaint = Firmware::read(small_image(), boards::find("matek-h743").unwrap())
         .err()
         .unwrap();
-    assert!(told.contains("where an STM32H743 has no RAM"), "{told}");
-    let told = Firmware::read(image(), boards::find("f405").unwrap())
+    assert!(complaint.contains("where an STM32H743 has no RAM"), "{complaint}");
+    let complaint = Firmware::read(image(), boards::find("f405").unwrap())
         .err()
         .unwrap();
     assert!(
-        told.contains("wanted is what `cargo xtask firmware f405` builds"),
-        "{told}"
+        complaint.contains("wanted is what `cargo xtask firmware f405` builds"),
+        "{complaint}"
     );
 }
 
@@ -65,7 +68,7 @@ fn an_image_that_a_loader_jumps_to_takes_its_vectors_from_its_own_table() {
         firmware.behind_a_loader().unwrap();
         let flight = fly_image(&firmware, &hover(5.0), 1.0, &[]);
         let log = log(&flight);
-        assert!(told(&flight, 0.0, "DISARMED").is_some(), "{board}\n{log}");
+        assert!(logged_at(&flight, 0.0, "DISARMED").is_some(), "{board}\n{log}");
         assert!(
             flight.board.resets.is_empty(),
             "{board}: {:?}\n{log}",

@@ -132,7 +132,7 @@ fn log(flight: &Flight) -> String {
 }
 
 /// Time (s) of the first line with `text` from `from` s on.
-fn told(flight: &Flight, from: f64, text: &str) -> Option<f64> {
+fn logged_at(flight: &Flight, from: f64, text: &str) -> Option<f64> {
     let lines = flight.board.lines.iter();
     let mut times = lines
         .filter(|line| line.text.contains(text))

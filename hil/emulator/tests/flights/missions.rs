@@ -109,7 +109,7 @@ fn in_time(flight: &Flight, longest: f64, jitter: f64) {
         assert_eq!(flight.board.overruns.get(task), None, "{task}\n{}", log(flight));
     }
     assert!(
-        running(flight, AIRBORNE, AIRBORNE + 4.0) && told(flight, AIRBORNE, "BNO055: ").is_some(),
+        running(flight, AIRBORNE, AIRBORNE + 4.0) && logged_at(flight, AIRBORNE, "BNO055: ").is_some(),
         "{}",
         log(flight)
     );

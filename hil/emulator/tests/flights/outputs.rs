@@ -16,7 +16,7 @@ fn restarted(fly: impl Fn(&Scenario, &[(f64, Trouble)]) -> Flight) -> Flight {
         );
     }
     assert!(
-        told(&flight, 1.0, "start after Pin").is_some(),
+        logged_at(&flight, 1.0, "start after Pin").is_some(),
         "{}",
         log(&flight)
     );

@@ -24,7 +24,8 @@ fn perch(seconds: f64) -> Scenario {
 #[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn with_the_old_pads_the_perch_fails_by_the_arm_whose_sensor_reads_too_little() {
     let flight = fly(&perch(60.0), 1.0, &OLD_PADS);
-    let closing = told(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
+    let closing =
+        logged_at(&flight, 20.0, "CLAMPING").unwrap_or_else(|| panic!("no perch\n{}", log(&flight)));
     // Behind 1:11 it reads at most 69 N/m2, and the arm presses beyond its limit.
     let outcome = &flight.record.outcome;
     assert!(
@@ -33,7 +34,7 @@ fn with_the_old_pads_the_perch_fails_by_the_arm_whose_sensor_reads_too_little() 
         log(&flight)
     );
     for never in ["grip proven", "PERCHED"] {
-        assert_eq!(told(&flight, closing, never), None, "{}", log(&flight));
+        assert_eq!(logged_at(&flight, closing, never), None, "{}", log(&flight));
     }
     assert_eq!(flight.gaps, [], "{}", log(&flight));
 }

@@ -23,10 +23,10 @@ fn the_image_flies_what_is_stored() {
     });
     let flight = fly(&scenario, 1.0, &[]);
     // These two and the accelerometer's three axes.
-    let taken = told(&flight, 0.0, "parameters: 5 from storage");
+    let taken = logged_at(&flight, 0.0, "parameters: 5 from storage");
     assert!(taken.is_some(), "{}", log(&flight));
     // Airborne with inverted line and parity, and motor frames at twice the rate.
-    assert!(told(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
+    assert!(logged_at(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
     for esc in flight.board.run.escs {
         assert!(esc.frames > 5000 && esc.bad == 0, "{esc:?}");
     }
@@ -38,11 +38,11 @@ fn the_small_board_flies_what_is_stored() {
     let scenario = start(|s| s.params.rc_protocol = RcProtocol::Sbus);
     let flight = fly_small(&scenario, &[]);
     assert!(
-        told(&flight, 0.0, "parameters: 4 from storage").is_some(),
+        logged_at(&flight, 0.0, "parameters: 4 from storage").is_some(),
         "{}",
         log(&flight)
     );
-    assert!(told(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
+    assert!(logged_at(&flight, 0.0, "FLIGHT").is_some(), "{}", log(&flight));
     assert_eq!(flight.gaps, []);
 }
 
@@ -56,16 +56,16 @@ fn corrupt_storage_starts_with_the_defaults_says_so_and_forbids_arming() {
         &[(0.0, Trouble::Board(BoardFault::CorruptParameters))],
     );
     assert!(
-        told(&flight, 0.0, "parameters: 0 from storage").is_some(),
+        logged_at(&flight, 0.0, "parameters: 0 from storage").is_some(),
         "{}",
         log(&flight)
     );
     assert!(
-        told(&flight, 0.0, "parameters: storage unreadable").is_some(),
+        logged_at(&flight, 0.0, "parameters: storage unreadable").is_some(),
         "{}",
         log(&flight)
     );
-    let refused = told(&flight, 0.0, "DISARMED: stored parameters unreadable");
+    let refused = logged_at(&flight, 0.0, "DISARMED: stored parameters unreadable");
     assert!(refused.is_some(), "{}", log(&flight));
     let mut lines = flight.board.lines.iter();
     assert!(
@@ -89,7 +89,7 @@ fn storage_that_is_corrupted_in_flight_speaks_after_the_next_reset() {
     let scenario = start(|s| s.time_limit = 8.5);
     let flight = fly(&scenario, 1.0, &troubles);
     assert!(running(&flight, 6.5, 7.4), "{}", log(&flight));
-    let unreadable = told(&flight, 0.0, "parameters: storage unreadable");
+    let unreadable = logged_at(&flight, 0.0, "parameters: storage unreadable");
     assert!(unreadable.is_some_and(|t| t > 7.5), "{}", log(&flight));
     assert_eq!(flight.gaps, []);
 }

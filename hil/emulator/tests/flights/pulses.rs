@@ -19,7 +19,7 @@ fn hung(protocol: MotorProtocol, small: bool) -> Flight {
         fly(&scenario, 1.0, &troubles)
     };
     assert!(
-        told(&flight, 0.0, "FLIGHT").is_some_and(|t| t < STILL),
+        logged_at(&flight, 0.0, "FLIGHT").is_some_and(|t| t < STILL),
         "{}",
         log(&flight)
     );

@@ -31,7 +31,7 @@ fn on_the_bench(board: &str, seconds: f64, fault: Option<BoardFault>) -> Flight 
 
 fn looks(flight: &Flight) -> Vec<Look> {
     let lines = flight.board.lines.iter();
-    lines.filter_map(|line| silicon::told(&line.text)).collect()
+    lines.filter_map(|line| silicon::parse(&line.text)).collect()
 }
 
 fn look(flight: &Flight, name: &str) -> Look {
@@ -64,7 +64,7 @@ fn a_chip_without_a_brown_out_level_does_not_arm() {
         let level = look(&flight, "brown-out level");
         assert_eq!((level.read.as_str(), level.ok), ("0", false), "{board}");
         assert!(
-            told(&flight, 0.0, "arming blocked: brown-out level not set").is_some(),
+            logged_at(&flight, 0.0, "arming blocked: brown-out level not set").is_some(),
             "{board}: {}",
             log(&flight)
         );
@@ -78,7 +78,7 @@ fn a_first_revision_flies_without_prefetch_or_not_at_all() {
     let caches = look(&flight, "flash acceleration");
     assert_eq!((caches.read.as_str(), caches.ok), ("prefetch- I+ D+", true));
     assert_eq!(
-        told(&flight, 0.0, "chip not as expected"),
+        logged_at(&flight, 0.0, "chip not as expected"),
         None,
         "{}",
         log(&flight)
@@ -88,7 +88,7 @@ fn a_first_revision_flies_without_prefetch_or_not_at_all() {
     let revision = look(&flight, "revision");
     assert_eq!((revision.read.as_str(), revision.ok), ("0x450 0x1003", false));
     assert!(
-        told(&flight, 0.0, "arming blocked: chip not as expected").is_some(),
+        logged_at(&flight, 0.0, "arming blocked: chip not as expected").is_some(),
         "{}",
         log(&flight)
     );
@@ -102,9 +102,13 @@ fn another_firmwares_parameters_are_named_with_what_to_do() {
         "the storage holds ArduPilot's data; 'save' at the console replaces them",
         "arming blocked: storage holds another firmware's data",
     ] {
-        assert!(told(&flight, 0.0, words).is_some(), "{words}: {}", log(&flight));
+        assert!(
+            logged_at(&flight, 0.0, words).is_some(),
+            "{words}: {}",
+            log(&flight)
+        );
     }
-    assert_eq!(told(&flight, 0.0, "unreadable"), None, "{}", log(&flight));
+    assert_eq!(logged_at(&flight, 0.0, "unreadable"), None, "{}", log(&flight));
     assert_eq!(look(&flight, "stored data of").read, "ArduPilot");
 }
 
@@ -112,7 +116,7 @@ fn another_firmwares_parameters_are_named_with_what_to_do() {
 fn never_starts(board: &str, fault: BoardFault, message: &str, by: &str) {
     let flight = on_the_bench(board, 1.2, Some(fault));
     assert!(
-        told(&flight, 0.0, message).is_some(),
+        logged_at(&flight, 0.0, message).is_some(),
         "{board} {fault:?}: {}",
         log(&flight)
     );
@@ -121,7 +125,7 @@ fn never_starts(board: &str, fault: BoardFault, message: &str, by: &str) {
         !resets.is_empty() && resets.iter().all(|(_, cause)| cause.contains(by)),
         "{board} {fault:?}: {resets:?}"
     );
-    assert_eq!(told(&flight, 0.0, "started in"), None, "{board} {fault:?}");
+    assert_eq!(logged_at(&flight, 0.0, "started in"), None, "{board} {fault:?}");
     assert!(flight.board.run.escs.iter().all(|esc| esc.frames == 0));
     assert_eq!(flight.gaps, [], "{board} {fault:?}");
 }

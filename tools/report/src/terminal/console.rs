@@ -37,16 +37,16 @@ impl Console {
         if self.closed.get() {
             return;
         }
-        let told = if self.to_stderr {
+        let result = if self.to_stderr {
             writeln!(std::io::stderr(), "{line}")
         } else {
             let mut out = std::io::stdout().lock();
             writeln!(out, "{line}").and_then(|()| out.flush())
         };
-        self.closed.set(told.is_err());
+        self.closed.set(result.is_err());
         // A broken stderr cannot be reported.
         if !self.to_stderr {
-            *self.failure.borrow_mut() = self::told(told).err();
+            *self.failure.borrow_mut() = written(result).err();
         }
     }
 
@@ -106,17 +106,17 @@ fn colour_wanted() -> bool {
 /// One line on stdout.
 ///
 /// # Errors
-/// As [`told`].
+/// As [`written`].
 pub fn print(line: &str) -> Result<(), String> {
     let mut out = std::io::stdout().lock();
-    told(writeln!(out, "{line}").and_then(|()| out.flush()))
+    written(writeln!(out, "{line}").and_then(|()| out.flush()))
 }
 
 /// Result of writing to stdout; a closed pipe is no failure.
 ///
 /// # Errors
 /// One line with any other reason.
-pub fn told(result: io::Result<()>) -> Result<(), String> {
+pub fn written(result: io::Result<()>) -> Result<(), String> {
     match result {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(format!("stdout: cannot be written: {error}"))

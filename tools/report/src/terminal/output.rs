@@ -62,22 +62,22 @@ impl OutDir {
     }
 
     fn try_write(&self, files: &[(impl AsRef<str>, Vec<u8>)]) -> Result<Vec<String>, String> {
-        let told = |name: &str, error: io::Error| {
+        let failed = |name: &str, error: io::Error| {
             format!(
                 "--out {}: cannot be written: {error}",
                 self.path.join(name).display()
             )
         };
-        fs::create_dir_all(&self.path).map_err(|error| told("", error))?;
+        fs::create_dir_all(&self.path).map_err(|error| failed("", error))?;
         for (name, content) in files {
             let name = name.as_ref();
-            fs::write(self.partial(name), content).map_err(|error| told(name, error))?;
+            fs::write(self.partial(name), content).map_err(|error| failed(name, error))?;
         }
         let mut written = Vec::new();
         for (name, _) in files {
             let name = name.as_ref();
             let path = self.path.join(name);
-            fs::rename(self.partial(name), &path).map_err(|error| told(name, error))?;
+            fs::rename(self.partial(name), &path).map_err(|error| failed(name, error))?;
             written.push(path.display().to_string());
         }
         Ok(written)

@@ -233,9 +233,9 @@ impl F405 {
     /// # Errors
     /// The emulator cannot make it.
     pub fn new() -> Result<Self, String> {
-        let told = |e: rigless::soc::Error| format!("emulator: {e}");
-        let inner = Stm32f427::new().map_err(told)?;
-        let slot = |name| inner.bus().slot(name).map_err(told);
+        let failed = |e: rigless::soc::Error| format!("emulator: {e}");
+        let inner = Stm32f427::new().map_err(failed)?;
+        let slot = |name| inner.bus().slot(name).map_err(failed);
         let mut unused = vec![false; inner.bus().slots().len()];
         for name in UNUSED {
             unused[slot(name)?] = true;

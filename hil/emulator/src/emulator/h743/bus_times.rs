@@ -38,7 +38,7 @@ mod tests {
     #[test]
     fn a_time_that_a_bus_does_not_want_is_told() {
         assert_eq!(wrong(register([2, 13, 8, 26, 54]), 100e6), None);
-        for (fields, told) in [
+        for (fields, complaint) in [
             // What embassy-stm32 0.6 leaves of 49 and 25 at 100 MHz.
             ([0, 1, 9, 82, 165], "data set-up 20 ns, wanted 400 to inf"),
             ([2, 13, 3, 26, 54], "data hold 90 ns, wanted 220 to 300"),
@@ -46,7 +46,7 @@ mod tests {
             ([2, 13, 8, 18, 62], "clock high 570 ns, wanted 600 to inf"),
             ([2, 13, 8, 22, 54], "clock period 2380 ns, wanted 2500 to inf"),
         ] {
-            assert_eq!(wrong(register(fields), 100e6).as_deref(), Some(told));
+            assert_eq!(wrong(register(fields), 100e6).as_deref(), Some(complaint));
         }
     }
 }

@@ -178,10 +178,10 @@ impl H743 {
     /// # Errors
     /// The emulator cannot make it.
     pub fn new() -> Result<Self, String> {
-        let told = |e: rigless::soc::Error| format!("emulator: {e}");
-        let mut inner = Stm32h743::new().map_err(told)?;
+        let failed = |e: rigless::soc::Error| format!("emulator: {e}");
+        let mut inner = Stm32h743::new().map_err(failed)?;
         inner.set_analog_supply(SUPPLY);
-        let slot = |name| inner.bus().slot(name).map_err(told);
+        let slot = |name| inner.bus().slot(name).map_err(failed);
         let mut unused = vec![false; inner.bus().slots().len()];
         for name in UNUSED {
             unused[slot(name)?] = true;
@@ -467,12 +467,12 @@ mod tests {
             "{airs} {vb2}"
         );
         // Told of their dividers they read as the others.
-        let told = Params {
+        let set = Params {
             fsr_scale_1: 2.0,
             fsr_scale_3: 11.0,
             ..Params::default()
         };
-        let [airs, _, vb2, _] = read([AIRS, RSSI, VB2, CU2], &told, 950.0);
+        let [airs, _, vb2, _] = read([AIRS, RSSI, VB2, CU2], &set, 950.0);
         assert!(
             (airs - 950.0).abs() < 5.0 && (vb2 - 950.0).abs() < 10.0,
             "{airs} {vb2}"

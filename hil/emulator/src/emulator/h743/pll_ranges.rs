@@ -29,18 +29,18 @@ fn one(settings: &Settings, nth: usize, mhz: f64) -> Option<String> {
     let range = settings.ranges >> (4 * nth);
     let [input, medium] = [(range >> 2 & 3) as usize, (range >> 1 & 1) as usize];
     let outside = |value: f64, [least, most]: [f64; 2]| value < least || value > most;
-    let told = |what: &str, value: f64, [least, most]: [f64; 2]| {
+    let complaint = |what: &str, value: f64, [least, most]: [f64; 2]| {
         Some(format!(
             "{what} {value:.0} MHz, its range is {least:.0} to {most:.0}"
         ))
     };
     let oscillator = if medium == 1 { MEDIUM } else { WIDE };
     if outside(reference, INPUTS[input]) {
-        told("reference", reference, INPUTS[input])
+        complaint("reference", reference, INPUTS[input])
     } else if medium == 1 && outside(reference, INPUTS[0]) {
-        told("reference of the medium oscillator", reference, INPUTS[0])
+        complaint("reference of the medium oscillator", reference, INPUTS[0])
     } else if outside(made, oscillator) {
-        told("oscillator", made, oscillator)
+        complaint("oscillator", made, oscillator)
     } else {
         None
     }
@@ -64,7 +64,7 @@ mod tests {
     fn a_pll_outside_its_range_is_told() {
         assert_eq!(first(1, 100, 3, 0), None);
         assert_eq!(first(4, 100, 1, 0), None);
-        for ((divider, multiplier, input, medium), told) in [
+        for ((divider, multiplier, input, medium), complaint) in [
             // A former setting: 200 MHz of the medium oscillator, from 8 MHz.
             (
                 (1, 25, 3, 1),
@@ -77,7 +77,10 @@ mod tests {
             ),
             ((4, 50, 0, 1), "PLL1: oscillator 100 MHz, its range is 150 to 420"),
         ] {
-            assert_eq!(first(divider, multiplier, input, medium).as_deref(), Some(told));
+            assert_eq!(
+                first(divider, multiplier, input, medium).as_deref(),
+                Some(complaint)
+            );
         }
         let off = Settings {
             control: 0,
