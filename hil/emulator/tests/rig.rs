@@ -102,7 +102,7 @@ const TRIED: [Found; 8] = [
         Defect::Watchdog,
         &[(
             "t70_watchdog::it_bites_a_board_that_stands_still",
-            "the watchdog never bit",
+            "the watchdog never reset it",
         )],
     ),
     (
