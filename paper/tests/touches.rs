@@ -32,6 +32,7 @@ fn central(seed: u64) -> Touch {
         lean: 0.03,
         sink: 0.2,
         sideways: 0.0,
+        yaw: 0.0,
         diameter: 0.3,
         friction: 0.6,
         gust: 0.05,

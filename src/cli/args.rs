@@ -31,8 +31,13 @@ struct Cli {
 /// Permitted seconds of flight in a second of real time: what a host can pace.
 const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 
+/// Permitted touches of a capture map: one of each kind, and half a day.
+const TOUCHES: RangeInclusive<u64> = 10..=1_000_000;
+
 /// The subcommands, as messages name them.
-const VERBS: [&str; 7] = ["fly", "check", "bringup", "params", "paper", "fit-arm", "timing"];
+const VERBS: [&str; 8] = [
+    "fly", "check", "bringup", "params", "capture", "paper", "fit-arm", "timing",
+];
 
 #[derive(Subcommand)]
 enum Command {
@@ -57,6 +62,11 @@ enum Command {
     /// differs from the board. `load` checks FILE as a whole, sets what differs, saves, restarts, and reads back.
     /// Exit status: 0 done or equal, 1 different, refused by the board or lost on the way, 2 bad file or port.
     Params(ParamsArgs),
+    /// Fly touches of the pipe, and draw which are held, refused, flown away from or lost.
+    ///
+    /// Half come from anywhere on the pipe, half are what a careful pilot means; of these the half-widths are measured.
+    /// Exit status: 0 nothing lost, 1 a vehicle was lost, 2 bad input or unwritable output.
+    Capture(CaptureArgs),
     /// Compute and fly every table and figure of the paper, and set them beside the printed numbers.
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
@@ -83,6 +93,8 @@ pub enum Task {
     Bringup(BringupArgs),
     /// Parameters of a board.
     Params(ParamsArgs),
+    /// Fly touches of the pipe.
+    Capture(CaptureArgs),
     /// Reproduce the paper.
     Paper(PaperArgs),
     /// Fit an arm.
@@ -117,6 +129,26 @@ pub struct FitArgs {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Print the fit as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Which touches, and where their map goes.
+#[derive(Args, Debug)]
+pub struct CaptureArgs {
+    /// How many, 10 to 1,000,000.
+    #[arg(long, value_name = "N", value_parser = touches, default_value = "2000", allow_negative_numbers = true)]
+    pub touches: u64,
+    /// Seed of the first; the next have the numbers after it.
+    #[arg(long, value_name = "N", value_parser = seed, default_value = "1", allow_negative_numbers = true)]
+    pub seed: u64,
+    /// Largest angle between the vehicle and the pipe, 0 to 45 degrees.
+    #[arg(long, value_name = "DEG", value_parser = heading, default_value = "5", allow_negative_numbers = true)]
+    pub heading: f64,
+    /// Directory for capture.html and capture.json.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the counts as JSON on stdout, everything else on stderr.
     #[arg(long)]
     pub json: bool,
 }
@@ -318,7 +350,7 @@ impl Message {
             && !VERBS.contains(&extra.as_str())
         {
             let allowed = match std::env::args().nth(1).as_deref() {
-                Some("paper") => "no file",
+                Some("paper" | "capture") => "no file",
                 Some("fit-arm") => "one CSV file",
                 Some("params") => "one parameter file",
                 Some("bringup") => "no file",
@@ -348,6 +380,7 @@ fn parse_from(
         Some(Command::Check(check)) => Task::Check(check),
         Some(Command::Bringup(bringup)) => Task::Bringup(bringup),
         Some(Command::Params(params)) => Task::Params(params),
+        Some(Command::Capture(capture)) => Task::Capture(capture),
         Some(Command::Paper(paper)) => Task::Paper(paper),
         Some(Command::FitArm(fit)) => Task::FitArm(fit),
         Some(Command::Timing(timing)) => Task::Timing(timing),
@@ -380,6 +413,16 @@ fn patience(text: &str) -> Result<Duration, String> {
 fn seed(text: &str) -> Result<u64, String> {
     let seed = text.parse().ok().and_then(keys::seed);
     seed.ok_or_else(|| format!("allowed {}", keys::SEED_ALLOWED))
+}
+
+fn touches(text: &str) -> Result<u64, String> {
+    let count = text.parse().ok().filter(|count| TOUCHES.contains(count));
+    count.ok_or_else(|| format!("allowed {} to {}", TOUCHES.start(), TOUCHES.end()))
+}
+
+fn heading(text: &str) -> Result<f64, String> {
+    let degrees = text.parse().ok().filter(|degrees| (0.0..=45.0).contains(degrees));
+    degrees.ok_or_else(|| "allowed 0 to 45 degrees".to_owned())
 }
 
 fn speed(text: &str) -> Result<f64, String> {

@@ -6,6 +6,7 @@
 
 mod args;
 mod builder;
+mod capture;
 mod check;
 mod live;
 mod operate;
@@ -43,6 +44,7 @@ pub fn main() -> ExitCode {
         Task::Check(args) => check::run(&args),
         Task::Bringup(args) => return operate::bringup(&args),
         Task::Params(args) => return operate::params(&args),
+        Task::Capture(args) => capture::run(&args),
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),

@@ -2,6 +2,7 @@
 //! of thrust. Tasks, laws and plant are those that fly.
 
 pub mod allocation;
+pub mod capture;
 pub mod perturbation;
 pub mod rig;
 pub mod touch;

@@ -26,7 +26,9 @@ const LEANING: f64 = 0.8;
 /// m.
 const HEIGHT: f64 = 12.0;
 /// Over the pipe at the start, m.
-const CLEARANCE: f64 = 0.01;
+const ABOVE: f64 = 0.01;
+/// How often the propellers' clearance is looked at, ms.
+const CLEARANCE_EVERY: u32 = 5;
 /// Time from there, s.
 const DURATION: f64 = 14.0;
 /// Of the pilot, s.
@@ -56,6 +58,8 @@ pub struct Touch {
     pub sink: f64,
     /// Sideways speed, right positive, m/s.
     pub sideways: f64,
+    /// Heading against the pipe, rad, right positive.
+    pub yaw: f64,
     /// Diameter of the pipe, m.
     pub diameter: f64,
     /// Its coefficient of friction.
@@ -83,6 +87,7 @@ impl Touch {
             lean: within(-25.0, 25.0).to_radians(),
             sink: within(0.05, 0.4),
             sideways: within(-0.1, 0.1),
+            yaw: 0.0,
             diameter,
             friction: within(0.3, 0.8),
             gust: within(0.0, 0.1),
@@ -122,6 +127,14 @@ pub struct Touched {
     pub pressure: f64,
     /// The vehicle left the pipe by itself.
     pub escaped: bool,
+    /// The arms began to close.
+    pub closed: bool,
+    /// The grip was proven.
+    pub proven: bool,
+    /// Largest true pressure on an arm while the arms closed, Pa; without the bumps of open arms.
+    pub closing_pressure: f64,
+    /// Least distance of a turning propeller from the pipe, m.
+    pub clearance: f64,
     /// Mode at the end.
     pub mode: Mode,
 }
@@ -213,6 +226,9 @@ impl Try {
         let [north, east] = world.pipe_position;
         let radius = 0.5 * touch.diameter;
         let axis = -world.pipe_top + radius;
+        if touch.yaw != 0.0 {
+            self.plant.turn(touch.yaw);
+        }
         let down = touch_height(
             self.plant.pose().attitude,
             touch.offset,
@@ -220,7 +236,7 @@ impl Try {
             self.plant.tilt(),
         ) + axis;
         self.plant.place(
-            DVec3::new(north, east + touch.offset, down - CLEARANCE),
+            DVec3::new(north, east + touch.offset, down - ABOVE),
             DVec3::new(0.0, touch.sideways, touch.sink),
         );
         down
@@ -268,6 +284,10 @@ pub fn fly(touch: &Touch) -> Option<Touched> {
         lean: 0.0,
         pressure: 0.0,
         escaped: false,
+        closed: false,
+        proven: false,
+        closing_pressure: 0.0,
+        clearance: f64::INFINITY,
         mode: Mode::Flight,
     };
     for ms in 0..(DURATION * 1e3) as u32 {
@@ -279,6 +299,15 @@ pub fn fly(touch: &Touch) -> Option<Touched> {
         out.drop = out.drop.max(flight.plant.pose().position.z - height);
         out.lean = out.lean.max(flight.roll().abs());
         out.pressure = flight.plant.pressure().into_iter().fold(out.pressure, f64::max);
+        out.closed |= mode == Mode::Clamping;
+        out.proven |= mode == Mode::Perched;
+        if mode == Mode::Clamping {
+            let now = flight.plant.pressure();
+            out.closing_pressure = now.into_iter().fold(out.closing_pressure, f64::max);
+        }
+        if ms % CLEARANCE_EVERY == 0 {
+            out.clearance = out.clearance.min(flight.plant.propeller_clearance());
+        }
         if out.drop > LOST_DEPTH || mode == Mode::Disarmed {
             return Some(out);
         }

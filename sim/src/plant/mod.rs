@@ -9,6 +9,7 @@ pub mod battery;
 pub mod body;
 pub mod contact;
 pub mod gust;
+pub mod propeller;
 pub mod rotor;
 pub mod servo_power;
 pub mod tendon;
@@ -34,6 +35,8 @@ pub const GRAVITY: f64 = 9.806_65;
 const GROUND_FRICTION: f64 = 0.7;
 /// Linear air drag, N·s/m (assumed).
 pub const DRAG: f64 = 0.3;
+/// Thrust of a propeller that would break at the pipe, N: a tenth of what it hovers with.
+const TURNING: f64 = 0.25;
 /// Distance of the origin from a surface within which parts may touch it, m: arm, depth of its hinge and a margin.
 const NEAR: f64 = 0.25;
 
@@ -206,6 +209,23 @@ impl Plant {
     pub fn place(&mut self, position: DVec3, velocity: DVec3) {
         self.state.pose.position = position;
         self.state.pose.velocity = velocity;
+    }
+
+    /// Turns the vehicle about the world's vertical by `yaw` (rad, right positive), unseen by its sensors. For studies.
+    pub fn turn(&mut self, yaw: f64) {
+        let pose = &mut self.state.pose;
+        pose.attitude = DQuat::from_rotation_z(yaw) * pose.attitude;
+        pose.velocity = DQuat::from_rotation_z(yaw) * pose.velocity;
+    }
+
+    /// Distance of the turning propellers from the pipe, m: negative inside, infinite while none turns.
+    #[must_use]
+    pub fn propeller_clearance(&self) -> f64 {
+        let clear = propeller::clearance(&self.state.pose, self.tilt(), &self.pipe);
+        let turning = clear.into_iter().zip(self.thrust());
+        turning
+            .filter(|(_, thrust)| *thrust > TURNING)
+            .fold(f64::INFINITY, |least, (clear, _)| least.min(clear))
     }
 
     /// Position, attitude and motion.

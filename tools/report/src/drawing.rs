@@ -1,11 +1,11 @@
 //! Vehicle and pipe from behind, along the pipe: east right, up top.
 
 use sophie_sim::plant::contact::{ARM_LENGTH, ARM_X, BELLY_Z, UNDERSIDE_Z};
+use sophie_sim::plant::propeller::RADIUS;
 use sophie_sim::record::{FlightRecord, Sample};
 
 use super::moments::KeyMoment;
 use super::svg::{Rect, line, path, rect, short, text};
-use super::units::ROTOR_RADIUS;
 
 /// Pixels.
 const WIDTH: f64 = 320.0;
@@ -154,7 +154,7 @@ impl<'a> View<'a> {
         }
         let hub = arm.point(1.0, ARM_THICKNESS + MOTOR_HEIGHT);
         out += &self.segment(arm.point(1.0, ARM_THICKNESS), hub, &format!("motor s{number}"));
-        let blade = |side: f64| arm.beside(hub, side * ROTOR_RADIUS);
+        let blade = |side: f64| arm.beside(hub, side * RADIUS);
         out += &self.segment(blade(-1.0), blade(1.0), &format!("rotor s{number}"));
         let thrust = value(&self.sample.thrust);
         if thrust > 0.4 {

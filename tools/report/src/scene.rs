@@ -2,11 +2,11 @@
 
 use serde_json::{Value, json};
 use sophie_sim::plant::contact::{ARM_LENGTH, ARM_X, HINGE_Z};
+use sophie_sim::plant::propeller::RADIUS;
 use sophie_sim::record::{FlightRecord, Sample};
 
 use super::log::stamp;
 use super::summary::tidy;
-use super::units::ROTOR_RADIUS;
 
 /// Rotor above the arm, m, drawn.
 const ROTOR_LIFT: f64 = 0.05;
@@ -106,7 +106,7 @@ pub fn vehicle(s: &Sample) -> Value {
                 "position": arm_point(x, side, *tilt, 1.0, ROTOR_LIFT),
                 "orientation": { "x": tidy(sin), "y": 0.0, "z": 0.0, "w": tidy(cos) },
             },
-            "size": { "x": 2.0 * ROTOR_RADIUS, "y": 2.0 * ROTOR_RADIUS, "z": 0.006 },
+            "size": { "x": 2.0 * RADIUS, "y": 2.0 * RADIUS, "z": 0.006 },
             "bottom_scale": 1.0,
             "top_scale": 1.0,
             "color": colour(rgb, 0.35),

@@ -2,9 +2,6 @@
 
 use sophie_sim::record::FlightRecord;
 
-/// Of the 10-inch propellers, m, drawn.
-pub const ROTOR_RADIUS: f64 = 0.127;
-
 /// 1 kgcm in N·m.
 pub const KGCM: f64 = 0.098_066_5;
 
