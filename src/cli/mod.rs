@@ -7,6 +7,7 @@
 mod args;
 mod builder;
 mod check;
+mod interrupt;
 mod live;
 mod operate;
 mod study;

@@ -12,6 +12,9 @@ mod dma;
 mod flash;
 mod guard;
 mod image;
+// The firmware has it of itself.
+#[path = "../../tasks/src/image_id.rs"]
+mod image_id;
 mod own_board;
 mod params;
 mod retained;
@@ -248,6 +251,7 @@ fn ended(board: &Board, status: Result<ExitCode, Error>) -> ExitCode {
 fn firmware(board: &Board, variant: Variant) -> Result<(PathBuf, image::Image), Error> {
     let elf = build::firmware(board, variant)?;
     let image = check(board, &elf)?;
+    eprintln!("build {:08x}, as 'version' at the console has it", image.build()?);
     Ok((elf, image))
 }
 
