@@ -61,7 +61,7 @@ usage: cargo xtask VERB
   restore BOARD FILE [--dry]
                      write a backup over the whole flash through probe-rs
   bench BOARD [SCENARIO.toml] [--trace] [--seed N] [--out DIR] [--speed SHARE] [--console PORT]
-        [--telemetry PORT] [--mavlink PORT] [--factory] [--json]
+        [--telemetry PORT] [--mavlink PORT] [--factory] [--pilot none] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
                      input
   chain BOARD [STEPS]
