@@ -35,6 +35,7 @@ pub mod imu_filter;
 pub mod math;
 pub mod mixer;
 pub mod mode;
+pub mod motor_map;
 pub mod mounting;
 pub mod params;
 pub mod rate;

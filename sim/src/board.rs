@@ -9,7 +9,8 @@ use embassy_time::{Instant, Timer};
 use heapless::Vec;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
-use sophie_control::params::Params;
+use sophie_control::motor_map::at_rotors;
+use sophie_control::params::{MotorMap, Params};
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
 use sophie_tasks::links::Raw;
@@ -46,6 +47,8 @@ pub struct Board {
     pub memory: Cell<[Words; 2]>,
     /// Accelerometer bias as measured on a level bench, m/s².
     pub accel_bias: [f32; 3],
+    /// How the motor outputs are wired.
+    wiring: Cell<MotorMap>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -73,7 +76,7 @@ impl Board {
         Self::configured(&Params::default(), rng)
     }
 
-    /// With `params`; errors of the parts drawn from `rng`.
+    /// With `params`, motors wired as they say; errors of the parts drawn from `rng`.
     #[must_use]
     pub fn configured(params: &Params, rng: &mut Pcg64Mcg) -> Self {
         let mut imu = Imu::new(params, Pcg64Mcg::from_rng(rng));
@@ -98,6 +101,7 @@ impl Board {
             arm_gravity: Cell::default(),
             memory: Cell::new([[0; WORDS]; 2]),
             accel_bias,
+            wiring: Cell::new(params.motor_map),
             imu_rate: f64::from(params.imu_rate.number()),
         }
     }
@@ -105,6 +109,11 @@ impl Board {
     /// Builds the inertial sensor in as `misfit` has it.
     pub fn misfit(&self, misfit: Misfit) {
         self.sensors.borrow_mut().imu.misfit = Some(misfit);
+    }
+
+    /// Wires the motors as `map` has it, whatever the parameters say.
+    pub fn wire(&self, map: MotorMap) {
+        self.wiring.set(map);
     }
 
     /// Steps the plant by 1 ms under the last outputs and samples the sensors.
@@ -253,7 +262,7 @@ impl ports::Motors for Port {
     async fn write(&mut self, commands: PerArm<f32>) -> Instant {
         let actuators = self.0.actuators.get();
         self.0.actuators.set(Actuators {
-            motors: commands.map(f64::from),
+            motors: at_rotors(&self.0.wiring.get().rotors(), &commands.map(f64::from)),
             ..actuators
         });
         Instant::now()

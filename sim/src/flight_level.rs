@@ -11,7 +11,7 @@ use crate::sensors::imu::Misfit;
 use embassy_time::Instant;
 use rand_pcg::Pcg64Mcg;
 use sophie_control::mixer::Allocation;
-use sophie_control::params::Params;
+use sophie_control::params::{MotorMap, Params};
 use sophie_control::wrench::Configuration;
 use sophie_tasks::links::{Links, Setpoint};
 
@@ -97,6 +97,13 @@ impl Rig {
     pub fn misfitted(scenario: &Scenario, misfit: Misfit) -> Self {
         let rig = Self::new(scenario);
         rig.board.misfit(misfit);
+        rig
+    }
+
+    /// The same with motors that are wired as `map` has it, whatever the parameters say.
+    pub fn wired(scenario: &Scenario, map: MotorMap) -> Self {
+        let rig = Self::new(scenario);
+        rig.board.wire(map);
         rig
     }
 

@@ -93,6 +93,10 @@ impl Chip for FakeChip {
         "table"
     }
 
+    fn build(&self) -> u32 {
+        0x1234_ABCD
+    }
+
     fn looks(&self) -> &[Look] {
         &self.looks
     }

@@ -48,6 +48,10 @@ impl Chip for PlainChip {
         "table"
     }
 
+    fn build(&self) -> u32 {
+        0x1234_ABCD
+    }
+
     fn looks(&self) -> &[Look] {
         &[]
     }

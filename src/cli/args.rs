@@ -4,6 +4,8 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -222,12 +224,12 @@ pub struct LineArgs {
 }
 
 impl LineArgs {
-    /// A session at that console.
+    /// A session at that console, until `stop` is raised.
     ///
     /// # Errors
     /// One line: the port cannot be opened, or no console answers there.
-    pub fn session(&self) -> Result<Session, Failure> {
-        Session::open(&self.port, self.patience)
+    pub fn session(&self, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
+        Session::open(&self.port, self.patience, stop)
     }
 }
 

@@ -1,12 +1,17 @@
 //! The builder at the terminal, or a pipe in its place.
 
 use std::io::{BufRead, IsTerminal, Write};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::time::Duration;
 
 use sophie_console::bringup::{Reply, User};
 
 /// Width of a row that replaces the last one.
 const WIDTH: usize = 79;
+/// Time after which Ctrl-C is noticed while a reply is awaited.
+const NOTICED: Duration = Duration::from_millis(50);
 
 /// Standard input and output.
 pub struct Terminal {
@@ -16,10 +21,12 @@ pub struct Terminal {
     terminal: bool,
     /// The row on the screen that is overwritten next.
     row: Option<String>,
+    /// Raised by Ctrl-C: there are no more replies then.
+    stop: Arc<AtomicBool>,
 }
 
 impl Terminal {
-    pub fn new() -> Self {
+    pub fn new(stop: Arc<AtomicBool>) -> Self {
         let (sender, lines) = channel();
         std::thread::spawn(move || {
             for line in std::io::stdin().lock().lines().map_while(Result::ok) {
@@ -32,6 +39,19 @@ impl Terminal {
             lines,
             terminal: std::io::stdin().is_terminal() && std::io::stdout().is_terminal(),
             row: None,
+            stop,
+        }
+    }
+
+    /// The next line; `None` at the end of input and after Ctrl-C.
+    fn next(&self) -> Option<String> {
+        loop {
+            match self.lines.recv_timeout(NOTICED) {
+                _ if self.stop.load(Ordering::Relaxed) => return None,
+                Ok(line) => return Some(line),
+                Err(RecvTimeoutError::Timeout) => (),
+                Err(RecvTimeoutError::Disconnected) => return None,
+            }
         }
     }
 
@@ -79,9 +99,9 @@ impl User for Terminal {
     fn ask(&mut self, question: &str) -> Reply {
         self.end_row();
         self.write(question);
-        match self.lines.recv() {
-            Ok(line) => self.replied(line),
-            Err(_) => {
+        match self.next() {
+            Some(line) => self.replied(line),
+            None => {
                 self.write("\n");
                 Reply::End
             }

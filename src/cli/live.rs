@@ -1,21 +1,16 @@
 //! `sophie fly --live`: a flight at the pace of real time, with MAVLink on UDP.
 
-use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
 use sophie_report::terminal::console::Console;
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain};
 use sophie_sim::live::{Live, LiveFlight, Pace, Udp};
 
 use super::args::{FlyArgs, LiveArgs};
+use super::interrupt::on_ctrl_c;
 use super::{PROGRAM, introduce, report};
-
-/// Exit status after a second Ctrl-C, as a shell gives it.
-const INTERRUPTED: i32 = 130;
 
 /// Flies the mission, reports it and waits for Ctrl-C; without a pilot waits at once. False when the mission was not
 /// accomplished.
@@ -28,7 +23,7 @@ pub fn run(args: &FlyArgs) -> Result<bool, String> {
         ..
     } = args.live;
     let udp = Udp::open(mavlink).map_err(|why| format!("--mavlink {why}"))?;
-    let stop = on_ctrl_c().map_err(|why| format!("Ctrl-C cannot be caught: {why}"))?;
+    let stop = on_ctrl_c()?;
     let console = Console::new(args.json);
     let clients = format!("MAVLink: {}", udp.shown());
     let live = Live::new(Pace::new(speed), udp, Arc::clone(&stop), |line| {
@@ -50,15 +45,4 @@ pub fn run(args: &FlyArgs) -> Result<bool, String> {
         flight.wait();
     }
     Ok(accomplished)
-}
-
-/// A flag that Ctrl-C raises, or a polite end from outside; a second one ends the process.
-fn on_ctrl_c() -> io::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        // In this order: the first signal finds the flag down.
-        flag::register_conditional_shutdown(signal, INTERRUPTED, Arc::clone(&stop))?;
-        flag::register(signal, Arc::clone(&stop))?;
-    }
-    Ok(stop)
 }

@@ -8,6 +8,7 @@ mod args;
 mod builder;
 mod capture;
 mod check;
+mod interrupt;
 mod live;
 mod operate;
 mod study;

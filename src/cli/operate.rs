@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use sophie_console::parameters::{self, Difference};
 use sophie_console::session::Session;
@@ -11,12 +12,15 @@ use sophie_sim::scenario::settings::{self, Setting};
 
 use super::args::{BringupArgs, ParamsArgs, ParamsVerb};
 use super::builder::Terminal;
+use super::interrupt::on_ctrl_c;
 use super::{FAILED, PROGRAM, REFUSED};
 
 /// Leads through the set-up of a vehicle.
 pub fn bringup(args: &BringupArgs) -> ExitCode {
-    let walked = args.line.session().and_then(|mut session| {
-        bringup::run(&mut session, &mut Terminal::new(), &args.protocol, &args.again)
+    let walked = on_ctrl_c().map_err(Failure::Input).and_then(|stop| {
+        let mut session = args.line.session(Arc::clone(&stop))?;
+        let mut user = Terminal::new(stop);
+        bringup::run(&mut session, &mut user, &args.protocol, &args.again)
     });
     status(walked)
 }
@@ -41,14 +45,18 @@ fn status(done: Result<bool, Failure>) -> ExitCode {
             complain(PROGRAM, &failure.to_string());
             ExitCode::from(match failure {
                 Failure::Input(_) => REFUSED,
-                Failure::Board(_) => FAILED,
+                Failure::Board(_) | Failure::Stopped(_) => FAILED,
             })
         }
     }
 }
 
+fn session(args: &ParamsArgs) -> Result<Session, Failure> {
+    args.line.session(on_ctrl_c().map_err(Failure::Input)?)
+}
+
 fn dump(args: &ParamsArgs) -> Result<(), Failure> {
-    let mut session = args.line.session()?;
+    let mut session = session(args)?;
     let rows = parameters::listed(&mut session)?;
     let unsaved = parameters::unsaved(&mut session)?;
     if let Some(line) = unsaved.first() {
@@ -61,7 +69,7 @@ fn dump(args: &ParamsArgs) -> Result<(), Failure> {
             ),
         );
     }
-    let text = parameters::text(&identity(&mut session)?, &rows);
+    let text = parameters::text(&parameters::version(&mut session)?, &rows);
     if args.file == Path::new("-") {
         return console::print(text.trim_end()).map_err(Failure::Input);
     }
@@ -75,7 +83,7 @@ fn dump(args: &ParamsArgs) -> Result<(), Failure> {
 
 fn diff(args: &ParamsArgs) -> Result<bool, Failure> {
     let settings = read(&args.file)?;
-    let mut session = args.line.session()?;
+    let mut session = session(args)?;
     let rows = parameters::listed(&mut session)?;
     let different = parameters::differences(&settings, &rows);
     let lines: Vec<String> = different.iter().map(Difference::text).collect();
@@ -87,7 +95,7 @@ fn diff(args: &ParamsArgs) -> Result<bool, Failure> {
 
 fn load(args: &ParamsArgs) -> Result<(), Failure> {
     let settings = read(&args.file)?;
-    let mut session = args.line.session()?;
+    let mut session = session(args)?;
     parameters::load(&mut session, &settings, &mut |line| {
         // A closed pipe is no reason to leave the board half-way.
         let _ = console::print(line);
@@ -97,13 +105,6 @@ fn load(args: &ParamsArgs) -> Result<(), Failure> {
 /// The parameters of the file, all of them checked.
 fn read(file: &Path) -> Result<Vec<Setting>, Failure> {
     settings::read(file).map_err(|error| Failure::Input(error.to_string()))
-}
-
-/// The firmware and its board.
-fn identity(session: &mut Session) -> Result<String, Failure> {
-    let said = session.command("version")?;
-    let line = said.into_iter().find(|line| line.starts_with("SOPHIE "));
-    Ok(line.unwrap_or_else(|| "an earlier firmware".to_owned()))
 }
 
 fn say(line: &str) -> Result<(), Failure> {

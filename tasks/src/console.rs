@@ -30,7 +30,7 @@ pub use self::nearest::edits;
 use self::output::Output;
 use crate::links::{Links, Status};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
-use crate::storing;
+use crate::{parameters as table, storing};
 
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
@@ -116,6 +116,12 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Command::Version => {
                 let (version, board) = (env!("CARGO_PKG_VERSION"), self.chip.board());
                 self.out.line(format_args!("SOPHIE {version} on {board}")).await;
+                let (build, count, table) = (self.chip.build(), Params::TABLE.len(), table::table_id());
+                self.out
+                    .line(format_args!(
+                        "build {build:08x}, {count} parameters, table {table:08x}"
+                    ))
+                    .await;
             }
             Command::Silicon => self.silicon().await,
             Command::BrownOut => self.brown_out().await,

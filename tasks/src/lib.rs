@@ -28,6 +28,7 @@ pub mod deadline;
 pub mod decimal;
 pub mod estimator;
 pub mod histogram;
+pub mod image_id;
 pub mod imu;
 pub mod last_value;
 pub mod links;

@@ -1,4 +1,4 @@
-//! Motor output, one frame for each mix (1 kHz); stops the motors when mixes stop coming.
+//! Motor output, one frame for each mix (1 kHz); stops the motors when mixes stop coming. Here rotors become outputs.
 //!
 //! The [`DEADLINE`] of the frame counts from data-ready: the response is that of the whole chain.
 
@@ -7,6 +7,7 @@ use embassy_time::{Duration, Instant, with_deadline, with_timeout};
 use crate::deadline::{TaskId, record_run_until};
 use crate::links::{Links, Stamped};
 use crate::ports::Motors;
+use sophie_control::motor_map::at_outputs;
 use sophie_control::wrench::PerArm;
 
 /// Time from data-ready to the frame.
@@ -20,6 +21,7 @@ pub async fn run(links: &Links, mut port: impl Motors) {
     let Some(mut mix) = links.mix.receiver() else {
         return;
     };
+    let rotors = links.params.motor_map.rotors();
     loop {
         // `fresh` beside the timeout: a mix from an old sample must not spin a motor.
         let next = mix.changed_to(|mix| Stamped {
@@ -33,7 +35,7 @@ pub async fn run(links: &Links, mut port: impl Motors) {
                     .fresh_at(started, links.mix.stale_after)
                     .unwrap_or([0.0; 4]);
                 let commands = commands.map(|c| if c.is_finite() { c } else { 0.0 });
-                let began = write(&mut port, commands, started).await;
+                let began = write(&mut port, at_outputs(&rotors, &commands), started).await;
                 // An unsent frame is late by the whole wait.
                 let began = began.unwrap_or_else(Instant::now);
                 record_run_until(links, TaskId::Motors, message.at, started, began, DEADLINE);

@@ -6,6 +6,7 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::{ParamInfo, Params, Renamed};
 
 use crate::decimal::{self, Decimal};
+use crate::image_id;
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
 
@@ -23,11 +24,21 @@ pub fn report(links: &Links, loaded: Loaded) {
     links.report(ArmingInhibit::StorageForeign, foreign);
 }
 
+/// What tells one table of parameters from another: names, units, ranges and defaults of all rows.
+pub fn table_id() -> u32 {
+    let words = Params::TABLE.iter().flat_map(|row| {
+        let text = row.name.bytes().chain(row.unit.bytes()).map(u32::from);
+        let numbers = [row.min, row.max, row.default].map(f32::to_bits);
+        text.chain(numbers)
+    });
+    image_id::of(words)
+}
+
 /// Most choices that are all named where a parameter is shown: a line has 80 characters.
 const MOST_NAMED: usize = 8;
 
 /// What a parameter takes: "4 to 10 %", "one of 0 crsf, 1 sbus", or short (`{:#}`) "crsf, sbus"; of many
-/// choices the first and the last.
+/// choices the first and the last, and how many they are where only numbers say which.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowed<'a>(pub &'a ParamInfo);
 
@@ -37,6 +48,9 @@ impl fmt::Display for Allowed<'_> {
         if row.choices.is_empty() {
             write!(f, "{} to {}", Decimal(row.min), Decimal(row.max))?;
         } else if row.choices.len() > MOST_NAMED {
+            if !row.has_names() {
+                write!(f, "one of {}, ", row.choices.len())?;
+            }
             write!(f, "{} to {}", Shown(row, row.min), Shown(row, row.max))?;
         } else {
             f.write_str(if f.alternate() { "" } else { "one of " })?;

@@ -88,7 +88,7 @@ pub trait Analog {
 
 /// The four motors.
 pub trait Motors {
-    /// Sends one command for each motor: 0 stops, 0 < c <= 1 is the share of full drive. Returns when the frame began.
+    /// Sends one command for each output: 0 stops, 0 < c <= 1 is the share of full drive. Returns when the frame began.
     async fn write(&mut self, commands: PerArm<f32>) -> Instant;
 }
 
@@ -214,6 +214,9 @@ pub trait Chip {
 
     /// Name of the board that the firmware was built for.
     fn board(&self) -> &'static str;
+
+    /// What tells this image from every other: [`crate::image_id`] of its words.
+    fn build(&self) -> u32;
 
     /// What the start-up looked at.
     fn looks(&self) -> &[Look];

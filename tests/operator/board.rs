@@ -1,9 +1,9 @@
-//! A board on a table, served over TCP: the console task and the tasks that it asks, on scripted parts. Its time runs
+//! A board on a table, served over TCP or a serial port: the console task and the tasks that it asks, on scripted parts. Its time runs
 //! faster than the clock on the wall, its stored parameters outlive its restarts.
 
 use std::cell::{Cell, RefCell};
-use std::io::{ErrorKind, Read, Write};
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::io::{Read, Write};
+use std::net::TcpStream;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,8 @@ use sophie_clock::VirtualTime;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::math::GRAVITY;
 use sophie_control::mixer::Flexible;
-use sophie_control::params::Params;
+use sophie_control::motor_map::at_rotors;
+use sophie_control::params::{MotorMap, Params};
 use sophie_control::rc::Sticks;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
@@ -25,6 +26,8 @@ use sophie_tasks::ports::{
     StorageError,
 };
 use sophie_tasks::{analog, arms, clamp, commander, console, control, estimator, imu, mixer, motors, servos};
+
+use super::wire::Wire;
 
 /// The board's time in one round, ms, and the time on the wall that a round takes at least: twenty times real time.
 const ROUND_MS: u64 = 10;
@@ -58,6 +61,23 @@ pub struct Hands {
     pub forgets: bool,
     /// The chip has its brown-out level.
     pub brown_out_set: bool,
+    /// The plug is pulled with the first answer that has this text.
+    pub unplugged_at: Option<&'static str>,
+    /// Which image it is said to be.
+    pub build: u32,
+    /// How the motors are wired.
+    pub wiring: MotorMap,
+    /// Its time is that of the wall.
+    pub real_time: bool,
+}
+
+/// What the board's pins do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// What each rotor gets, as the motors are wired.
+    pub motors: PerArm<f64>,
+    /// Last servo pulses, us.
+    pub servos: PerArm<f32>,
 }
 
 impl Default for Hands {
@@ -77,18 +97,25 @@ impl Default for Hands {
             broken: false,
             forgets: false,
             brown_out_set: true,
+            unplugged_at: None,
+            build: 0x1234_ABCD,
+            wiring: MotorMap::M1234,
+            real_time: false,
         }
     }
 }
 
 /// The board and its thread, which ends with it.
 pub struct Board {
-    /// Port of its console on the loopback interface.
-    pub port: u16,
+    /// Name of its console, as `--port` takes it.
+    name: String,
     hands: Arc<Mutex<Hands>>,
     stored: Arc<Mutex<Params>>,
+    outputs: Arc<Mutex<Outputs>>,
     /// The board's time over all its starts, ms.
     ms: Arc<AtomicU64>,
+    /// Changes of parameters that it has told of.
+    changes: Arc<AtomicU64>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -96,27 +123,42 @@ pub struct Board {
 impl Board {
     /// Powers a board up.
     pub fn new(hands: Hands) -> Self {
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-        listener.set_nonblocking(true).unwrap();
-        let port = listener.local_addr().unwrap().port();
+        Self::on(Wire::socket(), hands)
+    }
+
+    /// The same with its console on a serial port.
+    #[cfg(target_os = "linux")]
+    pub fn on_serial(hands: Hands) -> Self {
+        Self::on(Wire::serial(), hands)
+    }
+
+    fn on((mut wire, name): (Wire, String), hands: Hands) -> Self {
         let hands = Arc::new(Mutex::new(hands));
         let stored = Arc::new(Mutex::new(Params::DEFAULT));
         let stop = Arc::new(AtomicBool::new(false));
         let ms = Arc::<AtomicU64>::default();
-        let shared = (hands.clone(), stored.clone(), stop.clone(), ms.clone());
+        let outputs = Arc::<Mutex<Outputs>>::default();
+        let changes = Arc::<AtomicU64>::default();
+        let seen = Seen {
+            outputs: outputs.clone(),
+            ms: ms.clone(),
+            changes: changes.clone(),
+        };
+        let shared = (hands.clone(), stored.clone(), stop.clone());
         let thread = std::thread::spawn(move || {
-            let (hands, stored, stop, ms) = shared;
-            let mut wire = Wire::new(listener);
+            let (hands, stored, stop) = shared;
             while !stop.load(Ordering::Relaxed) {
                 let params = *stored.lock().unwrap();
-                Run::start(&hands, &stored, params).serve(&mut wire, &stop, &ms);
+                Run::start(&hands, &stored, params).serve(&mut wire, &seen, &stop);
             }
         });
         Self {
-            port,
+            name,
             hands,
             stored,
+            outputs,
             ms,
+            changes,
             stop,
             thread: Some(thread),
         }
@@ -124,7 +166,41 @@ impl Board {
 
     /// Name of its console, as `--port` takes it.
     pub fn name(&self) -> String {
-        format!("tcp:127.0.0.1:{}", self.port)
+        self.name.clone()
+    }
+
+    /// A user of its own at the socket.
+    fn connects(&self) -> TcpStream {
+        TcpStream::connect(self.name.strip_prefix("tcp:").unwrap()).unwrap()
+    }
+
+    /// What its pins do now.
+    pub fn outputs(&self) -> Outputs {
+        *self.outputs.lock().unwrap()
+    }
+
+    /// The board's time over all its starts.
+    pub fn seconds(&self) -> f64 {
+        self.ms.load(Ordering::Relaxed) as f64 * 1e-3
+    }
+
+    /// Waits until a parameter has been set.
+    pub fn hears_a_change(&self) {
+        let begun = Instant::now();
+        while self.changes.load(Ordering::Relaxed) == 0 {
+            assert!(begun.elapsed() < PATIENCE, "nothing is set");
+            std::thread::sleep(ROUND);
+        }
+    }
+
+    /// What is said in `seconds` of the board's time without a word of anybody.
+    pub fn says_by_itself(&self, seconds: f64) -> String {
+        let mut user = self.connects();
+        self.pass(seconds);
+        user.set_nonblocking(true).unwrap();
+        let mut said = [0; 1024];
+        let count = user.read(&mut said).unwrap_or(0);
+        String::from_utf8_lossy(&said[..count]).into_owned()
     }
 
     /// Changes what hands do.
@@ -149,7 +225,7 @@ impl Board {
 
     /// Types `bytes` over a connection of its own, which is gone afterwards.
     pub fn type_and_leave(&self, bytes: &[u8]) {
-        let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).unwrap();
+        let mut user = self.connects();
         user.write_all(bytes).unwrap();
         user.set_read_timeout(Some(PATIENCE)).unwrap();
         // Until it has been echoed, so that it is there; a cursor key has no echo.
@@ -163,7 +239,7 @@ impl Board {
 
     /// Asks for the status until it has `text`.
     pub fn until(&self, text: &str) {
-        let mut user = TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).unwrap();
+        let mut user = self.connects();
         user.set_read_timeout(Some(PATIENCE)).unwrap();
         let begun = Instant::now();
         let mut said = String::new();
@@ -187,51 +263,11 @@ impl Drop for Board {
     }
 }
 
-/// The console's socket, one user at a time, the latest.
-struct Wire {
-    listener: TcpListener,
-    user: Option<TcpStream>,
-    /// Bytes that were typed so far.
-    typed: usize,
-}
-
-impl Wire {
-    fn new(listener: TcpListener) -> Self {
-        Self {
-            listener,
-            user: None,
-            typed: 0,
-        }
-    }
-
-    /// Sends `said`; what was typed, less what the line loses.
-    fn exchange(&mut self, said: &[u8], loses: Option<usize>) -> Vec<u8> {
-        if let Ok((user, _)) = self.listener.accept() {
-            user.set_nonblocking(true).unwrap();
-            self.user = Some(user);
-        }
-        let Some(user) = &mut self.user else {
-            return Vec::new();
-        };
-        let mut bytes = [0; 256];
-        let count = match user.read(&mut bytes) {
-            Ok(0) => None,
-            Ok(count) => Some(count),
-            Err(error) if error.kind() == ErrorKind::WouldBlock => Some(0),
-            Err(_) => None,
-        };
-        if count.is_none() || user.write_all(said).is_err() {
-            self.user = None;
-        }
-        let mut typed = Vec::new();
-        for byte in &bytes[..count.unwrap_or(0)] {
-            self.typed += 1;
-            if loses.is_none_or(|every| !self.typed.is_multiple_of(every)) {
-                typed.push(*byte);
-            }
-        }
-        typed
-    }
+/// What is seen of the board from outside.
+struct Seen {
+    outputs: Arc<Mutex<Outputs>>,
+    ms: Arc<AtomicU64>,
+    changes: Arc<AtomicU64>,
 }
 
 /// One start of the board.
@@ -244,6 +280,8 @@ struct Run {
     imu: FakeImu,
     analog: FakeAnalog,
     arms: Arms,
+    motors: FakeMotors,
+    servos: FakeServos,
     chip: ThisChip,
 }
 
@@ -265,6 +303,8 @@ impl Run {
             imu: FakeImu::default(),
             analog: FakeAnalog::default(),
             arms: Arms::default(),
+            motors: FakeMotors::default(),
+            servos: FakeServos::default(),
             chip: ThisChip {
                 hands: hands.clone(),
                 stored: stored.clone(),
@@ -283,11 +323,11 @@ impl Run {
         time.spawn(estimator::run(links));
         time.spawn(control::run(links));
         time.spawn(mixer::run(links, |p| Flexible::new(Configuration::B, p)));
-        time.spawn(motors::run(links, FakeMotors::default()));
+        time.spawn(motors::run(links, self.motors.clone()));
         time.spawn(analog::run(links, self.analog.clone()));
         time.spawn(arms::run(links, self.arms.clone()));
         time.spawn(clamp::run(links));
-        time.spawn(servos::run(links, FakeServos::default()));
+        time.spawn(servos::run(links, self.servos.clone()));
         time.spawn(commander::run(links));
         let (line, screen) = (self.line.clone(), self.screen.clone());
         time.spawn(console::run(
@@ -300,19 +340,26 @@ impl Run {
     }
 
     /// Runs until the board restarts or `stop` is set.
-    fn serve(self, wire: &mut Wire, stop: &AtomicBool, all: &AtomicU64) {
+    fn serve(self, wire: &mut Wire, seen: &Seen, stop: &AtomicBool) {
         let mut ms = 0;
         while !stop.load(Ordering::Relaxed) {
             let begun = Instant::now();
             let hands = self.hands.lock().unwrap().clone();
             self.apply(&hands, ms);
             ms += ROUND_MS;
-            all.fetch_add(ROUND_MS, Ordering::Relaxed);
+            seen.ms.fetch_add(ROUND_MS, Ordering::Relaxed);
             self.time.run_until(ms * 1000);
+            *seen.outputs.lock().unwrap() = self.outputs(&hands);
             let mut said = self.screen.text.take();
-            let dies = hands
-                .dies_at
-                .is_some_and(|text| String::from_utf8_lossy(&said).contains(text));
+            let has =
+                |text: Option<&str>| text.is_some_and(|text| String::from_utf8_lossy(&said).contains(text));
+            if has(Some(", in force after save")) {
+                seen.changes.fetch_add(1, Ordering::Relaxed);
+            }
+            let dies = has(hands.dies_at);
+            if has(hands.unplugged_at) {
+                wire.unplug();
+            }
             if dies {
                 self.hands.lock().unwrap().mute = true;
             }
@@ -324,7 +371,12 @@ impl Run {
             if self.chip.restarted.get() {
                 break;
             }
-            std::thread::sleep(ROUND.saturating_sub(begun.elapsed()));
+            let round = if hands.real_time {
+                Duration::from_millis(ROUND_MS)
+            } else {
+                ROUND
+            };
+            std::thread::sleep(round.saturating_sub(begun.elapsed()));
         }
         if self.chip.restarted.get() {
             // What is typed meanwhile is lost; the pins' noise is not.
@@ -334,6 +386,14 @@ impl Run {
                 std::thread::sleep(ROUND);
             }
             wire.exchange(b"\x00\xff\xfe> \x00", None);
+        }
+    }
+
+    fn outputs(&self, hands: &Hands) -> Outputs {
+        let commands = self.motors.commands.get().map(f64::from);
+        Outputs {
+            motors: at_rotors(&hands.wiring.rotors(), &commands),
+            servos: self.servos.pulses.borrow().last().copied().unwrap_or_default(),
         }
     }
 
@@ -440,6 +500,10 @@ impl Chip for ThisChip {
 
     fn board(&self) -> &'static str {
         "table"
+    }
+
+    fn build(&self) -> u32 {
+        self.hands.lock().unwrap().build
     }
 
     fn looks(&self) -> &[Look] {

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use sophie_control::calibration::Face;
-use sophie_control::params::Params;
+use sophie_control::params::{MotorMap, Params};
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::vector::Vec3;
 
@@ -22,7 +22,7 @@ const BIAS: Vec3 = Vec3::new(0.11, -0.04, 0.08);
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A builder at `sophie bringup`.
-struct Builder {
+pub(super) struct Builder {
     child: Child,
     typed: ChildStdin,
     said: Arc<Mutex<String>>,
@@ -31,7 +31,7 @@ struct Builder {
 }
 
 impl Builder {
-    fn begins(temp: &Temp, board: &Board, more: &[&str]) -> Self {
+    pub(super) fn begins(temp: &Temp, board: &Board, more: &[&str]) -> Self {
         let name = board.name();
         let args = [&["bringup", "--port", &name, "--patience", "5"], more].concat();
         let mut child = command(&temp.0, &args)
@@ -60,8 +60,13 @@ impl Builder {
         }
     }
 
+    /// Ctrl-C.
+    pub(super) fn interrupts(&self) {
+        super::interrupt(&self.child);
+    }
+
     /// Waits until `text` is said, after what was waited for before.
-    fn hears(&mut self, text: &str) {
+    pub(super) fn hears(&mut self, text: &str) {
         let begun = Instant::now();
         loop {
             let said = self.said.lock().unwrap().clone();
@@ -78,18 +83,18 @@ impl Builder {
         }
     }
 
-    fn types(&mut self, reply: &str) {
+    pub(super) fn types(&mut self, reply: &str) {
         self.typed.write_all(format!("{reply}\n").as_bytes()).unwrap();
     }
 
     /// Waits for `prompt` and replies.
-    fn at(&mut self, prompt: &str, reply: &str) {
+    pub(super) fn at(&mut self, prompt: &str, reply: &str) {
         self.hears(prompt);
         self.types(reply);
     }
 
     /// Begins the step `id`, which comes next.
-    fn step(&mut self, id: &str) {
+    pub(super) fn step(&mut self, id: &str) {
         self.at(&format!("({id})"), "");
     }
 
@@ -101,7 +106,7 @@ impl Builder {
     }
 
     /// Exit status, and what was said last on stdout and stderr.
-    fn ends(mut self) -> (Option<i32>, String, String) {
+    pub(super) fn ends(mut self) -> (Option<i32>, String, String) {
         drop(self.typed);
         let status = self.child.wait().unwrap();
         let mut complaint = String::new();
@@ -129,7 +134,7 @@ fn lies(board: &Board, side: Face) {
 }
 
 /// A vehicle out of its bag.
-fn factory() -> Board {
+pub(super) fn factory() -> Board {
     Board::new(Hands {
         force: Face::Belly.force() + BIAS,
         tilt: [0.04; 4],
@@ -246,10 +251,19 @@ fn sensors_and_actuators(builder: &mut Builder, board: &Board) {
         builder.at("Did it turn", "y");
     }
     builder.step("rotors");
-    for (rotor, way) in [("1", "a"), ("2", "c"), ("3", "c"), ("4", "a")] {
-        builder.at("Which rotor turned", rotor);
-        builder.at("From above", way);
+    // The wires of 2 and 3 are swapped: once to find it, once to see it right.
+    for round in 0..2 {
+        for (rotor, way) in [("1", "a"), ("3", "c"), ("2", "c"), ("4", "a")] {
+            builder.at("Which rotor turned", rotor);
+            builder.at("From above", way);
+        }
+        if round == 0 {
+            builder.hears("motor_map 1234 -> 1324, in force after save");
+            builder.hears("Once more, to see it right");
+            builder.at("Type off", "off");
+        }
     }
+    builder.hears("all rotors as they should");
 }
 
 #[test]
@@ -324,10 +338,27 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
     assert_eq!((status, &*complaint), (Some(0), ""), "{said}");
     assert!(said.contains("\nall 26 steps passed"), "{said}");
     assert!(file().contains("state = \"all 26 steps passed\""), "{}", file());
+    assert_eq!(board.stored().motor_map, MotorMap::M1324);
+    let build = "build 1234abcd, ";
+    assert_eq!(file().matches(build).count(), 1 + 26, "{}", file());
+    // Another image: said in one line, and nothing is asked again.
+    board.hands(|hands| hands.build = 0xC0DE);
+    let done = run(&temp, &["bringup", "--port", &board.name()]);
+    assert!(
+        done.status == Some(0)
+            && done
+                .said
+                .contains("\nAnother image than before: the last run was at build 1234abcd, ")
+            && done
+                .said
+                .replace("\n  ", " ")
+                .contains(" this board has build 0000c0de, "),
+        "{done:?}"
+    );
     // Nothing is asked again.
     let done = run(&temp, &["bringup", "--port", &board.name()]);
     assert!(
-        done.status == Some(0) && !done.said.contains("(chip)"),
+        done.status == Some(0) && !done.said.contains("(chip)") && !done.said.contains("Another image"),
         "{done:?}"
     );
 

@@ -4,9 +4,24 @@ mod board;
 mod bringup;
 #[path = "../common/command.rs"]
 mod command;
+mod interruption;
 mod params;
+#[cfg(target_os = "linux")]
+mod serial;
+mod wire;
+
+use std::process::{Child, Command};
 
 use self::command::{Temp, sophie, text};
+
+/// Ctrl-C at `child`.
+fn interrupt(child: &Child) {
+    let status = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(status.success());
+}
 
 /// The command in the directory.
 fn run(temp: &Temp, args: &[&str]) -> Done {

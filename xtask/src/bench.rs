@@ -14,13 +14,14 @@ const FIRST_BUILD: &str = "building the emulated board: minutes the first time, 
 
 /// Options of the emulator without a value, and with one.
 const ALONE: [&str; 2] = ["--json", "--factory"];
-const WITH_VALUE: [(&str, &str); 6] = [
+const WITH_VALUE: [(&str, &str); 7] = [
     ("--seed", "N"),
     ("--out", "DIR"),
     ("--speed", "SHARE"),
     ("--console", "PORT"),
     ("--telemetry", "PORT"),
     ("--mavlink", "PORT"),
+    ("--pilot", "none"),
 ];
 
 pub struct Bench<'a> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SymbolKind};
 
-use crate::Error;
+use crate::{Error, image_id};
 
 pub struct Section {
     pub name: String,
@@ -147,6 +147,18 @@ impl Image {
             let bytes = load.bytes.get(offset..offset + 4)?;
             Some(u32::from_le_bytes(bytes.try_into().ok()?))
         })
+    }
+
+    /// What tells this image from every other, as the firmware has it of itself.
+    ///
+    /// # Errors
+    /// There is no such symbol.
+    pub fn build(&self) -> Result<u32, Error> {
+        let values = self.symbol("__edata")? - self.symbol("__sdata")?;
+        let (start, end) = (self.symbol("__stext")?, self.symbol("__sidata")? + values);
+        // Flash that nothing has written.
+        let word = |at| self.word(at).unwrap_or(u32::MAX);
+        Ok(image_id::of((start..end).step_by(4).map(word)))
     }
 
     /// Address of the symbol `name`.

@@ -12,6 +12,9 @@ mod dma;
 mod flash;
 mod guard;
 mod image;
+// The firmware has it of itself.
+#[path = "../../tasks/src/image_id.rs"]
+mod image_id;
 mod own_board;
 mod params;
 mod retained;
@@ -58,7 +61,7 @@ usage: cargo xtask VERB
   restore BOARD FILE [--dry]
                      write a backup over the whole flash through probe-rs
   bench BOARD [SCENARIO.toml] [--trace] [--seed N] [--out DIR] [--speed SHARE] [--console PORT]
-        [--telemetry PORT] [--mavlink PORT] [--factory] [--json]
+        [--telemetry PORT] [--mavlink PORT] [--factory] [--pilot none] [--json]
                      build and fly a mission on the emulated board (matek-h743, f405); exit status 1 when it fails, 2 for bad
                      input
   chain BOARD [STEPS]
@@ -248,6 +251,7 @@ fn ended(board: &Board, status: Result<ExitCode, Error>) -> ExitCode {
 fn firmware(board: &Board, variant: Variant) -> Result<(PathBuf, image::Image), Error> {
     let elf = build::firmware(board, variant)?;
     let image = check(board, &elf)?;
+    eprintln!("build {:08x}, as 'version' at the console has it", image.build()?);
     Ok((elf, image))
 }
 

@@ -5,6 +5,7 @@ mod cache;
 mod copy;
 pub mod end;
 mod fault;
+pub mod image;
 mod levels;
 pub mod restart;
 pub mod retained;

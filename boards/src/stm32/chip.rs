@@ -5,6 +5,7 @@ use static_cell::StaticCell;
 
 use super::options;
 use super::watchdog;
+use crate::cortex_m::image;
 use crate::cortex_m::restart::reset;
 use crate::{NAME, stop_motors};
 
@@ -38,6 +39,10 @@ impl Chip for ThisChip {
 
     fn board(&self) -> &'static str {
         NAME
+    }
+
+    fn build(&self) -> u32 {
+        image::id()
     }
 
     fn looks(&self) -> &[Look] {

@@ -176,6 +176,58 @@ choices! {
         UpBack = 23.0, "up_back";
     }
 
+    /// Which rotor hangs at each motor output: the digits, from the left, are the rotors at outputs 1 to 4.
+    MotorMap {
+        /// Rotors 1, 2, 3 and 4 at outputs 1 to 4.
+        M1234 = 1234.0, "";
+        /// Rotors 1, 2, 4 and 3 at outputs 1 to 4.
+        M1243 = 1243.0, "";
+        /// Rotors 1, 3, 2 and 4 at outputs 1 to 4.
+        M1324 = 1324.0, "";
+        /// Rotors 1, 3, 4 and 2 at outputs 1 to 4.
+        M1342 = 1342.0, "";
+        /// Rotors 1, 4, 2 and 3 at outputs 1 to 4.
+        M1423 = 1423.0, "";
+        /// Rotors 1, 4, 3 and 2 at outputs 1 to 4.
+        M1432 = 1432.0, "";
+        /// Rotors 2, 1, 3 and 4 at outputs 1 to 4.
+        M2134 = 2134.0, "";
+        /// Rotors 2, 1, 4 and 3 at outputs 1 to 4.
+        M2143 = 2143.0, "";
+        /// Rotors 2, 3, 1 and 4 at outputs 1 to 4.
+        M2314 = 2314.0, "";
+        /// Rotors 2, 3, 4 and 1 at outputs 1 to 4.
+        M2341 = 2341.0, "";
+        /// Rotors 2, 4, 1 and 3 at outputs 1 to 4.
+        M2413 = 2413.0, "";
+        /// Rotors 2, 4, 3 and 1 at outputs 1 to 4.
+        M2431 = 2431.0, "";
+        /// Rotors 3, 1, 2 and 4 at outputs 1 to 4.
+        M3124 = 3124.0, "";
+        /// Rotors 3, 1, 4 and 2 at outputs 1 to 4.
+        M3142 = 3142.0, "";
+        /// Rotors 3, 2, 1 and 4 at outputs 1 to 4.
+        M3214 = 3214.0, "";
+        /// Rotors 3, 2, 4 and 1 at outputs 1 to 4.
+        M3241 = 3241.0, "";
+        /// Rotors 3, 4, 1 and 2 at outputs 1 to 4.
+        M3412 = 3412.0, "";
+        /// Rotors 3, 4, 2 and 1 at outputs 1 to 4.
+        M3421 = 3421.0, "";
+        /// Rotors 4, 1, 2 and 3 at outputs 1 to 4.
+        M4123 = 4123.0, "";
+        /// Rotors 4, 1, 3 and 2 at outputs 1 to 4.
+        M4132 = 4132.0, "";
+        /// Rotors 4, 2, 1 and 3 at outputs 1 to 4.
+        M4213 = 4213.0, "";
+        /// Rotors 4, 2, 3 and 1 at outputs 1 to 4.
+        M4231 = 4231.0, "";
+        /// Rotors 4, 3, 1 and 2 at outputs 1 to 4.
+        M4312 = 4312.0, "";
+        /// Rotors 4, 3, 2 and 1 at outputs 1 to 4.
+        M4321 = 4321.0, "";
+    }
+
     /// Full scale of the accelerometer, g.
     ImuAccelRange {
         /// ±2 g.
@@ -210,7 +262,7 @@ mod tests {
                 assert!(choice.name.parse::<f32>().is_err(), "{}", choice.name);
             }
         }
-        assert_eq!(enumerated, 10);
+        assert_eq!(enumerated, 11);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use super::ParamInfo;
 use super::choices::{
-    ArmSign, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorProtocol, RcProtocol, Value,
+    ArmSign, ImuAccelRange, ImuGyroRange, ImuMounting, ImuRate, MotorMap, MotorProtocol, RcProtocol, Value,
 };
 use super::names::check_names;
 
@@ -103,6 +103,9 @@ params! {
     /// Motor protocol: 150, 300 or 600 for DShot, 400 for pulses of 1 to 2 ms, at most 400 a second, 125 for OneShot125.
     /// Read by the board at start-up; the paper's controllers take 400.
     motor_protocol: MotorProtocol = MotorProtocol::Dshot300, "1";
+    /// Which rotor hangs at each motor output (`rotors`): its four digits, each of 1 to 4 once, are the rotors at outputs 1
+    /// to 4; 1243 where the wires of 3 and 4 are swapped.
+    motor_map: MotorMap = MotorMap::M1234, "1";
     /// Receiver: 0 for CRSF at 420 kbaud, 1 for SBUS. Read by the board at start-up.
     rc_protocol: RcProtocol = RcProtocol::Crsf, "1";
     /// Samples per second of the vehicle's inertial sensor; a part that cannot takes its nearest.

@@ -6,6 +6,7 @@ use rand_pcg::Pcg64Mcg;
 use sophie_control::fsr::FsrScale;
 use sophie_control::grip::{ArmGrip, ArmState, GripState};
 use sophie_control::mode::Mode;
+use sophie_control::motor_map::at_rotors;
 use sophie_control::params::{Params, RcProtocol};
 use sophie_control::rc::Sticks;
 use sophie_control::tendon::Reel;
@@ -22,6 +23,7 @@ use uf_crsf::{CrsfParser, Packet};
 
 use crate::elf::Firmware;
 use crate::emulator::{Emulator, Settings};
+use crate::hands::Hands;
 use crate::log::{Line, Log};
 use crate::plan::Plan;
 use crate::sensors::Sensors;
@@ -39,6 +41,8 @@ pub struct Bench<'a> {
     firmware: &'a Firmware,
     settings: Settings,
     sensors: Sensors,
+    /// `None`: the vehicle is left to itself.
+    hands: Option<Hands>,
     plan: Plan,
     wires: Wires,
     pins: Pins,
@@ -137,6 +141,7 @@ impl<'a> Bench<'a> {
             firmware,
             settings: Settings { speed, params },
             sensors,
+            hands: None,
             plan,
             wires: Wires::default(),
             pins: Pins::default(),
@@ -163,6 +168,25 @@ impl<'a> Bench<'a> {
             raw: Vec::new(),
             resets: Vec::new(),
         }
+    }
+
+    /// The same vehicle in `hands`, out of its bag: nothing has been calibrated.
+    #[must_use]
+    pub fn in_hands(mut self, hands: Hands) -> Self {
+        let Params {
+            accel_bias_x,
+            accel_bias_y,
+            accel_bias_z,
+            ..
+        } = Params::DEFAULT;
+        self.settings.params = Params {
+            accel_bias_x,
+            accel_bias_y,
+            accel_bias_z,
+            ..self.settings.params
+        };
+        self.hands = Some(hands);
+        self
     }
 
     /// Ends the run.
@@ -228,9 +252,12 @@ impl<'a> Bench<'a> {
     fn thrusts(&self) -> PerArm<f32> {
         let curve = ThrustCurve::from_params(&self.params);
         let ratio = self.watched.voltage as f32 / self.params.battery_nominal;
-        self.pins
-            .motors
-            .map(|command| curve.thrust(command as f32, ratio))
+        self.drives().map(|command| curve.thrust(command as f32, ratio))
+    }
+
+    /// Commands of the rotors, wired as the parameters have it.
+    fn drives(&self) -> PerArm<f64> {
+        at_rotors(&self.params.motor_map.rotors(), &self.pins.motors)
     }
 
     fn tension(&self) -> PerArm<f64> {
@@ -249,11 +276,20 @@ impl Aircraft for Bench<'_> {
     fn step_world(&mut self, plant: &mut Plant) {
         self.plan
             .apply(self.pins.ms, &mut self.sensors, &mut self.wires.faults);
-        let actuators = Actuators {
-            motors: self.pins.motors,
+        let mut actuators = Actuators {
+            motors: self.drives(),
             servos: self.pins.servos,
         };
-        self.sensors.step(plant, &actuators, &mut self.wires);
+        let held = self.hands.as_mut().map(|hands| {
+            actuators.motors = hands.wired(&self.pins.motors);
+            hands.step(&self.pins, plant)
+        });
+        if let Some(frame) = held.as_ref().and_then(|held| held.frame(self.pins.ms)) {
+            let words = frame.iter().map(|byte| on_line(RcProtocol::Crsf, *byte));
+            self.plan.radio(words, &mut self.wires.receiver);
+        }
+        self.sensors
+            .step(plant, &actuators, held.as_ref(), &mut self.wires);
         self.watched.tilt = plant.tilt();
         self.watched.voltage = plant.battery_voltage();
         let [roll, ..] = plant.euler();
@@ -351,7 +387,7 @@ impl Aircraft for Bench<'_> {
     }
 
     fn motors(&self) -> PerArm<f64> {
-        self.pins.motors
+        self.drives()
     }
 
     // The processor stands still until its watchdog's reset; other causes are refused beforehand.

@@ -1,11 +1,12 @@
 //! A flight of an image on the bench, with its verdict.
 
-use sophie_sim::flight::fly_with;
+use sophie_sim::flight::{fly_with, stand_with};
 use sophie_sim::record::{FlightRecord, Observer};
 use sophie_sim::scenario::Scenario;
 
 use crate::bench::{Bench, Finished, Setup};
 use crate::elf::Firmware;
+use crate::hands::Hands;
 use crate::log;
 use crate::wires::Gap;
 use crate::{flyable, gaps};
@@ -54,4 +55,37 @@ pub fn fly(
     let board = bench.finish()?;
     let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();
     Ok(Flight { record, board, gaps })
+}
+
+/// A vehicle that stood on the ground.
+pub struct Stood {
+    /// Record of the emulated board.
+    pub board: Finished,
+    /// Disallowed emulation gaps.
+    pub gaps: Vec<Gap>,
+}
+
+/// Runs the board of `scenario`'s vehicle without a pilot, on the ground or in `hands`, until `over`; else as [`fly`].
+///
+/// # Errors
+/// As [`fly`].
+pub fn stand(
+    firmware: &Firmware,
+    scenario: &Scenario,
+    setup: Setup,
+    hands: Option<Hands>,
+    logged: impl FnMut(&log::Line),
+    mut over: impl FnMut() -> bool,
+) -> Result<Stood, String> {
+    flyable::check(scenario)?;
+    let make = |rng: &mut _| {
+        let bench = Bench::new(firmware, scenario, setup, rng, logged);
+        match hands {
+            Some(hands) => bench.in_hands(hands),
+            None => bench,
+        }
+    };
+    let board = stand_with(scenario, make, |_| over())?.finish()?;
+    let gaps = gaps::not_allowed(&board.run.gaps)?.into_iter().cloned().collect();
+    Ok(Stood { board, gaps })
 }

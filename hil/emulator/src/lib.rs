@@ -18,6 +18,7 @@ pub mod esc;
 pub mod flight;
 pub mod flyable;
 pub mod gaps;
+pub mod hands;
 pub mod loader;
 pub mod log;
 pub mod plan;

@@ -1,24 +1,30 @@
 //! `sophie-emulator`: flies a scenario with the image of an emulated board. `cargo xtask bench` builds both and calls
 //! it.
 //!
-//! Exit status: 0 when the mission was accomplished without gaps of the emulation, 1 when not, 2 for bad input.
+//! Exit status: 0 when the mission was accomplished without gaps of the emulation, 1 when not, 2 for bad input. Without a
+//! pilot there is no mission.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::Parser;
 use clap::error::ErrorKind;
+use clap::{Parser, ValueEnum};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
 use sophie_emulator::bench::Setup;
 use sophie_emulator::boards;
 use sophie_emulator::compare;
 use sophie_emulator::elf::Firmware;
 use sophie_emulator::flight::{self, Flight};
 use sophie_emulator::flyable;
+use sophie_emulator::log::Line;
 use sophie_emulator::plan::{Plan, Trouble};
 use sophie_emulator::silicon;
 use sophie_emulator::terminal::{Sockets, Terminal};
-use sophie_emulator::wires::BoardFault;
+use sophie_emulator::wires::{BoardFault, Gap};
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::live::Lines;
 use sophie_report::terminal::output::OutDir;
@@ -33,6 +39,15 @@ const LOG_FILES: [&str; 2] = ["log.txt", "log.bin"];
 const EACH_SECOND: [&str; 2] = ["timing ", "trace "];
 /// Permitted instructions per clock cycle.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.25..=1.0;
+/// Exit status after a second Ctrl-C, as a shell gives it.
+const INTERRUPTED: i32 = 130;
+
+/// Who flies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Pilot {
+    /// The vehicle stands on the ground, the transmitter is off.
+    None,
+}
 
 /// Flies a mission with the image that is flashed, on an emulated board.
 #[derive(Parser)]
@@ -71,6 +86,9 @@ struct Args {
     /// Start with the option bytes of a new chip, whose brown-out level nobody has set.
     #[arg(long)]
     factory: bool,
+    /// Who flies: none waits on the ground without a transmitter until Ctrl-C, and leaves no report.
+    #[arg(long, value_name = "none", conflicts_with_all = ["json", "out"])]
+    pilot: Option<Pilot>,
     /// Print the result as JSON on stdout, everything else on stderr.
     #[arg(long)]
     json: bool,
@@ -127,15 +145,6 @@ fn run(args: &Args) -> Result<bool, String> {
         telemetry: listen("--telemetry", args.telemetry)?,
         mavlink: listen("--mavlink", args.mavlink)?,
     };
-    let out = OutDir::prepare(&args.out, &[&FILES[..], &LOG_FILES].concat())?;
-    let console = Console::new(args.json);
-    console.say(&result::intro(&scenario));
-    console.say(&format!(
-        "{} on an emulated {}, {} instructions a cycle",
-        args.elf.display(),
-        args.board,
-        args.speed
-    ));
     let factory = args
         .factory
         .then_some((0, Trouble::Board(BoardFault::FactoryOptions)));
@@ -144,20 +153,71 @@ fn run(args: &Args) -> Result<bool, String> {
         plan: Plan::new(factory),
         sockets,
     };
-    let flight = flight::fly(
-        &firmware,
-        &scenario,
+    match args.pilot {
+        Some(Pilot::None) => stand(args, &firmware, &scenario, setup),
+        None => fly(args, &firmware, &scenario, setup),
+    }
+}
+
+fn introduce(args: &Args, console: &Console) {
+    console.say(&format!(
+        "{} on an emulated {}, {} instructions a cycle",
+        args.elf.display(),
+        args.board,
+        args.speed
+    ));
+}
+
+/// Keeps the board running on the ground until Ctrl-C.
+fn stand(args: &Args, firmware: &Firmware, scenario: &Scenario, setup: Setup) -> Result<bool, String> {
+    let console = Console::new(args.json);
+    introduce(args, &console);
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        // In this order: the first signal finds the flag down.
+        let caught = flag::register_conditional_shutdown(signal, INTERRUPTED, Arc::clone(&stop))
+            .and_then(|_| flag::register(signal, Arc::clone(&stop)));
+        caught.map_err(|why| format!("Ctrl-C cannot be caught: {why}"))?;
+    }
+    console.say("waits until Ctrl-C");
+    let stood = flight::stand(
+        firmware,
+        scenario,
         setup,
-        |line| {
-            if !EACH_SECOND.iter().any(|begin| line.text.starts_with(begin)) {
-                console.say(&line.to_string());
-            }
-        },
+        None,
+        |line| show(&console, line),
+        || stop.load(Ordering::Relaxed),
+    )?;
+    complain_of(&stood.gaps);
+    Ok(stood.gaps.is_empty())
+}
+
+/// Flies the mission and reports it.
+fn fly(args: &Args, firmware: &Firmware, scenario: &Scenario, setup: Setup) -> Result<bool, String> {
+    let out = OutDir::prepare(&args.out, &[&FILES[..], &LOG_FILES].concat())?;
+    let console = Console::new(args.json);
+    console.say(&result::intro(scenario));
+    introduce(args, &console);
+    let flight = flight::fly(
+        firmware,
+        scenario,
+        setup,
+        |line| show(&console, line),
         &mut Lines::new(&console),
     )?;
-    write(args, &scenario, &flight, &out, &console)?;
-    complain_of(&flight);
+    write(args, scenario, &flight, &out, &console)?;
+    if !flight.record.outcome.accomplished {
+        let reason = console::one_line(&flight.record.outcome.reason);
+        complain(PROGRAM, &format!("not accomplished: {reason}"));
+    }
+    complain_of(&flight.gaps);
     Ok(flight.passed())
+}
+
+fn show(console: &Console, line: &Line) {
+    if !EACH_SECOND.iter().any(|begin| line.text.starts_with(begin)) {
+        console.say(&line.to_string());
+    }
 }
 
 /// Writes the flight's files, and prints the result beside the host's flight.
@@ -190,12 +250,8 @@ fn write(
     Ok(())
 }
 
-fn complain_of(flight: &Flight) {
-    if !flight.record.outcome.accomplished {
-        let reason = console::one_line(&flight.record.outcome.reason);
-        complain(PROGRAM, &format!("not accomplished: {reason}"));
-    }
-    for gap in &flight.gaps {
+fn complain_of(gaps: &[Gap]) {
+    for gap in gaps {
         complain(
             PROGRAM,
             &format!(

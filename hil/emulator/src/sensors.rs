@@ -11,6 +11,7 @@ use sophie_sim::sensors::arm_imu::{self, ArmImu};
 use sophie_sim::sensors::fsr::{FsrBreak, FsrSensor};
 use sophie_sim::sensors::imu::Imu;
 
+use crate::hands::InHands;
 use crate::wires::Wires;
 
 /// Converter reference, V, and full scale, counts.
@@ -68,12 +69,24 @@ impl Sensors {
         }
     }
 
-    /// Steps the plant by a millisecond and sets `wires`.
-    pub fn step(&mut self, plant: &mut Plant, actuators: &sophie_sim::plant::Actuators, wires: &mut Wires) {
+    /// Steps the plant by a millisecond and sets `wires`; of a vehicle in hands the plant's rotors and battery alone count.
+    pub fn step(
+        &mut self,
+        plant: &mut Plant,
+        actuators: &sophie_sim::plant::Actuators,
+        hands: Option<&InHands>,
+        wires: &mut Wires,
+    ) {
+        let moved = |plant: &Plant| {
+            hands.map_or((plant.pose().omega, plant.specific_force()), |held| {
+                (held.rate, held.force())
+            })
+        };
         for _ in 0..STEPS_PER_MS {
-            let (rate, force) = (plant.pose().omega, plant.specific_force());
+            let (rate, force) = moved(plant);
             plant.step(actuators);
-            let (rate_step, force_step) = (plant.pose().omega - rate, plant.specific_force() - force);
+            let (rate_now, force_now) = moved(plant);
+            let (rate_step, force_step) = (rate_now - rate, force_now - force);
             for k in 1..=self.samples {
                 let share = f64::from(k) / f64::from(self.samples);
                 let rotors = plant.rotor_speed();
@@ -87,21 +100,28 @@ impl Sensors {
         self.arm_clock += 1e-3 * arm_imu::RATE_HZ;
         if self.arm_clock >= 1.0 {
             self.arm_clock -= 1.0;
-            let (attitude, force, tilt) = (plant.pose().attitude, plant.specific_force(), plant.tilt());
+            let (_, force) = moved(plant);
+            let attitude = hands.map_or(plant.pose().attitude, |held| held.attitude);
+            let mut tilt = plant.tilt();
+            for (tilt, bent) in tilt.iter_mut().zip(hands.map_or([0.0; 4], |held| held.bent)) {
+                *tilt += bent;
+            }
             for ((g, arm), tilt) in self.gravity.iter_mut().zip(&mut self.arms).zip(tilt) {
                 *g = arm.sample(attitude, tilt, force);
             }
         }
         wires.arms = self.gravity.map(|g| g.to_array().map(f64::from));
         let volts = |counts: u16| f64::from(counts) * REFERENCE / FULL_SCALE;
-        let pressures = self.fsr.iter_mut().zip(plant.pressure());
-        for ((counts, (sensor, pressure)), volt) in self
+        let pressed = hands.map_or([0.0; 4], |held| held.pressed);
+        let pressures = plant.pressure().into_iter().zip(pressed);
+        let pressures = self.fsr.iter_mut().zip(pressures);
+        for ((counts, (sensor, (pressure, pressed))), volt) in self
             .pressure_counts
             .iter_mut()
             .zip(pressures)
             .zip(&mut wires.analog)
         {
-            *counts = sensor.sample(pressure, 1e-3, &mut self.rng);
+            *counts = sensor.sample(pressure + pressed, 1e-3, &mut self.rng);
             *volt = volts(*counts);
         }
         let voltage = plant.battery_voltage() * self.battery_share;

@@ -64,6 +64,23 @@ pub fn fly_with<A: Aircraft>(
     (record, world.stack)
 }
 
+/// Lets the vehicle of `scenario` stand on the ground without a transmitter, `make` as in [`fly_with`], until `over` of it;
+/// returns the aircraft.
+///
+/// # Errors
+/// One line: why the aircraft cannot run on.
+pub fn stand_with<A: Aircraft>(
+    scenario: &Scenario,
+    make: impl FnOnce(&mut Pcg64Mcg) -> A,
+    mut over: impl FnMut(&A) -> bool,
+) -> Result<A, String> {
+    let mut world = World::new(scenario, make);
+    while !over(&world.stack) {
+        world.step(false)?;
+    }
+    Ok(world.stack)
+}
+
 /// Plant, aircraft and pilot in lockstep, a millisecond at a time.
 pub(crate) struct World<A> {
     plant: Plant,

@@ -1,7 +1,10 @@
-//! Which rotor is which, and which way it turns: each output in turn, and what the builder says of it.
+//! Which rotor is which, and which way it turns: each output in turn, and what the builder says of it. The order of the
+//! wires goes into `motor_map`.
 
 use embassy_time::Duration;
 use sophie_control::bench::{BenchOrder, SPIN_DRIVE, SPIN_TIME, Spin};
+use sophie_control::params::{MotorMap, Params};
+use sophie_control::wrench::PerArm;
 
 use super::Console;
 use super::bench::End;
@@ -28,7 +31,8 @@ struct Seen {
 }
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
-    /// Spins each motor in turn, asks what turned and which way, and says which wires are to be swapped.
+    /// Spins each motor in turn, asks what turned and which way, puts the order into the working copy, and says of which
+    /// motor wires are to be swapped.
     pub(super) async fn rotors(&mut self) {
         self.out
             .line(format_args!(
@@ -39,8 +43,9 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             rotor: None,
             clockwise: false,
         }; 4];
-        for (output, slot) in seen.iter_mut().enumerate() {
-            match self.look_at(output).await {
+        let in_force = self.links.params.motor_map.rotors();
+        for (output, (slot, rotor)) in seen.iter_mut().zip(in_force).enumerate() {
+            match self.look_at(output, rotor).await {
                 Some(answer) => *slot = answer,
                 None => return self.out.line(format_args!("ended: nothing is changed")).await,
             }
@@ -48,12 +53,13 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.judge(&seen).await;
     }
 
-    /// Spins the motor at `output` until the builder has said what turned; `None` ends it all.
-    async fn look_at(&mut self, output: usize) -> Option<Seen> {
+    /// Spins the motor at `output`, by the map in force that of `rotor`, until the builder has said what turned; `None`
+    /// ends it all.
+    async fn look_at(&mut self, output: usize, rotor: usize) -> Option<Seen> {
         let (number, seconds) = (output + 1, Decimal(SPIN_TIME));
         loop {
             let spin = Spin {
-                rotor: output,
+                rotor,
                 drive: SPIN_DRIVE,
             };
             let begun = format_args!("output {number} turns for {seconds} s");
@@ -86,64 +92,69 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    async fn judge(&mut self, seen: &[Seen; 4]) {
+    async fn judge(&mut self, seen: &PerArm<Seen>) {
+        let in_force = self.links.params.motor_map;
         let mut wrong = 0;
-        for (output, Seen { rotor, clockwise }) in seen.iter().enumerate() {
-            let number = output + 1;
-            let Some(rotor) = *rotor else {
-                wrong += 1;
-                self.out
-                    .line(format_args!(
-                        "output {number}: nothing turned; see 'calibrate esc'"
-                    ))
-                    .await;
-                continue;
-            };
-            let (turned, (place, wanted)) = (rotor + 1, ROTORS.get(rotor).copied().unwrap_or_default());
-            let twice = seen.iter().filter(|other| other.rotor == Some(rotor)).count() > 1;
-            let moved = rotor != output;
-            let reversed = *clockwise != wanted;
-            if twice {
-                self.out
-                    .line(format_args!(
-                        "output {number}: rotor {turned} was named twice; say 'rotors' again"
-                    ))
-                    .await;
-            } else if moved {
-                self.out
-                    .line(format_args!(
-                        "output {number}: rotor {turned}, {place}; its signal wire belongs at output {turned}"
-                    ))
-                    .await;
-            }
-            if reversed {
-                let way = if wanted { "clockwise" } else { "anticlockwise" };
-                self.out
-                    .line(format_args!(
-                        "output {number}: rotor {turned} must turn {way}; swap two of its motor's three wires"
-                    ))
-                    .await;
-            }
-            if twice || moved || reversed {
-                wrong += 1;
+        for (output, (answer, wanted)) in seen.iter().zip(in_force.rotors()).enumerate() {
+            wrong += u8::from(!self.judge_one(output + 1, answer, wanted, seen).await);
+        }
+        // Where one is missing there is no order; no place is beyond it.
+        let found = seen.map(|answer| answer.rotor.unwrap_or(seen.len()));
+        let map = MotorMap::of(found).filter(|map| *map != in_force || *map != self.params.motor_map);
+        if let Some((map, row)) = map.zip(Params::row("motor_map")) {
+            self.put(row, map.number()).await;
+        }
+        let last = match (wrong, map) {
+            (0, _) => "all rotors as they should",
+            (_, Some(_)) => "after 'save', and any swap with the battery off, say 'rotors' again",
+            (_, None) => "after the change, battery off meanwhile, say 'rotors' again",
+        };
+        self.out.line(format_args!("{last}")).await;
+    }
+
+    /// Says what was seen of output `number`; true for the rotor `wanted` that turns its way.
+    async fn judge_one(&mut self, number: usize, answer: &Seen, wanted: usize, seen: &PerArm<Seen>) -> bool {
+        let Seen {
+            rotor: Some(rotor),
+            clockwise,
+        } = *answer
+        else {
+            self.out
+                .line(format_args!(
+                    "output {number}: nothing turned; see 'calibrate esc'"
+                ))
+                .await;
+            return false;
+        };
+        let (turned, (place, turns_clockwise)) = (rotor + 1, ROTORS.get(rotor).copied().unwrap_or_default());
+        let twice = seen.iter().filter(|other| other.rotor == Some(rotor)).count() > 1;
+        let reversed = clockwise != turns_clockwise;
+        let right = rotor == wanted && !reversed && !twice;
+        if twice {
+            self.out
+                .line(format_args!(
+                    "output {number}: rotor {turned} was named twice; say 'rotors' again"
+                ))
+                .await;
+        } else {
+            let verdict = if right { ", as it should" } else { "" };
+            self.out
+                .line(format_args!("output {number}: rotor {turned}, {place}{verdict}"))
+                .await;
+        }
+        if reversed {
+            let way = if turns_clockwise {
+                "clockwise"
             } else {
-                self.out
-                    .line(format_args!(
-                        "output {number}: rotor {turned}, {place}, as it should"
-                    ))
-                    .await;
-            }
+                "anticlockwise"
+            };
+            self.out
+                .line(format_args!(
+                    "output {number}: rotor {turned} must turn {way}; swap two of its motor's three wires"
+                ))
+                .await;
         }
-        match wrong {
-            0 => self.out.line(format_args!("all rotors as they should")).await,
-            _ => {
-                self.out
-                    .line(format_args!(
-                        "after the change, battery off meanwhile, say 'rotors' again"
-                    ))
-                    .await;
-            }
-        }
+        right
     }
 
     /// The key that answers `question`; `None` where none comes in time.

@@ -32,7 +32,7 @@ pub struct Table {
     pub imu: FakeImu,
     pub analog: FakeAnalog,
     pub arms: FakeArms,
-    motors: FakeMotors,
+    pub motors: FakeMotors,
     pub servos: FakeServos,
     /// What the receiver gives at 50 Hz; `None`: nothing.
     sticks: Rc<Cell<Option<Sticks>>>,

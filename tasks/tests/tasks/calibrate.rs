@@ -1,7 +1,7 @@
 //! Calibration and the rotors' order, typed key by key: what is asked, what is found, what would change.
 
 use sophie_control::calibration::Face;
-use sophie_control::params::Params;
+use sophie_control::params::{MotorMap, Params};
 use sophie_control::vector::Vec3;
 use sophie_tasks::ports::ImuReading;
 
@@ -259,9 +259,9 @@ fn each_rotor_is_asked_for_and_what_is_to_be_swapped_is_said() {
         said[1..],
         [
             "output 1: rotor 1, front-left, as it should",
-            "output 2: rotor 3, front-right; its signal wire belongs at output 3",
+            "output 2: rotor 3, front-right",
             "output 2: rotor 3 must turn clockwise; swap two of its motor's three wires",
-            "output 3: rotor 2, rear-left; its signal wire belongs at output 2",
+            "output 3: rotor 2, rear-left",
             "output 4: nothing turned; see 'calibrate esc'",
             "after the change, battery off meanwhile, say 'rotors' again",
         ]
@@ -285,6 +285,74 @@ fn each_rotor_is_asked_for_and_what_is_to_be_swapped_is_said() {
         table.presses("x", 300).last().unwrap(),
         "ended: nothing is changed"
     );
+}
+
+#[test]
+fn the_order_of_the_motors_wires_is_found_and_kept() {
+    let mut table = Table::set();
+    table.says("propellers off", 100);
+    // 2 and 3 swapped, one of them the wrong way.
+    table.says("rotors", 2500);
+    for keys in ["1a", "3a", "2c", "4"] {
+        table.presses(keys, 2500);
+    }
+    let said = table.presses("a", 300);
+    assert_eq!(
+        said[1..],
+        [
+            "output 1: rotor 1, front-left, as it should",
+            "output 2: rotor 3, front-right",
+            "output 2: rotor 3 must turn clockwise; swap two of its motor's three wires",
+            "output 3: rotor 2, rear-left",
+            "output 4: rotor 4, rear-right, as it should",
+            "motor_map 1234 -> 1324, in force after save",
+            "after 'save', and any swap with the battery off, say 'rotors' again",
+        ]
+    );
+    assert_eq!(table.says("changes", 100)[0], "motor_map 1234 -> 1324");
+    // Looked at again before it was saved, and wired otherwise meanwhile.
+    table.says("rotors", 2500);
+    for keys in ["1a", "2c", "3c", "4"] {
+        table.presses(keys, 2500);
+    }
+    let said = table.presses("a", 300);
+    assert_eq!(said[5], "motor_map 1324 -> 1234, as in force");
+    assert_eq!(said[6], "all rotors as they should");
+    assert_eq!(table.says("changes", 100), ["no changes"]);
+    for wrong in ["1233", "0", "12345", "4444", "1234.5"] {
+        let said = table.says(&format!("set motor_map {wrong}"), 100);
+        let line = format!("motor_map cannot be {wrong}; it takes one of 24, 1234 to 4321");
+        assert_eq!(said, [line]);
+    }
+}
+
+#[test]
+fn an_output_is_tried_by_its_number_whatever_the_map() {
+    let mut table = Table::with(
+        UNLOADED,
+        Params {
+            motor_map: MotorMap::M2314,
+            ..Params::DEFAULT
+        },
+    );
+    table.says("propellers off", 100);
+    table.says("rotors", 1000);
+    for (output, keys) in [(0, "2c"), (1, "3c"), (2, "1a"), (3, "4")] {
+        let commands = table.motors.commands.get();
+        assert!(
+            (0..4).all(|other| (commands[other] > 0.0) == (other == output)),
+            "{output}: {commands:?}"
+        );
+        table.run(1500);
+        table.presses(keys, 1000);
+    }
+    let said = table.presses("a", 300);
+    assert_eq!(said[1], "output 1: rotor 2, rear-left, as it should");
+    assert_eq!(said[5], "all rotors as they should");
+    // A motor is named by its rotor.
+    table.says("motor 1", 500);
+    let commands = table.motors.commands.get();
+    assert!(commands[2] > 0.0 && commands[0] == 0.0, "{commands:?}");
 }
 
 #[test]

@@ -60,6 +60,10 @@ impl Chip for Board {
         "table"
     }
 
+    fn build(&self) -> u32 {
+        0x1234_ABCD
+    }
+
     fn looks(&self) -> &[Look] {
         &[]
     }
@@ -227,7 +231,14 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
     assert_eq!(bench.says("list").len(), Params::TABLE.len());
     assert_eq!(
         bench.says("version"),
-        [concat!("SOPHIE ", env!("CARGO_PKG_VERSION"), " on table")]
+        [
+            concat!("SOPHIE ", env!("CARGO_PKG_VERSION"), " on table"),
+            &format!(
+                "build 1234abcd, {} parameters, table {:08x}",
+                Params::TABLE.len(),
+                sophie_tasks::parameters::table_id()
+            )
+        ]
     );
     assert_eq!(bench.says("help").len(), 21);
 }

@@ -19,12 +19,14 @@ pub enum Failure {
     Input(String),
     /// The board refused, fell silent or has something else in force: exit status 1.
     Board(String),
+    /// Ctrl-C, before it was done: exit status 1.
+    Stopped(String),
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Input(line) | Self::Board(line) => f.write_str(line),
+            Self::Input(line) | Self::Board(line) | Self::Stopped(line) => f.write_str(line),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Parameters of a board as a file, against a file, and from a file.
 //!
-//! The file is the `[params]` of a scenario. Values are compared as the console shows them, which reads back to the bit
-//! but for numbers of more than seven digits.
+//! The file is the `[params]` of a scenario. The console shows and takes numbers with up to nine digits: their last may be
+//! off, which is no difference.
 
 use std::fmt::Write;
 
@@ -12,6 +12,8 @@ use sophie_tasks::decimal::{self, Decimal};
 use crate::Failure;
 use crate::session::{Session, restarts};
 
+/// Part of a number by which its way over the console may change it: twice the last bit of 24.
+const LAST_DIGIT: f32 = 2.0 * f32::EPSILON;
 /// Times that a list is asked for whose rows are damaged or missing.
 const TRIES: u32 = 3;
 
@@ -62,6 +64,28 @@ impl Difference {
 /// The number of a setting, as the console shows it.
 fn shown(setting: &Setting) -> String {
     Decimal(setting.value).to_string()
+}
+
+/// What runs on the board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Version {
+    /// Version and board.
+    pub firmware: String,
+    /// Its image and its table of parameters.
+    pub build: String,
+}
+
+/// What runs on the board, as it says it.
+///
+/// # Errors
+/// The line is lost.
+pub fn version(session: &mut Session) -> Result<Version, Failure> {
+    let said = session.command("version")?;
+    let line = |begin: &str| said.iter().find(|line| line.starts_with(begin)).cloned();
+    Ok(Version {
+        firmware: line("SOPHIE ").unwrap_or_else(|| "an earlier firmware".to_owned()),
+        build: line("build ").unwrap_or_else(|| "build unknown".to_owned()),
+    })
 }
 
 /// What the board has, in its order.
@@ -131,11 +155,12 @@ pub fn unsaved(session: &mut Session) -> Result<Vec<String>, Failure> {
     Ok(lines)
 }
 
-/// A parameter file with all that the board has; `board` is said in its first line.
-pub fn text(board: &str, rows: &[Listed]) -> String {
+/// A parameter file with all that the board has; `board` is said in its first lines.
+pub fn text(board: &Version, rows: &[Listed]) -> String {
+    let Version { firmware, build } = board;
     let mut text = format!(
-        "# Parameters of {board}, by `sophie params dump`; `sophie params load` sets them. What a file leaves out stays\n\
-         # as it is.\n[params]\n"
+        "# Parameters of {firmware}, {build}.\n\
+         # By `sophie params dump`; `sophie params load` sets them. What a file leaves out stays as it is.\n[params]\n"
     );
     for Listed {
         name,
@@ -168,8 +193,16 @@ pub fn differences(settings: &[Setting], rows: &[Listed]) -> Vec<Difference> {
         setting: *setting,
         board: board(setting),
     });
-    all.filter(|difference| difference.board.as_deref() != Some(&shown(&difference.setting)))
-        .collect()
+    all.filter(|difference| {
+        let board = difference.board.as_deref().and_then(decimal::parse);
+        !board.is_some_and(|board| same(board, difference.setting.value))
+    })
+    .collect()
+}
+
+/// The same number but for its last digit.
+fn same(a: f32, b: f32) -> bool {
+    (a - b).abs() <= LAST_DIGIT * a.abs().max(b.abs())
 }
 
 /// Sets what differs, saves, and looks whether it is in force after the restart. `say` gets a line for each step.
@@ -204,13 +237,13 @@ pub fn load(session: &mut Session, settings: &[Setting], say: &mut dyn FnMut(&st
     }
     for (done, difference) in different.iter().enumerate() {
         if let Err(why) = set(session, difference) {
-            put_back(session, &different[..done]);
-            return Err(why);
+            return Err(put_back(session, &different[..=done], why));
         }
     }
+    // Stored is stored: what is in force then is still looked at.
+    session.see_it_through();
     if let Err(why) = save(session) {
-        put_back(session, &different);
-        return Err(why);
+        return Err(put_back(session, &different, why));
     }
     say("saved; the board has restarted");
     let now = listed(session)?;
@@ -242,14 +275,23 @@ fn set(session: &mut Session, difference: &Difference) -> Result<(), Failure> {
     )))
 }
 
-/// Sets the old values in the working copy, as far as the line allows.
-fn put_back(session: &mut Session, different: &[Difference]) {
+/// Sets the old values in the working copy, as far as the line allows; `why` they are not saved.
+fn put_back(session: &mut Session, different: &[Difference], why: Failure) -> Failure {
+    let why = match why {
+        Failure::Stopped(line) => {
+            // Where this fails, so does what follows.
+            let _ = session.calm();
+            Failure::Stopped(format!("{line}; nothing is saved"))
+        }
+        other => other,
+    };
     for Difference { setting, board } in different {
         if let Some(old) = board {
             // What fails here is lost with the next restart anyhow.
             let _ = session.command(&format!("set {} {old}", setting.row.name));
         }
     }
+    why
 }
 
 /// Stores the working copy and waits for the restarted board.
@@ -303,7 +345,11 @@ mod tests {
                 changed: false,
             })
             .collect();
-        let text = text("matek-h743", &rows);
+        let board = Version {
+            firmware: "SOPHIE 0.1.0 on matek-h743".to_owned(),
+            build: "build 1234abcd".to_owned(),
+        };
+        let text = text(&board, &rows);
         let read = settings::parse(&text, "dump.toml").unwrap();
         assert_eq!(read.len(), Params::TABLE.len());
         assert!(differences(&read, &rows).is_empty());
@@ -312,6 +358,17 @@ mod tests {
         let other = settings::parse("[params]\ninfill = 8\nmotor_protocol = \"pwm\"\n", "p.toml").unwrap();
         let texts: Vec<String> = differences(&other, &rows).iter().map(Difference::text).collect();
         assert_eq!(texts, ["infill 6.9 -> 8 %", "motor_protocol 300 -> 400 pwm"]);
+        // A neighbour in the last bit is the same; the next digit is not.
+        let file = settings::parse("[params]\ninertia_pitch = 0.04356\n", "p.toml").unwrap();
+        for (shown, differs) in [("0.04356", 0), ("0.04356000", 0), ("0.0435601", 1)] {
+            let row = Listed {
+                name: "inertia_pitch".to_owned(),
+                value: shown.to_owned(),
+                allowed: String::new(),
+                changed: true,
+            };
+            assert_eq!(differences(&file, &[row]).len(), differs, "{shown}");
+        }
         let absent = differences(&other, &[]);
         assert_eq!(
             absent[0].text(),

@@ -79,6 +79,7 @@ impl PortName {
                 (Self::Serial(_), ErrorKind::PermissionDenied) => {
                     "; on Linux join the group of the port, dialout"
                 }
+                (Self::Serial(path), _) if path.exists() => "; it is no serial port, or none that is ready",
                 _ => "",
             };
             Failure::Input(format!("{self}: cannot be opened: {error}{hint}"))

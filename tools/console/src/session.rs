@@ -4,6 +4,8 @@
 //! never makes another command of it. Its answer ends with the console's prompt.
 
 use std::io::{ErrorKind, Read, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::Failure;
@@ -45,6 +47,9 @@ pub struct Session {
     attempts: u32,
     /// Restarts since the session began.
     restarts: u32,
+    /// Raised from outside, as by Ctrl-C; heeded once, so that what is left can be put in order.
+    stop: Arc<AtomicBool>,
+    heeds: bool,
 }
 
 /// What the console said up to where it waits.
@@ -57,32 +62,27 @@ pub struct Turn {
 }
 
 impl Session {
-    /// Opens `port` and waits for its console. `patience` is the longest silence while an answer is due.
+    /// Opens `port` and waits for its console. `patience` is the longest silence while an answer is due; what waits ends
+    /// once when `stop` is raised.
     ///
     /// # Errors
     /// One line: the port cannot be opened, or no console answers there.
-    pub fn open(port: &PortName, patience: Duration) -> Result<Self, Failure> {
-        let wire = port.open()?;
-        Self::over(wire, port.to_string(), patience)
-    }
-
-    /// The same over a line that is open, which messages call `port`.
-    ///
-    /// # Errors
-    /// As [`Self::open`].
-    pub fn over(wire: Box<dyn Wire>, port: String, patience: Duration) -> Result<Self, Failure> {
+    pub fn open(port: &PortName, patience: Duration, stop: Arc<AtomicBool>) -> Result<Self, Failure> {
         let mut session = Self {
-            wire,
-            port,
+            wire: port.open()?,
+            port: port.to_string(),
             patience,
             heard: String::new(),
             pressed: None,
             attempts: 0,
             restarts: 0,
+            stop,
+            heeds: true,
         };
         match session.synchronise(patience) {
             Ok(()) => Ok(session),
-            Err(Failure::Input(line) | Failure::Board(line)) => Err(Failure::Input(line)),
+            Err(Failure::Board(line)) => Err(Failure::Input(line)),
+            Err(other) => Err(other),
         }
     }
 
@@ -148,6 +148,21 @@ impl Session {
         // The end of the line before may have been heard already.
         self.heard.push('\n');
         Ok(self.turn("what runs was ended", &[])?.lines)
+    }
+
+    /// Ends whatever runs at the console after Ctrl-C, which is heeded no more.
+    ///
+    /// # Errors
+    /// As [`Self::command`].
+    pub fn calm(&mut self) -> Result<(), Failure> {
+        self.see_it_through();
+        self.pressed = None;
+        self.synchronise(self.patience)
+    }
+
+    /// From here on Ctrl-C is not heeded: what is begun must not be left half done.
+    pub fn see_it_through(&mut self) {
+        self.heeds = false;
     }
 
     /// What is said until the console asks one of `questions` or waits at its prompt; `what` was typed or pressed.
@@ -225,6 +240,15 @@ impl Session {
     /// As [`Self::command`].
     pub fn restart(&mut self, text: &str) -> Result<Vec<String>, Failure> {
         self.begin(text)?;
+        // Now it is stored or not, whatever happens here: only the answer says which.
+        let heeds = std::mem::replace(&mut self.heeds, false);
+        let said = self.restarted(text);
+        self.heeds = heeds;
+        said
+    }
+
+    /// What was said to `text`; where the board restarts, once it answers again.
+    fn restarted(&mut self, text: &str) -> Result<Vec<String>, Failure> {
         let ends = |heard: &str| heard.ends_with("restarting\n") || heard.ends_with(PROMPT);
         if !self.wait(self.patience, ends)? {
             return Err(self.silent(text));
@@ -277,6 +301,10 @@ impl Session {
         let mut last = begun;
         let mut bytes = [0; 256];
         while !done(&self.heard) {
+            if self.heeds && self.stop.load(Ordering::Relaxed) {
+                self.heeds = false;
+                return Err(Failure::Stopped(format!("{}: stopped by Ctrl-C", self.port)));
+            }
             match self.wire.read(&mut bytes) {
                 Ok(0) => return Err(self.failed("the line was closed")),
                 Ok(count) => {

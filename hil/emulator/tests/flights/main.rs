@@ -5,6 +5,8 @@
 
 #![allow(missing_docs)]
 
+mod bringup;
+mod builder;
 mod chain;
 mod console;
 mod determinism;

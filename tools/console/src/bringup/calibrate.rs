@@ -46,6 +46,7 @@ fn figures(said: &[String]) -> Vec<String> {
                 "controller ",
                 "all ",
                 "after the change",
+                "after 'save'",
                 "nose is",
             ]
             .iter()
@@ -124,13 +125,27 @@ pub(super) fn rotors(walk: &mut Walk<'_>, _: &Step) -> Judged {
         return Ok(Verdict::of(false, vec![refused]));
     }
     let said = walk.dialogue("rotors")?;
-    let right = said
-        .last()
-        .is_some_and(|line| line == "all rotors as they should");
-    Ok(Verdict {
+    let right = |said: &[String]| {
+        said.last()
+            .is_some_and(|line| line == "all rotors as they should")
+    };
+    let mut verdict = Verdict {
         shown: true,
-        ..Verdict::of(right, figures(&said))
-    })
+        ..Verdict::of(right(&said), figures(&said))
+    };
+    // The order is stored; what turns by it is looked at once more.
+    verdict.parameters = walk.keep(&said)?;
+    if !verdict.passed && !verdict.parameters.is_empty() {
+        walk.say("  The order of the wires is stored. Once more, to see it right:");
+        if let Some(refused) = walk.propellers_off()? {
+            return Ok(Verdict::of(false, vec![refused]));
+        }
+        let again = walk.dialogue("rotors")?;
+        verdict.passed = right(&again);
+        verdict.figures.extend(figures(&again));
+        verdict.parameters.extend(walk.keep(&again)?);
+    }
+    Ok(verdict)
 }
 
 /// A number that the builder types; Enter takes `usual`.

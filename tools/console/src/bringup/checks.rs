@@ -1,9 +1,10 @@
 //! Chip, setup, self-tests, and the look at everything.
 
+use super::protocol::Identity;
 use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step};
 use crate::Failure;
-use crate::parameters;
+use crate::parameters::{self, Version};
 use crate::session::{Session, restarts};
 
 /// What a builder says about the parts; the rest has sound defaults or is measured.
@@ -47,16 +48,16 @@ fn looks(session: &mut Session) -> Result<Vec<Look>, Failure> {
     Ok(looks.collect())
 }
 
-/// Firmware with its board, and the chip's revision.
-pub(super) fn identity(session: &mut Session) -> Result<(String, String), Failure> {
-    let said = session.command("version")?;
-    let firmware = said.into_iter().find(|line| line.starts_with("SOPHIE "));
+/// What runs, and on which chip.
+pub(super) fn identity(session: &mut Session) -> Result<Identity, Failure> {
+    let Version { firmware, build } = parameters::version(session)?;
     let looks = looks(session)?;
     let revision = looks.into_iter().find(|look| look.name == "revision");
-    Ok((
-        firmware.unwrap_or_else(|| "an earlier firmware".to_owned()),
-        revision.map_or_else(|| "unknown".to_owned(), |look| look.read),
-    ))
+    Ok(Identity {
+        firmware,
+        build,
+        chip: revision.map_or_else(|| "unknown".to_owned(), |look| look.read),
+    })
 }
 
 pub(super) fn chip(walk: &mut Walk<'_>, _: &Step) -> Judged {

@@ -191,9 +191,12 @@ pub fn run(
         }
     }
     let mut protocol = Protocol::open(protocol)?;
-    let (firmware, chip) = checks::identity(session)?;
-    user.say(&format!("{firmware}, chip {chip}"));
-    protocol.identify(firmware, chip)?;
+    let board = checks::identity(session)?;
+    user.say(&format!("{}, chip {}", board.firmware, board.chip));
+    user.say(&board.build);
+    if let Some(other) = protocol.identify(board)? {
+        user.say(&other);
+    }
     reopen(session, user, &mut protocol)?;
     again.iter().for_each(|id| protocol.drop_entry(id));
     // Before anything is done: a file that cannot be written is no protocol.
@@ -210,11 +213,25 @@ pub fn run(
     user.say("");
     match done {
         Ok(()) => user.say(&protocol.state()),
-        Err(Stop::Skip | Stop::Quit) => user.say(&format!("Stopped. {}", protocol.state())),
+        Err(Stop::Skip | Stop::Quit | Stop::Failed(Failure::Stopped(_))) => {
+            leave(session, user)?;
+            user.say(&format!("Stopped. {}", protocol.state()));
+        }
         Err(Stop::Failed(failure)) => return Err(failure),
     }
     user.say(&format!("Protocol: {}", protocol.path().display()));
     Ok(protocol.open_steps().is_empty())
+}
+
+/// Leaves the board with nothing running, and says what it has not stored.
+fn leave(session: &mut Session, user: &mut dyn User) -> Result<(), Failure> {
+    session.calm()?;
+    for line in parameters::unsaved(session)? {
+        user.say(&format!(
+            "Not saved at the board, and lost with its next restart: {line}"
+        ));
+    }
+    Ok(())
 }
 
 /// Opens the steps again whose values the board no longer has.
@@ -289,6 +306,7 @@ fn one(walk: &mut Walk<'_>, protocol: &mut Protocol, step: &Step) -> Result<bool
         at: date::now(),
         figures: verdict.figures,
         parameters: verdict.parameters,
+        build: protocol.build().to_owned(),
     })?;
     if ended != Ended::Failed {
         return Ok(true);

@@ -43,9 +43,23 @@ pub struct Entry {
     pub at: String,
     /// What was found, line by line.
     pub figures: Vec<String>,
+    /// What the board ran; empty where nobody said.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub build: String,
     /// Parameters that it has stored.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parameters: BTreeMap<String, f64>,
+}
+
+/// Which board, and what runs on it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Firmware and board.
+    pub firmware: String,
+    /// The image and its table of parameters.
+    pub build: String,
+    /// The chip's revision.
+    pub chip: String,
 }
 
 /// All of a bring-up.
@@ -56,6 +70,9 @@ struct Content {
     state: String,
     /// Firmware and board.
     firmware: String,
+    /// The image and its table of parameters; empty in a file of an earlier program.
+    #[serde(default)]
+    build: String,
     /// The chip's revision.
     chip: String,
     /// When it began and when it was last written, UTC.
@@ -123,19 +140,24 @@ impl Protocol {
         &self.path
     }
 
-    /// Notes firmware and chip.
+    /// Notes firmware and chip; a line to be said where the steps so far were done with another image.
     ///
     /// # Errors
     /// One line: the file is another board's.
-    pub fn identify(&mut self, firmware: String, chip: String) -> std::result::Result<(), Failure> {
-        let board = |firmware: &str| {
+    pub fn identify(&mut self, board: Identity) -> std::result::Result<Option<String>, Failure> {
+        let Identity {
+            firmware,
+            build,
+            chip,
+        } = board;
+        let of = |firmware: &str| {
             firmware
                 .rsplit_once(" on ")
                 .map_or("", |(_, board)| board)
                 .to_owned()
         };
         let old = &self.content;
-        let other = board(&old.firmware) != board(&firmware) || old.chip != chip;
+        let other = of(&old.firmware) != of(&firmware) || old.chip != chip;
         if !old.firmware.is_empty() && other {
             return Err(Failure::Input(format!(
                 "{}: is the protocol of {}, {}; this is {firmware}, {chip}: name another file",
@@ -144,8 +166,23 @@ impl Protocol {
                 old.chip
             )));
         }
+        let before = std::mem::replace(&mut self.content.build, build);
+        let build = &self.content.build;
+        let changed = (!self.content.steps.is_empty() && before != *build).then(|| {
+            let before = if before.is_empty() {
+                "build unknown"
+            } else {
+                &before
+            };
+            format!("Another image than before: the last run was at {before}, this board has {build}")
+        });
         (self.content.firmware, self.content.chip) = (firmware, chip);
-        Ok(())
+        Ok(changed)
+    }
+
+    /// What the board runs.
+    pub fn build(&self) -> &str {
+        &self.content.build
     }
 
     /// Entry of the step `id`.

@@ -1,0 +1,198 @@
+//! `sophie bringup` at the flashed image: its own code at the board's console, a builder's replies, and hands that turn
+//! the vehicle, bend its arms, press its sensors, swap wires and move sticks.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use sophie_console::bringup::{self, STEPS};
+use sophie_console::port::PortName;
+use sophie_console::session::Session;
+use sophie_control::params::MotorMap;
+use sophie_emulator::bench::Setup;
+use sophie_emulator::flight::Stood;
+use sophie_emulator::hands::Hands;
+use sophie_emulator::terminal::Sockets;
+use sophie_emulator::wires::BoardFault;
+use sophie_sim::sensors::fsr;
+
+use super::builder::Builder;
+use super::console::terminal;
+use super::*;
+
+/// Silence of an emulated board on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// A folder of its own for the protocol.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("sophie-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn protocol(&self) -> PathBuf {
+        self.0.join("bringup.toml")
+    }
+
+    fn read(&self) -> toml::Table {
+        std::fs::read_to_string(self.protocol()).unwrap().parse().unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// What came of a walk.
+struct Walked {
+    stood: Stood,
+    log: String,
+    builder: Builder,
+    all_passed: Result<bool, sophie_console::Failure>,
+}
+
+/// A new H743 on the table, and `builder` at its console.
+fn walk(folder: &Folder, builder: impl FnOnce(Hands) -> Builder) -> Walked {
+    let hands = Hands::default();
+    // The motors of 2 and 3 hang at each other's output.
+    hands.change(|held| held.wiring = MotorMap::M1324);
+    let mut builder = builder(hands.clone());
+    let (port, console) = terminal("--console");
+    let protocol = folder.protocol();
+    let walker = std::thread::spawn(move || {
+        let port: PortName = format!("tcp:127.0.0.1:{port}").parse().unwrap();
+        let all_passed = Session::open(&port, PATIENCE, Arc::default())
+            .and_then(|mut session| bringup::run(&mut session, &mut builder, &protocol, &[]));
+        (builder, all_passed)
+    });
+    let firmware = Firmware::read(image(), boards::find("matek-h743").unwrap()).unwrap();
+    let setup = Setup {
+        speed: 1.0,
+        plan: Plan::new([(0, Trouble::Board(BoardFault::FactoryOptions))]),
+        sockets: Sockets {
+            console: Some(console),
+            ..Sockets::default()
+        },
+    };
+    let mut log = String::new();
+    let stood = flight::stand(
+        &firmware,
+        &scenario("hover.toml"),
+        setup,
+        Some(hands),
+        |line| {
+            if !line.text.starts_with("timing ") {
+                println!("{line}");
+            }
+            log += &format!("{line}\n");
+        },
+        || walker.is_finished(),
+    );
+    let (builder, all_passed) = walker.join().unwrap_or_else(|_| panic!("{log}"));
+    Walked {
+        stood: stood.unwrap(),
+        log,
+        builder,
+        all_passed,
+    }
+}
+
+fn figures(step: &toml::Value) -> String {
+    let lines = step["figures"].as_array().unwrap().iter();
+    lines
+        .map(|line| format!("{}\n", line.as_str().unwrap()))
+        .collect()
+}
+
+#[test]
+#[ignore = "minutes of an emulated board: .ci/campaign walks it"]
+fn a_new_board_is_brought_up_through_all_steps() {
+    let folder = Folder::new("bringup-whole");
+    let Walked {
+        stood,
+        log,
+        builder,
+        all_passed,
+    } = walk(&folder, |hands| Builder::new(hands, None));
+    let said = builder.said();
+    assert_eq!(all_passed, Ok(true), "{said}\n{log}");
+    let protocol = folder.read();
+    assert_eq!(protocol["state"].as_str(), Some("all 26 steps passed"));
+    assert!(protocol["firmware"].as_str().unwrap().ends_with(" on matek-h743"));
+    assert!(
+        protocol["build"].as_str().unwrap().starts_with("build "),
+        "{said}"
+    );
+    assert_eq!(protocol["chip"].as_str(), Some("0x450 0x2003"));
+    let steps = protocol["step"].as_array().unwrap();
+    let ids: Vec<&str> = steps.iter().map(|step| step["id"].as_str().unwrap()).collect();
+    assert!(
+        ids.iter().copied().eq(STEPS.iter().map(|step| step.id)),
+        "{ids:?}"
+    );
+    let step = |id: &str| steps.iter().find(|step| step["id"].as_str() == Some(id)).unwrap();
+    assert!(steps.iter().all(|step| step["result"].as_str() == Some("passed")));
+    // What was found is what the simulated parts are.
+    let parameter = |id: &str, name: &str| step(id)["parameters"][name].as_float().unwrap();
+    for sensor in 1..=4 {
+        let trim = parameter(&format!("fsr-{sensor}"), &format!("fsr_trim_{sensor}"));
+        assert!(
+            (trim - 1.0).abs() < fsr::LARGEST_ERROR,
+            "fsr_trim_{sensor} {trim}"
+        );
+    }
+    assert!(
+        figures(step("final")).contains("all 17 passed\nnothing forbids arming\n"),
+        "{said}"
+    );
+    // Once to find the order of the wires, once to see it right.
+    let turned = [Some(0), Some(2), Some(1), Some(3)].repeat(2);
+    assert_eq!(builder.turned(), turned, "{said}");
+    assert_eq!(parameter("rotors", "motor_map"), 1324.0, "{said}");
+    assert_eq!(builder.servo_marks(), [580.0, 2430.0].repeat(4), "{said}");
+    assert_eq!(stood.gaps, []);
+    assert!(
+        stood.board.overruns.values().all(|count| *count == 0),
+        "{:?}",
+        stood.board.overruns
+    );
+}
+
+#[test]
+fn a_new_board_passes_its_first_steps_and_the_rest_is_left_for_later() {
+    let folder = Folder::new("bringup-first");
+    let Walked {
+        stood,
+        log,
+        builder,
+        all_passed,
+    } = walk(&folder, |hands| Builder::new(hands, Some("live-imu")));
+    let said = builder.said();
+    assert_eq!(all_passed, Ok(false), "{said}\n{log}");
+    let protocol = folder.read();
+    assert!(
+        protocol["state"]
+            .as_str()
+            .unwrap()
+            .starts_with("not done: live-imu, "),
+        "{said}"
+    );
+    let steps = protocol["step"].as_array().unwrap();
+    for (step, id) in steps.iter().zip(["chip", "setup", "selftest"]) {
+        assert_eq!(
+            (step["id"].as_str(), step["result"].as_str()),
+            (Some(id), Some("passed")),
+            "{said}"
+        );
+    }
+    assert!(figures(&steps[0]).contains("brown-out level: 3\n"), "{said}");
+    assert!(figures(&steps[2]).contains("\n1 of 17 failed"), "{said}");
+    // Two restarts: the brown-out level and the setup.
+    assert_eq!(stood.board.resets.len(), 2, "{:?}", stood.board.resets);
+    assert_eq!(stood.gaps, []);
+}

@@ -1,0 +1,291 @@
+//! The builder whom `sophie bringup` leads: replies, and what hands do before each.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use sophie_console::bringup::{Reply, User};
+use sophie_control::calibration::Face;
+use sophie_control::params::Params;
+use sophie_control::rc::{ArmChoice, StickMode, Sticks};
+use sophie_emulator::hands::{Hands, Held};
+
+/// Board's time in which what hands have changed has gone through turn and filters, ms.
+const SETTLED: u64 = 800;
+/// Time on the wall after which the board stands still.
+const STILL: Duration = Duration::from_secs(300);
+/// Weight on a pressure sensor, N, as the walk proposes it.
+const WEIGHT: f64 = 1.3;
+/// A tip bent up, rad.
+const BENT: f64 = 0.3;
+/// On a pad under a thumb, Pa.
+const THUMB: f64 = 900.0;
+
+/// What hands do for so long, ms of the board's time.
+struct Move {
+    ms: u64,
+    hands: fn(&mut Held),
+}
+
+pub(super) struct Builder {
+    hands: Hands,
+    /// Stops at this step.
+    until: Option<&'static str>,
+    said: String,
+    /// Present step, and the line of it that was said last.
+    step: String,
+    last: String,
+    /// Hands' moves of a live step that are still to be made, and the board's time at which the last is over.
+    moves: Option<VecDeque<Move>>,
+    over: u64,
+    /// Moves of the servos.
+    marks: VecDeque<&'static str>,
+    servo_marks: Vec<f64>,
+    turned: Vec<Option<usize>>,
+}
+
+impl Builder {
+    pub(super) fn new(hands: Hands, until: Option<&'static str>) -> Self {
+        Self {
+            hands,
+            until,
+            said: String::new(),
+            step: String::new(),
+            last: String::new(),
+            moves: None,
+            over: 0,
+            marks: VecDeque::new(),
+            servo_marks: Vec::new(),
+            turned: Vec::new(),
+        }
+    }
+
+    /// All that was said and replied.
+    pub(super) fn said(&self) -> &str {
+        &self.said
+    }
+
+    /// What turned with each output, at `rotors`.
+    pub(super) fn turned(&self) -> &[Option<usize>] {
+        &self.turned
+    }
+
+    /// The pulses at which the marks were taken, µs.
+    pub(super) fn servo_marks(&self) -> &[f64] {
+        &self.servo_marks
+    }
+
+    fn notes(&mut self, text: &str) {
+        print!("{text}");
+        self.said += text;
+    }
+
+    /// Number of the arm, sensor or servo of the step.
+    fn number(&self) -> usize {
+        let number = self
+            .step
+            .rsplit('-')
+            .next()
+            .and_then(|number| number.parse::<usize>().ok());
+        number.unwrap_or(1) - 1
+    }
+
+    /// Hands do that, and leave it so until it has gone through; what is so already takes no time.
+    fn does(&self, change: impl FnOnce(&mut Held)) {
+        let mut changed = false;
+        self.hands.change(|held| {
+            let before = held.clone();
+            change(held);
+            changed = before.below != held.below
+                || before.pressed != held.pressed
+                || before.bent != held.bent
+                || before.sticks != held.sticks;
+        });
+        if changed {
+            self.settles();
+        }
+    }
+
+    fn settles(&self) {
+        let (begun, from) = (Instant::now(), self.hands.look().ms);
+        while self.hands.look().ms < from + SETTLED {
+            assert!(begun.elapsed() < STILL, "the board stands still:\n{}", self.said);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// What hands do at a rest of the calibration.
+    fn rest(&mut self) {
+        let number = self.number();
+        let side = Face::ALL.into_iter().find(|side| self.last.contains(side.text()));
+        if let Some(side) = side {
+            self.does(|held| held.below = side);
+        } else if self.last.contains("Hold the arm straight") {
+            self.does(|held| held.bent = [0.0; 4]);
+        } else if self.last.contains("Bend its tip up") {
+            self.does(|held| held.bent[number] = BENT);
+        } else if self.last.contains("Put the weight") {
+            let area = f64::from(Params::DEFAULT.fsr_area);
+            self.does(|held| held.pressed[number] = WEIGHT / area);
+        } else {
+            self.does(|held| {
+                held.below = Face::Belly;
+                held.pressed = [0.0; 4];
+            });
+        }
+    }
+
+    /// Begins the step: the vehicle as the step before has left it, and what its first lines ask for.
+    fn begins(&mut self) -> &'static str {
+        if self.until == Some(&*self.step) {
+            return "q";
+        }
+        self.moves = None;
+        self.marks = ["+3", "", "--", ""].into();
+        let on = matches!(&*self.step, "radio" | "final");
+        self.does(|held| {
+            held.below = Face::Belly;
+            held.bent = [0.0; 4];
+            held.sticks = on.then(Sticks::default);
+        });
+        ""
+    }
+
+    /// The next move of a servo; its pulse is noted where it is taken.
+    fn moves_servo(&mut self) -> &'static str {
+        let reply = self.marks.pop_front().unwrap_or_default();
+        if reply.is_empty() {
+            self.settles();
+            let pulse = self.hands.look().servos[self.number()];
+            self.servo_marks.push(pulse.round());
+        }
+        reply
+    }
+
+    fn which_turned(&mut self) -> String {
+        let turned = self.hands.look().turned;
+        self.turned.push(turned);
+        turned.map_or(0, |rotor| rotor + 1).to_string()
+    }
+
+    fn reply(&mut self, question: &str) -> String {
+        let begins = |text: &str| question.trim_start().starts_with(text);
+        if begins("Enter begins") {
+            self.begins().to_owned()
+        } else if begins("Enter keeps battery_capacity") {
+            "5400".to_owned()
+        } else if begins("Enter when it is so") {
+            self.rest();
+            String::new()
+        } else if begins("+ or - moves it") {
+            self.moves_servo().to_owned()
+        } else if begins("Take the weight off") {
+            self.does(|held| held.pressed = [0.0; 4]);
+            String::new()
+        } else if begins("Type off") {
+            "off".to_owned()
+        } else if begins("Volts") {
+            format!("{:.2}", self.hands.look().volts)
+        } else if begins("Did it turn") {
+            if self.hands.look().turned.is_some() {
+                "y"
+            } else {
+                "n"
+            }
+            .to_owned()
+        } else if begins("Which rotor") {
+            self.which_turned()
+        } else if begins("From above") {
+            // 1 and 4 turn anticlockwise.
+            let rotor = self.turned.last().copied().flatten();
+            if matches!(rotor, Some(0 | 3)) { "a" } else { "c" }.to_owned()
+        } else if begins("Now switch the transmitter off") {
+            self.does(|held| held.sticks = None);
+            String::new()
+        } else if begins("And on again") {
+            self.does(|held| held.sticks = Some(Sticks::default()));
+            String::new()
+        } else if begins("Enter tries it again") {
+            // A walk that fails here must not go on for ever.
+            "q".to_owned()
+        } else {
+            String::new()
+        }
+    }
+}
+
+/// Sticks and switches at one of their ends, throttle up: nothing arms.
+fn ends(sign: f32, on: bool) -> Sticks {
+    Sticks {
+        roll: sign,
+        pitch: sign,
+        yaw: sign,
+        throttle: 1.0,
+        arm_switch: on,
+        perch_switch: on,
+        stick_mode: if on { StickMode::Direct } else { StickMode::Angle },
+        arms: if on { ArmChoice::Rear } else { ArmChoice::All },
+    }
+}
+
+/// What hands do in the live step `id`.
+fn live(id: &str) -> VecDeque<Move> {
+    let all: &[fn(&mut Held)] = match id {
+        "live-imu" => &[
+            |held| held.below = Face::Right,
+            |held| held.below = Face::Nose,
+            |held| held.below = Face::Belly,
+        ],
+        "live-arms" => &[|held| held.bent = [BENT; 4], |held| held.bent = [0.0; 4]],
+        "live-grip" => &[|held| held.pressed = [THUMB; 4], |held| held.pressed = [0.0; 4]],
+        _ => &[
+            |held| held.sticks = Some(ends(1.0, true)),
+            |held| held.sticks = Some(ends(-1.0, false)),
+            |held| held.sticks = Some(Sticks::default()),
+        ],
+    };
+    let moves = all.iter().map(|hands| Move {
+        ms: SETTLED,
+        hands: *hands,
+    });
+    moves.collect()
+}
+
+impl User for Builder {
+    fn say(&mut self, line: &str) {
+        self.notes(&format!("{line}\n"));
+        if line.starts_with('[')
+            && let Some((_, id)) = line.rsplit_once('(')
+        {
+            self.step = id.trim_end_matches(')').to_owned();
+        }
+        self.last = line.to_owned();
+    }
+
+    fn live(&mut self, line: &str) {
+        self.notes(&format!("{line}\n"));
+    }
+
+    fn ask(&mut self, question: &str) -> Reply {
+        self.notes(question);
+        let reply = self.reply(question);
+        self.notes(&format!("{reply}\n"));
+        Reply::Line(reply)
+    }
+
+    fn answered(&mut self) -> Option<Reply> {
+        let now = self.hands.look().ms;
+        let id = self.step.clone();
+        let moves = self.moves.get_or_insert_with(|| live(&id));
+        if now < self.over {
+            return None;
+        }
+        match moves.pop_front() {
+            Some(next) => {
+                self.hands.change(next.hands);
+                self.over = now + next.ms;
+                None
+            }
+            None => Some(Reply::Line(String::new())),
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! Motors wired in another order than the rotors: flown by the map that says so, and without it.
+
+use sophie_control::params::{MotorMap, Params};
+use sophie_control::wrench::Configuration;
+use sophie_sim::flight_level::{Errors, Rig, level, vehicle};
+use sophie_sim::mixers::Variant;
+
+/// Outputs 1 and 2 changed places, and 3 and 4.
+const WIRED: MotorMap = MotorMap::M2143;
+
+fn hover(motor_map: MotorMap) -> Errors {
+    let mut scenario = vehicle(Configuration::default(), 7.75, 6.9, Variant::Flexible);
+    scenario.params = Params {
+        motor_map,
+        ..scenario.params
+    };
+    Rig::wired(&scenario, WIRED).fly(12.0, level)
+}
+
+#[test]
+fn a_vehicle_hovers_by_the_map_of_its_wires_and_turns_over_without_it() {
+    let mapped = hover(WIRED);
+    assert!(mapped.worst_roll < 3.0 && mapped.worst_pitch < 3.0, "{mapped:?}");
+    let straight = hover(MotorMap::M1234);
+    assert!(
+        straight.worst_roll.max(straight.worst_pitch) > 45.0,
+        "{straight:?}"
+    );
+}
