@@ -17,7 +17,7 @@ fn every_touch_is_counted_once_and_the_same_seed_gives_the_same_map() {
     let temp = Temp::new("capture");
     let run = |out: &str| {
         let args = [&SMALL[..], &["--json", "--out", out]].concat();
-        let output = sophie(&temp.0, &args);
+        let output = sophie(&temp, &args);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
         text(&output.stdout)
     };
