@@ -13,10 +13,15 @@ use sophie_control::gripper::{ArmGripper, ArmInput, Config, Pressure};
 use sophie_control::params::Params;
 use sophie_control::tendon::{Drive, Reel, TendonDrive};
 
-use crate::plant::arm::{Arm, ArmSpec, TIP_MASS};
-use crate::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose};
+use crate::plant::arm::ArmSpec;
+use crate::plant::beam::{BeamArm, BeamSpec};
+use crate::plant::body::Load;
+use crate::plant::contact::{BELLY_Z, Pipe, Pose};
+use crate::plant::flexible::{Acceleration, Carrier, Drive as Driven, Flexible, Nearby};
+use crate::plant::hinged::HingedArm;
 use crate::plant::tendon::{ServoSpec, Tendon, TendonSpec};
 use crate::plant::{GRAVITY, STEP};
+use crate::scenario::ArmBending;
 use crate::sensors::fsr::FsrSensor;
 
 /// Before closing, s.
@@ -45,6 +50,16 @@ const BODY: Pose = Pose {
     omega: DVec3::ZERO,
 };
 
+const CARRIER: Carrier = Carrier {
+    omega: DVec3::ZERO,
+    gravity: DVec3::new(0.0, 0.0, GRAVITY),
+    coupled: true,
+};
+const FIXED: Acceleration = Acceleration {
+    linear: DVec3::ZERO,
+    angular: DVec3::ZERO,
+};
+
 /// A closing to be tried.
 #[derive(Clone, Copy, Debug)]
 pub struct Closing {
@@ -67,8 +82,10 @@ pub struct Closing {
 pub struct BenchArm {
     /// Index, 0 to 3.
     pub arm: usize,
-    /// The arm as built.
+    /// The arm as built: Eq. 1, and its beam if it bends as one.
     pub spec: ArmSpec,
+    /// The beam.
+    pub beam: Option<BeamSpec>,
     /// The servo fitted.
     pub servo: ServoSpec,
     /// s.
@@ -90,6 +107,7 @@ impl BenchArm {
         let reel = |arm: &Self| Reel::from_params(&arm.params, arm.arm);
         let scale = |arm: &Self| FsrScale::from_params(&arm.params, arm.arm);
         self.spec == other.spec
+            && self.beam == other.beam
             && self.servo == other.servo
             && reel(self) == reel(other)
             && scale(self) == scale(other)
@@ -108,6 +126,7 @@ impl From<&Closing> for BenchArm {
         Self {
             arm: 0,
             spec: ArmSpec::new(what.infill, f64::from(params.gain_k), 1.0, 0.0, 0.15),
+            beam: None,
             servo: what.servo,
             rotor_tau: ROTOR_TAU,
             params,
@@ -206,7 +225,7 @@ pub fn close(what: &Closing) -> Closed {
     };
     for step in 1..=((REST + what.seconds) / STEP) as u64 {
         let t = step as f64 * STEP - REST;
-        let tilt = bench.arm.tilt;
+        let tilt = bench.arm.tilt();
         if bench.grip.state == ArmState::Holding {
             out.closure = out.closure.or(bench.grip.closure.map(f64::from));
         }
@@ -231,9 +250,8 @@ pub fn close(what: &Closing) -> Closed {
 struct ArmBench {
     rng: Pcg64Mcg,
     pipe: Pipe,
-    arm: Arm,
+    arm: Box<dyn Flexible>,
     tendon: Tendon,
-    skin: ArmSkin,
     sensor: FsrSensor,
     /// N.
     thrust: f64,
@@ -264,12 +282,15 @@ impl ArmBench {
         let reel = Reel::from_params(params, what.arm);
         let drive = TendonDrive::new();
         let order = drive.hold(&reel);
+        let (arm, bending): (Box<dyn Flexible>, _) = match what.beam {
+            Some(beam) => (Box::new(BeamArm::new(what.arm, beam)), ArmBending::Beam),
+            None => (Box::new(HingedArm::new(what.arm, what.spec)), ArmBending::Hinge),
+        };
         Self {
             rng,
             pipe: pipe(0.5 * what.diameter, what.friction),
-            arm: Arm::new(what.arm, what.spec),
-            tendon: Tendon::new(what.servo, TendonSpec::default()),
-            skin: ArmSkin::new(what.arm),
+            arm,
+            tendon: Tendon::new(what.servo, TendonSpec::of(bending)),
             sensor,
             thrust: what.thrust,
             thrust_asked: what.thrust,
@@ -293,7 +314,7 @@ impl ArmBench {
 
     /// Returns the true pressure, Pa. The arm closes after [`REST`]; once it holds, its rotor of `thrust` N stops.
     fn step(&mut self, step: u64, thrust: f64) -> f64 {
-        let tilt = self.arm.tilt;
+        let tilt = self.arm.tilt();
         let pressure = self.move_arm();
         if self.grip.state == ArmState::Holding {
             self.thrust_asked = (self.thrust_asked - thrust * STEP / SPOOL_TIME).max(0.0);
@@ -305,16 +326,31 @@ impl ArmBench {
 
     /// Returns the true pressure, Pa.
     fn move_arm(&mut self) -> f64 {
-        let (alpha, rate) = (self.arm.tilt, self.arm.rate);
         self.thrust += (self.thrust_asked - self.thrust) * STEP / self.rotor_tau;
-        let load = self.skin.step(STEP, alpha, rate, &BODY, &self.pipe);
-        let pulled = self.tendon.step(STEP, f64::from(self.order.pulse_us), alpha);
-        let moment = pulled + load.moment_alpha;
-        self.arm
-            .load(self.thrust, moment, DVec3::new(0.0, 0.0, GRAVITY), true);
-        let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
-        self.arm.integrate(STEP, self.arm.generalised / inertia);
-        load.pressure
+        let nearby = Nearby {
+            pipe: Some(self.pipe),
+            ground: false,
+        };
+        let body = &mut Load::default();
+        let pressure = self.arm.touch(STEP, &BODY, &nearby, body);
+        let pulse = f64::from(self.order.pulse_us);
+        // No spin: a fixed body turns no rotor's axis but by the arm's own motion.
+        let drive = Driven {
+            dt: STEP,
+            thrust: self.thrust,
+            tendon: self.tendon.step(STEP, pulse, self.arm.tilt()),
+            ..Driven::default()
+        };
+        self.arm.drive(&drive, &CARRIER, body);
+        self.arm.advance(
+            STEP,
+            &FIXED,
+            &Carrier {
+                coupled: false,
+                ..CARRIER
+            },
+        );
+        pressure
     }
 
     /// Runs filter and gripper when due; `pressure` (Pa) and `tilt` (rad) are true.

@@ -30,7 +30,7 @@ impl Trial {
     #[must_use]
     pub fn wrench(&self, thrusts: PerArm<f64>) -> [f64; 4] {
         let spec = BodySpec::default();
-        let body = Body::new(&spec, false);
+        let body = Body::whole(&spec);
         let rotor = RotorSpec::default();
         // The plant has no rigid arms: nominal ones are held level.
         let arm_spec = ArmSpec::new(self.infill, self.gain_k.max(1e-3), 1.0, 0.0, DAMPING);

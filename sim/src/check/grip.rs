@@ -9,8 +9,8 @@ use crate::arm_bench::{BenchArm, Tried, try_grip};
 use crate::pilot::throttle_on_pipe;
 use crate::plant::contact::{ARM_LENGTH, ArmSkin, BELLY_Z, Pipe, Pose};
 use crate::plant::tendon::{ServoSpec, TendonSpec};
-use crate::plant::{STEP, arm_spec};
-use crate::scenario::{Scenario, Step};
+use crate::plant::{STEP, arm_spec, beam_spec};
+use crate::scenario::{ArmBending, Scenario, Step};
 
 /// Closing throttle of a mission that names none: a scenario file's default.
 const THROTTLE: f64 = 0.3;
@@ -59,6 +59,7 @@ fn bench(scenario: &Scenario, arm: usize) -> BenchArm {
     BenchArm {
         arm,
         spec: arm_spec(v, arm),
+        beam: (v.arm_bending == ArmBending::Beam).then(|| beam_spec(v, arm)),
         servo: ServoSpec::from(v.servo).measured(&p, arm),
         rotor_tau: v.rotor.time_constant,
         params: p,
@@ -79,7 +80,8 @@ pub fn rows(scenario: &Scenario, tries: &[TriedArm]) -> Vec<Row> {
         let TriedArm { arm, tried } = *tried;
         let holds = tried.grip.state == ArmState::Holding;
         let target = f64::from(scenario.params.grip_pressure);
-        let value = if holds {
+        // The static balance is that of an arm on a hinge.
+        let value = if holds || scenario.vehicle.arm_bending == ArmBending::Beam {
             tried.asked
         } else {
             needed(scenario, arm, bench(scenario, arm).thrust, target)

@@ -8,10 +8,19 @@ use glam::DVec3;
 use sophie_control::wrench::{FORE, SIDE};
 
 use super::GRAVITY;
+use super::body::{ArmPoint, Load};
 use super::contact::{ARM_LENGTH, ARM_X, BELLY_Z, HINGE_Z};
+use super::flexible::{Acceleration, Carried, Carrier};
+use super::mass_matrix::MassMatrix;
 
 /// Motor, propeller and the arm's share, kg (assumed; gives 5 Hz in hover).
 pub const TIP_MASS: f64 = 0.077;
+/// The mass that an arm of one hinge carries.
+pub const TIP: [ArmPoint; 1] = [ArmPoint {
+    mass: TIP_MASS,
+    out: ARM_LENGTH,
+    inertia: 0.0,
+}];
 /// A1, A2, B1, B2 of Eq. 1 (paper, Table I).
 pub const TABLE_1: [f64; 4] = [2.4387, -0.1997, -0.162, 0.0151];
 /// N: half of the paper's largest.
@@ -108,6 +117,12 @@ impl ArmSpec {
             offset: self.offset + rise(self.nominal, LEVEL_THRUST) - rise(self.nominal, thrust),
             ..self
         }
+    }
+
+    /// Coefficients of the elastic tilt, rad/N and rad/N².
+    #[must_use]
+    pub fn elastic(&self) -> (f64, f64) {
+        (self.linear, self.quadratic)
     }
 
     /// Static tilt (rad) on a level bench at `thrust` N.
@@ -219,11 +234,43 @@ impl Arm {
         self.generalised = ARM_LENGTH * (thrust - load) + weight + moment - self.spec.damping * self.rate;
     }
 
+    /// Of the tilt, rad/s², on a body with the acceleration `body`.
+    #[must_use]
+    pub fn acceleration(&self, body: &Acceleration, carrier: &Carrier) -> f64 {
+        let inertia = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
+        if !carrier.coupled {
+            return self.generalised / inertia;
+        }
+        let carried = body.linear + body.angular.cross(self.tip()) + self.bias_acceleration(carrier.omega);
+        self.generalised / inertia - self.normal().dot(carried) / ARM_LENGTH
+    }
+
     /// Advances by `dt` s at the tilt's `acceleration` (rad/s²).
     pub fn integrate(&mut self, dt: f64, acceleration: f64) {
         self.rate += acceleration * dt;
         self.tilt += self.rate * dt;
         (self.sin, self.cos) = self.tilt.sin_cos();
+    }
+}
+
+impl Carried for Arm {
+    /// A tip slides along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
+    /// generalised force on its hinge as -Q/L along n.
+    fn condense(&self, carrier: &Carrier, mass: &mut MassMatrix, load: &mut Load) {
+        // m (1 - n nᵀ) = Σ m u uᵀ over the directions u that the hinge holds, acting at the origin through (u, r × u).
+        let (r, n, along) = (self.tip(), self.normal(), self.outward());
+        mass.add_tip(TIP_MASS, r, along);
+        let bias = self.bias_acceleration(carrier.omega);
+        let held = (DVec3::X * bias.x + along * along.dot(bias)) * TIP_MASS;
+        // Thrust and weight of the tip, less its acceleration along the free direction.
+        let free = self.generalised / ARM_LENGTH;
+        let f = n * (self.thrust - free) + carrier.gravity * TIP_MASS - held;
+        load.add(f, r.cross(f));
+    }
+
+    fn condense_massless(&self, load: &mut Load) {
+        let thrust = self.normal() * self.thrust;
+        load.add(thrust, self.tip().cross(thrust));
     }
 }
 

@@ -1,13 +1,13 @@
-//! Equations of motion of the body with four hinged tip masses.
+//! Equations of motion of the body that carries the arms.
 //!
-//! A tip slides along its normal n and is held otherwise: it adds m (1 - n nᵀ) to the body's mass and passes the
-//! generalised force on its hinge as -Q/L along n. The remaining 6×6 system is solved by 3×3 blocks, then each tilt's
-//! acceleration.
+//! Each arm adds what it passes to the body ([`Carried`]). The remaining 6×6 system is solved by 3×3 blocks; then each
+//! arm finds its own acceleration.
 
 use glam::{DMat3, DVec3};
 
-use super::arm::{Arm, TIP_MASS};
-use super::contact::{ARM_LENGTH, ARM_X, HINGE_Z, Pose};
+use super::contact::{ARM_X, HINGE_Z, Pose};
+use super::flexible::{Acceleration, Carried, Carrier};
+use super::mass_matrix::MassMatrix;
 
 /// Mass and inertia as built.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,15 +53,15 @@ impl Load {
     }
 }
 
-/// Accelerations of one step.
-#[derive(Clone, Copy, Debug)]
-pub struct Accelerations {
-    /// Body origin, m/s², body.
-    pub linear: DVec3,
-    /// Angular, rad/s², body.
-    pub angular: DVec3,
-    /// Tilt of each arm, rad/s².
-    pub arms: [f64; 4],
+/// A mass that every arm carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmPoint {
+    /// kg.
+    pub mass: f64,
+    /// From the centre line with a level arm, m.
+    pub out: f64,
+    /// About its own centre, any axis, kg·m².
+    pub inertia: f64,
 }
 
 /// Rigid part of the vehicle.
@@ -75,148 +75,96 @@ pub struct Body {
 }
 
 impl Body {
-    /// `coupled` gives the arms their tip masses, otherwise the body has all mass. The vehicle's centre of mass with
-    /// level arms is the origin.
+    /// The vehicle without the masses that its arms carry, `points` each. The vehicle's centre of mass with level arms
+    /// is the origin.
     #[must_use]
-    pub fn new(spec: &BodySpec, coupled: bool) -> Self {
-        let whole = DVec3::from_array(spec.inertia);
-        let (mass, centre, inertia) = if coupled {
-            let mass = spec.mass - 4.0 * TIP_MASS;
-            let (x2, y2, z2) = (ARM_X * ARM_X, ARM_LENGTH * ARM_LENGTH, HINGE_Z * HINGE_Z);
-            let tips = DVec3::new(y2 + z2, x2 + z2, x2 + y2) * (4.0 * TIP_MASS);
-            (
-                mass,
-                DVec3::new(0.0, 0.0, -4.0 * TIP_MASS * HINGE_Z / mass),
-                whole - tips,
-            )
-        } else {
-            (spec.mass, DVec3::ZERO, whole)
-        };
-        let inertia = DMat3::from_diagonal(inertia);
-        Self {
-            coupled,
+    pub fn new(spec: &BodySpec, points: &[ArmPoint]) -> Self {
+        let mut body = Self::whole(spec);
+        body.coupled = true;
+        let mut inertia = DVec3::from_array(spec.inertia);
+        let mut first = 0.0;
+        for ArmPoint {
             mass,
-            centre,
+            out,
+            inertia: own,
+        } in points
+        {
+            let (x2, y2, z2) = (ARM_X * ARM_X, out * out, HINGE_Z * HINGE_Z);
+            inertia -= DVec3::new(y2 + z2, x2 + z2, x2 + y2) * (4.0 * mass) + DVec3::splat(4.0 * own);
+            body.mass -= 4.0 * mass;
+            first += 4.0 * mass * HINGE_Z;
+        }
+        body.centre = DVec3::new(0.0, 0.0, -first / body.mass);
+        body.inertia = DMat3::from_diagonal(inertia);
+        body.inverse = body.inertia.inverse();
+        body
+    }
+
+    /// A body with all mass, whose arms have none.
+    #[must_use]
+    pub fn whole(spec: &BodySpec) -> Self {
+        let inertia = DMat3::from_diagonal(DVec3::from_array(spec.inertia));
+        Self {
+            coupled: false,
+            mass: spec.mass,
+            centre: DVec3::ZERO,
             inertia,
             inverse: inertia.inverse(),
         }
     }
 
-    /// Accelerations under `gravity` (m/s², body), the thrusts of the loaded `arms`, and all other `load`.
+    /// Whether arms act on the body by their mass.
     #[must_use]
-    pub fn accelerate(&self, pose: &Pose, load: Load, gravity: DVec3, arms: [&Arm; 4]) -> Accelerations {
+    pub fn coupled(&self) -> bool {
+        self.coupled
+    }
+
+    /// Kinetic energy (J), momentum (kg·m/s) and angular momentum (kg·m²/s) about the origin of the part without arms,
+    /// which moves at `velocity` (m/s) and turns at `omega` (rad/s), body axes.
+    #[must_use]
+    pub fn motion(&self, velocity: DVec3, omega: DVec3) -> (f64, DVec3, DVec3) {
+        let momentum = (velocity + omega.cross(self.centre)) * self.mass;
+        let angular = self.inertia * omega + self.centre.cross(velocity) * self.mass;
+        (
+            0.5 * (momentum.dot(velocity) + angular.dot(omega)),
+            momentum,
+            angular,
+        )
+    }
+
+    /// Accelerations under `gravity` (m/s², body), the loaded `arms`, and all other `load`.
+    #[must_use]
+    pub fn accelerate<A: Carried>(
+        &self,
+        pose: &Pose,
+        load: Load,
+        gravity: DVec3,
+        arms: [&A; 4],
+    ) -> Acceleration {
         let w = pose.omega;
-        let inertia_tip = TIP_MASS * ARM_LENGTH * ARM_LENGTH;
-        let mut force = load.force + self.mass * (gravity - w.cross(w.cross(self.centre)));
-        let mut moment = load.moment + self.mass * self.centre.cross(gravity) - w.cross(self.inertia * w);
+        let mut load = Load {
+            force: load.force + self.mass * (gravity - w.cross(w.cross(self.centre))),
+            moment: load.moment + self.mass * self.centre.cross(gravity) - w.cross(self.inertia * w),
+        };
         if !self.coupled {
             for arm in arms {
-                let thrust = arm.normal() * arm.thrust;
-                force += thrust;
-                moment += arm.tip().cross(thrust);
+                arm.condense_massless(&mut load);
             }
-            return Accelerations {
-                linear: force / self.mass,
-                angular: self.inverse * moment,
-                arms: arms.map(|arm| arm.generalised / inertia_tip),
+            return Acceleration {
+                linear: load.force / self.mass,
+                angular: self.inverse * load.moment,
             };
         }
-
-        let mut m = MassMatrix::new(self.mass, self.centre, self.inertia);
-        for arm in arms {
-            // The hinge holds the tip along x and along the arm: m (1 - n nᵀ) = Σ m u uᵀ over these directions u,
-            // acting at the origin through (u, r × u).
-            let (r, n, along) = (arm.tip(), arm.normal(), arm.outward());
-            m.add_tip(r, along);
-            let bias = arm.bias_acceleration(w);
-            let held = (DVec3::X * bias.x + along * along.dot(bias)) * TIP_MASS;
-            // Thrust and weight of the tip, less its acceleration along the free direction.
-            let free = arm.generalised / ARM_LENGTH;
-            let f = n * (arm.thrust - free) + gravity * TIP_MASS - held;
-            force += f;
-            moment += r.cross(f);
-        }
-        let (linear, angular) = m.solve(force, moment);
-        let tilt = |arm: &Arm| {
-            let carried = linear + angular.cross(arm.tip()) + arm.bias_acceleration(w);
-            arm.generalised / inertia_tip - arm.normal().dot(carried) / ARM_LENGTH
+        let carrier = Carrier {
+            omega: w,
+            gravity,
+            coupled: true,
         };
-        Accelerations {
-            linear,
-            angular,
-            arms: arms.map(tilt),
+        let mut mass = MassMatrix::new(self.mass, self.centre, self.inertia);
+        for arm in arms {
+            arm.condense(&carrier, &mut mass, &mut load);
         }
-    }
-}
-
-/// 6×6 mass matrix by blocks: linear `a`, coupling (rows linear, columns angular) `c`, angular `j`. Entries are written
-/// out, as a tip adds to few: this takes a third of the plant's time.
-struct MassMatrix {
-    mass: f64,
-    ayy: f64,
-    ayz: f64,
-    azz: f64,
-    c: [DVec3; 3],
-    j: DMat3,
-}
-
-impl MassMatrix {
-    /// Rigid part, centre of mass at `centre`.
-    fn new(mass: f64, centre: DVec3, inertia: DMat3) -> Self {
-        let DVec3 { x, y, z } = centre * mass;
-        let c = [
-            DVec3::new(0.0, z, -y),
-            DVec3::new(-z, 0.0, x),
-            DVec3::new(y, -x, 0.0),
-        ];
-        Self {
-            mass,
-            ayy: mass,
-            ayz: 0.0,
-            azz: mass,
-            c,
-            j: inertia,
-        }
-    }
-
-    /// Adds a tip at `r`, held along x and the unit vector `along` in the y-z plane.
-    fn add_tip(&mut self, r: DVec3, along: DVec3) {
-        let (ey, ez) = (along.y, along.z);
-        let lever_x = DVec3::new(0.0, r.z, -r.y);
-        let lever = DVec3::new(r.y * ez - r.z * ey, -r.x * ez, r.x * ey);
-        let (mx, my, mz) = (TIP_MASS, TIP_MASS * ey, TIP_MASS * ez);
-        self.mass += mx;
-        self.ayy += my * ey;
-        self.ayz += my * ez;
-        self.azz += mz * ez;
-        self.c[0] += lever_x * mx;
-        self.c[1] += lever * my;
-        self.c[2] += lever * mz;
-        let (tx, t) = (lever_x * TIP_MASS, lever * TIP_MASS);
-        self.j.x_axis += t * lever.x;
-        self.j.y_axis += tx * lever_x.y + t * lever.y;
-        self.j.z_axis += tx * lever_x.z + t * lever.z;
-    }
-
-    fn solve(&self, force: DVec3, moment: DVec3) -> (DVec3, DVec3) {
-        let inv_x = 1.0 / self.mass;
-        let inv_det = 1.0 / (self.ayy * self.azz - self.ayz * self.ayz);
-        let (byy, byz, bzz) = (self.azz * inv_det, -self.ayz * inv_det, self.ayy * inv_det);
-        let [cx, cy, cz] = self.c;
-        // Rows of A⁻¹ C.
-        let (gx, gy, gz) = (cx * inv_x, cy * byy + cz * byz, cy * byz + cz * bzz);
-        let mut j = self.j;
-        j.x_axis -= cx * gx.x + cy * gy.x + cz * gz.x;
-        j.y_axis -= cx * gx.y + cy * gy.y + cz * gz.y;
-        j.z_axis -= cx * gx.z + cy * gy.z + cz * gz.z;
-        let angular = j.inverse() * (moment - gx * force.x - gy * force.y - gz * force.z);
-        let rest = force - DVec3::new(cx.dot(angular), cy.dot(angular), cz.dot(angular));
-        let linear = DVec3::new(
-            inv_x * rest.x,
-            byy * rest.y + byz * rest.z,
-            byz * rest.y + bzz * rest.z,
-        );
-        (linear, angular)
+        mass.solve(&load)
     }
 }
 
@@ -224,7 +172,8 @@ impl MassMatrix {
 mod tests {
     use glam::DQuat;
 
-    use super::super::arm::ArmSpec;
+    use super::super::arm::{Arm, ArmSpec, TIP, TIP_MASS};
+    use super::super::contact::ARM_LENGTH;
     use super::super::{GRAVITY, STEP};
     use super::*;
 
@@ -268,7 +217,7 @@ mod tests {
         seconds: f64,
         omega: DVec3,
     ) -> (Pose, [Arm; 4], DVec3) {
-        let body = Body::new(&BodySpec::default(), true);
+        let body = Body::new(&BodySpec::default(), &TIP);
         let mut pose = pose();
         pose.omega = omega;
         let gravity = DVec3::new(0.0, 0.0, GRAVITY);
@@ -286,8 +235,13 @@ mod tests {
                 g,
                 arms.each_ref(),
             );
-            for (arm, a) in arms.iter_mut().zip(acc.arms) {
-                arm.integrate(STEP, a);
+            let carrier = Carrier {
+                omega: pose.omega,
+                gravity: g,
+                coupled: true,
+            };
+            for arm in &mut arms {
+                arm.integrate(STEP, arm.acceleration(&acc, &carrier));
             }
             pose.velocity += pose.attitude * acc.linear * STEP;
             pose.omega += acc.angular * STEP;
@@ -322,7 +276,7 @@ mod tests {
     #[test]
     fn free_fall_turns_no_arm_and_keeps_angular_momentum() {
         let (_, _, start) = fly(0.0, DVec3::ZERO, 0.0, DVec3::new(1.0, 0.5, -0.7));
-        let body = Body::new(&BodySpec::default(), true);
+        let body = Body::new(&BodySpec::default(), &TIP);
         let omega = DVec3::new(1.0, 0.5, -0.7);
         let (pose, arms, end) = fly(0.0, DVec3::ZERO, 0.4, omega);
         // Less the momentum of the centre of mass.

@@ -18,10 +18,12 @@ pub const HINGE_Z: f64 = 0.02;
 pub const ARM_LENGTH: f64 = 0.178;
 /// Arms from the centre of mass along body x, m.
 pub const ARM_X: f64 = 0.178;
-/// Contact points of the skin, m from the arm's root; the pressure sensor is at the last.
+/// Contact points of the skin, m from the arm's root along it; the pressure sensor is at the last.
 pub const STATIONS: [f64; 3] = [0.06, 0.11, 0.16];
 /// Width and length, m.
 const STATION_SIZE: (f64, f64) = (0.03, 0.05);
+/// m².
+pub const STATION_AREA: f64 = STATION_SIZE.0 * STATION_SIZE.1;
 /// Pressure over indentation, Pa/m (assumed: TPU of 6 to 10 % infill with a foam patch).
 pub const SKIN_STIFFNESS: f64 = 5.0e5;
 
@@ -131,14 +133,15 @@ const BELLY: Pad = Pad {
     bristle: 4.0e3,
     bristle_damping: 42.0,
 };
-const SKIN: Pad = Pad {
+/// A station of an arm's underside.
+pub const SKIN: Pad = Pad {
     stiffness: SKIN_STIFFNESS * STATION_SIZE.0 * STATION_SIZE.1,
     damping: 8.0,
     bristle: 400.0,
     bristle_damping: 4.0,
 };
 /// Tip of 77 g: 22 Hz, damping ratio 0.5, no friction.
-const TIP: Pad = Pad {
+pub const TIP: Pad = Pad {
     stiffness: 1.5e3,
     damping: 10.0,
     bristle: 0.0,
@@ -337,7 +340,7 @@ impl ArmSkin {
             load.moment_body += r.cross(force);
             load.moment_alpha += force.dot(by_alpha);
             // The last station's remains: the sensor is there.
-            load.pressure = touch.normal / (STATION_SIZE.0 * STATION_SIZE.1);
+            load.pressure = touch.normal / STATION_AREA;
         }
         self.stations = stations;
         load

@@ -8,7 +8,8 @@ use std::f64::consts::PI;
 use sophie_control::params::Params;
 use sophie_control::tendon::{REFERENCE_TILT, Reel};
 
-use crate::scenario::ServoProfile;
+use super::beam::TENDON_LEVER;
+use crate::scenario::{ArmBending, ServoProfile};
 
 /// µs (digital servos state 2 to 5; MG996R datasheet 5).
 const DEADBAND_US: f64 = 2.0;
@@ -90,6 +91,20 @@ pub struct TendonSpec {
     pub reference_tilt: f64,
     /// Excess length, m; negative: too short.
     pub slack_error: f64,
+}
+
+impl TendonSpec {
+    /// Along arms that bend as `bending` says.
+    #[must_use]
+    pub fn of(bending: ArmBending) -> Self {
+        match bending {
+            ArmBending::Hinge => Self::default(),
+            ArmBending::Beam => Self {
+                lever: TENDON_LEVER,
+                ..Self::default()
+            },
+        }
+    }
 }
 
 impl Default for TendonSpec {

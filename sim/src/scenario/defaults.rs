@@ -7,7 +7,7 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_mixers::Variant;
 
-use super::{Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read_steps};
+use super::{ArmBending, Expect, Overrides, Pilot, Scenario, ServoProfile, Step, Vehicle, World, read_steps};
 use crate::plant::arm::TABLE_1;
 use crate::plant::body::BodySpec;
 use crate::plant::rotor::RotorSpec;
@@ -22,6 +22,8 @@ impl Default for Vehicle {
             gain_k: 7.75,
             configuration: Configuration::B,
             arm_coefficients: TABLE_1,
+            arm_bending: ArmBending::Hinge,
+            arm_taper: 1.0,
             arm_level_share: 0.5,
             arm_gain: [1.0; 4],
             arm_offset: [0.0; 4],

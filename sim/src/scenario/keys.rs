@@ -6,7 +6,7 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_mixers::Variant;
 
-use super::{Scenario, ServoProfile};
+use super::{ArmBending, Scenario, ServoProfile};
 
 /// One key.
 pub struct Key {
@@ -85,6 +85,9 @@ pub const ARMS: &[&str] = &["all", "front", "rear"];
 /// Words for the servo.
 pub const SERVOS: &[&str] = &["paper", "mg996r"];
 
+/// Words for how the arms bend.
+pub const BENDINGS: &[&str] = &["hinge", "beam"];
+
 /// Infill that Eq. 1 of the paper covers.
 pub const INFILL: Range = Range::new(4.0, 10.0, "%");
 /// Gain on Eq. 1's elastic term: 1 is the literal equation, Table III needs 5.0 to 8.4.
@@ -138,6 +141,23 @@ pub fn servo(word: &str) -> ServoProfile {
         ServoProfile::Mg996r
     } else {
         ServoProfile::Paper
+    }
+}
+
+/// A word from [`BENDINGS`].
+pub fn bending(word: &str) -> ArmBending {
+    if word == "beam" {
+        ArmBending::Beam
+    } else {
+        ArmBending::Hinge
+    }
+}
+
+/// The word of how the arms bend.
+pub const fn bending_word(bending: ArmBending) -> &'static str {
+    match bending {
+        ArmBending::Hinge => "hinge",
+        ArmBending::Beam => "beam",
     }
 }
 
@@ -211,6 +231,12 @@ pub const KEYS: &[Key] = &[
         name: "vehicle.arm_coefficients",
         kind: Kind::PerArm(Range::new(-10.0, 30.0, ""), |s| &mut s.vehicle.arm_coefficients),
     },
+    Key {
+        name: "vehicle.arm_bending",
+        kind: Kind::Choice(BENDINGS, |s, v| s.vehicle.arm_bending = bending(v)),
+    },
+    // Where two terms hold the ratio of tendon to thrust within 3 %.
+    number!("vehicle.arm_taper", Range::new(0.25, 2.0, ""), vehicle.arm_taper),
     number!(
         "vehicle.arm_level_share",
         Range::new(-0.5, 1.0, ""),

@@ -8,9 +8,9 @@ use sophie_control::rc::ArmChoice;
 use sophie_control::wrench::Configuration;
 use sophie_mixers::Variant;
 
-use super::Scenario;
 use super::error::{Place, ScenarioError};
 use super::read::Source;
+use super::{ArmBending, Scenario};
 
 /// Refuses devices and wrong files.
 const MAX_BYTES: u64 = 1 << 20;
@@ -23,6 +23,8 @@ pub struct Overrides {
     pub infill: Option<f64>,
     /// On Eq. 1's elastic term.
     pub gain_k: Option<f64>,
+    /// How the arms bend.
+    pub arm_bending: Option<ArmBending>,
     /// Sense of rotation.
     pub configuration: Option<Configuration>,
     /// Allocation.
@@ -42,6 +44,7 @@ impl Overrides {
         }
         set(&mut scenario.vehicle.infill, self.infill);
         set(&mut scenario.vehicle.gain_k, self.gain_k);
+        set(&mut scenario.vehicle.arm_bending, self.arm_bending);
         set(&mut scenario.vehicle.configuration, self.configuration);
         set(&mut scenario.mixer, self.mixer);
         set(&mut scenario.arms, self.arms);

@@ -67,6 +67,10 @@ pub struct Vehicle {
     pub configuration: Configuration,
     /// A1, A2, B1, B2 of Eq. 1, °/N, °/(N %), °/N², °/(N² %): Table I or a fitted arm.
     pub arm_coefficients: [f64; 4],
+    /// How the arms bend.
+    pub arm_bending: ArmBending,
+    /// Bending stiffness of a beam's tip over its root's.
+    pub arm_taper: f64,
     /// Thrust of a level nominal arm over the largest; sets α0.
     pub arm_level_share: f64,
     /// Factor on each arm's elastic tilt; nominal 1.
@@ -85,6 +89,15 @@ pub struct Vehicle {
     pub body: BodySpec,
     /// Motors and propellers, all alike.
     pub rotor: RotorSpec,
+}
+
+/// How the plant's arms bend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArmBending {
+    /// Rigid, on a hinge at the centre line.
+    Hinge,
+    /// Along their length.
+    Beam,
 }
 
 /// The tendon servo fitted.

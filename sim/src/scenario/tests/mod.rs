@@ -125,6 +125,7 @@ fn the_command_line_wins_over_the_file() {
     let overrides = Overrides {
         infill: Some(9.0),
         gain_k: Some(2.0),
+        arm_bending: Some(ArmBending::Beam),
         configuration: Some(Configuration::A),
         mixer: Some(Variant::Paper),
         arms: Some(ArmChoice::Rear),
@@ -134,6 +135,11 @@ fn the_command_line_wins_over_the_file() {
     let s = Scenario::parse(text, "f", &overrides).unwrap();
     assert_eq!((s.vehicle.infill, s.vehicle.gain_k, s.seed), (9.0, 2.0, 77));
     assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
+    // The stack believes the tendon where it runs.
+    assert_eq!(
+        (s.vehicle.arm_bending, s.params.tendon_lever),
+        (ArmBending::Beam, 0.015)
+    );
     assert_eq!(
         (s.vehicle.configuration, s.mixer, s.arms),
         (Configuration::A, Variant::Paper, ArmChoice::Rear)

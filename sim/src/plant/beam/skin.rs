@@ -1,0 +1,158 @@
+//! Underside and tip of a bent arm against pipe and ground: the law of [`contact`](super::super::contact), points that
+//! follow the shape.
+
+use glam::DVec3;
+
+use super::super::body::Load;
+use super::super::contact::{
+    ARM_LENGTH, ContactPoint, HINGE_Z, Pad, Pipe, PointMotion, Pose, SKIN, STATION_AREA, STATIONS, Surface,
+    TIP,
+};
+use super::super::flexible::Nearby;
+use super::shape::{Point, points, slope};
+use super::{DEPTH, PerTerm, TERMS};
+
+/// Shape, motion and place of an arm.
+#[derive(Clone, Copy, Debug)]
+pub struct Bent {
+    /// rad.
+    pub q: PerTerm,
+    /// rad/s.
+    pub rate: PerTerm,
+    /// Of the arm, m, body.
+    pub x: f64,
+    /// +1 on the right.
+    pub side: f64,
+}
+
+/// A point of the arm that may touch, body axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// m.
+    pub place: DVec3,
+    /// ∂place/∂q, m.
+    pub by: [DVec3; TERMS],
+}
+
+impl Bent {
+    /// The points of the underside under the stations, each square to the neutral line.
+    #[must_use]
+    pub fn underside(&self) -> [Spot; 3] {
+        let ends = STATIONS.map(|s| s / ARM_LENGTH);
+        let neutral = points(&self.q, &self.rate, ends);
+        std::array::from_fn(|i| self.spot(&neutral[i], ends[i], DEPTH))
+    }
+
+    /// End of the neutral line.
+    #[must_use]
+    pub fn tip(&self) -> Spot {
+        let [tip] = points(&self.q, &self.rate, [1.0]);
+        self.spot(&tip, 1.0, 0.0)
+    }
+
+    /// `depth` m below the neutral line's `point` at ξ.
+    fn spot(&self, point: &Point, xi: f64, depth: f64) -> Spot {
+        let (sin, cos) = slope(&self.q, xi).sin_cos();
+        let body = |out: f64, up: f64| DVec3::new(0.0, self.side * out, -up);
+        let mut power = 1.0;
+        let by = std::array::from_fn(|k| {
+            power *= xi;
+            body(
+                point.out_by[k] + depth * cos * power,
+                point.up_by[k] + depth * sin * power,
+            )
+        });
+        let place = DVec3::new(self.x, 0.0, HINGE_Z) + body(point.out + depth * sin, point.up - depth * cos);
+        Spot { place, by }
+    }
+}
+
+/// Contacts of an arm.
+#[derive(Clone, Debug, Default)]
+pub struct BeamContact {
+    stations: [ContactPoint; 3],
+    tip: ContactPoint,
+    /// Generalised forces of the last step, N·m.
+    pub forces: PerTerm,
+}
+
+impl BeamContact {
+    /// Advances by `dt` s; adds the forces to `load` and returns the sensor's pressure, Pa.
+    pub fn step(&mut self, dt: f64, arm: &Bent, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {
+        self.forces = [0.0; TERMS];
+        let pressure = nearby
+            .pipe
+            .map_or(0.0, |pipe| self.on_pipe(dt, arm, pose, &pipe, load));
+        if nearby.ground {
+            let mut tip = self.tip;
+            self.press(
+                dt,
+                &mut tip,
+                &TIP,
+                &arm.tip(),
+                &Touched {
+                    arm,
+                    pose,
+                    surface: &Surface::Ground(0.0),
+                },
+                load,
+            );
+            self.tip = tip;
+        }
+        pressure
+    }
+
+    fn on_pipe(&mut self, dt: f64, arm: &Bent, pose: &Pose, pipe: &Pipe, load: &mut Load) -> f64 {
+        let surface = Surface::Pipe(*pipe);
+        let mut normal = 0.0;
+        let mut stations = self.stations;
+        for (station, spot) in stations.iter_mut().zip(arm.underside()) {
+            // The last station's remains: the sensor is there.
+            normal = self.press(
+                dt,
+                station,
+                &SKIN,
+                &spot,
+                &Touched {
+                    arm,
+                    pose,
+                    surface: &surface,
+                },
+                load,
+            );
+        }
+        self.stations = stations;
+        normal / STATION_AREA
+    }
+
+    /// Returns the normal force, N.
+    fn press(
+        &mut self,
+        dt: f64,
+        point: &mut ContactPoint,
+        pad: &Pad,
+        spot: &Spot,
+        touched: &Touched<'_>,
+        load: &mut Load,
+    ) -> f64 {
+        let Touched { arm, pose, surface } = touched;
+        let moving = spot.by[0] * arm.rate[0] + spot.by[1] * arm.rate[1];
+        let motion = PointMotion {
+            position: pose.point(spot.place),
+            velocity: pose.point_velocity(spot.place, moving),
+        };
+        let touch = point.force(dt, pad, motion, surface);
+        let force = pose.to_body(touch.force);
+        load.add(force, spot.place.cross(force));
+        for (sum, by) in self.forces.iter_mut().zip(spot.by) {
+            *sum += force.dot(by);
+        }
+        touch.normal
+    }
+}
+
+struct Touched<'a> {
+    arm: &'a Bent,
+    pose: &'a Pose,
+    surface: &'a Surface,
+}

@@ -1,0 +1,76 @@
+//! What the plant asks of an arm, whichever way it bends.
+
+use glam::DVec3;
+
+use super::body::Load;
+use super::contact::{Pipe, Pose};
+use super::mass_matrix::MassMatrix;
+
+/// What is near enough to be touched.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nearby {
+    /// The pipe, if it is near.
+    pub pipe: Option<Pipe>,
+    /// Whether the ground is near.
+    pub ground: bool,
+}
+
+/// Loads of a step on one arm other than contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Drive {
+    /// Length of the step, s.
+    pub dt: f64,
+    /// Of the rotor, N.
+    pub thrust: f64,
+    /// Of the tendon on the tip's tilt, N·m.
+    pub tendon: f64,
+    /// Angular momentum of the rotor along its axis, N·m·s.
+    pub momentum: f64,
+    /// Of the rotor's drag along its axis, N·m.
+    pub drag: f64,
+}
+
+/// Motion of the body that carries the arms.
+#[derive(Clone, Copy, Debug)]
+pub struct Carrier {
+    /// Angular rate, rad/s, body.
+    pub omega: DVec3,
+    /// m/s², body.
+    pub gravity: DVec3,
+    /// Whether the arms' masses act on the body.
+    pub coupled: bool,
+}
+
+/// Accelerations of the body.
+#[derive(Clone, Copy, Debug)]
+pub struct Acceleration {
+    /// Of the body's origin, m/s², body.
+    pub linear: DVec3,
+    /// rad/s², body.
+    pub angular: DVec3,
+}
+
+/// An arm on the body that carries it.
+pub trait Carried {
+    /// Adds the arm's mass and all that it passes to the body.
+    fn condense(&self, carrier: &Carrier, mass: &mut MassMatrix, load: &mut Load);
+
+    /// Adds the thrust alone: an arm without mass.
+    fn condense_massless(&self, load: &mut Load);
+}
+
+/// An arm with its contacts. A step is `touch`, `drive`, `condense` and `advance`.
+pub trait Flexible: Carried {
+    /// Tilt of the tip, rad.
+    fn tilt(&self) -> f64;
+
+    /// Finds the contact forces, adds them to `load` and keeps what they do to the arm for [`Flexible::drive`]; returns
+    /// the pressure at the sensor, Pa.
+    fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64;
+
+    /// Sums the loads on the arm's own motion; adds to `load` the rotor's moments on the body.
+    fn drive(&mut self, drive: &Drive, carrier: &Carrier, load: &mut Load);
+
+    /// Advances by `dt` s on a body with the acceleration `body`.
+    fn advance(&mut self, dt: f64, body: &Acceleration, carrier: &Carrier);
+}

@@ -1,0 +1,77 @@
+//! The arm on one hinge with its contacts.
+
+use super::arm::{Arm, ArmSpec};
+use super::body::Load;
+use super::contact::{ArmSkin, ArmTip, Pose};
+use super::flexible::{Acceleration, Carried, Carrier, Drive, Flexible, Nearby};
+use super::mass_matrix::MassMatrix;
+
+/// An arm on one hinge, its underside and its tip.
+#[derive(Clone, Debug)]
+pub struct HingedArm {
+    arm: Arm,
+    skin: ArmSkin,
+    tip: ArmTip,
+    /// Of underside and tip on the tilt, N·m.
+    contact: [f64; 2],
+}
+
+impl HingedArm {
+    /// Arm `index`, 0 to 3, at rest without thrust.
+    #[must_use]
+    pub fn new(index: usize, spec: ArmSpec) -> Self {
+        Self {
+            arm: Arm::new(index, spec),
+            skin: ArmSkin::new(index),
+            tip: ArmTip::new(index),
+            contact: [0.0; 2],
+        }
+    }
+}
+
+impl Carried for HingedArm {
+    fn condense(&self, carrier: &Carrier, mass: &mut MassMatrix, load: &mut Load) {
+        self.arm.condense(carrier, mass, load);
+    }
+
+    fn condense_massless(&self, load: &mut Load) {
+        self.arm.condense_massless(load);
+    }
+}
+
+impl Flexible for HingedArm {
+    fn tilt(&self) -> f64 {
+        self.arm.tilt
+    }
+
+    fn touch(&mut self, dt: f64, pose: &Pose, nearby: &Nearby, load: &mut Load) -> f64 {
+        let (tilt, rate) = (self.arm.tilt, self.arm.rate);
+        self.contact = [0.0; 2];
+        let mut pressure = 0.0;
+        if let Some(pipe) = &nearby.pipe {
+            let skin = self.skin.step(dt, tilt, rate, pose, pipe);
+            load.add(skin.force_body, skin.moment_body);
+            self.contact[0] = skin.moment_alpha;
+            pressure = skin.pressure;
+        }
+        if nearby.ground {
+            let tip = self.tip.step(dt, tilt, rate, pose);
+            load.add(tip.force_body, tip.moment_body);
+            self.contact[1] = tip.moment_alpha;
+        }
+        pressure
+    }
+
+    // The hinge has neither torsion nor a rotor's angular momentum.
+    fn drive(&mut self, drive: &Drive, carrier: &Carrier, load: &mut Load) {
+        let [skin, tip] = self.contact;
+        load.moment += self.arm.normal() * drive.drag;
+        let moment = drive.tendon + skin + tip;
+        self.arm
+            .load(drive.thrust, moment, carrier.gravity, carrier.coupled);
+    }
+
+    fn advance(&mut self, dt: f64, body: &Acceleration, carrier: &Carrier) {
+        self.arm.integrate(dt, self.arm.acceleration(body, carrier));
+    }
+}
