@@ -14,7 +14,6 @@
 )]
 
 pub mod budget;
-pub mod commands;
 #[allow(
     missing_docs,
     non_camel_case_types,
@@ -31,6 +30,7 @@ pub mod ftp;
 pub mod messages;
 pub mod parameters;
 pub mod parser;
+pub mod requests;
 pub mod server;
 pub mod streams;
 pub mod texts;

@@ -5,7 +5,7 @@
 use heapless::Vec;
 use mavlink_core::calculate_crc;
 
-use crate::commands::crc_extra;
+use crate::requests::crc_extra;
 
 /// First byte of a MAVLink 2 frame; MAVLink 1 is not spoken.
 const STX: u8 = 0xFD;
