@@ -32,9 +32,11 @@ pub mod parameters;
 pub mod parser;
 pub mod requests;
 pub mod server;
+pub mod signing;
 pub mod streams;
 pub mod texts;
 pub mod vehicle;
 
 pub use self::server::{Order, Server};
+pub use self::signing::Signing;
 pub use self::vehicle::{Condition, Vehicle};

@@ -45,6 +45,8 @@ pub enum Request {
     ParamRead(PARAM_REQUEST_READ_DATA),
     /// A parameter's new value.
     ParamSet(PARAM_SET_DATA),
+    /// A key for signing, which is left unread.
+    SetupSigning,
     /// A request for a file.
     File(FILE_TRANSFER_PROTOCOL_DATA),
 }
@@ -61,6 +63,7 @@ pub const fn crc_extra(id: u32) -> Option<u8> {
         PARAM_REQUEST_READ_DATA::ID => PARAM_REQUEST_READ_DATA::EXTRA_CRC,
         PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,
         FILE_TRANSFER_PROTOCOL_DATA::ID => FILE_TRANSFER_PROTOCOL_DATA::EXTRA_CRC,
+        SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
         _ => return None,
     })
 }
@@ -119,6 +122,11 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         PARAM_SET_DATA::ID => {
             let m: PARAM_SET_DATA = message(frame)?;
             (m.target_system, m.target_component, Request::ParamSet(m))
+        }
+        SETUP_SIGNING_DATA::ID => {
+            // Zeros at the end are left out, and there may be none but those.
+            let at = |place: usize| frame.payload.get(place).copied().unwrap_or_default();
+            (at(8), at(9), Request::SetupSigning)
         }
         FILE_TRANSFER_PROTOCOL_DATA::ID => {
             let m: FILE_TRANSFER_PROTOCOL_DATA = message(frame)?;

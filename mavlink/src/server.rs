@@ -17,6 +17,7 @@ use crate::ftp::{Ftp, PAYLOAD};
 use crate::parameters::{Parameters, Place, Refused};
 use crate::parser::{Frame, Parser};
 use crate::requests::{Peer, Request, request};
+use crate::signing::Signing;
 use crate::streams::Schedule;
 use crate::texts::Texts;
 use crate::vehicle::Vehicle;
@@ -88,12 +89,17 @@ impl Server {
         }
     }
 
-    /// Takes `bytes` that arrived at `now`, µs since the start.
-    pub fn receive(&mut self, bytes: &[u8], now: u64, vehicle: &Vehicle) {
+    /// Takes `bytes` that arrived at `now`, µs since the start, as far as `signing` lets it.
+    pub fn receive(&mut self, bytes: &[u8], now: u64, vehicle: &Vehicle, signing: &mut Signing) {
         for &byte in bytes {
-            let asked =
-                (self.parser.push(byte, now)).and_then(|frame| Some((peer(&frame), request(&frame)?)));
-            if let Some((peer, asked)) = asked {
+            let Some(frame) = self.parser.push(byte, now) else {
+                continue;
+            };
+            // What is for others is not judged: their keys are theirs.
+            if let Some(asked) = request(&frame)
+                && signing.takes(&frame, now)
+            {
+                let peer = peer(&frame);
                 self.obey(&asked, peer, now, vehicle);
             }
         }
@@ -185,6 +191,10 @@ impl Server {
                 });
                 self.parameter(found, result);
             }
+            Request::SetupSigning => self.texts.say(
+                MavSeverity::MAV_SEVERITY_WARNING,
+                format_args!("signing key refused: console only"),
+            ),
             Request::File(file) => {
                 self.files.answer = self.files.ftp.answer(&file.payload);
                 self.files.reader = from;

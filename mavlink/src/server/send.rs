@@ -10,13 +10,24 @@ use crate::dialect::*;
 use crate::files::{GENERAL_CRC, GENERAL_URI};
 use crate::frame::Encoder;
 use crate::messages as make;
+use crate::parser::SIGNATURE;
+use crate::signing::{Refused, Signing};
 use crate::streams::{STREAMS, frame_bytes};
 use crate::vehicle::Vehicle;
 
+/// Number of the line in signatures.
+const LINK: u8 = 0;
+
 impl Server {
     /// The next frame that is due and within the budget at `now`, µs since the start.
-    pub fn send(&mut self, now: u64, vehicle: &Vehicle) -> Option<&[u8]> {
+    pub fn send(&mut self, now: u64, vehicle: &Vehicle, signing: &mut Signing) -> Option<&[u8]> {
+        self.encoder.leave_room(signing.signs());
+        self.budget
+            .add_to_each(if signing.signs() { SIGNATURE as u32 } else { 0 });
         self.budget.refill(now);
+        if let Some(refused) = signing.report(now) {
+            self.say_refused(refused);
+        }
         if self.mode != vehicle.mode() {
             self.mode = vehicle.mode();
             self.schedule.hurry(HEARTBEAT_DATA::ID);
@@ -30,7 +41,16 @@ impl Server {
             .or_else(|| self.send_file())
             .or_else(|| self.send_listed())?;
         self.budget.spend(bytes);
+        signing.sign(self.encoder.frame_mut(), LINK, now);
         Some(self.encoder.frame())
+    }
+
+    fn say_refused(&mut self, refused: Refused) {
+        let Refused { unsigned, wrong, old } = refused;
+        self.texts.say(
+            MavSeverity::MAV_SEVERITY_WARNING,
+            format_args!("refused: {unsigned} unsigned, {wrong} wrong, {old} old"),
+        );
     }
 
     /// First of all: no flood of questions makes the vehicle look lost.

@@ -4,6 +4,7 @@ mod budget;
 mod commands;
 mod messages;
 mod parameters;
+mod signing;
 mod station;
 mod texts;
 mod wire;
