@@ -27,6 +27,7 @@ pub mod dialect;
 pub mod files;
 pub mod frame;
 pub mod ftp;
+pub mod inputs;
 pub mod messages;
 pub mod parameters;
 pub mod parser;

@@ -14,6 +14,9 @@ use crate::dialect::*;
 use crate::files::FILES;
 use crate::frame::Encoder;
 use crate::ftp::{Ftp, PAYLOAD};
+use crate::inputs::attitude::OffboardAttitude;
+use crate::inputs::pose::Pose;
+use crate::inputs::{Inputs, Refusal};
 use crate::parameters::{Parameters, Place, Refused};
 use crate::parser::{Frame, Parser};
 use crate::requests::{Peer, Request, request};
@@ -55,6 +58,7 @@ pub struct Server {
     parameters: Parameters,
     answers: Deque<Answer, ANSWERS>,
     files: Files,
+    inputs: Inputs,
     mode: Option<Mode>,
     /// When another's heartbeat came last, µs.
     heard_at: Option<u64>,
@@ -82,6 +86,7 @@ impl Server {
                 },
                 answer: None,
             },
+            inputs: Inputs::new(),
             mode: None,
             heard_at: None,
             restart_at: None,
@@ -134,6 +139,17 @@ impl Server {
         }
     }
 
+    /// What others have measured and wished.
+    pub const fn inputs(&mut self) -> &mut Inputs {
+        &mut self.inputs
+    }
+
+    fn pose(&mut self, pose: Result<Pose, Refusal>, usec: u64, from: Peer, now: u64) {
+        if self.inputs.pose(pose, usec, from, now) {
+            self.answer(Answer::AskTime);
+        }
+    }
+
     fn answer(&mut self, answer: Answer) {
         let _ = self.answers.push_back(answer);
     }
@@ -165,8 +181,14 @@ impl Server {
                         target_system: from.system,
                         target_component: from.component,
                     }));
+                } else {
+                    self.inputs.clock.answer(from, sync.tc1, sync.ts1, now);
                 }
             }
+            Request::Odometry(m) => self.pose(Pose::odometry(m), m.time_usec, from, now),
+            Request::Vision(m) => self.pose(Pose::vision(m), m.usec, from, now),
+            Request::Mocap(m) => self.pose(Pose::mocap(m), m.time_usec, from, now),
+            Request::Attitude(m) => self.inputs.attitude(OffboardAttitude::of(m)),
             Request::Command(command) => {
                 let reply = self.command(command, now, vehicle);
                 self.answer(Answer::Ack {

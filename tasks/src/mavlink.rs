@@ -15,6 +15,7 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
 use sophie_control::tendon::Reel;
 use sophie_control::wrench::PerArm;
+use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::parser::LONGEST;
 pub use sophie_mavlink::signing;
 use sophie_mavlink::signing::Stored;
@@ -81,13 +82,17 @@ pub async fn run(
         let reels = Reel::all(&links.params);
         let mut rate = FixedRate::of(links, TaskId::Mavlink);
         loop {
-            let now = listen(&mut rate, &mut input, &link).await.started.as_micros();
+            let now = listen(links, &mut rate, &mut input, &link)
+                .await
+                .started
+                .as_micros();
             let seen = picture(links, &reels);
             let order = link.with(|shared| {
                 shared.vehicle = seen;
-                links
-                    .mavlink
-                    .send(Instant::from_micros(now), LineState::of(&shared.signing));
+                links.mavlink.send(
+                    Instant::from_micros(now),
+                    LineState::of(&shared.signing, shared.server.inputs().counts()),
+                );
                 shared.server.order(now, &shared.vehicle)
             });
             link.due.signal(());
@@ -136,7 +141,7 @@ async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
 }
 
 /// Hands what arrives to the server until the next run is due.
-async fn listen(rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &Link) -> Tick {
+async fn listen(links: &Links, rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &Link) -> Tick {
     let mut bytes = [0; CHUNK];
     let mut next = pin!(rate.next());
     loop {
@@ -152,12 +157,25 @@ async fn listen(rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &L
                         signing,
                     } = shared;
                     server.receive(arrived, now, vehicle, signing);
+                    publish(links, server.inputs(), now);
                 });
                 // A line that is never silent must not starve the others of this level.
                 embassy_futures::yield_now().await;
             }
             Either::Second(_) => Timer::after(PAUSE).await,
         }
+    }
+}
+
+/// Publishes what others have measured and wished, at the time of its measurement.
+fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
+    if let Some(pose) = inputs.take_pose() {
+        links
+            .external_pose
+            .send(Instant::from_micros(pose.measured_at), pose);
+    }
+    if let Some(attitude) = inputs.take_attitude() {
+        links.offboard.send(Instant::from_micros(now), attitude);
     }
 }
 

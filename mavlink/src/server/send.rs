@@ -76,6 +76,15 @@ impl Server {
             })),
             Answer::Ping(ping) => Some(encoder.encode(&ping)),
             Answer::Timesync(sync) => Some(encoder.encode(&sync)),
+            Answer::AskTime => {
+                let peer = self.inputs.clock.ask(now)?;
+                Some(encoder.encode(&TIMESYNC_DATA {
+                    tc1: 0,
+                    ts1: i64::try_from(now.saturating_mul(1000)).unwrap_or(i64::MAX),
+                    target_system: peer.system,
+                    target_component: peer.component,
+                }))
+            }
             Answer::Interval { id, interval_us } => Some(encoder.encode(&MESSAGE_INTERVAL_DATA {
                 interval_us,
                 message_id: id,

@@ -2,6 +2,7 @@
 
 mod budget;
 mod commands;
+mod inputs;
 mod messages;
 mod parameters;
 mod signing;

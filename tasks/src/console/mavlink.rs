@@ -1,6 +1,7 @@
 //! The MAVLink line: how it is, and its key, which is set nowhere else.
 
 use sophie_control::arming::ArmingInhibit;
+use sophie_mavlink::inputs::Counts;
 use sophie_mavlink::signing::{Key, Record, Refused, Stored};
 
 use super::Console;
@@ -11,7 +12,12 @@ use crate::storing;
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Whether it is signed, and what was refused for that.
     pub(super) async fn mavlink(&mut self) {
-        let Some(LineState { signing, refused }) = self.links.mavlink.fresh() else {
+        let Some(LineState {
+            signing,
+            refused,
+            inputs,
+        }) = self.links.mavlink.fresh()
+        else {
             return self.out.line(format_args!("the MAVLink task is silent")).await;
         };
         let signing = match signing {
@@ -24,6 +30,18 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         self.out
             .line(format_args!(
                 "refused: {unsigned} unsigned, {wrong} with a wrong signature, {old} old or repeated"
+            ))
+            .await;
+        let Counts {
+            poses,
+            attitudes,
+            frame,
+            value,
+            late,
+        } = inputs;
+        self.out
+            .line(format_args!(
+                "inputs: {poses} poses, {attitudes} attitudes; refused {frame} frame, {value} value, {late} late"
             ))
             .await;
     }

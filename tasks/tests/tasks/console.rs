@@ -7,6 +7,7 @@ use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
+use sophie_mavlink::inputs::Counts;
 use sophie_tasks::console;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Battery, LineState, Links, RcState, SigningState, Status};
@@ -537,6 +538,10 @@ fn the_state_of_the_mavlink_line_is_shown() {
             unsigned: 3,
             wrong: 2,
             old: 1,
+        },
+        inputs: Counts {
+            poses: 9,
+            ..Counts::default()
         },
     };
     bench.run(10);

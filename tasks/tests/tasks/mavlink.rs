@@ -8,7 +8,9 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_fakes::FakeLine;
-use sophie_mavlink::dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA, PARAM_SET_DATA};
+use sophie_mavlink::dialect::{
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SET_ATTITUDE_TARGET_DATA,
+};
 use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
 use sophie_tasks::links::{LineState, Links, SigningState, Status};
 use sophie_tasks::mavlink::{self, Line};
@@ -233,8 +235,12 @@ fn with_a_key_frames_are_signed_and_what_arrives_without_is_refused_and_shown() 
         unsigned: 1,
         ..Refused::default()
     };
-    let signing = SigningState::On;
-    assert_eq!(state, Some(LineState { signing, refused }));
+    let wanted = LineState {
+        signing: SigningState::On,
+        refused,
+        ..LineState::default()
+    };
+    assert_eq!(state, Some(wanted));
     // Signed, it is obeyed.
     bench.say_signed(
         DATE + 1,
@@ -275,4 +281,37 @@ fn the_bound_is_not_written_over_a_key_that_waits_for_a_restart() {
     bench.say_signed(DATE + 1, &HEARTBEAT_DATA::DEFAULT);
     bench.run(1000);
     assert_eq!(bench.board.signing.get(), Some(new));
+}
+
+#[test]
+fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
+    let mut bench = Bench::in_mode(Mode::Flight);
+    bench.run(1000);
+    let pose = ODOMETRY_DATA {
+        time_usec: 990_000,
+        x: 1.0,
+        q: [1.0, 0.0, 0.0, 0.0],
+        frame_id: 1,
+        child_frame_id: 12,
+        ..Default::default()
+    };
+    bench.say(&pose);
+    bench.say(&SET_ATTITUDE_TARGET_DATA {
+        thrust: 0.5,
+        type_mask: 7 + 128,
+        ..Default::default()
+    });
+    bench.say(&ODOMETRY_DATA { x: f32::NAN, ..pose });
+    bench.run(40);
+    let links = bench.rig.links;
+    let seen = links.external_pose.latest().unwrap();
+    assert_eq!(seen.at.as_micros(), 990_000);
+    assert_eq!(seen.value.pose.position.x, 1.0);
+    assert_eq!(links.offboard.fresh().and_then(|wish| wish.thrust), Some(0.5));
+    let inputs = links.mavlink.fresh().unwrap().inputs;
+    assert_eq!((inputs.poses, inputs.attitudes, inputs.value), (1, 1, 1));
+    bench.run(200);
+    assert!(links.external_pose.fresh().is_none() && links.offboard.fresh().is_some());
+    bench.run(400);
+    assert!(links.offboard.fresh().is_none());
 }
