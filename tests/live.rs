@@ -214,3 +214,41 @@ fn pymavlink_hears_the_vehicle() {
         }
     }
 }
+
+#[test]
+#[ignore = "wants pymavlink, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn pymavlink_signs_and_what_it_has_said_is_not_taken_again() {
+    let temp = Temp::new("live-signing");
+    let key = temp.file(
+        "key",
+        b"00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff\n",
+    );
+    let (socket, address) = station();
+    drop(socket);
+    let args = ["--pilot", "none", "--mavlink", &address, "--mavlink-key", &key];
+    let _flight = Flight::begin(&temp, &args);
+    let result = clients::run("signing.py", &[&format!("udpin:{address}"), &key]);
+    assert!(
+        result["good"].as_u64().unwrap() > 50 && result["recorded"].as_u64().unwrap() > 5,
+        "{result}"
+    );
+}
+
+#[test]
+fn a_file_without_a_key_is_named() {
+    let temp = Temp::new("live-key");
+    let file = temp.file("key", b"0011\n");
+    let output = command(
+        &temp.0,
+        &["fly", "--live", "--pilot", "none", "--mavlink-key", &file],
+    )
+    .output()
+    .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let told = text(&output.stderr);
+    assert!(
+        told.contains(": no key: 64 hexadecimal digits are expected"),
+        "{told}"
+    );
+    assert_eq!(told.lines().count(), 1, "{told}");
+}

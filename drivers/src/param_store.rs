@@ -2,7 +2,7 @@
 //!
 //! One item of a `sequential_storage` map holds the whole set: a save cut short leaves the old or the new set. An item
 //! is a tag and eight bytes per parameter that differs from the board's default: FNV-1a hash of its name, bits of its
-//! value. Other firmware reads the parameters that it knows, also by former names.
+//! value. Other firmware reads the parameters that it knows, also by former names. MAVLink's key is ten such values.
 //!
 //! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
 //! start-up could outlast the watchdog.
@@ -11,6 +11,7 @@
 
 mod foreign;
 mod guard;
+mod key;
 mod set;
 
 use core::ops::Range;
@@ -21,6 +22,7 @@ use sequential_storage::cache::key_pointers::ArrayKeyPointers;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 use sophie_control::params::Params;
+use sophie_tasks::mavlink::signing::{Record, Stored};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 use self::guard::ReadOnly;
@@ -43,12 +45,29 @@ struct Found {
     damaged: bool,
 }
 
+/// What is to be stored.
+struct Content {
+    params: Params,
+    signing: Option<Record>,
+}
+
 impl Found {
-    /// True if a save of `params` over `defaults` would change nothing.
-    fn holds(&self, params: &Params, defaults: &Params) -> bool {
+    /// What is stored, over `defaults`.
+    fn content(&self, defaults: &Params) -> Content {
+        Content {
+            params: self.set.as_ref().map_or(*defaults, |set| set.over(defaults)),
+            signing: self.set.as_ref().and_then(|set| set.signing),
+        }
+    }
+
+    /// True if a save of `content` over `defaults` would change nothing.
+    fn holds(&self, content: &Content, defaults: &Params) -> bool {
+        let Content { params, signing } = content;
         let same = match &self.set {
-            Some(set) => set.refused == 0 && !set.renamed && set.over(defaults) == *params,
-            None => params == defaults,
+            Some(set) => {
+                set.refused == 0 && !set.renamed && set.over(defaults) == *params && set.signing == *signing
+            }
+            None => params == defaults && signing.is_none(),
         };
         same && !self.damaged
     }
@@ -121,18 +140,56 @@ impl<F: NorFlash> ParamStore<F> {
         None
     }
 
-    async fn append(&mut self, params: &Params, buffer: &mut [u8; BUFFER]) -> Result<(), StorageError> {
+    async fn append(&mut self, content: &Content, buffer: &mut [u8; BUFFER]) -> Result<(), StorageError> {
         let config = self.config().ok_or(StorageError::Broken)?;
         // Caches the place of the one key, which moving a page would search for each item.
         let cache = Cache::new(Uncached, Uncached, ArrayKeyPointers::<(), 1>::new());
         let mut map = MapStorage::<(), _, _>::new(&mut self.flash, config, cache);
-        map.store_item(buffer, &(), &Set::of(*params, self.defaults))
+        map.store_item(
+            buffer,
+            &(),
+            &Set::of(content.params, content.signing, self.defaults),
+        )
+        .await
+        .map_err(|e| match e {
+            // A full log makes room by itself; otherwise its flash does not hold the marks.
+            Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
+            _ => StorageError::Broken,
+        })
+    }
+}
+
+impl<F: NorFlash> ParamStore<F> {
+    /// Stores `content` in place of what was `found`.
+    async fn replace(
+        &mut self,
+        found: Found,
+        content: &Content,
+        buffer: &mut [u8; BUFFER],
+    ) -> Result<(), StorageError> {
+        if found.holds(content, self.defaults) {
+            return Ok(());
+        }
+        // Appending keeps a readable old set until the new one is complete.
+        if found.set.is_some() || !found.damaged {
+            match self.append(content, buffer).await {
+                Ok(()) if self.find(buffer).await.holds(content, self.defaults) => return Ok(()),
+                Err(StorageError::Full) => return Err(StorageError::Full),
+                // Existing data are in the way.
+                Ok(()) | Err(StorageError::Broken) => (),
+            }
+        }
+        self.config::<&mut F>().ok_or(StorageError::Broken)?;
+        self.flash
+            .erase(self.range.start, self.range.end)
             .await
-            .map_err(|e| match e {
-                // A full log makes room by itself; otherwise its flash does not hold the marks.
-                Error::ItemTooBig | Error::BufferTooSmall(_) => StorageError::Full,
-                _ => StorageError::Broken,
-            })
+            .map_err(|_| StorageError::Broken)?;
+        self.append(content, buffer).await?;
+        if self.find(buffer).await.holds(content, self.defaults) {
+            Ok(())
+        } else {
+            Err(StorageError::Broken)
+        }
     }
 }
 
@@ -149,6 +206,10 @@ impl<F: NorFlash> Storage for ParamStore<F> {
             return Loaded {
                 unreadable: found.damaged,
                 foreign,
+                signing: match foreign {
+                    None if found.damaged => Stored::Unreadable,
+                    _ => Stored::None,
+                },
                 ..Loaded::default()
             };
         };
@@ -158,34 +219,31 @@ impl<F: NorFlash> Storage for ParamStore<F> {
             refused: set.refused,
             unreadable: found.damaged,
             foreign: None,
+            signing: set.signing.map_or(Stored::None, Stored::Key),
         }
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
         let mut buffer = [0; BUFFER];
         let found = self.find(&mut buffer).await;
-        if found.holds(params, self.defaults) {
-            return Ok(());
+        let content = Content {
+            params: *params,
+            ..found.content(self.defaults)
+        };
+        self.replace(found, &content, &mut buffer).await
+    }
+
+    async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError> {
+        let mut buffer = [0; BUFFER];
+        let found = self.find(&mut buffer).await;
+        if found.set.is_none() && found.damaged {
+            // Parameters that cannot be read are not replaced unasked.
+            return Err(StorageError::Broken);
         }
-        // Appending keeps a readable old set until the new one is complete.
-        if found.set.is_some() || !found.damaged {
-            match self.append(params, &mut buffer).await {
-                Ok(()) if self.find(&mut buffer).await.holds(params, self.defaults) => return Ok(()),
-                Err(StorageError::Full) => return Err(StorageError::Full),
-                // Existing data are in the way.
-                Ok(()) | Err(StorageError::Broken) => (),
-            }
-        }
-        self.config::<&mut F>().ok_or(StorageError::Broken)?;
-        self.flash
-            .erase(self.range.start, self.range.end)
-            .await
-            .map_err(|_| StorageError::Broken)?;
-        self.append(params, &mut buffer).await?;
-        if self.find(&mut buffer).await.holds(params, self.defaults) {
-            Ok(())
-        } else {
-            Err(StorageError::Broken)
-        }
+        let content = Content {
+            signing,
+            ..found.content(self.defaults)
+        };
+        self.replace(found, &content, &mut buffer).await
     }
 }

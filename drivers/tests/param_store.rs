@@ -14,6 +14,7 @@ use sequential_storage::map::{MapConfig, MapStorage};
 use sophie_control::params::Params;
 use sophie_drivers::param_store::{BUFFER, ParamStore, hash};
 use sophie_fakes::Flash;
+use sophie_tasks::mavlink::signing::{Key, Record, Stored};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 /// Small, so that a short log rotates often.
@@ -164,6 +165,106 @@ fn power_may_go_at_every_step_of_every_save() {
     }
     println!("{cuts} cuts");
     assert!(cuts > 1000);
+}
+
+fn save_key<const W: usize, const P: usize>(
+    flash: &Flash<W, P>,
+    signing: Option<Record>,
+) -> Result<(), StorageError> {
+    let (flash, range) = (flash.clone(), flash.range());
+    run(async move { ParamStore::new(flash, range).save_signing(signing).await })
+}
+
+fn record(bound: u64) -> Record {
+    Record {
+        key: Key::new(std::array::from_fn(|n| 7 * n as u8)),
+        bound,
+    }
+}
+
+#[test]
+fn a_key_lies_beside_the_parameters_and_neither_changes_the_other() {
+    let flash = Flash::<32, SMALL>::blank(2);
+    assert_eq!(save_key(&flash, None), Ok(()));
+    assert_eq!(flash.0.borrow().steps, 0, "nothing differs, nothing is written");
+    // Without a parameter, with all of them, and with fewer again.
+    for params in [
+        Params::default(),
+        set(&[("infill", 8.0)]),
+        all_changed_small(),
+        Params::default(),
+    ] {
+        for bound in [0, 5, (1 << 48) - 1] {
+            assert_eq!(save_key(&flash, Some(record(bound))), Ok(()));
+            assert_eq!(save(&flash, params), Ok(()));
+            let (found, loaded) = load(&flash);
+            assert_eq!((found, loaded.signing), (params, Stored::Key(record(bound))));
+            assert_eq!((loaded.refused, loaded.unreadable), (0, false));
+        }
+    }
+    assert_eq!(save(&flash, set(&[("infill", 8.0)])), Ok(()));
+    assert_eq!(save_key(&flash, None), Ok(()));
+    assert_eq!(load(&flash), (set(&[("infill", 8.0)]), sound(1)));
+    assert_eq!(flash.0.borrow().violations, [""; 0]);
+}
+
+/// As many as a page of [`SMALL`] bytes holds beside the key.
+fn all_changed_small() -> Params {
+    set(&[("infill", 8.0), ("rate_p", 5.0), ("rate_i", 3.0), ("gain_k", 5.0)])
+}
+
+#[test]
+fn power_may_go_at_every_step_of_storing_a_key() {
+    let params = set(&[("infill", 8.0)]);
+    let mut cuts = 0;
+    // Twice round the log.
+    for saves in 0..20 {
+        let start = Flash::<32, 512>::blank(2);
+        assert_eq!(save(&start, params), Ok(()));
+        for n in 0..saves {
+            assert_eq!(save_key(&start, Some(record(n))), Ok(()));
+        }
+        let old = saves
+            .checked_sub(1)
+            .map_or(Stored::None, |n| Stored::Key(record(n)));
+        let new = record(saves);
+        let whole = start.copy();
+        assert_eq!(save_key(&whole, Some(new)), Ok(()));
+        let (first, last) = (start.0.borrow().steps, whole.0.borrow().steps);
+        for cut in first..last {
+            let flash = start.copy();
+            flash.0.borrow_mut().cut_at = Some(cut);
+            assert_eq!(
+                save_key(&flash, Some(new)),
+                Err(StorageError::Broken),
+                "cut {cut}"
+            );
+            let flash = flash.copy();
+            let (found, loaded) = load(&flash);
+            assert!(found == params, "cut {cut}: parameters lost");
+            assert!(
+                [old, Stored::Key(new)].contains(&loaded.signing),
+                "cut {cut}: {loaded:?}"
+            );
+            assert_eq!(save_key(&flash, Some(new)), Ok(()), "cut {cut}");
+            assert_eq!(load(&flash).1.signing, Stored::Key(new), "cut {cut}");
+        }
+        cuts += last - first;
+    }
+    assert!(cuts > 100, "{cuts}");
+}
+
+#[test]
+fn a_key_is_no_reason_to_erase_what_cannot_be_read() {
+    let flash = with_item::<32, SMALL>(b"neither parameters nor a key");
+    let before = flash.0.borrow().bytes.clone();
+    assert_eq!(load(&flash).1.signing, Stored::Unreadable);
+    assert_eq!(save_key(&flash, Some(record(1))), Err(StorageError::Broken));
+    assert_eq!(flash.0.borrow().bytes, before);
+    // A save of parameters clears it.
+    assert_eq!(save(&flash, Params::default()), Ok(()));
+    assert_eq!(load(&flash).1.signing, Stored::None);
+    assert_eq!(save_key(&flash, Some(record(1))), Ok(()));
 }
 
 fn with_item<const W: usize, const P: usize>(item: &'static [u8]) -> Flash<W, P> {
@@ -344,6 +445,11 @@ fn what_another_flight_stack_left_is_named_and_a_save_takes_its_place() {
         let wanted = Loaded {
             unreadable: true,
             foreign: owner,
+            // What is noise may have been a key.
+            signing: match owner {
+                Some(_) => Stored::None,
+                None => Stored::Unreadable,
+            },
             ..Loaded::default()
         };
         assert_eq!((params, loaded), (Params::default(), wanted), "{owner:?}");

@@ -15,7 +15,8 @@ use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::vector::{Quat, Vec3};
-use sophie_mavlink::{Condition, Order, Server, Vehicle};
+use sophie_mavlink::signing::Stored;
+use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
 
 /// The period of the task that serves a line.
 const PERIOD: Duration = Duration::from_millis(20);
@@ -101,17 +102,23 @@ fn main() -> std::io::Result<()> {
     line.set_nonblocking(true)?;
     let vehicle = picture();
     let mut server = Server::new(Params::DEFAULT, BUDGET);
+    let mut signing = Signing::new(Stored::None);
     let start = Instant::now();
     let mut bytes = [0; 512];
     while start.elapsed() < LONGEST {
         let now = u64::try_from(start.elapsed().as_micros()).unwrap_or(u64::MAX);
         match line.read(&mut bytes) {
             Ok(0) => break,
-            Ok(count) => server.receive(bytes.get(..count).unwrap_or_default(), now, &vehicle),
+            Ok(count) => server.receive(
+                bytes.get(..count).unwrap_or_default(),
+                now,
+                &vehicle,
+                &mut signing,
+            ),
             Err(error) if error.kind() == ErrorKind::WouldBlock => (),
             Err(_) => break,
         }
-        while let Some(frame) = server.send(now, &vehicle) {
+        while let Some(frame) = server.send(now, &vehicle, &mut signing) {
             line.write_all(frame)?;
         }
         match server.order(now, &vehicle) {

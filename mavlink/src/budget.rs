@@ -16,6 +16,8 @@ pub struct Budget {
     saved: u64,
     /// When they were last added to, µs.
     at: u64,
+    /// Bytes that each frame takes beside its own.
+    extra: u32,
 }
 
 impl Budget {
@@ -25,6 +27,7 @@ impl Budget {
             rate,
             saved: 0,
             at: 0,
+            extra: 0,
         }
     }
 
@@ -40,9 +43,14 @@ impl Budget {
         self.saved = self.saved.saturating_add(added).min(self.most());
     }
 
-    /// True where `bytes` may be sent now.
+    /// Counts `extra` bytes more for each frame.
+    pub const fn add_to_each(&mut self, extra: u32) {
+        self.extra = extra;
+    }
+
+    /// True where a frame of `bytes` may be sent now.
     pub const fn allows(&self, bytes: u32) -> bool {
-        self.saved >= bytes as u64 * 1_000_000
+        self.saved >= (bytes as u64 + self.extra as u64) * 1_000_000
     }
 
     /// Takes `bytes` that were sent.

@@ -625,6 +625,107 @@ impl MessageData for ATTITUDE_QUATERNION_DATA {
         }
     }
 }
+#[doc = "ID: 138"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct ATT_POS_MOCAP_DATA {
+    pub time_usec: u64,
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub q: [f32; 4],
+    pub x: f32,
+    pub y: f32,
+    pub z: f32,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub covariance: [f32; 21],
+}
+impl ATT_POS_MOCAP_DATA {
+    pub const ENCODED_LEN: usize = 120usize;
+    pub const DEFAULT: Self = Self {
+        time_usec: 0_u64,
+        q: [0.0_f32; 4usize],
+        x: 0.0_f32,
+        y: 0.0_f32,
+        z: 0.0_f32,
+        covariance: [0.0_f32; 21usize],
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for ATT_POS_MOCAP_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for ATT_POS_MOCAP_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 138u32;
+    const NAME: &'static str = "ATT_POS_MOCAP";
+    const EXTRA_CRC: u8 = 109u8;
+    const ENCODED_LEN: usize = 120usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_usec = buf.get_u64_le()?;
+        for v in &mut __struct.q {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.x = buf.get_f32_le()?;
+        __struct.y = buf.get_f32_le()?;
+        __struct.z = buf.get_f32_le()?;
+        for v in &mut __struct.covariance {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.time_usec);
+        for val in &self.q {
+            __tmp.put_f32_le(*val);
+        }
+        __tmp.put_f32_le(self.x);
+        __tmp.put_f32_le(self.y);
+        __tmp.put_f32_le(self.z);
+        if matches!(version, MavlinkVersion::V2) {
+            for val in &self.covariance {
+                __tmp.put_f32_le(*val);
+            }
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 148"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -1915,6 +2016,164 @@ impl MessageData for NAMED_VALUE_FLOAT_DATA {
         }
     }
 }
+#[doc = "ID: 331"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct ODOMETRY_DATA {
+    pub time_usec: u64,
+    pub x: f32,
+    pub y: f32,
+    pub z: f32,
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub q: [f32; 4],
+    pub vx: f32,
+    pub vy: f32,
+    pub vz: f32,
+    pub rollspeed: f32,
+    pub pitchspeed: f32,
+    pub yawspeed: f32,
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub pose_covariance: [f32; 21],
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub velocity_covariance: [f32; 21],
+    pub frame_id: u8,
+    pub child_frame_id: u8,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub reset_counter: u8,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub estimator_type: u8,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub quality: i8,
+}
+impl ODOMETRY_DATA {
+    pub const ENCODED_LEN: usize = 233usize;
+    pub const DEFAULT: Self = Self {
+        time_usec: 0_u64,
+        x: 0.0_f32,
+        y: 0.0_f32,
+        z: 0.0_f32,
+        q: [0.0_f32; 4usize],
+        vx: 0.0_f32,
+        vy: 0.0_f32,
+        vz: 0.0_f32,
+        rollspeed: 0.0_f32,
+        pitchspeed: 0.0_f32,
+        yawspeed: 0.0_f32,
+        pose_covariance: [0.0_f32; 21usize],
+        velocity_covariance: [0.0_f32; 21usize],
+        frame_id: 0_u8,
+        child_frame_id: 0_u8,
+        reset_counter: 0_u8,
+        estimator_type: 0_u8,
+        quality: 0_i8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for ODOMETRY_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for ODOMETRY_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 331u32;
+    const NAME: &'static str = "ODOMETRY";
+    const EXTRA_CRC: u8 = 91u8;
+    const ENCODED_LEN: usize = 233usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_usec = buf.get_u64_le()?;
+        __struct.x = buf.get_f32_le()?;
+        __struct.y = buf.get_f32_le()?;
+        __struct.z = buf.get_f32_le()?;
+        for v in &mut __struct.q {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.vx = buf.get_f32_le()?;
+        __struct.vy = buf.get_f32_le()?;
+        __struct.vz = buf.get_f32_le()?;
+        __struct.rollspeed = buf.get_f32_le()?;
+        __struct.pitchspeed = buf.get_f32_le()?;
+        __struct.yawspeed = buf.get_f32_le()?;
+        for v in &mut __struct.pose_covariance {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        for v in &mut __struct.velocity_covariance {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.frame_id = buf.get_u8()?;
+        __struct.child_frame_id = buf.get_u8()?;
+        __struct.reset_counter = buf.get_u8()?;
+        __struct.estimator_type = buf.get_u8()?;
+        __struct.quality = buf.get_i8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.time_usec);
+        __tmp.put_f32_le(self.x);
+        __tmp.put_f32_le(self.y);
+        __tmp.put_f32_le(self.z);
+        for val in &self.q {
+            __tmp.put_f32_le(*val);
+        }
+        __tmp.put_f32_le(self.vx);
+        __tmp.put_f32_le(self.vy);
+        __tmp.put_f32_le(self.vz);
+        __tmp.put_f32_le(self.rollspeed);
+        __tmp.put_f32_le(self.pitchspeed);
+        __tmp.put_f32_le(self.yawspeed);
+        for val in &self.pose_covariance {
+            __tmp.put_f32_le(*val);
+        }
+        for val in &self.velocity_covariance {
+            __tmp.put_f32_le(*val);
+        }
+        __tmp.put_u8(self.frame_id);
+        __tmp.put_u8(self.child_frame_id);
+        if matches!(version, MavlinkVersion::V2) {
+            __tmp.put_u8(self.reset_counter);
+            __tmp.put_u8(self.estimator_type);
+            __tmp.put_i8(self.quality);
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 21"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -2806,6 +3065,111 @@ impl MessageData for SETUP_SIGNING_DATA {
         }
     }
 }
+#[doc = "ID: 82"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct SET_ATTITUDE_TARGET_DATA {
+    pub time_boot_ms: u32,
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub q: [f32; 4],
+    pub body_roll_rate: f32,
+    pub body_pitch_rate: f32,
+    pub body_yaw_rate: f32,
+    pub thrust: f32,
+    pub target_system: u8,
+    pub target_component: u8,
+    pub type_mask: u8,
+}
+impl SET_ATTITUDE_TARGET_DATA {
+    pub const ENCODED_LEN: usize = 39usize;
+    pub const DEFAULT: Self = Self {
+        time_boot_ms: 0_u32,
+        q: [0.0_f32; 4usize],
+        body_roll_rate: 0.0_f32,
+        body_pitch_rate: 0.0_f32,
+        body_yaw_rate: 0.0_f32,
+        thrust: 0.0_f32,
+        target_system: 0_u8,
+        target_component: 0_u8,
+        type_mask: 0_u8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for SET_ATTITUDE_TARGET_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for SET_ATTITUDE_TARGET_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 82u32;
+    const NAME: &'static str = "SET_ATTITUDE_TARGET";
+    const EXTRA_CRC: u8 = 49u8;
+    const ENCODED_LEN: usize = 39usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.time_boot_ms = buf.get_u32_le()?;
+        for v in &mut __struct.q {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.body_roll_rate = buf.get_f32_le()?;
+        __struct.body_pitch_rate = buf.get_f32_le()?;
+        __struct.body_yaw_rate = buf.get_f32_le()?;
+        __struct.thrust = buf.get_f32_le()?;
+        __struct.target_system = buf.get_u8()?;
+        __struct.target_component = buf.get_u8()?;
+        __struct.type_mask = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u32_le(self.time_boot_ms);
+        for val in &self.q {
+            __tmp.put_f32_le(*val);
+        }
+        __tmp.put_f32_le(self.body_roll_rate);
+        __tmp.put_f32_le(self.body_pitch_rate);
+        __tmp.put_f32_le(self.body_yaw_rate);
+        __tmp.put_f32_le(self.thrust);
+        __tmp.put_u8(self.target_system);
+        __tmp.put_u8(self.target_component);
+        __tmp.put_u8(self.type_mask);
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
 #[doc = ""]
 #[doc = "ID: 53000"]
@@ -3248,6 +3612,113 @@ impl MessageData for TIMESYNC_DATA {
         }
     }
 }
+#[doc = "ID: 102"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct VISION_POSITION_ESTIMATE_DATA {
+    pub usec: u64,
+    pub x: f32,
+    pub y: f32,
+    pub z: f32,
+    pub roll: f32,
+    pub pitch: f32,
+    pub yaw: f32,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub covariance: [f32; 21],
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub reset_counter: u8,
+}
+impl VISION_POSITION_ESTIMATE_DATA {
+    pub const ENCODED_LEN: usize = 117usize;
+    pub const DEFAULT: Self = Self {
+        usec: 0_u64,
+        x: 0.0_f32,
+        y: 0.0_f32,
+        z: 0.0_f32,
+        roll: 0.0_f32,
+        pitch: 0.0_f32,
+        yaw: 0.0_f32,
+        covariance: [0.0_f32; 21usize],
+        reset_counter: 0_u8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for VISION_POSITION_ESTIMATE_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for VISION_POSITION_ESTIMATE_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 102u32;
+    const NAME: &'static str = "VISION_POSITION_ESTIMATE";
+    const EXTRA_CRC: u8 = 158u8;
+    const ENCODED_LEN: usize = 117usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.usec = buf.get_u64_le()?;
+        __struct.x = buf.get_f32_le()?;
+        __struct.y = buf.get_f32_le()?;
+        __struct.z = buf.get_f32_le()?;
+        __struct.roll = buf.get_f32_le()?;
+        __struct.pitch = buf.get_f32_le()?;
+        __struct.yaw = buf.get_f32_le()?;
+        for v in &mut __struct.covariance {
+            let val = buf.get_f32_le()?;
+            *v = val;
+        }
+        __struct.reset_counter = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u64_le(self.usec);
+        __tmp.put_f32_le(self.x);
+        __tmp.put_f32_le(self.y);
+        __tmp.put_f32_le(self.z);
+        __tmp.put_f32_le(self.roll);
+        __tmp.put_f32_le(self.pitch);
+        __tmp.put_f32_le(self.yaw);
+        if matches!(version, MavlinkVersion::V2) {
+            for val in &self.covariance {
+                __tmp.put_f32_le(*val);
+            }
+            __tmp.put_u8(self.reset_counter);
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[derive(Clone, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(tag = "type"))]
@@ -3260,6 +3731,8 @@ pub enum MavMessage {
     ATTITUDE(ATTITUDE_DATA),
     #[doc = "ID: 31"]
     ATTITUDE_QUATERNION(ATTITUDE_QUATERNION_DATA),
+    #[doc = "ID: 138"]
+    ATT_POS_MOCAP(ATT_POS_MOCAP_DATA),
     #[doc = "ID: 148"]
     AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA),
     #[doc = "ID: 435"]
@@ -3288,6 +3761,8 @@ pub enum MavMessage {
     MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA),
     #[doc = "ID: 251"]
     NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA),
+    #[doc = "ID: 331"]
+    ODOMETRY(ODOMETRY_DATA),
     #[doc = "ID: 21"]
     PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA),
     #[doc = "ID: 20"]
@@ -3306,6 +3781,8 @@ pub enum MavMessage {
     SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA),
     #[doc = "ID: 256"]
     SETUP_SIGNING(SETUP_SIGNING_DATA),
+    #[doc = "ID: 82"]
+    SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA),
     #[doc = "Arms and grip: front-left, rear-left, front-right, rear-right. NaN where nothing fresh is known."]
     #[doc = ""]
     #[doc = "ID: 53000"]
@@ -3316,13 +3793,15 @@ pub enum MavMessage {
     SYS_STATUS(SYS_STATUS_DATA),
     #[doc = "ID: 111"]
     TIMESYNC(TIMESYNC_DATA),
+    #[doc = "ID: 102"]
+    VISION_POSITION_ESTIMATE(VISION_POSITION_ESTIMATE_DATA),
 }
 impl MavMessage {
     pub const fn all_ids() -> &'static [u32] {
         &[
             0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 30u32, 31u32, 36u32, 65u32, 75u32, 76u32,
-            77u32, 110u32, 111u32, 147u32, 148u32, 244u32, 245u32, 251u32, 253u32, 256u32, 397u32, 435u32,
-            436u32, 437u32, 53000u32,
+            77u32, 82u32, 102u32, 110u32, 111u32, 138u32, 147u32, 148u32, 244u32, 245u32, 251u32, 253u32,
+            256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -3342,8 +3821,14 @@ impl MavMessage {
             (COMMAND_INT_DATA::NAME, COMMAND_INT_DATA::ID),
             (COMMAND_LONG_DATA::NAME, COMMAND_LONG_DATA::ID),
             (COMMAND_ACK_DATA::NAME, COMMAND_ACK_DATA::ID),
+            (SET_ATTITUDE_TARGET_DATA::NAME, SET_ATTITUDE_TARGET_DATA::ID),
+            (
+                VISION_POSITION_ESTIMATE_DATA::NAME,
+                VISION_POSITION_ESTIMATE_DATA::ID,
+            ),
             (FILE_TRANSFER_PROTOCOL_DATA::NAME, FILE_TRANSFER_PROTOCOL_DATA::ID),
             (TIMESYNC_DATA::NAME, TIMESYNC_DATA::ID),
+            (ATT_POS_MOCAP_DATA::NAME, ATT_POS_MOCAP_DATA::ID),
             (BATTERY_STATUS_DATA::NAME, BATTERY_STATUS_DATA::ID),
             (AUTOPILOT_VERSION_DATA::NAME, AUTOPILOT_VERSION_DATA::ID),
             (MESSAGE_INTERVAL_DATA::NAME, MESSAGE_INTERVAL_DATA::ID),
@@ -3351,6 +3836,7 @@ impl MavMessage {
             (NAMED_VALUE_FLOAT_DATA::NAME, NAMED_VALUE_FLOAT_DATA::ID),
             (STATUSTEXT_DATA::NAME, STATUSTEXT_DATA::ID),
             (SETUP_SIGNING_DATA::NAME, SETUP_SIGNING_DATA::ID),
+            (ODOMETRY_DATA::NAME, ODOMETRY_DATA::ID),
             (COMPONENT_METADATA_DATA::NAME, COMPONENT_METADATA_DATA::ID),
             (AVAILABLE_MODES_DATA::NAME, AVAILABLE_MODES_DATA::ID),
             (CURRENT_MODE_DATA::NAME, CURRENT_MODE_DATA::ID),
@@ -3373,6 +3859,7 @@ impl Message for MavMessage {
             ATTITUDE_QUATERNION_DATA::ID => {
                 ATTITUDE_QUATERNION_DATA::deser(version, payload).map(Self::ATTITUDE_QUATERNION)
             }
+            ATT_POS_MOCAP_DATA::ID => ATT_POS_MOCAP_DATA::deser(version, payload).map(Self::ATT_POS_MOCAP),
             AUTOPILOT_VERSION_DATA::ID => {
                 AUTOPILOT_VERSION_DATA::deser(version, payload).map(Self::AUTOPILOT_VERSION)
             }
@@ -3403,6 +3890,7 @@ impl Message for MavMessage {
             NAMED_VALUE_FLOAT_DATA::ID => {
                 NAMED_VALUE_FLOAT_DATA::deser(version, payload).map(Self::NAMED_VALUE_FLOAT)
             }
+            ODOMETRY_DATA::ID => ODOMETRY_DATA::deser(version, payload).map(Self::ODOMETRY),
             PARAM_REQUEST_LIST_DATA::ID => {
                 PARAM_REQUEST_LIST_DATA::deser(version, payload).map(Self::PARAM_REQUEST_LIST)
             }
@@ -3418,10 +3906,16 @@ impl Message for MavMessage {
                 SERVO_OUTPUT_RAW_DATA::deser(version, payload).map(Self::SERVO_OUTPUT_RAW)
             }
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::deser(version, payload).map(Self::SETUP_SIGNING),
+            SET_ATTITUDE_TARGET_DATA::ID => {
+                SET_ATTITUDE_TARGET_DATA::deser(version, payload).map(Self::SET_ATTITUDE_TARGET)
+            }
             SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::deser(version, payload).map(Self::SOPHIE_ARMS),
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::deser(version, payload).map(Self::STATUSTEXT),
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::deser(version, payload).map(Self::SYS_STATUS),
             TIMESYNC_DATA::ID => TIMESYNC_DATA::deser(version, payload).map(Self::TIMESYNC),
+            VISION_POSITION_ESTIMATE_DATA::ID => {
+                VISION_POSITION_ESTIMATE_DATA::deser(version, payload).map(Self::VISION_POSITION_ESTIMATE)
+            }
             _ => Err(::mavlink_core::error::ParserError::UnknownMessage { id }),
         }
     }
@@ -3429,6 +3923,7 @@ impl Message for MavMessage {
         match self {
             Self::ATTITUDE(..) => ATTITUDE_DATA::NAME,
             Self::ATTITUDE_QUATERNION(..) => ATTITUDE_QUATERNION_DATA::NAME,
+            Self::ATT_POS_MOCAP(..) => ATT_POS_MOCAP_DATA::NAME,
             Self::AUTOPILOT_VERSION(..) => AUTOPILOT_VERSION_DATA::NAME,
             Self::AVAILABLE_MODES(..) => AVAILABLE_MODES_DATA::NAME,
             Self::AVAILABLE_MODES_MONITOR(..) => AVAILABLE_MODES_MONITOR_DATA::NAME,
@@ -3443,6 +3938,7 @@ impl Message for MavMessage {
             Self::HEARTBEAT(..) => HEARTBEAT_DATA::NAME,
             Self::MESSAGE_INTERVAL(..) => MESSAGE_INTERVAL_DATA::NAME,
             Self::NAMED_VALUE_FLOAT(..) => NAMED_VALUE_FLOAT_DATA::NAME,
+            Self::ODOMETRY(..) => ODOMETRY_DATA::NAME,
             Self::PARAM_REQUEST_LIST(..) => PARAM_REQUEST_LIST_DATA::NAME,
             Self::PARAM_REQUEST_READ(..) => PARAM_REQUEST_READ_DATA::NAME,
             Self::PARAM_SET(..) => PARAM_SET_DATA::NAME,
@@ -3452,16 +3948,19 @@ impl Message for MavMessage {
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::NAME,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::NAME,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::NAME,
+            Self::SET_ATTITUDE_TARGET(..) => SET_ATTITUDE_TARGET_DATA::NAME,
             Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::NAME,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::NAME,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::NAME,
             Self::TIMESYNC(..) => TIMESYNC_DATA::NAME,
+            Self::VISION_POSITION_ESTIMATE(..) => VISION_POSITION_ESTIMATE_DATA::NAME,
         }
     }
     fn message_id(&self) -> u32 {
         match self {
             Self::ATTITUDE(..) => ATTITUDE_DATA::ID,
             Self::ATTITUDE_QUATERNION(..) => ATTITUDE_QUATERNION_DATA::ID,
+            Self::ATT_POS_MOCAP(..) => ATT_POS_MOCAP_DATA::ID,
             Self::AUTOPILOT_VERSION(..) => AUTOPILOT_VERSION_DATA::ID,
             Self::AVAILABLE_MODES(..) => AVAILABLE_MODES_DATA::ID,
             Self::AVAILABLE_MODES_MONITOR(..) => AVAILABLE_MODES_MONITOR_DATA::ID,
@@ -3476,6 +3975,7 @@ impl Message for MavMessage {
             Self::HEARTBEAT(..) => HEARTBEAT_DATA::ID,
             Self::MESSAGE_INTERVAL(..) => MESSAGE_INTERVAL_DATA::ID,
             Self::NAMED_VALUE_FLOAT(..) => NAMED_VALUE_FLOAT_DATA::ID,
+            Self::ODOMETRY(..) => ODOMETRY_DATA::ID,
             Self::PARAM_REQUEST_LIST(..) => PARAM_REQUEST_LIST_DATA::ID,
             Self::PARAM_REQUEST_READ(..) => PARAM_REQUEST_READ_DATA::ID,
             Self::PARAM_SET(..) => PARAM_SET_DATA::ID,
@@ -3485,16 +3985,19 @@ impl Message for MavMessage {
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::ID,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::ID,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::ID,
+            Self::SET_ATTITUDE_TARGET(..) => SET_ATTITUDE_TARGET_DATA::ID,
             Self::SOPHIE_ARMS(..) => SOPHIE_ARMS_DATA::ID,
             Self::STATUSTEXT(..) => STATUSTEXT_DATA::ID,
             Self::SYS_STATUS(..) => SYS_STATUS_DATA::ID,
             Self::TIMESYNC(..) => TIMESYNC_DATA::ID,
+            Self::VISION_POSITION_ESTIMATE(..) => VISION_POSITION_ESTIMATE_DATA::ID,
         }
     }
     fn message_id_from_name(name: &str) -> Option<u32> {
         match name {
             ATTITUDE_DATA::NAME => Some(ATTITUDE_DATA::ID),
             ATTITUDE_QUATERNION_DATA::NAME => Some(ATTITUDE_QUATERNION_DATA::ID),
+            ATT_POS_MOCAP_DATA::NAME => Some(ATT_POS_MOCAP_DATA::ID),
             AUTOPILOT_VERSION_DATA::NAME => Some(AUTOPILOT_VERSION_DATA::ID),
             AVAILABLE_MODES_DATA::NAME => Some(AVAILABLE_MODES_DATA::ID),
             AVAILABLE_MODES_MONITOR_DATA::NAME => Some(AVAILABLE_MODES_MONITOR_DATA::ID),
@@ -3509,6 +4012,7 @@ impl Message for MavMessage {
             HEARTBEAT_DATA::NAME => Some(HEARTBEAT_DATA::ID),
             MESSAGE_INTERVAL_DATA::NAME => Some(MESSAGE_INTERVAL_DATA::ID),
             NAMED_VALUE_FLOAT_DATA::NAME => Some(NAMED_VALUE_FLOAT_DATA::ID),
+            ODOMETRY_DATA::NAME => Some(ODOMETRY_DATA::ID),
             PARAM_REQUEST_LIST_DATA::NAME => Some(PARAM_REQUEST_LIST_DATA::ID),
             PARAM_REQUEST_READ_DATA::NAME => Some(PARAM_REQUEST_READ_DATA::ID),
             PARAM_SET_DATA::NAME => Some(PARAM_SET_DATA::ID),
@@ -3518,10 +4022,12 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::NAME => Some(SCALED_IMU_DATA::ID),
             SERVO_OUTPUT_RAW_DATA::NAME => Some(SERVO_OUTPUT_RAW_DATA::ID),
             SETUP_SIGNING_DATA::NAME => Some(SETUP_SIGNING_DATA::ID),
+            SET_ATTITUDE_TARGET_DATA::NAME => Some(SET_ATTITUDE_TARGET_DATA::ID),
             SOPHIE_ARMS_DATA::NAME => Some(SOPHIE_ARMS_DATA::ID),
             STATUSTEXT_DATA::NAME => Some(STATUSTEXT_DATA::ID),
             SYS_STATUS_DATA::NAME => Some(SYS_STATUS_DATA::ID),
             TIMESYNC_DATA::NAME => Some(TIMESYNC_DATA::ID),
+            VISION_POSITION_ESTIMATE_DATA::NAME => Some(VISION_POSITION_ESTIMATE_DATA::ID),
             _ => None,
         }
     }
@@ -3531,6 +4037,7 @@ impl Message for MavMessage {
             ATTITUDE_QUATERNION_DATA::ID => {
                 Some(Self::ATTITUDE_QUATERNION(ATTITUDE_QUATERNION_DATA::default()))
             }
+            ATT_POS_MOCAP_DATA::ID => Some(Self::ATT_POS_MOCAP(ATT_POS_MOCAP_DATA::default())),
             AUTOPILOT_VERSION_DATA::ID => Some(Self::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA::default())),
             AVAILABLE_MODES_DATA::ID => Some(Self::AVAILABLE_MODES(AVAILABLE_MODES_DATA::default())),
             AVAILABLE_MODES_MONITOR_DATA::ID => Some(Self::AVAILABLE_MODES_MONITOR(
@@ -3549,6 +4056,7 @@ impl Message for MavMessage {
             HEARTBEAT_DATA::ID => Some(Self::HEARTBEAT(HEARTBEAT_DATA::default())),
             MESSAGE_INTERVAL_DATA::ID => Some(Self::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA::default())),
             NAMED_VALUE_FLOAT_DATA::ID => Some(Self::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA::default())),
+            ODOMETRY_DATA::ID => Some(Self::ODOMETRY(ODOMETRY_DATA::default())),
             PARAM_REQUEST_LIST_DATA::ID => Some(Self::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA::default())),
             PARAM_REQUEST_READ_DATA::ID => Some(Self::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA::default())),
             PARAM_SET_DATA::ID => Some(Self::PARAM_SET(PARAM_SET_DATA::default())),
@@ -3558,10 +4066,16 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::default())),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::default())),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::default())),
+            SET_ATTITUDE_TARGET_DATA::ID => {
+                Some(Self::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA::default()))
+            }
             SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::default())),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::default())),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::default())),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::default())),
+            VISION_POSITION_ESTIMATE_DATA::ID => Some(Self::VISION_POSITION_ESTIMATE(
+                VISION_POSITION_ESTIMATE_DATA::default(),
+            )),
             _ => None,
         }
     }
@@ -3572,6 +4086,7 @@ impl Message for MavMessage {
             ATTITUDE_QUATERNION_DATA::ID => {
                 Some(Self::ATTITUDE_QUATERNION(ATTITUDE_QUATERNION_DATA::random(rng)))
             }
+            ATT_POS_MOCAP_DATA::ID => Some(Self::ATT_POS_MOCAP(ATT_POS_MOCAP_DATA::random(rng))),
             AUTOPILOT_VERSION_DATA::ID => Some(Self::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA::random(rng))),
             AVAILABLE_MODES_DATA::ID => Some(Self::AVAILABLE_MODES(AVAILABLE_MODES_DATA::random(rng))),
             AVAILABLE_MODES_MONITOR_DATA::ID => Some(Self::AVAILABLE_MODES_MONITOR(
@@ -3594,6 +4109,7 @@ impl Message for MavMessage {
             HEARTBEAT_DATA::ID => Some(Self::HEARTBEAT(HEARTBEAT_DATA::random(rng))),
             MESSAGE_INTERVAL_DATA::ID => Some(Self::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA::random(rng))),
             NAMED_VALUE_FLOAT_DATA::ID => Some(Self::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA::random(rng))),
+            ODOMETRY_DATA::ID => Some(Self::ODOMETRY(ODOMETRY_DATA::random(rng))),
             PARAM_REQUEST_LIST_DATA::ID => {
                 Some(Self::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA::random(rng)))
             }
@@ -3607,10 +4123,16 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::random(rng))),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::random(rng))),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::random(rng))),
+            SET_ATTITUDE_TARGET_DATA::ID => {
+                Some(Self::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA::random(rng)))
+            }
             SOPHIE_ARMS_DATA::ID => Some(Self::SOPHIE_ARMS(SOPHIE_ARMS_DATA::random(rng))),
             STATUSTEXT_DATA::ID => Some(Self::STATUSTEXT(STATUSTEXT_DATA::random(rng))),
             SYS_STATUS_DATA::ID => Some(Self::SYS_STATUS(SYS_STATUS_DATA::random(rng))),
             TIMESYNC_DATA::ID => Some(Self::TIMESYNC(TIMESYNC_DATA::random(rng))),
+            VISION_POSITION_ESTIMATE_DATA::ID => Some(Self::VISION_POSITION_ESTIMATE(
+                VISION_POSITION_ESTIMATE_DATA::random(rng),
+            )),
             _ => None,
         }
     }
@@ -3618,6 +4140,7 @@ impl Message for MavMessage {
         match self {
             Self::ATTITUDE(body) => body.ser(version, bytes),
             Self::ATTITUDE_QUATERNION(body) => body.ser(version, bytes),
+            Self::ATT_POS_MOCAP(body) => body.ser(version, bytes),
             Self::AUTOPILOT_VERSION(body) => body.ser(version, bytes),
             Self::AVAILABLE_MODES(body) => body.ser(version, bytes),
             Self::AVAILABLE_MODES_MONITOR(body) => body.ser(version, bytes),
@@ -3632,6 +4155,7 @@ impl Message for MavMessage {
             Self::HEARTBEAT(body) => body.ser(version, bytes),
             Self::MESSAGE_INTERVAL(body) => body.ser(version, bytes),
             Self::NAMED_VALUE_FLOAT(body) => body.ser(version, bytes),
+            Self::ODOMETRY(body) => body.ser(version, bytes),
             Self::PARAM_REQUEST_LIST(body) => body.ser(version, bytes),
             Self::PARAM_REQUEST_READ(body) => body.ser(version, bytes),
             Self::PARAM_SET(body) => body.ser(version, bytes),
@@ -3641,16 +4165,19 @@ impl Message for MavMessage {
             Self::SCALED_IMU(body) => body.ser(version, bytes),
             Self::SERVO_OUTPUT_RAW(body) => body.ser(version, bytes),
             Self::SETUP_SIGNING(body) => body.ser(version, bytes),
+            Self::SET_ATTITUDE_TARGET(body) => body.ser(version, bytes),
             Self::SOPHIE_ARMS(body) => body.ser(version, bytes),
             Self::STATUSTEXT(body) => body.ser(version, bytes),
             Self::SYS_STATUS(body) => body.ser(version, bytes),
             Self::TIMESYNC(body) => body.ser(version, bytes),
+            Self::VISION_POSITION_ESTIMATE(body) => body.ser(version, bytes),
         }
     }
     fn extra_crc(id: u32) -> u8 {
         match id {
             ATTITUDE_DATA::ID => ATTITUDE_DATA::EXTRA_CRC,
             ATTITUDE_QUATERNION_DATA::ID => ATTITUDE_QUATERNION_DATA::EXTRA_CRC,
+            ATT_POS_MOCAP_DATA::ID => ATT_POS_MOCAP_DATA::EXTRA_CRC,
             AUTOPILOT_VERSION_DATA::ID => AUTOPILOT_VERSION_DATA::EXTRA_CRC,
             AVAILABLE_MODES_DATA::ID => AVAILABLE_MODES_DATA::EXTRA_CRC,
             AVAILABLE_MODES_MONITOR_DATA::ID => AVAILABLE_MODES_MONITOR_DATA::EXTRA_CRC,
@@ -3665,6 +4192,7 @@ impl Message for MavMessage {
             HEARTBEAT_DATA::ID => HEARTBEAT_DATA::EXTRA_CRC,
             MESSAGE_INTERVAL_DATA::ID => MESSAGE_INTERVAL_DATA::EXTRA_CRC,
             NAMED_VALUE_FLOAT_DATA::ID => NAMED_VALUE_FLOAT_DATA::EXTRA_CRC,
+            ODOMETRY_DATA::ID => ODOMETRY_DATA::EXTRA_CRC,
             PARAM_REQUEST_LIST_DATA::ID => PARAM_REQUEST_LIST_DATA::EXTRA_CRC,
             PARAM_REQUEST_READ_DATA::ID => PARAM_REQUEST_READ_DATA::EXTRA_CRC,
             PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,
@@ -3674,10 +4202,12 @@ impl Message for MavMessage {
             SCALED_IMU_DATA::ID => SCALED_IMU_DATA::EXTRA_CRC,
             SERVO_OUTPUT_RAW_DATA::ID => SERVO_OUTPUT_RAW_DATA::EXTRA_CRC,
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
+            SET_ATTITUDE_TARGET_DATA::ID => SET_ATTITUDE_TARGET_DATA::EXTRA_CRC,
             SOPHIE_ARMS_DATA::ID => SOPHIE_ARMS_DATA::EXTRA_CRC,
             STATUSTEXT_DATA::ID => STATUSTEXT_DATA::EXTRA_CRC,
             SYS_STATUS_DATA::ID => SYS_STATUS_DATA::EXTRA_CRC,
             TIMESYNC_DATA::ID => TIMESYNC_DATA::EXTRA_CRC,
+            VISION_POSITION_ESTIMATE_DATA::ID => VISION_POSITION_ESTIMATE_DATA::EXTRA_CRC,
             _ => 0,
         }
     }
@@ -3692,6 +4222,7 @@ impl Message for MavMessage {
             Self::PARAM_SET(inner) => Some(inner.target_system),
             Self::PING(inner) => Some(inner.target_system),
             Self::SETUP_SIGNING(inner) => Some(inner.target_system),
+            Self::SET_ATTITUDE_TARGET(inner) => Some(inner.target_system),
             Self::TIMESYNC(inner) => Some(inner.target_system),
             _ => None,
         }
@@ -3707,6 +4238,7 @@ impl Message for MavMessage {
             Self::PARAM_SET(inner) => Some(&mut inner.target_system),
             Self::PING(inner) => Some(&mut inner.target_system),
             Self::SETUP_SIGNING(inner) => Some(&mut inner.target_system),
+            Self::SET_ATTITUDE_TARGET(inner) => Some(&mut inner.target_system),
             Self::TIMESYNC(inner) => Some(&mut inner.target_system),
             _ => None,
         }
@@ -3722,6 +4254,7 @@ impl Message for MavMessage {
             Self::PARAM_SET(inner) => Some(inner.target_component),
             Self::PING(inner) => Some(inner.target_component),
             Self::SETUP_SIGNING(inner) => Some(inner.target_component),
+            Self::SET_ATTITUDE_TARGET(inner) => Some(inner.target_component),
             Self::TIMESYNC(inner) => Some(inner.target_component),
             _ => None,
         }
@@ -3737,6 +4270,7 @@ impl Message for MavMessage {
             Self::PARAM_SET(inner) => Some(&mut inner.target_component),
             Self::PING(inner) => Some(&mut inner.target_component),
             Self::SETUP_SIGNING(inner) => Some(&mut inner.target_component),
+            Self::SET_ATTITUDE_TARGET(inner) => Some(&mut inner.target_component),
             Self::TIMESYNC(inner) => Some(&mut inner.target_component),
             _ => None,
         }

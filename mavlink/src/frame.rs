@@ -1,6 +1,8 @@
 //! Frames that are sent.
 
-use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData};
+use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MessageData, calculate_crc};
+
+use crate::parser::{HEADER, SIGNED};
 
 /// The vehicle's number among systems: the first, as autopilots have it.
 pub const SYSTEM: u8 = 1;
@@ -11,6 +13,8 @@ pub const COMPONENT: u8 = 1;
 pub struct Encoder {
     raw: MAVLinkV2MessageRaw,
     sequence: u8,
+    /// Room is left for a signature.
+    signed: bool,
 }
 
 impl Default for Encoder {
@@ -25,7 +29,13 @@ impl Encoder {
         Self {
             raw: MAVLinkV2MessageRaw::new(),
             sequence: 0,
+            signed: false,
         }
+    }
+
+    /// Leaves room for a signature in frames that are made from here on, or none.
+    pub const fn leave_room(&mut self, signed: bool) {
+        self.signed = signed;
     }
 
     /// Makes the frame of `message`, with its trailing zeros left out; returns its length.
@@ -37,7 +47,27 @@ impl Encoder {
         };
         self.sequence = self.sequence.wrapping_add(1);
         self.raw.serialize_message_data(header, message);
+        if self.signed {
+            self.mark(M::EXTRA_CRC);
+        }
         self.frame().len() as u32
+    }
+
+    /// Marks the frame as signed, which its checksum covers.
+    fn mark(&mut self, extra: u8) {
+        *self.raw.incompatibility_flags_mut() |= SIGNED;
+        let body = HEADER + usize::from(self.raw.payload_length());
+        let bytes = self.raw.as_mut_slice();
+        let sum = bytes.get(1..body).map(|bytes| calculate_crc(bytes, extra));
+        if let (Some(sum), Some(place)) = (sum, bytes.get_mut(body..body + 2)) {
+            place.copy_from_slice(&sum.to_le_bytes());
+        }
+    }
+
+    /// The frame that was made last, to be signed.
+    pub fn frame_mut(&mut self) -> &mut [u8] {
+        let length = self.frame().len();
+        self.raw.as_mut_slice().get_mut(..length).unwrap_or_default()
     }
 
     /// The frame that was made last.

@@ -14,7 +14,6 @@
 )]
 
 pub mod budget;
-pub mod commands;
 #[allow(
     missing_docs,
     non_camel_case_types,
@@ -28,13 +27,17 @@ pub mod dialect;
 pub mod files;
 pub mod frame;
 pub mod ftp;
+pub mod inputs;
 pub mod messages;
 pub mod parameters;
 pub mod parser;
+pub mod requests;
 pub mod server;
+pub mod signing;
 pub mod streams;
 pub mod texts;
 pub mod vehicle;
 
 pub use self::server::{Order, Server};
+pub use self::signing::Signing;
 pub use self::vehicle::{Condition, Vehicle};

@@ -5,20 +5,20 @@
 use heapless::Vec;
 use mavlink_core::calculate_crc;
 
-use crate::commands::crc_extra;
+use crate::requests::crc_extra;
 
 /// First byte of a MAVLink 2 frame; MAVLink 1 is not spoken.
 const STX: u8 = 0xFD;
 /// Bytes around the payload of a frame without signature: start, header, checksum.
 pub const OVERHEAD: usize = 12;
 /// Bytes before the payload.
-const HEADER: usize = 10;
+pub(crate) const HEADER: usize = 10;
 /// Bytes of a signature.
-const SIGNATURE: usize = 13;
+pub const SIGNATURE: usize = 13;
 /// The longest frame.
 pub const LONGEST: usize = OVERHEAD + 255 + SIGNATURE;
 /// The incompatibility flag of a signed frame, the only one that is known.
-const SIGNED: u8 = 1;
+pub(crate) const SIGNED: u8 = 1;
 /// Beginnings of frames looked at for one byte that arrives.
 const CANDIDATES: usize = 4;
 /// Silence after which an unfinished frame is given up, µs: three of the longest at 57,600 baud.
@@ -35,6 +35,10 @@ pub struct Frame<'a> {
     pub component: u8,
     /// The message, without the zeros at its end.
     pub payload: &'a [u8],
+    /// It carries a signature.
+    pub signed: bool,
+    /// All of it, from the first byte to the checksum or the signature.
+    pub bytes: &'a [u8],
 }
 
 /// What the buffer begins with.
@@ -125,7 +129,7 @@ impl Parser {
     }
 
     fn frame(&self) -> Option<Frame<'_>> {
-        let &[_, length, _, _, _, system, component, a, b, c] = self.bytes.get(..HEADER)? else {
+        let &[_, length, flags, _, _, system, component, a, b, c] = self.bytes.get(..HEADER)? else {
             return None;
         };
         Some(Frame {
@@ -133,6 +137,8 @@ impl Parser {
             system,
             component,
             payload: self.bytes.get(HEADER..HEADER + usize::from(length))?,
+            signed: flags & SIGNED != 0,
+            bytes: self.bytes.get(..self.ready)?,
         })
     }
 

@@ -14,6 +14,7 @@ use sophie_fakes::{Answer, BrokenLine, FakeAnalog, FakeImu, FakeLine, FakeServos
 use sophie_sim::clock::VirtualTime;
 use sophie_tasks::deadline::TaskId;
 use sophie_tasks::links::{Links, Status};
+use sophie_tasks::mavlink::signing::Record;
 use sophie_tasks::ports::{
     AnalogFrame, Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError,
 };
@@ -136,6 +137,10 @@ impl Storage for FakeStorage {
         if self.hangs {
             std::future::pending::<()>().await;
         }
+        self.answer
+    }
+
+    async fn save_signing(&mut self, _signing: Option<Record>) -> Result<(), StorageError> {
         self.answer
     }
 }

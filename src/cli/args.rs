@@ -193,6 +193,9 @@ pub struct LiveArgs {
     /// Where MAVLink is sent to; what is sent back is answered.
     #[arg(long, value_name = "ADDR:PORT", value_parser = destination, default_value = "127.0.0.1:14550", requires = "wanted")]
     pub mavlink: SocketAddr,
+    /// File with the key that signs MAVLink, 64 hexadecimal digits; without it signing is off.
+    #[arg(long, value_name = "FILE", requires = "wanted")]
+    pub mavlink_key: Option<PathBuf>,
     /// Who flies: none waits on the ground without a transmitter, and leaves no report.
     #[arg(long, value_name = "none", value_parser = no_pilot, requires = "wanted", conflicts_with_all = ["json", "out"])]
     pub pilot: Option<NoPilot>,

@@ -8,6 +8,7 @@ use sophie_boards::retained::Memory;
 use sophie_flight::tasks as flight;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::mavlink::Line;
+use sophie_tasks::mavlink::signing::Stored;
 use sophie_tasks::ports::{Look, Storage};
 use sophie_tasks::schedule::TaskId;
 use sophie_tasks::shared::SharedStorage;
@@ -56,7 +57,13 @@ pub fn spawn(
     levels.spawn_unmeasured("console", console(links, input, output, storage(), board.chip)?);
     levels.spawn(
         TaskId::Mavlink,
-        mavlink(links, board.mavlink_input, board.mavlink_output, storage())?,
+        mavlink(
+            links,
+            board.mavlink_input,
+            board.mavlink_output,
+            storage(),
+            board.loaded.signing,
+        )?,
     );
     levels.spawn_unmeasured("lights", lights(links, board.lights)?);
     levels.spawn_unmeasured("report", report(links, looks)?);
@@ -92,9 +99,11 @@ async fn mavlink(
     input: sophie_boards::BufferedInput,
     output: sophie_boards::BufferedOutput,
     storage: StoragePort,
+    signing: Stored,
 ) -> ! {
     let line = Line {
         bytes_per_second: sophie_boards::MAVLINK_BYTES_PER_SECOND,
+        signing,
     };
     sophie_tasks::mavlink::run(links, input, output, storage, || sophie_boards::restart(), line).await
 }

@@ -10,6 +10,7 @@ mod chip;
 mod command;
 mod keys;
 mod line;
+mod mavlink;
 mod nearest;
 mod output;
 mod parameters;
@@ -141,6 +142,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Command::Calibrate(what, arguments) => self.calibrate(what, arguments).await,
             Command::Watch(group) => self.watch(group).await,
             Command::SelfTest => self.selftest().await,
+            Command::Mavlink => self.mavlink().await,
+            Command::MavlinkKey(key) => self.mavlink_key(key).await,
             Command::Changes => self.changes().await,
             Command::Save => self.save().await,
             Command::Restart => match self.stopped() {

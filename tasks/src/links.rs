@@ -32,6 +32,10 @@ use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::wrench::PerArm;
+use sophie_mavlink::inputs::Counts;
+pub use sophie_mavlink::inputs::attitude::OffboardAttitude;
+pub use sophie_mavlink::inputs::pose::ExternalPose;
+use sophie_mavlink::signing::{Refused, Signing, Stored};
 
 use crate::histogram::Histogram;
 use crate::last_value::{LastValue, Receiver};
@@ -255,6 +259,44 @@ pub struct Status {
     pub inhibits: ArmingInhibits,
 }
 
+/// Whether frames of MAVLink are signed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SigningState {
+    /// No key is stored.
+    #[default]
+    Off,
+    /// A key is in force.
+    On,
+    /// The storage cannot be read: nothing is obeyed.
+    Unknown,
+}
+
+/// What the MAVLink line is like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineState {
+    /// Whether frames are signed.
+    pub signing: SigningState,
+    /// Frames that were refused for their signature since the start.
+    pub refused: Refused,
+    /// Inputs from outside since the start.
+    pub inputs: Counts,
+}
+
+impl LineState {
+    /// As `signing` has it, with what came in.
+    pub const fn of(signing: &Signing, inputs: Counts) -> Self {
+        Self {
+            signing: match signing.stored() {
+                Stored::None => SigningState::Off,
+                Stored::Key(_) => SigningState::On,
+                Stored::Unreadable => SigningState::Unknown,
+            },
+            refused: signing.refused(),
+            inputs,
+        }
+    }
+}
+
 /// What is declared of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Declared {
@@ -366,6 +408,12 @@ links! {
     bench: BenchRequest, Console to "commander", stale after 150 ms;
     /// What has become of it.
     bench_answer: BenchAnswer, Commander to "console", stale after 200 ms;
+    /// Where others see the vehicle, as they send it; nothing flies by it.
+    external_pose: ExternalPose, Mavlink to "console", stale after 200 ms;
+    /// The attitude that another computer wishes, as it sends it; nothing flies by it.
+    offboard: OffboardAttitude, Mavlink to "console", stale after 500 ms;
+    /// What the MAVLink line is like.
+    mavlink: LineState, Mavlink to "console", stale after 200 ms;
 }
 
 impl Links {

@@ -15,11 +15,14 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
 use sophie_control::tendon::Reel;
 use sophie_control::wrench::PerArm;
+use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::parser::LONGEST;
-use sophie_mavlink::{Condition, Order, Server, Vehicle};
+pub use sophie_mavlink::signing;
+use sophie_mavlink::signing::Stored;
+use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
 
 use crate::deadline::{FixedRate, TaskId, Tick};
-use crate::links::Links;
+use crate::links::{LineState, Links};
 use crate::ports::{SerialInput, SerialOutput, Storage};
 use crate::storing;
 
@@ -33,12 +36,15 @@ const PAUSE: Duration = Duration::from_millis(1);
 pub struct Line {
     /// What the server may send, bytes each second: less than the line carries.
     pub bytes_per_second: u32,
+    /// The key that was stored at the start.
+    pub signing: Stored,
 }
 
-/// The server of a line and the picture that it speaks of.
+/// The server of a line, the picture that it speaks of, and the key.
 struct Shared {
     server: Server,
     vehicle: Vehicle,
+    signing: Signing,
 }
 
 /// What takes and what sends share, in one task and never over an await.
@@ -50,10 +56,8 @@ struct Link {
 
 impl Link {
     /// What `work` gives; `None` never comes, since no one else has it then.
-    fn with<R>(&self, work: impl FnOnce(&mut Server, &mut Vehicle) -> R) -> Option<R> {
-        let mut shared = self.shared.try_borrow_mut().ok()?;
-        let Shared { server, vehicle } = &mut *shared;
-        Some(work(server, vehicle))
+    fn with<R>(&self, work: impl FnOnce(&mut Shared) -> R) -> Option<R> {
+        Some(work(&mut *self.shared.try_borrow_mut().ok()?))
     }
 }
 
@@ -70,6 +74,7 @@ pub async fn run(
         shared: RefCell::new(Shared {
             server: Server::new(links.params, line.bytes_per_second),
             vehicle: Vehicle::default(),
+            signing: Signing::new(line.signing),
         }),
         due: Signal::new(),
     };
@@ -77,20 +82,28 @@ pub async fn run(
         let reels = Reel::all(&links.params);
         let mut rate = FixedRate::of(links, TaskId::Mavlink);
         loop {
-            let now = listen(&mut rate, &mut input, &link).await.started.as_micros();
+            let now = listen(links, &mut rate, &mut input, &link)
+                .await
+                .started
+                .as_micros();
             let seen = picture(links, &reels);
-            let order = link.with(|server, vehicle| {
-                *vehicle = seen;
-                server.order(now, vehicle)
+            let order = link.with(|shared| {
+                shared.vehicle = seen;
+                links.mavlink.send(
+                    Instant::from_micros(now),
+                    LineState::of(&shared.signing, shared.server.inputs().counts()),
+                );
+                shared.server.order(now, &shared.vehicle)
             });
             link.due.signal(());
+            renew(links, &link, &mut storage, now).await;
             match order.flatten() {
                 Some(Order::Store) => {
-                    let Some(params) = link.with(|server, _| *server.params()) else {
+                    let Some(params) = link.with(|shared| *shared.server.params()) else {
                         continue;
                     };
                     let stored = store(links, &mut storage, &params).await;
-                    link.with(|server, _| server.stored(stored));
+                    link.with(|shared| shared.server.stored(stored));
                 }
                 Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => restart(),
                 Some(Order::Restart) | None => (),
@@ -109,8 +122,13 @@ async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
         loop {
             let now = Instant::now().as_micros();
             frame.clear();
-            let copied = link.with(|server, vehicle| {
-                let bytes = server.send(now, vehicle).unwrap_or_default();
+            let copied = link.with(|shared| {
+                let Shared {
+                    server,
+                    vehicle,
+                    signing,
+                } = shared;
+                let bytes = server.send(now, vehicle, signing).unwrap_or_default();
                 frame.extend_from_slice(bytes)
             });
             if !matches!(copied, Some(Ok(()))) || frame.is_empty() {
@@ -123,7 +141,7 @@ async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
 }
 
 /// Hands what arrives to the server until the next run is due.
-async fn listen(rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &Link) -> Tick {
+async fn listen(links: &Links, rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &Link) -> Tick {
     let mut bytes = [0; CHUNK];
     let mut next = pin!(rate.next());
     loop {
@@ -132,12 +150,51 @@ async fn listen(rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &L
             Either::Second(Ok(count)) if count > 0 => {
                 let arrived = bytes.get(..count).unwrap_or_default();
                 let now = Instant::now().as_micros();
-                link.with(|server, vehicle| server.receive(arrived, now, vehicle));
+                link.with(|shared| {
+                    let Shared {
+                        server,
+                        vehicle,
+                        signing,
+                    } = shared;
+                    server.receive(arrived, now, vehicle, signing);
+                    publish(links, server.inputs(), now);
+                });
                 // A line that is never silent must not starve the others of this level.
                 embassy_futures::yield_now().await;
             }
             Either::Second(_) => Timer::after(PAUSE).await,
         }
+    }
+}
+
+/// Publishes what others have measured and wished, at the time of its measurement.
+fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
+    if let Some(pose) = inputs.take_pose() {
+        links
+            .external_pose
+            .send(Instant::from_micros(pose.measured_at), pose);
+    }
+    if let Some(attitude) = inputs.take_attitude() {
+        links.offboard.send(Instant::from_micros(now), attitude);
+    }
+}
+
+/// Stores the bound of signing's times again where little is left of it; arming is refused meanwhile.
+async fn renew(links: &Links, link: &Link, storage: &mut impl Storage, now: u64) {
+    // Another is storing, or what it has stored waits for a restart: nothing comes after that.
+    if storing::stopped(links).is_err() || links.hardware().contains(ArmingInhibit::Storing) {
+        return;
+    }
+    let Some(record) = link.with(|shared| shared.signing.to_store(now)).flatten() else {
+        return;
+    };
+    if storing::hold_arming(links).await.is_err() {
+        return;
+    }
+    let stored = storing::save_signing(links, storage, Some(record)).await;
+    links.report(ArmingInhibit::Storing, false);
+    if stored.is_ok() {
+        link.with(|shared| shared.signing.keep(record));
     }
 }
 

@@ -7,6 +7,7 @@ pub use sophie_control::chain::ImuReading;
 use sophie_control::params::Params;
 use sophie_control::vector::Vec3;
 use sophie_control::wrench::PerArm;
+use sophie_mavlink::signing::{Record, Stored};
 
 use crate::links::RcState;
 use crate::retained_state::Words;
@@ -151,6 +152,8 @@ pub struct Loaded {
     pub unreadable: bool,
     /// Whose data lie there instead of parameters, where that is another firmware; the defaults are in force.
     pub foreign: Option<&'static str>,
+    /// MAVLink's key.
+    pub signing: Stored,
 }
 
 /// Why parameters were not stored.
@@ -178,6 +181,13 @@ pub trait Storage {
     /// # Errors
     /// Storage that is full or broken. What was stored before may be lost.
     async fn save(&mut self, params: &Params) -> Result<(), StorageError>;
+
+    /// Stores MAVLink's key, or that there is none, and leaves the stored parameters as they are. May stall the processor
+    /// as [`Self::save`] does.
+    ///
+    /// # Errors
+    /// Storage that is full, broken, or not readable: it keeps what it has then.
+    async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError>;
 }
 
 /// Longest text of what was read, bytes.

@@ -2,6 +2,7 @@
 
 use embassy_sync::mutex::Mutex;
 use sophie_control::params::Params;
+use sophie_mavlink::signing::Record;
 
 use crate::links::Raw;
 use crate::ports::{Loaded, Storage, StorageError};
@@ -30,5 +31,9 @@ impl<S: Storage> Storage for SharedStorage<'_, S> {
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
         self.storage.lock().await.save(params).await
+    }
+
+    async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError> {
+        self.storage.lock().await.save_signing(signing).await
     }
 }

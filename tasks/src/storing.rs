@@ -4,6 +4,7 @@ use embassy_time::{Duration, Instant, Timer, with_timeout};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
+use sophie_mavlink::signing::Record;
 
 use crate::links::{Links, Status};
 use crate::ports::{Storage, StorageError};
@@ -58,6 +59,28 @@ pub async fn save(links: &Links, storage: &mut impl Storage, params: &Params) ->
     let saved = with_timeout(LONGEST, storage.save(params))
         .await
         .unwrap_or(Err(StorageError::Broken));
+    report(links, saved);
+    saved
+}
+
+/// Stores MAVLink's key, or that there is none, as [`save`] does the parameters.
+///
+/// # Errors
+/// As [`save`].
+pub async fn save_signing(
+    links: &Links,
+    storage: &mut impl Storage,
+    signing: Option<Record>,
+) -> Result<(), StorageError> {
+    let saved = with_timeout(LONGEST, storage.save_signing(signing))
+        .await
+        .unwrap_or(Err(StorageError::Broken));
+    report(links, saved);
+    saved
+}
+
+/// Reports what the storage is like after a save.
+fn report(links: &Links, saved: Result<(), StorageError>) {
     match saved {
         Ok(()) => {
             links.report(ArmingInhibit::StorageFull, false);
@@ -73,7 +96,6 @@ pub async fn save(links: &Links, storage: &mut impl Storage, params: &Params) ->
             links.report(ArmingInhibit::Storing, false);
         }
     }
-    saved
 }
 
 impl StorageError {

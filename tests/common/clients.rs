@@ -6,8 +6,8 @@ use std::process::Command;
 /// Longest wait for a message, s of wall time: an emulated board runs at half of real time, on a machine that is busy.
 const SECONDS: &str = "120";
 
-/// What pymavlink has heard on `connection` once each of `messages` came `count` times.
-pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::Value {
+/// The JSON that `script` of tests/mavlink prints with these arguments.
+pub fn run(script: &str, args: &[&str]) -> serde_json::Value {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
         .find(|folder| folder.join(".ci").is_dir())
@@ -20,9 +20,8 @@ pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::
     );
     let python = String::from_utf8(installed.stdout).unwrap();
     let heard = Command::new(python.lines().last().unwrap())
-        .arg(root.join("tests/mavlink/listen.py"))
-        .args([connection, SECONDS, &count.to_string()])
-        .args(messages)
+        .arg(root.join("tests/mavlink").join(script))
+        .args(args)
         .output()
         .unwrap();
     assert!(
@@ -31,4 +30,10 @@ pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::
         String::from_utf8_lossy(&heard.stderr)
     );
     serde_json::from_slice(&heard.stdout).unwrap()
+}
+
+/// What pymavlink has heard on `connection` once each of `messages` came `count` times.
+pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::Value {
+    let count = count.to_string();
+    run("listen.py", &[&[connection, SECONDS, &count], messages].concat())
 }

@@ -21,6 +21,7 @@ use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_fakes::{FakeAnalog, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_tasks::links::{Links, RcState};
+use sophie_tasks::mavlink::signing::Record;
 use sophie_tasks::ports::{
     AnalogFrame, ArmImus, Chip, ImuReading, Loaded, Look, NotSet, PortError, SerialOutput, Storage,
     StorageError,
@@ -490,6 +491,10 @@ impl Storage for ThisChip {
             *self.stored.lock().unwrap() = *params;
         }
         Ok(())
+    }
+
+    async fn save_signing(&mut self, _: Option<Record>) -> Result<(), StorageError> {
+        Err(StorageError::Broken)
     }
 }
 

@@ -3,6 +3,7 @@
 use embedded_storage_async::nor_flash::NorFlash;
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
+use sophie_tasks::mavlink::signing::Record;
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 use super::watchdog;
@@ -32,6 +33,13 @@ impl<F: NorFlash> Storage for BoardStorage<F> {
         // May stall the processor beyond the normal time-out; only while disarmed.
         watchdog::be_patient(true).await;
         let saved = self.0.save(params).await;
+        watchdog::be_patient(false).await;
+        saved
+    }
+
+    async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError> {
+        watchdog::be_patient(true).await;
+        let saved = self.0.save_signing(signing).await;
         watchdog::be_patient(false).await;
         saved
     }

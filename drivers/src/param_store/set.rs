@@ -2,6 +2,9 @@
 
 use sequential_storage::map::{SerializationError, Value};
 use sophie_control::params::{ParamInfo, Params, RENAMED, Renamed};
+use sophie_tasks::mavlink::signing::Record;
+
+use super::key::Words;
 
 const TAG: [u8; 4] = *b"SPH1";
 /// Hash of the name and bits of the value, both little-endian.
@@ -11,8 +14,8 @@ pub(super) const RECORDS: usize = 256;
 pub(super) const LONGEST: usize = TAG.len() + RECORDS * RECORD;
 
 const _: () = assert!(
-    Params::TABLE.len() <= RECORDS,
-    "the buffer does not hold every parameter"
+    Params::TABLE.len() + Words::COUNT <= RECORDS,
+    "the buffer does not hold every parameter and the key"
 );
 
 /// Key of a parameter in storage: 32-bit FNV-1a hash of its name.
@@ -28,6 +31,8 @@ pub const fn hash(name: &str) -> u32 {
 
 pub(super) struct Set {
     params: Params,
+    /// MAVLink's key.
+    pub signing: Option<Record>,
     /// For writing: parameters equal to these are not stored.
     defaults: &'static Params,
     /// For reading: table rows with a record.
@@ -41,9 +46,10 @@ pub(super) struct Set {
 }
 
 impl Set {
-    pub(super) const fn of(params: Params, defaults: &'static Params) -> Self {
+    pub(super) const fn of(params: Params, signing: Option<Record>, defaults: &'static Params) -> Self {
         Self {
             params,
+            signing,
             defaults,
             given: Rows::NONE,
             renamed: false,
@@ -106,16 +112,17 @@ impl<'a> Value<'a> for Set {
         let (tag, mut rest) = buffer.split_first_chunk_mut().ok_or(SHORT)?;
         *tag = TAG;
         let mut length = TAG.len();
-        for row in Params::TABLE {
+        let key = self.signing.as_ref().map(Words::of);
+        let values = Params::TABLE.iter().filter_map(|row| {
             let [value, default] =
                 [&self.params, self.defaults].map(|set| set.get(row.name).unwrap_or(row.default));
-            if value.to_bits() == default.to_bits() {
-                continue;
-            }
+            (value.to_bits() != default.to_bits()).then_some((hash(row.name), value.to_bits()))
+        });
+        for (hash, value) in values.chain(key.into_iter().flatten()) {
             let (name, tail) = rest.split_first_chunk_mut().ok_or(SHORT)?;
             let (bits, tail) = tail.split_first_chunk_mut().ok_or(SHORT)?;
-            *name = hash(row.name).to_le_bytes();
-            *bits = value.to_bits().to_le_bytes();
+            *name = hash.to_le_bytes();
+            *bits = value.to_le_bytes();
             rest = tail;
             length += RECORD;
         }
@@ -130,14 +137,17 @@ impl<'a> Value<'a> for Set {
         else {
             return Err(SerializationError::InvalidFormat);
         };
-        let mut set = Self::of(Params::DEFAULT, &Params::DEFAULT);
+        let mut set = Self::of(Params::DEFAULT, None, &Params::DEFAULT);
+        let mut key = Words::default();
         // Rows recorded under the table's name, which precedes an old name.
         let mut under_new = Rows::NONE;
         for &[h0, h1, h2, h3, v0, v1, v2, v3] in records {
-            let (name, value) = (
-                u32::from_le_bytes([h0, h1, h2, h3]),
-                f32::from_le_bytes([v0, v1, v2, v3]),
-            );
+            let name = u32::from_le_bytes([h0, h1, h2, h3]);
+            let bits = u32::from_le_bytes([v0, v1, v2, v3]);
+            if key.take(name, bits) {
+                continue;
+            }
+            let value = f32::from_bits(bits);
             let Some(Known { at, row, renamed }) = Known::find(name) else {
                 set.refused += 1;
                 continue;
@@ -157,6 +167,7 @@ impl<'a> Value<'a> for Set {
             set.taken += u16::from(!set.given.contains(at));
             set.given.insert(at);
         }
+        set.signing = key.record();
         Ok((set, buffer.len()))
     }
 }

@@ -2,8 +2,10 @@
 
 mod budget;
 mod commands;
+mod inputs;
 mod messages;
 mod parameters;
+mod signing;
 mod station;
 mod texts;
 mod wire;

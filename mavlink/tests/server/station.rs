@@ -6,7 +6,8 @@ use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_control::vector::{Quat, Vec3};
 use sophie_mavlink::dialect::{COMMAND_ACK_DATA, COMMAND_LONG_DATA, MavCmd, STATUSTEXT_DATA};
-use sophie_mavlink::{Condition, Order, Server, Vehicle};
+use sophie_mavlink::signing::Stored;
+use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
 
 /// Plenty for every stream at its own rate.
 pub const PLENTY: u32 = 5000;
@@ -60,10 +61,12 @@ pub struct Sent {
     pub id: u32,
     pub payload: Vec<u8>,
     pub bytes: usize,
+    pub signed: bool,
 }
 
 pub struct Station {
     pub server: Server,
+    pub signing: Signing,
     pub vehicle: Vehicle,
     pub now: u64,
     pub sent: Vec<Sent>,
@@ -78,6 +81,7 @@ impl Station {
     pub fn with(bytes_per_second: u32) -> Self {
         Self {
             server: Server::new(Params::DEFAULT, bytes_per_second),
+            signing: Signing::new(Stored::None),
             vehicle: vehicle(Mode::Disarmed),
             now: 0,
             sent: Vec::new(),
@@ -89,14 +93,16 @@ impl Station {
     pub fn run(&mut self, ms: u64) {
         for _ in 0..ms * 1000 / PERIOD {
             self.now += PERIOD;
-            while let Some(frame) = self.server.send(self.now, &self.vehicle) {
+            while let Some(frame) = (self.server).send(self.now, &self.vehicle, &mut self.signing) {
                 let length = usize::from(frame[1]);
-                assert_eq!(frame.len(), length + 12);
+                let signed = frame[2] == 1;
+                assert_eq!(frame.len(), length + 12 + if signed { 13 } else { 0 });
                 self.sent.push(Sent {
                     at: self.now,
                     id: u32::from_le_bytes([frame[7], frame[8], frame[9], 0]),
                     payload: frame[10..10 + length].to_vec(),
                     bytes: frame.len(),
+                    signed,
                 });
             }
             self.orders.extend(self.server.order(self.now, &self.vehicle));
@@ -104,7 +110,8 @@ impl Station {
     }
 
     pub fn say(&mut self, bytes: &[u8]) {
-        self.server.receive(bytes, self.now, &self.vehicle);
+        self.server
+            .receive(bytes, self.now, &self.vehicle, &mut self.signing);
     }
 
     /// Every message of one kind since the start.

@@ -13,12 +13,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub use self::flight::LiveFlight;
 use self::line::{Line, LinePort};
 pub use self::pace::Pace;
-use self::stored::Stored;
+use self::stored::{Memory, Port};
 pub use self::udp::Udp;
 use crate::clock::VirtualTime;
 use sophie_control::params::Params;
 use sophie_tasks::links::Links;
 use sophie_tasks::mavlink;
+pub use sophie_tasks::mavlink::signing::Key;
+use sophie_tasks::mavlink::signing::Record;
 
 /// What ends a flight before its mission is over, in the report.
 const STOPPED: &str = "stopped from outside";
@@ -30,8 +32,10 @@ pub struct Live {
     pace: Pace,
     udp: Udp,
     line: &'static Line,
-    /// The parameters that the next start of the board takes.
-    stored: Option<&'static Cell<Params>>,
+    /// The key that signs MAVLink from the first start on.
+    key: Option<Key>,
+    /// What the next start of the board takes.
+    stored: Option<&'static Memory>,
     stop: Arc<AtomicBool>,
     notice: fn(&str),
 }
@@ -47,26 +51,38 @@ impl Live {
             pace,
             udp,
             line: Box::leak(Box::new(Line::new())),
+            key: None,
             stored: None,
             stop,
             notice,
         }
     }
 
+    /// The same with MAVLink signed by `key`.
+    #[must_use]
+    pub fn with_key(self, key: Option<Key>) -> Self {
+        Self { key, ..self }
+    }
+
     /// Spawns the board's server. The first start stores `links`' parameters.
     pub(crate) fn spawn(&mut self, time: &VirtualTime, links: &'static Links) {
-        let stored = *self
-            .stored
-            .get_or_insert_with(|| Box::leak(Box::new(Cell::new(links.params))));
+        let key = self.key;
+        let stored = *self.stored.get_or_insert_with(|| {
+            Box::leak(Box::new(Memory {
+                params: Cell::new(links.params),
+                signing: Cell::new(key.map(Record::fresh)),
+            }))
+        });
         let (line, port) = (self.line, LinePort(self.line));
         let rate = mavlink::Line {
             bytes_per_second: BYTES_PER_SECOND,
+            signing: stored.key(),
         };
         time.spawn(mavlink::run(
             links,
             port,
             port,
-            Stored(stored),
+            Port(stored),
             || line.restart(),
             rate,
         ));
@@ -74,7 +90,9 @@ impl Live {
 
     /// The parameters that the board restarts with, if it is to.
     pub(crate) fn restarts(&self) -> Option<Params> {
-        self.stored.filter(|_| self.line.restarts()).map(Cell::get)
+        self.stored
+            .filter(|_| self.line.restarts())
+            .map(|memory| memory.params.get())
     }
 
     /// Loses what is on the line, as at a reset of the board.

@@ -1,22 +1,47 @@
-//! Parameters that outlive a restart of the simulated board, though not the process.
+//! Parameters and MAVLink's key, which outlive a restart of the simulated board, though not the process.
 
 use std::cell::Cell;
 
 use sophie_control::params::Params;
+use sophie_tasks::mavlink::signing::{Record, Stored};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
-/// The storage of a board.
-#[derive(Clone, Copy)]
-pub struct Stored(pub &'static Cell<Params>);
+/// What a board has stored.
+#[derive(Debug)]
+pub struct Memory {
+    /// Its parameters.
+    pub params: Cell<Params>,
+    /// MAVLink's key.
+    pub signing: Cell<Option<Record>>,
+}
 
-impl Storage for Stored {
+impl Memory {
+    /// The key as a start finds it.
+    pub fn key(&self) -> Stored {
+        self.signing.get().map_or(Stored::None, Stored::Key)
+    }
+}
+
+/// The storage of a board.
+#[derive(Clone, Copy, Debug)]
+pub struct Port(pub &'static Memory);
+
+impl Storage for Port {
     async fn load(&mut self, params: &mut Params) -> Loaded {
-        *params = self.0.get();
-        Loaded::default()
+        *params = self.0.params.get();
+        Loaded {
+            signing: self.0.key(),
+            ..Loaded::default()
+        }
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
-        self.0.set(*params);
+        self.0.params.set(*params);
+        Ok(())
+    }
+
+    async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError> {
+        self.0.signing.set(signing);
         Ok(())
     }
 }

@@ -26,6 +26,8 @@ pub(super) enum Command<'a> {
     Calibrate(&'a str, [Option<&'a str>; 2]),
     Watch(&'a str),
     SelfTest,
+    Mavlink,
+    MavlinkKey(&'a str),
     PropellersOff,
     Motor(&'a str, Option<&'a str>),
     Servo {
@@ -36,7 +38,7 @@ pub(super) enum Command<'a> {
 }
 
 /// Name and arguments, and what it does.
-pub(super) const HELP: [(&str, &str); 21] = [
+pub(super) const HELP: [(&str, &str); 22] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
     (
@@ -73,6 +75,10 @@ pub(super) const HELP: [(&str, &str); 21] = [
         "asks what turns where, motor by motor, and says what to swap",
     ),
     ("calibrate WHAT", "step by step; alone it lists what there is"),
+    (
+        "mavlink [key K]",
+        "the MAVLink line; K signs it: 64 hex digits, or off",
+    ),
 ];
 
 /// A line not understood.
@@ -130,6 +136,8 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         }
         ("watch", [group, None, ..]) => Command::Watch(group.unwrap_or_default()),
         ("selftest", [None, ..]) => Command::SelfTest,
+        ("mavlink", [None, ..]) => Command::Mavlink,
+        ("mavlink", [Some("key"), Some(key), None, _]) => Command::MavlinkKey(key),
         ("propellers", [Some("off"), None, ..]) => Command::PropellersOff,
         ("motor", [Some(number), percent, None, _]) => Command::Motor(number, percent),
         ("servo", [Some(number), Some(to), at, None]) => Command::Servo { number, to, at },

@@ -6,11 +6,12 @@ use embassy_time::{Duration, Timer};
 use heapless::{String, Vec};
 use sophie_control::math::to_deg;
 use sophie_control::rc::{ArmChoice, StickMode};
+use sophie_control::vector::Quat;
 use sophie_control::wrench::PerArm;
 
 use super::Console;
 use crate::decimal::Decimal;
-use crate::links::Links;
+use crate::links::{ExternalPose, Links};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 
 /// Time between two lines: 80 characters take 7 ms at 115,200 baud, and eyes follow no more.
@@ -33,7 +34,7 @@ struct Group {
     read: fn(&Links) -> Row,
 }
 
-const GROUPS: [Group; 6] = [
+const GROUPS: [Group; 8] = [
     Group {
         name: "sticks",
         what: "sticks -1 to 1, throttle 0 to 1, switches by their position",
@@ -75,6 +76,20 @@ const GROUPS: [Group; 6] = [
         columns: "    fsr1    fsr2    fsr3    fsr4    volt  ampere",
         places: 0,
         read: counts,
+    },
+    Group {
+        name: "pose",
+        what: "pose from outside: m, deg, and m/s along the world's axes",
+        columns: "       x       y       z    roll   pitch     yaw      vx      vy      vz",
+        places: 2,
+        read: pose,
+    },
+    Group {
+        name: "offb",
+        what: "attitude wished for: deg, deg/s, share of full thrust",
+        columns: "    roll   pitch     yaw       p       q       r  thrust",
+        places: 2,
+        read: offboard,
     },
 ];
 
@@ -154,6 +169,33 @@ fn counts(links: &Links) -> Row {
         .chain(battery)
         .map(|counts| Some(f32::from(counts)))
         .collect()
+}
+
+fn pose(links: &Links) -> Row {
+    let Some(ExternalPose { pose, .. }) = links.external_pose.fresh() else {
+        return silent(9);
+    };
+    let position = pose.position.to_array().map(Some);
+    let velocity = pose.velocity.map_or([None; 3], |v| v.to_array().map(Some));
+    let angles = euler(pose.attitude);
+    position.into_iter().chain(angles).chain(velocity).collect()
+}
+
+fn offboard(links: &Links) -> Row {
+    let Some(wish) = links.offboard.fresh() else {
+        return silent(7);
+    };
+    let rates = wish.rates.map(|rate| rate.map(to_deg));
+    let angles = euler(wish.attitude);
+    angles.into_iter().chain(rates).chain([wish.thrust]).collect()
+}
+
+/// Roll, pitch and yaw, deg.
+fn euler(attitude: Option<Quat>) -> [Option<f32>; 3] {
+    attitude.map_or([None; 3], |q| {
+        let (roll, pitch, yaw) = q.to_euler();
+        [roll, pitch, yaw].map(to_deg).map(Some)
+    })
 }
 
 fn silent(columns: usize) -> Row {

@@ -7,9 +7,11 @@ use embassy_time::{Duration, Instant};
 use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
+use sophie_mavlink::inputs::Counts;
 use sophie_tasks::console;
 use sophie_tasks::deadline::TaskId;
-use sophie_tasks::links::{Battery, Links, RcState, Status};
+use sophie_tasks::links::{Battery, LineState, Links, RcState, SigningState, Status};
+use sophie_tasks::mavlink::signing::{Key, Record, Refused, Stored};
 use sophie_tasks::ports::{Chip, Loaded, Look, NotSet, PortError, SerialOutput, Storage, StorageError};
 use sophie_tasks::timing::Run;
 
@@ -32,6 +34,8 @@ impl SerialOutput for Screen {
 pub struct Board {
     pub stored: Rc<Cell<Option<Params>>>,
     pub restarts: Rc<Cell<u32>>,
+    /// MAVLink's key.
+    pub signing: Rc<Cell<Option<Record>>>,
     /// What the board's own defaults are; the table's without.
     defaults: Option<&'static Params>,
 }
@@ -42,11 +46,19 @@ impl Storage for Board {
     }
 
     async fn load(&mut self, _params: &mut Params) -> Loaded {
-        Loaded::default()
+        Loaded {
+            signing: self.signing.get().map_or(Stored::None, Stored::Key),
+            ..Loaded::default()
+        }
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
         self.stored.set(Some(*params));
+        Ok(())
+    }
+
+    async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError> {
+        self.signing.set(signing);
         Ok(())
     }
 }
@@ -240,7 +252,7 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
             )
         ]
     );
-    assert_eq!(bench.says("help").len(), 21);
+    assert_eq!(bench.says("help").len(), 22);
 }
 
 #[test]
@@ -452,4 +464,104 @@ fn enumerated_values_have_a_number_and_a_name() {
     ] {
         assert_eq!(bench.says(typed), [answer], "{typed}");
     }
+}
+
+/// 64 digits.
+const KEY: &str = "000102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f";
+
+#[test]
+fn a_key_is_stored_and_in_force_after_a_restart_while_disarmed_alone() {
+    for mode in Mode::ALL {
+        let allowed = matches!(mode, Mode::Disarmed | Mode::Calibrating);
+        let mut bench = Bench::in_mode(mode);
+        let said = bench.says(&format!("mavlink key {KEY}"));
+        let stored = bench.board.signing.get();
+        assert_eq!(
+            stored,
+            allowed.then_some(Record::fresh(Key::from_hex(KEY).unwrap()))
+        );
+        assert_eq!(bench.board.restarts.get(), u32::from(allowed), "{mode:?}");
+        if allowed {
+            assert_eq!(said, ["signing on; restarting"]);
+            assert_eq!(bench.says("mavlink key off"), ["signing off; restarting"]);
+            assert_eq!(bench.board.signing.get(), None);
+        } else {
+            assert_eq!(said, [format!("not set while {}: disarm first", mode.name())]);
+        }
+    }
+}
+
+#[test]
+fn a_key_is_checked_and_never_shown() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    for wrong in [&KEY[1..], "on", &KEY.replace('0', "x")] {
+        let said = bench.says(&format!("mavlink key {wrong}"));
+        assert_eq!(said, ["not set: a key is 64 hexadecimal digits, or off"]);
+    }
+    // What is not saved would be lost.
+    bench.says("set infill 8");
+    let said = bench.says(&format!("mavlink key {KEY}"));
+    assert_eq!(said, ["not set: 'save' or 'reset' what 'changes' shows first"]);
+    assert!(bench.board.signing.get().is_none() && bench.board.restarts.get() == 0);
+    bench.says("reset infill");
+    bench.says(&format!("mavlink key {KEY}"));
+    assert!(bench.board.signing.get().is_some());
+    for command in [
+        "help",
+        "status",
+        "list",
+        "changes",
+        "mavlink",
+        "version",
+        "get infill",
+        "mavlink key",
+    ] {
+        let said = bench.says(command).concat();
+        assert!(
+            !said.contains(&KEY[2..8]) && !said.contains("1, 2, 3"),
+            "{command}: {said}"
+        );
+    }
+}
+
+#[test]
+fn the_same_key_again_keeps_what_it_has_taken() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    let record = Record {
+        key: Key::from_hex(KEY).unwrap(),
+        bound: 77,
+    };
+    bench.board.signing.set(Some(record));
+    bench.says(&format!("mavlink key {KEY}"));
+    assert_eq!(bench.board.signing.get(), Some(record));
+    let other = KEY.replace('f', "e");
+    bench.says(&format!("mavlink key {other}"));
+    assert_eq!(bench.board.signing.get().map(|record| record.bound), Some(0));
+}
+
+#[test]
+fn the_state_of_the_mavlink_line_is_shown() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    assert_eq!(bench.says("mavlink"), ["the MAVLink task is silent"]);
+    let state = LineState {
+        signing: SigningState::On,
+        refused: Refused {
+            unsigned: 3,
+            wrong: 2,
+            old: 1,
+        },
+        inputs: Counts {
+            poses: 9,
+            ..Counts::default()
+        },
+    };
+    bench.run(10);
+    bench.line.put(b"mavlink\r");
+    bench.rig.links.mavlink.send(Instant::now(), state);
+    bench.run(50);
+    let screen = bench.screen.0.take();
+    assert!(
+        screen.contains("signing on\r\nrefused: 3 unsigned, 2 with a wrong signature, 1 old or repeated\r\n"),
+        "{screen}"
+    );
 }

@@ -8,8 +8,11 @@ use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_fakes::FakeLine;
-use sophie_mavlink::dialect::{COMMAND_LONG_DATA, HEARTBEAT_DATA, PARAM_SET_DATA};
-use sophie_tasks::links::{Links, Status};
+use sophie_mavlink::dialect::{
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SET_ATTITUDE_TARGET_DATA,
+};
+use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_tasks::links::{LineState, Links, SigningState, Status};
 use sophie_tasks::mavlink::{self, Line};
 use sophie_tasks::ports::{PortError, SerialOutput};
 
@@ -34,7 +37,8 @@ impl Wire {
         let mut rest = &bytes[..];
         let mut frames = Vec::new();
         while let [0xFD, length, ..] = rest {
-            let (frame, after) = rest.split_at(12 + usize::from(*length));
+            let signature = if rest[2] == 1 { 13 } else { 0 };
+            let (frame, after) = rest.split_at(12 + usize::from(*length) + signature);
             frames.push((
                 u32::from_le_bytes([frame[7], frame[8], frame[9], 0]),
                 frame.to_vec(),
@@ -57,8 +61,13 @@ struct Bench {
 
 impl Bench {
     fn in_mode(mode: Mode) -> Self {
+        Self::of(mode, Board::default())
+    }
+
+    /// With what `board` has stored.
+    fn of(mode: Mode, board: Board) -> Self {
         let rig = Rig::with(Params::DEFAULT);
-        let (line, wire, board) = (FakeLine::default(), Wire::default(), Board::default());
+        let (line, wire) = (FakeLine::default(), Wire::default());
         let restarts = board.restarts.clone();
         rig.time.spawn(mavlink::run(
             rig.links,
@@ -68,6 +77,7 @@ impl Bench {
             move || restarts.set(restarts.get() + 1),
             Line {
                 bytes_per_second: 5000,
+                signing: board.signing.get().map_or(Stored::None, Stored::Key),
             },
         ));
         Self {
@@ -176,4 +186,132 @@ fn a_restart_comes_after_its_acknowledgement_with_arming_held() {
     bench.run(800);
     assert_eq!(bench.board.restarts.get(), 1);
     assert!(bench.arming_is_held());
+}
+
+/// In units of 10 µs since 2015: 2026.
+const DATE: u64 = 0x215C_0000_0000;
+
+/// A board with a key that has taken nothing later than [`DATE`].
+fn signing_board() -> Board {
+    let board = Board::default();
+    let key = Key::new([7; 32]);
+    board.signing.set(Some(Record { key, bound: DATE }));
+    board
+}
+
+impl Bench {
+    /// Sends `message` signed by a ground station whose time is `time`.
+    fn say_signed<M: MessageData>(&mut self, time: u64, message: &M) {
+        let mut raw = MAVLinkV2MessageRaw::new();
+        let header = MavHeader {
+            system_id: 255,
+            component_id: 190,
+            sequence: 0,
+        };
+        raw.serialize_message_data(header, message);
+        let mut frame = raw.raw_bytes().to_vec();
+        let body = frame.len() - 2;
+        frame[2] = 1;
+        let sum = mavlink_core::calculate_crc(&frame[1..body], M::EXTRA_CRC);
+        frame[body..].copy_from_slice(&sum.to_le_bytes());
+        frame.extend([0; 13]);
+        let bound = time - 1;
+        let key = Key::new([7; 32]);
+        Signing::new(Stored::Key(Record { key, bound })).sign(&mut frame, 5, 10);
+        self.line.put(&frame);
+    }
+}
+
+#[test]
+fn with_a_key_frames_are_signed_and_what_arrives_without_is_refused_and_shown() {
+    let mut bench = Bench::of(Mode::Disarmed, signing_board());
+    bench.run(1000);
+    bench.set_infill();
+    bench.run(2000);
+    assert_eq!(bench.board.stored.get(), None);
+    assert!(bench.wire.frames().iter().all(|(_, frame)| frame[2] == 1));
+    let state = bench.rig.links.mavlink.fresh();
+    let refused = Refused {
+        unsigned: 1,
+        ..Refused::default()
+    };
+    let wanted = LineState {
+        signing: SigningState::On,
+        refused,
+        ..LineState::default()
+    };
+    assert_eq!(state, Some(wanted));
+    // Signed, it is obeyed.
+    bench.say_signed(
+        DATE + 1,
+        &PARAM_SET_DATA {
+            param_value: 8.0,
+            target_system: 1,
+            target_component: 1,
+            param_id: "infill".into(),
+            param_type: 9,
+        },
+    );
+    bench.run(2000);
+    assert_eq!(bench.board.stored.get().map(|p| p.infill), Some(8.0));
+}
+
+#[test]
+fn the_bound_of_times_is_stored_at_rest_alone_and_arming_is_free_again() {
+    for (mode, stores) in [(Mode::Disarmed, true), (Mode::Flight, false)] {
+        let mut bench = Bench::of(mode, signing_board());
+        bench.run(100);
+        bench.say_signed(DATE + 1, &HEARTBEAT_DATA::DEFAULT);
+        bench.run(1000);
+        let bound = bench.board.signing.get().unwrap().bound;
+        // An hour ahead.
+        let wanted = if stores { DATE + 1 + 360_000_000 } else { DATE };
+        assert_eq!(bound, wanted, "{mode:?}");
+        assert!(!bench.arming_is_held());
+    }
+}
+
+#[test]
+fn the_bound_is_not_written_over_a_key_that_waits_for_a_restart() {
+    let mut bench = Bench::of(Mode::Disarmed, signing_board());
+    bench.run(100);
+    let new = Record::fresh(Key::new([8; 32]));
+    bench.rig.links.report(ArmingInhibit::Storing, true);
+    bench.board.signing.set(Some(new));
+    bench.say_signed(DATE + 1, &HEARTBEAT_DATA::DEFAULT);
+    bench.run(1000);
+    assert_eq!(bench.board.signing.get(), Some(new));
+}
+
+#[test]
+fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
+    let mut bench = Bench::in_mode(Mode::Flight);
+    bench.run(1000);
+    let pose = ODOMETRY_DATA {
+        time_usec: 990_000,
+        x: 1.0,
+        q: [1.0, 0.0, 0.0, 0.0],
+        frame_id: 1,
+        child_frame_id: 12,
+        ..Default::default()
+    };
+    bench.say(&pose);
+    bench.say(&SET_ATTITUDE_TARGET_DATA {
+        thrust: 0.5,
+        type_mask: 7 + 128,
+        ..Default::default()
+    });
+    bench.say(&ODOMETRY_DATA { x: f32::NAN, ..pose });
+    bench.run(40);
+    let links = bench.rig.links;
+    let seen = links.external_pose.latest().unwrap();
+    assert_eq!(seen.at.as_micros(), 990_000);
+    assert_eq!(seen.value.pose.position.x, 1.0);
+    assert_eq!(links.offboard.fresh().and_then(|wish| wish.thrust), Some(0.5));
+    let inputs = links.mavlink.fresh().unwrap().inputs;
+    assert_eq!((inputs.poses, inputs.attitudes, inputs.value), (1, 1, 1));
+    bench.run(200);
+    assert!(links.external_pose.fresh().is_none() && links.offboard.fresh().is_some());
+    bench.run(400);
+    assert!(links.offboard.fresh().is_none());
 }

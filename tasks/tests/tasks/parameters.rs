@@ -3,6 +3,7 @@
 use sophie_clock::VirtualTime;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::Params;
+use sophie_tasks::mavlink::signing::Record;
 use sophie_tasks::parameters::{load, report};
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
@@ -30,6 +31,10 @@ impl Storage for Stored {
     }
 
     async fn save(&mut self, _: &Params) -> Result<(), StorageError> {
+        Err(StorageError::Broken)
+    }
+
+    async fn save_signing(&mut self, _: Option<Record>) -> Result<(), StorageError> {
         Err(StorageError::Broken)
     }
 }

@@ -45,6 +45,16 @@ pub enum Request {
     ParamRead(PARAM_REQUEST_READ_DATA),
     /// A parameter's new value.
     ParamSet(PARAM_SET_DATA),
+    /// A pose from outside.
+    Odometry(ODOMETRY_DATA),
+    /// The same.
+    Vision(VISION_POSITION_ESTIMATE_DATA),
+    /// The same.
+    Mocap(ATT_POS_MOCAP_DATA),
+    /// An attitude that is wished for.
+    Attitude(SET_ATTITUDE_TARGET_DATA),
+    /// A key for signing, which is left unread.
+    SetupSigning,
     /// A request for a file.
     File(FILE_TRANSFER_PROTOCOL_DATA),
 }
@@ -61,6 +71,11 @@ pub const fn crc_extra(id: u32) -> Option<u8> {
         PARAM_REQUEST_READ_DATA::ID => PARAM_REQUEST_READ_DATA::EXTRA_CRC,
         PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,
         FILE_TRANSFER_PROTOCOL_DATA::ID => FILE_TRANSFER_PROTOCOL_DATA::EXTRA_CRC,
+        SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
+        ODOMETRY_DATA::ID => ODOMETRY_DATA::EXTRA_CRC,
+        VISION_POSITION_ESTIMATE_DATA::ID => VISION_POSITION_ESTIMATE_DATA::EXTRA_CRC,
+        ATT_POS_MOCAP_DATA::ID => ATT_POS_MOCAP_DATA::EXTRA_CRC,
+        SET_ATTITUDE_TARGET_DATA::ID => SET_ATTITUDE_TARGET_DATA::EXTRA_CRC,
         _ => return None,
     })
 }
@@ -119,6 +134,18 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         PARAM_SET_DATA::ID => {
             let m: PARAM_SET_DATA = message(frame)?;
             (m.target_system, m.target_component, Request::ParamSet(m))
+        }
+        ODOMETRY_DATA::ID => (0, 0, Request::Odometry(message(frame)?)),
+        VISION_POSITION_ESTIMATE_DATA::ID => (0, 0, Request::Vision(message(frame)?)),
+        ATT_POS_MOCAP_DATA::ID => (0, 0, Request::Mocap(message(frame)?)),
+        SET_ATTITUDE_TARGET_DATA::ID => {
+            let m: SET_ATTITUDE_TARGET_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::Attitude(m))
+        }
+        SETUP_SIGNING_DATA::ID => {
+            // Zeros at the end are left out, and there may be none but those.
+            let at = |place: usize| frame.payload.get(place).copied().unwrap_or_default();
+            (at(8), at(9), Request::SetupSigning)
         }
         FILE_TRANSFER_PROTOCOL_DATA::ID => {
             let m: FILE_TRANSFER_PROTOCOL_DATA = message(frame)?;

@@ -1,0 +1,151 @@
+//! What others measure and wish: an external pose and an offboard attitude, checked, in the vehicle's axes, with the time
+//! of measurement. Nothing flies by them: they are published for those that will.
+
+pub mod attitude;
+pub mod clock;
+pub mod pose;
+
+use self::attitude::OffboardAttitude;
+use self::clock::Clock;
+use self::pose::{ExternalPose, Pose};
+use crate::requests::Peer;
+use sophie_control::vector::{Quat, Vec3};
+
+/// Squared length of a quaternion may be off by this much: senders round, and do not always normalise.
+const QUATERNION_TOLERANCE: f32 = 0.02;
+
+/// Why an input was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// Its axes are not known here.
+    Frame,
+    /// A value is no number, out of bounds, or said by its sender to be bad.
+    Value,
+    /// Measured too long ago, or not after the one before.
+    Late,
+}
+
+/// Inputs since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Poses taken.
+    pub poses: u32,
+    /// Attitudes taken.
+    pub attitudes: u32,
+    /// Refused for their axes.
+    pub frame: u32,
+    /// Refused for their values.
+    pub value: u32,
+    /// Refused for their time.
+    pub late: u32,
+}
+
+/// The newest inputs of a line.
+#[derive(Clone, Debug, Default)]
+pub struct Inputs {
+    /// The senders' clock.
+    pub(crate) clock: Clock,
+    pose: Option<ExternalPose>,
+    attitude: Option<OffboardAttitude>,
+    /// When the pose before was measured, µs.
+    measured_at: u64,
+    counts: Counts,
+}
+
+impl Inputs {
+    /// Before the first.
+    pub const fn new() -> Self {
+        Self {
+            clock: Clock::new(),
+            pose: None,
+            attitude: None,
+            measured_at: 0,
+            counts: Counts {
+                poses: 0,
+                attitudes: 0,
+                frame: 0,
+                value: 0,
+                late: 0,
+            },
+        }
+    }
+
+    /// Inputs since the start.
+    pub const fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Takes a pose that `from` sent with the time `usec` of its clock and that arrived at `now`, µs since the start. True
+    /// where the sender is to be asked for its time.
+    pub(crate) fn pose(&mut self, pose: Result<Pose, Refusal>, usec: u64, from: Peer, now: u64) -> bool {
+        let stamped = pose.and_then(|pose| {
+            let time = self.clock.time(usec, from, now)?;
+            // 0 before the first.
+            let in_order = self.measured_at == 0 || time.at > self.measured_at;
+            in_order.then_some((pose, time)).ok_or(Refusal::Late)
+        });
+        match stamped {
+            Ok((pose, time)) => {
+                count(&mut self.counts.poses);
+                self.measured_at = time.at;
+                self.pose = Some(ExternalPose {
+                    pose,
+                    measured_at: time.at,
+                    received_at: now,
+                    clock: time.source,
+                });
+            }
+            Err(refusal) => self.refuse(refusal),
+        }
+        self.clock.due(from, now)
+    }
+
+    /// Takes an attitude that arrived.
+    pub(crate) fn attitude(&mut self, attitude: Result<OffboardAttitude, Refusal>) {
+        match attitude {
+            Ok(attitude) => {
+                count(&mut self.counts.attitudes);
+                self.attitude = Some(attitude);
+            }
+            Err(refusal) => self.refuse(refusal),
+        }
+    }
+
+    /// The pose that has come since the last call.
+    pub const fn take_pose(&mut self) -> Option<ExternalPose> {
+        self.pose.take()
+    }
+
+    /// The attitude that has come since the last call.
+    pub const fn take_attitude(&mut self) -> Option<OffboardAttitude> {
+        self.attitude.take()
+    }
+
+    const fn refuse(&mut self, refusal: Refusal) {
+        count(match refusal {
+            Refusal::Frame => &mut self.counts.frame,
+            Refusal::Value => &mut self.counts.value,
+            Refusal::Late => &mut self.counts.late,
+        });
+    }
+}
+
+const fn count(counter: &mut u32) {
+    *counter = counter.saturating_add(1);
+}
+
+/// A vector whose components are numbers within ±`most`.
+fn bounded([x, y, z]: [f32; 3], most: f32) -> Result<Vec3, Refusal> {
+    let within = [x, y, z].iter().all(|value| value.abs() <= most);
+    within.then_some(Vec3::new(x, y, z)).ok_or(Refusal::Value)
+}
+
+/// A rotation; `None` where the first component is NaN: not given.
+fn rotation([w, x, y, z]: [f32; 4]) -> Result<Option<Quat>, Refusal> {
+    if w.is_nan() {
+        return Ok(None);
+    }
+    let off = (w * w + x * x + y * y + z * z - 1.0).abs();
+    let unit = (off <= QUATERNION_TOLERANCE).then_some(Quat { w, x, y, z }.normalised());
+    unit.map(Some).ok_or(Refusal::Value)
+}

@@ -1,0 +1,52 @@
+//! Answers to those who asked, kept until there is room on the line.
+
+use crate::dialect::*;
+use crate::parameters::Place;
+use crate::requests::Peer;
+use crate::streams::{STREAMS, frame_bytes};
+
+/// What is to be said to someone who asked.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Answer {
+    Ack {
+        command: u16,
+        result: MavResult,
+        to: Peer,
+    },
+    Ping(PING_DATA),
+    Timesync(TIMESYNC_DATA),
+    /// A question for the time of who sends poses.
+    AskTime,
+    Interval {
+        id: u16,
+        interval_us: i32,
+    },
+    Parameter(Place),
+    /// A stream's message, once.
+    Stream(u32),
+    Version,
+    /// Where the description of the parameters is.
+    Metadata,
+    /// This mode, and those behind it where all were asked for.
+    Mode {
+        index: u8,
+        all: bool,
+    },
+}
+
+impl Answer {
+    /// Length of its frame at most, bytes.
+    pub(super) fn bytes(&self) -> u32 {
+        match self {
+            Self::Ack { .. } => frame_bytes::<COMMAND_ACK_DATA>(),
+            Self::Ping(_) => frame_bytes::<PING_DATA>(),
+            Self::Timesync(_) | Self::AskTime => frame_bytes::<TIMESYNC_DATA>(),
+            Self::Interval { .. } => frame_bytes::<MESSAGE_INTERVAL_DATA>(),
+            Self::Parameter(_) => frame_bytes::<PARAM_VALUE_DATA>(),
+            Self::Stream(id) => STREAMS.iter().find(|s| s.id == *id).map_or(0, |s| s.bytes),
+            Self::Version => frame_bytes::<AUTOPILOT_VERSION_DATA>(),
+            Self::Metadata => frame_bytes::<COMPONENT_METADATA_DATA>(),
+            Self::Mode { .. } => frame_bytes::<AVAILABLE_MODES_DATA>(),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Commands, and what each is answered with.
+
+mod intervals;
+mod restart;
+
+use super::Server;
+use super::answer::Answer;
+use crate::dialect::*;
+use crate::requests::Command;
+use crate::vehicle::Vehicle;
+
+/// What a command is answered with.
+pub(super) struct Reply {
+    pub(super) result: MavResult,
+    /// What was asked for, behind the acknowledgement: clients wait for that first.
+    pub(super) then: Option<Answer>,
+}
+
+impl From<MavResult> for Reply {
+    fn from(result: MavResult) -> Self {
+        Self { result, then: None }
+    }
+}
+
+impl From<Answer> for Reply {
+    fn from(answer: Answer) -> Self {
+        Self {
+            result: MavResult::MAV_RESULT_ACCEPTED,
+            then: Some(answer),
+        }
+    }
+}
+
+impl Server {
+    /// Obeys a command.
+    pub(super) fn command(&mut self, command: &Command, now: u64, vehicle: &Vehicle) -> Reply {
+        let [first, second, ..] = command.params;
+        match u32::from(command.number) {
+            n if n == MavCmd::MAV_CMD_REQUEST_MESSAGE as u32 => intervals::once(first, second),
+            n if n == MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u32 => {
+                self.set_interval(first, second, now).into()
+            }
+            n if n == MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u32 => self.get_interval(first),
+            n if n == MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u32 => {
+                self.reboot(first, now, vehicle).into()
+            }
+            n if n == MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u32 => self.storage(first, vehicle).into(),
+            _ => MavResult::MAV_RESULT_UNSUPPORTED.into(),
+        }
+    }
+
+    fn refuse_armed(&mut self) -> MavResult {
+        self.texts.say(
+            MavSeverity::MAV_SEVERITY_WARNING,
+            format_args!("refused: disarm first"),
+        );
+        MavResult::MAV_RESULT_TEMPORARILY_REJECTED
+    }
+}
+
+/// A number of a command's field that is whole and not negative.
+fn whole(value: f32) -> Option<u32> {
+    let number = value as u32;
+    // Beyond 2^24 a float has no room for every whole number: message numbers and µs of minutes stay below.
+    ((number as f32 - value).abs() <= 0.0 && value >= 0.0).then_some(number)
+}

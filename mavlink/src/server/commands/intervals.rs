@@ -1,0 +1,67 @@
+//! Messages that are asked for once, and how often the others come.
+
+use mavlink_core::MessageData;
+use sophie_control::mode::Mode;
+
+use super::super::Server;
+use super::super::answer::Answer;
+use super::{Reply, whole};
+use crate::dialect::*;
+use crate::streams::{PERIOD_MIN_US, STREAMS};
+
+impl Server {
+    pub(super) fn set_interval(&mut self, id: f32, interval: f32, now: u64) -> MavResult {
+        let Some(id) = whole(id) else {
+            return MavResult::MAV_RESULT_DENIED;
+        };
+        let Some(stream) = STREAMS.iter().find(|stream| stream.id == id) else {
+            return MavResult::MAV_RESULT_UNSUPPORTED;
+        };
+        let period = match whole(interval) {
+            Some(0) => stream.period_ms * 1000,
+            Some(period) if period >= PERIOD_MIN_US => period,
+            // -1: no longer. A heartbeat is what the others know the vehicle by.
+            None if interval < 0.0 && id != HEARTBEAT_DATA::ID => 0,
+            _ => return MavResult::MAV_RESULT_DENIED,
+        };
+        match self.schedule.set_period(id, period, now) {
+            Some(()) => MavResult::MAV_RESULT_ACCEPTED,
+            None => MavResult::MAV_RESULT_UNSUPPORTED,
+        }
+    }
+
+    pub(super) fn get_interval(&mut self, id: f32) -> Reply {
+        let Some(id) = whole(id).and_then(|id| u16::try_from(id).ok()) else {
+            return MavResult::MAV_RESULT_DENIED.into();
+        };
+        let interval_us = match self.schedule.period(id.into()) {
+            Some(0) => -1,
+            Some(period) => i32::try_from(period).unwrap_or(i32::MAX),
+            // 0: not available.
+            None => 0,
+        };
+        Answer::Interval { id, interval_us }.into()
+    }
+}
+
+/// A message that is asked for once; `index` says which of several.
+pub(super) fn once(id: f32, index: f32) -> Reply {
+    let Some(id) = whole(id) else {
+        return MavResult::MAV_RESULT_DENIED.into();
+    };
+    match id {
+        AUTOPILOT_VERSION_DATA::ID => Answer::Version.into(),
+        COMPONENT_METADATA_DATA::ID => Answer::Metadata.into(),
+        AVAILABLE_MODES_DATA::ID => match whole(index) {
+            Some(0) => Answer::Mode { index: 1, all: true }.into(),
+            Some(index) if index as usize <= Mode::ALL.len() => Answer::Mode {
+                index: index as u8,
+                all: false,
+            }
+            .into(),
+            _ => MavResult::MAV_RESULT_DENIED.into(),
+        },
+        id if STREAMS.iter().any(|stream| stream.id == id) => Answer::Stream(id).into(),
+        _ => MavResult::MAV_RESULT_UNSUPPORTED.into(),
+    }
+}

@@ -1,0 +1,33 @@
+//! Restarting, and storing the parameters.
+
+use super::super::Server;
+use super::whole;
+use crate::dialect::*;
+use crate::vehicle::Vehicle;
+
+/// Time from the answer to a restart, µs: for the answer to get out.
+const LAST_WORDS: u64 = 300_000;
+
+impl Server {
+    pub(super) fn reboot(&mut self, autopilot: f32, now: u64, vehicle: &Vehicle) -> MavResult {
+        match whole(autopilot) {
+            Some(1) if vehicle.at_rest() => {
+                self.restart_at = Some(now.saturating_add(LAST_WORDS));
+                MavResult::MAV_RESULT_ACCEPTED
+            }
+            Some(1) => self.refuse_armed(),
+            _ => MavResult::MAV_RESULT_UNSUPPORTED,
+        }
+    }
+
+    pub(super) fn storage(&mut self, parameters: f32, vehicle: &Vehicle) -> MavResult {
+        match whole(parameters) {
+            Some(1) if vehicle.at_rest() => {
+                self.store_now = true;
+                MavResult::MAV_RESULT_ACCEPTED
+            }
+            Some(1) => self.refuse_armed(),
+            _ => MavResult::MAV_RESULT_UNSUPPORTED,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! What goes out: the most urgent that is due and within the budget.
+
+use mavlink_core::MessageData;
+use sophie_control::mode::Mode;
+
+use super::answer::Answer;
+use super::{Files, Server};
+use crate::budget::RESERVE;
+use crate::dialect::*;
+use crate::files::{GENERAL_CRC, GENERAL_URI};
+use crate::frame::Encoder;
+use crate::messages as make;
+use crate::parser::SIGNATURE;
+use crate::signing::{Refused, Signing};
+use crate::streams::{STREAMS, frame_bytes};
+use crate::vehicle::Vehicle;
+
+/// Number of the line in signatures.
+const LINK: u8 = 0;
+
+impl Server {
+    /// The next frame that is due and within the budget at `now`, µs since the start.
+    pub fn send(&mut self, now: u64, vehicle: &Vehicle, signing: &mut Signing) -> Option<&[u8]> {
+        self.encoder.leave_room(signing.signs());
+        self.budget
+            .add_to_each(if signing.signs() { SIGNATURE as u32 } else { 0 });
+        self.budget.refill(now);
+        if let Some(refused) = signing.report(now) {
+            self.say_refused(refused);
+        }
+        if self.mode != vehicle.mode() {
+            self.mode = vehicle.mode();
+            self.schedule.hurry(HEARTBEAT_DATA::ID);
+            self.schedule.hurry(CURRENT_MODE_DATA::ID);
+        }
+        let bytes = self
+            .send_heartbeat(now, vehicle)
+            .or_else(|| self.send_answer(now, vehicle))
+            .or_else(|| self.send_text(vehicle))
+            .or_else(|| self.send_stream(now, vehicle))
+            .or_else(|| self.send_file())
+            .or_else(|| self.send_listed())?;
+        self.budget.spend(bytes);
+        signing.sign(self.encoder.frame_mut(), LINK, now);
+        Some(self.encoder.frame())
+    }
+
+    fn say_refused(&mut self, refused: Refused) {
+        let Refused { unsigned, wrong, old } = refused;
+        self.texts.say(
+            MavSeverity::MAV_SEVERITY_WARNING,
+            format_args!("refused: {unsigned} unsigned, {wrong} wrong, {old} old"),
+        );
+    }
+
+    /// First of all: no flood of questions makes the vehicle look lost.
+    fn send_heartbeat(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
+        let room = self.budget.allows(frame_bytes::<HEARTBEAT_DATA>());
+        let due = room && self.schedule.take(HEARTBEAT_DATA::ID, now);
+        due.then(|| self.encoder.encode(&make::heartbeat(vehicle)))
+    }
+
+    fn send_answer(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
+        if !self.budget.allows(self.answers.front()?.bytes()) {
+            return None;
+        }
+        let answer = self.answers.pop_front()?;
+        let encoder = &mut self.encoder;
+        match answer {
+            Answer::Ack { command, result, to } => Some(encoder.encode(&COMMAND_ACK_DATA {
+                command,
+                result: result as u8,
+                target_system: to.system,
+                target_component: to.component,
+                ..COMMAND_ACK_DATA::DEFAULT
+            })),
+            Answer::Ping(ping) => Some(encoder.encode(&ping)),
+            Answer::Timesync(sync) => Some(encoder.encode(&sync)),
+            Answer::AskTime => {
+                let peer = self.inputs.clock.ask(now)?;
+                Some(encoder.encode(&TIMESYNC_DATA {
+                    tc1: 0,
+                    ts1: i64::try_from(now.saturating_mul(1000)).unwrap_or(i64::MAX),
+                    target_system: peer.system,
+                    target_component: peer.component,
+                }))
+            }
+            Answer::Interval { id, interval_us } => Some(encoder.encode(&MESSAGE_INTERVAL_DATA {
+                interval_us,
+                message_id: id,
+            })),
+            Answer::Parameter(place) => Some(encoder.encode(&self.parameters.value(place)?)),
+            Answer::Stream(id) => stream(encoder, id, now, vehicle),
+            Answer::Version => Some(encoder.encode(&make::autopilot_version())),
+            // Wraps after 49 days, as the standard's field does.
+            Answer::Metadata => Some(encoder.encode(&COMPONENT_METADATA_DATA {
+                time_boot_ms: (now / 1000) as u32,
+                file_crc: GENERAL_CRC,
+                uri: GENERAL_URI.into(),
+            })),
+            Answer::Mode { index, all } => {
+                if all && usize::from(index) < Mode::ALL.len() {
+                    self.answer(Answer::Mode {
+                        index: index + 1,
+                        all,
+                    });
+                }
+                Some(self.encoder.encode(&make::available_mode(index)?))
+            }
+        }
+    }
+
+    fn send_text(&mut self, vehicle: &Vehicle) -> Option<u32> {
+        // Without room it waits, and what happens meanwhile is said by what holds then.
+        if !self.budget.allows(frame_bytes::<STATUSTEXT_DATA>()) {
+            return None;
+        }
+        let text = self.texts.next(vehicle)?;
+        Some(self.encoder.encode(&text.message()))
+    }
+
+    fn send_stream(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
+        // Each stream at most once: none that has lost its turn is looked at again at the same time.
+        for _ in 0..STREAMS.len() {
+            let due = self.schedule.next(now)?;
+            if self.budget.allows(due.bytes + RESERVE) {
+                let sent = stream(&mut self.encoder, due.id, now, vehicle);
+                if sent.is_some() {
+                    return sent;
+                }
+            }
+        }
+        None
+    }
+
+    fn send_file(&mut self) -> Option<u32> {
+        if !self
+            .budget
+            .allows(frame_bytes::<FILE_TRANSFER_PROTOCOL_DATA>() + RESERVE)
+        {
+            return None;
+        }
+        let Files { ftp, reader, answer } = &mut self.files;
+        let payload = answer.take().or_else(|| ftp.piece())?;
+        Some(self.encoder.encode(&FILE_TRANSFER_PROTOCOL_DATA {
+            target_network: 0,
+            target_system: reader.system,
+            target_component: reader.component,
+            payload,
+        }))
+    }
+
+    fn send_listed(&mut self) -> Option<u32> {
+        if !self.budget.allows(frame_bytes::<PARAM_VALUE_DATA>() + RESERVE) {
+            return None;
+        }
+        let place = self.parameters.listed()?;
+        Some(self.encoder.encode(&self.parameters.value(place)?))
+    }
+}
+
+/// Makes the frame of a stream; `None` where nothing fresh is known.
+fn stream(encoder: &mut Encoder, id: u32, now: u64, vehicle: &Vehicle) -> Option<u32> {
+    // Wraps after 49 days, as the standard's field does.
+    let ms = (now / 1000) as u32;
+    Some(match id {
+        HEARTBEAT_DATA::ID => encoder.encode(&make::heartbeat(vehicle)),
+        SYS_STATUS_DATA::ID => encoder.encode(&make::sys_status(vehicle)),
+        EXTENDED_SYS_STATE_DATA::ID => encoder.encode(&make::extended_sys_state(vehicle)),
+        CURRENT_MODE_DATA::ID => encoder.encode(&make::current_mode(vehicle)),
+        ATTITUDE_DATA::ID => encoder.encode(&make::attitude(vehicle, ms)?),
+        ATTITUDE_QUATERNION_DATA::ID => encoder.encode(&make::attitude_quaternion(vehicle, ms)?),
+        SOPHIE_ARMS_DATA::ID => encoder.encode(&make::arms(vehicle, ms)),
+        RC_CHANNELS_DATA::ID => encoder.encode(&make::rc_channels(vehicle, ms)),
+        SERVO_OUTPUT_RAW_DATA::ID => encoder.encode(&make::servo_output_raw(vehicle, ms)),
+        BATTERY_STATUS_DATA::ID => encoder.encode(&make::battery_status(vehicle)),
+        SCALED_IMU_DATA::ID => encoder.encode(&make::scaled_imu(vehicle, ms)?),
+        _ => return None,
+    })
+}

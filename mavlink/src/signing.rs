@@ -1,0 +1,345 @@
+//! Signed frames: with a key each frame that is sent carries a signature, and none is obeyed without.
+//!
+//! A signature is of 48 bits of SHA-256 over the key, the frame and a time in units of 10 µs since 2015, which grows from
+//! frame to frame (mavlink.io/en/guide/message_signing.html). There is no clock here that knows the date: time starts
+//! where a stored bound says, and follows the latest that came with a sound signature. The bound lies ahead of every time
+//! that was taken, so that nothing from before a restart is taken again.
+
+use sha2::{Digest, Sha256};
+
+use crate::dialect::HEARTBEAT_DATA;
+use crate::parser::{Frame, SIGNATURE};
+use mavlink_core::MessageData;
+
+/// Bytes of the signature proper, the last of a frame.
+const HASH: usize = 6;
+/// Senders whose times are remembered. One that was silent for a minute makes room.
+const SENDERS: usize = 6;
+/// A minute in units of 10 µs: by so much a new sender may be behind.
+const MINUTE: u64 = 6_000_000;
+/// The stored bound is set this far ahead of the latest time: an hour, so that it is rarely written.
+const LEASE: u64 = 60 * MINUTE;
+/// It is written again when less than this is left, so that half an hour of flight is covered.
+const RENEWAL: u64 = LEASE / 2;
+/// Time from one attempt to write it to the next, µs.
+const RETRY: u64 = 10_000_000;
+/// Time between two texts about refused frames, µs.
+const REPORT: u64 = 10_000_000;
+/// The latest time that there is: 48 bits last until 2104.
+const TIME_MAX: u64 = (1 << 48) - 1;
+
+/// The secret that both ends know. It is never shown.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Key([u8; 32]);
+
+impl Key {
+    /// Length of its text.
+    pub const DIGITS: usize = 64;
+
+    /// From its bytes.
+    pub const fn new(bytes: [u8; 32]) -> Self {
+        Self(bytes)
+    }
+
+    /// From [`Self::DIGITS`] hexadecimal digits; `None` for anything else.
+    pub fn from_hex(text: &str) -> Option<Self> {
+        let (pairs, []) = text.as_bytes().as_chunks::<2>() else {
+            return None;
+        };
+        let mut key = [0; 32];
+        if pairs.len() != key.len() {
+            return None;
+        }
+        for (byte, &[high, low]) in key.iter_mut().zip(pairs) {
+            *byte = (digit(high)? << 4) | digit(low)?;
+        }
+        Some(Self(key))
+    }
+
+    /// Its bytes, for storing.
+    pub const fn bytes(&self) -> &[u8; 32] {
+        &self.0
+    }
+}
+
+fn digit(letter: u8) -> Option<u8> {
+    char::from(letter).to_digit(16).map(|digit| digit as u8)
+}
+
+impl core::fmt::Debug for Key {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Key")
+    }
+}
+
+/// What is stored of signing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// The secret.
+    pub key: Key,
+    /// No frame with a later time has been taken, in units of 10 µs since 2015.
+    pub bound: u64,
+}
+
+impl Record {
+    /// A key that has signed nothing yet.
+    pub const fn fresh(key: Key) -> Self {
+        Self { key, bound: 0 }
+    }
+}
+
+/// What is known of the stored key.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stored {
+    /// None is stored.
+    #[default]
+    None,
+    /// This one.
+    Key(Record),
+    /// The storage cannot be read: there may be one.
+    Unreadable,
+}
+
+/// Frames that were refused since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Refused {
+    /// Without a signature.
+    pub unsigned: u32,
+    /// With a signature that the key does not give.
+    pub wrong: u32,
+    /// Taken before, too old, or of one sender too many.
+    pub old: u32,
+}
+
+/// Who sent: system, component and link.
+type Name = [u8; 3];
+
+/// A sender and the time of its latest frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Sender {
+    name: Name,
+    /// 0: no sender.
+    latest: u64,
+}
+
+/// The key, and the times of what was signed with it: one for all lines, so that what was said on one is not taken on
+/// another.
+#[derive(Clone, Debug)]
+pub struct Signing {
+    stored: Stored,
+    /// The time that is at the board's start.
+    origin: u64,
+    /// Nothing of this time or before is taken.
+    floor: u64,
+    /// Latest time of a frame that was taken.
+    taken: u64,
+    /// Latest time of a frame that was sent.
+    sent: u64,
+    senders: [Sender; SENDERS],
+    refused: Refused,
+    reported: Refused,
+    /// When texts and writing may come next, µs.
+    report_at: u64,
+    store_at: u64,
+}
+
+impl Signing {
+    /// With what is stored at the start.
+    pub const fn new(stored: Stored) -> Self {
+        let bound = match stored {
+            Stored::Key(Record { bound, .. }) => bound,
+            Stored::None | Stored::Unreadable => 0,
+        };
+        Self {
+            stored,
+            origin: bound,
+            floor: bound,
+            taken: 0,
+            sent: 0,
+            senders: [Sender {
+                name: [0; 3],
+                latest: 0,
+            }; SENDERS],
+            refused: Refused {
+                unsigned: 0,
+                wrong: 0,
+                old: 0,
+            },
+            reported: Refused {
+                unsigned: 0,
+                wrong: 0,
+                old: 0,
+            },
+            report_at: 0,
+            store_at: 0,
+        }
+    }
+
+    /// What is stored.
+    pub const fn stored(&self) -> &Stored {
+        &self.stored
+    }
+
+    /// Frames that were refused since the start.
+    pub const fn refused(&self) -> Refused {
+        self.refused
+    }
+
+    /// Frames are signed.
+    pub const fn signs(&self) -> bool {
+        matches!(self.stored, Stored::Key(_))
+    }
+
+    /// The time at `now`, µs since the start.
+    fn time(&self, now: u64) -> u64 {
+        self.origin.saturating_add(now / 10).min(TIME_MAX)
+    }
+
+    /// True where `frame`, which arrived at `now`, may be obeyed. Without a signature only heartbeats may, as PX4 has it:
+    /// they change nothing.
+    pub fn takes(&mut self, frame: &Frame<'_>, now: u64) -> bool {
+        if self.stored == Stored::None {
+            return true;
+        }
+        let Some(signed) = Signed::of(frame) else {
+            let harmless = frame.id == HEARTBEAT_DATA::ID;
+            count(&mut self.refused.unsigned, !harmless);
+            return harmless;
+        };
+        let Stored::Key(Record { key, .. }) = self.stored else {
+            count(&mut self.refused.wrong, true);
+            return false;
+        };
+        let time = self.time(now);
+        let Some(sender) = sender(&mut self.senders, &signed, self.floor, time) else {
+            // Before the hash, which costs more than all else.
+            count(&mut self.refused.old, true);
+            return false;
+        };
+        if !same(&hash(&key, signed.bytes), signed.hash) {
+            count(&mut self.refused.wrong, true);
+            return false;
+        }
+        *sender = Sender {
+            name: signed.name,
+            latest: signed.time,
+        };
+        self.taken = self.taken.max(signed.time);
+        self.origin = self.origin.max(signed.time.saturating_sub(now / 10));
+        true
+    }
+
+    /// Signs `frame`, whose last 13 bytes are free for it, as number `link` of this vehicle's lines at `now`, µs.
+    pub fn sign(&mut self, frame: &mut [u8], link: u8, now: u64) {
+        let Stored::Key(Record { key, .. }) = self.stored else {
+            return;
+        };
+        self.sent = self.time(now).max(self.sent.saturating_add(1)).min(TIME_MAX);
+        let Some((bytes, last)) = frame.split_last_chunk_mut::<HASH>() else {
+            return;
+        };
+        if let Some((_, head)) = bytes.split_last_chunk_mut::<{ SIGNATURE - HASH }>() {
+            let [a, b, c, d, e, f, ..] = self.sent.to_le_bytes();
+            *head = [link, a, b, c, d, e, f];
+        }
+        *last = hash(&key, bytes);
+    }
+
+    /// The record that is to be stored at `now`, µs since the start; the board must be at rest.
+    pub fn to_store(&mut self, now: u64) -> Option<Record> {
+        let Stored::Key(Record { key, bound }) = self.stored else {
+            return None;
+        };
+        if self.taken.saturating_add(RENEWAL) <= bound
+            || bound == TIME_MAX
+            || self.taken == 0
+            || now < self.store_at
+        {
+            return None;
+        }
+        self.store_at = now.saturating_add(RETRY);
+        Some(Record {
+            key,
+            bound: self.taken.saturating_add(LEASE).min(TIME_MAX),
+        })
+    }
+
+    /// `record` has been stored.
+    pub const fn keep(&mut self, record: Record) {
+        self.stored = Stored::Key(record);
+    }
+
+    /// What was refused, where that is more than was reported, now and then; `now` in µs since the start.
+    pub fn report(&mut self, now: u64) -> Option<Refused> {
+        if self.refused == self.reported || now < self.report_at {
+            return None;
+        }
+        self.report_at = now.saturating_add(REPORT);
+        self.reported = self.refused;
+        Some(self.refused)
+    }
+}
+
+/// A frame with a signature.
+struct Signed<'a> {
+    name: Name,
+    time: u64,
+    /// What is hashed behind the key.
+    bytes: &'a [u8],
+    hash: &'a [u8; HASH],
+}
+
+impl<'a> Signed<'a> {
+    fn of(frame: &Frame<'a>) -> Option<Self> {
+        if !frame.signed {
+            return None;
+        }
+        let (bytes, hash) = frame.bytes.split_last_chunk::<HASH>()?;
+        let (_, &[link, a, b, c, d, e, f]) = bytes.split_last_chunk::<{ SIGNATURE - HASH }>()?;
+        Some(Self {
+            name: [frame.system, frame.component, link],
+            time: u64::from_le_bytes([a, b, c, d, e, f, 0, 0]),
+            bytes,
+            hash,
+        })
+    }
+}
+
+/// The place of `signed`'s sender; `None` where its time is too old at `now`, or there is no place.
+fn sender<'s>(
+    senders: &'s mut [Sender; SENDERS],
+    signed: &Signed<'_>,
+    floor: u64,
+    now: u64,
+) -> Option<&'s mut Sender> {
+    if signed.time <= floor {
+        return None;
+    }
+    let known = (senders.iter()).position(|sender| sender.latest > 0 && sender.name == signed.name);
+    let at = match known {
+        Some(at) => at,
+        None if signed.time.saturating_add(MINUTE) < now => return None,
+        // What an old one said is too old for a new one as well: nothing is lost with its time.
+        None => (senders.iter()).position(|s| s.latest == 0 || s.latest.saturating_add(MINUTE) < now)?,
+    };
+    let sender = senders.get_mut(at)?;
+    (known.is_none() || signed.time > sender.latest).then_some(sender)
+}
+
+fn hash(key: &Key, bytes: &[u8]) -> [u8; HASH] {
+    let mut sha = Sha256::new();
+    sha.update(key.0);
+    sha.update(bytes);
+    let [a, b, c, d, e, f, ..] = <[u8; 32]>::from(sha.finalize());
+    [a, b, c, d, e, f]
+}
+
+/// Compares in a time that does not depend on where they differ.
+fn same(a: &[u8; HASH], b: &[u8; HASH]) -> bool {
+    let difference = a.iter().zip(b).fold(0, |all, (a, b)| all | (a ^ b));
+    core::hint::black_box(difference) == 0
+}
+
+fn count(counter: &mut u32, more: bool) {
+    *counter = counter.saturating_add(more.into());
+}

@@ -1,0 +1,478 @@
+//! Poses and attitudes from outside: axes, bounds, times.
+
+use mavlink_core::MessageData;
+use sophie_control::vector::{Quat, Vec3};
+use sophie_mavlink::dialect::*;
+use sophie_mavlink::inputs::Counts;
+use sophie_mavlink::inputs::attitude::OffboardAttitude;
+use sophie_mavlink::inputs::pose::{ExternalPose, TimeSource};
+
+use crate::station::{Station, frame, frame_from};
+
+const NAN: [f32; 21] = [f32::NAN; 21];
+
+/// At 1, 2, 3 m in NED, level, heading north, at 4, 5, 6 m/s along the body's axes; nothing is known of its errors.
+fn odometry() -> ODOMETRY_DATA {
+    ODOMETRY_DATA {
+        time_usec: 0,
+        x: 1.0,
+        y: 2.0,
+        z: 3.0,
+        q: [1.0, 0.0, 0.0, 0.0],
+        vx: 4.0,
+        vy: 5.0,
+        vz: 6.0,
+        pose_covariance: NAN,
+        velocity_covariance: NAN,
+        frame_id: 1,
+        child_frame_id: 12,
+        ..ODOMETRY_DATA::DEFAULT
+    }
+}
+
+fn after<M: MessageData>(message: &M) -> (Option<ExternalPose>, Counts) {
+    let mut station = Station::new();
+    station.now = 5_000_000;
+    station.say(&frame(message));
+    let inputs = station.server.inputs();
+    (inputs.take_pose(), inputs.counts())
+}
+
+fn taken<M: MessageData>(message: &M) -> ExternalPose {
+    let (pose, counts) = after(message);
+    assert_eq!(
+        counts,
+        Counts {
+            poses: 1,
+            ..Counts::default()
+        }
+    );
+    pose.unwrap()
+}
+
+/// Counts of what refuses `message`: frame, value, late.
+fn refused<M: MessageData>(message: &M) -> [u32; 3] {
+    let (pose, counts) = after(message);
+    assert!(pose.is_none() && counts.poses == 0);
+    [counts.frame, counts.value, counts.late]
+}
+
+fn near(a: Vec3, b: Vec3) {
+    assert!((a - b).norm() < 1e-5, "{a:?} {b:?}");
+}
+
+/// The same rotation.
+fn turned_alike(a: Option<Quat>, b: Quat) {
+    let a = a.unwrap();
+    for axis in [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)] {
+        near(a.rotate(axis), b.rotate(axis));
+    }
+}
+
+#[test]
+fn a_pose_in_ned_is_taken_as_it_is() {
+    let pose = taken(&odometry()).pose;
+    assert_eq!(pose.position, Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(pose.velocity, Some(Vec3::new(4.0, 5.0, 6.0)));
+    assert!(pose.north && pose.quality.is_none() && pose.resets == 0);
+    assert_eq!(
+        (
+            pose.position_variance,
+            pose.attitude_variance,
+            pose.velocity_variance
+        ),
+        (None, None, None)
+    );
+    turned_alike(pose.attitude, Quat::IDENTITY);
+}
+
+#[test]
+fn every_frame_is_turned_into_the_vehicles() {
+    // The body's axes along each world's: x_b north or forward, y_b east or right, z_b down.
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    for (frame_id, north, q, position) in [
+        (1, true, [1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 3.0]),
+        (4, true, [0.0, half, half, 0.0], [2.0, 1.0, -3.0]),
+        (20, false, [1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 3.0]),
+        (21, false, [0.0, 1.0, 0.0, 0.0], [1.0, -2.0, -3.0]),
+    ] {
+        let [x, y, z] = position;
+        let in_world = ODOMETRY_DATA {
+            frame_id,
+            q,
+            x,
+            y,
+            z,
+            ..odometry()
+        };
+        let pose = taken(&in_world).pose;
+        assert_eq!((pose.position, pose.north), (Vec3::new(1.0, 2.0, 3.0), north));
+        turned_alike(pose.attitude, Quat::IDENTITY);
+        near(pose.velocity.unwrap(), Vec3::new(4.0, 5.0, 6.0));
+        // The velocity in the world's axes.
+        let [vx, vy, vz] = position;
+        let pose = taken(&ODOMETRY_DATA {
+            child_frame_id: frame_id,
+            vx,
+            vy,
+            vz,
+            ..in_world
+        })
+        .pose;
+        assert_eq!(pose.velocity, Some(Vec3::new(1.0, 2.0, 3.0)));
+    }
+    for frame_id in [0, 2, 3, 5, 7, 8, 12, 13, 22, 255] {
+        assert_eq!(
+            refused(&ODOMETRY_DATA {
+                frame_id,
+                ..odometry()
+            }),
+            [1, 0, 0],
+            "{frame_id}"
+        );
+    }
+    for child_frame_id in [0, 7, 13, 20, 21, 255] {
+        assert_eq!(
+            refused(&ODOMETRY_DATA {
+                child_frame_id,
+                ..odometry()
+            }),
+            [1, 0, 0],
+            "{child_frame_id}"
+        );
+    }
+}
+
+#[test]
+fn errors_of_the_body_s_velocity_are_turned_with_it() {
+    // Heading east: the body's x is the world's y.
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let mut m = ODOMETRY_DATA {
+        q: [half, 0.0, 0.0, half],
+        quality: 77,
+        reset_counter: 3,
+        ..odometry()
+    };
+    for (at, value) in [(0, 1.0), (6, 2.0), (11, 3.0), (15, 0.1), (18, 0.2), (20, 0.3)] {
+        m.pose_covariance[at] = value;
+        m.velocity_covariance[at] = value;
+    }
+    let pose = taken(&m).pose;
+    near(pose.velocity.unwrap(), Vec3::new(-5.0, 4.0, 6.0));
+    assert_eq!(pose.position_variance, Some(Vec3::new(1.0, 2.0, 3.0)));
+    assert_eq!(pose.attitude_variance, Some(Vec3::new(0.1, 0.2, 0.3)));
+    near(pose.velocity_variance.unwrap(), Vec3::new(2.0, 1.0, 3.0));
+    assert_eq!((pose.quality, pose.resets), (Some(77), 3));
+    m.frame_id = 4;
+    let pose = taken(&m).pose;
+    assert_eq!(pose.position_variance, Some(Vec3::new(2.0, 1.0, 3.0)));
+    assert_eq!(pose.attitude_variance, None);
+}
+
+#[test]
+fn what_is_not_given_is_left_out() {
+    let pose = taken(&ODOMETRY_DATA {
+        q: [f32::NAN; 4],
+        ..odometry()
+    })
+    .pose;
+    assert_eq!(
+        (pose.attitude, pose.velocity),
+        (None, None),
+        "no axes for the velocity"
+    );
+    let pose = taken(&ODOMETRY_DATA {
+        vx: f32::NAN,
+        ..odometry()
+    })
+    .pose;
+    assert!(pose.attitude.is_some() && pose.velocity.is_none());
+}
+
+#[test]
+fn the_other_two_poses_are_in_ned() {
+    let vision = VISION_POSITION_ESTIMATE_DATA {
+        x: 1.0,
+        y: 2.0,
+        z: 3.0,
+        yaw: 1.0,
+        ..Default::default()
+    };
+    let pose = taken(&vision).pose;
+    assert_eq!(
+        (pose.position, pose.position_variance, pose.north),
+        (Vec3::new(1.0, 2.0, 3.0), None, true)
+    );
+    turned_alike(pose.attitude, Quat::from_euler(0.0, 0.0, 1.0));
+    let mocap = ATT_POS_MOCAP_DATA {
+        q: [0.0, 0.0, 0.0, 1.0],
+        x: 1.0,
+        ..Default::default()
+    };
+    let pose = taken(&mocap).pose;
+    near(
+        pose.attitude.unwrap().rotate(Vec3::new(1.0, 0.0, 0.0)),
+        Vec3::new(-1.0, 0.0, 0.0),
+    );
+    assert_eq!(
+        refused(&VISION_POSITION_ESTIMATE_DATA {
+            pitch: 7.0,
+            ..vision.clone()
+        }),
+        [0, 1, 0]
+    );
+    assert_eq!(
+        refused(&VISION_POSITION_ESTIMATE_DATA {
+            y: f32::INFINITY,
+            ..vision
+        }),
+        [0, 1, 0]
+    );
+    assert_eq!(refused(&ATT_POS_MOCAP_DATA { q: [0.0; 4], ..mocap }), [0, 1, 0]);
+}
+
+#[test]
+fn no_number_and_no_sense_are_refused() {
+    let good = odometry();
+    let mut covariance = NAN;
+    for (first, other) in [(-1.0, 0.0), (1.0, f32::NAN), (f32::INFINITY, 1.0), (1e7, 1.0)] {
+        covariance[0] = first;
+        covariance[6] = other;
+        covariance[11] = 0.0;
+        (covariance[15], covariance[18], covariance[20]) = (0.0, 0.0, 0.0);
+        assert_eq!(
+            refused(&ODOMETRY_DATA {
+                pose_covariance: covariance,
+                ..good.clone()
+            }),
+            [0, 1, 0]
+        );
+        assert_eq!(
+            refused(&ODOMETRY_DATA {
+                velocity_covariance: covariance,
+                ..good.clone()
+            }),
+            [0, 1, 0]
+        );
+    }
+    for bad in [f32::NAN, f32::INFINITY, -f32::INFINITY, 10_001.0, -10_001.0] {
+        assert_eq!(
+            refused(&ODOMETRY_DATA {
+                z: bad,
+                ..good.clone()
+            }),
+            [0, 1, 0],
+            "{bad}"
+        );
+        assert_eq!(
+            refused(&ODOMETRY_DATA {
+                vy: bad,
+                ..good.clone()
+            }),
+            [0, 1, 0],
+            "{bad}"
+        );
+        assert_eq!(
+            refused(&ODOMETRY_DATA {
+                q: [1.0, 0.0, bad, 0.0],
+                ..good.clone()
+            }),
+            [0, 1, 0],
+            "{bad}"
+        );
+    }
+    assert_eq!(
+        refused(&ODOMETRY_DATA {
+            quality: -1,
+            ..good.clone()
+        }),
+        [0, 1, 0]
+    );
+    assert_eq!(
+        refused(&ODOMETRY_DATA {
+            q: [1.02, 0.0, 0.0, 0.0],
+            ..good
+        }),
+        [0, 1, 0]
+    );
+}
+
+/// Sends a pose that the sender's clock dates `usec`; when it was measured, and how that is known.
+fn dated(station: &mut Station, usec: u64) -> Option<(u64, TimeSource)> {
+    station.say(&frame(&ODOMETRY_DATA {
+        time_usec: usec,
+        ..odometry()
+    }));
+    let pose = station.server.inputs().take_pose()?;
+    assert_eq!(pose.received_at, station.now);
+    Some((pose.measured_at, pose.clock))
+}
+
+#[test]
+fn the_time_of_measurement_is_the_senders_once_its_clock_is_known() {
+    const DATE: u64 = 1_800_000_000_000_000;
+    let mut station = Station::new();
+    station.now = 5_000_000;
+    assert_eq!(dated(&mut station, DATE), Some((5_000_000, TimeSource::Receipt)));
+    // It is asked for its time, and answers after 20 ms: its clock shows DATE at 5.03 s.
+    station.run(20);
+    let asked = station.got::<TIMESYNC_DATA>();
+    assert_eq!(asked.len(), 1);
+    assert_eq!(
+        (asked[0].tc1, asked[0].target_system, asked[0].target_component),
+        (0, 255, 190)
+    );
+    let answer = TIMESYNC_DATA {
+        tc1: DATE as i64 * 1000,
+        target_system: 1,
+        target_component: 1,
+        ..asked[0].clone()
+    };
+    station.now += 20_000;
+    // Another's answer, and one to another question, say nothing.
+    station.say(&frame_from(
+        7,
+        &TIMESYNC_DATA {
+            tc1: 1,
+            ..answer.clone()
+        },
+    ));
+    station.say(&frame(&TIMESYNC_DATA {
+        ts1: answer.ts1 + 1,
+        tc1: 1,
+        ..answer.clone()
+    }));
+    station.say(&frame(&answer));
+    // 5.04 s now: what was dated 40 ms after that was measured at 5.07 s at the latest: now.
+    assert_eq!(
+        dated(&mut station, DATE - 10_000),
+        Some((5_020_000, TimeSource::Offset))
+    );
+    assert_eq!(
+        dated(&mut station, DATE + 40_000),
+        Some((5_040_000, TimeSource::Offset))
+    );
+    assert_eq!(dated(&mut station, DATE - 2_000_000), None, "too old");
+    assert_eq!(dated(&mut station, DATE), None, "not after the one before");
+    assert_eq!(station.server.inputs().counts().late, 2);
+    // Asked again after a second, not before.
+    station.run(900);
+    dated(&mut station, DATE + 900_000);
+    station.run(300);
+    dated(&mut station, DATE + 1_200_000);
+    station.run(100);
+    assert_eq!(station.got::<TIMESYNC_DATA>().len(), 2);
+}
+
+#[test]
+fn a_sender_that_keeps_the_vehicles_time_is_believed() {
+    let mut station = Station::new();
+    station.now = 5_000_000;
+    assert_eq!(
+        dated(&mut station, 4_900_000),
+        Some((4_900_000, TimeSource::Vehicle))
+    );
+    assert_eq!(dated(&mut station, 4_900_000), None);
+    assert_eq!(
+        dated(&mut station, 4_900_001),
+        Some((4_900_001, TimeSource::Vehicle))
+    );
+}
+
+#[test]
+fn an_attitude_has_what_its_mask_says() {
+    let wish = |m: &SET_ATTITUDE_TARGET_DATA| {
+        let mut station = Station::new();
+        station.say(&frame(m));
+        let inputs = station.server.inputs();
+        let counts = inputs.counts();
+        assert_eq!(counts.attitudes + counts.frame + counts.value, 1);
+        inputs.take_attitude()
+    };
+    let all = SET_ATTITUDE_TARGET_DATA {
+        q: [1.0, 0.0, 0.0, 0.0],
+        body_roll_rate: 1.0,
+        body_pitch_rate: -2.0,
+        body_yaw_rate: 3.0,
+        thrust: 0.5,
+        target_system: 1,
+        target_component: 1,
+        ..Default::default()
+    };
+    let whole = OffboardAttitude {
+        attitude: Some(Quat::IDENTITY),
+        rates: [Some(1.0), Some(-2.0), Some(3.0)],
+        thrust: Some(0.5),
+    };
+    assert_eq!(wish(&all), Some(whole));
+    let masked = |type_mask| SET_ATTITUDE_TARGET_DATA {
+        type_mask,
+        ..all.clone()
+    };
+    assert_eq!(
+        wish(&masked(128)),
+        Some(OffboardAttitude {
+            attitude: None,
+            ..whole
+        })
+    );
+    assert_eq!(
+        wish(&masked(64)),
+        Some(OffboardAttitude {
+            thrust: None,
+            ..whole
+        })
+    );
+    assert_eq!(
+        wish(&masked(3)),
+        Some(OffboardAttitude {
+            rates: [None, None, Some(3.0)],
+            ..whole
+        })
+    );
+    // Nothing left, a thrust vector.
+    assert_eq!((wish(&masked(199)), wish(&masked(32))), (None, None));
+    for bad in [f32::NAN, f32::INFINITY, 36.0] {
+        assert_eq!(
+            wish(&SET_ATTITUDE_TARGET_DATA {
+                body_yaw_rate: bad,
+                ..all.clone()
+            }),
+            None
+        );
+        assert_eq!(
+            wish(&SET_ATTITUDE_TARGET_DATA {
+                thrust: bad,
+                ..all.clone()
+            }),
+            None
+        );
+        assert_eq!(
+            wish(&SET_ATTITUDE_TARGET_DATA {
+                q: [bad, 0.0, 0.0, 0.0],
+                ..all.clone()
+            }),
+            None
+        );
+        // What is left open may be anything.
+        let open = SET_ATTITUDE_TARGET_DATA {
+            body_yaw_rate: bad,
+            ..masked(4)
+        };
+        assert!(wish(&open).is_some());
+    }
+    assert_eq!(
+        wish(&SET_ATTITUDE_TARGET_DATA {
+            thrust: -0.1,
+            ..all.clone()
+        }),
+        None
+    );
+    // For another vehicle.
+    let mut station = Station::new();
+    station.say(&frame(&SET_ATTITUDE_TARGET_DATA {
+        target_system: 2,
+        ..all.clone()
+    }));
+    assert_eq!(station.server.inputs().counts(), Counts::default());
+}

@@ -1,0 +1,102 @@
+//! The MAVLink line: how it is, and its key, which is set nowhere else.
+
+use sophie_control::arming::ArmingInhibit;
+use sophie_mavlink::inputs::Counts;
+use sophie_mavlink::signing::{Key, Record, Refused, Stored};
+
+use super::Console;
+use crate::links::{LineState, SigningState};
+use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use crate::storing;
+
+impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
+    /// Whether it is signed, and what was refused for that.
+    pub(super) async fn mavlink(&mut self) {
+        let Some(LineState {
+            signing,
+            refused,
+            inputs,
+        }) = self.links.mavlink.fresh()
+        else {
+            return self.out.line(format_args!("the MAVLink task is silent")).await;
+        };
+        let signing = match signing {
+            SigningState::Off => "off",
+            SigningState::On => "on",
+            SigningState::Unknown => "not known, nothing is obeyed: the storage is unreadable",
+        };
+        self.out.line(format_args!("signing {signing}")).await;
+        let Refused { unsigned, wrong, old } = refused;
+        self.out
+            .line(format_args!(
+                "refused: {unsigned} unsigned, {wrong} with a wrong signature, {old} old or repeated"
+            ))
+            .await;
+        let Counts {
+            poses,
+            attitudes,
+            frame,
+            value,
+            late,
+        } = inputs;
+        self.out
+            .line(format_args!(
+                "inputs: {poses} poses, {attitudes} attitudes; refused {frame} frame, {value} value, {late} late"
+            ))
+            .await;
+    }
+
+    /// Stores the key that `text` is and restarts. It is not shown here and never again.
+    pub(super) async fn mavlink_key(&mut self, text: &str) {
+        let key = match (text, Key::from_hex(text)) {
+            ("off", _) => None,
+            (_, Some(key)) => Some(key),
+            (_, None) => {
+                let digits = Key::DIGITS;
+                return self
+                    .out
+                    .line(format_args!(
+                        "not set: a key is {digits} hexadecimal digits, or off"
+                    ))
+                    .await;
+            }
+        };
+        if self.changed() > 0 {
+            // The restart would lose them.
+            return self
+                .out
+                .line(format_args!(
+                    "not set: 'save' or 'reset' what 'changes' shows first"
+                ))
+                .await;
+        }
+        if let Err(status) = storing::hold_arming(self.links).await {
+            return self.refuse("not set", status).await;
+        }
+        let record = match key {
+            Some(key) => Some(self.record(key).await),
+            None => None,
+        };
+        match storing::save_signing(self.links, &mut self.storage, record).await {
+            Ok(()) => {
+                let what = if key.is_some() { "on" } else { "off" };
+                self.out.last(format_args!("signing {what}; restarting")).await;
+                // Arming stays refused: the key in force is no longer the one that is stored.
+                self.chip.restart();
+            }
+            Err(error) => {
+                self.links.report(ArmingInhibit::Storing, false);
+                self.out.line(format_args!("not set: {}", error.text())).await;
+            }
+        }
+    }
+
+    /// What is to be stored of `key`: the same again keeps its bound, so that nothing it has signed is taken twice.
+    async fn record(&mut self, key: Key) -> Record {
+        let mut params = *self.storage.defaults();
+        match self.storage.load(&mut params).await.signing {
+            Stored::Key(record) if record.key == key => record,
+            _ => Record::fresh(key),
+        }
+    }
+}
