@@ -39,6 +39,7 @@ pub mod mounting;
 pub mod params;
 pub mod rate;
 pub mod rc;
+pub mod remote;
 pub mod setpoint;
 pub mod support;
 pub mod tendon;

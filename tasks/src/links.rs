@@ -22,7 +22,7 @@ use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::Target;
 pub use sophie_control::battery::Battery;
 use sophie_control::bench::Place;
-pub use sophie_control::bench::{BenchAnswer, BenchRequest};
+pub use sophie_control::bench::{BenchAnswer, BenchRequest, BenchView};
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 use sophie_control::fsr::FsrFault;
 pub use sophie_control::grip::GripState;
@@ -30,6 +30,7 @@ use sophie_control::grip_memory::GripMemory;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
+pub use sophie_control::remote::{RemoteAnswer, RemoteRequest};
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::wrench::PerArm;
 
@@ -362,10 +363,14 @@ links! {
     rc: RcState, Rc to "commander, console, mavlink", stale after 500 ms;
     /// The commander's view.
     status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
-    /// What a builder tries on the table, renewed while it lasts; without it motors stop and servos go to release.
+    /// What a builder tries on the table, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
     bench: BenchRequest, Console to "commander", stale after 150 ms;
     /// What has become of it.
-    bench_answer: BenchAnswer, Commander to "console", stale after 200 ms;
+    bench_answer: BenchAnswer, Commander to "console, mavlink", stale after 200 ms;
+    /// What a ground station orders beside the pilot, renewed until it is answered; an order is obeyed once.
+    remote: RemoteRequest, Mavlink to "commander", stale after 100 ms;
+    /// What has become of it.
+    remote_answer: RemoteAnswer, Commander to "mavlink", stale after 200 ms;
 }
 
 impl Links {
@@ -389,6 +394,15 @@ impl Links {
                 all.without(reason)
             });
         });
+    }
+
+    /// The bench as who wants to give an order sees it.
+    pub fn bench_view(&self) -> BenchView {
+        BenchView {
+            newest: self.bench.look(|m| m.value.number).unwrap_or(0),
+            renewed: self.bench.fresh().is_some(),
+            answer: self.bench_answer.fresh().unwrap_or_default(),
+        }
     }
 
     /// Tilt of each arm that was measured within the link's limit, with the time of each.
