@@ -21,6 +21,7 @@ pub mod battery;
 pub mod bench;
 pub mod calibration;
 pub mod chain;
+pub mod decimal;
 pub mod deflection;
 pub mod desaturation;
 pub mod effectiveness;

@@ -36,5 +36,5 @@ pub mod streams;
 pub mod texts;
 pub mod vehicle;
 
-pub use self::server::{Order, Server};
-pub use self::vehicle::{Condition, Vehicle};
+pub use self::server::{Order, Requests, Server};
+pub use self::vehicle::{Answers, Condition, Vehicle};

@@ -9,6 +9,9 @@ use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
 use self::answer::Answer;
+use self::commands::calibration::Calibration;
+use self::commands::orders::Orders;
+pub use self::commands::orders::Requests;
 use crate::budget::Budget;
 use crate::dialect::*;
 use crate::files::FILES;
@@ -60,6 +63,8 @@ pub struct Server {
     restart_at: Option<u64>,
     /// Storing was asked for by a command.
     store_now: bool,
+    orders: Orders,
+    calibration: Option<Calibration>,
 }
 
 impl Server {
@@ -85,6 +90,8 @@ impl Server {
             heard_at: None,
             restart_at: None,
             store_now: false,
+            orders: Orders::new(),
+            calibration: None,
         }
     }
 
@@ -101,6 +108,7 @@ impl Server {
 
     /// What is to be done at `now`, µs since the start.
     pub fn order(&mut self, now: u64, vehicle: &Vehicle) -> Option<Order> {
+        self.go_on_calibrating(now, vehicle);
         if self.restart_at.is_some_and(|at| now >= at) {
             self.restart_at = None;
             return vehicle.at_rest().then_some(Order::Restart);
@@ -126,6 +134,15 @@ impl Server {
                 format_args!("parameters not stored: {why}"),
             ),
         }
+    }
+
+    fn acknowledge(&mut self, command: u16, to: Peer, result: MavResult, progress: u8) {
+        self.answer(Answer::Ack {
+            command,
+            result,
+            progress,
+            to,
+        });
     }
 
     fn answer(&mut self, answer: Answer) {
@@ -162,14 +179,11 @@ impl Server {
                 }
             }
             Request::Command(command) => {
-                let reply = self.command(command, now, vehicle);
-                self.answer(Answer::Ack {
-                    command: command.number,
-                    result: reply.result,
-                    to: from,
-                });
-                if let Some(answer) = reply.then {
-                    self.answer(answer);
+                if let Some(reply) = self.command(command, from, now, vehicle) {
+                    self.acknowledge(command.number, from, reply.result, 0);
+                    if let Some(answer) = reply.then {
+                        self.answer(answer);
+                    }
                 }
             }
             Request::ParamList => self.parameters.list(),

@@ -433,6 +433,12 @@ impl Links {
             .unwrap_or_default()
     }
 
+    /// Longest response of a task that was added, µs, without adding the one that was noted last.
+    pub fn worst_response(&self, task: TaskId) -> u32 {
+        self.with_record(task, |record| record.worst_response())
+            .unwrap_or(0)
+    }
+
     /// Histogram of a task's times since it was taken last.
     pub fn take_histogram(&self, task: TaskId, quantity: Quantity) -> Histogram {
         self.with_record(task, |record| record.take(quantity))

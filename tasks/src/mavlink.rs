@@ -12,11 +12,12 @@ use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec;
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::calibration::AccelFit;
 use sophie_control::params::Params;
 use sophie_control::tendon::Reel;
 use sophie_control::wrench::PerArm;
 use sophie_mavlink::parser::LONGEST;
-use sophie_mavlink::{Condition, Order, Server, Vehicle};
+use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Vehicle};
 
 use crate::deadline::{FixedRate, TaskId, Tick};
 use crate::links::Links;
@@ -77,10 +78,12 @@ pub async fn run(
         let reels = Reel::all(&links.params);
         let mut rate = FixedRate::of(links, TaskId::Mavlink);
         loop {
-            let now = listen(&mut rate, &mut input, &link).await.started.as_micros();
+            let started = listen(&mut rate, &mut input, &link).await.started;
+            let now = started.as_micros();
             let seen = picture(links, &reels);
             let order = link.with(|server, vehicle| {
                 *vehicle = seen;
+                give(links, started, server.requests(now, vehicle));
                 server.order(now, vehicle)
             });
             link.due.signal(());
@@ -141,13 +144,24 @@ async fn listen(rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &L
     }
 }
 
-/// Stores the server's parameters; arming is refused meanwhile.
+/// Sends what the commander is to do.
+fn give(links: &Links, at: Instant, requests: Requests) {
+    if let Some(request) = requests.remote {
+        links.remote.send(at, request);
+    }
+    if let Some(request) = requests.bench {
+        links.bench.send(at, request);
+    }
+}
+
+/// Stores the server's parameters. Arming is refused meanwhile, and from then on as long as others are in force: what
+/// flies must be what a ground station reads.
 async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
     storing::hold_arming(links).await.map_err(|_| "disarm first")?;
     storing::save(links, storage, params)
         .await
         .map_err(|error| error.text())?;
-    // What flies are the old ones until a restart, which the text asks for.
+    links.report(ArmingInhibit::Stored, storing::differ(links, params));
     links.report(ArmingInhibit::Storing, false);
     Ok(())
 }
@@ -177,5 +191,19 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         tilt: links.tilts().values().map(|tilt| tilt.unwrap_or(f32::NAN)),
         reel: angles.unwrap_or([f32::NAN; 4]),
         grip: links.grip.fresh(),
+        accel_fit: AccelFit::of(&links.params),
+        load: load(links),
+        answers: Answers {
+            bench: links.bench_view(),
+            newest: links.remote.look(|m| m.value.number).unwrap_or(0),
+            remote: links.remote_answer.fresh().unwrap_or_default(),
+        },
     }
+}
+
+/// Longest time from data-ready to the motor frame since the start, thousandths of its period.
+fn load(links: &Links) -> u16 {
+    let period = TaskId::Motors.period().as_micros().max(1);
+    let worst = u64::from(links.worst_response(TaskId::Motors));
+    u16::try_from(worst * 1000 / period).unwrap_or(u16::MAX)
 }

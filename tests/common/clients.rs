@@ -8,6 +8,17 @@ const SECONDS: &str = "120";
 
 /// What pymavlink has heard on `connection` once each of `messages` came `count` times.
 pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::Value {
+    let count = count.to_string();
+    run("listen.py", &[&[connection, SECONDS, &count], messages].concat())
+}
+
+/// What the vehicle has answered to `steps` on `connection`: lists of command, parameters and the result that ends a step.
+#[allow(dead_code, reason = "of the host alone")]
+pub fn obey(connection: &str, steps: &serde_json::Value) -> serde_json::Value {
+    run("obey.py", &[connection, SECONDS, &steps.to_string()])
+}
+
+fn run(script: &str, arguments: &[&str]) -> serde_json::Value {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
         .find(|folder| folder.join(".ci").is_dir())
@@ -20,9 +31,8 @@ pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::
     );
     let python = String::from_utf8(installed.stdout).unwrap();
     let heard = Command::new(python.lines().last().unwrap())
-        .arg(root.join("tests/mavlink/listen.py"))
-        .args([connection, SECONDS, &count.to_string()])
-        .args(messages)
+        .arg(root.join("tests/mavlink").join(script))
+        .args(arguments)
         .output()
         .unwrap();
     assert!(

@@ -15,8 +15,8 @@ use sophie_control::tendon::Reel;
 
 use super::Console;
 use crate::deadline::{FixedRate, TaskId};
-use crate::decimal::{self, Decimal};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use sophie_control::decimal::{self, Decimal};
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);
