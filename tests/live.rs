@@ -245,10 +245,90 @@ fn a_file_without_a_key_is_named() {
     .output()
     .unwrap();
     assert_eq!(output.status.code(), Some(2));
-    let told = text(&output.stderr);
+    let message = text(&output.stderr);
     assert!(
-        told.contains(": no key: 64 hexadecimal digits are expected"),
-        "{told}"
+        message.contains(": no key: 64 hexadecimal digits are expected"),
+        "{message}"
     );
-    assert_eq!(told.lines().count(), 1, "{told}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+}
+
+/// `MAV_RESULT`.
+const ACCEPTED: u8 = 0;
+const REJECTED: u8 = 1;
+const DENIED: u8 = 2;
+/// Commands of the standard.
+const GRIPPER: u16 = 211;
+const ARM: u16 = 400;
+
+fn said(heard: &serde_json::Value, text: &str) -> bool {
+    let texts = heard["texts"].as_array().unwrap();
+    texts.iter().any(|said| said == text)
+}
+
+#[test]
+#[ignore = "wants pymavlink, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn pymavlink_tries_a_motor_and_calibrates_without_a_radio_and_cannot_arm() {
+    let temp = Temp::new("live-bench");
+    let (socket, address) = station();
+    drop(socket);
+    let _flight = Flight::begin(&temp, &["--pilot", "none", "--mavlink", &address]);
+    let (motor, servo, calibration, propellers_off) = (209, 183, 241, 31_010);
+    let steps = serde_json::json!([
+        // Calibrating until now: disarmed after the first.
+        [calibration, [1], ACCEPTED],
+        [ARM, [1], REJECTED],
+        [ARM, [1, 21196], DENIED],
+        [GRIPPER, [1, 1], REJECTED],
+        [motor, [2, 0, 8], REJECTED],
+        [propellers_off, [1], ACCEPTED],
+        [motor, [2, 0, 13], DENIED],
+        [motor, [2, 0, 8, 1], ACCEPTED],
+        [servo, [6, 1400], ACCEPTED],
+        [servo, [6, 0], ACCEPTED],
+        [calibration, [0, 0, 0, 0, 2], ACCEPTED],
+        [ARM, [0, 21196], ACCEPTED],
+    ]);
+    let heard = clients::obey(&format!("udpin:{address}"), &steps);
+    for text in [
+        "arming: radio lost",
+        "refused: no arming check can be forced",
+        "refused: radio lost",
+        "refused: say 'propellers off' first, once they are",
+        "refused: out of range",
+        "calibration: put the vehicle on a level table",
+        "calibration: done",
+    ] {
+        assert!(said(&heard, text), "{text}: {heard}");
+    }
+}
+
+#[test]
+#[ignore = "wants pymavlink, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn pymavlink_arms_where_the_pilots_switch_is_on_and_grabs_in_flight_alone() {
+    let temp = Temp::new("live-orders");
+    let file = temp.file("hop.toml", HOP);
+    let (socket, address) = station();
+    drop(socket);
+    let _flight = Flight::begin(&temp, &[&file, "--mavlink", &address]);
+    let steps = serde_json::json!([
+        // Until the pilot turns his arm switch on, a second before his gesture ends.
+        [ARM, [1], REJECTED],
+        [GRIPPER, [1, 1], REJECTED],
+        [ARM, [1], ACCEPTED],
+        [GRIPPER, [1, 1], ACCEPTED],
+        [GRIPPER, [1, 0], ACCEPTED],
+        [ARM, [0], REJECTED],
+        [ARM, [0, 21196], ACCEPTED],
+        [GRIPPER, [1, 1], REJECTED],
+    ]);
+    let heard = clients::obey(&format!("udpin:{address}"), &steps);
+    for text in [
+        "refused: only in flight or on the pipe",
+        "refused: flying: land first",
+    ] {
+        assert!(said(&heard, text), "{text}: {heard}");
+    }
+    let refused = ["refused: arm switch off", "arming: not calibrated"];
+    assert!(refused.iter().any(|text| said(&heard, text)), "{heard}");
 }

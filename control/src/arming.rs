@@ -46,6 +46,8 @@ arming_checks! {
     Silicon = "chip not as expected", "a chip and a start as expected";
     /// Parameters are being stored.
     Storing = "storing parameters", "the end of storing";
+    /// Parameters were stored that are not in force.
+    Stored = "stored parameters: restart first", "a restart, which puts them in force";
     /// The memory for parameters holds another firmware's data: the defaults are in force.
     StorageForeign = "storage holds another firmware's data", "`save` from the console";
     /// The stored parameters cannot be read: the defaults are in force.

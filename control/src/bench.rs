@@ -139,8 +139,37 @@ bench_refusals! {
     ImuSilent = "inertial sensor silent: motors wait for it";
     /// A number is beyond its limits.
     OutOfRange = "out of range";
-    /// The console has not renewed the order.
+    /// Who gave the order has not renewed it.
     NotRenewed = "console silent";
+    /// A command to disarm came.
+    Disarm = "disarmed by command";
+    /// An order of another line lasts.
+    InUse = "another line uses the bench";
+}
+
+/// The bench as who wants to give an order sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BenchView {
+    /// Number of the newest order, of whichever line.
+    pub newest: u32,
+    /// That order is still renewed.
+    pub renewed: bool,
+    /// The newest answer.
+    pub answer: BenchAnswer,
+}
+
+impl BenchView {
+    /// The number of the next order of a line whose last one was `own`.
+    ///
+    /// # Errors
+    /// Another line's order lasts.
+    pub fn next(&self, own: u32) -> Result<u32, BenchRefusal> {
+        let lasts = self.answer.number != self.newest || self.answer.state == BenchState::Running;
+        if self.newest != own && self.renewed && lasts {
+            return Err(BenchRefusal::InUse);
+        }
+        Ok(self.newest.wrapping_add(1).max(1))
+    }
 }
 
 /// What has become of the newest order.

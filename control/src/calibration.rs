@@ -1,6 +1,7 @@
 //! Calibration on the table: from samples at rest to what a parameter should be, or to the number that forbids it.
 //!
-//! Nothing here is kept or applied: the console shows the result, `save` stores it.
+//! Nothing here is kept or applied: the console shows the result and `save` stores it, MAVLink stores it as a parameter
+//! that was set.
 
 use crate::math::{GRAVITY, clamp, deg, sin, sqrt};
 use crate::mounting::{Direction, Mounting};
@@ -44,6 +45,17 @@ pub const TILT_SPREAD_MAX: f32 = 0.02;
 pub const TURN: [f32; 2] = [0.1, 1.5];
 /// Largest tilt that the sensor of a straight arm may show, rad, as of its parameter.
 pub const ARM_ZERO_MAX: f32 = 0.6;
+
+/// Parameters that hold the bias of the accelerometer's axes.
+pub const BIAS: [&str; 3] = ["accel_bias_x", "accel_bias_y", "accel_bias_z"];
+/// And their scale.
+pub const SCALES: [&str; 3] = ["accel_scale_x", "accel_scale_y", "accel_scale_z"];
+
+/// The value to a thousandth: no calibration is better.
+pub fn thousandths(value: f32) -> f32 {
+    let half = if value < 0.0 { -0.5 } else { 0.5 };
+    (value * 1000.0 + half) as i32 as f32 / 1000.0
+}
 
 /// What is wrong with the samples: the number, and what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -29,6 +29,7 @@ mod power_up_grip;
 mod probe;
 mod reason;
 mod releasing;
+mod remote;
 #[cfg(test)]
 mod tests;
 mod transitions;
@@ -44,6 +45,7 @@ use crate::bench::{BenchAnswer, BenchRequest};
 use crate::grip::GripState;
 use crate::grip_memory::GripMemory;
 use crate::rc::Sticks;
+use crate::remote::{RemoteAnswer, RemoteRequest};
 use crate::setpoint::{ClampCommand, Setpoint};
 use crate::vector::{Quat, Vec3};
 use crate::wrench::PerArm;
@@ -173,6 +175,8 @@ pub struct Inputs {
     pub hardware: ArmingInhibits,
     /// Request at the console.
     pub bench: Option<BenchRequest>,
+    /// Order of a remote link.
+    pub remote: Option<RemoteRequest>,
 }
 
 impl Inputs {
@@ -217,4 +221,6 @@ pub struct Outputs {
     pub inhibits: ArmingInhibits,
     /// Answer to the newest bench order.
     pub bench: BenchAnswer,
+    /// Answer to the newest order of a remote link.
+    pub remote: RemoteAnswer,
 }

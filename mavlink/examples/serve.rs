@@ -69,6 +69,7 @@ fn picture() -> Vehicle {
         capacity: 6480.0,
         motors: Some([0.0, 0.125, 0.5, 1.0]),
         servos: Some([550.0, 1000.0, 1500.0, 2450.0]),
+        load: 375,
         tilt: [-0.25, 0.125, f32::NAN, 0.5],
         reel: [0.0, 1.0, 2.0, 4.5],
         grip: Some(GripState {
@@ -81,6 +82,7 @@ fn picture() -> Vehicle {
                 arm(ArmState::Free, 0.0, 0.0),
             ],
         }),
+        ..Vehicle::default()
     }
 }
 

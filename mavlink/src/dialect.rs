@@ -124,6 +124,7 @@ impl Default for MavBatteryType {
 #[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
 #[repr(u32)]
 pub enum MavCmd {
+    MAV_CMD_DO_SET_SERVO = 183,
     MAV_CMD_DO_MOTOR_TEST = 209,
     MAV_CMD_DO_GRIPPER = 211,
     MAV_CMD_PREFLIGHT_CALIBRATION = 241,
@@ -134,9 +135,10 @@ pub enum MavCmd {
     MAV_CMD_SET_MESSAGE_INTERVAL = 511,
     MAV_CMD_REQUEST_MESSAGE = 512,
     MAV_CMD_DO_SET_STANDARD_MODE = 262,
+    MAV_CMD_USER_1 = 31010,
 }
 impl MavCmd {
-    pub const DEFAULT: Self = Self::MAV_CMD_DO_MOTOR_TEST;
+    pub const DEFAULT: Self = Self::MAV_CMD_DO_SET_SERVO;
 }
 impl Default for MavCmd {
     fn default() -> Self {

@@ -38,6 +38,6 @@ pub mod streams;
 pub mod texts;
 pub mod vehicle;
 
-pub use self::server::{Order, Server};
+pub use self::server::{Order, Requests, Server};
 pub use self::signing::Signing;
-pub use self::vehicle::{Condition, Vehicle};
+pub use self::vehicle::{Answers, Condition, Vehicle};

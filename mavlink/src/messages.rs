@@ -114,6 +114,7 @@ pub fn sys_status(vehicle: &Vehicle) -> SYS_STATUS_DATA {
         onboard_control_sensors_present: present.bits(),
         onboard_control_sensors_enabled: present.bits(),
         onboard_control_sensors_health: health.bits(),
+        load: vehicle.load,
         voltage_battery: battery.map_or(u16::MAX, |b| (b.voltage * 1e3 + 0.5) as u16),
         current_battery: battery.map_or(-1, |b| (b.current * 1e2 + 0.5) as i16),
         battery_remaining: remaining(vehicle),

@@ -99,6 +99,14 @@ impl Parameters {
         Ok(())
     }
 
+    /// Puts what was found into the parameter called `name`.
+    pub fn put(&mut self, name: &str, value: f32, now: u64) -> Option<Place> {
+        self.copy.set(name, value).ok()?;
+        self.changed_at = Some(now);
+        let at = Params::TABLE.iter().position(|row| row.name == name)?;
+        Some(Place(at as u16))
+    }
+
     /// Begins a list of all.
     pub fn list(&mut self) {
         self.listing = Some(0);

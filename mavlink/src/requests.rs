@@ -20,8 +20,8 @@ pub struct Peer {
 pub struct Command {
     /// Its number.
     pub number: u16,
-    /// Its first four parameters, then the seventh: none of those that are obeyed uses a place on earth.
-    pub params: [f32; 5],
+    /// Its parameters: none of those that are obeyed uses a place on earth.
+    pub params: [f32; 7],
 }
 
 /// What a frame asks.
@@ -107,7 +107,9 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         }
         COMMAND_LONG_DATA::ID => {
             let m: COMMAND_LONG_DATA = message(frame)?;
-            let params = [m.param1, m.param2, m.param3, m.param4, m.param7];
+            let params = [
+                m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7,
+            ];
             let command = Command {
                 number: m.command,
                 params,
@@ -116,7 +118,9 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         }
         COMMAND_INT_DATA::ID => {
             let m: COMMAND_INT_DATA = message(frame)?;
-            let params = [m.param1, m.param2, m.param3, m.param4, m.z];
+            let params = [
+                m.param1, m.param2, m.param3, m.param4, m.x as f32, m.y as f32, m.z,
+            ];
             let command = Command {
                 number: m.command,
                 params,

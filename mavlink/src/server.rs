@@ -9,6 +9,9 @@ use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 
 use self::answer::Answer;
+use self::commands::calibration::Calibration;
+use self::commands::orders::Orders;
+pub use self::commands::orders::Requests;
 use crate::budget::Budget;
 use crate::dialect::*;
 use crate::files::FILES;
@@ -65,6 +68,8 @@ pub struct Server {
     restart_at: Option<u64>,
     /// Storing was asked for by a command.
     store_now: bool,
+    orders: Orders,
+    calibration: Option<Calibration>,
 }
 
 impl Server {
@@ -91,6 +96,8 @@ impl Server {
             heard_at: None,
             restart_at: None,
             store_now: false,
+            orders: Orders::new(),
+            calibration: None,
         }
     }
 
@@ -112,6 +119,7 @@ impl Server {
 
     /// What is to be done at `now`, µs since the start.
     pub fn order(&mut self, now: u64, vehicle: &Vehicle) -> Option<Order> {
+        self.go_on_calibrating(now, vehicle);
         if self.restart_at.is_some_and(|at| now >= at) {
             self.restart_at = None;
             return vehicle.at_rest().then_some(Order::Restart);
@@ -148,6 +156,15 @@ impl Server {
         if self.inputs.pose(pose, usec, from, now) {
             self.answer(Answer::AskTime);
         }
+    }
+
+    fn acknowledge(&mut self, command: u16, to: Peer, result: MavResult, progress: u8) {
+        self.answer(Answer::Ack {
+            command,
+            result,
+            progress,
+            to,
+        });
     }
 
     fn answer(&mut self, answer: Answer) {
@@ -190,14 +207,11 @@ impl Server {
             Request::Mocap(m) => self.pose(Pose::mocap(m), m.time_usec, from, now),
             Request::Attitude(m) => self.inputs.attitude(OffboardAttitude::of(m)),
             Request::Command(command) => {
-                let reply = self.command(command, now, vehicle);
-                self.answer(Answer::Ack {
-                    command: command.number,
-                    result: reply.result,
-                    to: from,
-                });
-                if let Some(answer) = reply.then {
-                    self.answer(answer);
+                if let Some(reply) = self.command(command, from, now, vehicle) {
+                    self.acknowledge(command.number, from, reply.result, 0);
+                    if let Some(answer) = reply.then {
+                        self.answer(answer);
+                    }
                 }
             }
             Request::ParamList => self.parameters.list(),

@@ -69,6 +69,11 @@ impl Texts {
         };
     }
 
+    /// Names every arming check that fails once more: someone was refused for them.
+    pub fn name_checks(&mut self) {
+        self.named = ArmingInhibits::NONE;
+    }
+
     /// Says `words`, cut to what there is room for.
     pub fn say(&mut self, severity: MavSeverity, words: core::fmt::Arguments<'_>) {
         let mut text = String::new();

@@ -2,10 +2,14 @@
 
 use sophie_control::arming::ArmingInhibits;
 use sophie_control::battery::Battery;
+use sophie_control::bench::BenchView;
+use sophie_control::calibration::AccelFit;
 use sophie_control::chain::Attitude;
 use sophie_control::grip::GripState;
 use sophie_control::mode::{Mode, Reason};
+use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
+use sophie_control::remote::RemoteAnswer;
 use sophie_control::wrench::PerArm;
 
 /// The commander's view.
@@ -44,6 +48,23 @@ pub struct Vehicle {
     pub reel: PerArm<f32>,
     /// The grip.
     pub grip: Option<GripState>,
+    /// What is made of the accelerometer's readings.
+    pub accel_fit: AccelFit,
+    /// Longest time from data-ready to the motor frame since the start, thousandths of its period.
+    pub load: u16,
+    /// What became of orders.
+    pub answers: Answers,
+}
+
+/// What the commander answers to orders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Answers {
+    /// The bench.
+    pub bench: BenchView,
+    /// Number of the newest order beside the pilot's, of whichever line.
+    pub newest: u32,
+    /// What has become of the one that was answered last.
+    pub remote: RemoteAnswer,
 }
 
 impl Default for Vehicle {
@@ -59,6 +80,9 @@ impl Default for Vehicle {
             tilt: [f32::NAN; 4],
             reel: [f32::NAN; 4],
             grip: None,
+            accel_fit: AccelFit::of(&Params::DEFAULT),
+            load: 0,
+            answers: Answers::default(),
         }
     }
 }

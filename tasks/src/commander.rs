@@ -36,11 +36,13 @@ pub async fn run(links: &Links) -> ! {
             reason,
             inhibits,
             bench,
+            remote,
         } = logic.step(&inputs, tick.dt);
         links.setpoint.send(tick.started, rotors);
         links.clamp_command.send(tick.started, tendons);
         links.grip_memory.send(tick.started, grip_memory);
         links.bench_answer.send(tick.started, bench);
+        links.remote_answer.send(tick.started, remote);
         let warning = warning(links, mode);
         links.status.send(
             tick.started,
@@ -89,6 +91,7 @@ fn collect(links: &Links, late: bool) -> Inputs {
         late,
         hardware: links.hardware(),
         bench: links.bench.fresh(),
+        remote: links.remote.fresh(),
     }
 }
 

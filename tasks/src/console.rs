@@ -53,7 +53,7 @@ pub async fn run(
         storage,
         chip,
         params: links.params,
-        orders: 0,
+        order: 0,
     };
     let mut line = Line::default();
     loop {
@@ -89,8 +89,8 @@ struct Console<'a, I, O, S, C> {
     chip: C,
     /// The working copy.
     params: Params,
-    /// Orders of the bench so far.
-    orders: u32,
+    /// Number of the newest order of the bench that was given here.
+    order: u32,
 }
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {

@@ -25,7 +25,6 @@ pub mod commander;
 pub mod console;
 pub mod control;
 pub mod deadline;
-pub mod decimal;
 pub mod estimator;
 pub mod histogram;
 pub mod image_id;

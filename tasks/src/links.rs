@@ -22,7 +22,7 @@ use sophie_control::arming::{ArmingInhibit, ArmingInhibits};
 use sophie_control::attitude::Target;
 pub use sophie_control::battery::Battery;
 use sophie_control::bench::Place;
-pub use sophie_control::bench::{BenchAnswer, BenchRequest};
+pub use sophie_control::bench::{BenchAnswer, BenchRequest, BenchView};
 pub use sophie_control::chain::{Attitude, Demand, ImuSample, MixOutput};
 use sophie_control::fsr::FsrFault;
 pub use sophie_control::grip::GripState;
@@ -30,6 +30,7 @@ use sophie_control::grip_memory::GripMemory;
 use sophie_control::mode::{Mode, Reason};
 use sophie_control::params::Params;
 use sophie_control::rc::Sticks;
+pub use sophie_control::remote::{RemoteAnswer, RemoteRequest};
 pub use sophie_control::setpoint::{ClampCommand, Setpoint};
 use sophie_control::wrench::PerArm;
 use sophie_mavlink::inputs::Counts;
@@ -404,16 +405,20 @@ links! {
     rc: RcState, Rc to "commander, console, mavlink", stale after 500 ms;
     /// The commander's view.
     status: Status, Commander to "telemetry, console, mavlink, log", stale after 200 ms;
-    /// What a builder tries on the table, renewed while it lasts; without it motors stop and servos go to release.
+    /// What a builder tries on the table, by console or MAVLink, renewed while it lasts; without it motors stop and servos go to release.
     bench: BenchRequest, Console to "commander", stale after 150 ms;
     /// What has become of it.
-    bench_answer: BenchAnswer, Commander to "console", stale after 200 ms;
+    bench_answer: BenchAnswer, Commander to "console, mavlink", stale after 200 ms;
     /// Where others see the vehicle, as they send it; nothing flies by it.
     external_pose: ExternalPose, Mavlink to "console", stale after 200 ms;
     /// The attitude that another computer wishes, as it sends it; nothing flies by it.
     offboard: OffboardAttitude, Mavlink to "console", stale after 500 ms;
     /// What the MAVLink line is like.
     mavlink: LineState, Mavlink to "console", stale after 200 ms;
+    /// What a ground station orders beside the pilot, renewed until it is answered; an order is obeyed once.
+    remote: RemoteRequest, Mavlink to "commander", stale after 100 ms;
+    /// What has become of it.
+    remote_answer: RemoteAnswer, Commander to "mavlink", stale after 200 ms;
 }
 
 impl Links {
@@ -437,6 +442,15 @@ impl Links {
                 all.without(reason)
             });
         });
+    }
+
+    /// The bench as who wants to give an order sees it.
+    pub fn bench_view(&self) -> BenchView {
+        BenchView {
+            newest: self.bench.look(|m| m.value.number).unwrap_or(0),
+            renewed: self.bench.fresh().is_some(),
+            answer: self.bench_answer.fresh().unwrap_or_default(),
+        }
     }
 
     /// Tilt of each arm that was measured within the link's limit, with the time of each.
@@ -465,6 +479,12 @@ impl Links {
     pub fn timing(&self, task: TaskId) -> Timing {
         self.with_record(task, |record| record.totals())
             .unwrap_or_default()
+    }
+
+    /// Longest response of a task that was added, µs, without adding the one that was noted last.
+    pub fn worst_response(&self, task: TaskId) -> u32 {
+        self.with_record(task, |record| record.worst_response())
+            .unwrap_or(0)
     }
 
     /// Histogram of a task's times since it was taken last.

@@ -12,6 +12,7 @@ use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
 use heapless::Vec;
 use sophie_control::arming::ArmingInhibit;
+use sophie_control::calibration::AccelFit;
 use sophie_control::params::Params;
 use sophie_control::tendon::Reel;
 use sophie_control::wrench::PerArm;
@@ -19,7 +20,7 @@ use sophie_mavlink::inputs::Inputs;
 use sophie_mavlink::parser::LONGEST;
 pub use sophie_mavlink::signing;
 use sophie_mavlink::signing::Stored;
-use sophie_mavlink::{Condition, Order, Server, Signing, Vehicle};
+use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehicle};
 
 use crate::deadline::{FixedRate, TaskId, Tick};
 use crate::links::{LineState, Links};
@@ -82,17 +83,16 @@ pub async fn run(
         let reels = Reel::all(&links.params);
         let mut rate = FixedRate::of(links, TaskId::Mavlink);
         loop {
-            let now = listen(links, &mut rate, &mut input, &link)
-                .await
-                .started
-                .as_micros();
+            let started = listen(links, &mut rate, &mut input, &link).await.started;
+            let now = started.as_micros();
             let seen = picture(links, &reels);
             let order = link.with(|shared| {
                 shared.vehicle = seen;
                 links.mavlink.send(
-                    Instant::from_micros(now),
+                    started,
                     LineState::of(&shared.signing, shared.server.inputs().counts()),
                 );
+                give(links, started, shared.server.requests(now, &shared.vehicle));
                 shared.server.order(now, &shared.vehicle)
             });
             link.due.signal(());
@@ -198,13 +198,24 @@ async fn renew(links: &Links, link: &Link, storage: &mut impl Storage, now: u64)
     }
 }
 
-/// Stores the server's parameters; arming is refused meanwhile.
+/// Sends what the commander is to do.
+fn give(links: &Links, at: Instant, requests: Requests) {
+    if let Some(request) = requests.remote {
+        links.remote.send(at, request);
+    }
+    if let Some(request) = requests.bench {
+        links.bench.send(at, request);
+    }
+}
+
+/// Stores the server's parameters. Arming is refused meanwhile, and from then on as long as others are in force: what
+/// flies must be what a ground station reads.
 async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
     storing::hold_arming(links).await.map_err(|_| "disarm first")?;
     storing::save(links, storage, params)
         .await
         .map_err(|error| error.text())?;
-    // What flies are the old ones until a restart, which the text asks for.
+    links.report(ArmingInhibit::Stored, storing::differ(links, params));
     links.report(ArmingInhibit::Storing, false);
     Ok(())
 }
@@ -234,5 +245,19 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         tilt: links.tilts().values().map(|tilt| tilt.unwrap_or(f32::NAN)),
         reel: angles.unwrap_or([f32::NAN; 4]),
         grip: links.grip.fresh(),
+        accel_fit: AccelFit::of(&links.params),
+        load: load(links),
+        answers: Answers {
+            bench: links.bench_view(),
+            newest: links.remote.look(|m| m.value.number).unwrap_or(0),
+            remote: links.remote_answer.fresh().unwrap_or_default(),
+        },
     }
+}
+
+/// Longest time from data-ready to the motor frame since the start, thousandths of its period.
+fn load(links: &Links) -> u16 {
+    let period = TaskId::Motors.period().as_micros().max(1);
+    let worst = u64::from(links.worst_response(TaskId::Motors));
+    u16::try_from(worst * 1000 / period).unwrap_or(u16::MAX)
 }

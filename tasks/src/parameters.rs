@@ -5,10 +5,10 @@ use core::fmt;
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::params::{ParamInfo, Params, Renamed};
 
-use crate::decimal::{self, Decimal};
 use crate::image_id;
 use crate::links::Links;
 use crate::ports::{Loaded, Storage};
+use sophie_control::decimal::{self, Decimal};
 
 /// Parameters in force and the result of reading them. Called once, before [`Links::new`].
 pub async fn load(storage: &mut impl Storage) -> (Params, Loaded) {

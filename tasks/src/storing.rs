@@ -98,6 +98,14 @@ fn report(links: &Links, saved: Result<(), StorageError>) {
     }
 }
 
+/// True where `params` are not those in force.
+pub fn differ(links: &Links, params: &Params) -> bool {
+    let bits = |params: &Params, name| params.get(name).map(f32::to_bits);
+    Params::TABLE
+        .iter()
+        .any(|row| bits(params, row.name) != bits(&links.params, row.name))
+}
+
 impl StorageError {
     /// What is wrong, for people.
     pub const fn text(self) -> &'static str {

@@ -109,6 +109,11 @@ impl Record {
         self.totals
     }
 
+    /// Longest response of those that were added, µs.
+    pub const fn worst_response(&self) -> u32 {
+        self.totals.worst_response_us
+    }
+
     /// Adds a run; true if a deadline was missed.
     pub fn add(&mut self, run: &Run) -> bool {
         let lateness = between(run.released, run.started);

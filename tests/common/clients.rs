@@ -6,8 +6,20 @@ use std::process::Command;
 /// Longest wait for a message, s of wall time: an emulated board runs at half of real time, on a machine that is busy.
 const SECONDS: &str = "120";
 
+/// What pymavlink has heard on `connection` once each of `messages` came `count` times.
+pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::Value {
+    let count = count.to_string();
+    run("listen.py", &[&[connection, SECONDS, &count], messages].concat())
+}
+
+/// What the vehicle has answered to `steps` on `connection`: lists of command, parameters and the result that ends a step.
+#[allow(dead_code, reason = "of the host alone")]
+pub fn obey(connection: &str, steps: &serde_json::Value) -> serde_json::Value {
+    run("obey.py", &[connection, SECONDS, &steps.to_string()])
+}
+
 /// The JSON that `script` of tests/mavlink prints with these arguments.
-pub fn run(script: &str, args: &[&str]) -> serde_json::Value {
+pub fn run(script: &str, arguments: &[&str]) -> serde_json::Value {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
         .find(|folder| folder.join(".ci").is_dir())
@@ -21,7 +33,7 @@ pub fn run(script: &str, args: &[&str]) -> serde_json::Value {
     let python = String::from_utf8(installed.stdout).unwrap();
     let heard = Command::new(python.lines().last().unwrap())
         .arg(root.join("tests/mavlink").join(script))
-        .args(args)
+        .args(arguments)
         .output()
         .unwrap();
     assert!(
@@ -30,10 +42,4 @@ pub fn run(script: &str, args: &[&str]) -> serde_json::Value {
         String::from_utf8_lossy(&heard.stderr)
     );
     serde_json::from_slice(&heard.stdout).unwrap()
-}
-
-/// What pymavlink has heard on `connection` once each of `messages` came `count` times.
-pub fn listen(connection: &str, count: usize, messages: &[&str]) -> serde_json::Value {
-    let count = count.to_string();
-    run("listen.py", &[&[connection, SECONDS, &count], messages].concat())
 }

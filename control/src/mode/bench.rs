@@ -111,6 +111,13 @@ impl Bench {
         }
     }
 
+    /// The order that lasts ends: someone disarms.
+    pub fn stop(&mut self) {
+        if self.running.is_some() {
+            self.finish(BenchState::Ended(BenchRefusal::Disarm));
+        }
+    }
+
     fn finish(&mut self, state: BenchState) {
         self.running = None;
         self.answer.state = state;

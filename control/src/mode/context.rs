@@ -7,12 +7,14 @@ use super::hold::held;
 use super::lean::Lean;
 use super::power_up_grip::PowerUpGripCheck;
 use super::probe::Probe;
-use super::{Inputs, Reason};
+use super::remote::Remote;
+use super::{Inputs, Reason, remote};
 use crate::arming::{ArmingInhibit, ArmingInhibits, Checks, Gesture, GestureWatch};
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::params::Params;
 use crate::rc::Sticks;
+use crate::remote::RemoteOrder;
 use crate::support::{Felt, Support};
 
 /// Time constant of learning gravity at rest, s, and bounds, m/s²: a part's bias of some 40 mg.
@@ -41,6 +43,14 @@ pub struct PerchSwitch {
     pub left_on: bool,
 }
 
+impl PerchSwitch {
+    /// Where it stands from here on is no wish, if it is `changed` without the pilot.
+    pub fn forget(&mut self, changed: bool) {
+        self.seen_off &= !changed;
+        self.seen_on &= !changed;
+    }
+}
+
 /// State that outlives a mode.
 #[derive(Clone, Debug)]
 pub struct Context {
@@ -64,6 +74,7 @@ pub struct Context {
     pub collective: Collective,
     pub probe: Probe,
     pub bench: Bench,
+    pub remote: Remote,
     /// A reason and its remaining display time, s.
     note: (Option<Reason>, f32),
     /// Specific force at rest, m/s².
@@ -92,6 +103,7 @@ impl Context {
             collective: Collective::default(),
             probe: Probe::default(),
             bench: Bench::default(),
+            remote: Remote::default(),
             note: (None, 0.0),
             gravity: crate::math::GRAVITY,
         }
@@ -128,6 +140,15 @@ impl Context {
         self.sinking = felt.map_or(0.0, |f| f.down);
         self.lean.step(i.motion, &self.support, self.collective.now(), dt);
         self.dangers.step(i, &self.params, dt);
+    }
+
+    /// Makes the gesture that `order` stands for.
+    pub fn obey(&mut self, order: RemoteOrder) {
+        self.gesture = remote::gesture(order).or(self.gesture);
+        self.remote.kill = order == RemoteOrder::Kill;
+        if self.gesture == Some(Gesture::Disarm) {
+            self.bench.stop();
+        }
     }
 
     /// Shows `why` for [`NOTE_TIME`].

@@ -35,7 +35,9 @@ macro_rules! guards {
 }
 
 guards! {
-    ARM_SWITCH_OFF = "arm switch off", |_, s| sticks(s, |s| !s.arm_switch);
+    ARM_SWITCH_OFF = "arm switch off, or a forced disarming", |_, s| {
+        s.context.remote.kill || sticks(s, |s| !s.arm_switch)
+    };
     IMU_SILENT = "inertial sensor silent", |_, s| s.context.dangers.imu_silent();
     TIPPED_OVER = "tipped over", |_, s| s.context.dangers.tipped_over();
     BATTERY_CRITICAL = "battery critical", |_, s| s.context.dangers.battery_critical();
@@ -45,8 +47,8 @@ guards! {
     RADIO = "radio there", |_, s| s.inputs.sticks.is_some();
 
     CALIBRATED = "calibrated", |_, s| s.inputs.motion.is_some_and(|m| m.calibrated);
-    ARM_GESTURE = "arming gesture", |_, s| s.context.gesture == Some(Gesture::Arm);
-    DISARM_GESTURE = "disarming gesture", |_, s| s.context.gesture == Some(Gesture::Disarm);
+    ARM_GESTURE = "arming gesture, or an order", |_, s| s.context.gesture == Some(Gesture::Arm);
+    DISARM_GESTURE = "disarming gesture, or an order", |_, s| s.context.gesture == Some(Gesture::Disarm);
     CHECKS_PASS = "every arming check passes", |state, s| s.context.inhibits(s.inputs, at_rest(state, s)).is_empty();
     ARMS_CLOSED = "arms closed", |state, s| at_rest(state, s).arms().is_some();
     THROTTLE_UP = "throttle not low", |_, s| sticks(s, |t| t.throttle > s.context.params.throttle_low);

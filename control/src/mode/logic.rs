@@ -4,11 +4,12 @@ use super::bench::Table;
 use super::calibrating::Calibrating;
 use super::context::{Context, Step};
 use super::transitions::Transition;
-use super::{Inputs, Mode, Outputs, State};
+use super::{Inputs, Mode, Outputs, State, remote};
 use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
 use crate::math::clamp;
 use crate::params::Params;
+use crate::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
 
 /// Longest step accepted, s: a stall of the commander must not end a timer.
 const STEP_MAX: f32 = 0.05;
@@ -37,11 +38,18 @@ impl ModeLogic {
     /// One step, `dt` s after the last.
     pub fn step(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
         let dt = clamp(dt, 0.0, STEP_MAX);
-        let inputs = &inputs.finite();
-        let before = self.state.mode();
+        let (inputs, before) = (inputs.finite(), self.state.mode());
+        let dropped = self.context.remote.follow(&inputs, &self.state, dt);
+        self.context.perch_switch.forget(dropped);
+        let remote = self.context.remote.take(inputs.remote);
+        let refused = remote.and_then(|request| self.weigh(request.order, &inputs, dt));
+        let inputs = &self.context.remote.apply(inputs);
         self.context.observe(inputs, rotors_locked(before), dt);
         let table = Table::new(before, self.state.behaviour().grip_memory(), inputs);
         self.context.bench.step(inputs.bench, &table, dt);
+        if let (Some(request), None) = (remote, refused) {
+            self.context.obey(request.order);
+        }
         let step = &mut Step {
             context: &mut self.context,
             inputs,
@@ -53,13 +61,37 @@ impl ModeLogic {
                 self.state = transition.enter(&self.state, step);
                 if self.state.mode() != before {
                     self.context.since = 0.0;
+                    let dropped = self.context.remote.enters(self.state.mode());
+                    self.context.perch_switch.forget(dropped);
                     let time = self.state.behaviour().hand_over_time();
                     self.context.collective.hand_over(time);
                 }
             }
             None => self.state.behaviour_mut().advance(step),
         }
+        if let Some(RemoteRequest { number, order }) = remote {
+            let refusal = refused.or_else(|| remote::outcome(order, self.state.mode()));
+            if refusal.is_some() && refused.is_none() {
+                self.context.remote.turn_back(order);
+            }
+            self.context.remote.reply(number, refusal);
+        }
         self.decide(inputs, dt)
+    }
+
+    /// What speaks against `order`; where nothing does, the perch switch is turned.
+    fn weigh(&mut self, order: RemoteOrder, inputs: &Inputs, dt: f32) -> Option<RemoteRefusal> {
+        let inputs = &self.context.remote.apply(*inputs);
+        let step = &Step {
+            context: &mut self.context,
+            inputs,
+            dt,
+        };
+        let refusal = remote::refusal(order, &self.state, step);
+        if refusal.is_none() {
+            self.context.remote.turn(order);
+        }
+        refusal
     }
 
     fn decide(&mut self, inputs: &Inputs, dt: f32) -> Outputs {
@@ -81,6 +113,7 @@ impl ModeLogic {
             reason: state.reason(context, inputs, inhibits),
             inhibits,
             bench: context.bench.answer(),
+            remote: context.remote.answer(),
         }
     }
 }

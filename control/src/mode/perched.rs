@@ -6,6 +6,8 @@ use super::releasing::RELEASE_THROTTLE_MIN;
 use super::{Inputs, Reason, Setpoint};
 use crate::arming::ArmingInhibits;
 use crate::grip_memory::GripMemory;
+use crate::params::Params;
+use crate::rc::Sticks;
 
 /// See [`super::Mode::Perched`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,9 +23,13 @@ impl Perched {
             params, perch_switch, ..
         } = &step.context;
         step.inputs.sticks.is_some_and(|s| {
-            let throttle_set = (RELEASE_THROTTLE_MIN..=params.perch_thr_max).contains(&s.throttle);
-            s.arm_switch && !s.perch_switch && perch_switch.seen_on && throttle_set
+            s.arm_switch && !s.perch_switch && perch_switch.seen_on && Self::throttle_set(&s, params)
         })
+    }
+
+    /// The rotors will carry some of the weight, and not more than the arms bear.
+    pub fn throttle_set(sticks: &Sticks, params: &Params) -> bool {
+        (RELEASE_THROTTLE_MIN..=params.perch_thr_max).contains(&sticks.throttle)
     }
 
     fn trouble(&self, context: &Context, i: &Inputs) -> Option<Reason> {

@@ -11,6 +11,8 @@ pub(super) enum Answer {
     Ack {
         command: u16,
         result: MavResult,
+        /// Of what takes time, %.
+        progress: u8,
         to: Peer,
     },
     Ping(PING_DATA),

@@ -1,12 +1,14 @@
 //! Commands, and what each is answered with.
 
+pub(super) mod calibration;
 mod intervals;
+pub(super) mod orders;
 mod restart;
 
 use super::Server;
 use super::answer::Answer;
 use crate::dialect::*;
-use crate::requests::Command;
+use crate::requests::{Command, Peer};
 use crate::vehicle::Vehicle;
 
 /// What a command is answered with.
@@ -32,10 +34,16 @@ impl From<Answer> for Reply {
 }
 
 impl Server {
-    /// Obeys a command.
-    pub(super) fn command(&mut self, command: &Command, now: u64, vehicle: &Vehicle) -> Reply {
+    /// Obeys a command; `None` where the answer comes later.
+    pub(super) fn command(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+    ) -> Option<Reply> {
         let [first, second, ..] = command.params;
-        match u32::from(command.number) {
+        let reply: Reply = match u32::from(command.number) {
             n if n == MavCmd::MAV_CMD_REQUEST_MESSAGE as u32 => intervals::once(first, second),
             n if n == MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u32 => {
                 self.set_interval(first, second, now).into()
@@ -45,16 +53,29 @@ impl Server {
                 self.reboot(first, now, vehicle).into()
             }
             n if n == MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u32 => self.storage(first, vehicle).into(),
-            _ => MavResult::MAV_RESULT_UNSUPPORTED.into(),
-        }
+            n if n == MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION as u32 => {
+                return self.calibrate(command, from, now, vehicle).map(Reply::from);
+            }
+            _ => return self.order_by(command, from, now).map(Reply::from),
+        };
+        Some(reply)
     }
 
     fn refuse_armed(&mut self) -> MavResult {
-        self.texts.say(
-            MavSeverity::MAV_SEVERITY_WARNING,
-            format_args!("refused: disarm first"),
-        );
+        self.refuse("disarm first")
+    }
+
+    /// Not now: the text says why.
+    fn refuse(&mut self, why: &str) -> MavResult {
+        self.texts
+            .say(MavSeverity::MAV_SEVERITY_WARNING, format_args!("refused: {why}"));
         MavResult::MAV_RESULT_TEMPORARILY_REJECTED
+    }
+
+    /// Never with these numbers.
+    fn deny(&mut self, why: &str) -> MavResult {
+        self.refuse(why);
+        MavResult::MAV_RESULT_DENIED
     }
 }
 

@@ -67,9 +67,15 @@ impl Server {
         let answer = self.answers.pop_front()?;
         let encoder = &mut self.encoder;
         match answer {
-            Answer::Ack { command, result, to } => Some(encoder.encode(&COMMAND_ACK_DATA {
+            Answer::Ack {
+                command,
+                result,
+                progress,
+                to,
+            } => Some(encoder.encode(&COMMAND_ACK_DATA {
                 command,
                 result: result as u8,
+                progress,
                 target_system: to.system,
                 target_component: to.component,
                 ..COMMAND_ACK_DATA::DEFAULT

@@ -31,7 +31,7 @@ TRUTH = {
         'onboard_control_sensors_present': HEALTHY | 1 << 25 | 1 << 28,
         'onboard_control_sensors_enabled': HEALTHY | 1 << 25 | 1 << 28,
         'onboard_control_sensors_health': HEALTHY,
-        'load': 0, 'voltage_battery': 13250, 'current_battery': 250, 'battery_remaining': 75,
+        'load': 375, 'voltage_battery': 13250, 'current_battery': 250, 'battery_remaining': 75,
         'drop_rate_comm': 0, 'errors_comm': 0, 'errors_count1': 0, 'errors_count2': 0, 'errors_count3': 0,
         'errors_count4': 0, 'onboard_control_sensors_present_extended': 0,
         'onboard_control_sensors_enabled_extended': 0, 'onboard_control_sensors_health_extended': 0},

@@ -1,9 +1,11 @@
 //! The server as a ground station sees it.
 
 mod budget;
+mod calibration;
 mod commands;
 mod inputs;
 mod messages;
+mod orders;
 mod parameters;
 mod signing;
 mod station;

@@ -15,8 +15,8 @@ use sophie_control::tendon::Reel;
 
 use super::Console;
 use crate::deadline::{FixedRate, TaskId};
-use crate::decimal::{self, Decimal};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use sophie_control::decimal::{self, Decimal};
 
 /// Time that the commander has to answer: fifty of its periods.
 const COMMANDER: Duration = Duration::from_millis(500);
@@ -147,11 +147,12 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         match self.order_until_key(order, begun).await {
             Err(end) => end,
             Ok(_) => {
-                let number = self.next_order();
                 let order = BenchOrder::End;
-                self.links
-                    .bench
-                    .send(Instant::now(), BenchRequest { number, order });
+                if let Ok(number) = self.next_order() {
+                    self.links
+                        .bench
+                        .send(Instant::now(), BenchRequest { number, order });
+                }
                 // What else the key has sent.
                 self.keys.pressed();
                 End::Key
@@ -165,7 +166,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         order: BenchOrder,
         begun: fmt::Arguments<'_>,
     ) -> Result<u8, End> {
-        let number = self.next_order();
+        let number = self.next_order().map_err(End::Refused)?;
         let mut rate = FixedRate::of(self.links, TaskId::Console);
         let mut said = false;
         let asked = Instant::now();
@@ -194,8 +195,9 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
-    fn next_order(&mut self) -> u32 {
-        self.orders = self.orders.wrapping_add(1).max(1);
-        self.orders
+    /// The number of the next order.
+    fn next_order(&mut self) -> Result<u32, BenchRefusal> {
+        self.order = self.links.bench_view().next(self.order)?;
+        Ok(self.order)
     }
 }

@@ -4,7 +4,7 @@
 
 use embassy_time::{Duration, Timer};
 use sophie_control::bench::{BenchOrder, Place, SPIN_DRIVE, Spin};
-use sophie_control::calibration::{self, AccelFit, Face, FsrFit, Samples, Unfit};
+use sophie_control::calibration::{self, AccelFit, BIAS, Face, FsrFit, SCALES, Samples, Unfit, thousandths};
 use sophie_control::math::{clamp, to_deg};
 use sophie_control::mounting::{Direction, Mounting};
 use sophie_control::params::Params;
@@ -14,9 +14,9 @@ use sophie_control::vector::Vec3;
 use super::Console;
 use super::bench::End;
 use crate::arms::fits;
-use crate::decimal::{self, Decimal};
 use crate::links::Links;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use sophie_control::decimal::{self, Decimal};
 
 /// Samples of one rest, and the time between two: 2 s, in which a breath of wind is over.
 const SAMPLES: u16 = 200;
@@ -46,10 +46,6 @@ const WHAT: [(&str, &str); 9] = [
     ("esc", "whether the motor controllers understand the protocol"),
 ];
 
-/// Names of the parameters that hold a bias.
-const BIAS: [&str; 3] = ["accel_bias_x", "accel_bias_y", "accel_bias_z"];
-/// And a scale.
-const SCALE: [&str; 3] = ["accel_scale_x", "accel_scale_y", "accel_scale_z"];
 const RELEASE: [&str; 4] = [
     "servo_release_1",
     "servo_release_2",
@@ -150,7 +146,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 let [x, y, z] = found.scale.to_array().map(Decimal);
                 self.out.line(format_args!("scale {x:.3} {y:.3} {z:.3}")).await;
                 self.put_all(&BIAS, found.bias.to_array()).await;
-                self.put_all(&SCALE, found.scale.to_array()).await;
+                self.put_all(&SCALES, found.scale.to_array()).await;
             }
             Err(unfit) => self.unfit(unfit).await,
         }
@@ -430,12 +426,6 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             ))
             .await;
     }
-}
-
-/// The value to a thousandth: no calibration is better.
-fn thousandths(value: f32) -> f32 {
-    let half = if value < 0.0 { -0.5 } else { 0.5 };
-    (value * 1000.0 + half) as i32 as f32 / 1000.0
 }
 
 /// Specific force, m/s².

@@ -3,8 +3,8 @@
 use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
-use crate::decimal::Decimal;
 use crate::ports::{Chip, Look, SerialInput, SerialOutput, Storage};
+use sophie_control::decimal::Decimal;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// What the start-up looked at: name, what was read, what is expected.

@@ -8,8 +8,8 @@ use sophie_control::wrench::PerArm;
 
 use super::Console;
 use super::bench::End;
-use crate::decimal::Decimal;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use sophie_control::decimal::Decimal;
 
 /// Time that the builder has for an answer.
 pub(super) const ANSWER: Duration = Duration::from_secs(60);

@@ -1,5 +1,7 @@
 //! From the working copy to storage, and into force.
 
+use sophie_control::arming::ArmingInhibit;
+
 use super::Console;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use crate::storing;
@@ -7,6 +9,14 @@ use crate::storing;
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Stores the working copy and restarts. Arming is refused meanwhile: storing may stall the processor.
     pub(super) async fn save(&mut self) {
+        if self.links.hardware().contains(ArmingInhibit::Stored) {
+            return self
+                .out
+                .line(format_args!(
+                    "not saved: others were stored over MAVLink, restart first and set yours again"
+                ))
+                .await;
+        }
         if let Err(status) = storing::hold_arming(self.links).await {
             return self.refuse("not saved", status).await;
         }

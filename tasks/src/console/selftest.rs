@@ -9,8 +9,8 @@ use sophie_control::math::to_deg;
 
 use super::Console;
 use crate::deadline::{Level, TaskId};
-use crate::decimal::Decimal;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use sophie_control::decimal::Decimal;
 
 /// Time over which rates are counted.
 const TIME: Duration = Duration::from_secs(1);

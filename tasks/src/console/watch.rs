@@ -10,9 +10,9 @@ use sophie_control::vector::Quat;
 use sophie_control::wrench::PerArm;
 
 use super::Console;
-use crate::decimal::Decimal;
 use crate::links::{ExternalPose, Links};
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use sophie_control::decimal::Decimal;
 
 /// Time between two lines: 80 characters take 7 ms at 115,200 baud, and eyes follow no more.
 const PERIOD: Duration = Duration::from_millis(200);

@@ -109,14 +109,18 @@ impl Bench {
         self.line.put(raw.raw_bytes());
     }
 
-    fn set_infill(&mut self) {
+    fn set_infill(&mut self, param_value: f32) {
         self.say(&PARAM_SET_DATA {
-            param_value: 8.0,
+            param_value,
             target_system: 1,
             target_component: 1,
             param_id: "infill".into(),
             param_type: 9,
         });
+    }
+
+    fn arming_waits(&self) -> bool {
+        self.rig.links.hardware().contains(ArmingInhibit::Stored)
     }
 
     fn arming_is_held(&self) -> bool {
@@ -140,23 +144,27 @@ fn a_heartbeat_goes_out_each_second() {
 }
 
 #[test]
-fn what_is_set_is_stored_a_second_later_and_arming_is_free_again() {
+fn what_is_set_is_stored_a_second_later_and_arming_waits_for_the_restart() {
     let mut bench = Bench::in_mode(Mode::Disarmed);
     bench.run(100);
-    bench.set_infill();
+    bench.set_infill(8.0);
     bench.run(900);
     assert!(bench.board.stored.get().is_none() && !bench.arming_is_held());
     bench.run(500);
     assert_eq!(bench.board.stored.get().map(|p| p.infill), Some(8.0));
-    assert!(!bench.arming_is_held());
+    assert!(!bench.arming_is_held() && bench.arming_waits());
     assert_eq!(bench.board.restarts.get(), 0);
+    // What is in force again needs no restart.
+    bench.set_infill(Params::DEFAULT.infill);
+    bench.run(1500);
+    assert!(!bench.arming_waits());
 }
 
 #[test]
 fn nothing_is_stored_or_restarted_while_armed() {
     let mut bench = Bench::in_mode(Mode::Armed);
     bench.run(100);
-    bench.set_infill();
+    bench.set_infill(8.0);
     bench.say(&COMMAND_LONG_DATA {
         param1: 1.0,
         command: 246,

@@ -5,9 +5,9 @@
 
 use std::fmt::Write;
 
+use sophie_control::decimal::{self, Decimal};
 use sophie_control::params::Params;
 use sophie_sim::scenario::settings::Setting;
-use sophie_tasks::decimal::{self, Decimal};
 
 use crate::Failure;
 use crate::session::{Session, restarts};

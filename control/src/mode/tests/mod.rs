@@ -12,6 +12,7 @@ mod mission;
 mod pilot_page;
 mod random;
 mod reasons;
+mod remote;
 mod restart;
 mod rig;
 mod trouble;

@@ -78,6 +78,7 @@ fn on_inhibit(inhibit: ArmingInhibit) -> &'static str {
         ArmingInhibit::BrownOutLevel => "Console: `brownout set`, once for each chip.",
         ArmingInhibit::Silicon => "Console: `silicon` marks it. Do not fly this board.",
         ArmingInhibit::Storing => "Wait a moment.",
+        ArmingInhibit::Stored => "Restart: what is stored is not what would fly.",
         ArmingInhibit::StorageForeign => "Console: `list`, then `save`.",
         ArmingInhibit::StorageUnreadable => "Console: `list`, set what is lost, `save`.",
         ArmingInhibit::StorageFull => "Console: `reset` some parameters, `save`.",

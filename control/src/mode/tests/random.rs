@@ -11,6 +11,7 @@ use super::rig::Rig;
 use crate::grip::ArmState;
 use crate::mode::*;
 use crate::rc::StickMode;
+use crate::remote::RemoteOrder;
 
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![8 => -1.0f32..1.0, 1 => Just(f32::NAN), 1 => Just(f32::INFINITY)]
@@ -81,7 +82,14 @@ fn grip() -> impl Strategy<Value = Option<GripState>> {
     prop_oneof![9 => some, 1 => Just(None)]
 }
 
-/// Conditions for a while: (steps, sticks, grip, roll, carried, battery, motion known).
+fn order() -> impl Strategy<Value = Option<RemoteOrder>> {
+    use RemoteOrder::{Arm, Disarm, Grab, Kill, Release};
+    let some =
+        prop_oneof![4 => Just(Arm), 1 => Just(Disarm), 1 => Just(Kill), 4 => Just(Grab), 4 => Just(Release)];
+    prop_oneof![1 => some.prop_map(Some), 1 => Just(None)]
+}
+
+/// Conditions for a while: (steps, sticks, grip, roll, carried, battery, motion known, order given once).
 type Spell = (
     u32,
     Option<Sticks>,
@@ -90,6 +98,7 @@ type Spell = (
     bool,
     Option<f32>,
     bool,
+    Option<RemoteOrder>,
 );
 
 fn spells() -> impl Strategy<Value = Vec<Spell>> {
@@ -103,6 +112,7 @@ fn spells() -> impl Strategy<Value = Vec<Spell>> {
         any::<bool>(),
         battery,
         prop::bool::weighted(0.95),
+        order(),
     );
     prop::collection::vec(spell, 1..40)
 }
@@ -124,7 +134,10 @@ proptest! {
                 r
             }
         };
-        for (steps, sticks, grip, roll, carried, battery, there) in spells {
+        // The perch switch by an order that was obeyed.
+        let mut let_go = false;
+        for (number, (steps, sticks, grip, roll, carried, battery, there, order)) in (1..).zip(spells) {
+            r.inputs.remote = order.map(|order| RemoteRequest { number, order });
             r.inputs.sticks = sticks;
             r.inputs.grip = grip;
             r.inputs.battery = battery;
@@ -132,8 +145,16 @@ proptest! {
             let q = Quat::from_euler(roll, 0.0, 0.0);
             r.inputs.motion = there.then_some(Motion { q, calibrated: true, ..Default::default() });
             for _ in 0..steps {
-                let (before, grip_memory) = (r.out.mode, r.out.grip_memory);
+                let (before, grip_memory, answered) = (r.out.mode, r.out.grip_memory, r.out.remote.number);
                 r.step();
+                if r.out.remote.number != answered && r.out.remote.refusal.is_none() {
+                    let_go = match order {
+                        Some(RemoteOrder::Release) => true,
+                        Some(RemoteOrder::Grab) => false,
+                        _ => let_go,
+                    };
+                    prop_assert!(order != Some(RemoteOrder::Kill) || !r.out.rotors.spin());
+                }
                 let Outputs { mode, rotors, tendons, reason, .. } = r.out;
                 let still = mode.rotors_stand();
                 prop_assert!(!(still && rotors.spin()), "{mode:?} {rotors:?}");
@@ -146,7 +167,7 @@ proptest! {
                 prop_assert!(reason.is_none_or(|r| r.text().len() <= 40));
                 // Arms open only by the switch, turned off, or with carrying rotors.
                 if grip_memory.arms().is_some() && tendons == ClampCommand::Release {
-                    prop_assert!([Mode::Releasing, Mode::Escaping].contains(&mode) || before == Mode::Escaping || sticks.is_some_and(|s| !s.perch_switch)
+                    prop_assert!([Mode::Releasing, Mode::Escaping].contains(&mode) || before == Mode::Escaping || let_go || sticks.is_some_and(|s| !s.perch_switch)
                         || r.inputs.grip.is_some_and(|g| g.released), "{before:?} -> {mode:?}");
                 }
                 // Rotors start from rest only when the pilot asks in that step.

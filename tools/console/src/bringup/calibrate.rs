@@ -1,6 +1,6 @@
 //! Steps that the console's `calibrate` and `rotors` lead through.
 
-use sophie_tasks::decimal;
+use sophie_control::decimal;
 
 use super::walk::{Stop, Verdict, Walk};
 use super::{Judged, Step};

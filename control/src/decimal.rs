@@ -210,8 +210,8 @@ mod tests {
     use std::format;
     use std::string::ToString;
 
+    use crate::params::Params;
     use proptest::prelude::*;
-    use sophie_control::params::Params;
 
     use super::*;
 

@@ -1,0 +1,199 @@
+//! Calibration by command, by the console's laws ([`sophie_control::calibration`]), with texts that say what to do.
+//!
+//! What is found is put as a parameter that was set: stored a second later, in force after a restart.
+
+use sophie_control::calibration::{
+    self, AccelFit, BIAS, Face, SCALES, Samples, Unfit, rest_rate, six_faces, thousandths,
+};
+use sophie_control::decimal::Decimal;
+use sophie_control::vector::Vec3;
+
+use super::super::Server;
+use super::super::answer::Answer;
+use super::whole;
+use crate::dialect::*;
+use crate::requests::{Command, Peer};
+use crate::vehicle::Vehicle;
+
+/// Length of one rest, µs: 125 samples at the rate of the task.
+const REST: u64 = 2_500_000;
+/// Time to turn the vehicle to the next side, µs.
+const PATIENCE: u64 = 60_000_000;
+
+/// What is calibrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum What {
+    Gyro,
+    Level,
+    SixSides,
+}
+
+/// A calibration under way.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    what: What,
+    /// Of this rest.
+    samples: Samples,
+    /// When it began, µs.
+    rest: u64,
+    /// When this side was asked for, µs.
+    asked: u64,
+    /// Means of the sides so far.
+    means: heapless::Vec<Vec3, 6>,
+}
+
+/// What a rest has come to.
+enum Found {
+    /// The same side again, or the next.
+    More,
+    /// The end.
+    Gyro,
+    /// Bias, and scale where it was asked for.
+    Accel(Vec3, Option<Vec3>),
+}
+
+impl Server {
+    /// Begins a calibration, or ends the one under way; `None` where it is acknowledged later.
+    pub(super) fn calibrate(
+        &mut self,
+        command: &Command,
+        from: Peer,
+        now: u64,
+        vehicle: &Vehicle,
+    ) -> Option<MavResult> {
+        let what = match command.params.map(whole) {
+            [Some(0), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => {
+                if self.calibration.take().is_some() {
+                    self.settle(MavResult::MAV_RESULT_CANCELLED);
+                }
+                return Some(MavResult::MAV_RESULT_ACCEPTED);
+            }
+            [Some(1), Some(0), Some(0), Some(0), Some(0), Some(0), Some(0)] => What::Gyro,
+            [Some(0), Some(0), Some(0), Some(0), Some(1), Some(0), Some(0)] => What::SixSides,
+            [Some(0), Some(0), Some(0), Some(0), Some(2 | 4), Some(0), Some(0)] => What::Level,
+            _ => return Some(MavResult::MAV_RESULT_UNSUPPORTED),
+        };
+        if !vehicle.at_rest() {
+            return Some(self.refuse_armed());
+        }
+        if let Err(answer) = self.begin(command.number, from, now) {
+            return answer;
+        }
+        self.calibration = Some(Calibration {
+            what,
+            samples: Samples::default(),
+            rest: now,
+            asked: now,
+            means: heapless::Vec::new(),
+        });
+        self.progress(0);
+        let text = match what {
+            What::Gyro => "leave the vehicle at rest",
+            What::Level => "put the vehicle on a level table",
+            What::SixSides => Face::Belly.text(),
+        };
+        self.guide(text);
+        None
+    }
+
+    fn guide(&mut self, text: &str) {
+        self.texts.say(
+            MavSeverity::MAV_SEVERITY_INFO,
+            format_args!("calibration: {text}"),
+        );
+    }
+
+    /// One step of the calibration under way, at each run.
+    pub(in super::super) fn go_on_calibrating(&mut self, now: u64, vehicle: &Vehicle) {
+        let Some(calibration) = &mut self.calibration else {
+            return;
+        };
+        if !vehicle.at_rest() {
+            self.calibration = None;
+            let result = self.refuse_armed();
+            return self.settle(result);
+        }
+        match calibration.step(now, vehicle) {
+            None => (),
+            Some(Ok(Found::More)) => {
+                let done = calibration.means.len();
+                if let (Some(side), true) = (Face::ALL.get(done), calibration.asked == now) {
+                    self.progress((done * 100 / Face::ALL.len()) as u8);
+                    self.guide(side.text());
+                }
+            }
+            Some(Ok(found)) => {
+                self.calibration = None;
+                if let Found::Accel(bias, scale) = found {
+                    self.put(BIAS, bias, now);
+                    if let Some(scale) = scale {
+                        self.put(SCALES, scale, now);
+                    }
+                }
+                self.guide("done");
+                self.settle(MavResult::MAV_RESULT_ACCEPTED);
+            }
+            Some(Err(unfit)) => {
+                self.calibration = None;
+                let Unfit {
+                    what, value, unit, ..
+                } = unfit;
+                let [value, least, most] = [value, unfit.allowed[0], unfit.allowed[1]].map(Decimal);
+                self.texts.say(
+                    MavSeverity::MAV_SEVERITY_WARNING,
+                    format_args!("{what} {value:.2} not in {least:.2}..{most:.2} {unit}"),
+                );
+                self.settle(MavResult::MAV_RESULT_FAILED);
+            }
+        }
+    }
+
+    fn put(&mut self, names: [&str; 3], values: Vec3, now: u64) {
+        for (name, value) in names.into_iter().zip(values.to_array()) {
+            if let Some(place) = self.parameters.put(name, thousandths(value), now) {
+                self.answer(Answer::Parameter(place));
+            }
+        }
+    }
+}
+
+impl Calibration {
+    /// Takes a sample; what the rest has come to where it has ended.
+    fn step(&mut self, now: u64, vehicle: &Vehicle) -> Option<Result<Found, Unfit>> {
+        if let Some(attitude) = vehicle.attitude {
+            self.samples.add(match self.what {
+                What::Gyro => attitude.rate + attitude.gyro_bias,
+                What::Level | What::SixSides => attitude.accel,
+            });
+        }
+        if now.saturating_sub(self.rest) < REST {
+            return None;
+        }
+        self.rest = now;
+        let samples = core::mem::take(&mut self.samples);
+        Some(match self.what {
+            What::Gyro => rest_rate(&samples).map(|_| Found::Gyro),
+            What::Level => {
+                calibration::level(&samples, &vehicle.accel_fit).map(|bias| Found::Accel(bias, None))
+            }
+            What::SixSides => self.take_side(&samples, now, &vehicle.accel_fit),
+        })
+    }
+
+    /// A side that does not lie still as it was asked for is waited for.
+    fn take_side(&mut self, samples: &Samples, now: u64, fit: &AccelFit) -> Result<Found, Unfit> {
+        let side = Face::ALL.get(self.means.len()).copied().unwrap_or(Face::Left);
+        match calibration::face(samples, side) {
+            Ok(mean) => {
+                let _ = self.means.push(mean);
+                self.asked = now;
+            }
+            Err(unfit) if now.saturating_sub(self.asked) >= PATIENCE => return Err(unfit),
+            Err(_) => (),
+        }
+        match <&[Vec3; 6]>::try_from(self.means.as_slice()) {
+            Ok(means) => six_faces(means, fit).map(|found| Found::Accel(found.bias, Some(found.scale))),
+            Err(_) => Ok(Found::More),
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! Orders to the commander: arming, gripper, and what is tried on the bench. Each is acknowledged when it has answered.
+
+use sophie_control::bench::{
+    BenchOrder, BenchRefusal, BenchRequest, BenchState, PLACE_TIME, Place, SPIN_TIME, Spin,
+};
+use sophie_control::remote::{RemoteOrder, RemoteRefusal, RemoteRequest};
+
+use super::super::Server;
+use super::whole;
+use crate::dialect::*;
+use crate::requests::{Command, Peer};
+use crate::vehicle::Vehicle;
+
+/// Time that the commander has to answer, µs: fifty of its periods.
+const COMMANDER: u64 = 500_000;
+/// The standard's number for disarming in flight.
+const FORCED: u32 = 21_196;
+/// Number of the first tendon servo among the outputs, as in SERVO_OUTPUT_RAW.
+const FIRST_SERVO: u32 = 5;
+
+/// What is to be sent to the commander now, and again until it is taken back.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Requests {
+    /// Arming and gripper.
+    pub remote: Option<RemoteRequest>,
+    /// The bench.
+    pub bench: Option<BenchRequest>,
+}
+
+/// A command whose answer comes later.
+#[derive(Clone, Copy, Debug)]
+struct Pending {
+    command: u16,
+    to: Peer,
+    since: u64,
+}
+
+/// What is tried on the bench.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    /// Its number is 0 until it is sent.
+    request: BenchRequest,
+    /// When it is to end, µs.
+    until: u64,
+}
+
+impl Trial {
+    /// From `now`, µs, for `seconds` at most.
+    fn new(order: BenchOrder, now: u64, seconds: f32) -> Self {
+        Self {
+            request: BenchRequest { number: 0, order },
+            until: now.saturating_add((seconds * 1e6) as u64),
+        }
+    }
+}
+
+/// The orders of one line.
+#[derive(Debug)]
+pub struct Orders {
+    pending: Option<Pending>,
+    /// Its number is 0 until it is sent.
+    remote: Option<RemoteRequest>,
+    trial: Option<Trial>,
+    /// Number of the newest order of the bench that was given here.
+    own: u32,
+}
+
+impl Orders {
+    pub const fn new() -> Self {
+        Self {
+            pending: None,
+            remote: None,
+            trial: None,
+            own: 0,
+        }
+    }
+}
+
+impl Server {
+    /// Gives the order that `command` asks for; `None` where it is acknowledged later.
+    pub(super) fn order_by(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+        let number = u32::from(command.number);
+        if number == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u32 {
+            self.arm_disarm(command, from, now)
+        } else if number == MavCmd::MAV_CMD_DO_GRIPPER as u32 {
+            self.gripper(command, from, now)
+        } else if number == MavCmd::MAV_CMD_DO_MOTOR_TEST as u32 {
+            self.motor_test(command, from, now)
+        } else if number == MavCmd::MAV_CMD_DO_SET_SERVO as u32 {
+            self.set_servo(command, from, now)
+        } else if number == MavCmd::MAV_CMD_USER_1 as u32 {
+            let [first, ..] = command.params;
+            match whole(first) {
+                Some(1) => self.try_on_bench(
+                    command,
+                    from,
+                    now,
+                    Trial::new(BenchOrder::PropellersOff, now, 0.0),
+                ),
+                _ => Some(self.deny("1 confirms that propellers are off")),
+            }
+        } else {
+            Some(MavResult::MAV_RESULT_UNSUPPORTED)
+        }
+    }
+
+    fn arm_disarm(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+        let [what, force, ..] = command.params;
+        let order = match (whole(what), whole(force) == Some(FORCED)) {
+            (Some(1), false) => RemoteOrder::Arm,
+            (Some(1), true) => return Some(self.deny("no arming check can be forced")),
+            (Some(0), false) => RemoteOrder::Disarm,
+            (Some(0), true) => RemoteOrder::Kill,
+            _ => return Some(self.deny("0 disarms, 1 arms")),
+        };
+        self.give(command, from, now, order)
+    }
+
+    fn gripper(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+        let [gripper, action, ..] = command.params;
+        let order = match (whole(gripper), whole(action)) {
+            (Some(0 | 1), Some(0)) => RemoteOrder::Release,
+            (Some(0 | 1), Some(1)) => RemoteOrder::Grab,
+            _ => return Some(self.deny("gripper 1: 0 releases, 1 grabs")),
+        };
+        self.give(command, from, now, order)
+    }
+
+    fn motor_test(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+        let [motor, kind, percent, seconds, count, ..] = command.params;
+        let one = whole(kind) == Some(MotorTestThrottleType::MOTOR_TEST_THROTTLE_PERCENT as u32)
+            && matches!(whole(count), Some(0 | 1));
+        let (Some(rotor @ 1..=4), true) = (whole(motor), one) else {
+            return Some(self.deny("motor 1 to 4, one, in percent"));
+        };
+        let order = if percent > 0.0 {
+            BenchOrder::Spin(Spin {
+                rotor: rotor as usize - 1,
+                drive: percent / 100.0,
+            })
+        } else {
+            BenchOrder::End
+        };
+        // 0: as long as it may be. A number that is none is the same.
+        let shorter = seconds > 0.0 && seconds < SPIN_TIME;
+        let seconds = if shorter { seconds } else { SPIN_TIME };
+        self.try_on_bench(command, from, now, Trial::new(order, now, seconds))
+    }
+
+    fn set_servo(&mut self, command: &Command, from: Peer, now: u64) -> Option<MavResult> {
+        let [output, pulse_us, ..] = command.params;
+        let servo = whole(output).and_then(|output| output.checked_sub(FIRST_SERVO));
+        let Some(servo @ 0..4) = servo else {
+            return Some(self.deny("outputs 5 to 8 are the servos"));
+        };
+        let order = if pulse_us > 0.0 {
+            BenchOrder::Place(Place {
+                servo: servo as usize,
+                pulse_us,
+            })
+        } else {
+            BenchOrder::End
+        };
+        self.try_on_bench(command, from, now, Trial::new(order, now, PLACE_TIME))
+    }
+
+    fn give(&mut self, command: &Command, from: Peer, now: u64, order: RemoteOrder) -> Option<MavResult> {
+        if order == RemoteOrder::Kill {
+            // It waits for no other.
+            self.settle(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+            self.calibration = None;
+        }
+        self.begin(command.number, from, now).err().unwrap_or_else(|| {
+            self.orders.remote = Some(RemoteRequest { number: 0, order });
+            None
+        })
+    }
+
+    fn try_on_bench(&mut self, command: &Command, from: Peer, now: u64, trial: Trial) -> Option<MavResult> {
+        self.begin(command.number, from, now).err().unwrap_or_else(|| {
+            self.orders.trial = Some(trial);
+            None
+        })
+    }
+
+    /// The answer to `command` comes later.
+    ///
+    /// # Errors
+    /// What it is answered with at once: nothing where it is the one that waits, sent again.
+    pub(super) fn begin(&mut self, command: u16, to: Peer, since: u64) -> Result<(), Option<MavResult>> {
+        match self.orders.pending {
+            Some(p) if p.command == command && p.to == to => Err(None),
+            Some(_) => Err(Some(self.refuse("another command is under way"))),
+            None => {
+                self.orders.pending = Some(Pending { command, to, since });
+                Ok(())
+            }
+        }
+    }
+
+    /// Acknowledges the command that waits.
+    pub(super) fn settle(&mut self, result: MavResult) {
+        if let Some(Pending { command, to, .. }) = self.orders.pending.take() {
+            self.acknowledge(command, to, result, 0);
+        }
+    }
+
+    /// Says how far the command that waits has come, %.
+    pub(super) fn progress(&mut self, percent: u8) {
+        if let Some(Pending { command, to, .. }) = self.orders.pending {
+            self.acknowledge(command, to, MavResult::MAV_RESULT_IN_PROGRESS, percent);
+        }
+    }
+
+    fn settle_refused(&mut self, why: &str) {
+        let result = self.refuse(why);
+        self.settle(result);
+    }
+
+    fn is_late(&self, now: u64) -> bool {
+        (self.orders.pending).is_some_and(|p| now.saturating_sub(p.since) > COMMANDER)
+    }
+
+    /// What is to be sent to the commander at `now`, µs since the start, given what it has answered.
+    pub fn requests(&mut self, now: u64, vehicle: &Vehicle) -> Requests {
+        Requests {
+            remote: self.remote(now, vehicle),
+            bench: self.bench(now, vehicle),
+        }
+    }
+
+    fn remote(&mut self, now: u64, vehicle: &Vehicle) -> Option<RemoteRequest> {
+        let request = self.orders.remote.as_mut()?;
+        if request.number == 0 {
+            request.number = vehicle.answers.newest.wrapping_add(1).max(1);
+        }
+        let request = *request;
+        let answer = vehicle.answers.remote;
+        if answer.number != request.number && !self.is_late(now) {
+            return Some(request);
+        }
+        self.orders.remote = None;
+        match answer.refusal {
+            _ if answer.number != request.number => self.say_silent(),
+            None => self.settle(MavResult::MAV_RESULT_ACCEPTED),
+            Some(RemoteRefusal::Checks) => {
+                self.texts.name_checks();
+                self.settle(MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
+            }
+            Some(why) => self.settle_refused(why.text()),
+        }
+        None
+    }
+
+    fn bench(&mut self, now: u64, vehicle: &Vehicle) -> Option<BenchRequest> {
+        let (view, late) = (vehicle.answers.bench, self.is_late(now));
+        let trial = self.orders.trial.as_mut()?;
+        if trial.request.number == 0 {
+            match view.next(self.orders.own) {
+                Ok(number) => {
+                    trial.request.number = number;
+                    self.orders.own = number;
+                }
+                Err(why) => {
+                    self.orders.trial = None;
+                    self.settle_refused(why.text());
+                    return None;
+                }
+            }
+        }
+        let Trial { request, until } = *trial;
+        let state = (view.answer.number == request.number).then_some(view.answer.state);
+        match state {
+            None if !late => return Some(request),
+            Some(BenchState::Running) => {
+                if now >= until {
+                    trial.request = BenchRequest {
+                        number: 0,
+                        order: BenchOrder::End,
+                    };
+                }
+                self.settle(MavResult::MAV_RESULT_ACCEPTED);
+                return Some(request);
+            }
+            None => self.say_silent(),
+            Some(BenchState::Done) => self.settle(MavResult::MAV_RESULT_ACCEPTED),
+            Some(BenchState::Refused(BenchRefusal::OutOfRange)) => {
+                let result = self.deny(BenchRefusal::OutOfRange.text());
+                self.settle(result);
+            }
+            Some(BenchState::Refused(why) | BenchState::Ended(why)) => self.settle_refused(why.text()),
+        }
+        self.orders.trial = None;
+        None
+    }
+
+    fn say_silent(&mut self) {
+        self.refuse("the commander is silent");
+        self.settle(MavResult::MAV_RESULT_FAILED);
+    }
+}

@@ -1,0 +1,358 @@
+//! Orders to the commander, with the mode logic itself behind the server.
+
+use sophie_control::bench::{BenchRequest, BenchView, PULSE_MAX_US, SPIN_TIME};
+use sophie_control::grip::GripState;
+use sophie_control::mode::{Inputs, Mode, ModeLogic, Motion, Outputs};
+use sophie_control::params::Params;
+use sophie_control::rc::Sticks;
+use sophie_control::remote::RemoteRequest;
+use sophie_control::setpoint::Setpoint;
+use sophie_mavlink::dialect::*;
+use sophie_mavlink::{Answers, Condition, Requests};
+
+use crate::station::{Station, frame, frame_from};
+
+const ACCEPTED: u8 = 0;
+const REJECTED: u8 = 1;
+const DENIED: u8 = 2;
+const FAILED: u8 = 4;
+const FORCED: f32 = 21_196.0;
+
+/// A vehicle on the ground, its commander and a ground station.
+struct Craft {
+    station: Station,
+    logic: ModeLogic,
+    inputs: Inputs,
+    out: Outputs,
+    /// The commander takes orders.
+    listens: bool,
+    bench: Option<BenchRequest>,
+    remote: Option<RemoteRequest>,
+    /// Periods in which a motor was driven.
+    spun: u32,
+}
+
+impl Craft {
+    /// Disarmed, radio there, both switches off.
+    fn new() -> Self {
+        let inputs = Inputs {
+            sticks: Some(Sticks::default()),
+            motion: Some(Motion {
+                accel: sophie_control::vector::Vec3::new(0.0, 0.0, -9.80665),
+                calibrated: true,
+                ..Motion::default()
+            }),
+            grip: Some(GripState {
+                released: true,
+                ..GripState::default()
+            }),
+            battery: Some(16.0),
+            ..Inputs::default()
+        };
+        let mut craft = Self {
+            station: Station::new(),
+            logic: ModeLogic::new(&Params::DEFAULT),
+            inputs,
+            out: Outputs::default(),
+            listens: true,
+            bench: None,
+            remote: None,
+            spun: 0,
+        };
+        craft.run(2000);
+        assert_eq!(craft.out.mode, Mode::Disarmed);
+        craft
+    }
+
+    fn sticks(&mut self) -> &mut Sticks {
+        self.inputs.sticks.get_or_insert_default()
+    }
+
+    fn run(&mut self, ms: u64) {
+        for _ in 0..ms / 20 {
+            let Requests { remote, bench } = {
+                let station = &mut self.station;
+                station.server.requests(station.now, &station.vehicle)
+            };
+            (self.remote, self.bench) = (remote.or(self.remote), bench.or(self.bench));
+            if self.listens {
+                (self.inputs.remote, self.inputs.bench) = (remote, bench);
+            }
+            for _ in 0..2 {
+                self.out = self.logic.step(&self.inputs, 0.01);
+            }
+            self.spun += u32::from(matches!(self.out.rotors, Setpoint::Spin(_)));
+            self.station.vehicle.condition = Some(Condition {
+                mode: self.out.mode,
+                reason: self.out.reason,
+                warning: "",
+                inhibits: self.out.inhibits,
+            });
+            self.station.vehicle.answers = Answers {
+                bench: BenchView {
+                    newest: self.bench.map_or(0, |b| b.number),
+                    renewed: bench.is_some(),
+                    answer: self.out.bench,
+                },
+                newest: self.remote.map_or(0, |r| r.number),
+                remote: self.out.remote,
+            };
+            self.station.run(20);
+        }
+    }
+
+    /// Sends a command and gives the result and the texts of the next half second.
+    fn command(&mut self, command: MavCmd, params: &[f32]) -> (Vec<u8>, Vec<String>) {
+        self.run(500);
+        self.station.sent.clear();
+        self.station.say(&long(command, params));
+        self.run(700);
+        let acks = self.station.got::<COMMAND_ACK_DATA>();
+        assert!(acks.iter().all(|ack| ack.command == command as u16));
+        (acks.iter().map(|ack| ack.result).collect(), self.station.texts())
+    }
+
+    #[track_caller]
+    fn refused(&mut self, command: MavCmd, params: &[f32], result: u8, why: &str) {
+        let (results, texts) = self.command(command, params);
+        assert_eq!(results, [result], "{texts:?}");
+        assert!(texts.iter().any(|text| text == why), "{texts:?}");
+    }
+
+    #[track_caller]
+    fn accepted(&mut self, command: MavCmd, params: &[f32]) {
+        let (results, texts) = self.command(command, params);
+        assert_eq!(results, [ACCEPTED], "{texts:?}");
+    }
+}
+
+fn long(command: MavCmd, params: &[f32]) -> Vec<u8> {
+    let at = |i: usize| params.get(i).copied().unwrap_or(0.0);
+    frame(&COMMAND_LONG_DATA {
+        param1: at(0),
+        param2: at(1),
+        param3: at(2),
+        param4: at(3),
+        param5: at(4),
+        param6: at(5),
+        param7: at(6),
+        command: command as u16,
+        target_system: 1,
+        target_component: 1,
+        ..Default::default()
+    })
+}
+
+use MavCmd::{
+    MAV_CMD_COMPONENT_ARM_DISARM as ARM, MAV_CMD_DO_GRIPPER as GRIPPER, MAV_CMD_DO_MOTOR_TEST as MOTOR,
+    MAV_CMD_DO_SET_SERVO as SERVO, MAV_CMD_USER_1 as PROPELLERS_OFF,
+};
+
+#[test]
+fn it_arms_as_by_radio_and_names_what_forbids_it() {
+    let mut craft = Craft::new();
+    craft.refused(ARM, &[1.0], REJECTED, "refused: arm switch off");
+    craft.sticks().arm_switch = true;
+    craft.sticks().throttle = 0.3;
+    craft.inputs.battery = Some(12.0);
+    // Each check is named to each who is refused.
+    for _ in 0..2 {
+        let (results, texts) = craft.command(ARM, &[1.0]);
+        assert_eq!(results, [REJECTED]);
+        assert_eq!(texts, ["arming: throttle not low", "arming: battery low"]);
+    }
+    craft.sticks().throttle = 0.0;
+    craft.inputs.battery = Some(16.0);
+    craft.refused(
+        ARM,
+        &[1.0, FORCED],
+        DENIED,
+        "refused: no arming check can be forced",
+    );
+    assert_eq!(craft.out.mode, Mode::Disarmed);
+    let sticks = craft.inputs.sticks.take();
+    let (results, texts) = craft.command(ARM, &[1.0]);
+    assert_eq!(results, [REJECTED]);
+    assert!(texts.contains(&"arming: radio lost".to_string()), "{texts:?}");
+    craft.inputs.sticks = sticks;
+    craft.accepted(ARM, &[1.0]);
+    assert_eq!(craft.out.mode, Mode::Armed);
+    for bad in [2.0, 0.5, -1.0, f32::NAN] {
+        craft.refused(ARM, &[bad], DENIED, "refused: 0 disarms, 1 arms");
+    }
+    craft.accepted(ARM, &[0.0]);
+    assert_eq!(craft.out.mode, Mode::Disarmed);
+}
+
+#[test]
+fn in_flight_it_disarms_by_force_alone() {
+    let mut craft = Craft::new();
+    craft.sticks().arm_switch = true;
+    craft.accepted(ARM, &[1.0]);
+    craft.sticks().throttle = 0.5;
+    craft.refused(ARM, &[0.0], REJECTED, "refused: flying: land first");
+    assert_eq!(craft.out.mode, Mode::Flight);
+    craft.accepted(ARM, &[0.0, FORCED]);
+    assert_eq!(
+        (craft.out.mode, craft.out.rotors),
+        (Mode::Disarmed, Setpoint::Stop)
+    );
+}
+
+#[test]
+fn force_waits_for_no_other_command_and_the_others_do() {
+    let mut craft = Craft::new();
+    craft.sticks().arm_switch = true;
+    craft.accepted(ARM, &[1.0]);
+    craft.listens = false;
+    craft.inputs.remote = None;
+    craft.station.sent.clear();
+    craft.station.say(&long(GRIPPER, &[1.0, 1.0]));
+    // Sent again by an impatient client: answered once.
+    craft.station.say(&long(GRIPPER, &[1.0, 1.0]));
+    craft.station.say(&long(ARM, &[0.0]));
+    craft.station.say(&long(ARM, &[0.0, FORCED]));
+    craft.listens = true;
+    craft.run(200);
+    let acks = craft.station.got::<COMMAND_ACK_DATA>();
+    let acks: Vec<_> = acks.iter().map(|ack| (ack.command, ack.result)).collect();
+    let [arm, gripper] = [ARM, GRIPPER].map(|c| c as u16);
+    assert_eq!(acks, [(arm, REJECTED), (gripper, REJECTED), (arm, ACCEPTED)]);
+    assert_eq!(craft.out.mode, Mode::Disarmed);
+}
+
+#[test]
+fn a_silent_commander_fails_the_command() {
+    let mut craft = Craft::new();
+    craft.listens = false;
+    for (command, params) in [(ARM, [1.0, 0.0]), (PROPELLERS_OFF, [1.0, 0.0])] {
+        craft.refused(command, &params, FAILED, "refused: the commander is silent");
+    }
+}
+
+#[test]
+fn one_motor_turns_once_propellers_are_said_to_be_off() {
+    let mut craft = Craft::new();
+    let eight = [2.0, 0.0, 8.0];
+    craft.refused(
+        MOTOR,
+        &eight,
+        REJECTED,
+        "refused: say 'propellers off' first, once they are",
+    );
+    craft.refused(
+        PROPELLERS_OFF,
+        &[0.0],
+        DENIED,
+        "refused: 1 confirms that propellers are off",
+    );
+    craft.accepted(PROPELLERS_OFF, &[1.0]);
+    assert_eq!(craft.spun, 0);
+    craft.accepted(MOTOR, &eight);
+    craft.run(3000);
+    let whole = (SPIN_TIME * 50.0) as u32;
+    assert!(craft.spun.abs_diff(whole) <= 2, "{}", craft.spun);
+    // For half a second; and stopped before its end.
+    craft.spun = 0;
+    craft.accepted(MOTOR, &[2.0, 0.0, 8.0, 0.5]);
+    craft.run(2000);
+    assert!(craft.spun.abs_diff(25) <= 4, "{}", craft.spun);
+    craft.spun = 0;
+    craft.station.say(&long(MOTOR, &eight));
+    craft.run(300);
+    craft.accepted(MOTOR, &[2.0, 0.0, 0.0]);
+    craft.run(2000);
+    assert!(
+        craft.spun < 50 && craft.out.rotors == Setpoint::Stop,
+        "{}",
+        craft.spun
+    );
+    for percent in [13.0, 1.0, f32::INFINITY] {
+        craft.refused(MOTOR, &[1.0, 0.0, percent], DENIED, "refused: out of range");
+    }
+    for bad in [[0.0, 0.0], [5.0, 0.0], [1.0, 1.0], [f32::NAN, 0.0]] {
+        craft.refused(
+            MOTOR,
+            &[bad[0], bad[1], 8.0],
+            DENIED,
+            "refused: motor 1 to 4, one, in percent",
+        );
+    }
+    craft.sticks().arm_switch = true;
+    craft.refused(
+        MOTOR,
+        &eight,
+        REJECTED,
+        "refused: arm switch on: turn it off first",
+    );
+    craft.accepted(ARM, &[1.0]);
+    craft.refused(MOTOR, &eight, REJECTED, "refused: only while DISARMED");
+}
+
+#[test]
+fn a_servo_takes_a_pulse_and_gives_it_back() {
+    let mut craft = Craft::new();
+    craft.accepted(SERVO, &[6.0, 1500.0]);
+    assert!(
+        matches!(craft.out.tendons, sophie_control::setpoint::ClampCommand::Place(p) if p.servo == 1),
+        "{:?}",
+        craft.out.tendons
+    );
+    craft.accepted(SERVO, &[6.0, 0.0]);
+    assert_eq!(craft.out.tendons, sophie_control::setpoint::ClampCommand::Release);
+    craft.refused(SERVO, &[5.0, PULSE_MAX_US + 1.0], DENIED, "refused: out of range");
+    for output in [1.0, 4.0, 9.0, f32::NAN] {
+        craft.refused(
+            SERVO,
+            &[output, 1500.0],
+            DENIED,
+            "refused: outputs 5 to 8 are the servos",
+        );
+    }
+}
+
+#[test]
+fn the_gripper_stays_where_the_switch_does_nothing() {
+    let mut craft = Craft::new();
+    for action in [0.0, 1.0] {
+        craft.refused(
+            GRIPPER,
+            &[1.0, action],
+            REJECTED,
+            "refused: only in flight or on the pipe",
+        );
+    }
+    craft.refused(
+        GRIPPER,
+        &[1.0, 2.0],
+        DENIED,
+        "refused: gripper 1: 0 releases, 1 grabs",
+    );
+    craft.sticks().arm_switch = true;
+    craft.accepted(ARM, &[1.0]);
+    craft.sticks().throttle = 0.5;
+    craft.run(200);
+    craft.accepted(GRIPPER, &[1.0, 1.0]);
+    craft.inputs.sticks = None;
+    craft.run(1000);
+    craft.refused(GRIPPER, &[1.0, 1.0], REJECTED, "refused: radio lost");
+}
+
+#[test]
+fn another_system_orders_as_well_but_not_in_anothers_name() {
+    let mut craft = Craft::new();
+    craft.station.sent.clear();
+    craft.station.say(&frame_from(
+        7,
+        &COMMAND_LONG_DATA {
+            param1: 1.0,
+            command: ARM as u16,
+            target_system: 1,
+            target_component: 1,
+            ..Default::default()
+        },
+    ));
+    craft.run(200);
+    let ack = &craft.station.got::<COMMAND_ACK_DATA>()[0];
+    assert_eq!((ack.result, ack.target_system), (REJECTED, 7));
+}
