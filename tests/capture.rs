@@ -4,6 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
+#[allow(dead_code, reason = "shared with the tests of the command line")]
 #[path = "common/command.rs"]
 mod command;
 
