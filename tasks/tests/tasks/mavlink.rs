@@ -234,7 +234,7 @@ impl Bench {
 fn with_a_key_frames_are_signed_and_what_arrives_without_is_refused_and_shown() {
     let mut bench = Bench::of(Mode::Disarmed, signing_board());
     bench.run(1000);
-    bench.set_infill();
+    bench.set_infill(8.0);
     bench.run(2000);
     assert_eq!(bench.board.stored.get(), None);
     assert!(bench.wire.frames().iter().all(|(_, frame)| frame[2] == 1));
