@@ -20,7 +20,7 @@ pub const MIDDLE: f64 = 0.5;
 /// moment and inertia of a straight arm as they are. The root's share belongs to the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Masses {
-    /// At [`MIDDLE`], kg.
+    /// Halfway along the arm, kg.
     pub middle: f64,
     /// At the tip, motor included, kg.
     pub tip: f64,

@@ -4,7 +4,7 @@
 //! terms, θ(ξ) = q1 ξ + q2 ξ², θ the slope at the share ξ of the length: both loads alone give exact tilts. A tip carries
 //! motor and propeller, which also twist about the arm ([`twist`]). Derivations and limit cases: docs/physics.md.
 //!
-//! The neutral line lies at [`HINGE_Z`](super::contact::HINGE_Z) at the root; the underside [`DEPTH`] below it.
+//! The neutral line lies at [`HINGE_Z`] at the root; the underside [`DEPTH`] below it.
 
 mod arm;
 mod masses;
