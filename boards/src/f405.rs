@@ -35,14 +35,13 @@ use sophie_drivers::icm20689 as part;
 use sophie_drivers::icm42688p as part;
 use sophie_drivers::mounting::{Heading, Mounting};
 use sophie_drivers::spi_imu::SpiImu;
-use sophie_tasks::parameters;
 
 use crate::Board;
 use crate::cortex_m::levels_on;
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, Wiring, accelerator, console_lines, drive, i2c_bus, look,
-    mavlink_lines, pad, receiver_line, spi_config,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Wiring, accelerator, console_lines, drive, i2c_bus,
+    load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -199,7 +198,7 @@ pub async fn take() -> Board {
     accelerator::enable();
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
-    let (params, loaded) = parameters::load(&mut storage).await;
+    let (params, loaded) = load_parameters(&mut storage);
     let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
     let r = parts.receiver;
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);

@@ -29,14 +29,13 @@ use sophie_drivers::bno055;
 use sophie_drivers::esc_protocol::EscProtocol;
 use sophie_drivers::icm42688p::{self, Icm42688p};
 use sophie_drivers::mounting::{Heading, Mounting};
-use sophie_tasks::parameters;
 
 use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoTimer, ThisChip, Wiring, console_lines, drive, i2c_bus, look, mavlink_lines,
-    pad, receiver_line, spi_config,
+    ReadyStamp, Selected, ServoTimer, ThisChip, Wiring, console_lines, drive, i2c_bus, load_parameters, look,
+    mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
@@ -195,7 +194,7 @@ pub async fn take() -> Board {
     enable_caches(DATA_CACHE);
     let parts = split_resources!(p);
     let mut storage = storage(parts.storage);
-    let (params, loaded) = parameters::load(&mut storage).await;
+    let (params, loaded) = load_parameters(&mut storage);
     let chip = ThisChip::new(look(loaded, PARAM_SECTORS));
     let r = parts.receiver;
     let (receiver, telemetry) = receiver_line(r.uart, r.rx, r.tx, r.rx_dma, r.tx_dma, Irqs, &params);

@@ -67,7 +67,7 @@ pub use servos::ServoTimer;
 pub use silicon::look;
 pub use spi::PlainChip;
 pub use spi::{DmaChip, Selected, spi_config};
-pub use storage::BoardStorage;
+pub use storage::{BoardStorage, load_parameters};
 pub use tone::Tone;
 pub use watchdog::{Dog, stop_with_core};
 

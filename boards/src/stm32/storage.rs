@@ -1,12 +1,20 @@
 //! Parameters in the board's non-volatile memory.
 
+use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::NorFlash;
 use sophie_control::params::Params;
 use sophie_drivers::param_store::ParamStore;
 use sophie_tasks::mavlink::signing::Record;
+use sophie_tasks::parameters;
 use sophie_tasks::ports::{Loaded, Storage, StorageError};
 
 use super::watchdog;
+
+/// The parameters in force and what reading them has found, before anything else runs. Not awaited, so that its 3 KB are
+/// the stack's for a moment, and not for good those of every future that starts the board.
+pub fn load_parameters(storage: &mut impl Storage) -> (Params, Loaded) {
+    block_on(parameters::load(storage))
+}
 
 /// Parameter storage on memory `F`.
 pub struct BoardStorage<F>(ParamStore<F>);
