@@ -179,6 +179,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     for (verb, part) in [
         ("fly", "--infill"),
         ("check", "--infill"),
+        ("capture", "--touches"),
         ("paper", "paper.html"),
         ("fit-arm", "tilt_deg"),
         ("timing", "--analyse"),
@@ -205,7 +206,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     }
     assert_eq!(
         refused(&temp, &["help", "perch"]),
-        "sophie: no help on 'perch': allowed are fly, check, bringup, params, paper, fit-arm, timing"
+        "sophie: no help on 'perch': allowed are fly, check, bringup, params, capture, paper, fit-arm, timing"
     );
 }
 
