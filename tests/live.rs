@@ -306,11 +306,13 @@ fn pymavlink_tries_a_motor_and_calibrates_without_a_radio_and_cannot_arm() {
 #[test]
 #[ignore = "wants pymavlink, which .ci/mavlink-clients installs: .ci/run runs it"]
 fn pymavlink_arms_where_the_pilots_switch_is_on_and_grabs_in_flight_alone() {
+    clients::python();
     let temp = Temp::new("live-orders");
     let file = temp.file("hop.toml", HOP);
     let (socket, address) = station();
     drop(socket);
-    let _flight = Flight::begin(&temp, &[&file, "--mavlink", &address]);
+    // Slow enough for a client on a busy machine to be there before the pilot arms, 4 s after the start.
+    let _flight = Flight::begin(&temp, &[&file, "--speed", "0.25", "--mavlink", &address]);
     let steps = serde_json::json!([
         // Until the pilot turns his arm switch on, a second before his gesture ends.
         [ARM, [1], REJECTED],
