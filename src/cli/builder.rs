@@ -64,7 +64,7 @@ impl Terminal {
     /// Leaves the row that was shown last.
     fn end_row(&mut self) {
         if let Some(row) = self.row.take() {
-            // Of rows that nobody watches the last one is kept.
+            // Where rows are not watched, the last one is kept.
             let end = if self.terminal {
                 "\n".to_owned()
             } else {
@@ -74,7 +74,7 @@ impl Terminal {
         }
     }
 
-    /// What was replied; where it is piped, nobody has seen it yet.
+    /// What was replied; where it is piped, it has not been shown yet.
     fn replied(&mut self, line: String) -> Reply {
         if !self.terminal {
             self.write(&format!("{line}\n"));

@@ -115,7 +115,7 @@ pub struct Board {
     outputs: Arc<Mutex<Outputs>>,
     /// The board's time over all its starts, ms.
     ms: Arc<AtomicU64>,
-    /// Changes of parameters that it has told of.
+    /// Changes of parameters that it has reported.
     changes: Arc<AtomicU64>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,

@@ -74,7 +74,7 @@ fn a_bring_up_is_left_in_order_wherever_it_is() {
         assert!(!protocol.contains(&format!("id = \"{id}\"")), "{protocol}");
         assert_eq!(fs::read_dir(&temp.0).unwrap().count(), 1, "{id}");
         assert!(board.stored() == Params::DEFAULT);
-        // The next one goes on with it.
+        // The next one continues it.
         let mut builder = Builder::begins(&temp, &board, &[]);
         builder.hears(&format!("not done: {id}"));
         builder.at("(chip)", "q");

@@ -72,7 +72,7 @@ impl Wire {
         let count = match &mut self.end {
             End::Socket { listener, user } => socket(listener, user, said, &mut bytes),
             End::Serial { board, .. } => {
-                // What finds no room is lost, as on a line that nobody reads.
+                // What finds no room is lost, as on a line without a reader.
                 let _ = board.write_all(said);
                 board.read(&mut bytes).unwrap_or(0)
             }

@@ -245,7 +245,7 @@ fn each_sender_has_its_own_time_and_a_new_one_may_be_a_minute_behind() {
             ..Refused::default()
         }
     );
-    // Time goes on by itself.
+    // Time passes without further input.
     station.run(30_000);
     station.say(&signed_by(5, &key(), DATE + 29 * SECOND, &ping(7)));
     station.say(&signed_by(6, &key(), DATE + 31 * SECOND, &ping(8)));

@@ -205,7 +205,7 @@ impl Builder {
             self.does(|held| held.sticks = Some(Sticks::default()));
             String::new()
         } else if begins("Enter tries it again") {
-            // A walk that fails here must not go on for ever.
+            // A walk that fails here must end the run.
             "q".to_owned()
         } else {
             String::new()

@@ -135,7 +135,7 @@ fn the_command_line_wins_over_the_file() {
     let s = Scenario::parse(text, "f", &overrides).unwrap();
     assert_eq!((s.vehicle.infill, s.vehicle.gain_k, s.seed), (9.0, 2.0, 77));
     assert_eq!((s.params.infill, s.params.gain_k), (9.0, 2.0));
-    // The stack believes the tendon where it runs.
+    // The stack's lever follows the tendon's place.
     assert_eq!(
         (s.vehicle.arm_bending, s.params.tendon_lever),
         (ArmBending::Beam, 0.015)

@@ -43,7 +43,7 @@ pub struct Entry {
     pub at: String,
     /// What was found, line by line.
     pub figures: Vec<String>,
-    /// What the board ran; empty where nobody said.
+    /// What the board ran; empty where it is not known.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub build: String,
     /// Parameters that it has stored.
