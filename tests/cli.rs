@@ -180,6 +180,7 @@ fn help_is_a_word_and_an_option_everywhere() {
         ("fly", "--infill"),
         ("check", "--infill"),
         ("capture", "--touches"),
+        ("study", "--spread"),
         ("paper", "paper.html"),
         ("fit-arm", "tilt_deg"),
         ("timing", "--analyse"),
@@ -206,7 +207,7 @@ fn help_is_a_word_and_an_option_everywhere() {
     }
     assert_eq!(
         refused(&temp, &["help", "perch"]),
-        "sophie: no help on 'perch': allowed are fly, check, bringup, params, capture, paper, fit-arm, timing"
+        "sophie: no help on 'perch': allowed are fly, check, bringup, params, capture, study, paper, fit-arm, timing"
     );
 }
 

@@ -36,9 +36,12 @@ const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 /// Permitted touches of a capture map: one of each kind, and half a day.
 const TOUCHES: RangeInclusive<u64> = 10..=1_000_000;
 
+/// Permitted vehicles of a study: what a day flies.
+const VEHICLES: RangeInclusive<u64> = 1..=100_000;
+
 /// The subcommands, as messages name them.
-const VERBS: [&str; 8] = [
-    "fly", "check", "bringup", "params", "capture", "paper", "fit-arm", "timing",
+const VERBS: [&str; 9] = [
+    "fly", "check", "bringup", "params", "capture", "study", "paper", "fit-arm", "timing",
 ];
 
 #[derive(Subcommand)]
@@ -69,6 +72,10 @@ enum Command {
     /// Half come from anywhere on the pipe, half are what a careful pilot means; of these the half-widths are measured.
     /// Exit status: 0 nothing lost, 1 a vehicle was lost, 2 bad input or unwritable output.
     Capture(CaptureArgs),
+    /// Fly a family of varied vehicles, and compare with what the design check says of each.
+    ///
+    /// Exit status: 0 done, 2 bad input or unwritable output.
+    Study(StudyArgs),
     /// Compute and fly every table and figure of the paper, and set them beside the printed numbers.
     ///
     /// Exit status: 0 done, 2 bad input or unwritable output.
@@ -97,6 +104,8 @@ pub enum Task {
     Params(ParamsArgs),
     /// Fly touches of the pipe.
     Capture(CaptureArgs),
+    /// Fly a family of vehicles.
+    Study(StudyArgs),
     /// Reproduce the paper.
     Paper(PaperArgs),
     /// Fit an arm.
@@ -151,6 +160,35 @@ pub struct CaptureArgs {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Print the counts as JSON on stdout, everything else on stderr.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What is studied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Study {
+    /// Vehicles that differ in stiffness, mass, motors, pilot and pipe.
+    Vehicles,
+}
+
+/// Which vehicles, and where the results go.
+#[derive(Args, Debug)]
+pub struct StudyArgs {
+    /// What is studied.
+    pub study: Study,
+    /// How many, 1 to 100,000.
+    #[arg(long, value_name = "N", value_parser = vehicles, default_value = "80", allow_negative_numbers = true)]
+    pub count: u64,
+    /// Share of the whole spread of mass, inertia, torque ratio and arms, 0 to 1.
+    #[arg(long, value_name = "SHARE", value_parser = spread, default_value = "1", allow_negative_numbers = true)]
+    pub spread: f64,
+    /// Seed of the first; the next have the numbers after it.
+    #[arg(long, value_name = "N", value_parser = seed, default_value = "1", allow_negative_numbers = true)]
+    pub seed: u64,
+    /// Directory for vehicles.html and vehicles.json.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Print the results as JSON on stdout, everything else on stderr.
     #[arg(long)]
     pub json: bool,
 }
@@ -360,6 +398,7 @@ impl Message {
         {
             let allowed = match std::env::args().nth(1).as_deref() {
                 Some("paper" | "capture") => "no file",
+                Some("study") => "vehicles and no file",
                 Some("fit-arm") => "one CSV file",
                 Some("params") => "one parameter file",
                 Some("bringup") => "no file",
@@ -390,6 +429,7 @@ fn parse_from(
         Some(Command::Bringup(bringup)) => Task::Bringup(bringup),
         Some(Command::Params(params)) => Task::Params(params),
         Some(Command::Capture(capture)) => Task::Capture(capture),
+        Some(Command::Study(study)) => Task::Study(study),
         Some(Command::Paper(paper)) => Task::Paper(paper),
         Some(Command::FitArm(fit)) => Task::FitArm(fit),
         Some(Command::Timing(timing)) => Task::Timing(timing),
@@ -427,6 +467,16 @@ fn seed(text: &str) -> Result<u64, String> {
 fn touches(text: &str) -> Result<u64, String> {
     let count = text.parse().ok().filter(|count| TOUCHES.contains(count));
     count.ok_or_else(|| format!("allowed {} to {}", TOUCHES.start(), TOUCHES.end()))
+}
+
+fn vehicles(text: &str) -> Result<u64, String> {
+    let count = text.parse().ok().filter(|count| VEHICLES.contains(count));
+    count.ok_or_else(|| format!("allowed {} to {}", VEHICLES.start(), VEHICLES.end()))
+}
+
+fn spread(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "allowed 0 to 1".to_owned())
 }
 
 fn heading(text: &str) -> Result<f64, String> {

@@ -11,8 +11,10 @@ mod check;
 mod interrupt;
 mod live;
 mod operate;
+mod publish;
 mod study;
 mod timing;
+mod vehicles;
 
 use std::process::ExitCode;
 
@@ -24,7 +26,7 @@ use sophie_sim::flight::fly;
 use sophie_sim::record::FlightRecord;
 use sophie_sim::scenario::Scenario;
 
-use self::args::{FlyArgs, Task};
+use self::args::{FlyArgs, Study, Task};
 
 /// The mission was not accomplished.
 const FAILED: u8 = 1;
@@ -46,6 +48,9 @@ pub fn main() -> ExitCode {
         Task::Bringup(args) => return operate::bringup(&args),
         Task::Params(args) => return operate::params(&args),
         Task::Capture(args) => capture::run(&args),
+        Task::Study(args) => match args.study {
+            Study::Vehicles => vehicles::run(&args),
+        },
         Task::Paper(args) => study::paper(&args),
         Task::FitArm(args) => study::fit_arm(&args),
         Task::Timing(args) => timing::run(&args).map(|()| true),

@@ -1,49 +1,29 @@
 //! `sophie paper` and `sophie fit-arm`: results on terminal and disk.
 
-use std::time::Instant;
-
 use sophie_report::terminal::complain;
 use sophie_report::terminal::console::{self, Console};
 use sophie_report::terminal::output::OutDir;
 
 use super::PROGRAM;
 use super::args::{FitArgs, PaperArgs};
+use super::publish::Publisher;
 use sophie_paper::printed::Printed;
 use sophie_paper::{self as paper, bench_data, fit, fit_report, json, page, text};
-
-const FILES: [&str; 2] = ["paper.html", "paper.json"];
 
 const FIT_FILES: [&str; 4] = ["fit.html", "fit.json", "arm.toml", "arm.console"];
 
 /// Computes and writes every section.
 pub fn paper(args: &PaperArgs) -> Result<bool, String> {
-    let out = OutDir::prepare(&args.out, &FILES)?;
-    let console = Console::new(args.json);
+    let publisher = Publisher::new(&args.out, ["paper.html", "paper.json"], args.json)?;
     let printed = Printed::read();
-    let started = Instant::now();
     let mut sections = vec![];
     for work in paper::SECTIONS {
         let section = work(&printed);
-        for line in text::lines(sections.len() + 1, &section) {
-            console.say(&line);
-        }
+        publisher.show(sections.len() + 1, &section);
         sections.push(section);
     }
     let results = json::json(&sections);
-    let page = page::html(paper::TITLE, paper::LEAD, &sections);
-    let files = [page.into_bytes(), results.clone().into_bytes()];
-    let written = out.write(&FILES.into_iter().zip(files).collect::<Vec<_>>())?;
-    console.say("");
-    console.say(&format!(
-        "{} sections in {:.1} s, written: {}",
-        sections.len(),
-        started.elapsed().as_secs_f64(),
-        written.join("  ")
-    ));
-    if args.json {
-        console::print(results.trim_end())?;
-    }
-    console.end()?;
+    publisher.write(paper::TITLE, paper::LEAD, &sections, results)?;
     Ok(true)
 }
 

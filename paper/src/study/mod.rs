@@ -6,3 +6,4 @@ pub mod capture;
 pub mod perturbation;
 pub mod rig;
 pub mod touch;
+pub mod vehicles;

@@ -1,0 +1,22 @@
+//! `sophie study vehicles`: how many of a varied family accomplish the mission.
+
+use sophie_paper::study::vehicles::{self, report};
+
+use super::args::StudyArgs;
+use super::publish::Publisher;
+
+/// Flies and writes the family. Always true: what fails is a result.
+pub fn run(args: &StudyArgs) -> Result<bool, String> {
+    let publisher = Publisher::new(&args.out, ["vehicles.html", "vehicles.json"], args.json)?;
+    publisher.say(&format!("{} vehicles from seed {}", args.count, args.seed));
+    let flown = vehicles::fly(args.count, args.seed, args.spread)?;
+    let section = report::section(&flown, args.seed, args.spread);
+    publisher.show(1, &section);
+    publisher.write(
+        "Varied vehicles",
+        "A family of vehicles, checked and flown by the whole stack",
+        &[section],
+        report::json(&flown, args.seed, args.spread),
+    )?;
+    Ok(true)
+}
