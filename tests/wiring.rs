@@ -6,7 +6,7 @@ use std::fmt::Write;
 const BOARDS: [&str; 3] = ["matek-h743", "cuav-v5", "f405"];
 
 /// What hangs on the board, and the resources of its file that carry it.
-const SIGNALS: [(&str, &[&str]); 15] = [
+const SIGNALS: [(&str, &[&str]); 16] = [
     (
         "motors 1 to 4",
         &[
@@ -36,6 +36,7 @@ const SIGNALS: [(&str, &[&str]); 15] = [
     ("receiver: its output, its input", &["receiver.rx", "receiver.tx"]),
     ("console: adapter's TX, its RX", &["console.rx", "console.tx"]),
     ("MAVLink: other end's TX, its RX", &["mavlink.rx", "mavlink.tx"]),
+    ("USB: D+, D-", &["usb.dp", "usb.dm"]),
     (
         "battery: voltage, current",
         &["analog.battery_voltage", "analog.battery_current"],
@@ -68,7 +69,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("matek-h743", "PE8") => "TX7",
         ("matek-h743", "PA10") => "RX1",
         ("matek-h743", "PA9") => "TX1",
-        ("matek-h743", "PC0" | "PC1") => "on board",
+        ("matek-h743", "PC0" | "PC1" | "PA11" | "PA12") => "on board",
         ("matek-h743", "PA15") => "BZ-",
         ("cuav-v5", "PE9") => "AUX 4",
         ("cuav-v5", "PE11") => "AUX 3",
@@ -91,7 +92,7 @@ fn pad(board: &str, pin: &str) -> Option<&'static str> {
         ("cuav-v5", "PD6") => "TELEM1 RX",
         ("cuav-v5", "PD5") => "TELEM1 TX",
         ("cuav-v5", "PA0" | "PA1") => "POWER1",
-        ("cuav-v5", "PE5") => "on board",
+        ("cuav-v5", "PE5" | "PA11" | "PA12") => "on board",
         _ => return None,
     })
 }

@@ -10,6 +10,7 @@
 //! | receiver | USART3 | DMA1 1 and 3 | TELEM2 |
 //! | console | UART7 | none | FMU debug |
 //! | MAVLink | USART2 | none | TELEM1 |
+//! | USB | OTG_FS | none | on board |
 //! | parameters, FRAM | SPI2 | none | on board |
 //! | lights, sounder | TIM9 | none | on board |
 //! | time | TIM5 | none | |
@@ -25,7 +26,7 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Pin, Pull};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use embassy_time::{Duration, Timer};
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
@@ -39,12 +40,14 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, PlainChip, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, Wiring, console_lines, drive, hold, i2c_bus,
+    ReadyStamp, Selected, ServoPairs, ThisChip, Tone, UsbPort, Wiring, console_lines, drive, hold, i2c_bus,
     load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "cuav-v5";
+/// What it calls itself on USB.
+const PRODUCT: &str = "SOPHIE cuav-v5";
 
 /// Flash sectors that hold parameters: none, an FRAM does.
 const PARAM_SECTORS: u32 = 0;
@@ -115,6 +118,7 @@ bind_interrupts! {
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
         UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
         USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
         USART3 => usart::InterruptHandler<peripherals::USART3>;
@@ -198,6 +202,11 @@ assign_resources! {
         rx: PD6,
         tx: PD5,
     }
+    usb: UsbParts {
+        core: USB_OTG_FS,
+        dp: PA12,
+        dm: PA11,
+    }
     storage: StorageParts {
         spi: SPI2,
         clock: PI1,
@@ -248,6 +257,7 @@ pub async fn take() -> Board {
         console_output,
         mavlink_input,
         mavlink_output,
+        usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
         lights: lights(parts.lights),
         storage,
         params,
@@ -271,7 +281,8 @@ fn clocks() -> embassy_stm32::Config {
         prediv: PllPreDiv::DIV8,
         mul: PllMul::MUL216,
         divp: Some(PllPDiv::DIV2),
-        divq: None,
+        // USB: 48 MHz.
+        divq: Some(PllQDiv::DIV9),
         divr: None,
     });
     rcc.sys = Sysclk::PLL1_P;
@@ -279,6 +290,7 @@ fn clocks() -> embassy_stm32::Config {
     rcc.apb1_pre = APBPrescaler::DIV4;
     rcc.apb2_pre = APBPrescaler::DIV2;
     rcc.ls = LsConfig::off();
+    rcc.mux.clk48sel = mux::Clk48sel::PLL1_Q;
     config
 }
 

@@ -11,6 +11,7 @@
 //! | receiver | USART1 | DMA2 5 and 7 | PA10 in, PA9 out |
 //! | console | USART2 | none | PA3 in, PA2 out |
 //! | MAVLink | USART3 | none | PC11 in, PC10 out |
+//! | USB | OTG_FS | none | PA12 plus, PA11 minus |
 //! | lights, buzzer | | none | PB12 state, PB13 fault, PA8 |
 //! | parameters | flash | none | sectors 1 and 2 |
 //! | time | TIM5 | none | |
@@ -24,7 +25,7 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Pin, Pull};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
@@ -40,12 +41,14 @@ use crate::Board;
 use crate::cortex_m::levels_on;
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoPairs, ThisChip, Wiring, accelerator, console_lines, drive, i2c_bus,
+    ReadyStamp, Selected, ServoPairs, ThisChip, UsbPort, Wiring, accelerator, console_lines, drive, i2c_bus,
     load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "f405";
+/// What it calls itself on USB.
+const PRODUCT: &str = "SOPHIE f405";
 
 /// Flash sectors that hold parameters, a bit each.
 const PARAM_SECTORS: u32 = 1 << 1 | 1 << 2;
@@ -104,6 +107,7 @@ bind_interrupts! {
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
         USART1 => usart::InterruptHandler<peripherals::USART1>;
         USART2 => usart::BufferedInterruptHandler<peripherals::USART2>;
         USART3 => usart::BufferedInterruptHandler<peripherals::USART3>;
@@ -179,6 +183,11 @@ assign_resources! {
         rx: PC11,
         tx: PC10,
     }
+    usb: UsbParts {
+        core: USB_OTG_FS,
+        dp: PA12,
+        dm: PA11,
+    }
     storage: StorageParts {
         flash: FLASH,
     }
@@ -223,6 +232,7 @@ pub async fn take() -> Board {
         console_output,
         mavlink_input,
         mavlink_output,
+        usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
         lights: lights(parts.lights),
         storage,
         params,
@@ -246,7 +256,8 @@ fn clocks() -> embassy_stm32::Config {
         prediv: PllPreDiv::DIV4,
         mul: PllMul::MUL168,
         divp: Some(PllPDiv::DIV2),
-        divq: None,
+        // USB: 48 MHz.
+        divq: Some(PllQDiv::DIV7),
         divr: None,
     });
     rcc.sys = Sysclk::PLL1_P;

@@ -10,6 +10,7 @@
 //! | receiver | USART6 | DMA2 0 and 1 | RX6, TX6 |
 //! | console | UART7 | none | RX7, TX7 |
 //! | MAVLink | USART1 | none | RX1, TX1 |
+//! | USB | OTG_FS | none | on board |
 //! | parameters | flash | none | sectors 6 and 7 of bank 2 |
 //! | time | TIM2 | none | |
 //!
@@ -22,7 +23,7 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::{Level, Pin, Pull};
 use embassy_stm32::spi::Spi;
 use embassy_stm32::time::mhz;
-use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart};
+use embassy_stm32::{Peri, bind_interrupts, dma, exti, i2c, interrupt, pac, peripherals, rcc, usart, usb};
 use sophie_control::params::Params;
 use sophie_drivers::arm_buses::ArmBuses;
 use sophie_drivers::bno055;
@@ -34,12 +35,14 @@ use crate::Board;
 use crate::cortex_m::{enable_caches, levels_on};
 use crate::stm32::{
     AnalogInputs, ArmBus, BoardStorage, DmaChip, Dog, EscTimer, Lamp, Lights, ParamFlash, ReadyLine,
-    ReadyStamp, Selected, ServoTimer, ThisChip, Wiring, console_lines, drive, i2c_bus, load_parameters, look,
-    mavlink_lines, pad, receiver_line, spi_config,
+    ReadyStamp, Selected, ServoTimer, ThisChip, UsbPort, Wiring, console_lines, drive, i2c_bus,
+    load_parameters, look, mavlink_lines, pad, receiver_line, spi_config,
 };
 
 /// Name in the log.
 pub const NAME: &str = "matek-h743";
+/// What it calls itself on USB.
+const PRODUCT: &str = "SOPHIE matek-h743";
 
 /// Flash sectors that hold parameters, a bit each: sectors 6 and 7 of bank 2.
 const PARAM_SECTORS: u32 = 1 << 14 | 1 << 15;
@@ -101,6 +104,7 @@ bind_interrupts! {
         I2C1_ER => i2c::ErrorInterruptHandler<peripherals::I2C1>;
         I2C2_EV => i2c::EventInterruptHandler<peripherals::I2C2>;
         I2C2_ER => i2c::ErrorInterruptHandler<peripherals::I2C2>;
+        OTG_FS => usb::InterruptHandler<peripherals::USB_OTG_FS>;
         UART7 => usart::BufferedInterruptHandler<peripherals::UART7>;
         USART1 => usart::BufferedInterruptHandler<peripherals::USART1>;
         USART6 => usart::InterruptHandler<peripherals::USART6>;
@@ -175,6 +179,11 @@ assign_resources! {
         rx: PA10,
         tx: PA9,
     }
+    usb: UsbParts {
+        core: USB_OTG_FS,
+        dp: PA12,
+        dm: PA11,
+    }
     storage: StorageParts {
         flash: FLASH,
     }
@@ -219,6 +228,7 @@ pub async fn take() -> Board {
         console_output,
         mavlink_input,
         mavlink_output,
+        usb: UsbPort::new(parts.usb.core, parts.usb.dp, parts.usb.dm, Irqs, PRODUCT),
         lights: lights(parts.lights),
         storage,
         params,
@@ -227,7 +237,7 @@ pub async fn take() -> Board {
     }
 }
 
-/// 8 MHz crystal; core 400 MHz, buses 100 MHz, timers 200 MHz, SPI1 48 MHz, converter 50 MHz (halved inside).
+/// 8 MHz crystal; core 400 MHz, buses 100 MHz, timers 200 MHz, SPI1 and USB 48 MHz, converter 50 MHz (halved inside).
 ///
 /// 480 MHz would need the regulator's boost, which only half of the chip revisions have.
 fn clocks() -> embassy_stm32::Config {
@@ -256,9 +266,10 @@ fn clocks() -> embassy_stm32::Config {
         ..pll
     });
     rcc.pll2 = Some(pll);
-    // The inertial sensor's bus: 48 MHz, of which half is what the part takes; 800 MHz have no such divider.
+    // 48 MHz for USB and for the inertial sensor's bus, of which half is what the part takes; 800 MHz have no such divider.
     rcc.pll3 = Some(Pll {
         mul: PllMul::MUL96,
+        divq: Some(PllDiv::DIV16),
         ..pll
     });
     rcc.sys = Sysclk::PLL1_P;
@@ -271,6 +282,7 @@ fn clocks() -> embassy_stm32::Config {
     rcc.ls = LsConfig::off();
     rcc.mux.adcsel = mux::Adcsel::PLL2_P;
     rcc.mux.spi123sel = mux::Saisel::PLL3_P;
+    rcc.mux.usbsel = mux::Usbsel::PLL3_Q;
     config
 }
 

@@ -40,6 +40,20 @@ pub struct Counts {
     pub late: u32,
 }
 
+impl core::ops::Add for Counts {
+    type Output = Self;
+
+    fn add(self, more: Self) -> Self {
+        Self {
+            poses: self.poses.saturating_add(more.poses),
+            attitudes: self.attitudes.saturating_add(more.attitudes),
+            frame: self.frame.saturating_add(more.frame),
+            value: self.value.saturating_add(more.value),
+            late: self.late.saturating_add(more.late),
+        }
+    }
+}
+
 /// The newest inputs of a line.
 #[derive(Clone, Debug, Default)]
 pub struct Inputs {

@@ -34,6 +34,7 @@ pub mod parser;
 pub mod requests;
 pub mod server;
 pub mod signing;
+pub mod sorter;
 pub mod streams;
 pub mod texts;
 pub mod vehicle;

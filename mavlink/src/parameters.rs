@@ -130,6 +130,11 @@ impl Parameters {
         settled
     }
 
+    /// Takes over what was set elsewhere, by whom it is stored.
+    pub const fn follow(&mut self, params: &Params) {
+        self.copy = *params;
+    }
+
     /// The copy.
     pub const fn copy(&self) -> &Params {
         &self.copy

@@ -8,7 +8,7 @@ use mavlink_core::calculate_crc;
 use crate::requests::crc_extra;
 
 /// First byte of a MAVLink 2 frame; MAVLink 1 is not spoken.
-const STX: u8 = 0xFD;
+pub(crate) const STX: u8 = 0xFD;
 /// Bytes around the payload of a frame without signature: start, header, checksum.
 pub const OVERHEAD: usize = 12;
 /// Bytes before the payload.
@@ -22,7 +22,7 @@ pub(crate) const SIGNED: u8 = 1;
 /// Beginnings of frames looked at for one byte that arrives.
 const CANDIDATES: usize = 4;
 /// Silence after which an unfinished frame is given up, µs: three of the longest at 57,600 baud.
-const GAP: u64 = 150_000;
+pub(crate) const GAP: u64 = 150_000;
 
 /// A frame whose checksum is right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -53,6 +53,8 @@ struct Files {
 
 /// The server of one link.
 pub struct Server {
+    /// Number of the line in signatures.
+    line: u8,
     parser: Parser,
     encoder: Encoder,
     budget: Budget,
@@ -76,6 +78,7 @@ impl Server {
     /// Before the first byte of a line that may take `bytes_per_second`, with `params` in force.
     pub const fn new(params: Params, bytes_per_second: u32) -> Self {
         Self {
+            line: 0,
             parser: Parser::new(),
             encoder: Encoder::new(),
             budget: Budget::new(bytes_per_second),
@@ -99,6 +102,18 @@ impl Server {
             orders: Orders::new(),
             calibration: None,
         }
+    }
+
+    /// The same as number `line` of the vehicle's lines, each of which signs under its own.
+    #[must_use]
+    pub const fn numbered(mut self, line: u8) -> Self {
+        self.line = line;
+        self
+    }
+
+    /// Takes over `params`, which were set or stored on another line.
+    pub const fn follow(&mut self, params: &Params) {
+        self.parameters.follow(params);
     }
 
     /// Takes `bytes` that arrived at `now`, µs since the start, as far as `signing` lets it.

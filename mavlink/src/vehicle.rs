@@ -63,8 +63,19 @@ pub struct Answers {
     pub bench: BenchView,
     /// Number of the newest order beside the pilot's, of whichever line.
     pub newest: u32,
+    /// That order is still renewed.
+    pub renewed: bool,
     /// What has become of the one that was answered last.
     pub remote: RemoteAnswer,
+}
+
+impl Answers {
+    /// The number of the next order beside the pilot's; `None` while another waits for its answer: two at a time would
+    /// hide each other from the commander.
+    pub fn next(&self) -> Option<u32> {
+        let waits = self.renewed && self.remote.number != self.newest;
+        (!waits).then(|| self.newest.wrapping_add(1).max(1))
+    }
 }
 
 impl Default for Vehicle {

@@ -90,6 +90,8 @@ impl Chip for FakeChip {
         self.restarts.set(self.restarts.get() + 1);
     }
 
+    fn enter_loader(&mut self) {}
+
     fn board(&self) -> &'static str {
         "table"
     }

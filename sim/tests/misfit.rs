@@ -44,6 +44,8 @@ struct PlainChip;
 impl Chip for PlainChip {
     fn restart(&mut self) {}
 
+    fn enter_loader(&mut self) {}
+
     fn board(&self) -> &'static str {
         "table"
     }

@@ -3,15 +3,18 @@
 
 use embassy_executor::SpawnError;
 use embassy_sync::mutex::Mutex;
-use sophie_boards::Board;
 use sophie_boards::retained::Memory;
+use sophie_boards::{Board, BufferedInput, BufferedOutput, UsbDriver};
 use sophie_flight::tasks as flight;
 use sophie_tasks::links::{Links, Raw};
-use sophie_tasks::mavlink::Line;
+use sophie_tasks::mavlink::Lines;
 use sophie_tasks::mavlink::signing::Stored;
+use sophie_tasks::one_of::OneOf;
 use sophie_tasks::ports::{Look, Storage};
 use sophie_tasks::schedule::TaskId;
 use sophie_tasks::shared::SharedStorage;
+use sophie_tasks::terminals::{Keyboards, Screens, Served};
+use sophie_tasks::usb::{self, Identity, Memory as UsbMemory, Port, UsbInput, UsbOutput};
 use static_cell::StaticCell;
 
 use super::Levels;
@@ -19,6 +22,14 @@ use super::Levels;
 /// The parameters' storage, for console and MAVLink.
 type StoragePort = SharedStorage<'static, sophie_boards::StoragePort>;
 
+/// Input of MAVLink, of a serial line or of USB.
+type MavlinkInput = OneOf<BufferedInput, UsbInput<'static>>;
+/// Its output.
+type MavlinkOutput = OneOf<BufferedOutput, UsbOutput<'static>>;
+
+static SERVED: StaticCell<Served> = StaticCell::new();
+static USB_PORT: StaticCell<Port> = StaticCell::new();
+static USB_MEMORY: StaticCell<UsbMemory<'static>> = StaticCell::new();
 static STORAGE: StaticCell<Mutex<Raw, sophie_boards::StoragePort>> = StaticCell::new();
 
 /// Spawns every task; `self_test`: the inertial sensor's, first. Called once.
@@ -50,21 +61,35 @@ pub fn spawn(
     levels.spawn(TaskId::Arms, arms(links, board.arms)?);
     levels.spawn(TaskId::Telemetry, telemetry(links, board.telemetry)?);
     let looks = board.chip.looks;
-    let (input, output) = (board.console_input, board.console_output);
+    let port: &'static Port = USB_PORT.init_with(Port::new);
+    let served: &'static Served = SERVED.init(Served::default());
+    let (usb_input, usb_output) = port.console();
+    let input = served.keyboards(board.console_input, usb_input);
+    let output = served.screens(board.console_output, usb_output);
     let defaults = board.storage.defaults();
     let storage: &'static _ = STORAGE.init(Mutex::new(board.storage));
     let storage = || SharedStorage::new(storage, defaults);
     levels.spawn_unmeasured("console", console(links, input, output, storage(), board.chip)?);
+    let (usb_input, usb_output) = port.mavlink();
+    let lines = Lines {
+        inputs: [OneOf::First(board.mavlink_input), OneOf::Second(usb_input)],
+        outputs: [OneOf::First(board.mavlink_output), OneOf::Second(usb_output)],
+        bytes_per_second: [
+            sophie_boards::MAVLINK_BYTES_PER_SECOND,
+            sophie_boards::USB_BYTES_PER_SECOND,
+        ],
+    };
     levels.spawn(
         TaskId::Mavlink,
-        mavlink(
-            links,
-            board.mavlink_input,
-            board.mavlink_output,
-            storage(),
-            board.loaded.signing,
-        )?,
+        mavlink(links, lines, storage(), board.loaded.signing)?,
     );
+    match board.usb.driver {
+        Some(driver) => {
+            let memory = USB_MEMORY.init_with(UsbMemory::new);
+            levels.spawn_unmeasured("usb", usb(driver, memory, port, board.usb.identity)?);
+        }
+        None => defmt::warn!("USB: the core does not answer, or has no supply"),
+    }
     levels.spawn_unmeasured("lights", lights(links, board.lights)?);
     levels.spawn_unmeasured("report", report(links, looks)?);
     #[cfg(feature = "trace")]
@@ -85,8 +110,8 @@ async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) ->
 #[embassy_executor::task]
 async fn console(
     links: &'static Links,
-    input: sophie_boards::BufferedInput,
-    output: sophie_boards::BufferedOutput,
+    input: Keyboards<'static, BufferedInput, UsbInput<'static>>,
+    output: Screens<'static, BufferedOutput, UsbOutput<'static>>,
     storage: StoragePort,
     chip: sophie_boards::ThisChip,
 ) -> ! {
@@ -96,16 +121,21 @@ async fn console(
 #[embassy_executor::task]
 async fn mavlink(
     links: &'static Links,
-    input: sophie_boards::BufferedInput,
-    output: sophie_boards::BufferedOutput,
+    lines: Lines<MavlinkInput, MavlinkOutput, 2>,
     storage: StoragePort,
     signing: Stored,
 ) -> ! {
-    let line = Line {
-        bytes_per_second: sophie_boards::MAVLINK_BYTES_PER_SECOND,
-        signing,
-    };
-    sophie_tasks::mavlink::run(links, input, output, storage, || sophie_boards::restart(), line).await
+    sophie_tasks::mavlink::run(links, lines, storage, || sophie_boards::restart(), signing).await
+}
+
+#[embassy_executor::task]
+async fn usb(
+    driver: UsbDriver,
+    memory: &'static mut UsbMemory<'static>,
+    port: &'static Port,
+    identity: Identity,
+) -> ! {
+    usb::run(driver, memory, port, identity).await
 }
 
 #[embassy_executor::task]

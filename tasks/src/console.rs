@@ -25,6 +25,7 @@ use embassy_time::{Duration, Timer};
 use sophie_control::params::Params;
 
 use self::command::{Command, HELP, parse};
+pub use self::keys::CANCEL;
 use self::keys::Keys;
 use self::line::{Echo, Line, LineError};
 pub use self::nearest::edits;
@@ -146,6 +147,7 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Command::MavlinkKey(key) => self.mavlink_key(key).await,
             Command::Changes => self.changes().await,
             Command::Save => self.save().await,
+            Command::Dfu => self.enter_loader().await,
             Command::Restart => match self.stopped() {
                 Ok(()) => {
                     self.out.line(format_args!("restarting")).await;

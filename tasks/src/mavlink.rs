@@ -5,8 +5,8 @@
 use core::cell::RefCell;
 use core::pin::pin;
 
-use embassy_futures::join::join;
-use embassy_futures::select::{Either, select};
+use embassy_futures::join::{join, join_array};
+use embassy_futures::select::{Either, select, select_array};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Instant, Timer};
@@ -32,102 +32,174 @@ const CHUNK: usize = 64;
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
 const PAUSE: Duration = Duration::from_millis(1);
 
-/// What is known of the line under a link.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Line {
-    /// What the server may send, bytes each second: less than the line carries.
-    pub bytes_per_second: u32,
-    /// The key that was stored at the start.
-    pub signing: Stored,
+/// The lines that MAVLink is spoken on.
+pub struct Lines<I, O, const N: usize> {
+    /// What arrives on each.
+    pub inputs: [I; N],
+    /// What is sent on each.
+    pub outputs: [O; N],
+    /// What each server may send, bytes each second: less than its line carries.
+    pub bytes_per_second: [u32; N],
 }
 
-/// The server of a line, the picture that it speaks of, and the key.
-struct Shared {
-    server: Server,
+/// An input and what it gave last.
+struct Reader<I> {
+    input: I,
+    bytes: [u8; CHUNK],
+}
+
+/// The server of each line, the picture that they speak of, and the key.
+struct Shared<const N: usize> {
+    servers: [Server; N],
     vehicle: Vehicle,
+    /// One for all lines: what was said on one is not taken on another.
     signing: Signing,
 }
 
 /// What takes and what sends share, in one task and never over an await.
-struct Link {
-    shared: RefCell<Shared>,
-    /// There may be something to send.
-    due: Signal<NoopRawMutex, ()>,
+struct Link<const N: usize> {
+    shared: RefCell<Shared<N>>,
+    /// There may be something to send, on each line.
+    due: [Signal<NoopRawMutex, ()>; N],
 }
 
-impl Link {
+impl<const N: usize> Link<N> {
     /// What `work` gives; `None` never comes, since no one else has it then.
-    fn with<R>(&self, work: impl FnOnce(&mut Shared) -> R) -> Option<R> {
+    fn with<R>(&self, work: impl FnOnce(&mut Shared<N>) -> R) -> Option<R> {
         Some(work(&mut *self.shared.try_borrow_mut().ok()?))
+    }
+
+    /// The same with the server of line `at`.
+    fn with_server<R>(
+        &self,
+        at: usize,
+        work: impl FnOnce(&mut Server, &mut Vehicle, &mut Signing) -> R,
+    ) -> Option<R> {
+        self.with(|shared| {
+            let Shared {
+                servers,
+                vehicle,
+                signing,
+            } = shared;
+            Some(work(servers.get_mut(at)?, vehicle, signing))
+        })
+        .flatten()
+    }
+
+    /// Gives every other line the parameters of line `at`: there is one copy of what is to be stored.
+    fn share_parameters(&self, at: usize) {
+        self.with(|shared| {
+            let params = *shared.servers.get(at)?.params();
+            for (n, server) in shared.servers.iter_mut().enumerate() {
+                if n != at {
+                    server.follow(&params);
+                }
+            }
+            Some(())
+        });
     }
 }
 
-/// Serves MAVLink on one line; never returns. `restart` restarts the board.
-pub async fn run(
+/// Serves MAVLink on `lines`; never returns. `signing` is the key that was stored at the start, `restart` restarts the
+/// board.
+pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     links: &Links,
-    mut input: impl SerialInput,
-    output: impl SerialOutput,
+    lines: Lines<I, O, N>,
     mut storage: impl Storage,
     mut restart: impl FnMut(),
-    line: Line,
+    signing: Stored,
 ) -> ! {
+    let mut numbers = 0..;
+    let servers = lines.bytes_per_second.map(|bytes_per_second| {
+        let number = numbers.next().unwrap_or_default();
+        Server::new(links.params, bytes_per_second).numbered(number)
+    });
     let link = Link {
         shared: RefCell::new(Shared {
-            server: Server::new(links.params, line.bytes_per_second),
+            servers,
             vehicle: Vehicle::default(),
-            signing: Signing::new(line.signing),
+            signing: Signing::new(signing),
         }),
-        due: Signal::new(),
+        due: [const { Signal::new() }; N],
     };
+    let mut readers = lines.inputs.map(|input| Reader {
+        input,
+        bytes: [0; CHUNK],
+    });
+    let mut numbers = 0..;
+    let senders = (lines.outputs).map(|output| send(&link, numbers.next().unwrap_or_default(), output));
     let serve = async {
         let reels = Reel::all(&links.params);
         let mut rate = FixedRate::of(links, TaskId::Mavlink);
         loop {
-            let started = listen(links, &mut rate, &mut input, &link).await.started;
+            let started = listen(links, &mut rate, &mut readers, &link).await.started;
             let now = started.as_micros();
             let seen = picture(links, &reels);
-            let order = link.with(|shared| {
+            link.with(|shared| {
                 shared.vehicle = seen;
-                links.mavlink.send(
-                    started,
-                    LineState::of(&shared.signing, shared.server.inputs().counts()),
-                );
-                give(links, started, shared.server.requests(now, &shared.vehicle));
-                shared.server.order(now, &shared.vehicle)
+                links.mavlink.send(started, shared.state());
             });
-            link.due.signal(());
-            renew(links, &link, &mut storage, now).await;
-            match order.flatten() {
-                Some(Order::Store) => {
-                    let Some(params) = link.with(|shared| *shared.server.params()) else {
-                        continue;
-                    };
-                    let stored = store(links, &mut storage, &params).await;
-                    link.with(|shared| shared.server.stored(stored));
-                }
-                Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => restart(),
-                Some(Order::Restart) | None => (),
+            for at in 0..N {
+                let order = link.with_server(at, |server, vehicle, _| {
+                    // Of this moment: the line before may have given an order.
+                    vehicle.answers = answers(links);
+                    give(links, started, server.requests(now, vehicle));
+                    server.order(now, vehicle)
+                });
+                // A calibration may have set some.
+                link.share_parameters(at);
+                obey(links, &link, at, &mut storage, &mut restart, order.flatten()).await;
             }
+            for due in &link.due {
+                due.signal(());
+            }
+            renew(links, &link, &mut storage, now).await;
         }
     };
-    join(serve, send(&link, output)).await.1
+    join(serve, join_array(senders)).await.0
 }
 
-/// Sends as fast as the line takes it: a frame is made when there is room for it, of what is known then. The wait for
-/// the line is no part of the task's run.
-async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
+impl<const N: usize> Shared<N> {
+    fn state(&mut self) -> LineState {
+        let counts = self.servers.iter_mut().map(|server| server.inputs().counts());
+        let inputs = counts.reduce(|all, more| all + more).unwrap_or_default();
+        LineState::of(&self.signing, inputs)
+    }
+}
+
+/// Does what the server of line `at` wants done.
+async fn obey<const N: usize>(
+    links: &Links,
+    link: &Link<N>,
+    at: usize,
+    storage: &mut impl Storage,
+    restart: &mut impl FnMut(),
+    order: Option<Order>,
+) {
+    match order {
+        Some(Order::Store) => {
+            let Some(params) = link.with_server(at, |server, _, _| *server.params()) else {
+                return;
+            };
+            let stored = store(links, storage, &params).await;
+            link.with_server(at, |server, _, _| server.stored(stored));
+        }
+        Some(Order::Restart) if storing::hold_arming(links).await.is_ok() => restart(),
+        Some(Order::Restart) | None => (),
+    }
+}
+
+/// Sends on line `at` as fast as it takes it: a frame is made when there is room for it, of what is known then. The wait
+/// for the line is no part of the task's run.
+async fn send<const N: usize>(link: &Link<N>, at: usize, mut output: impl SerialOutput) {
     let mut frame = Vec::<u8, LONGEST>::new();
-    loop {
-        link.due.wait().await;
-        loop {
+    while let Some(due) = link.due.get(at) {
+        due.wait().await;
+        // Where no one listens nothing is made.
+        while output.listens() {
             let now = Instant::now().as_micros();
             frame.clear();
-            let copied = link.with(|shared| {
-                let Shared {
-                    server,
-                    vehicle,
-                    signing,
-                } = shared;
+            let copied = link.with_server(at, |server, vehicle, signing| {
                 let bytes = server.send(now, vehicle, signing).unwrap_or_default();
                 frame.extend_from_slice(bytes)
             });
@@ -140,25 +212,28 @@ async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
     }
 }
 
-/// Hands what arrives to the server until the next run is due.
-async fn listen(links: &Links, rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &Link) -> Tick {
-    let mut bytes = [0; CHUNK];
+/// Hands what arrives to the servers until the next run is due.
+async fn listen<I: SerialInput, const N: usize>(
+    links: &Links,
+    rate: &mut FixedRate<'_>,
+    readers: &mut [Reader<I>; N],
+    link: &Link<N>,
+) -> Tick {
     let mut next = pin!(rate.next());
     loop {
-        match select(next.as_mut(), input.read(&mut bytes)).await {
+        let reads = readers
+            .each_mut()
+            .map(|Reader { input, bytes }| input.read(bytes));
+        match select(next.as_mut(), select_array(reads)).await {
             Either::First(tick) => return tick,
-            Either::Second(Ok(count)) if count > 0 => {
-                let arrived = bytes.get(..count).unwrap_or_default();
+            Either::Second((Ok(count), at)) if count > 0 => {
+                let arrived = readers.get(at).and_then(|reader| reader.bytes.get(..count));
                 let now = Instant::now().as_micros();
-                link.with(|shared| {
-                    let Shared {
-                        server,
-                        vehicle,
-                        signing,
-                    } = shared;
-                    server.receive(arrived, now, vehicle, signing);
+                link.with_server(at, |server, vehicle, signing| {
+                    server.receive(arrived.unwrap_or_default(), now, vehicle, signing);
                     publish(links, server.inputs(), now);
                 });
+                link.share_parameters(at);
                 // A line that is never silent must not starve the others of this level.
                 embassy_futures::yield_now().await;
             }
@@ -180,7 +255,7 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
 }
 
 /// Stores the bound of signing's times again where little is left of it; arming is refused meanwhile.
-async fn renew(links: &Links, link: &Link, storage: &mut impl Storage, now: u64) {
+async fn renew<const N: usize>(links: &Links, link: &Link<N>, storage: &mut impl Storage, now: u64) {
     // Another is storing, or what it has stored waits for a restart: nothing comes after that.
     if storing::stopped(links).is_err() || links.hardware().contains(ArmingInhibit::Storing) {
         return;
@@ -247,11 +322,17 @@ fn picture(links: &Links, reels: &PerArm<Reel>) -> Vehicle {
         grip: links.grip.fresh(),
         accel_fit: AccelFit::of(&links.params),
         load: load(links),
-        answers: Answers {
-            bench: links.bench_view(),
-            newest: links.remote.look(|m| m.value.number).unwrap_or(0),
-            remote: links.remote_answer.fresh().unwrap_or_default(),
-        },
+        answers: answers(links),
+    }
+}
+
+/// What has become of orders, of whichever line.
+fn answers(links: &Links) -> Answers {
+    Answers {
+        bench: links.bench_view(),
+        newest: links.remote.look(|m| m.value.number).unwrap_or(0),
+        renewed: links.remote.fresh().is_some(),
+        remote: links.remote_answer.fresh().unwrap_or_default(),
     }
 }
 

@@ -127,6 +127,11 @@ pub trait SerialOutput {
     /// # Errors
     /// A line that does not take them.
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError>;
+
+    /// Someone may be there. Where it is known that no one is, nothing needs to be made for the line.
+    fn listens(&self) -> bool {
+        true
+    }
 }
 
 /// The independent watchdog.
@@ -221,6 +226,9 @@ pub struct NotSet;
 pub trait Chip {
     /// Restarts, motors stopped first. Does not return on a board.
     fn restart(&mut self);
+
+    /// Restarts into the chip's own loader, motors stopped first. Does not return on a board.
+    fn enter_loader(&mut self);
 
     /// Name of the board that the firmware was built for.
     fn board(&self) -> &'static str;

@@ -503,6 +503,8 @@ impl Chip for ThisChip {
         self.restarted.set(true);
     }
 
+    fn enter_loader(&mut self) {}
+
     fn board(&self) -> &'static str {
         "table"
     }

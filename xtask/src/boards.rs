@@ -16,8 +16,8 @@ pub struct Sectors {
 pub enum UsbLoader {
     /// How to enter it.
     Enter(&'static str),
-    /// Why it cannot be entered on this board.
-    OutOfReach(&'static str),
+    /// The same, where this firmware alone enters it: nothing else does on this board.
+    ByFirmware(&'static str),
 }
 
 #[derive(Clone, Copy)]
@@ -54,7 +54,9 @@ pub const BOARDS: [Board; 3] = [
         // Two banks (RM0433 §4.3.4).
         flash: &[sectors(16, 128)],
         // BOOT0 has a button; USB is on PA11 and PA12, which the loader uses (AN2606).
-        usb_loader: UsbLoader::Enter("hold its button BOOT while plugging USB in"),
+        usb_loader: UsbLoader::Enter(
+            "type `dfu` at its console, or hold its button BOOT while plugging USB in",
+        ),
         // AXI SRAM, SRAM1 to SRAM3 (RM0433 §2.1); not the tightly coupled memories.
         dma_reaches: &[(0x2400_0000, 0x2408_0000), (0x3000_0000, 0x3004_8000)],
         // DTCM: its error correction works on 32-bit words, as written.
@@ -69,8 +71,8 @@ pub const BOARDS: [Board; 3] = [
         levels: ["SAI1", "SAI2"],
         // One bank (RM0410 §3.3.2), as in `boards/memory/cuav-v5.x`.
         flash: &[sectors(4, 32), sectors(1, 128), sectors(7, 256)],
-        // FMUv5 is flashed over USB by a loader in flash.
-        usb_loader: UsbLoader::OutOfReach("it has no button for BOOT0, and its case leads the pin nowhere"),
+        // FMUv5 is flashed over USB by a loader in flash: it has no button for BOOT0, and its case leads the pin nowhere.
+        usb_loader: UsbLoader::ByFirmware("type `dfu` at its console, where this firmware runs by a probe"),
         // DTCM, never cached; the data cache is on and caches the DMA's other memories, SRAM1 and SRAM2 (RM0410 §2.1).
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
         // DTCM.
@@ -86,7 +88,9 @@ pub const BOARDS: [Board; 3] = [
         // RM0090 §3.3.
         flash: &[sectors(4, 16), sectors(1, 64), sectors(7, 128)],
         // PA11 and PA12 are free for USB, BOOT0 for a button.
-        usb_loader: UsbLoader::Enter("take BOOT0 to 3.3 V while plugging USB (PA11, PA12) in"),
+        usb_loader: UsbLoader::Enter(
+            "type `dfu` at its console, or take BOOT0 to 3.3 V while plugging USB (PA11, PA12) in",
+        ),
         // SRAM1 and SRAM2 (RM0090 §2.1), not the core-coupled memory.
         dma_reaches: &[(0x2000_0000, 0x2002_0000)],
         // SRAM2's end.

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use crate::boards::{Board, FLASH, Sectors, UsbLoader};
 use crate::image::{Image, Load};
 use crate::tools::DFU_UTIL;
-use crate::{Error, Refused, build};
+use crate::{Error, build};
 
 /// ST's loader, all chips.
 const DEVICE: &str = "0483:df11";
@@ -30,9 +30,9 @@ pub struct Stretch {
 /// Writes `image` to the chip in its loader and starts it; `dry` only prints the commands.
 ///
 /// # Errors
-/// The loader is out of reach, no such chip is in it, or dfu-util fails.
+/// No such chip is in its loader, or dfu-util fails.
 pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
-    let enter = enter(board)?;
+    let (UsbLoader::Enter(enter) | UsbLoader::ByFirmware(enter)) = board.usb_loader;
     let stretches = stretches(&image.loads, board.flash)?;
     let files = files(board, &stretches)?;
     if !dry {
@@ -64,20 +64,6 @@ pub fn flash(board: &Board, image: &Image, dry: bool) -> Result<(), Error> {
         );
     }
     Ok(())
-}
-
-/// How to enter the chip's loader.
-///
-/// # Errors
-/// Why it is out of reach, and what to do.
-pub fn enter(board: &Board) -> Result<&'static str, Refused> {
-    match board.usb_loader {
-        UsbLoader::Enter(how) => Ok(how),
-        UsbLoader::OutOfReach(why) => Err(Refused(format!(
-            "flash: {} cannot be flashed with --dfu: {why}; connect a probe and leave --dfu out",
-            board.name
-        ))),
-    }
 }
 
 /// Stretches of `loads` in writing order, the vector table's last.

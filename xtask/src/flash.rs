@@ -100,9 +100,6 @@ impl<'a> Flash<'a> {
     /// # Errors
     /// No backup, no way to the board, or a failure of the image's checks, probe, loader or a program.
     pub fn run(&self) -> Result<(), Error> {
-        if self.by == By::Usb {
-            dfu::enter(self.board)?;
-        }
         if !self.dry {
             self.backed_up()?;
         }
@@ -123,10 +120,13 @@ impl<'a> Flash<'a> {
         }
     }
 
-    /// Requires a backup where the chip's own loader is out of reach: flashing overwrites the flash's loader, the only
-    /// way back to the original firmware.
+    /// Requires a backup where this firmware alone enters the chip's own loader: flashing by a probe overwrites the flash's
+    /// loader, the only way back to the original firmware. Over USB it is gone already.
     fn backed_up(&self) -> Result<(), Refused> {
-        if self.before == Before::Nothing || matches!(self.board.usb_loader, UsbLoader::Enter(_)) {
+        if self.before == Before::Nothing
+            || self.by == By::Usb
+            || matches!(self.board.usb_loader, UsbLoader::Enter(_))
+        {
             return Ok(());
         }
         let usual = backup::usual(self.board);

@@ -3,7 +3,7 @@
 //! | level | runs in | priority | may be delayed by |
 //! |---|---|---|---|
 //! | flight | an interrupt vector that no driver owns | 6 | drivers' interrupts (at 0, microseconds each) |
-//! | steady | a second one | 8 | the flight level; bytes of the MAVLink line (7) |
+//! | steady | a second one | 8 | the flight level; bytes of the MAVLink line and packets of USB (7) |
 //! | background | thread mode | none | both |
 //!
 //! Priorities 0 to 5 are the drivers': an executor there would delay the DMA, data-ready and timer interrupts that it

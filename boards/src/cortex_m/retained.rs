@@ -131,6 +131,36 @@ unsafe impl Sync for Copies {}
 #[unsafe(link_section = ".retained")]
 static COPIES: Copies = Copies(UnsafeCell::new([[0; STATE_WORDS]; 2]));
 
+/// Asks the next start for the chip's loader: "LOAD" and its complement.
+const LOADER: [u32; 2] = [0x4C4F_4144, !0x4C4F_4144];
+
+#[repr(transparent)]
+struct Request(UnsafeCell<[u32; 2]>);
+
+// SAFETY: accessed only by `loader_asked_for`, at start-up before any task, and `ask_for_loader`, just before a reset.
+unsafe impl Sync for Request {}
+
+// SAFETY: as for the block.
+#[unsafe(link_section = ".retained")]
+static REQUEST: Request = Request(UnsafeCell::new([0; 2]));
+
+/// Has the next start enter the chip's loader. Called just before a reset.
+pub fn ask_for_loader() {
+    // SAFETY: valid and aligned, and nothing else accesses it (see `Request`).
+    unsafe { REQUEST.0.get().write_volatile(LOADER) }
+}
+
+/// The run before has asked for the chip's loader. Called once, before [`start`]; the request is withdrawn.
+pub fn loader_asked_for(cause: ResetCause) -> bool {
+    // As in `start`: noise is not read.
+    let asked = cause == ResetCause::Software
+        // SAFETY: valid, aligned, any bits are words; volatile, since the compiler assumes the initialiser.
+        && unsafe { REQUEST.0.get().read_volatile() } == LOADER;
+    // SAFETY: as above.
+    unsafe { REQUEST.0.get().write_volatile([0; 2]) };
+    asked
+}
+
 /// Writer of the copies; only [`start`] makes one.
 pub struct Memory(());
 

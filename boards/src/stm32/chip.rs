@@ -3,6 +3,7 @@
 use sophie_tasks::ports::{Chip, Look, Looks, NotSet};
 use static_cell::StaticCell;
 
+use super::loader::leave_for_loader;
 use super::options;
 use super::watchdog;
 use crate::cortex_m::image;
@@ -35,6 +36,10 @@ pub fn restart() -> ! {
 impl Chip for ThisChip {
     fn restart(&mut self) {
         restart()
+    }
+
+    fn enter_loader(&mut self) {
+        leave_for_loader()
     }
 
     fn board(&self) -> &'static str {

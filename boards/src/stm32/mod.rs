@@ -30,6 +30,7 @@ mod flash_ecc;
 mod frame_stream;
 mod i2c_bus;
 mod lights;
+mod loader;
 #[cfg_attr(family = "h7", path = "options_h7.rs")]
 #[cfg_attr(not(family = "h7"), path = "options_f4.rs")]
 mod options;
@@ -44,6 +45,7 @@ mod silicon;
 mod spi;
 mod storage;
 mod tone;
+mod usb;
 mod watchdog;
 
 pub use analog::AnalogInputs;
@@ -55,6 +57,7 @@ pub use flash::ParamFlash;
 pub(crate) use i2c_bus::i2c_bus;
 pub use i2c_bus::{ArmBus, BusParts, i2c_config, set_fast_mode};
 pub use lights::{Lamp, Lights};
+pub use loader::{enter_loader_if_asked, leave_for_loader};
 pub use pads::{Pad, Pupdr, Taken, Wiring, pad};
 pub use rails::{drive, hold};
 pub use reset::take_reset_cause;
@@ -69,6 +72,7 @@ pub use spi::PlainChip;
 pub use spi::{DmaChip, Selected, spi_config};
 pub use storage::{BoardStorage, load_parameters};
 pub use tone::Tone;
+pub use usb::{USB_BYTES_PER_SECOND, UsbDriver, UsbPort};
 pub use watchdog::{Dog, stop_with_core};
 
 /// A buffer for DMA bursts of up to 16 bytes, which must not cross a 1 KiB boundary.

@@ -1,7 +1,9 @@
-//! A loader that jumps to the firmware with its own vector table active, as the chip's USB loader does.
+//! Loaders: one that jumps to the firmware with its own vector table active, as the chip's USB loader does, and one in that
+//! loader's place.
 
 use object::{Object, ObjectSection};
 
+use crate::boards::Kind;
 use crate::elf::Firmware;
 
 /// Flash of every emulated chip outside firmware and parameters.
@@ -21,6 +23,33 @@ pub struct Loader {
 }
 
 impl Firmware {
+    /// Puts a loader where the chip's own is. It starts the firmware again, without a reset, if its vector table is active;
+    /// otherwise it stands still.
+    ///
+    /// # Errors
+    /// One line: the image has no vector table.
+    pub fn with_the_chips_loader(&mut self) -> Result<(), String> {
+        let at: u32 = match self.board.kind {
+            Kind::F405 => 0x1FFF_0000,
+            Kind::MatekH743 => 0x1FF0_9800,
+        };
+        let file = object::File::parse(&*self.bytes).map_err(|e| e.to_string())?;
+        let table = file.section_by_name(".vector_table");
+        let table = table.and_then(|s| s.data().ok()?.first_chunk::<8>().copied());
+        let [a, b, c, d, e, f, g, h] = table.ok_or("the image has no vector table")?;
+        let [stack, firmware] = [[a, b, c, d], [e, f, g, h]].map(u32::from_le_bytes);
+        // ldr r0, =VTOR; ldr r1, [r0]; ldr r2, =at; cmp r1, r2; bne .; ldr r3, =firmware; bx r3; nop
+        let code: [u16; 8] = [0x4803, 0x6801, 0x4A03, 0x4291, 0xD1FE, 0x4B03, 0x4718, 0xBF00];
+        let mut bytes: Vec<u8> = [stack, (at + 8) | 1]
+            .into_iter()
+            .flat_map(u32::to_le_bytes)
+            .collect();
+        bytes.extend(code.iter().flat_map(|half| half.to_le_bytes()));
+        bytes.extend([VTOR, at, firmware].iter().flat_map(|word| word.to_le_bytes()));
+        self.loader = Some(Loader { at: at.into(), bytes });
+        Ok(())
+    }
+
     /// Puts a loader, whose vectors all lead to an endless loop, before the firmware.
     ///
     /// # Errors

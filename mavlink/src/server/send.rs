@@ -15,9 +15,6 @@ use crate::signing::{Refused, Signing};
 use crate::streams::{STREAMS, frame_bytes};
 use crate::vehicle::Vehicle;
 
-/// Number of the line in signatures.
-const LINK: u8 = 0;
-
 impl Server {
     /// The next frame that is due and within the budget at `now`, µs since the start.
     pub fn send(&mut self, now: u64, vehicle: &Vehicle, signing: &mut Signing) -> Option<&[u8]> {
@@ -41,7 +38,7 @@ impl Server {
             .or_else(|| self.send_file())
             .or_else(|| self.send_listed())?;
         self.budget.spend(bytes);
-        signing.sign(self.encoder.frame_mut(), LINK, now);
+        signing.sign(self.encoder.frame_mut(), self.line, now);
         Some(self.encoder.frame())
     }
 

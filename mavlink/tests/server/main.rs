@@ -8,6 +8,7 @@ mod messages;
 mod orders;
 mod parameters;
 mod signing;
+mod sorter;
 mod station;
 mod texts;
 mod wire;

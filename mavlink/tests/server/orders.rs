@@ -95,6 +95,7 @@ impl Craft {
                     answer: self.out.bench,
                 },
                 newest: self.remote.map_or(0, |r| r.number),
+                renewed: remote.is_some(),
                 remote: self.out.remote,
             };
             self.station.run(20);

@@ -74,17 +74,17 @@ impl Live {
             }))
         });
         let (line, port) = (self.line, LinePort(self.line));
-        let rate = mavlink::Line {
-            bytes_per_second: BYTES_PER_SECOND,
-            signing: stored.key(),
+        let lines = mavlink::Lines {
+            inputs: [port],
+            outputs: [port],
+            bytes_per_second: [BYTES_PER_SECOND],
         };
         time.spawn(mavlink::run(
             links,
-            port,
-            port,
+            lines,
             Port(stored),
             || line.restart(),
-            rate,
+            stored.key(),
         ));
     }
 

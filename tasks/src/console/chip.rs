@@ -24,6 +24,19 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         }
     }
 
+    /// Leaves for the chip's own loader. Arming is refused meanwhile.
+    pub(super) async fn enter_loader(&mut self) {
+        if let Err(status) = crate::storing::hold_arming(self.links).await {
+            return self.refuse("not left", status).await;
+        }
+        self.out
+            .last(format_args!(
+                "leaving for the chip's USB loader; a power cycle comes back"
+            ))
+            .await;
+        self.chip.enter_loader();
+    }
+
     /// The level, as the start-up read it.
     fn brown_out_level(&self) -> Option<&Look> {
         let mut looks = self.chip.looks().iter();

@@ -17,6 +17,7 @@ pub(super) enum Command<'a> {
     Changes,
     Save,
     Restart,
+    Dfu,
     Timing,
     Version,
     Silicon,
@@ -38,7 +39,7 @@ pub(super) enum Command<'a> {
 }
 
 /// Name and arguments, and what it does.
-pub(super) const HELP: [(&str, &str); 22] = [
+pub(super) const HELP: [(&str, &str); 23] = [
     ("help", "this list"),
     ("status", "mode, what forbids arming, battery, receiver"),
     (
@@ -52,6 +53,7 @@ pub(super) const HELP: [(&str, &str); 22] = [
     ("changes", "what save would change"),
     ("save", "stores the parameters and restarts; only while disarmed"),
     ("restart", "restarts without storing; only while disarmed"),
+    ("dfu", "leaves for the chip's USB loader; only while disarmed"),
     ("timing", "rate and worst times of every task"),
     ("version", "the firmware and its board"),
     ("silicon", "what the start looked at in the chip"),
@@ -125,6 +127,7 @@ pub(super) fn parse(line: &str) -> Option<Result<Command<'_>, Misunderstood<'_>>
         ("changes", [None, ..]) => Command::Changes,
         ("save", [None, ..]) => Command::Save,
         ("restart", [None, ..]) => Command::Restart,
+        ("dfu", [None, ..]) => Command::Dfu,
         ("timing", [None, ..]) => Command::Timing,
         ("version", [None, ..]) => Command::Version,
         ("silicon", [None, ..]) => Command::Silicon,
@@ -182,6 +185,7 @@ mod tests {
             "get",
             "list a b",
             "restart 5",
+            "dfu now",
             "brownout reset",
             "brownout set now",
             "silicon all",

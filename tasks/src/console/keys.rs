@@ -11,8 +11,8 @@ use crate::ports::{PortError, SerialInput};
 
 /// Most keys that one look at them takes: a line that is full of noise must not hold its reader.
 const KEYS: usize = 256;
-/// Stands for a line that is broken, as Ctrl-C: every command ends with it.
-pub(super) const CANCEL: u8 = 0x03;
+/// Ctrl-C: every command ends with it, and a line that was begun is dropped. Stands for a broken line as well.
+pub const CANCEL: u8 = 0x03;
 
 /// A terminal's keyboard.
 pub(super) struct Keys<I> {

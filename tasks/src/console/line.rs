@@ -2,6 +2,8 @@
 
 use heapless::{String, Vec};
 
+use super::keys::CANCEL;
+
 /// Longest line, characters.
 pub(super) const LENGTH: usize = 80;
 /// Bytes taken at once.
@@ -56,6 +58,10 @@ impl Line {
             b'\r' | b'\n' => {
                 self.escape = Escape::None;
                 return true;
+            }
+            CANCEL => {
+                *self = Self::default();
+                return false;
             }
             _ => (),
         }
@@ -139,6 +145,8 @@ mod tests {
         // Cursor keys and other controls leave nothing.
         assert_eq!(lines(b"s\x1B[Aa\x1B[1;5Cv\x1BOPe\t\x00\r").0, ok(&["save"]));
         assert_eq!(lines(b"x\x1B[\rhelp\r").0, ok(&["x", "help"]));
+        // Ctrl-C drops what was begun, whatever is wrong with it.
+        assert_eq!(lines(b"sa\x03help\r\xE4\x03save\r").0, ok(&["help", "save"]));
     }
 
     #[test]

@@ -34,6 +34,8 @@ impl SerialOutput for Screen {
 pub struct Board {
     pub stored: Rc<Cell<Option<Params>>>,
     pub restarts: Rc<Cell<u32>>,
+    /// Times that the chip's loader was entered.
+    pub loads: Rc<Cell<u32>>,
     /// MAVLink's key.
     pub signing: Rc<Cell<Option<Record>>>,
     /// What the board's own defaults are; the table's without.
@@ -66,6 +68,10 @@ impl Storage for Board {
 impl Chip for Board {
     fn restart(&mut self) {
         self.restarts.set(self.restarts.get() + 1);
+    }
+
+    fn enter_loader(&mut self) {
+        self.loads.set(self.loads.get() + 1);
     }
 
     fn board(&self) -> &'static str {
@@ -180,6 +186,16 @@ fn nothing_is_restarted_or_stored_but_while_the_motors_stand() {
         if !allowed {
             assert_eq!(said, [format!("not saved {refused}")]);
         }
+        let mut bench = Bench::in_mode(mode);
+        let said = bench.says("dfu");
+        assert_eq!(bench.board.loads.get(), u32::from(allowed), "{mode:?}");
+        assert_eq!(bench.board.restarts.get(), 0);
+        // Nor may it be armed on the way.
+        let held = bench.rig.links.hardware().contains(ArmingInhibit::Storing);
+        assert_eq!(held, allowed);
+        if !allowed {
+            assert_eq!(said, [format!("not left {refused}")]);
+        }
     }
     // A commander that is silent may be flying.
     let mut bench = Bench::in_mode(Mode::Disarmed);
@@ -188,6 +204,8 @@ fn nothing_is_restarted_or_stored_but_while_the_motors_stand() {
     bench.run(300);
     assert_eq!(bench.says("restart"), ["not restarted: the commander is silent"]);
     assert_eq!(bench.says("save"), ["not saved: the commander is silent"]);
+    assert_eq!(bench.says("dfu"), ["not left: the commander is silent"]);
+    assert_eq!(bench.board.loads.get(), 0);
     assert!(bench.board.restarts.get() == 0 && bench.board.stored.get().is_none());
 }
 
@@ -252,7 +270,7 @@ fn what_is_not_allowed_or_not_known_is_answered_with_what_is() {
             )
         ]
     );
-    assert_eq!(bench.says("help").len(), 22);
+    assert_eq!(bench.says("help").len(), 23);
 }
 
 #[test]

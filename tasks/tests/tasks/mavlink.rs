@@ -7,13 +7,14 @@ use mavlink_core::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, MessageData};
 use sophie_control::arming::ArmingInhibit;
 use sophie_control::mode::Mode;
 use sophie_control::params::Params;
+use sophie_control::remote::{RemoteAnswer, RemoteOrder, RemoteRequest};
 use sophie_fakes::FakeLine;
 use sophie_mavlink::dialect::{
     COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SET_ATTITUDE_TARGET_DATA,
 };
 use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
 use sophie_tasks::links::{LineState, Links, SigningState, Status};
-use sophie_tasks::mavlink::{self, Line};
+use sophie_tasks::mavlink::{self, Lines};
 use sophie_tasks::ports::{PortError, SerialOutput};
 
 use crate::console::Board;
@@ -21,7 +22,7 @@ use crate::rig::Rig;
 
 /// What a ground station has received.
 #[derive(Clone, Default)]
-struct Wire(Rc<RefCell<Vec<u8>>>);
+pub struct Wire(Rc<RefCell<Vec<u8>>>);
 
 impl SerialOutput for Wire {
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
@@ -32,22 +33,26 @@ impl SerialOutput for Wire {
 
 impl Wire {
     /// The frames so far: message number and frame.
-    fn frames(&self) -> Vec<(u32, Vec<u8>)> {
-        let bytes = self.0.borrow();
-        let mut rest = &bytes[..];
-        let mut frames = Vec::new();
-        while let [0xFD, length, ..] = rest {
-            let signature = if rest[2] == 1 { 13 } else { 0 };
-            let (frame, after) = rest.split_at(12 + usize::from(*length) + signature);
-            frames.push((
-                u32::from_le_bytes([frame[7], frame[8], frame[9], 0]),
-                frame.to_vec(),
-            ));
-            rest = after;
-        }
-        assert!(rest.is_empty(), "{rest:?}");
-        frames
+    pub fn frames(&self) -> Vec<(u32, Vec<u8>)> {
+        frames_of(&self.0.borrow())
     }
+}
+
+/// The frames that `bytes` are, and nothing else: message number and frame.
+pub fn frames_of(bytes: &[u8]) -> Vec<(u32, Vec<u8>)> {
+    let mut rest = bytes;
+    let mut frames = Vec::new();
+    while let [0xFD, length, ..] = rest {
+        let signature = if rest[2] == 1 { 13 } else { 0 };
+        let (frame, after) = rest.split_at(12 + usize::from(*length) + signature);
+        frames.push((
+            u32::from_le_bytes([frame[7], frame[8], frame[9], 0]),
+            frame.to_vec(),
+        ));
+        rest = after;
+    }
+    assert!(rest.is_empty(), "{rest:?}");
+    frames
 }
 
 /// The task on a line, at rest or in flight.
@@ -55,8 +60,19 @@ struct Bench {
     rig: Rig,
     line: FakeLine,
     wire: Wire,
+    /// Another line of the same task.
+    second: End,
+    /// The signed frame that was said last.
+    newest: Vec<u8>,
     board: Board,
     mode: Mode,
+}
+
+/// The far end of a line.
+#[derive(Clone, Default)]
+struct End {
+    line: FakeLine,
+    wire: Wire,
 }
 
 impl Bench {
@@ -67,23 +83,25 @@ impl Bench {
     /// With what `board` has stored.
     fn of(mode: Mode, board: Board) -> Self {
         let rig = Rig::with(Params::DEFAULT);
-        let (line, wire) = (FakeLine::default(), Wire::default());
+        let (line, wire, second) = (FakeLine::default(), Wire::default(), End::default());
         let restarts = board.restarts.clone();
         rig.time.spawn(mavlink::run(
             rig.links,
-            line.clone(),
-            wire.clone(),
+            Lines {
+                inputs: [line.clone(), second.line.clone()],
+                outputs: [wire.clone(), second.wire.clone()],
+                bytes_per_second: [5000; 2],
+            },
             board.clone(),
             move || restarts.set(restarts.get() + 1),
-            Line {
-                bytes_per_second: 5000,
-                signing: board.signing.get().map_or(Stored::None, Stored::Key),
-            },
+            board.signing.get().map_or(Stored::None, Stored::Key),
         ));
         Self {
             rig,
             line,
             wire,
+            second,
+            newest: Vec::new(),
             board,
             mode,
         }
@@ -227,6 +245,7 @@ impl Bench {
         let key = Key::new([7; 32]);
         Signing::new(Stored::Key(Record { key, bound })).sign(&mut frame, 5, 10);
         self.line.put(&frame);
+        self.newest = frame;
     }
 }
 
@@ -322,4 +341,66 @@ fn poses_and_attitudes_from_outside_are_published_and_grow_old() {
     assert!(links.external_pose.fresh().is_none() && links.offboard.fresh().is_some());
     bench.run(400);
     assert!(links.offboard.fresh().is_none());
+}
+
+#[test]
+fn a_frame_that_was_taken_on_one_line_is_old_on_the_other() {
+    let mut bench = Bench::of(Mode::Disarmed, signing_board());
+    bench.run(100);
+    bench.say_signed(DATE + 1, &HEARTBEAT_DATA::DEFAULT);
+    bench.run(100);
+    bench.second.line.put(&bench.newest);
+    bench.run(100);
+    let state = bench.rig.links.mavlink.fresh().unwrap();
+    assert_eq!(state.refused.old, 1);
+    // Each line signs under its own number.
+    bench.run(1000);
+    for (wire, number) in [(&bench.wire, 0), (&bench.second.wire, 1)] {
+        let frames = wire.frames();
+        assert!(frames.len() > 5);
+        let numbers = frames.iter().map(|(_, frame)| frame[frame.len() - 13]);
+        assert!(numbers.into_iter().all(|given| given == number));
+    }
+}
+
+#[test]
+fn orders_of_two_lines_wait_for_each_other() {
+    let mut bench = Bench::in_mode(Mode::Disarmed);
+    bench.run(1000);
+    let arm = |param1| COMMAND_LONG_DATA {
+        command: 400,
+        param1,
+        target_system: 1,
+        target_component: 1,
+        ..COMMAND_LONG_DATA::DEFAULT
+    };
+    bench.say(&arm(1.0));
+    let line = std::mem::replace(&mut bench.line, bench.second.line.clone());
+    bench.say(&arm(0.0));
+    bench.line = line;
+    let links = bench.rig.links;
+    let ordered = || links.remote.latest().map(|m| m.value);
+    bench.run(100);
+    let request = |number, order| Some(RemoteRequest { number, order });
+    assert_eq!(ordered(), request(1, RemoteOrder::Arm));
+    let answer = |number| {
+        let answer = RemoteAnswer {
+            number,
+            ..RemoteAnswer::default()
+        };
+        links.remote_answer.send(embassy_time::Instant::now(), answer);
+    };
+    answer(1);
+    bench.run(60);
+    assert_eq!(ordered(), request(2, RemoteOrder::Disarm));
+    answer(2);
+    bench.run(100);
+    for wire in [&bench.wire, &bench.second.wire] {
+        let acks = wire.frames().into_iter().filter(|(id, _)| *id == 77);
+        // COMMAND_ACK, accepted: its zeros are left out.
+        let results: Vec<u8> = acks
+            .map(|(_, frame)| if frame[1] > 2 { frame[12] } else { 0 })
+            .collect();
+        assert_eq!(results, [0]);
+    }
 }

@@ -3,7 +3,7 @@
 //! A command is typed without its Enter first and sent off only when its echo is what was typed: a line that loses bytes
 //! never makes another command of it. Its answer ends with the console's prompt.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -15,6 +15,8 @@ use crate::port::{BAUD, PortName, Wire};
 pub const PATIENCE: Duration = Duration::from_secs(10);
 /// Time that a restarted board has to answer: erasing flash, self-tests, and an emulated one at half its speed.
 const RESTART: Duration = Duration::from_secs(30);
+/// Time between two attempts to open a port that is gone.
+const REOPEN: Duration = Duration::from_millis(100);
 /// Time that the first attempt has to be answered; each further one has twice that of the last.
 const ATTEMPT: Duration = Duration::from_secs(1);
 /// Times that a line which was damaged on its way is typed.
@@ -36,7 +38,8 @@ const DAMAGED: &str = "the line was damaged on its way";
 /// A line to a console that has answered.
 pub struct Session {
     wire: Box<dyn Wire>,
-    /// Name of the port, for messages.
+    name: PortName,
+    /// Its text, for messages.
     port: String,
     patience: Duration,
     /// What was said since the last Enter or key, printable characters and line ends alone.
@@ -50,6 +53,8 @@ pub struct Session {
     /// Raised from outside, as by Ctrl-C; heeded once, so that what is left can be put in order.
     stop: Arc<AtomicBool>,
     heeds: bool,
+    /// The port is gone, as one on USB is while its board restarts.
+    lost: bool,
 }
 
 /// What the console said up to where it waits.
@@ -70,6 +75,7 @@ impl Session {
     pub fn open(port: &PortName, patience: Duration, stop: Arc<AtomicBool>) -> Result<Self, Failure> {
         let mut session = Self {
             wire: port.open()?,
+            name: port.clone(),
             port: port.to_string(),
             patience,
             heard: String::new(),
@@ -78,6 +84,7 @@ impl Session {
             restarts: 0,
             stop,
             heeds: true,
+            lost: false,
         };
         match session.synchronise(patience) {
             Ok(()) => Ok(session),
@@ -255,10 +262,28 @@ impl Session {
         }
         let lines: Vec<String> = whole_lines(&self.heard).filter(|line| line != ">").collect();
         if restarts(&lines) {
-            self.synchronise(RESTART.max(self.patience))?;
+            self.come_back(RESTART.max(self.patience))?;
             self.restarts += 1;
         }
         Ok(lines)
+    }
+
+    /// Waits until the restarted board answers, for at most `time`. A port on USB goes with its board and comes back.
+    fn come_back(&mut self, time: Duration) -> Result<(), Failure> {
+        let begun = Instant::now();
+        loop {
+            let left = time.saturating_sub(begun.elapsed());
+            match self.synchronise(left) {
+                Err(_) if self.lost && !left.is_zero() => (),
+                done => return done,
+            }
+            // Given up first: the system gives the port its name again only when no one has the old one.
+            self.wire = Box::new(Gone);
+            std::thread::sleep(REOPEN);
+            if let Ok(wire) = self.name.open() {
+                (self.wire, self.lost) = (wire, false);
+            }
+        }
     }
 
     /// Waits until the console answers a line of its own with a clean prompt, for at most `time`.
@@ -306,14 +331,14 @@ impl Session {
                 return Err(Failure::Stopped(format!("{}: stopped by Ctrl-C", self.port)));
             }
             match self.wire.read(&mut bytes) {
-                Ok(0) => return Err(self.failed("the line was closed")),
+                Ok(0) => return Err(self.lose("the line was closed")),
                 Ok(count) => {
                     last = Instant::now();
                     self.hear(bytes.get(..count).unwrap_or_default());
                 }
                 Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock) => (),
                 Err(error) if error.kind() == ErrorKind::Interrupted => (),
-                Err(error) => return Err(self.failed(&format!("the line is lost: {error}"))),
+                Err(error) => return Err(self.lose(&format!("the line is lost: {error}"))),
             }
             if last.elapsed() >= silence || begun.elapsed() >= silence * SILENCES {
                 return Ok(done(&self.heard));
@@ -337,7 +362,7 @@ impl Session {
 
     fn send(&mut self, bytes: &[u8]) -> Result<(), Failure> {
         let sent = self.wire.write_all(bytes).and_then(|()| self.wire.flush());
-        sent.map_err(|error| self.failed(&format!("the line is lost: {error}")))
+        sent.map_err(|error| self.lose(&format!("the line is lost: {error}")))
     }
 
     fn silent(&self, what: &str) -> Failure {
@@ -349,8 +374,32 @@ impl Session {
         ))
     }
 
+    fn lose(&mut self, why: &str) -> Failure {
+        self.lost = true;
+        self.failed(why)
+    }
+
     fn failed(&self, why: &str) -> Failure {
         Failure::Board(format!("{}: {why}", self.port))
+    }
+}
+
+/// In place of a port that is gone.
+struct Gone;
+
+impl Read for Gone {
+    fn read(&mut self, _bytes: &mut [u8]) -> io::Result<usize> {
+        Err(ErrorKind::NotConnected.into())
+    }
+}
+
+impl Write for Gone {
+    fn write(&mut self, _bytes: &[u8]) -> io::Result<usize> {
+        Err(ErrorKind::NotConnected.into())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 

@@ -17,7 +17,7 @@ pub fn tests() -> Vec<Trial> {
         trial("what_is_missing_is_named", what_is_missing_is_named),
         trial("a_chip_that_is_not_there_or_another_is_left_alone", wrong_chip),
         trial("a_transfer_that_breaks_off_is_told", breaks_off),
-        trial("no_loader_on_the_cuav", no_loader_on_the_cuav),
+        trial("cuav_over_usb", cuav_over_usb),
         trial("an_image_that_is_none_is_refused", no_image),
     ]
 }
@@ -159,7 +159,7 @@ fn wrong_chip() {
     for (mood, message) in [
         (
             "no device",
-            "finds no chip in its USB loader: take BOOT0 to 3.3 V",
+            "finds no chip in its USB loader: type `dfu` at its console, or take BOOT0 to 3.3 V",
         ),
         ("no right", "may not open the chip"),
         ("two chips", "2 chips are in their USB loader"),
@@ -196,17 +196,16 @@ fn breaks_off() {
     }
 }
 
-fn no_loader_on_the_cuav() {
+fn cuav_over_usb() {
+    // Its loader is entered by the firmware alone: what a backup would keep is gone by then.
     let bench = Bench::new("cuav-usb", &CUAV);
-    for line in [
-        "flash cuav-v5 --dfu --elf @image.elf",
-        "flash cuav-v5 --dfu --dry --elf @image.elf",
-    ] {
-        bench
-            .run(line)
-            .complains(2, "connect a probe and leave --dfu out");
-    }
-    assert!(bench.calls().is_empty());
+    bench.mood("no device");
+    bench
+        .run("flash cuav-v5 --dfu --elf @image.elf")
+        .complains(1, "finds no chip in its USB loader: type `dfu` at its console");
+    bench.mood("");
+    bench.run("flash cuav-v5 --dfu --elf @image.elf").done();
+    assert_eq!(bench.started().as_deref(), Some("0x08000000"));
 }
 
 fn no_image() {

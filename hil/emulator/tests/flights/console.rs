@@ -184,6 +184,36 @@ fn so_is_that_of_the_small_board_whose_encoding_is_the_opposite() {
     the_brown_out_level_is_set(small_image(), "f405");
 }
 
+/// `dfu` restarts into the chip's loader, once: before the clocks, with its vector table.
+fn the_loader_is_entered(image: &Path, board: &str) {
+    let mut firmware = Firmware::read(image, boards::find(board).unwrap()).unwrap();
+    firmware.with_the_chips_loader().unwrap();
+    let session = |user: &mut TcpStream| {
+        while !type_in(user, "status\r", "up for").contains("DISARMED") {}
+        type_in(user, "dfu\r", "leaving for the chip's USB loader");
+        wake(user);
+        type_in(user, "status\r", "up for");
+    };
+    let (flight, ()) = at_the_console(&firmware, 24.0, None, None, session);
+    assert_eq!(flight.board.resets.len(), 1, "{board}: {:?}", flight.board.resets);
+    // The loader has started it: the reset's cause was taken before.
+    let log = log(&flight);
+    assert!(!log.contains("start after Software"), "{board}: {log}");
+    assert!(log.contains("start after Unknown"), "{board}: {log}");
+    assert_eq!(flight.gaps, [], "{board}");
+}
+
+#[test]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
+fn the_loader_is_entered_from_the_console() {
+    the_loader_is_entered(image(), "matek-h743");
+}
+
+#[test]
+fn so_is_that_of_the_small_board() {
+    the_loader_is_entered(small_image(), "f405");
+}
+
 #[test]
 fn a_motor_a_servo_live_numbers_and_the_self_test_are_tried_at_the_console() {
     let firmware = Firmware::read(small_image(), boards::find("f405").unwrap()).unwrap();

@@ -230,13 +230,22 @@ impl Server {
     }
 
     fn remote(&mut self, now: u64, vehicle: &Vehicle) -> Option<RemoteRequest> {
+        let late = self.is_late(now);
         let request = self.orders.remote.as_mut()?;
         if request.number == 0 {
-            request.number = vehicle.answers.newest.wrapping_add(1).max(1);
+            match vehicle.answers.next() {
+                Some(number) => request.number = number,
+                None if !late => return None,
+                None => {
+                    self.orders.remote = None;
+                    self.say_silent();
+                    return None;
+                }
+            }
         }
         let request = *request;
         let answer = vehicle.answers.remote;
-        if answer.number != request.number && !self.is_late(now) {
+        if answer.number != request.number && !late {
             return Some(request);
         }
         self.orders.remote = None;

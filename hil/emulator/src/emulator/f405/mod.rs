@@ -119,6 +119,8 @@ pub static PADS: Pads = Pads {
         (At(0, 3), 7),
         (At(2, 10), 7),
         (At(2, 11), 7),
+        (At(0, 11), 10),
+        (At(0, 12), 10),
     ],
     resting_high: &[
         At(1, 8),
@@ -135,32 +137,9 @@ pub static PADS: Pads = Pads {
 
 /// Instances that no firmware of ours uses, or that the F405 lacks. Whoever reaches one all the same finds it listed as
 /// unimplemented, and the run failed.
-const UNUSED: [&str; 26] = [
-    "TIM1",
-    "TIM2",
-    "TIM3",
-    "SPI2",
-    "SPI3",
-    "SPI4",
-    "SPI5",
-    "SPI6",
-    "I2C3",
-    "USART6",
-    "UART4",
-    "UART5",
-    "UART7",
-    "UART8",
-    "ADC2",
-    "ADC3",
-    "SDIO",
-    "OTG_FS_GLOBAL",
-    "RTC",
-    "GPIOE",
-    "GPIOF",
-    "GPIOG",
-    "GPIOH",
-    "GPIOI",
-    "GPIOJ",
+const UNUSED: [&str; 25] = [
+    "TIM1", "TIM2", "TIM3", "SPI2", "SPI3", "SPI4", "SPI5", "SPI6", "I2C3", "USART6", "UART4", "UART5",
+    "UART7", "UART8", "ADC2", "ADC3", "SDIO", "RTC", "GPIOE", "GPIOF", "GPIOG", "GPIOH", "GPIOI", "GPIOJ",
     "GPIOK",
 ];
 

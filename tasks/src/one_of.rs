@@ -1,0 +1,36 @@
+//! A port that is one of two kinds, so that what is generic over ports is compiled once for both.
+
+use crate::ports::{PortError, SerialInput, SerialOutput};
+
+/// One of two.
+pub enum OneOf<A, B> {
+    /// Of the first kind.
+    First(A),
+    /// Of the second.
+    Second(B),
+}
+
+impl<A: SerialInput, B: SerialInput> SerialInput for OneOf<A, B> {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        match self {
+            Self::First(port) => port.read(buffer).await,
+            Self::Second(port) => port.read(buffer).await,
+        }
+    }
+}
+
+impl<A: SerialOutput, B: SerialOutput> SerialOutput for OneOf<A, B> {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        match self {
+            Self::First(port) => port.write(bytes).await,
+            Self::Second(port) => port.write(bytes).await,
+        }
+    }
+
+    fn listens(&self) -> bool {
+        match self {
+            Self::First(port) => port.listens(),
+            Self::Second(port) => port.listens(),
+        }
+    }
+}

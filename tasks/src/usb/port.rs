@@ -1,0 +1,191 @@
+//! The port between the USB device and its two users, console and MAVLink, of which one has it at a time.
+
+use core::cell::RefCell;
+
+use embassy_sync::blocking_mutex::Mutex;
+use embassy_sync::pipe::Pipe;
+use embassy_time::{Duration, Instant, with_timeout};
+use heapless::Vec;
+use sophie_mavlink::sorter::{For, Sorter, Speaks};
+
+use super::PACKET;
+use crate::console::CANCEL;
+use crate::links::Raw;
+use crate::ports::{PortError, SerialInput, SerialOutput};
+
+/// Bytes that wait for a user: of a paste, or of some frames.
+const INPUT: usize = 256;
+/// Bytes that wait for the host: the longest frame and the longest line.
+const OUTPUT: usize = 512;
+/// Longest wait of a write for room. The host is given half of it to fetch a packet.
+const LONGEST_WRITE: Duration = Duration::from_millis(200);
+/// Stands for what cannot be read, so that the console refuses the line.
+const UNREADABLE: u8 = 0x80;
+
+/// Bytes of a packet for one user: each may stand for two.
+type Sorted = Vec<u8, { 2 * PACKET as usize }>;
+
+/// The port.
+pub struct Port {
+    state: Mutex<Raw, RefCell<State>>,
+    console: Pipe<Raw, INPUT>,
+    mavlink: Pipe<Raw, INPUT>,
+    output: Pipe<Raw, OUTPUT>,
+}
+
+struct State {
+    sorter: Sorter,
+    /// The bus is silent: there is no cable, no host, or it sleeps.
+    suspended: bool,
+}
+
+impl Default for Port {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Port {
+    /// Nothing has arrived, and no host is there.
+    pub const fn new() -> Self {
+        Self {
+            state: Mutex::new(RefCell::new(State {
+                sorter: Sorter::new(),
+                suspended: true,
+            })),
+            console: Pipe::new(),
+            mavlink: Pipe::new(),
+            output: Pipe::new(),
+        }
+    }
+
+    /// The console's end.
+    pub const fn console(&self) -> (UsbInput<'_>, UsbOutput<'_>) {
+        self.end(Speaks::Text)
+    }
+
+    /// MAVLink's end.
+    pub const fn mavlink(&self) -> (UsbInput<'_>, UsbOutput<'_>) {
+        self.end(Speaks::Mavlink)
+    }
+
+    const fn end(&self, user: Speaks) -> (UsbInput<'_>, UsbOutput<'_>) {
+        (UsbInput { port: self, user }, UsbOutput { port: self, user })
+    }
+
+    fn with<R>(&self, work: impl FnOnce(&mut State) -> R) -> Option<R> {
+        self.state
+            .lock(|state| Some(work(&mut *state.try_borrow_mut().ok()?)))
+    }
+
+    /// The bus is silent, or not.
+    pub(super) fn suspend(&self, suspended: bool) {
+        self.with(|state| state.suspended = suspended);
+    }
+
+    /// Gives the port back to the console and drops what waits for the host.
+    pub(super) fn close(&self) {
+        self.with(|state| state.sorter.reset());
+        self.drop_output();
+        // What was begun there ends; where it is full, something ends it anyway.
+        let _ = self.console.try_write(&[CANCEL]);
+    }
+
+    /// Drops what waits for the host.
+    pub(super) fn drop_output(&self) {
+        self.output.clear();
+    }
+
+    /// The next bytes for the host.
+    pub(super) async fn next(&self, chunk: &mut [u8]) -> usize {
+        self.output.read(chunk).await
+    }
+
+    /// Takes a packet; waits until its users have room for it.
+    pub(super) async fn take(&self, packet: &[u8]) {
+        let (mut text, mut frames) = (Sorted::new(), Sorted::new());
+        let now = Instant::now().as_micros();
+        let other = self.with(|state| state.sort(packet, now, &mut text, &mut frames));
+        if other == Some(true) {
+            self.drop_output();
+        }
+        self.console.write_all(&text).await;
+        self.mavlink.write_all(&frames).await;
+    }
+
+    fn belongs_to(&self, user: Speaks) -> bool {
+        self.with(|state| !state.suspended && state.sorter.speaks() == user)
+            .unwrap_or(false)
+    }
+}
+
+impl State {
+    /// Sorts a packet; true where the port is another's now.
+    fn sort(&mut self, packet: &[u8], now: u64, text: &mut Sorted, frames: &mut Sorted) -> bool {
+        self.suspended = false;
+        let first = self.sorter.speaks();
+        // There is room for all.
+        if self.sorter.gives_up(now) {
+            let _ = text.push(UNREADABLE);
+        }
+        for &byte in packet {
+            let before = self.sorter.speaks();
+            let _ = match self.sorter.take(byte, now) {
+                For::Console => text.push(byte),
+                For::Unreadable => text.push(UNREADABLE),
+                For::Return => text.push(b'\r'),
+                For::Mavlink => frames.push(byte),
+                For::Nobody => Ok(()),
+            };
+            if before == Speaks::Text && self.sorter.speaks() == Speaks::Mavlink {
+                let _ = text.push(CANCEL);
+            }
+        }
+        self.sorter.speaks() != first
+    }
+}
+
+/// What arrives over USB for one of its users.
+#[derive(Clone, Copy)]
+pub struct UsbInput<'a> {
+    port: &'a Port,
+    user: Speaks,
+}
+
+impl SerialInput for UsbInput<'_> {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        Ok(match self.user {
+            Speaks::Text => self.port.console.read(buffer).await,
+            Speaks::Mavlink => self.port.mavlink.read(buffer).await,
+        })
+    }
+}
+
+/// What one of its users sends over USB.
+#[derive(Clone, Copy)]
+pub struct UsbOutput<'a> {
+    port: &'a Port,
+    user: Speaks,
+}
+
+impl SerialOutput for UsbOutput<'_> {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        let writing = async {
+            let mut rest = bytes;
+            while let (true, false) = (self.listens(), rest.is_empty()) {
+                let taken = self.port.output.write(rest).await;
+                rest = rest.get(taken..).unwrap_or_default();
+            }
+            rest.is_empty()
+        };
+        match with_timeout(LONGEST_WRITE, writing).await {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(PortError::Absent),
+            Err(_) => Err(PortError::Timeout),
+        }
+    }
+
+    fn listens(&self) -> bool {
+        self.port.belongs_to(self.user)
+    }
+}
