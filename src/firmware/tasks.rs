@@ -2,9 +2,11 @@
 //! the other levels are in `sophie_flight`, compiled for speed.
 
 use embassy_executor::SpawnError;
+use embassy_futures::select::Either;
 use embassy_sync::mutex::Mutex;
 use sophie_boards::Board;
 use sophie_boards::retained::Memory;
+use sophie_boards::{BufferedInput, BufferedOutput, ThisChip};
 use sophie_flight::tasks as flight;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::mavlink::Line;
@@ -12,13 +14,18 @@ use sophie_tasks::mavlink::signing::Stored;
 use sophie_tasks::ports::{Look, Storage};
 use sophie_tasks::schedule::TaskId;
 use sophie_tasks::shared::SharedStorage;
+use sophie_tasks::shell::{Shell, ShellPort};
 use static_cell::StaticCell;
 
 use super::Levels;
 
-/// The parameters' storage, for console and MAVLink.
+/// The lines that a console is at: the board's own, or MAVLink's.
+type ConsoleInput = Either<BufferedInput, ShellPort<'static>>;
+type ConsoleOutput = Either<BufferedOutput, ShellPort<'static>>;
+/// The parameters' storage, for consoles and MAVLink.
 type StoragePort = SharedStorage<'static, sophie_boards::StoragePort>;
 
+static SHELL: Shell = Shell::new();
 static STORAGE: StaticCell<Mutex<Raw, sophie_boards::StoragePort>> = StaticCell::new();
 
 /// Spawns every task; `self_test`: the inertial sensor's, first. Called once.
@@ -54,7 +61,11 @@ pub fn spawn(
     let defaults = board.storage.defaults();
     let storage: &'static _ = STORAGE.init(Mutex::new(board.storage));
     let storage = || SharedStorage::new(storage, defaults);
+    let (input, output) = (Either::First(input), Either::First(output));
     levels.spawn_unmeasured("console", console(links, input, output, storage(), board.chip)?);
+    let (input, output) = (Either::Second(SHELL.port()), Either::Second(SHELL.port()));
+    let chip = ThisChip { looks };
+    levels.spawn_unmeasured("shell", console(links, input, output, storage(), chip)?);
     levels.spawn(
         TaskId::Mavlink,
         mavlink(
@@ -82,13 +93,14 @@ async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) ->
     sophie_tasks::telemetry::run(links, port).await
 }
 
-#[embassy_executor::task]
+/// One for each line: compiled once.
+#[embassy_executor::task(pool_size = 2)]
 async fn console(
     links: &'static Links,
-    input: sophie_boards::BufferedInput,
-    output: sophie_boards::BufferedOutput,
+    input: ConsoleInput,
+    output: ConsoleOutput,
     storage: StoragePort,
-    chip: sophie_boards::ThisChip,
+    chip: ThisChip,
 ) -> ! {
     sophie_tasks::console::run(links, input, output, storage, chip).await
 }
@@ -96,8 +108,8 @@ async fn console(
 #[embassy_executor::task]
 async fn mavlink(
     links: &'static Links,
-    input: sophie_boards::BufferedInput,
-    output: sophie_boards::BufferedOutput,
+    input: BufferedInput,
+    output: BufferedOutput,
     storage: StoragePort,
     signing: Stored,
 ) -> ! {
@@ -105,7 +117,16 @@ async fn mavlink(
         bytes_per_second: sophie_boards::MAVLINK_BYTES_PER_SECOND,
         signing,
     };
-    sophie_tasks::mavlink::run(links, input, output, storage, || sophie_boards::restart(), line).await
+    sophie_tasks::mavlink::run(
+        links,
+        input,
+        output,
+        &SHELL,
+        storage,
+        || sophie_boards::restart(),
+        line,
+    )
+    .await
 }
 
 #[embassy_executor::task]

@@ -25,7 +25,8 @@ use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehic
 use crate::deadline::{FixedRate, TaskId, Tick};
 use crate::links::{LineState, Links};
 use crate::ports::{SerialInput, SerialOutput, Storage};
-use crate::storing;
+use crate::shell::Shell;
+use crate::storing::{self, NotNow};
 
 /// Bytes taken at once.
 const CHUNK: usize = 64;
@@ -49,24 +50,27 @@ struct Shared {
 }
 
 /// What takes and what sends share, in one task and never over an await.
-struct Link {
+struct Link<'a> {
     shared: RefCell<Shared>,
+    /// The console that is reached over this line.
+    shell: &'a Shell,
     /// There may be something to send.
     due: Signal<NoopRawMutex, ()>,
 }
 
-impl Link {
+impl Link<'_> {
     /// What `work` gives; `None` never comes, since no one else has it then.
     fn with<R>(&self, work: impl FnOnce(&mut Shared) -> R) -> Option<R> {
         Some(work(&mut *self.shared.try_borrow_mut().ok()?))
     }
 }
 
-/// Serves MAVLink on one line; never returns. `restart` restarts the board.
+/// Serves MAVLink on one line, and a console over it; never returns. `restart` restarts the board.
 pub async fn run(
     links: &Links,
     mut input: impl SerialInput,
     output: impl SerialOutput,
+    shell: &Shell,
     mut storage: impl Storage,
     mut restart: impl FnMut(),
     line: Line,
@@ -77,6 +81,7 @@ pub async fn run(
             vehicle: Vehicle::default(),
             signing: Signing::new(line.signing),
         }),
+        shell,
         due: Signal::new(),
     };
     let serve = async {
@@ -93,7 +98,10 @@ pub async fn run(
                     LineState::of(&shared.signing, shared.server.inputs().counts()),
                 );
                 give(links, started, shared.server.requests(now, &shared.vehicle));
-                shared.server.order(now, &shared.vehicle)
+                let order = shared.server.order(now, &shared.vehicle);
+                // A station that has gone is noticed here.
+                link.shell.type_in(&shared.server.shell().typed());
+                order
             });
             link.due.signal(());
             renew(links, &link, &mut storage, now).await;
@@ -115,7 +123,7 @@ pub async fn run(
 
 /// Sends as fast as the line takes it: a frame is made when there is room for it, of what is known then. The wait for
 /// the line is no part of the task's run.
-async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
+async fn send(link: &Link<'_>, mut output: impl SerialOutput) -> ! {
     let mut frame = Vec::<u8, LONGEST>::new();
     loop {
         link.due.wait().await;
@@ -128,6 +136,9 @@ async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
                     vehicle,
                     signing,
                 } = shared;
+                if server.shell().takes() {
+                    server.shell().say(&link.shell.said());
+                }
                 let bytes = server.send(now, vehicle, signing).unwrap_or_default();
                 frame.extend_from_slice(bytes)
             });
@@ -141,7 +152,12 @@ async fn send(link: &Link, mut output: impl SerialOutput) -> ! {
 }
 
 /// Hands what arrives to the server until the next run is due.
-async fn listen(links: &Links, rate: &mut FixedRate<'_>, input: &mut impl SerialInput, link: &Link) -> Tick {
+async fn listen(
+    links: &Links,
+    rate: &mut FixedRate<'_>,
+    input: &mut impl SerialInput,
+    link: &Link<'_>,
+) -> Tick {
     let mut bytes = [0; CHUNK];
     let mut next = pin!(rate.next());
     loop {
@@ -158,6 +174,7 @@ async fn listen(links: &Links, rate: &mut FixedRate<'_>, input: &mut impl Serial
                     } = shared;
                     server.receive(arrived, now, vehicle, signing);
                     publish(links, server.inputs(), now);
+                    link.shell.type_in(&server.shell().typed());
                 });
                 // A line that is never silent must not starve the others of this level.
                 embassy_futures::yield_now().await;
@@ -180,7 +197,7 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
 }
 
 /// Stores the bound of signing's times again where little is left of it; arming is refused meanwhile.
-async fn renew(links: &Links, link: &Link, storage: &mut impl Storage, now: u64) {
+async fn renew(links: &Links, link: &Link<'_>, storage: &mut impl Storage, now: u64) {
     // Another is storing, or what it has stored waits for a restart: nothing comes after that.
     if storing::stopped(links).is_err() || links.hardware().contains(ArmingInhibit::Storing) {
         return;
@@ -211,7 +228,11 @@ fn give(links: &Links, at: Instant, requests: Requests) {
 /// Stores the server's parameters. Arming is refused meanwhile, and from then on as long as others are in force: what
 /// flies must be what a ground station reads.
 async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
-    storing::hold_arming(links).await.map_err(|_| "disarm first")?;
+    storing::hold_arming(links).await.map_err(|why| match why {
+        NotNow::While(_) => "disarm first",
+        NotNow::Silent => "the commander is silent",
+        NotNow::Storing => "another line stores",
+    })?;
     storing::save(links, storage, params)
         .await
         .map_err(|error| error.text())?;

@@ -1,5 +1,6 @@
 //! What a board implements. Every unit is SI unless said otherwise.
 
+use embassy_futures::select::Either;
 use embassy_time::Instant;
 use heapless::{String, Vec};
 use sophie_control::arming::ArmingInhibit;
@@ -108,6 +109,28 @@ pub trait SerialInput {
     /// # Errors
     /// A line error; the next call starts a new frame.
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError>;
+
+    /// What is typed stays between both ends: a cable, and no radio.
+    fn private(&self) -> bool {
+        true
+    }
+}
+
+/// One of two kinds of line: what serves both is compiled once.
+impl<A: SerialInput, B: SerialInput> SerialInput for Either<A, B> {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        match self {
+            Self::First(port) => port.read(buffer).await,
+            Self::Second(port) => port.read(buffer).await,
+        }
+    }
+
+    fn private(&self) -> bool {
+        match self {
+            Self::First(port) => port.private(),
+            Self::Second(port) => port.private(),
+        }
+    }
 }
 
 /// The receiver's protocol: frames and counts out of the bytes of its line, however these are cut.
@@ -127,6 +150,16 @@ pub trait SerialOutput {
     /// # Errors
     /// A line that does not take them.
     async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError>;
+}
+
+/// One of two kinds of line: what serves both is compiled once.
+impl<A: SerialOutput, B: SerialOutput> SerialOutput for Either<A, B> {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        match self {
+            Self::First(port) => port.write(bytes).await,
+            Self::Second(port) => port.write(bytes).await,
+        }
+    }
 }
 
 /// The independent watchdog.
