@@ -334,3 +334,122 @@ fn pymavlink_arms_where_the_pilots_switch_is_on_and_grabs_in_flight_alone() {
     let refused = ["refused: arm switch off", "arming: not calibrated"];
     assert!(refused.iter().any(|text| said(&heard, text)), "{heard}");
 }
+
+/// The last row of numbers that `watch` has shown.
+fn row(said: &serde_json::Value) -> Vec<f64> {
+    let rows = said.as_array().unwrap().iter().rev();
+    let numbers = rows.filter_map(|row| {
+        let words = row.as_array().unwrap().iter();
+        let numbers: Option<Vec<f64>> = words.map(|word| word.as_str().unwrap().parse().ok()).collect();
+        numbers.filter(|numbers| numbers.len() > 5)
+    });
+    numbers.into_iter().next().unwrap_or_default()
+}
+
+#[test]
+#[ignore = "wants pymavlink, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn pymavlink_sends_poses_and_attitudes_and_reads_them_at_the_console() {
+    let temp = Temp::new("live-inputs");
+    let (socket, address) = station();
+    drop(socket);
+    let _flight = Flight::begin(&temp, &["--pilot", "none", "--mavlink", &address]);
+    let said = clients::run("inputs.py", &[&format!("udpin:{address}"), "60"]);
+    // North, east, down; roll, pitch, yaw; velocity.
+    assert_eq!(
+        row(&said["odometry"]),
+        [2.0, 1.5, -3.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        "{said}"
+    );
+    for (name, pose) in [
+        ("vision", [1.5, -2.0, -3.0, 10.0, 0.0, 0.0]),
+        ("mocap", [1.5, 0.5, -0.5, 30.0, 0.0, 0.0]),
+    ] {
+        let rows = said[name].as_array().unwrap();
+        let seen = rows.iter().any(|row| {
+            let words: Vec<f64> = row
+                .as_array()
+                .unwrap()
+                .iter()
+                .flat_map(|w| w.as_str().unwrap().parse())
+                .collect();
+            // Its velocity is not known.
+            words.len() == 6 && words.iter().zip(pose).all(|(a, b)| (a - b).abs() < 0.3)
+        });
+        assert!(seen, "{name}: {said}");
+    }
+    let wish = row(&said["attitude"]);
+    let close = wish.len() == 7 && (wish[0] - 30.0).abs() < 0.3 && (wish[6] - 0.25).abs() < 1e-6;
+    assert!(close && (wish[3] - 5.73).abs() < 0.02, "{said}");
+    let lines = said["mavlink"].as_array().unwrap();
+    let inputs = lines
+        .iter()
+        .find_map(|line| line.as_str().unwrap().strip_prefix("inputs: "));
+    let inputs = inputs.unwrap();
+    assert!(!inputs.starts_with("0 poses, 0 "), "{inputs}");
+    // Two that arrive at once have no order: the second is late.
+    assert!(inputs.contains("; refused 0 frame, 2 value, "), "{inputs}");
+}
+
+/// Every parameter of the table, by name.
+fn whole_table(params: &serde_json::Value) -> bool {
+    let params = params.as_object().unwrap();
+    let table = sophie_control::params::Params::TABLE;
+    params.len() == table.len() && table.iter().all(|row| params.contains_key(row.name))
+}
+
+#[test]
+#[ignore = "wants MAVSDK, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn mavsdk_hears_sets_is_refused_and_has_a_shell() {
+    let temp = Temp::new("live-mavsdk");
+    let (socket, address) = station();
+    drop(socket);
+    let _flight = Flight::begin(&temp, &["--pilot", "none", "--mavlink", &address]);
+    let did = clients::run("sdk.py", &[&address, "60"]);
+    let near = |value: &serde_json::Value, wanted: f64, within: f64| {
+        value
+            .as_f64()
+            .is_some_and(|value| (value - wanted).abs() < within)
+    };
+    assert!(
+        near(&did["attitude"][0], 0.0, 5.0) && near(&did["attitude"][1], 0.0, 5.0),
+        "{did}"
+    );
+    assert!(near(&did["voltage"], 16.0, 1.0) && did["armed"] == false, "{did}");
+    assert!(whole_table(&did["params"]), "{did}");
+    let count = sophie_control::params::Params::TABLE.len();
+    assert_eq!(
+        (&did["others"], &did["one_by_one"]),
+        (&0.into(), &count.into()),
+        "{did}"
+    );
+    assert!(
+        did["set"] == "SUCCESS" && near(&did["infill"], 8.0, 1e-6),
+        "{did}"
+    );
+    assert!(
+        did["beyond"] != "SUCCESS" && near(&did["infill_after"], 8.0, 1e-6),
+        "{did}"
+    );
+    // Without a radio, on the ground.
+    assert_eq!(did["arm"], "COMMAND_DENIED", "{did}");
+    assert!(did["grab"] != "SUCCESS" && did["release"] != "SUCCESS", "{did}");
+    assert!(said(&did, "refused: radio lost"), "{did}");
+    // Its working copy is its own.
+    let shell = did["shell"].as_str().unwrap();
+    assert!(
+        shell.contains("infill           6.9") && shell.ends_with("\n> "),
+        "{did}"
+    );
+}
+
+#[test]
+#[ignore = "wants MAVProxy, which .ci/mavlink-clients installs: .ci/run runs it"]
+fn mavproxy_fetches_loads_and_saves_parameters() {
+    let temp = Temp::new("live-mavproxy");
+    let (socket, address) = station();
+    drop(socket);
+    let _flight = Flight::begin(&temp, &["--pilot", "none", "--mavlink", &address]);
+    let did = clients::run("proxy.py", &[&address, "60", "infill", "8"]);
+    assert!(whole_table(&did["params"]), "{did}");
+    assert_eq!(did["params"]["infill"], 8.0, "{did}");
+}

@@ -7,7 +7,7 @@
 //! Saves are appended; a page is erased when the log reaches it again. Loading never writes or erases: an erase at
 //! start-up could outlast the watchdog.
 //!
-//! Memory: [`BUFFER`] bytes in the future of a call.
+//! Memory: [`BUFFER`] bytes in the store, one for all who call: in their futures each would keep its own.
 
 mod foreign;
 mod guard;
@@ -34,6 +34,12 @@ pub const BUFFER: usize = LONGEST.next_multiple_of(32);
 
 /// Parameter store in `range` of flash `F`.
 pub struct ParamStore<F> {
+    log: Log<F>,
+    buffer: [u8; BUFFER],
+}
+
+/// Where the sets are, and what they are over.
+struct Log<F> {
     flash: F,
     range: Range<u32>,
     defaults: &'static Params,
@@ -78,22 +84,28 @@ impl<F: NorFlash> ParamStore<F> {
     /// as unreadable, unwritable storage.
     pub const fn new(flash: F, range: Range<u32>) -> Self {
         Self {
-            flash,
-            range,
-            defaults: &Params::DEFAULT,
+            log: Log {
+                flash,
+                range,
+                defaults: &Params::DEFAULT,
+            },
+            buffer: [0; BUFFER],
         }
     }
 
     /// Sets the board's defaults, which are not stored.
-    pub fn with_defaults(self, defaults: &'static Params) -> Self {
-        Self { defaults, ..self }
+    pub fn with_defaults(mut self, defaults: &'static Params) -> Self {
+        self.log.defaults = defaults;
+        self
     }
 
     /// Returns the flash.
     pub fn release(self) -> F {
-        self.flash
+        self.log.flash
     }
+}
 
+impl<F: NorFlash> Log<F> {
     fn config<S: NorFlash>(&self) -> Option<MapConfig<S>> {
         let (start, end) = (self.range.start, self.range.end);
         // The crate's own check subtracts before it compares.
@@ -157,9 +169,7 @@ impl<F: NorFlash> ParamStore<F> {
             _ => StorageError::Broken,
         })
     }
-}
 
-impl<F: NorFlash> ParamStore<F> {
     /// Stores `content` in place of what was `found`.
     async fn replace(
         &mut self,
@@ -195,14 +205,14 @@ impl<F: NorFlash> ParamStore<F> {
 
 impl<F: NorFlash> Storage for ParamStore<F> {
     fn defaults(&self) -> &'static Params {
-        self.defaults
+        self.log.defaults
     }
 
     async fn load(&mut self, params: &mut Params) -> Loaded {
-        let mut buffer = [0; BUFFER];
-        let found = self.find(&mut buffer).await;
+        let Self { log, buffer } = self;
+        let found = log.find(buffer).await;
         let Some(set) = found.set else {
-            let foreign = if found.damaged { self.foreign().await } else { None };
+            let foreign = if found.damaged { log.foreign().await } else { None };
             return Loaded {
                 unreadable: found.damaged,
                 foreign,
@@ -213,7 +223,7 @@ impl<F: NorFlash> Storage for ParamStore<F> {
                 ..Loaded::default()
             };
         };
-        *params = set.over(self.defaults);
+        *params = set.over(log.defaults);
         Loaded {
             taken: set.taken,
             refused: set.refused,
@@ -224,26 +234,26 @@ impl<F: NorFlash> Storage for ParamStore<F> {
     }
 
     async fn save(&mut self, params: &Params) -> Result<(), StorageError> {
-        let mut buffer = [0; BUFFER];
-        let found = self.find(&mut buffer).await;
+        let Self { log, buffer } = self;
+        let found = log.find(buffer).await;
         let content = Content {
             params: *params,
-            ..found.content(self.defaults)
+            ..found.content(log.defaults)
         };
-        self.replace(found, &content, &mut buffer).await
+        log.replace(found, &content, buffer).await
     }
 
     async fn save_signing(&mut self, signing: Option<Record>) -> Result<(), StorageError> {
-        let mut buffer = [0; BUFFER];
-        let found = self.find(&mut buffer).await;
+        let Self { log, buffer } = self;
+        let found = log.find(buffer).await;
         if found.set.is_none() && found.damaged {
             // Parameters that cannot be read are not replaced unasked.
             return Err(StorageError::Broken);
         }
         let content = Content {
             signing,
-            ..found.content(self.defaults)
+            ..found.content(log.defaults)
         };
-        self.replace(found, &content, &mut buffer).await
+        log.replace(found, &content, buffer).await
     }
 }

@@ -396,6 +396,33 @@ impl Default for MotorTestThrottleType {
 #[cfg_attr(feature = "serde", serde(tag = "type"))]
 #[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
 #[repr(u32)]
+pub enum SerialControlDev {
+    SERIAL_CONTROL_DEV_SHELL = 10,
+}
+impl SerialControlDev {
+    pub const DEFAULT: Self = Self::SERIAL_CONTROL_DEV_SHELL;
+}
+impl Default for SerialControlDev {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+bitflags! { # [cfg_attr (feature = "ts-rs" , derive (TS))] # [cfg_attr (feature = "ts-rs" , ts (export , type = "number"))] # [cfg_attr (feature = "serde" , derive (Serialize , Deserialize))] # [cfg_attr (feature = "arbitrary" , derive (Arbitrary))] # [derive (Debug , Copy , Clone , PartialEq)] pub struct SerialControlFlag : u16 { const SERIAL_CONTROL_FLAG_REPLY = 1 ; const SERIAL_CONTROL_FLAG_RESPOND = 2 ; const SERIAL_CONTROL_FLAG_EXCLUSIVE = 4 ; } }
+impl SerialControlFlag {
+    pub const DEFAULT: Self = Self::SERIAL_CONTROL_FLAG_REPLY;
+}
+impl Default for SerialControlFlag {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+#[derive(Debug, Copy, Clone, PartialEq, FromPrimitive, ToPrimitive)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(tag = "type"))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[repr(u32)]
 pub enum SophieArmState {
     #[doc = "Tendon slack, no pressure."]
     SOPHIE_ARM_STATE_FREE = 0,
@@ -2840,6 +2867,109 @@ impl MessageData for SCALED_IMU_DATA {
         }
     }
 }
+#[doc = "ID: 126"]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "arbitrary", derive(Arbitrary))]
+#[cfg_attr(feature = "ts-rs", derive(TS))]
+#[cfg_attr(feature = "ts-rs", ts(export))]
+pub struct SERIAL_CONTROL_DATA {
+    pub baudrate: u32,
+    pub timeout: u16,
+    pub device: u8,
+    pub flags: u8,
+    pub count: u8,
+    #[cfg_attr(feature = "serde", serde(with = "serde_arrays"))]
+    #[cfg_attr(feature = "ts-rs", ts(type = "Array<number>"))]
+    pub data: [u8; 70],
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub target_system: u8,
+    #[cfg_attr(feature = "serde", serde(default = "crate::utils::RustDefault::rust_default"))]
+    pub target_component: u8,
+}
+impl SERIAL_CONTROL_DATA {
+    pub const ENCODED_LEN: usize = 81usize;
+    pub const DEFAULT: Self = Self {
+        baudrate: 0_u32,
+        timeout: 0_u16,
+        device: 0_u8,
+        flags: 0_u8,
+        count: 0_u8,
+        data: [0_u8; 70usize],
+        target_system: 0_u8,
+        target_component: 0_u8,
+    };
+    #[cfg(feature = "arbitrary")]
+    pub fn random<R: rand::Rng>(rng: &mut R) -> Self {
+        use arbitrary::{Arbitrary, Unstructured};
+        let mut buf = [0u8; 1024];
+        rng.fill_bytes(&mut buf);
+        let mut unstructured = Unstructured::new(&buf);
+        Self::arbitrary(&mut unstructured).unwrap_or_default()
+    }
+}
+impl Default for SERIAL_CONTROL_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for SERIAL_CONTROL_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 126u32;
+    const NAME: &'static str = "SERIAL_CONTROL";
+    const EXTRA_CRC: u8 = 220u8;
+    const ENCODED_LEN: usize = 81usize;
+    fn deser(_version: MavlinkVersion, __input: &[u8]) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.baudrate = buf.get_u32_le()?;
+        __struct.timeout = buf.get_u16_le()?;
+        __struct.device = buf.get_u8()?;
+        __struct.flags = buf.get_u8()?;
+        __struct.count = buf.get_u8()?;
+        for v in &mut __struct.data {
+            let val = buf.get_u8()?;
+            *v = val;
+        }
+        __struct.target_system = buf.get_u8()?;
+        __struct.target_component = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})",
+                Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_u32_le(self.baudrate);
+        __tmp.put_u16_le(self.timeout);
+        __tmp.put_u8(self.device);
+        __tmp.put_u8(self.flags);
+        __tmp.put_u8(self.count);
+        for val in &self.data {
+            __tmp.put_u8(*val);
+        }
+        if matches!(version, MavlinkVersion::V2) {
+            __tmp.put_u8(self.target_system);
+            __tmp.put_u8(self.target_component);
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 #[doc = "ID: 36"]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
@@ -3779,6 +3909,8 @@ pub enum MavMessage {
     RC_CHANNELS(RC_CHANNELS_DATA),
     #[doc = "ID: 26"]
     SCALED_IMU(SCALED_IMU_DATA),
+    #[doc = "ID: 126"]
+    SERIAL_CONTROL(SERIAL_CONTROL_DATA),
     #[doc = "ID: 36"]
     SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA),
     #[doc = "ID: 256"]
@@ -3802,8 +3934,8 @@ impl MavMessage {
     pub const fn all_ids() -> &'static [u32] {
         &[
             0u32, 1u32, 4u32, 20u32, 21u32, 22u32, 23u32, 26u32, 30u32, 31u32, 36u32, 65u32, 75u32, 76u32,
-            77u32, 82u32, 102u32, 110u32, 111u32, 138u32, 147u32, 148u32, 244u32, 245u32, 251u32, 253u32,
-            256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
+            77u32, 82u32, 102u32, 110u32, 111u32, 126u32, 138u32, 147u32, 148u32, 244u32, 245u32, 251u32,
+            253u32, 256u32, 331u32, 397u32, 435u32, 436u32, 437u32, 53000u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -3830,6 +3962,7 @@ impl MavMessage {
             ),
             (FILE_TRANSFER_PROTOCOL_DATA::NAME, FILE_TRANSFER_PROTOCOL_DATA::ID),
             (TIMESYNC_DATA::NAME, TIMESYNC_DATA::ID),
+            (SERIAL_CONTROL_DATA::NAME, SERIAL_CONTROL_DATA::ID),
             (ATT_POS_MOCAP_DATA::NAME, ATT_POS_MOCAP_DATA::ID),
             (BATTERY_STATUS_DATA::NAME, BATTERY_STATUS_DATA::ID),
             (AUTOPILOT_VERSION_DATA::NAME, AUTOPILOT_VERSION_DATA::ID),
@@ -3904,6 +4037,7 @@ impl Message for MavMessage {
             PING_DATA::ID => PING_DATA::deser(version, payload).map(Self::PING),
             RC_CHANNELS_DATA::ID => RC_CHANNELS_DATA::deser(version, payload).map(Self::RC_CHANNELS),
             SCALED_IMU_DATA::ID => SCALED_IMU_DATA::deser(version, payload).map(Self::SCALED_IMU),
+            SERIAL_CONTROL_DATA::ID => SERIAL_CONTROL_DATA::deser(version, payload).map(Self::SERIAL_CONTROL),
             SERVO_OUTPUT_RAW_DATA::ID => {
                 SERVO_OUTPUT_RAW_DATA::deser(version, payload).map(Self::SERVO_OUTPUT_RAW)
             }
@@ -3948,6 +4082,7 @@ impl Message for MavMessage {
             Self::PING(..) => PING_DATA::NAME,
             Self::RC_CHANNELS(..) => RC_CHANNELS_DATA::NAME,
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::NAME,
+            Self::SERIAL_CONTROL(..) => SERIAL_CONTROL_DATA::NAME,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::NAME,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::NAME,
             Self::SET_ATTITUDE_TARGET(..) => SET_ATTITUDE_TARGET_DATA::NAME,
@@ -3985,6 +4120,7 @@ impl Message for MavMessage {
             Self::PING(..) => PING_DATA::ID,
             Self::RC_CHANNELS(..) => RC_CHANNELS_DATA::ID,
             Self::SCALED_IMU(..) => SCALED_IMU_DATA::ID,
+            Self::SERIAL_CONTROL(..) => SERIAL_CONTROL_DATA::ID,
             Self::SERVO_OUTPUT_RAW(..) => SERVO_OUTPUT_RAW_DATA::ID,
             Self::SETUP_SIGNING(..) => SETUP_SIGNING_DATA::ID,
             Self::SET_ATTITUDE_TARGET(..) => SET_ATTITUDE_TARGET_DATA::ID,
@@ -4022,6 +4158,7 @@ impl Message for MavMessage {
             PING_DATA::NAME => Some(PING_DATA::ID),
             RC_CHANNELS_DATA::NAME => Some(RC_CHANNELS_DATA::ID),
             SCALED_IMU_DATA::NAME => Some(SCALED_IMU_DATA::ID),
+            SERIAL_CONTROL_DATA::NAME => Some(SERIAL_CONTROL_DATA::ID),
             SERVO_OUTPUT_RAW_DATA::NAME => Some(SERVO_OUTPUT_RAW_DATA::ID),
             SETUP_SIGNING_DATA::NAME => Some(SETUP_SIGNING_DATA::ID),
             SET_ATTITUDE_TARGET_DATA::NAME => Some(SET_ATTITUDE_TARGET_DATA::ID),
@@ -4066,6 +4203,7 @@ impl Message for MavMessage {
             PING_DATA::ID => Some(Self::PING(PING_DATA::default())),
             RC_CHANNELS_DATA::ID => Some(Self::RC_CHANNELS(RC_CHANNELS_DATA::default())),
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::default())),
+            SERIAL_CONTROL_DATA::ID => Some(Self::SERIAL_CONTROL(SERIAL_CONTROL_DATA::default())),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::default())),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::default())),
             SET_ATTITUDE_TARGET_DATA::ID => {
@@ -4123,6 +4261,7 @@ impl Message for MavMessage {
             PING_DATA::ID => Some(Self::PING(PING_DATA::random(rng))),
             RC_CHANNELS_DATA::ID => Some(Self::RC_CHANNELS(RC_CHANNELS_DATA::random(rng))),
             SCALED_IMU_DATA::ID => Some(Self::SCALED_IMU(SCALED_IMU_DATA::random(rng))),
+            SERIAL_CONTROL_DATA::ID => Some(Self::SERIAL_CONTROL(SERIAL_CONTROL_DATA::random(rng))),
             SERVO_OUTPUT_RAW_DATA::ID => Some(Self::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA::random(rng))),
             SETUP_SIGNING_DATA::ID => Some(Self::SETUP_SIGNING(SETUP_SIGNING_DATA::random(rng))),
             SET_ATTITUDE_TARGET_DATA::ID => {
@@ -4165,6 +4304,7 @@ impl Message for MavMessage {
             Self::PING(body) => body.ser(version, bytes),
             Self::RC_CHANNELS(body) => body.ser(version, bytes),
             Self::SCALED_IMU(body) => body.ser(version, bytes),
+            Self::SERIAL_CONTROL(body) => body.ser(version, bytes),
             Self::SERVO_OUTPUT_RAW(body) => body.ser(version, bytes),
             Self::SETUP_SIGNING(body) => body.ser(version, bytes),
             Self::SET_ATTITUDE_TARGET(body) => body.ser(version, bytes),
@@ -4202,6 +4342,7 @@ impl Message for MavMessage {
             PING_DATA::ID => PING_DATA::EXTRA_CRC,
             RC_CHANNELS_DATA::ID => RC_CHANNELS_DATA::EXTRA_CRC,
             SCALED_IMU_DATA::ID => SCALED_IMU_DATA::EXTRA_CRC,
+            SERIAL_CONTROL_DATA::ID => SERIAL_CONTROL_DATA::EXTRA_CRC,
             SERVO_OUTPUT_RAW_DATA::ID => SERVO_OUTPUT_RAW_DATA::EXTRA_CRC,
             SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
             SET_ATTITUDE_TARGET_DATA::ID => SET_ATTITUDE_TARGET_DATA::EXTRA_CRC,
@@ -4223,6 +4364,7 @@ impl Message for MavMessage {
             Self::PARAM_REQUEST_READ(inner) => Some(inner.target_system),
             Self::PARAM_SET(inner) => Some(inner.target_system),
             Self::PING(inner) => Some(inner.target_system),
+            Self::SERIAL_CONTROL(inner) => Some(inner.target_system),
             Self::SETUP_SIGNING(inner) => Some(inner.target_system),
             Self::SET_ATTITUDE_TARGET(inner) => Some(inner.target_system),
             Self::TIMESYNC(inner) => Some(inner.target_system),
@@ -4239,6 +4381,7 @@ impl Message for MavMessage {
             Self::PARAM_REQUEST_READ(inner) => Some(&mut inner.target_system),
             Self::PARAM_SET(inner) => Some(&mut inner.target_system),
             Self::PING(inner) => Some(&mut inner.target_system),
+            Self::SERIAL_CONTROL(inner) => Some(&mut inner.target_system),
             Self::SETUP_SIGNING(inner) => Some(&mut inner.target_system),
             Self::SET_ATTITUDE_TARGET(inner) => Some(&mut inner.target_system),
             Self::TIMESYNC(inner) => Some(&mut inner.target_system),
@@ -4255,6 +4398,7 @@ impl Message for MavMessage {
             Self::PARAM_REQUEST_READ(inner) => Some(inner.target_component),
             Self::PARAM_SET(inner) => Some(inner.target_component),
             Self::PING(inner) => Some(inner.target_component),
+            Self::SERIAL_CONTROL(inner) => Some(inner.target_component),
             Self::SETUP_SIGNING(inner) => Some(inner.target_component),
             Self::SET_ATTITUDE_TARGET(inner) => Some(inner.target_component),
             Self::TIMESYNC(inner) => Some(inner.target_component),
@@ -4271,6 +4415,7 @@ impl Message for MavMessage {
             Self::PARAM_REQUEST_READ(inner) => Some(&mut inner.target_component),
             Self::PARAM_SET(inner) => Some(&mut inner.target_component),
             Self::PING(inner) => Some(&mut inner.target_component),
+            Self::SERIAL_CONTROL(inner) => Some(&mut inner.target_component),
             Self::SETUP_SIGNING(inner) => Some(&mut inner.target_component),
             Self::SET_ATTITUDE_TARGET(inner) => Some(&mut inner.target_component),
             Self::TIMESYNC(inner) => Some(&mut inner.target_component),

@@ -12,6 +12,8 @@ pub const COMPONENT: u8 = 1;
 /// Makes frames, numbered as they are sent.
 pub struct Encoder {
     raw: MAVLinkV2MessageRaw,
+    system: u8,
+    component: u8,
     sequence: u8,
     /// Room is left for a signature.
     signed: bool,
@@ -24,10 +26,17 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Before the first frame.
+    /// The vehicle's, before the first frame.
     pub const fn new() -> Self {
+        Self::of(SYSTEM, COMPONENT)
+    }
+
+    /// Those of another: a station's.
+    pub const fn of(system: u8, component: u8) -> Self {
         Self {
             raw: MAVLinkV2MessageRaw::new(),
+            system,
+            component,
             sequence: 0,
             signed: false,
         }
@@ -41,8 +50,8 @@ impl Encoder {
     /// Makes the frame of `message`, with its trailing zeros left out; returns its length.
     pub fn encode<M: MessageData>(&mut self, message: &M) -> u32 {
         let header = MavHeader {
-            system_id: SYSTEM.into(),
-            component_id: COMPONENT,
+            system_id: self.system.into(),
+            component_id: self.component,
             sequence: self.sequence,
         };
         self.sequence = self.sequence.wrapping_add(1);

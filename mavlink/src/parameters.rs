@@ -54,7 +54,10 @@ impl Parameters {
             Ok(at) => Some(at).filter(|&at| at < Params::TABLE.len()),
             Err(_) => {
                 let name = id.split(|&byte| byte == 0).next().unwrap_or_default();
-                Params::TABLE.iter().position(|row| row.name.as_bytes() == name)
+                // MAVProxy asks in capitals.
+                Params::TABLE
+                    .iter()
+                    .position(|row| row.name.as_bytes().eq_ignore_ascii_case(name))
             }
         };
         at.map(|at| Place(at as u16)).ok_or(Refused::Unknown)

@@ -57,6 +57,8 @@ pub enum Request {
     SetupSigning,
     /// A request for a file.
     File(FILE_TRANSFER_PROTOCOL_DATA),
+    /// What is typed into the console, or said by one.
+    Serial(SERIAL_CONTROL_DATA),
 }
 
 /// What the checksum of message `id` begins with; `None` for those that are not taken.
@@ -72,6 +74,7 @@ pub const fn crc_extra(id: u32) -> Option<u8> {
         PARAM_SET_DATA::ID => PARAM_SET_DATA::EXTRA_CRC,
         FILE_TRANSFER_PROTOCOL_DATA::ID => FILE_TRANSFER_PROTOCOL_DATA::EXTRA_CRC,
         SETUP_SIGNING_DATA::ID => SETUP_SIGNING_DATA::EXTRA_CRC,
+        SERIAL_CONTROL_DATA::ID => SERIAL_CONTROL_DATA::EXTRA_CRC,
         ODOMETRY_DATA::ID => ODOMETRY_DATA::EXTRA_CRC,
         VISION_POSITION_ESTIMATE_DATA::ID => VISION_POSITION_ESTIMATE_DATA::EXTRA_CRC,
         ATT_POS_MOCAP_DATA::ID => ATT_POS_MOCAP_DATA::EXTRA_CRC,
@@ -154,6 +157,10 @@ pub fn request(frame: &Frame<'_>) -> Option<Request> {
         FILE_TRANSFER_PROTOCOL_DATA::ID => {
             let m: FILE_TRANSFER_PROTOCOL_DATA = message(frame)?;
             (m.target_system, m.target_component, Request::File(m))
+        }
+        SERIAL_CONTROL_DATA::ID => {
+            let m: SERIAL_CONTROL_DATA = message(frame)?;
+            (m.target_system, m.target_component, Request::Serial(m))
         }
         _ => return None,
     };

@@ -3,6 +3,7 @@
 mod answer;
 mod commands;
 mod send;
+pub mod shell;
 
 use heapless::Deque;
 use sophie_control::mode::Mode;
@@ -12,6 +13,7 @@ use self::answer::Answer;
 use self::commands::calibration::Calibration;
 use self::commands::orders::Orders;
 pub use self::commands::orders::Requests;
+use self::shell::Shell;
 use crate::budget::Budget;
 use crate::dialect::*;
 use crate::files::FILES;
@@ -63,6 +65,7 @@ pub struct Server {
     parameters: Parameters,
     answers: Deque<Answer, ANSWERS>,
     files: Files,
+    shell: Shell,
     inputs: Inputs,
     mode: Option<Mode>,
     /// When another's heartbeat came last, µs.
@@ -94,6 +97,7 @@ impl Server {
                 },
                 answer: None,
             },
+            shell: Shell::new(),
             inputs: Inputs::new(),
             mode: None,
             heard_at: None,
@@ -135,6 +139,7 @@ impl Server {
     /// What is to be done at `now`, µs since the start.
     pub fn order(&mut self, now: u64, vehicle: &Vehicle) -> Option<Order> {
         self.go_on_calibrating(now, vehicle);
+        self.shell.expire(now);
         if self.restart_at.is_some_and(|at| now >= at) {
             self.restart_at = None;
             return vehicle.at_rest().then_some(Order::Restart);
@@ -160,6 +165,11 @@ impl Server {
                 format_args!("parameters not stored: {why}"),
             ),
         }
+    }
+
+    /// The console's far end.
+    pub const fn shell(&mut self) -> &mut Shell {
+        &mut self.shell
     }
 
     /// What others have measured and wished.
@@ -191,6 +201,7 @@ impl Server {
             Request::Heartbeat => {
                 let new = self.heard_at.is_none_or(|at| now.saturating_sub(at) > FORGOTTEN);
                 self.heard_at = Some(now);
+                self.shell.hear(from, now);
                 if new {
                     self.texts.repeat();
                 }
@@ -250,6 +261,7 @@ impl Server {
                 self.files.answer = self.files.ftp.answer(&file.payload);
                 self.files.reader = from;
             }
+            Request::Serial(serial) => self.shell.obey(serial, from, now),
         }
     }
 

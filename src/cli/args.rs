@@ -20,6 +20,8 @@ use sophie_sim::mixers::Variant;
 use sophie_sim::scenario::keys::{self, Range};
 use sophie_sim::scenario::{ArmBending, Overrides, Scenario};
 
+use super::key;
+
 /// SOPHIE, the soft quadrotor that perches on pipes, flown in virtual time.
 #[derive(Parser)]
 #[command(name = "sophie", version, args_conflicts_with_subcommands = true)]
@@ -256,9 +258,13 @@ pub struct CheckArgs {
 /// Which console, and how patient to be with it.
 #[derive(Args, Debug)]
 pub struct LineArgs {
-    /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT; serial ports at 115,200 baud.
+    /// Console of the board: /dev/ttyUSB0, COM3 or tcp:HOST:PORT, serial ports at 115,200 baud; or over MAVLink
+    /// mavlink:/dev/ttyUSB0[,BAUD], mavlink:tcp:HOST:PORT, udpin:HOST:PORT (listens) or udpout:HOST:PORT.
     #[arg(long, value_name = "PORT")]
     pub port: PortName,
+    /// File with the key that signs MAVLink, 64 hexadecimal digits, where the board has one.
+    #[arg(long, value_name = "FILE")]
+    pub mavlink_key: Option<PathBuf>,
     /// Longest silence of the board while an answer is due, 1 to 600 s.
     #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = patience, allow_negative_numbers = true)]
     pub patience: Duration,
@@ -268,9 +274,10 @@ impl LineArgs {
     /// A session at that console, until `stop` is raised.
     ///
     /// # Errors
-    /// One line: the port cannot be opened, or no console answers there.
+    /// One line: the port cannot be opened, no console answers there, or the key is none.
     pub fn session(&self, stop: Arc<AtomicBool>) -> Result<Session, Failure> {
-        Session::open(&self.port, self.patience, stop)
+        let key = self.mavlink_key.as_deref().map(key::read).transpose();
+        Session::open(&self.port, key.map_err(Failure::Input)?, self.patience, stop)
     }
 }
 

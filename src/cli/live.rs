@@ -1,18 +1,16 @@
 //! `sophie fly --live`: a flight at the pace of real time, with MAVLink on UDP.
 
-use std::fs;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use sophie_report::terminal::console::Console;
 use sophie_report::terminal::output::OutDir;
 use sophie_report::terminal::{FILES, complain};
-use sophie_sim::live::{Key, Live, LiveFlight, Pace, Udp};
+use sophie_sim::live::{Live, LiveFlight, Pace, Udp};
 
 use super::args::{FlyArgs, LiveArgs};
 use super::interrupt::on_ctrl_c;
-use super::{PROGRAM, introduce, report};
+use super::{PROGRAM, introduce, key, report};
 
 /// Flies the mission, reports it and waits for Ctrl-C; without a pilot waits at once. False when the mission was not
 /// accomplished.
@@ -25,7 +23,7 @@ pub fn run(args: &FlyArgs) -> Result<bool, String> {
         ref mavlink_key,
         ..
     } = args.live;
-    let key = mavlink_key.as_deref().map(read_key).transpose()?;
+    let key = mavlink_key.as_deref().map(key::read).transpose()?;
     let udp = Udp::open(mavlink).map_err(|why| format!("--mavlink {why}"))?;
     let stop = on_ctrl_c()?;
     let console = Console::new(args.json);
@@ -50,14 +48,4 @@ pub fn run(args: &FlyArgs) -> Result<bool, String> {
         flight.wait();
     }
     Ok(accomplished)
-}
-
-/// The key in `file`.
-fn read_key(file: &Path) -> Result<Key, String> {
-    let text =
-        fs::read_to_string(file).map_err(|why| format!("{}: cannot be read: {why}", file.display()))?;
-    Key::from_hex(text.trim()).ok_or_else(|| {
-        let (shown, digits) = (file.display(), Key::DIGITS);
-        format!("{shown}: no key: {digits} hexadecimal digits are expected")
-    })
 }

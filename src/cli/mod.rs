@@ -9,6 +9,7 @@ mod builder;
 mod capture;
 mod check;
 mod interrupt;
+mod key;
 mod live;
 mod operate;
 mod publish;

@@ -4,7 +4,7 @@
 use embassy_executor::SpawnError;
 use embassy_sync::mutex::Mutex;
 use sophie_boards::retained::Memory;
-use sophie_boards::{Board, BufferedInput, BufferedOutput, UsbDriver};
+use sophie_boards::{Board, BufferedInput, BufferedOutput, ThisChip, UsbDriver};
 use sophie_flight::tasks as flight;
 use sophie_tasks::links::{Links, Raw};
 use sophie_tasks::mavlink::Lines;
@@ -13,13 +13,17 @@ use sophie_tasks::one_of::OneOf;
 use sophie_tasks::ports::{Look, Storage};
 use sophie_tasks::schedule::TaskId;
 use sophie_tasks::shared::SharedStorage;
+use sophie_tasks::shell::{Shell, ShellPort};
 use sophie_tasks::terminals::{Keyboards, Screens, Served};
 use sophie_tasks::usb::{self, Identity, Memory as UsbMemory, Port, UsbInput, UsbOutput};
 use static_cell::StaticCell;
 
 use super::Levels;
 
-/// The parameters' storage, for console and MAVLink.
+/// The lines that a console is at: the board's own, of which it serves one at a time, or MAVLink's.
+type ConsoleInput = OneOf<Keyboards<'static, BufferedInput, UsbInput<'static>>, ShellPort<'static>>;
+type ConsoleOutput = OneOf<Screens<'static, BufferedOutput, UsbOutput<'static>>, ShellPort<'static>>;
+/// The parameters' storage, for consoles and MAVLink.
 type StoragePort = SharedStorage<'static, sophie_boards::StoragePort>;
 
 /// Input of MAVLink, of a serial line or of USB.
@@ -27,6 +31,7 @@ type MavlinkInput = OneOf<BufferedInput, UsbInput<'static>>;
 /// Its output.
 type MavlinkOutput = OneOf<BufferedOutput, UsbOutput<'static>>;
 
+static SHELL: Shell = Shell::new();
 static SERVED: StaticCell<Served> = StaticCell::new();
 static USB_PORT: StaticCell<Port> = StaticCell::new();
 static USB_MEMORY: StaticCell<UsbMemory<'static>> = StaticCell::new();
@@ -64,12 +69,15 @@ pub fn spawn(
     let port: &'static Port = USB_PORT.init_with(Port::new);
     let served: &'static Served = SERVED.init(Served::default());
     let (usb_input, usb_output) = port.console();
-    let input = served.keyboards(board.console_input, usb_input);
-    let output = served.screens(board.console_output, usb_output);
+    let input = OneOf::First(served.keyboards(board.console_input, usb_input));
+    let output = OneOf::First(served.screens(board.console_output, usb_output));
     let defaults = board.storage.defaults();
     let storage: &'static _ = STORAGE.init(Mutex::new(board.storage));
     let storage = || SharedStorage::new(storage, defaults);
     levels.spawn_unmeasured("console", console(links, input, output, storage(), board.chip)?);
+    let (input, output) = (OneOf::Second(SHELL.port()), OneOf::Second(SHELL.port()));
+    let chip = ThisChip { looks };
+    levels.spawn_unmeasured("shell", console(links, input, output, storage(), chip)?);
     let (usb_input, usb_output) = port.mavlink();
     let lines = Lines {
         inputs: [OneOf::First(board.mavlink_input), OneOf::Second(usb_input)],
@@ -107,13 +115,14 @@ async fn telemetry(links: &'static Links, port: sophie_boards::TelemetryLine) ->
     sophie_tasks::telemetry::run(links, port).await
 }
 
-#[embassy_executor::task]
+/// One for each kind of line: compiled once.
+#[embassy_executor::task(pool_size = 2)]
 async fn console(
     links: &'static Links,
-    input: Keyboards<'static, BufferedInput, UsbInput<'static>>,
-    output: Screens<'static, BufferedOutput, UsbOutput<'static>>,
+    input: ConsoleInput,
+    output: ConsoleOutput,
     storage: StoragePort,
-    chip: sophie_boards::ThisChip,
+    chip: ThisChip,
 ) -> ! {
     sophie_tasks::console::run(links, input, output, storage, chip).await
 }
@@ -125,7 +134,15 @@ async fn mavlink(
     storage: StoragePort,
     signing: Stored,
 ) -> ! {
-    sophie_tasks::mavlink::run(links, lines, storage, || sophie_boards::restart(), signing).await
+    sophie_tasks::mavlink::run(
+        links,
+        lines,
+        &SHELL,
+        storage,
+        || sophie_boards::restart(),
+        signing,
+    )
+    .await
 }
 
 #[embassy_executor::task]

@@ -30,8 +30,9 @@ use self::keys::Keys;
 use self::line::{Echo, Line, LineError};
 pub use self::nearest::edits;
 use self::output::Output;
-use crate::links::{Links, Status};
+use crate::links::Links;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
+use crate::storing::NotNow;
 use crate::{parameters as table, storing};
 
 /// Pause after a line error or an empty read, so that a dead line cannot take the processor.
@@ -150,31 +151,38 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
             Command::Dfu => self.enter_loader().await,
             Command::Restart => match self.stopped() {
                 Ok(()) => {
-                    self.out.line(format_args!("restarting")).await;
+                    self.out.last(format_args!("restarting")).await;
                     self.chip.restart();
                 }
-                Err(status) => self.refuse("not restarted", status).await,
+                Err(why) => self.refuse("not restarted", why).await,
             },
         }
     }
 
     /// Motors stand still, as far as the commander says.
-    fn stopped(&self) -> Result<(), Option<Status>> {
+    fn stopped(&self) -> Result<(), NotNow> {
         storing::stopped(self.links)
     }
 
-    async fn refuse(&mut self, what: &str, status: Option<Status>) {
-        match status {
-            Some(status) => {
-                let mode = status.mode.name();
+    async fn refuse(&mut self, what: &str, why: NotNow) {
+        match why {
+            NotNow::While(mode) => {
+                let mode = mode.name();
                 self.out
                     .line(format_args!("{what} while {mode}: disarm first"))
                     .await;
             }
-            None => {
+            NotNow::Silent => {
                 self.out
                     .line(format_args!("{what}: the commander is silent"))
-                    .await
+                    .await;
+            }
+            NotNow::Storing => {
+                self.out
+                    .line(format_args!(
+                        "{what}: another line stores, or waits for its restart"
+                    ))
+                    .await;
             }
         }
     }

@@ -43,6 +43,7 @@ pub mod retained_store;
 pub mod schedule;
 pub mod servos;
 pub mod shared;
+pub mod shell;
 pub mod silence;
 pub mod start;
 pub mod storing;

@@ -2,7 +2,7 @@
 //!
 //! Background: whatever arrives, or stays away, delays nothing that flies. A miss costs a late picture.
 
-use core::cell::RefCell;
+use core::cell::{Cell, RefCell};
 use core::pin::pin;
 
 use embassy_futures::join::{join, join_array};
@@ -25,7 +25,8 @@ use sophie_mavlink::{Answers, Condition, Order, Requests, Server, Signing, Vehic
 use crate::deadline::{FixedRate, TaskId, Tick};
 use crate::links::{LineState, Links};
 use crate::ports::{SerialInput, SerialOutput, Storage};
-use crate::storing;
+use crate::shell::Shell;
+use crate::storing::{self, NotNow};
 
 /// Bytes taken at once.
 const CHUNK: usize = 64;
@@ -57,13 +58,17 @@ struct Shared<const N: usize> {
 }
 
 /// What takes and what sends share, in one task and never over an await.
-struct Link<const N: usize> {
+struct Link<'a, const N: usize> {
     shared: RefCell<Shared<N>>,
+    /// The console that is reached over these lines, from one at a time.
+    shell: &'a Shell,
+    /// The line that typed there last.
+    at_the_shell: Cell<usize>,
     /// There may be something to send, on each line.
     due: [Signal<NoopRawMutex, ()>; N],
 }
 
-impl<const N: usize> Link<N> {
+impl<const N: usize> Link<'_, N> {
     /// What `work` gives; `None` never comes, since no one else has it then.
     fn with<R>(&self, work: impl FnOnce(&mut Shared<N>) -> R) -> Option<R> {
         Some(work(&mut *self.shared.try_borrow_mut().ok()?))
@@ -86,6 +91,26 @@ impl<const N: usize> Link<N> {
         .flatten()
     }
 
+    /// Types at the console what came for it on line `at`. A line that types takes the console from the other, whose
+    /// command ends.
+    fn type_in(&self, at: usize) {
+        let typed = self.with_server(at, |server, _, _| server.shell().typed());
+        let typed = typed.unwrap_or_default();
+        if typed.is_empty() {
+            return;
+        }
+        let before = self.at_the_shell.replace(at);
+        if before != at {
+            let end = self.with_server(before, |server, _, _| {
+                server.shell().hang_up();
+                server.shell().typed()
+            });
+            self.shell.type_in(&end.unwrap_or_default());
+            self.shell.drop_said();
+        }
+        self.shell.type_in(&typed);
+    }
+
     /// Gives every other line the parameters of line `at`: there is one copy of what is to be stored.
     fn share_parameters(&self, at: usize) {
         self.with(|shared| {
@@ -100,11 +125,12 @@ impl<const N: usize> Link<N> {
     }
 }
 
-/// Serves MAVLink on `lines`; never returns. `signing` is the key that was stored at the start, `restart` restarts the
-/// board.
+/// Serves MAVLink on `lines`, and the console `shell` over them; never returns. `signing` is the key that was stored at the
+/// start, `restart` restarts the board.
 pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
     links: &Links,
     lines: Lines<I, O, N>,
+    shell: &Shell,
     mut storage: impl Storage,
     mut restart: impl FnMut(),
     signing: Stored,
@@ -120,6 +146,8 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
             vehicle: Vehicle::default(),
             signing: Signing::new(signing),
         }),
+        shell,
+        at_the_shell: Cell::new(0),
         due: [const { Signal::new() }; N],
     };
     let mut readers = lines.inputs.map(|input| Reader {
@@ -148,6 +176,8 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
                 });
                 // A calibration may have set some.
                 link.share_parameters(at);
+                // A station that has gone is noticed here.
+                link.type_in(at);
                 obey(links, &link, at, &mut storage, &mut restart, order.flatten()).await;
             }
             for due in &link.due {
@@ -170,7 +200,7 @@ impl<const N: usize> Shared<N> {
 /// Does what the server of line `at` wants done.
 async fn obey<const N: usize>(
     links: &Links,
-    link: &Link<N>,
+    link: &Link<'_, N>,
     at: usize,
     storage: &mut impl Storage,
     restart: &mut impl FnMut(),
@@ -191,7 +221,7 @@ async fn obey<const N: usize>(
 
 /// Sends on line `at` as fast as it takes it: a frame is made when there is room for it, of what is known then. The wait
 /// for the line is no part of the task's run.
-async fn send<const N: usize>(link: &Link<N>, at: usize, mut output: impl SerialOutput) {
+async fn send<const N: usize>(link: &Link<'_, N>, at: usize, mut output: impl SerialOutput) {
     let mut frame = Vec::<u8, LONGEST>::new();
     while let Some(due) = link.due.get(at) {
         due.wait().await;
@@ -200,6 +230,9 @@ async fn send<const N: usize>(link: &Link<N>, at: usize, mut output: impl Serial
             let now = Instant::now().as_micros();
             frame.clear();
             let copied = link.with_server(at, |server, vehicle, signing| {
+                if link.at_the_shell.get() == at && server.shell().takes() {
+                    server.shell().say(&link.shell.said());
+                }
                 let bytes = server.send(now, vehicle, signing).unwrap_or_default();
                 frame.extend_from_slice(bytes)
             });
@@ -217,7 +250,7 @@ async fn listen<I: SerialInput, const N: usize>(
     links: &Links,
     rate: &mut FixedRate<'_>,
     readers: &mut [Reader<I>; N],
-    link: &Link<N>,
+    link: &Link<'_, N>,
 ) -> Tick {
     let mut next = pin!(rate.next());
     loop {
@@ -233,6 +266,7 @@ async fn listen<I: SerialInput, const N: usize>(
                     server.receive(arrived.unwrap_or_default(), now, vehicle, signing);
                     publish(links, server.inputs(), now);
                 });
+                link.type_in(at);
                 link.share_parameters(at);
                 // A line that is never silent must not starve the others of this level.
                 embassy_futures::yield_now().await;
@@ -255,7 +289,7 @@ fn publish(links: &Links, inputs: &mut Inputs, now: u64) {
 }
 
 /// Stores the bound of signing's times again where little is left of it; arming is refused meanwhile.
-async fn renew<const N: usize>(links: &Links, link: &Link<N>, storage: &mut impl Storage, now: u64) {
+async fn renew<const N: usize>(links: &Links, link: &Link<'_, N>, storage: &mut impl Storage, now: u64) {
     // Another is storing, or what it has stored waits for a restart: nothing comes after that.
     if storing::stopped(links).is_err() || links.hardware().contains(ArmingInhibit::Storing) {
         return;
@@ -286,7 +320,11 @@ fn give(links: &Links, at: Instant, requests: Requests) {
 /// Stores the server's parameters. Arming is refused meanwhile, and from then on as long as others are in force: what
 /// flies must be what a ground station reads.
 async fn store(links: &Links, storage: &mut impl Storage, params: &Params) -> Result<(), &'static str> {
-    storing::hold_arming(links).await.map_err(|_| "disarm first")?;
+    storing::hold_arming(links).await.map_err(|why| match why {
+        NotNow::While(_) => "disarm first",
+        NotNow::Silent => "the commander is silent",
+        NotNow::Storing => "another line stores",
+    })?;
     storing::save(links, storage, params)
         .await
         .map_err(|error| error.text())?;

@@ -17,6 +17,13 @@ impl<A: SerialInput, B: SerialInput> SerialInput for OneOf<A, B> {
             Self::Second(port) => port.read(buffer).await,
         }
     }
+
+    fn private(&self) -> bool {
+        match self {
+            Self::First(port) => port.private(),
+            Self::Second(port) => port.private(),
+        }
+    }
 }
 
 impl<A: SerialOutput, B: SerialOutput> SerialOutput for OneOf<A, B> {

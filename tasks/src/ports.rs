@@ -108,6 +108,11 @@ pub trait SerialInput {
     /// # Errors
     /// A line error; the next call starts a new frame.
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError>;
+
+    /// What is typed stays between both ends: a cable, and no radio.
+    fn private(&self) -> bool {
+        true
+    }
 }
 
 /// The receiver's protocol: frames and counts out of the bytes of its line, however these are cut.

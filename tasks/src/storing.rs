@@ -6,7 +6,7 @@ use sophie_control::mode::Mode;
 use sophie_control::params::Params;
 use sophie_mavlink::signing::Record;
 
-use crate::links::{Links, Status};
+use crate::links::Links;
 use crate::ports::{Storage, StorageError};
 
 /// Time that the commander has to answer: fifty of its periods.
@@ -16,27 +16,43 @@ const LOOK: Duration = Duration::from_millis(5);
 /// Longest save: an erase takes 4 s at worst (STM32F7 datasheet, 256 KiB), and two of them may be needed.
 const LONGEST: Duration = Duration::from_secs(10);
 
+/// Why nothing is stored or tried now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotNow {
+    /// Motors may turn.
+    While(Mode),
+    /// The commander is silent: they may as well.
+    Silent,
+    /// Another line stores.
+    Storing,
+}
+
 /// Motors stand still, as far as the commander says.
 ///
 /// # Errors
-/// What it says instead; `None` where it is silent.
-pub fn stopped(links: &Links) -> Result<(), Option<Status>> {
-    match links.status.fresh() {
-        Some(status) if matches!(status.mode, Mode::Disarmed | Mode::Calibrating) => Ok(()),
-        status => Err(status),
+/// What it says instead.
+pub fn stopped(links: &Links) -> Result<(), NotNow> {
+    match links.status.fresh().map(|status| status.mode) {
+        Some(Mode::Disarmed | Mode::Calibrating) => Ok(()),
+        Some(mode) => Err(NotNow::While(mode)),
+        None => Err(NotNow::Silent),
     }
 }
 
-/// Refuses arming from here on, unless the motors may turn.
+/// Refuses arming from here on, unless the motors may turn or another line has it refused for the same.
 ///
 /// # Errors
-/// What the commander says then; `None` where it is silent.
-pub async fn hold_arming(links: &Links) -> Result<(), Option<Status>> {
+/// What is in the way.
+pub async fn hold_arming(links: &Links) -> Result<(), NotNow> {
     stopped(links)?;
+    // Who stores lifts it at the end, and would lift it for the other as well.
+    if links.hardware().contains(ArmingInhibit::Storing) {
+        return Err(NotNow::Storing);
+    }
     links.report(ArmingInhibit::Storing, true);
     // The pilot may have armed just before: what counts is what the commander says after it has seen the report.
     let seen = with_timeout(COMMANDER, next_status(links)).await;
-    let held = seen.map_err(|_| None).and_then(|()| stopped(links));
+    let held = seen.map_err(|_| NotNow::Silent).and_then(|()| stopped(links));
     if held.is_err() {
         links.report(ArmingInhibit::Storing, false);
     }

@@ -104,6 +104,10 @@ impl<A: SerialInput, B: SerialInput> SerialInput for Keyboards<'_, A, B> {
         }
         Ok(count + 1)
     }
+
+    fn private(&self) -> bool {
+        self.first.private() && self.second.private()
+    }
 }
 
 impl<A: SerialOutput, B: SerialOutput> SerialOutput for Screens<'_, A, B> {

@@ -1,4 +1,4 @@
-//! A board on a table, served over TCP or a serial port: the console task and the tasks that it asks, on scripted parts. Its time runs
+//! A board on a table, served over TCP, a serial port or MAVLink: the console task and the tasks that it asks, on scripted parts. Its time runs
 //! faster than the clock on the wall, its stored parameters outlive its restarts.
 
 use std::cell::{Cell, RefCell};
@@ -21,11 +21,13 @@ use sophie_control::vector::Vec3;
 use sophie_control::wrench::{Configuration, PerArm};
 use sophie_fakes::{FakeAnalog, FakeImu, FakeLine, FakeMotors, FakeServos};
 use sophie_tasks::links::{Links, RcState};
-use sophie_tasks::mavlink::signing::Record;
+use sophie_tasks::mavlink::signing::{Key, Record, Stored};
+use sophie_tasks::mavlink::{self, Line};
 use sophie_tasks::ports::{
     AnalogFrame, ArmImus, Chip, ImuReading, Loaded, Look, NotSet, PortError, SerialOutput, Storage,
     StorageError,
 };
+use sophie_tasks::shell::{Shell, ShellPort};
 use sophie_tasks::{analog, arms, clamp, commander, console, control, estimator, imu, mixer, motors, servos};
 
 use super::wire::Wire;
@@ -56,6 +58,8 @@ pub struct Hands {
     pub dies_at: Option<&'static str>,
     /// Every so many bytes one that is typed is lost.
     pub loses: Option<usize>,
+    /// Every so many frames of MAVLink one that is said is lost.
+    pub drops: Option<usize>,
     /// The storage keeps nothing.
     pub broken: bool,
     /// The storage takes a set and keeps the old one.
@@ -95,6 +99,7 @@ impl Default for Hands {
             mute: false,
             dies_at: None,
             loses: None,
+            drops: None,
             broken: false,
             forgets: false,
             brown_out_set: true,
@@ -124,16 +129,22 @@ pub struct Board {
 impl Board {
     /// Powers a board up.
     pub fn new(hands: Hands) -> Self {
-        Self::on(Wire::socket(), hands)
+        Self::on(Wire::socket(), hands, Protocol::Console)
     }
 
     /// The same with its console on a serial port.
     #[cfg(target_os = "linux")]
     pub fn on_serial(hands: Hands) -> Self {
-        Self::on(Wire::serial(), hands)
+        Self::on(Wire::serial(), hands, Protocol::Console)
     }
 
-    fn on((mut wire, name): (Wire, String), hands: Hands) -> Self {
+    /// The same with its console over MAVLink, signed by `key` where there is one.
+    pub fn on_mavlink(hands: Hands, key: Option<Key>) -> Self {
+        let (wire, name) = Wire::socket();
+        Self::on((wire, format!("mavlink:{name}")), hands, Protocol::Mavlink(key))
+    }
+
+    fn on((mut wire, name): (Wire, String), hands: Hands, protocol: Protocol) -> Self {
         let hands = Arc::new(Mutex::new(hands));
         let stored = Arc::new(Mutex::new(Params::DEFAULT));
         let stop = Arc::new(AtomicBool::new(false));
@@ -150,7 +161,7 @@ impl Board {
             let (hands, stored, stop) = shared;
             while !stop.load(Ordering::Relaxed) {
                 let params = *stored.lock().unwrap();
-                Run::start(&hands, &stored, params).serve(&mut wire, &seen, &stop);
+                Run::start(&hands, &stored, params, protocol).serve(&mut wire, &seen, &stop);
             }
         });
         Self {
@@ -271,6 +282,13 @@ struct Seen {
     changes: Arc<AtomicU64>,
 }
 
+/// What the wire carries.
+#[derive(Clone, Copy)]
+enum Protocol {
+    Console,
+    Mavlink(Option<Key>),
+}
+
 /// One start of the board.
 struct Run {
     time: VirtualTime,
@@ -278,6 +296,7 @@ struct Run {
     hands: Arc<Mutex<Hands>>,
     line: FakeLine,
     screen: Screen,
+    frames: Option<Frames>,
     imu: FakeImu,
     analog: FakeAnalog,
     arms: Arms,
@@ -287,7 +306,12 @@ struct Run {
 }
 
 impl Run {
-    fn start(hands: &Arc<Mutex<Hands>>, stored: &Arc<Mutex<Params>>, params: Params) -> Self {
+    fn start(
+        hands: &Arc<Mutex<Hands>>,
+        stored: &Arc<Mutex<Params>>,
+        params: Params,
+        protocol: Protocol,
+    ) -> Self {
         let now = hands.lock().unwrap().clone();
         let links: &'static Links = Box::leak(Box::new(Links::new(params)));
         let restarted = Rc::<Cell<bool>>::default();
@@ -301,6 +325,10 @@ impl Run {
             hands: hands.clone(),
             line: FakeLine::default(),
             screen,
+            frames: match protocol {
+                Protocol::Console => None,
+                Protocol::Mavlink(_) => Some(Frames::default()),
+            },
             imu: FakeImu::default(),
             analog: FakeAnalog::default(),
             arms: Arms::default(),
@@ -314,11 +342,11 @@ impl Run {
             },
         };
         links.report(ArmingInhibit::BrownOutLevel, !now.brown_out_set);
-        run.spawn();
+        run.spawn(protocol);
         run
     }
 
-    fn spawn(&self) {
+    fn spawn(&self, protocol: Protocol) {
         let (time, links) = (&self.time, self.links);
         time.spawn(imu::run(links, self.imu.clone()));
         time.spawn(estimator::run(links));
@@ -330,14 +358,29 @@ impl Run {
         time.spawn(clamp::run(links));
         time.spawn(servos::run(links, self.servos.clone()));
         time.spawn(commander::run(links));
-        let (line, screen) = (self.line.clone(), self.screen.clone());
-        time.spawn(console::run(
+        let (line, screen, chip) = (self.line.clone(), self.screen.clone(), self.chip.clone());
+        let (Protocol::Mavlink(key), Some(frames)) = (protocol, &self.frames) else {
+            return time.spawn(console::run(links, line, screen, chip.clone(), chip));
+        };
+        let shell: &'static Shell = Box::leak(Box::default());
+        let restarted = chip.restarted.clone();
+        let rate = Line {
+            bytes_per_second: 5000,
+            signing: key.map_or(Stored::None, |key| Stored::Key(Record::fresh(key))),
+        };
+        let restart = move || restarted.set(true);
+        let storage = chip.clone();
+        time.spawn(mavlink::run(
             links,
             line,
-            screen,
-            self.chip.clone(),
-            self.chip.clone(),
+            frames.clone(),
+            shell,
+            storage,
+            restart,
+            rate,
         ));
+        let tapped = Tapped(shell.port(), screen);
+        time.spawn(console::run(links, shell.port(), tapped, chip.clone(), chip));
     }
 
     /// Runs until the board restarts or `stop` is set.
@@ -358,7 +401,11 @@ impl Run {
                 seen.changes.fetch_add(1, Ordering::Relaxed);
             }
             let dies = has(hands.dies_at);
-            if has(hands.unplugged_at) {
+            let unplugged = has(hands.unplugged_at);
+            if let Some(frames) = &self.frames {
+                said = frames.take(hands.drops);
+            }
+            if unplugged {
                 wire.unplug();
             }
             if dies {
@@ -465,6 +512,45 @@ impl SerialOutput for Screen {
     }
 }
 
+/// The console over MAVLink, whose words are on the screen as well.
+struct Tapped(ShellPort<'static>, Screen);
+
+impl SerialOutput for Tapped {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        self.1.write(bytes).await?;
+        self.0.write(bytes).await
+    }
+}
+
+/// Frames that are said, each in one write.
+#[derive(Clone, Default)]
+struct Frames {
+    said: Rc<RefCell<Vec<Vec<u8>>>>,
+    count: Rc<Cell<usize>>,
+}
+
+impl Frames {
+    /// What has been said, less each `drops`th of the console's.
+    fn take(&self, drops: Option<usize>) -> Vec<u8> {
+        let mut kept = Vec::new();
+        for frame in self.said.take() {
+            let console = frame.get(7..10) == Some(&[126, 0, 0]);
+            self.count.set(self.count.get() + usize::from(console));
+            if !console || drops.is_none_or(|every| !self.count.get().is_multiple_of(every)) {
+                kept.extend(frame);
+            }
+        }
+        kept
+    }
+}
+
+impl SerialOutput for Frames {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        self.said.borrow_mut().push(bytes.to_vec());
+        Ok(())
+    }
+}
+
 #[derive(Clone)]
 struct ThisChip {
     hands: Arc<Mutex<Hands>>,
@@ -493,8 +579,12 @@ impl Storage for ThisChip {
         Ok(())
     }
 
+    /// The key comes with each start: its times begin anew.
     async fn save_signing(&mut self, _: Option<Record>) -> Result<(), StorageError> {
-        Err(StorageError::Broken)
+        match self.hands.lock().unwrap().broken {
+            true => Err(StorageError::Broken),
+            false => Ok(()),
+        }
     }
 }
 

@@ -11,6 +11,7 @@ use sophie_control::calibration::Face;
 use sophie_control::params::{MotorMap, Params};
 use sophie_control::rc::{ArmChoice, StickMode, Sticks};
 use sophie_control::vector::Vec3;
+use sophie_sim::live::Key;
 
 use super::board::{Board, Hands};
 use super::command::{Temp, command, refused};
@@ -18,6 +19,8 @@ use super::run;
 
 /// What the accelerometer reads beyond gravity.
 const BIAS: Vec3 = Vec3::new(0.11, -0.04, 0.08);
+/// A key of MAVLink.
+pub(super) const KEY: &str = "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff";
 /// Longest wait for a prompt, whatever the load of the machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -31,6 +34,7 @@ pub(super) struct Builder {
 }
 
 impl Builder {
+    /// With `more` arguments.
     pub(super) fn begins(temp: &Temp, board: &Board, more: &[&str]) -> Self {
         let name = board.name();
         let args = [&["bringup", "--port", &name, "--patience", "5"], more].concat();
@@ -134,13 +138,13 @@ fn lies(board: &Board, side: Face) {
 }
 
 /// A vehicle out of its bag.
-pub(super) fn factory() -> Board {
-    Board::new(Hands {
+pub(super) fn factory() -> Hands {
+    Hands {
         force: Face::Belly.force() + BIAS,
         tilt: [0.04; 4],
         brown_out_set: false,
         ..Hands::default()
-    })
+    }
 }
 
 /// From the chip to the level table.
@@ -268,10 +272,33 @@ fn sensors_and_actuators(builder: &mut Builder, board: &Board) {
 
 #[test]
 fn a_vehicle_is_brought_up_over_four_sessions() {
-    let (temp, board) = (Temp::new("bringup-whole"), factory());
-    let mut builder = Builder::begins(&temp, &board, &[]);
+    let (temp, board) = (Temp::new("bringup-whole"), Board::new(factory()));
+    brought_up(&temp, &board, &[]);
+
+    // What the board has lost is asked again, and nothing else.
+    board.type_and_leave(b"set fsr_zero_2 1\r");
+    let done = run(&temp, &["bringup", "--port", &board.name()]);
+    assert_eq!(done.status, Some(1));
+    assert!(
+        done.said
+            .contains("fsr-2 is to be done again: fsr_zero_2 is 1 at the board, was "),
+        "{done:?}"
+    );
+    assert!(done.said.contains("not done: fsr-2\n"), "{done:?}");
+}
+
+#[test]
+fn and_over_signed_mavlink() {
+    let temp = Temp::new("bringup-mavlink");
+    let file = temp.file("key", KEY.as_bytes());
+    let board = Board::on_mavlink(factory(), Key::from_hex(KEY));
+    brought_up(&temp, &board, &["--mavlink-key", &file]);
+}
+
+fn brought_up(temp: &Temp, board: &Board, more: &[&str]) {
+    let mut builder = Builder::begins(temp, board, more);
     builder.hears("on table, chip 0x450 0x2003");
-    first_part(&mut builder, &board);
+    first_part(&mut builder, board);
     builder.at("(arm-1)", "q");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(1), ""), "{said}");
@@ -290,8 +317,8 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
     assert!((board.stored().battery_capacity - 5400.0).abs() < 1.0);
 
     // The line is lost in the midst of a step.
-    let mut builder = Builder::begins(&temp, &board, &[]);
-    arms(&mut builder, &board, 1);
+    let mut builder = Builder::begins(temp, board, more);
+    arms(&mut builder, board, 1);
     builder.step("fsr-1");
     board.hands(|hands| hands.dies_at = Some("Put the weight"));
     builder.at("Weight in N", "");
@@ -310,9 +337,9 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
     );
 
     // The input ends with the radio's step; a step is skipped.
-    let mut builder = Builder::begins(&temp, &board, &[]);
+    let mut builder = Builder::begins(temp, board, more);
     builder.hears("not done: fsr-1");
-    sensors_and_actuators(&mut builder, &board);
+    sensors_and_actuators(&mut builder, board);
     builder.at("(radio)", "s");
     builder.hears("skipped");
     let (status, said, _) = builder.ends();
@@ -321,7 +348,7 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
         "{said}"
     );
 
-    let mut builder = Builder::begins(&temp, &board, &[]);
+    let mut builder = Builder::begins(temp, board, more);
     builder.at("(radio)", "");
     builder.at("Type off", "off");
     // Nothing is moved: it fails, and is left for a second try.
@@ -332,7 +359,7 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
     builder.at("Enter tries it again", "");
     board.pass(1.0);
     builder.types("");
-    radio(&mut builder, &board);
+    radio(&mut builder, board);
     builder.step("final");
     let (status, said, complaint) = builder.ends();
     assert_eq!((status, &*complaint), (Some(0), ""), "{said}");
@@ -341,9 +368,10 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
     assert_eq!(board.stored().motor_map, MotorMap::M1324);
     let build = "build 1234abcd, ";
     assert_eq!(file().matches(build).count(), 1 + 26, "{}", file());
+    let name = board.name();
     // Another image: said in one line, and nothing is asked again.
     board.hands(|hands| hands.build = 0xC0DE);
-    let done = run(&temp, &["bringup", "--port", &board.name()]);
+    let done = run(temp, &[&["bringup", "--port", &name], more].concat());
     assert!(
         done.status == Some(0)
             && done
@@ -356,22 +384,11 @@ fn a_vehicle_is_brought_up_over_four_sessions() {
         "{done:?}"
     );
     // Nothing is asked again.
-    let done = run(&temp, &["bringup", "--port", &board.name()]);
+    let done = run(temp, &[&["bringup", "--port", &name], more].concat());
     assert!(
         done.status == Some(0) && !done.said.contains("(chip)") && !done.said.contains("Another image"),
         "{done:?}"
     );
-
-    // What the board has lost is asked again, and nothing else.
-    board.type_and_leave(b"set fsr_zero_2 1\r");
-    let done = run(&temp, &["bringup", "--port", &board.name()]);
-    assert_eq!(done.status, Some(1));
-    assert!(
-        done.said
-            .contains("fsr-2 is to be done again: fsr_zero_2 is 1 at the board, was "),
-        "{done:?}"
-    );
-    assert!(done.said.contains("not done: fsr-2\n"), "{done:?}");
 }
 
 /// Sticks to their ends, switches through their positions, then the transmitter off and on.

@@ -84,24 +84,33 @@ fn a_bring_up_is_left_in_order_wherever_it_is() {
 
 #[test]
 fn a_motor_stops_at_once() {
-    let temp = Temp::new("interrupt-motor");
     let board = Board::new(Hands::default());
-    let mut builder = Builder::begins(&temp, &board, &[]);
+    motor_stops(&Temp::new("interrupt-motor"), &board);
+    rests(&board);
+}
+
+#[test]
+fn and_over_mavlink() {
+    let board = Board::on_mavlink(Hands::default(), None);
+    motor_stops(&Temp::new("interrupt-mavlink"), &board);
+}
+
+fn motor_stops(temp: &Temp, board: &Board) {
+    let mut builder = Builder::begins(temp, board, &[]);
     skips_to(&mut builder, "rotors");
     // The question for the second output: the motor before has turned, and stands.
     builder.at("Type off", "off");
     builder.at("Which rotor turned", "1");
     board.hands(|hands| hands.real_time = true);
     builder.at("From above", "a");
-    until(&board, |pins| pins.motors[1] > 0.0);
+    until(board, |pins| pins.motors[1] > 0.0);
     let from = board.seconds();
     builder.interrupts();
-    until(&board, |pins| pins.motors == [0.0; 4]);
+    until(board, |pins| pins.motors == [0.0; 4]);
     let took = board.seconds() - from;
     // Left to itself it turns for 2 s.
     assert!(took < 1.0, "{took} s");
     assert_eq!(builder.ends().0, Some(1));
-    rests(&board);
 }
 
 #[test]

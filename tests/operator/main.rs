@@ -5,6 +5,7 @@ mod bringup;
 #[path = "../common/command.rs"]
 mod command;
 mod interruption;
+mod mavlink;
 mod params;
 #[cfg(target_os = "linux")]
 mod serial;

@@ -34,7 +34,7 @@ impl Server {
             .send_heartbeat(now, vehicle)
             .or_else(|| self.send_answer(now, vehicle))
             .or_else(|| self.send_text(vehicle))
-            .or_else(|| self.send_stream(now, vehicle))
+            .or_else(|| self.send_console_by_turns(now, vehicle))
             .or_else(|| self.send_file())
             .or_else(|| self.send_listed())?;
         self.budget.spend(bytes);
@@ -120,6 +120,24 @@ impl Server {
         }
         let text = self.texts.next(vehicle)?;
         Some(self.encoder.encode(&text.message()))
+    }
+
+    /// The console and the streams, neither of which waits for more than one frame of the other's.
+    fn send_console_by_turns(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {
+        if self.shell.waits {
+            return self.send_console().or_else(|| self.send_stream(now, vehicle));
+        }
+        let stream = self.send_stream(now, vehicle);
+        self.shell.waits = stream.is_some();
+        stream.or_else(|| self.send_console())
+    }
+
+    fn send_console(&mut self) -> Option<u32> {
+        self.shell.waits = false;
+        if !self.budget.allows(frame_bytes::<SERIAL_CONTROL_DATA>() + RESERVE) {
+            return None;
+        }
+        Some(self.encoder.encode(&self.shell.said()?))
     }
 
     fn send_stream(&mut self, now: u64, vehicle: &Vehicle) -> Option<u32> {

@@ -1,5 +1,8 @@
 //! Commands, and what each is answered with.
 
+use std::collections::BTreeSet;
+
+use num_traits::FromPrimitive;
 use sophie_control::mode::Mode;
 use sophie_mavlink::Order;
 use sophie_mavlink::dialect::*;
@@ -154,4 +157,27 @@ fn it_restarts_after_the_answer_and_at_rest_alone() {
     station.vehicle = vehicle(Mode::Armed);
     station.run(1000);
     assert!(station.orders.is_empty());
+}
+
+#[test]
+fn the_commands_of_the_page_are_those_that_are_obeyed() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/mavlink.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let (_, rest) = page.split_once("| command | when |\n").unwrap();
+    let (table, _) = rest.split_once("\n\n").unwrap();
+    // What stands in backticks in the first column.
+    let first = table.lines().filter_map(|row| row.split('|').nth(1));
+    let named: BTreeSet<String> = first
+        .flat_map(|column| column.split('`').skip(1).step_by(2))
+        .map(|name| format!("MAV_CMD_{name}"))
+        .collect();
+    let known = (0..=u16::MAX.into()).filter_map(MavCmd::from_u32);
+    let obeyed: BTreeSet<String> = known
+        .filter(|command| {
+            let answered = Station::new().command(*command, [1.0, 0.0]);
+            !answered.contains(&UNSUPPORTED)
+        })
+        .map(|command| format!("{command:?}"))
+        .collect();
+    assert_eq!(named, obeyed);
 }

@@ -7,6 +7,7 @@ mod inputs;
 mod messages;
 mod orders;
 mod parameters;
+mod shell;
 mod signing;
 mod sorter;
 mod station;

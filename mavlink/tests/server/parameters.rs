@@ -55,7 +55,7 @@ fn a_list_has_every_parameter_once_in_order() {
 #[test]
 fn one_is_read_by_name_or_place() {
     let mut station = Station::new();
-    for (name, index) in [("infill", -1), ("", 2), ("mass", 2)] {
+    for (name, index) in [("infill", -1), ("INFILL", -1), ("", 2), ("mass", 2)] {
         station.sent.clear();
         station.say(&frame(&PARAM_REQUEST_READ_DATA {
             param_index: index,
@@ -64,7 +64,11 @@ fn one_is_read_by_name_or_place() {
             param_id: id(name),
         }));
         station.run(100);
-        let expected = if index < 0 { name } else { Params::TABLE[2].name };
+        let expected = if index < 0 {
+            name.to_lowercase()
+        } else {
+            Params::TABLE[2].name.to_owned()
+        };
         assert_eq!(
             station.got::<PARAM_VALUE_DATA>()[0].param_id.to_str().unwrap(),
             expected

@@ -1,5 +1,6 @@
 //! A flight at the pace of real time, with MAVLink on a UDP socket.
 
+mod chip;
 mod flight;
 mod line;
 mod pace;
@@ -10,6 +11,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use self::chip::ThisChip;
 pub use self::flight::LiveFlight;
 use self::line::{Line, LinePort};
 pub use self::pace::Pace;
@@ -18,9 +20,10 @@ pub use self::udp::Udp;
 use crate::clock::VirtualTime;
 use sophie_control::params::Params;
 use sophie_tasks::links::Links;
-use sophie_tasks::mavlink;
 pub use sophie_tasks::mavlink::signing::Key;
 use sophie_tasks::mavlink::signing::Record;
+use sophie_tasks::shell::Shell;
+use sophie_tasks::{console, mavlink};
 
 /// What ends a flight before its mission is over, in the report.
 const STOPPED: &str = "stopped from outside";
@@ -64,7 +67,7 @@ impl Live {
         Self { key, ..self }
     }
 
-    /// Spawns the board's server. The first start stores `links`' parameters.
+    /// Spawns the board's server and the console over it. The first start stores `links`' parameters.
     pub(crate) fn spawn(&mut self, time: &VirtualTime, links: &'static Links) {
         let key = self.key;
         let stored = *self.stored.get_or_insert_with(|| {
@@ -79,12 +82,23 @@ impl Live {
             outputs: [port],
             bytes_per_second: [BYTES_PER_SECOND],
         };
+        // As every other part of the board: for one start.
+        let shell: &'static Shell = Box::leak(Box::default());
         time.spawn(mavlink::run(
             links,
             lines,
+            shell,
             Port(stored),
             || line.restart(),
             stored.key(),
+        ));
+        let chip = ThisChip(line);
+        time.spawn(console::run(
+            links,
+            shell.port(),
+            shell.port(),
+            Port(stored),
+            chip,
         ));
     }
 

@@ -167,12 +167,15 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
         begun: fmt::Arguments<'_>,
     ) -> Result<u8, End> {
         let number = self.next_order().map_err(End::Refused)?;
+        let asked = Instant::now();
+        let request = BenchRequest { number, order };
+        // At once: while another line waits for its next run it must not take the same number.
+        self.links.bench.send(asked, request);
         let mut rate = FixedRate::of(self.links, TaskId::Console);
         let mut said = false;
-        let asked = Instant::now();
         loop {
             let at = rate.next().await.started;
-            self.links.bench.send(at, BenchRequest { number, order });
+            self.links.bench.send(at, request);
             let answer = self.links.bench_answer.fresh();
             match answer
                 .filter(|answer| answer.number == number)

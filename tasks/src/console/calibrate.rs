@@ -74,8 +74,8 @@ type Read<'a> = &'a dyn Fn(&Links) -> Option<Vec3>;
 
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     pub(super) async fn calibrate(&mut self, what: &str, arguments: [Option<&str>; 2]) {
-        if let Err(status) = self.stopped() {
-            return self.refuse("not calibrated", status).await;
+        if let Err(why) = self.stopped() {
+            return self.refuse("not calibrated", why).await;
         }
         match (what, arguments) {
             ("gyro", [None, _]) => self.calibrate_gyro().await,

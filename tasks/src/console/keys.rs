@@ -35,6 +35,11 @@ impl<I: SerialInput> Keys<I> {
         }
     }
 
+    /// What is typed stays between both ends.
+    pub(super) fn private(&self) -> bool {
+        self.port.private()
+    }
+
     /// Waits for bytes; `Ok(false)` where a read gives none.
     pub(super) async fn wait(&mut self) -> Result<bool, PortError> {
         if self.taken >= self.filled {

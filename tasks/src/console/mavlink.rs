@@ -48,6 +48,14 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
 
     /// Stores the key that `text` is and restarts. It is not shown here and never again.
     pub(super) async fn mavlink_key(&mut self, text: &str) {
+        if !self.keys.private() {
+            return self
+                .out
+                .line(format_args!(
+                    "not set: a key is typed at a cable, never over MAVLink"
+                ))
+                .await;
+        }
         let key = match (text, Key::from_hex(text)) {
             ("off", _) => None,
             (_, Some(key)) => Some(key),
@@ -70,8 +78,8 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 ))
                 .await;
         }
-        if let Err(status) = storing::hold_arming(self.links).await {
-            return self.refuse("not set", status).await;
+        if let Err(why) = storing::hold_arming(self.links).await {
+            return self.refuse("not set", why).await;
         }
         let record = match key {
             Some(key) => Some(self.record(key).await),

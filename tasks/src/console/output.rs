@@ -11,8 +11,9 @@ use crate::ports::{PortError, SerialOutput};
 const LENGTH: usize = 160;
 /// Time after which a line that was not taken is given up.
 const PATIENCE: Duration = Duration::from_millis(200);
-/// Time that the boards' buffers take to empty, 256 bytes and the port's own: 23 ms at 115,200 baud.
-const FAREWELL: Duration = Duration::from_millis(30);
+/// Time that the last line takes to get out: 23 ms in the boards' buffers at 115,200 baud; over MAVLink a run of its task,
+/// and at a tenth of its budget twice 70 bytes.
+const FAREWELL: Duration = Duration::from_millis(400);
 
 /// A terminal's screen.
 pub(super) struct Output<O> {

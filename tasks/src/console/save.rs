@@ -3,6 +3,7 @@
 use sophie_control::arming::ArmingInhibit;
 
 use super::Console;
+use crate::links::SigningState;
 use crate::ports::{Chip, SerialInput, SerialOutput, Storage};
 use crate::storing;
 
@@ -17,11 +18,20 @@ impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, 
                 ))
                 .await;
         }
-        if let Err(status) = storing::hold_arming(self.links).await {
-            return self.refuse("not saved", status).await;
+        if let Err(why) = storing::hold_arming(self.links).await {
+            return self.refuse("not saved", why).await;
         }
         match storing::save(self.links, &mut self.storage, &self.params).await {
             Ok(()) => {
+                let signing = self.links.mavlink.fresh().map(|line| line.signing);
+                if signing == Some(SigningState::Unknown) {
+                    // What could not be read is gone; until now nothing was obeyed for its sake.
+                    self.out
+                        .line(format_args!(
+                            "MAVLink's key, if there was one, is lost: signing is off"
+                        ))
+                        .await;
+                }
                 self.out.last(format_args!("saved; restarting")).await;
                 // Arming stays refused: the parameters in force are no longer those that are stored.
                 self.chip.restart();

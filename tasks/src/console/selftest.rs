@@ -68,8 +68,8 @@ struct Counted {
 impl<I: SerialInput, O: SerialOutput, S: Storage, C: Chip> Console<'_, I, O, S, C> {
     /// Tests all that can be tested without moving anything.
     pub(super) async fn selftest(&mut self) {
-        if let Err(status) = self.stopped() {
-            return self.refuse("not tested", status).await;
+        if let Err(why) = self.stopped() {
+            return self.refuse("not tested", why).await;
         }
         let before = self.counted();
         Timer::after(TIME).await;

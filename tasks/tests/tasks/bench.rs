@@ -86,6 +86,14 @@ impl Table {
         table
     }
 
+    /// A second console, at a line of its own.
+    pub fn another(&self) -> (FakeLine, Screen) {
+        let (line, screen, board) = (FakeLine::default(), Screen::default(), Board::default());
+        let console = console::run(self.rig.links, line.clone(), screen.clone(), board.clone(), board);
+        self.rig.time.spawn(console);
+        (line, screen)
+    }
+
     pub fn run(&mut self, ms: u32) {
         for i in 0..ms {
             let (sticks, at) = (self.sticks.get(), Instant::now());

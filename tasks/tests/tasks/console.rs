@@ -95,17 +95,17 @@ impl Chip for Board {
     }
 }
 
-struct Bench {
-    rig: Rig,
-    line: FakeLine,
-    screen: Screen,
-    board: Board,
+pub struct Bench {
+    pub rig: Rig,
+    pub line: FakeLine,
+    pub screen: Screen,
+    pub board: Board,
     /// What the commander says at 100 Hz; `None`: nothing.
     status: Option<Status>,
 }
 
 impl Bench {
-    fn in_mode(mode: Mode) -> Self {
+    pub fn in_mode(mode: Mode) -> Self {
         Self::of(mode, Board::default(), Params::DEFAULT)
     }
 
@@ -132,7 +132,7 @@ impl Bench {
         }
     }
 
-    fn run(&mut self, ms: u64) {
+    pub fn run(&mut self, ms: u64) {
         let status = self.status;
         let mut i = 0;
         self.rig.run_with(ms, |links: &Links, at| {
@@ -141,6 +141,11 @@ impl Bench {
             }
             i += 1;
         });
+    }
+
+    /// What holds until a restart ends.
+    fn restarts(&self) {
+        self.rig.links.report(ArmingInhibit::Storing, false);
     }
 
     /// The lines of the answer, without what was typed and the prompt.
@@ -501,6 +506,7 @@ fn a_key_is_stored_and_in_force_after_a_restart_while_disarmed_alone() {
         assert_eq!(bench.board.restarts.get(), u32::from(allowed), "{mode:?}");
         if allowed {
             assert_eq!(said, ["signing on; restarting"]);
+            bench.restarts();
             assert_eq!(bench.says("mavlink key off"), ["signing off; restarting"]);
             assert_eq!(bench.board.signing.get(), None);
         } else {
@@ -552,6 +558,7 @@ fn the_same_key_again_keeps_what_it_has_taken() {
     bench.board.signing.set(Some(record));
     bench.says(&format!("mavlink key {KEY}"));
     assert_eq!(bench.board.signing.get(), Some(record));
+    bench.restarts();
     let other = KEY.replace('f', "e");
     bench.says(&format!("mavlink key {other}"));
     assert_eq!(bench.board.signing.get().map(|record| record.bound), Some(0));

@@ -7,6 +7,7 @@ mod calibrate;
 mod clamp;
 mod commander;
 mod console;
+mod consoles;
 mod control;
 mod deadline;
 mod declarations;

@@ -10,12 +10,15 @@ use sophie_control::params::Params;
 use sophie_control::remote::{RemoteAnswer, RemoteOrder, RemoteRequest};
 use sophie_fakes::FakeLine;
 use sophie_mavlink::dialect::{
-    COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SET_ATTITUDE_TARGET_DATA,
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, ODOMETRY_DATA, PARAM_SET_DATA, SERIAL_CONTROL_DATA,
+    SET_ATTITUDE_TARGET_DATA,
 };
 use sophie_mavlink::signing::{Key, Record, Refused, Signing, Stored};
+use sophie_tasks::console;
 use sophie_tasks::links::{LineState, Links, SigningState, Status};
 use sophie_tasks::mavlink::{self, Lines};
 use sophie_tasks::ports::{PortError, SerialOutput};
+use sophie_tasks::shell::Shell;
 
 use crate::console::Board;
 use crate::rig::Rig;
@@ -64,6 +67,7 @@ struct Bench {
     second: End,
     /// The signed frame that was said last.
     newest: Vec<u8>,
+    shell: &'static Shell,
     board: Board,
     mode: Mode,
 }
@@ -85,6 +89,7 @@ impl Bench {
         let rig = Rig::with(Params::DEFAULT);
         let (line, wire, second) = (FakeLine::default(), Wire::default(), End::default());
         let restarts = board.restarts.clone();
+        let shell: &'static Shell = Box::leak(Box::default());
         rig.time.spawn(mavlink::run(
             rig.links,
             Lines {
@@ -92,6 +97,7 @@ impl Bench {
                 outputs: [wire.clone(), second.wire.clone()],
                 bytes_per_second: [5000; 2],
             },
+            shell,
             board.clone(),
             move || restarts.set(restarts.get() + 1),
             board.signing.get().map_or(Stored::None, Stored::Key),
@@ -102,9 +108,47 @@ impl Bench {
             wire,
             second,
             newest: Vec::new(),
+            shell,
             board,
             mode,
         }
+    }
+
+    /// With the console over the line.
+    fn with_console() -> Self {
+        let bench = Self::in_mode(Mode::Disarmed);
+        let (port, board) = (bench.shell.port(), bench.board.clone());
+        bench
+            .rig
+            .time
+            .spawn(console::run(bench.rig.links, port, port, board.clone(), board));
+        bench
+    }
+
+    /// What the console answers to `text`.
+    fn asks(&mut self, text: &str) -> String {
+        self.wire.0.take();
+        let mut data = [0; 70];
+        data[..text.len()].copy_from_slice(text.as_bytes());
+        self.say(&SERIAL_CONTROL_DATA {
+            device: 10,
+            flags: 2,
+            count: text.len() as u8,
+            data,
+            ..Default::default()
+        });
+        self.run(1000);
+        let said = self
+            .wire
+            .frames()
+            .into_iter()
+            .filter(|(id, _)| *id == SERIAL_CONTROL_DATA::ID);
+        said.map(|(_, frame)| {
+            let payload = &frame[10..10 + usize::from(frame[1])];
+            let said = SERIAL_CONTROL_DATA::deser(MavlinkVersion::V2, payload).unwrap();
+            String::from_utf8(said.data[..usize::from(said.count)].to_vec()).unwrap()
+        })
+        .collect()
     }
 
     fn run(&mut self, ms: u64) {
@@ -403,4 +447,54 @@ fn orders_of_two_lines_wait_for_each_other() {
             .collect();
         assert_eq!(results, [0]);
     }
+}
+
+#[test]
+fn the_console_is_there_over_the_line_without_its_secrets() {
+    let mut bench = Bench::with_console();
+    bench.run(100);
+    let said = bench.asks("get infill\r");
+    assert!(
+        said.starts_with("get infill\r\n") && said.ends_with("\r\n> "),
+        "{said:?}"
+    );
+    assert!(said.contains("infill           6.9"), "{said:?}");
+    // A list, longer than what waits at once.
+    let said = bench.asks("list\r");
+    bench.run(4000);
+    assert!(said.len() > 1000, "{said:?}");
+    for key in [
+        "off",
+        "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff",
+    ] {
+        let typed = format!("mavlink key {key}");
+        let (first, rest) = typed.split_at(typed.len().min(60));
+        bench.asks(first);
+        let said = bench.asks(&format!("{rest}\r"));
+        assert!(
+            said.contains("not set: a key is typed at a cable, never over MAVLink"),
+            "{said:?}"
+        );
+    }
+    assert!(bench.board.signing.get().is_none());
+}
+
+#[test]
+fn the_console_does_not_save_over_what_was_stored_by_the_parameter_protocol() {
+    let mut bench = Bench::with_console();
+    bench.run(100);
+    bench.set_infill(8.0);
+    bench.run(2000);
+    assert_eq!(bench.board.stored.get().unwrap().infill, 8.0);
+    bench.asks("set rate_p 11\r");
+    let said = bench.asks("save\r");
+    assert!(
+        said.contains("not saved: others were stored over MAVLink, restart first and set yours again"),
+        "{said:?}"
+    );
+    assert_eq!(bench.board.stored.get().unwrap().rate_p, Params::DEFAULT.rate_p);
+    assert_eq!(bench.board.restarts.get(), 0);
+    // A restart is what brings both together.
+    assert!(bench.asks("restart\r").contains("restarting"));
+    assert_eq!(bench.board.restarts.get(), 1);
 }

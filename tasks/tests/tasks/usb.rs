@@ -85,6 +85,7 @@ impl Bench {
                 outputs: [OneOf::First(aired.clone()), OneOf::Second(output)],
                 bytes_per_second: [5000, 20_000],
             },
+            Box::leak(Box::default()),
             board.clone(),
             || (),
             Stored::None,

@@ -1,11 +1,12 @@
-//! The builder's side of the console: a [`session`] over a serial port or TCP, parameter files ([`parameters`]) and
-//! the guided [bring-up](bringup) of a vehicle.
+//! The builder's side of the console: a [`session`] over a serial port, TCP or [`mavlink`], parameter files
+//! ([`parameters`]) and the guided [bring-up](bringup) of a vehicle.
 //!
 //! Whatever is typed is a command of docs/console.md. The line may be in any state and lose bytes; the board may restart
 //! or fall silent. Every failure is one line that names the port and what was expected.
 
 pub mod bringup;
 pub mod file;
+pub mod mavlink;
 pub mod parameters;
 pub mod port;
 pub mod session;

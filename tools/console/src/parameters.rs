@@ -80,7 +80,7 @@ pub struct Version {
 /// # Errors
 /// The line is lost.
 pub fn version(session: &mut Session) -> Result<Version, Failure> {
-    let said = session.command("version")?;
+    let said = session.ask("version")?;
     let line = |begin: &str| said.iter().find(|line| line.starts_with(begin)).cloned();
     Ok(Version {
         firmware: line("SOPHIE ").unwrap_or_else(|| "an earlier firmware".to_owned()),
@@ -88,35 +88,58 @@ pub fn version(session: &mut Session) -> Result<Version, Failure> {
     })
 }
 
-/// What the board has, in its order.
+/// What the board has, in its order. Rows that are lost on the way are asked for again, one by one.
 ///
 /// # Errors
 /// One line: the line is lost, or what the board lists is no list.
 pub fn listed(session: &mut Session) -> Result<Vec<Listed>, Failure> {
-    let mut before = None;
-    for _ in 0..TRIES {
-        let lines = session.command("list")?;
-        let rows: Option<Vec<Listed>> = lines.iter().map(|line| row(line)).collect();
-        let Some(rows) = rows.filter(|rows| !rows.is_empty()) else {
-            continue;
-        };
-        // A firmware may know fewer parameters than this program; it lists the same ones twice then.
-        let whole = Params::TABLE
-            .iter()
-            .all(|row| rows.iter().any(|listed| listed.name == row.name));
-        if whole || before.as_ref() == Some(&rows) {
-            return Ok(rows);
-        }
-        before = Some(rows);
+    let mut rows = Vec::new();
+    // A parameter that this program does not know is missed by nothing else.
+    let damaged = take_rows(&session.ask("list")?, &mut rows) > 0;
+    if damaged {
+        take_rows(&session.ask("list")?, &mut rows);
     }
-    let port = session.port();
-    Err(Failure::Board(format!(
-        "{port}: 'list' is damaged on its way each time"
-    )))
+    for wanted in Params::TABLE {
+        let command = format!("list {}", wanted.name);
+        let mut tries = 0..TRIES;
+        while rows.iter().all(|row| row.name != wanted.name) {
+            let said = session.ask(&command)?;
+            take_rows(&said, &mut rows);
+            // A firmware may know fewer than this program.
+            if said.iter().any(|line| line.starts_with("no parameter has '")) {
+                break;
+            }
+            if tries.next().is_none() {
+                let port = session.port();
+                return Err(Failure::Board(format!(
+                    "{port}: '{command}' is damaged on its way each time"
+                )));
+            }
+        }
+    }
+    let place = |row: &Listed| Params::TABLE.iter().position(|known| known.name == row.name);
+    rows.sort_by_key(|row| place(row).unwrap_or(usize::MAX));
+    Ok(rows)
+}
+
+/// Takes the rows that are not there yet out of a list; how many were damaged.
+fn take_rows(lines: &[String], rows: &mut Vec<Listed>) -> usize {
+    let read: Vec<Listed> = lines.iter().filter_map(|line| row(line)).collect();
+    let damaged = lines.len() - read.len();
+    for row in read {
+        if rows.iter().all(|known| known.name != row.name) {
+            rows.push(row);
+        }
+    }
+    damaged
 }
 
 /// One row of `list`: mark, name, number, what is allowed.
 fn row(line: &str) -> Option<Listed> {
+    // Stands for bytes that were lost or damaged.
+    if line.contains('?') {
+        return None;
+    }
     let changed = match line.split_at_checked(2)?.0 {
         "* " => true,
         "  " => false,
@@ -138,7 +161,7 @@ fn row(line: &str) -> Option<Listed> {
 /// # Errors
 /// The line is lost.
 pub fn unsaved(session: &mut Session) -> Result<Vec<String>, Failure> {
-    let mut lines = session.command("changes")?;
+    let mut lines = session.ask("changes")?;
     // The last line counts them.
     let last = lines.pop().unwrap_or_default();
     let fits = match last.split_once(" change") {

@@ -8,6 +8,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use sophie_mavlink::signing::Key;
+
 use crate::Failure;
 use crate::port::{BAUD, PortName, Wire};
 
@@ -39,8 +41,12 @@ const DAMAGED: &str = "the line was damaged on its way";
 pub struct Session {
     wire: Box<dyn Wire>,
     name: PortName,
+    /// What MAVLink is signed with.
+    key: Option<Key>,
     /// Its text, for messages.
     port: String,
+    /// What answers there, for messages.
+    expected: String,
     patience: Duration,
     /// What was said since the last Enter or key, printable characters and line ends alone.
     heard: String,
@@ -67,16 +73,27 @@ pub struct Turn {
 }
 
 impl Session {
-    /// Opens `port` and waits for its console. `patience` is the longest silence while an answer is due; what waits ends
-    /// once when `stop` is raised.
+    /// Opens `port` and waits for its console, over MAVLink signed by `key` where there is one. `patience` is the longest
+    /// silence while an answer is due; what waits ends once when `stop` is raised.
     ///
     /// # Errors
     /// One line: the port cannot be opened, or no console answers there.
-    pub fn open(port: &PortName, patience: Duration, stop: Arc<AtomicBool>) -> Result<Self, Failure> {
+    pub fn open(
+        port: &PortName,
+        key: Option<Key>,
+        patience: Duration,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Self, Failure> {
         let mut session = Self {
-            wire: port.open()?,
+            wire: port.open(key)?,
             name: port.clone(),
+            key,
             port: port.to_string(),
+            expected: match (port, key) {
+                (PortName::Mavlink(_), None) => "over MAVLink, unsigned".to_owned(),
+                (PortName::Mavlink(_), Some(_)) => "over MAVLink, signed by the board's key".to_owned(),
+                _ => format!("at {BAUD} baud"),
+            },
             patience,
             heard: String::new(),
             pressed: None,
@@ -116,6 +133,23 @@ impl Session {
             }
         }
         Err(self.failed(&format!("'{text}' is damaged on its way each time")))
+    }
+
+    /// The same for a command that changes nothing: where its answer ends nowhere, it is typed again.
+    ///
+    /// # Errors
+    /// As [`Self::command`].
+    pub fn ask(&mut self, text: &str) -> Result<Vec<String>, Failure> {
+        for _ in 1..TRIES {
+            match self.command(text) {
+                Err(lost @ Failure::Board(_)) if self.synchronise(self.patience).is_err() => {
+                    return Err(lost);
+                }
+                Err(Failure::Board(_)) => (),
+                other => return other,
+            }
+        }
+        self.command(text)
     }
 
     /// Types `text` with its Enter; [`Self::turn`] gives what follows.
@@ -280,7 +314,7 @@ impl Session {
             // Given up first: the system gives the port its name again only when no one has the old one.
             self.wire = Box::new(Gone);
             std::thread::sleep(REOPEN);
-            if let Ok(wire) = self.name.open() {
+            if let Ok(wire) = self.name.open(self.key) {
                 (self.wire, self.lost) = (wire, false);
             }
         }
@@ -314,9 +348,9 @@ impl Session {
             0 => "nothing came",
             _ => "what came is no answer of the console",
         };
-        let time = time.as_secs_f32();
+        let (time, expected) = (time.as_secs_f32(), &self.expected);
         Err(self.failed(&format!(
-            "no console answers within {time} s, {came}; expected its prompt '> ' at {BAUD} baud"
+            "no console answers within {time} s, {came}; expected its prompt '> ' {expected}"
         )))
     }
 

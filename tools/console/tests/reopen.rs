@@ -48,7 +48,7 @@ fn a_session_outlives_a_restart_that_takes_its_port_away() {
     });
     let port: PortName = format!("tcp:{address}").parse().unwrap();
     let stop = Arc::new(AtomicBool::new(false));
-    let mut session = Session::open(&port, Duration::from_secs(5), stop).unwrap();
+    let mut session = Session::open(&port, None, Duration::from_secs(5), stop).unwrap();
     let said = session.restart("restart").unwrap();
     assert_eq!(said.last().map(String::as_str), Some("restarting"));
     assert_eq!(session.restarts(), 1);

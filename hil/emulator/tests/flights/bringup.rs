@@ -66,7 +66,7 @@ fn walk(folder: &Folder, builder: impl FnOnce(Hands) -> Builder) -> Walked {
     let protocol = folder.protocol();
     let walker = std::thread::spawn(move || {
         let port: PortName = format!("tcp:127.0.0.1:{port}").parse().unwrap();
-        let all_passed = Session::open(&port, PATIENCE, Arc::default())
+        let all_passed = Session::open(&port, None, PATIENCE, Arc::default())
             .and_then(|mut session| bringup::run(&mut session, &mut builder, &protocol, &[]));
         (builder, all_passed)
     });

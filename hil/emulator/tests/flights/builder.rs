@@ -154,11 +154,22 @@ impl Builder {
     fn moves_servo(&mut self) -> &'static str {
         let reply = self.marks.pop_front().unwrap_or_default();
         if reply.is_empty() {
-            self.settles();
-            let pulse = self.hands.look().servos[self.number()];
-            self.servo_marks.push(pulse.round());
+            self.servo_marks.push(self.standing_pulse());
         }
         reply
+    }
+
+    /// The pulse at which the servo stands, µs: it is moved no faster than its reel turns.
+    fn standing_pulse(&self) -> f64 {
+        let seen = || self.hands.look().servos[self.number()].round();
+        let mut pulse = seen();
+        loop {
+            self.settles();
+            let before = std::mem::replace(&mut pulse, seen());
+            if pulse == before {
+                return pulse;
+            }
+        }
     }
 
     fn which_turned(&mut self) -> String {

@@ -14,7 +14,8 @@ mod clients;
 
 /// What the line carries, bytes each second: 57,600 baud, ten bits a byte.
 const LINE_RATE: f64 = 5760.0;
-/// Change of the time from data-ready to the motor frame that a flood may make, us: its mean and its worst. It is 0; with
+/// Change of the time from data-ready to the motor frame that a flood may make, us: of its mean, and by which its worst may
+/// come later. Where it falls on another task's masked interrupts decides 0.2 of the worst, with a flood or without; with
 /// the line's interrupts above the flight level it was 0.1 and 0.55.
 const MEAN_MOVED: f64 = 0.05;
 const WORST_MOVED: f64 = 0.2;
@@ -38,8 +39,14 @@ fn fly_with_client(
     flight::fly(firmware, scenario, setup, |_| (), &mut Silent).unwrap()
 }
 
+/// A sound heartbeat of a station, and a request for the parameters of system 2.
+const HEARTBEAT: [u8; 21] = [
+    0xFD, 9, 0, 0, 0, 255, 190, 0, 0, 0, 0, 0, 0, 0, 6, 8, 0, 0, 3, 0x5C, 0x2B,
+];
+const FOR_ANOTHER: [u8; 14] = [0xFD, 2, 0, 0, 0, 255, 190, 0x15, 0, 0, 2, 1, 0xEC, 0x2F];
+
 /// Sends as fast as the socket takes it, and reads what comes, until the board has gone: garbage, the start of frames
-/// of every length, frames with a wrong checksum.
+/// of every length, frames with a wrong checksum, cut short, for another vehicle, and one again and again.
 fn flood(port: u16) {
     let mut client = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
     let mut reader = client.try_clone().unwrap();
@@ -47,6 +54,9 @@ fn flood(port: u16) {
     let mut state = 1_u32;
     let mut bytes = Vec::new();
     for length in 0..=u8::MAX {
+        bytes.extend(HEARTBEAT);
+        bytes.extend(FOR_ANOTHER);
+        bytes.extend(HEARTBEAT.split_last().unwrap().1);
         bytes.extend([0xFD, length, 0, 0, length, 255, 190, 0, 0, 0]);
         for _ in 0..=length {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -90,15 +100,14 @@ fn a_flood_moves_nothing(board: &str, image: &Path) {
         before.worst,
         after.worst
     );
-    let moved = [after.mean() - before.mean(), after.worst - before.worst].map(f64::abs);
     assert!(
-        moved[0] < MEAN_MOVED && moved[1] < WORST_MOVED,
+        (after.mean() - before.mean()).abs() < MEAN_MOVED && after.worst - before.worst < WORST_MOVED,
         "{board}: {before:?} {after:?}"
     );
 }
 
 #[test]
-#[ignore = "red: 0 missed, but the worst frame comes 0.9 us later with the whole server; .ci/campaign flies it"]
+#[ignore = "minutes of emulated flight: .ci/campaign flies it"]
 fn a_flood_at_line_rate_moves_no_deadline_figure_of_the_small_board() {
     a_flood_moves_nothing("f405", small_image());
 }

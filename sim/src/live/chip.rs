@@ -1,0 +1,38 @@
+//! The simulated board's chip, as its console shows it.
+
+use sophie_tasks::image_id;
+use sophie_tasks::parameters::table_id;
+use sophie_tasks::ports::{Chip, Look, NotSet};
+
+use super::Line;
+
+/// The chip of the board on this line.
+#[derive(Clone, Copy)]
+pub struct ThisChip(pub(super) &'static Line);
+
+impl Chip for ThisChip {
+    fn restart(&mut self) {
+        self.0.restart();
+    }
+
+    fn board(&self) -> &'static str {
+        "a simulated board"
+    }
+
+    /// It has no image: what it knows of parameters stands for one.
+    fn build(&self) -> u32 {
+        image_id::of([table_id()])
+    }
+
+    fn looks(&self) -> &[Look] {
+        &[]
+    }
+
+    fn brown_out_volts(&self) -> f32 {
+        0.0
+    }
+
+    async fn set_brown_out(&mut self) -> Result<(), NotSet> {
+        Err(NotSet)
+    }
+}

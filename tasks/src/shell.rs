@@ -1,0 +1,82 @@
+//! A console's line that MAVLink carries: the console types and reads at one end, the server at the other.
+
+use embassy_sync::pipe::Pipe;
+use heapless::Vec;
+use sophie_mavlink::server::shell::CHUNK;
+
+use crate::links::Raw;
+use crate::ports::{PortError, SerialInput, SerialOutput};
+
+/// Bytes each way that wait: two commands, and one line of the console and its end.
+const TYPED: usize = 256;
+const SAID: usize = 256;
+
+/// Both ways of the line.
+pub struct Shell {
+    typed: Pipe<Raw, TYPED>,
+    said: Pipe<Raw, SAID>,
+}
+
+impl Default for Shell {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Shell {
+    /// A line with nothing on it.
+    pub const fn new() -> Self {
+        Self {
+            typed: Pipe::new(),
+            said: Pipe::new(),
+        }
+    }
+
+    /// The console's end.
+    pub const fn port(&self) -> ShellPort<'_> {
+        ShellPort(self)
+    }
+
+    /// Types `bytes` at the console. What finds no room is lost, as on a cable.
+    pub(crate) fn type_in(&self, bytes: &[u8]) {
+        let mut rest = bytes;
+        while let Ok(taken) = self.typed.try_write(rest)
+            && taken > 0
+        {
+            rest = rest.get(taken..).unwrap_or_default();
+        }
+    }
+
+    /// Drops what the console has said: it was for another.
+    pub(crate) fn drop_said(&self) {
+        self.said.clear();
+    }
+
+    /// What the console has said, as much as one message carries.
+    pub(crate) fn said(&self) -> Vec<u8, CHUNK> {
+        let mut bytes = [0; CHUNK];
+        let count = self.said.try_read(&mut bytes).unwrap_or(0);
+        Vec::from_slice(bytes.get(..count).unwrap_or_default()).unwrap_or_default()
+    }
+}
+
+/// The console's end of a [`Shell`].
+#[derive(Clone, Copy)]
+pub struct ShellPort<'a>(&'a Shell);
+
+impl SerialInput for ShellPort<'_> {
+    async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, PortError> {
+        Ok(self.0.typed.read(buffer).await)
+    }
+
+    fn private(&self) -> bool {
+        false
+    }
+}
+
+impl SerialOutput for ShellPort<'_> {
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
+        self.0.said.write_all(bytes).await;
+        Ok(())
+    }
+}

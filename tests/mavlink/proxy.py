@@ -1,0 +1,58 @@
+"""Runs MAVProxy without a terminal: it fetches all parameters, sets one, and saves what it has.
+
+proxy.py ADDRESS:PORT SECONDS NAME VALUE
+
+Prints JSON: the parameters in its file, and what it said.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+
+def main() -> int:
+    address, seconds, name, value = sys.argv[1], float(sys.argv[2]), sys.argv[3], sys.argv[4]
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "saved.parm")
+        proxy = subprocess.Popen(
+            [sys.executable, os.path.join(os.path.dirname(sys.executable), "mavproxy.py"), f"--master=udpin:{address}",
+             "--default-modules=param,cmdlong", "--mav20", "--no-state"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=folder)
+        os.set_blocking(proxy.stdout.fileno(), False)
+        said = ""
+
+        def until(words):
+            nonlocal said
+            end = time.monotonic() + seconds
+            while words not in said:
+                if time.monotonic() > end:
+                    proxy.kill()
+                    raise SystemExit(f"MAVProxy does not say '{words}': {said}")
+                time.sleep(0.05)
+                said += (proxy.stdout.read() or b"").decode("ascii", "replace")
+
+        def types(command):
+            proxy.stdin.write(f"{command}\n".encode())
+            proxy.stdin.flush()
+
+        until("Received")
+        # Its `param set` looks for names in capitals alone; a file is taken as it is, and sent in capitals.
+        with open(f"{path}.wanted", "w") as file:
+            file.write(f"{name} {value}\n")
+        types(f"param load {path}.wanted")
+        until("Loaded ")
+        types(f"param save {path}")
+        until("Saved ")
+        proxy.stdin.close()
+        proxy.terminate()
+        proxy.wait()
+        with open(path) as file:
+            rows = [line.split() for line in file]
+    print(json.dumps({"params": {row[0]: float(row[1]) for row in rows}, "said": said}))
+    return 0
+
+
+sys.exit(main())

@@ -1,0 +1,76 @@
+"""What MAVSDK, by its own plugins, has heard of and done with a vehicle that stands without a transmitter.
+
+sdk.py ADDRESS:PORT SECONDS
+
+Prints JSON: telemetry, all parameters, what became of one that was set and one that cannot be, of arming, of the gripper,
+and what its shell was answered.
+"""
+
+import json
+import sys
+import time
+
+from mavsdk import ComponentType, Configuration, Mavsdk, log_subscribe
+from mavsdk.plugins.action.action import Action, ActionError
+from mavsdk.plugins.gripper.gripper import Gripper, GripperError
+from mavsdk.plugins.param.param import Param, ParamError
+from mavsdk.plugins.shell.shell import Device, Shell
+from mavsdk.plugins.telemetry.telemetry import Telemetry
+
+
+def tried(call, refusal, *args):
+    try:
+        return call(*args).name
+    except refusal as why:
+        return why.result.name
+
+
+def waited(what, seconds, so_far):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        value = what()
+        if value is not None:
+            return value
+        time.sleep(0.05)
+    raise SystemExit(f"MAVSDK has waited in vain: {so_far}")
+
+
+def main():
+    log_subscribe(lambda *_: True)
+    seconds = float(sys.argv[2])
+    sdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+    sdk.add_any_connection(f"udpin://{sys.argv[1]}")
+    system = sdk.first_autopilot(seconds)
+    if system is None:
+        raise SystemExit("MAVSDK has found no autopilot")
+    telemetry, param = Telemetry(system), Param(system)
+    texts = []
+    telemetry.subscribe_status_text(lambda text, _: texts.append(text.text))
+    heard = {}
+    telemetry.subscribe_attitude_euler(lambda euler, _: heard.update(attitude=[euler.roll_deg, euler.pitch_deg]))
+    telemetry.subscribe_battery(lambda battery, _: heard.update(voltage=battery.voltage_v))
+    waited(lambda: heard if len(heard) == 2 else None, seconds, heard)
+
+    everything = param.get_all_params()
+    params = {p.name: p.value for p in everything.float_params}
+    others = len(everything.int_params) + len(everything.custom_params)
+    one_by_one = sum(param.get_param_float(name) == value for name, value in params.items())
+    result = {
+        **heard, "armed": telemetry.armed(), "params": params, "others": others, "one_by_one": one_by_one,
+        "set": tried(param.set_param_float, ParamError, "infill", 8.0),
+        "infill": param.get_param_float("infill"),
+        "beyond": tried(param.set_param_float, ParamError, "infill", 11.0),
+        "infill_after": param.get_param_float("infill"),
+        "arm": tried(Action(system).arm, ActionError),
+        "grab": tried(Gripper(system).grab, GripperError, 1),
+        "release": tried(Gripper(system).release, GripperError, 1),
+    }
+    shell, said = Shell(system), []
+    shell.subscribe_receive(lambda received, _: said.append(received.data))
+    shell.send("get infill", Device.SHELL)
+    waited(lambda: "".join(said) if "".join(said).endswith("\n> ") else None, seconds, result)
+    print(json.dumps({**result, "shell": "".join(said), "texts": texts}))
+    sdk.destroy()
+
+
+main()
