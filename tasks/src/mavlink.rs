@@ -101,6 +101,9 @@ pub async fn run(
                 let order = shared.server.order(now, &shared.vehicle);
                 // A station that has gone is noticed here.
                 link.shell.type_in(&shared.server.shell().typed());
+                if !shared.server.shell().used() {
+                    link.shell.drop_said();
+                }
                 order
             });
             link.due.signal(());

@@ -47,6 +47,11 @@ impl Shell {
         }
     }
 
+    /// Drops what the console has said: without a reader it must not wait.
+    pub(crate) fn drop_said(&self) {
+        self.said.clear();
+    }
+
     /// What the console has said, as much as one message carries.
     pub(crate) fn said(&self) -> Vec<u8, CHUNK> {
         let mut bytes = [0; CHUNK];
