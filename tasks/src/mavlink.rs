@@ -111,6 +111,14 @@ impl<const N: usize> Link<'_, N> {
         self.shell.type_in(&typed);
     }
 
+    /// Drops what the console says to no one.
+    fn forget_unheard(&self) {
+        let used = self.with(|shared| shared.servers.iter_mut().any(|server| server.shell().used()));
+        if used == Some(false) {
+            self.shell.drop_said();
+        }
+    }
+
     /// Gives every other line the parameters of line `at`: there is one copy of what is to be stored.
     fn share_parameters(&self, at: usize) {
         self.with(|shared| {
@@ -180,6 +188,7 @@ pub async fn run<I: SerialInput, O: SerialOutput, const N: usize>(
                 link.type_in(at);
                 obey(links, &link, at, &mut storage, &mut restart, order.flatten()).await;
             }
+            link.forget_unheard();
             for due in &link.due {
                 due.signal(());
             }
@@ -230,7 +239,7 @@ async fn send<const N: usize>(link: &Link<'_, N>, at: usize, mut output: impl Se
             let now = Instant::now().as_micros();
             frame.clear();
             let copied = link.with_server(at, |server, vehicle, signing| {
-                if link.at_the_shell.get() == at && server.shell().takes() {
+                if server.shell().takes() {
                     server.shell().say(&link.shell.said());
                 }
                 let bytes = server.send(now, vehicle, signing).unwrap_or_default();

@@ -47,7 +47,7 @@ impl Shell {
         }
     }
 
-    /// Drops what the console has said: it was for another.
+    /// Drops what the console has said: it was for another, or no one reads it.
     pub(crate) fn drop_said(&self) {
         self.said.clear();
     }

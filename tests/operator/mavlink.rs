@@ -56,7 +56,7 @@ fn with_a_key_nothing_unsigned_reaches_the_console() {
         "expected its prompt '> ' over MAVLink, signed by the board's key",
     );
     let key = temp.file("key", KEY.as_bytes());
-    // One session after the other: the times of the signatures go on.
+    // One session after the other: the times of the signatures continue.
     for _ in 0..2 {
         let dumped = params(&temp, &board, "dump", &["--mavlink-key", &key]);
         assert_eq!((dumped.status, &*dumped.complaint), (Some(0), ""), "{dumped:?}");

@@ -95,14 +95,19 @@ impl Shell {
         core::mem::take(&mut self.typed)
     }
 
-    /// True where it takes what the console says next.
-    pub fn takes(&self) -> bool {
-        self.said.is_empty()
+    /// True where a station uses it.
+    pub const fn used(&self) -> bool {
+        self.user.is_some()
     }
 
-    /// Takes what the console says, [`CHUNK`] bytes at most; without a user it is dropped.
+    /// True where it takes what the console says next.
+    pub fn takes(&self) -> bool {
+        self.used() && self.said.is_empty()
+    }
+
+    /// Takes what the console says, [`CHUNK`] bytes at most, where [`Self::takes`] is true.
     pub fn say(&mut self, bytes: &[u8]) {
-        if self.user.is_some() && self.said.is_empty() {
+        if self.takes() {
             let _ = self.said.extend_from_slice(bytes);
         }
     }

@@ -36,7 +36,7 @@ fn said(station: &Station) -> String {
 #[test]
 fn what_is_typed_is_answered_to_who_typed_it() {
     let mut station = Station::new();
-    // Nobody is there.
+    // Without a station.
     station.server.shell().say(b"> ");
     station.run(100);
     assert!(station.got::<SERIAL_CONTROL_DATA>().is_empty());

@@ -516,6 +516,30 @@ fn a_key_is_stored_and_in_force_after_a_restart_while_disarmed_alone() {
 }
 
 #[test]
+fn a_save_that_may_lose_a_key_says_so() {
+    for (signing, lost) in [
+        (SigningState::Off, false),
+        (SigningState::On, false),
+        (SigningState::Unknown, true),
+    ] {
+        let mut bench = Bench::in_mode(Mode::Disarmed);
+        bench.run(20);
+        bench.line.put(b"save\r");
+        let state = LineState {
+            signing,
+            refused: Refused::default(),
+            inputs: Counts::default(),
+        };
+        bench.rig.links.mavlink.send(Instant::now(), state);
+        bench.run(600);
+        let said = bench.screen.0.take();
+        assert!(said.contains("saved; restarting"), "{said}");
+        let warned = said.contains("MAVLink's key, if there was one, is lost: signing is off");
+        assert_eq!(warned, lost, "{said}");
+    }
+}
+
+#[test]
 fn a_key_is_checked_and_never_shown() {
     let mut bench = Bench::in_mode(Mode::Disarmed);
     for wrong in [&KEY[1..], "on", &KEY.replace('0', "x")] {

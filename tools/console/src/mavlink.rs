@@ -71,7 +71,7 @@ struct Datagrams {
 impl Read for Datagrams {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let (count, from) = match self.socket.recv_from(buffer) {
-            // Nobody listens there yet.
+            // Without a listener there so far.
             Err(error) if error.kind() == ErrorKind::ConnectionRefused => {
                 return Err(ErrorKind::WouldBlock.into());
             }
