@@ -36,6 +36,7 @@ pub mod mixer;
 pub mod motors;
 pub mod parameters;
 pub mod ports;
+pub mod position;
 pub mod rc;
 pub mod retained_state;
 pub mod retained_store;

@@ -1,9 +1,9 @@
 //! A flight at the pace of real time, with MAVLink on a UDP socket.
 
 mod flight;
-mod line;
+pub(crate) mod line;
 mod pace;
-mod stored;
+pub(crate) mod stored;
 mod udp;
 
 use std::cell::Cell;
@@ -86,6 +86,11 @@ impl Live {
             || line.restart(),
             rate,
         ));
+    }
+
+    /// The board's line, for what reaches it beside the clients.
+    pub(crate) fn line(&self) -> &'static Line {
+        self.line
     }
 
     /// The parameters that the board restarts with, if it is to.
