@@ -122,6 +122,64 @@ fn the_pilot_flies_to_a_point_by_velocities_and_takes_over_by_the_switch() {
     );
 }
 
+/// Held for 20 s with the poses gone for `seconds` in its middle; the record, and the samples from then on for as long.
+fn with_a_failure(seconds: f64) -> (FlightRecord, Vec<Sample>) {
+    let mut s = held(5, 20.0);
+    s.sensors.pose_fails_at = 22.0;
+    s.sensors.pose_fails_for = seconds;
+    let record = fly(&s, &mut Silent);
+    assert!(record.outcome.accomplished, "{}", record.outcome.reason);
+    let during = |s: &&Sample| (22.0..22.0 + seconds).contains(&s.t);
+    let samples: Vec<Sample> = record.samples.iter().filter(during).cloned().collect();
+    assert_eq!(samples[0].mode, Mode::Hold);
+    (record, samples)
+}
+
+fn says(record: &FlightRecord, reason: Reason) -> bool {
+    record.events.iter().any(|e| e.text == reason.text())
+}
+
+/// Farthest level and vertical way from the first of `samples`, m.
+fn ways(samples: &[Sample]) -> [f64; 2] {
+    let at = |s: &Sample| DVec3::from_array(s.position);
+    let first = at(&samples[0]);
+    let ways = || samples.iter().map(|s| at(s) - first);
+    [
+        ways().map(|way| way.truncate().length()).fold(0.0, f64::max),
+        ways().map(|way| way.z.abs()).fold(0.0, f64::max),
+    ]
+}
+
+#[test]
+fn poses_that_fail_for_a_second_cost_nothing_and_for_three_a_steered_drift() {
+    let (record, samples) = with_a_failure(0.95);
+    let [level, height] = ways(&samples);
+    assert!(level < 0.15 && height < 0.05, "{level:.3} {height:.3}");
+    assert!(!says(&record, Reason::PositionStale));
+
+    let (record, samples) = with_a_failure(3.0);
+    assert!(samples.iter().all(|s| s.mode == Mode::Hold) && says(&record, Reason::PositionStale));
+    let [level, height] = ways(&samples);
+    assert!(level < 1.0 && height < 0.15, "{level:.3} {height:.3}");
+}
+
+#[test]
+fn poses_that_stay_away_end_the_hold_and_the_pilot_flies_on_and_tries_again() {
+    let (record, samples) = with_a_failure(8.0);
+    assert!(says(&record, Reason::PositionLost));
+    let by_hand = |s: &&Sample| s.mode == Mode::Flight;
+    let lost = samples.iter().find(by_hand).unwrap().t;
+    assert!((lost - 22.0 - 4.0).abs() < 0.1, "{lost}");
+    let [level, height] = ways(&samples);
+    assert!(level < 2.5 && height < 0.6, "{level:.3} {height:.3}");
+    // Once there are poses again the switch is turned, and it holds for the whole time.
+    let again = record
+        .samples
+        .iter()
+        .filter(|s| s.t > 30.0 && s.mode == Mode::Hold);
+    assert!(again.count() > 1900);
+}
+
 #[test]
 fn without_poses_the_same_mission_fails_and_the_pilot_reads_why() {
     let mut s = held(1, 5.0);

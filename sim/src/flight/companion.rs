@@ -14,6 +14,7 @@ use crate::live::Live;
 use crate::live::line::{Line, LinePort};
 use crate::live::stored::{Memory, Port};
 use crate::plant::Plant;
+use crate::scenario::Scenario;
 use crate::sensors::pose::{Measured, PoseSource};
 
 /// What the server may send, bytes each second: the budget of a line at 57,600 baud.
@@ -32,10 +33,11 @@ pub struct Companion {
 }
 
 impl Companion {
-    /// A computer whose errors follow from `seed`. With `live` it shares the line of the clients.
-    pub fn new(seed: u64, live: Option<&Live>) -> Self {
+    /// The computer of `scenario`, whose seed gives its errors. With `live` it shares the line of the clients.
+    pub fn new(scenario: &Scenario, live: Option<&Live>) -> Self {
+        let sensors = &scenario.sensors;
         Self {
-            source: PoseSource::new(seed),
+            source: PoseSource::new(scenario.seed).failing(sensors.pose_fails_at, sensors.pose_fails_for),
             line: live.map_or_else(|| &*Box::leak(Box::new(Line::new())), Live::line),
             shared: live.is_some(),
             sequence: 0,

@@ -66,7 +66,7 @@ impl Stack {
         let params = calibrated(scenario.params, board);
         let companion = match scenario.sensors.position {
             PositionSensor::None => None,
-            PositionSensor::Pose => Some(Companion::new(scenario.seed, live.as_ref())),
+            PositionSensor::Pose => Some(Companion::new(scenario, live.as_ref())),
         };
         let mut stack = Self {
             running: None,

@@ -378,6 +378,16 @@ pub const KEYS: &[Key] = &[
         name: "sensors.position",
         kind: Kind::Choice(POSITION_SENSORS, |s, v| s.sensors.position = position_sensor(v)),
     },
+    number!(
+        "sensors.pose_fails_at_s",
+        Range::new(0.0, 3600.0, "s"),
+        sensors.pose_fails_at
+    ),
+    number!(
+        "sensors.pose_fails_for_s",
+        Range::new(0.0, 3600.0, "s"),
+        sensors.pose_fails_for
+    ),
     number!("pilot.delay_s", Range::new(0.0, 1.0, "s"), pilot.delay),
     number!("pilot.bandwidth_hz", Range::new(0.2, 20.0, "Hz"), pilot.bandwidth),
     number!("pilot.eye_noise_m", Range::new(0.0, 0.5, "m"), pilot.eye_noise),

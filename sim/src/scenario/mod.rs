@@ -160,6 +160,10 @@ pub enum Assist {
 pub struct Sensors {
     /// What measures the position.
     pub position: PositionSensor,
+    /// When after power-up the poses fail, s, beside the gaps that they have.
+    pub pose_fails_at: f64,
+    /// For how long, s.
+    pub pose_fails_for: f64,
 }
 
 /// What measures the position.

@@ -49,8 +49,9 @@ pub struct PoseSource {
     constant: DVec3,
     turn: f64,
     turn_rate: f64,
-    /// Begin and end of the next gap, ms.
+    /// Begin and end of the next gap, and of the failure, ms.
     gap: (u64, u64),
+    failure: (u64, u64),
     sent: VecDeque<Measured>,
 }
 
@@ -72,8 +73,16 @@ impl PoseSource {
             turn,
             turn_rate,
             gap,
+            failure: (0, 0),
             sent: VecDeque::new(),
         }
+    }
+
+    /// The same, failing at `at` s after power-up for `seconds`.
+    #[must_use]
+    pub fn failing(self, at: f64, seconds: f64) -> Self {
+        let failure = ((at * 1e3) as u64, ((at + seconds) * 1e3) as u64);
+        Self { failure, ..self }
     }
 
     /// A millisecond later the vehicle is at `pose`.
@@ -87,7 +96,10 @@ impl PoseSource {
         if self.ms >= ends {
             self.gap = gap(&mut self.rng, self.ms);
         }
-        if !self.ms.is_multiple_of(PERIOD_MS) || (begins..ends).contains(&self.ms) {
+        let silent = [(begins, ends), self.failure]
+            .iter()
+            .any(|(begins, ends)| (*begins..*ends).contains(&self.ms));
+        if silent || !self.ms.is_multiple_of(PERIOD_MS) {
             return;
         }
         let position = self.gone + self.constant + normal(&mut self.rng) * NOISE;
